@@ -52,36 +52,24 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.sketch.parameter import Parameter as Parameter
     from playground.sketch.techniques import shipped_techniques as shipped_techniques
 
-_HOMES = {
-    "headless": "playground.api",
-    "render": "playground.api",
-    "parameters": "playground.api",
-    "export": "playground.capture.export",
-    "render_video": "playground.capture.film",
-    "render_sequence": "playground.capture.sequence",
-    "render_sweep": "playground.capture.sheet",
-    "write_large": "playground.capture.large",
-    "Engine": "playground.engine.engine",
-    "Frame": "playground.engine.frame",
-    "load": "playground.sketch.load",
-    "shipped_sketches": "playground.sketch.find",
-    "shipped_techniques": "playground.sketch.techniques",
-    "Camera": "playground.sketch.model",
-    "Parameter": "playground.sketch.parameter",
-    "Shot": "playground.sketch.model",
-    "Sketch": "playground.sketch.model",
-    "PlainFormWarning": "playground.errors",
-    "PlaygroundError": "playground.errors",
-    "PlaygroundWarning": "playground.errors",
-    "SketchError": "playground.errors",
-    "ParameterError": "playground.errors",
-    "ShaderError": "playground.errors",
-    "DataError": "playground.errors",
-    "ContextError": "playground.errors",
-    "SandboxError": "playground.errors",
-    "SandboxTimeout": "playground.errors",
-    "SandboxCrash": "playground.errors",
+_NAMES = {
+    "playground.api": "headless render parameters",
+    "playground.capture.export": "export",
+    "playground.capture.film": "render_video",
+    "playground.capture.large": "write_large",
+    "playground.capture.sequence": "render_sequence",
+    "playground.capture.sheet": "render_sweep",
+    "playground.engine.engine": "Engine",
+    "playground.engine.frame": "Frame",
+    "playground.errors": "ContextError DataError ParameterError PlainFormWarning PlaygroundError "
+    "PlaygroundWarning SandboxCrash SandboxError SandboxTimeout ShaderError SketchError",
+    "playground.sketch.find": "shipped_sketches",
+    "playground.sketch.load": "load",
+    "playground.sketch.model": "Camera Shot Sketch",
+    "playground.sketch.parameter": "Parameter",
+    "playground.sketch.techniques": "shipped_techniques",
 }
+_HOMES = {name: home for home, names in _NAMES.items() for name in names.split()}
 
 _RENAMED = {"TrialError": "SandboxError", "TrialTimeout": "SandboxTimeout", "TrialCrash": "SandboxCrash"}
 

@@ -26,7 +26,8 @@ def headless(
     """Open an engine on a context without a window; use it with ``with``, or call its ``release()``.
 
     ``software`` asks for the software renderer, ``device`` for an EGL device by number,
-    ``driver`` is "auto", "fragment" or "compute". What can be drawn although something is wrong
+    ``driver`` is "auto", "fragment" or "compute". ``cache_bytes`` limits the GPU memory of
+    cached textures, in bytes. What can be drawn although something is wrong
     raises Python's warning ``PlaygroundWarning``, once. ``notice`` receives the reason why a fast
     variant does not run: by default as a ``PlainFormWarning``; with a function of your own, the
     other warnings are left out as well. Raises ``ContextError``.
@@ -34,7 +35,7 @@ def headless(
     context = open_context(software=software, device=device)
     engine = Engine(context, driver=driver, cache_bytes=cache_bytes, owns_context=True, notice=notice)
     if notice is warn:
-        engine.warnings.tell = _warn
+        engine.warnings.report = _warn
     return engine
 
 
@@ -52,9 +53,9 @@ def render(
 ) -> Frame:
     """Render one frame with a context of its own.
 
-    ``size`` in pixels, ``time`` in seconds, ``values`` of parameters by path; ``plain`` runs
-    every technique in its canonical form, no fast variant. For more than one frame, keep an
-    engine from ``headless()``.
+    ``sketch`` is a loaded one or what ``load`` takes; ``size`` in pixels, ``time`` in seconds,
+    ``values`` of parameters by path; ``plain`` runs every technique in its canonical form, no
+    fast variant. For more than one frame, keep an engine from ``headless()``.
     """
     found = opened(sketch)
     with headless() as engine:
@@ -62,7 +63,7 @@ def render(
 
 
 def parameters(sketch: Sketch) -> dict[str, tuple[Parameter, Value]]:
-    """Return every parameter of a sketch with its value, by path."""
+    """Return every parameter of a ``sketch`` with its value, by path."""
     leaves = values_of(sketch)
     return {
         shown.path: (shown.parameter, value_of(sketch, shown.path, leaves))

@@ -38,7 +38,7 @@ from playground.commands import (
     shots,
     variants,
 )
-from playground.commands.arguments import Renderer, help_text, quoted, read_device
+from playground.commands.arguments import Renderer, help_text, moment_of, quoted, read_device
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
 from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
@@ -157,12 +157,13 @@ def _global(
 def _open_default(renderer: Renderer) -> None:
     from playground.gpu.doctor import where_to_show
     from playground.paths import DEFAULT_SKETCH
+    from playground.sketch.load import load
 
     if where_to_show(os.environ, sys.platform):
-        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, beside=True)
+        live.open_window(DEFAULT_SKETCH, DEFAULT_PICTURE, renderer, show_lessons=True)
         return
     note("no display here, so a picture is rendered instead; playground --help lists the commands")
-    render.make_picture(render.Request(), renderer)
+    render.write_output(moment_of(load()), render.Output(), renderer)
 
 
 def _usage_message(error: Exception) -> str:
@@ -171,24 +172,21 @@ def _usage_message(error: Exception) -> str:
     text = " ".join(text.split())
     ctx: Any = getattr(error, "ctx", None)
     path = ctx.command_path if ctx is not None else "playground"
-    if text.startswith("No such command"):
-        return _no_command(text) if ctx is None or ctx.parent is None else _no_command_of(text, ctx)
+    if text.startswith("No such command") and ctx is not None:
+        return _no_command(text.split("'")[1] if text.count("'") >= 2 else "", ctx)
     if not text:
         return f"something is missing; see {path} --help"
     return f"{text[0].lower()}{text[1:].rstrip('.')}; see {path} --help"
 
 
-def _no_command(text: str) -> str:
-    name = text.split("'")[1] if text.count("'") >= 2 else ""
+def _no_command(name: str, ctx: Any) -> str:
+    hint = nearest(name, ctx.command.list_commands(ctx))
+    if ctx.parent is not None:
+        return f"no command '{name}' in {ctx.command_path}{hint}"
     if name in options.complete_sketch("") or Path(name).exists():
         shell = quoted(name)
         return f"'{name}' is no command; did you mean: playground live {shell}, or playground render {shell}?"
-    return f"no command '{name}'{nearest(name, _COMMANDS)}"
-
-
-def _no_command_of(text: str, group: Any) -> str:
-    name = text.split("'")[1] if text.count("'") >= 2 else ""
-    return f"no command '{name}' in {group.command_path}{nearest(name, group.command.list_commands(group))}"
+    return f"no command '{name}'{hint}"
 
 
 app.command("live", help=live.HELP)(live.live)
@@ -201,13 +199,8 @@ app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
-_GROUPS = (shots.app, lesson.app, cache.app, variants.app)
-for _group in _GROUPS:
+for _group in (shots.app, lesson.app, cache.app, variants.app):
     app.add_typer(_group)
-_COMMANDS = (
-    *(str(command.name) for command in app.registered_commands),
-    *(str(group.info.name) for group in _GROUPS),
-)
 
 
 if __name__ == "__main__":

@@ -23,6 +23,8 @@ from __future__ import annotations
 import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
+from itertools import takewhile
 from pathlib import Path
 
 from playground.paths import shown
@@ -43,12 +45,8 @@ class Diagnostic:
     @property
     def place(self) -> str:
         """Return "file:line:column", as much of it as is known."""
-        parts = [self.file] if self.file else []
-        if self.file and self.line:
-            parts.append(str(self.line))
-            if self.column:
-                parts.append(str(self.column))
-        return ":".join(parts)
+        known = takewhile(bool, (self.file, self.line, self.column))
+        return ":".join(map(str, known))
 
     def __str__(self) -> str:
         head = f"{self.place}: {self.message}" if self.place else self.message
@@ -90,7 +88,7 @@ class PlaygroundError(Exception):
 
     def __reduce__(self) -> tuple[object, ...]:
         """Cross a process border whole (a worker process sends its errors back)."""
-        return _rebuild, (type(self), self.diagnostics)
+        return partial(type(self), diagnostics=self.diagnostics), ()
 
 
 class SketchError(PlaygroundError):
@@ -156,7 +154,3 @@ def nearest(name: str, valid: Iterable[str]) -> str:
         return ""
     shown = ", ".join(names[:12]) + (", …" if len(names) > 12 else "")
     return f"; there are: {shown}"
-
-
-def _rebuild(kind: type[PlaygroundError], diagnostics: tuple[Diagnostic, ...]) -> PlaygroundError:
-    return kind(diagnostics=diagnostics)

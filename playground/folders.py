@@ -19,28 +19,19 @@ NAME = "terrain-shader-playground"
 
 def state_folder(system: str = sys.platform, environment: Mapping[str, str] = os.environ) -> Path:
     """Return the folder for state that lasts from one start to the next."""
-    if system == "win32":
-        return _local(environment) / NAME / "state"
-    if system == "darwin":
-        return Path.home() / "Library" / "Application Support" / NAME
-    return _xdg(environment, "XDG_STATE_HOME", ".local/state") / NAME
+    return _folder(system, environment, "state", "Application Support", ".local/state")
 
 
 def cache_folder(system: str = sys.platform, environment: Mapping[str, str] = os.environ) -> Path:
     """Return the folder for what may be deleted at any time."""
+    return _folder(system, environment, "cache", "Caches", ".cache")
+
+
+def _folder(system: str, environment: Mapping[str, str], kind: str, library: str, home: str) -> Path:
     if system == "win32":
-        return _local(environment) / NAME / "cache"
+        return Path(environment.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / NAME / kind
     if system == "darwin":
-        return Path.home() / "Library" / "Caches" / NAME
-    return _xdg(environment, "XDG_CACHE_HOME", ".cache") / NAME
-
-
-def _xdg(environment: Mapping[str, str], variable: str, otherwise: str) -> Path:
-    named = environment.get(variable, "")
+        return Path.home() / "Library" / library / NAME
+    named = Path(environment.get(f"XDG_{kind.upper()}_HOME", ""))
     # The specification has a relative path ignored (XDG Base Directory 0.8).
-    return Path(named) if Path(named).is_absolute() else Path.home() / otherwise
-
-
-def _local(environment: Mapping[str, str]) -> Path:
-    named = environment.get("LOCALAPPDATA", "")
-    return Path(named) if named else Path.home() / "AppData" / "Local"
+    return (named if named.is_absolute() else Path.home() / home) / NAME

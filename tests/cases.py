@@ -1,8 +1,8 @@
 """Many small cases in one test: each is checked, and one failure names every case that failed.
 
 pytest spends some milliseconds on a test before and after it runs, in both workers and in the
-process that reports. For a case that takes less than that, ``@each`` stands where
-``@pytest.mark.parametrize`` would: fixtures are made once for all cases, so they must not
+process that reports. For a case that takes less than that, ``@each`` replaces
+``@pytest.mark.parametrize``: fixtures are made once for all cases, so they must not
 remember what a case did.
 """
 
@@ -42,7 +42,7 @@ def each(
                 try:
                     test(**given, **dict(zip(arguments, values, strict=True)))
                 except (Exception, pytest.fail.Exception) as error:
-                    failed.append(f"[{ids(case)}] {_told(error, test)}")
+                    failed.append(f"[{ids(case)}] {_described(error, test)}")
             if failed:
                 pytest.fail(f"{len(failed)} of {len(found)} cases:\n" + "\n".join(failed), pytrace=False)
 
@@ -52,7 +52,7 @@ def each(
     return over_all
 
 
-def _told(error: BaseException, test: Callable[..., None]) -> str:
+def _described(error: BaseException, test: Callable[..., None]) -> str:
     """Return the line of the test's file where it failed, and why."""
     file = inspect.getsourcefile(inspect.unwrap(test))
     lines = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == file]

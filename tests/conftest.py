@@ -48,7 +48,7 @@ def _strict_numbers() -> Iterator[None]:
 
 @pytest.fixture
 def trusted_variants(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let fast variants run though nobody verified them: what is tested is how they run."""
+    """Let fast variants run though they are not verified: what is tested is how they run."""
     monkeypatch.setattr("playground.sketch.variants.is_verified", lambda technique, variant: True)
 
 

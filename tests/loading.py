@@ -1,4 +1,4 @@
-"""Load a sketch that a test wrote: its own files anew, those of ``glsl/``, which no test changes, once."""
+"""Load a sketch that a test wrote: its own files each time, those of ``glsl/`` once a session."""
 
 from __future__ import annotations
 

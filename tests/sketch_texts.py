@@ -29,5 +29,10 @@ def map_of_height(use: str = "./land", channel: str = "") -> str:
     return passes(height=use) + map_of("height", channel)
 
 
+TERRAIN_IN_3D = (
+    "format = 1\nsize = 33\n" + passes(height="./terrain") + '[view]\nuse = "view/terrain"\nsamples = 1\n'
+)
+"""A sketch of one kernel, terrain.glsl, in the 3D view."""
+
 LIT_NOISE = passes(height="generation/white_noise", light="lighting/l_dot_n")
 """The cheapest terrain of the library and the cheapest light."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import pickle
 import textwrap
 from pathlib import Path
@@ -57,12 +58,12 @@ def test_parameters_are_listed_and_set_without_changing_the_sketch(sketch: playg
         sketch.with_values({"height.smoothing": 7})
 
 
-def test_a_repeated_kernel_is_walked_turn_by_turn(sketch: playground.Sketch):
+def test_a_repeated_kernel_is_run_step_by_step(sketch: playground.Sketch):
     small = sketch.with_values({"size": 5})
     with playground.headless() as engine:
-        turns = list(engine.steps(small, _repeated(engine, small)))
-    assert [turn for turn, _ in turns] == [0, 1, 2, 3, 4, 5]
-    assert [int(np.count_nonzero(values)) for _, values in turns] == [0, 4, 5, 9, 13, 25]
+        steps = list(engine.steps(small, _repeated(engine, small)))
+    assert [step for step, _ in steps] == [0, 1, 2, 3, 4, 5]
+    assert [int(np.count_nonzero(values)) for _, values in steps] == [0, 4, 5, 9, 13, 25]
 
 
 def _repeated(engine: playground.Engine, sketch: playground.Sketch) -> str:
@@ -85,7 +86,7 @@ def test_one_call_renders_a_shipped_sketch():
 
 
 @pytest.mark.parametrize(
-    ("asked", "said"),
+    ("given", "sentence"),
     [
         ({"size": (64.5, 36)}, r"size \(64.5, 36\): expected two whole numbers"),
         ({"size": 64}, "size 64: expected two whole numbers"),
@@ -103,9 +104,9 @@ def test_one_call_renders_a_shipped_sketch():
         ({"steps": {"height.raw": -1}}, "'height.raw' stops after -1 steps; expected a whole number from 0"),
     ],
 )
-def test_what_is_asked_wrongly_is_refused_in_a_sentence(engine, sketch, asked, said):
-    with pytest.raises(playground.PlaygroundError, match=said):
-        engine.render(sketch, **{"size": (64, 36), **asked})
+def test_a_wrong_argument_is_refused_in_a_sentence(engine, sketch, given, sentence):
+    with pytest.raises(playground.PlaygroundError, match=sentence):
+        engine.render(sketch, **{"size": (64, 36), **given})
 
 
 def test_numbers_of_numpy_will_do(any_engine, sketch):
@@ -138,14 +139,14 @@ def test_a_released_engine_says_so(sketch):
             use()
 
 
-# ── turn by turn ─────────────────────────────────────────────────────────────
+# ── step by step ─────────────────────────────────────────────────────────────
 
 
-def test_a_technique_in_which_one_pass_repeats_is_walked_by_its_own_name(engine, sketch):
+def test_a_technique_in_which_one_pass_repeats_is_run_by_its_own_name(engine, sketch):
     small = sketch.with_values({"size": 5})
     by_name = list(engine.steps(small, "height"))
     by_path = list(engine.steps(small, "height.raw"))
-    assert [turn for turn, _ in by_name] == [0, 1, 2, 3, 4, 5]
+    assert [step for step, _ in by_name] == [0, 1, 2, 3, 4, 5]
     for (_, one), (_, other) in zip(by_name, by_path, strict=True):
         np.testing.assert_array_equal(one, other)
     stopped = engine.read(small, "height.raw", steps={"height": 2})
@@ -160,6 +161,12 @@ def test_a_pass_that_does_not_repeat_is_refused_with_those_that_do(engine, sketc
         engine.render(sketch, steps={"height.rwa": 1})
 
 
+@pytest.mark.parametrize("function", [playground.headless, playground.render, playground.parameters])
+def test_a_docstring_names_every_parameter(function):
+    documentation = inspect.getdoc(function)
+    assert not [name for name in inspect.signature(function).parameters if f"``{name}``" not in documentation]
+
+
 def test_the_package_s_own_example_runs(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert playground.__doc__ is not None
@@ -168,4 +175,4 @@ def test_the_package_s_own_example_runs(tmp_path, monkeypatch):
     names: dict[str, object] = {}
     exec(compile(example, "playground", "exec"), names)
     assert (tmp_path / "terrain.png").is_file()
-    assert names["step"] == 1 + 2 * 9, "the corners, then two turns for each halving of 512 spacings"
+    assert names["step"] == 1 + 2 * 9, "the corners, then two steps for each halving of 512 spacings"

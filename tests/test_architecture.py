@@ -62,7 +62,8 @@ GLSL_IN_PYTHON: set[str] = set()
 
 @cache
 def modules() -> list[Path]:
-    return sorted(p for p in PACKAGE.rglob("*.py") if "templates" not in p.parts and "glsl" not in p.parts)
+    own = (p for p in PACKAGE.rglob("*.py") if not {"templates", "glsl"} & {*p.relative_to(PACKAGE).parts})
+    return sorted(own)
 
 
 def layer_of(path: Path) -> str:

@@ -1,7 +1,7 @@
 """The command line as a user meets it: what it prints where, its exit status, its sentences.
 
-Where the process itself is what is asked about (its modules, signals, pipes and driver) one is
-started; everything else is called here, which says the same and is faster.
+Where the process itself is tested (its modules, signals, pipes and driver) one is started;
+everything else is called here, which is faster.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import tifffile
 
 import playground
 from playground import cli
-from playground.engine import sandbox as trial
+from playground.engine import sandbox
 from playground.engine.check import find_files
 from playground.errors import DataError
 from playground.gpu.doctor import where_to_show
@@ -55,7 +55,7 @@ void main() {
     imageStore(picture, texel, vec4((vec2(texel) + 0.5) / u_resolution, u_time / 4.0, 1.0));
 }
 """
-SLOPE = """// slope.glsl -- a slope that rises to the east, or as steep as it is told.
+SLOPE = """// slope.glsl -- a slope that rises to the east, or as steep as its parameter.
 #pragma kernel(output = "height:r32f")
 uniform float rise = 1.0;  //! slider(0, 4) unit("m") How high the eastern edge is
 float kernel(ivec2 texel) { return rise * float(texel.x) / float(size.x - 1); }
@@ -82,7 +82,7 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
     for variable in ("DISPLAY", "WAYLAND_DISPLAY"):
         monkeypatch.delenv(variable, raising=False)
     # On a busy machine a draw that ends may take longer than a user is made to wait.
-    monkeypatch.setattr(trial, "Sandbox", partial(trial.Sandbox, limit_seconds=120.0))
+    monkeypatch.setattr(sandbox, "Sandbox", partial(sandbox.Sandbox, limit_seconds=120.0))
 
     def called(*arguments: str, cwd: Path = tmp_path) -> subprocess.CompletedProcess[str]:
         monkeypatch.chdir(cwd)
@@ -91,21 +91,6 @@ def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureF
         return subprocess.CompletedProcess(arguments, status, *capsys.readouterr())
 
     return called
-
-
-@pytest.fixture
-def start(tmp_path: Path) -> Run:
-    """Run the command in a process of its own, in an empty folder and with no display, as a script would."""
-
-    def started(*arguments: str, cwd: Path = tmp_path, **environ: str) -> subprocess.CompletedProcess[str]:
-        clean = {k: v for k, v in os.environ.items() if k not in ("DISPLAY", "WAYLAND_DISPLAY")}
-        command = [sys.executable, "-m", "playground", *arguments]
-        variables = clean | {"PYTHONPATH": str(ROOT)} | environ
-        return subprocess.run(
-            command, cwd=cwd, env=variables, capture_output=True, text=True, timeout=180, check=False
-        )
-
-    return started
 
 
 @pytest.fixture
@@ -133,11 +118,11 @@ def test_what_only_tells_loads_no_opengl():
         "    loaded = [n for n in ('moderngl', 'glfw', 'PIL') if n in sys.modules]\n"
         "    print(words, status, loaded, file=sys.stderr)\n"
     )
-    told = ["--version", "--help", "render --help", "list --json"]
+    commands = ["--version", "--help", "render --help", "list --json"]
     done = subprocess.run(
-        [sys.executable, "-c", code, *told], cwd=ROOT, capture_output=True, text=True, timeout=180
+        [sys.executable, "-c", code, *commands], cwd=ROOT, capture_output=True, text=True, timeout=180
     )
-    assert done.stderr.splitlines() == [f"{words} 0 []" for words in told]
+    assert done.stderr.splitlines() == [f"{words} 0 []" for words in commands]
 
 
 # ── help ─────────────────────────────────────────────────────────────────────
@@ -168,31 +153,26 @@ def test_every_example_in_a_help_is_a_command_with_options_that_exist(capsys: py
                     assert f" {word} " in helps[command], line
 
 
-def test_the_version_is_the_packages():
-    done = subprocess.run(
-        [sys.executable, "-m", "playground", "--version"],
-        cwd=ROOT, capture_output=True, text=True, check=True, timeout=180,
-    )  # fmt: skip
-    assert done.stdout == f"playground {playground.__version__}\n"
+def test_the_version_is_the_packages(run: Run):
+    assert well(run("--version")).stdout == f"playground {playground.__version__}\n"
 
 
-def test_completion_offers_the_shipped_sketches(start: Run):
-    done = start(
-        "render", "",
-        _PLAYGROUND_COMPLETE="complete_bash", COMP_WORDS="playground render ", COMP_CWORD="2",
-    )  # fmt: skip
-    assert set(shipped_sketches()) <= set(done.stdout.split())
-    done = start(
-        _PLAYGROUND_COMPLETE="complete_bash", COMP_WORDS="playground render --set light.su", COMP_CWORD="3"
-    )
-    assert "light.sun=" in done.stdout.split()
+def test_completion_offers_the_shipped_sketches(run: Run, monkeypatch: pytest.MonkeyPatch):
+    def completed(words: str) -> set[str]:
+        monkeypatch.setenv("_PLAYGROUND_COMPLETE", "complete_bash")
+        monkeypatch.setenv("COMP_WORDS", f"playground render {words}")
+        monkeypatch.setenv("COMP_CWORD", str(1 + len(words.split(" "))))
+        return set(run().stdout.split())
+
+    assert set(shipped_sketches()) <= completed("")
+    assert "light.sun=" in completed("--set light.su")
 
 
 # ── mistakes ─────────────────────────────────────────────────────────────────
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "sentence"),
     [
         (["render", "jacksbro"], "no shipped sketch 'jacksbro'; did you mean 'jacksboro'?"),
         (["render", "no/such.toml"], "there is no file and no shipped sketch 'no/such.toml'"),
@@ -244,7 +224,7 @@ def test_completion_offers_the_shipped_sketches(start: Run):
 )  # fmt: skip
 def test_a_mistake_is_one_sentence_and_status_2(
     arguments: list[str],
-    said: str,
+    sentence: str,
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],
@@ -255,7 +235,7 @@ def test_a_mistake_is_one_sentence_and_status_2(
     assert cli.main(arguments) == 2
     out, error = capsys.readouterr()
     assert out == ""
-    assert error.startswith("error: ") and said in error
+    assert error.startswith("error: ") and sentence in error
     assert len(error.splitlines()) == 1
     assert sorted(p.name for p in tmp_path.iterdir()) == ["empty", "note.txt"]
 
@@ -274,14 +254,14 @@ def test_a_file_that_is_not_there_is_one_sentence(run: Run):
     assert re.fullmatch(r"error: nowhere\.npz: .*there is no such file.*\n", done.stderr)
 
 
-def test_live_without_a_display_says_what_to_do(start: Run):
-    done = start("live")
+def test_live_without_a_display_says_what_to_do(run: Run):
+    done = run("live")
     assert done.returncode == 2
     assert re.fullmatch(r"error: There is no screen to open a window on\. .*\n", done.stderr)
 
 
-def _hear_control_c() -> None:
-    """A job that a shell began in the background is deaf to it, and so are its children."""
+def _receive_interrupts() -> None:
+    """Receive SIGINT, which a background job of a shell and its children ignore."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
@@ -289,7 +269,7 @@ def test_control_c_ends_with_130_and_no_words(tmp_path: Path):
     process = subprocess.Popen(
         [sys.executable, "-m", "playground", "check", str(GLSL)],
         cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=_hear_control_c,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=_receive_interrupts,
     )  # fmt: skip
     assert process.stdout is not None
     process.stdout.readline()  # the first file is checked: it is in the middle of its work
@@ -298,41 +278,26 @@ def test_control_c_ends_with_130_and_no_words(tmp_path: Path):
     assert (process.returncode, error) == (130, b"")
 
 
-def test_a_reader_that_leaves_is_no_mistake(tmp_path: Path):
-    read_end, write_end = os.pipe()
-    os.close(read_end)
-    done = subprocess.run(
-        [sys.executable, "-m", "playground", "list", "lighting"],
-        cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, stdout=write_end, stderr=subprocess.PIPE,
-        timeout=180,
-    )  # fmt: skip
-    os.close(write_end)
-    assert (done.returncode, done.stderr) == (141, b"")
-
-
 # ── colour ───────────────────────────────────────────────────────────────────
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="there is no pty")
 @pytest.mark.parametrize("no_colour", [False, True])
-def test_colour_is_for_terminals_that_want_it(no_colour: bool):
+def test_colour_is_for_terminals_that_want_it(no_colour: bool, monkeypatch: pytest.MonkeyPatch):
     import pty
 
     parent, child = pty.openpty()
-    environ = {k: v for k, v in os.environ.items() if k != "NO_COLOR"} | {
-        "TERM": "xterm",
-        "PYTHONPATH": str(ROOT),
-    }
-    done = subprocess.run(
-        [sys.executable, "-m", "playground", "rendre"],
-        env=environ | ({"NO_COLOR": "1"} if no_colour else {}), stdout=child, stderr=child, timeout=180,
-    )  # fmt: skip
-    os.close(child)
-    said = os.read(parent, 4096).decode()
+    monkeypatch.setenv("TERM", "xterm")
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    if no_colour:
+        monkeypatch.setenv("NO_COLOR", "1")
+    with os.fdopen(child, "w") as terminal:
+        monkeypatch.setattr(sys, "stderr", terminal)
+        assert cli.main(["rendre"]) == 2
+        text = os.read(parent, 4096).decode()
     os.close(parent)
-    assert done.returncode == 2
-    assert ("\033[" in said) is not no_colour
-    assert re.sub(r"\033\[[\d;]*m", "", said).startswith("error: no command 'rendre'")
+    assert ("\033[" in text) is not no_colour
+    assert re.sub(r"\033\[[\d;]*m", "", text).startswith("error: no command 'rendre'")
 
 
 def test_a_pipe_gets_no_colour_and_one_line_a_row(capsys: pytest.CaptureFixture[str]):
@@ -345,12 +310,10 @@ def test_a_pipe_gets_no_colour_and_one_line_a_row(capsys: pytest.CaptureFixture[
 # ── render ───────────────────────────────────────────────────────────────────
 
 
-def test_no_arguments_and_no_display_renders_the_default_sketch_beside_what_is_there(
-    start: Run, tmp_path: Path
-):
+def test_no_arguments_and_no_display_renders_the_default_sketch_under_a_free_name(run: Run, tmp_path: Path):
     taken = tmp_path / f"{DEFAULT_SKETCH}.png"
     taken.write_text("mine")
-    done = well(start())
+    done = well(run())
     assert done.stdout == f"{DEFAULT_SKETCH}-2.png\n"
     assert "no display" in done.stderr
     assert taken.read_text() == "mine"
@@ -419,14 +382,14 @@ def test_a_plain_compute_shader_runs_unchanged(run: Run, tmp_path: Path):
     np.testing.assert_allclose(picture[..., 2], 127.5, atol=1)
 
 
-def test_standard_output_takes_the_png_and_nothing_else(slope: Path, tmp_path: Path):
-    done = subprocess.run(
-        [sys.executable, "-m", "playground", "render", "slope", "--size", "8x4", "-o", "-"],
-        cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, timeout=180,
-    )  # fmt: skip
-    assert done.returncode == 0
-    assert done.stdout.startswith(b"\x89PNG") and done.stdout.endswith(b"IEND\xaeB`\x82")
-    assert struct.unpack(">II", done.stdout[16:24]) == (8, 4)
+def test_standard_output_takes_the_png_and_nothing_else(
+    slope: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]
+):
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["render", "slope", "--size", "8x4", "-o", "-"]) == 0
+    out = capfdbinary.readouterr().out
+    assert out.startswith(b"\x89PNG") and out.endswith(b"IEND\xaeB`\x82")
+    assert struct.unpack(">II", out[16:24]) == (8, 4)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["slope"]
 
 
@@ -444,16 +407,32 @@ def test_files_are_named_from_the_current_folder(run: Run, tmp_path: Path):
     assert np.load(tmp_path / "out.npy").shape == (30, 40)
 
 
-def test_without_compute_everything_but_compute_works(start: Run, slope: Path, tmp_path: Path):
-    older = {"MESA_GL_VERSION_OVERRIDE": "4.1"}
-    if "OpenGL 4.1" not in start("doctor", **older).stdout:
-        pytest.skip("this driver cannot pretend to be older")
-    well(start("render", "slope", "--size", "16x16", **older))
-    done = start("render", "slope", "--driver", "compute", **older)
-    assert (done.returncode, done.stderr) == (2, "error: this context is OpenGL 4.1; compute needs 4.3\n")
+IN_ONE_PROCESS = """
+import contextlib, io, json, sys
+from playground.cli import main
+for words in sys.argv[1:]:
+    out, error = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error):
+        status = main(words.split())
+    print(json.dumps([status, out.getvalue(), error.getvalue()]))
+"""
+
+
+def test_without_compute_everything_but_compute_works(slope: Path, tmp_path: Path):
     (tmp_path / "toy.comp").write_text(PLAIN_COMPUTE)
-    done = start("check", "--json", "slope", "toy.comp", **older)
-    reports = [json.loads(line) for line in well(done).stdout.splitlines()]
+    commands = ["doctor", "render slope --size 16x16", "render slope --driver compute"]
+    environ = os.environ | {"PYTHONPATH": str(ROOT), "MESA_GL_VERSION_OVERRIDE": "4.1"}
+    done = subprocess.run(
+        [sys.executable, "-c", IN_ONE_PROCESS, *commands, "check --json slope toy.comp"],
+        cwd=tmp_path, env=environ, capture_output=True, text=True, timeout=180,
+    )  # fmt: skip
+    doctor, render, compute, check = map(json.loads, well(done).stdout.splitlines())
+    if "OpenGL 4.1" not in doctor[1]:
+        pytest.skip("this driver cannot pretend to be older")
+    assert render[0] == 0, render
+    assert compute == [2, "", "error: this context is OpenGL 4.1; compute needs 4.3\n"]
+    assert check[0] == 0, check
+    reports = [json.loads(line) for line in check[1].splitlines()]
     assert [(r["ok"], r["skipped"]) for r in reports] == [(True, ["compute"])] * 3
 
 
@@ -499,11 +478,11 @@ def test_check_finds_what_is_wrong_and_where(run: Run, slope: Path, tmp_path: Pa
     assert all(set(e) == {"file", "line", "column", "message"} for r in reports.values() for e in r["errors"])
     assert all(r["errors"] or r["ok"] for r in reports.values())
 
-    told = run("check", "slope/slope.glsl", "slope/broken.glsl")
-    assert told.returncode == 1
-    assert re.search(r"^ok +slope/slope\.glsl$", told.stdout, re.MULTILINE)
-    assert re.search(r"^FAILED +slope/broken\.glsl\n +slope/broken\.glsl:4:", told.stdout, re.MULTILINE)
-    assert told.stdout.endswith("2 files checked, 1 failed\n")
+    done = run("check", "slope/slope.glsl", "slope/broken.glsl")
+    assert done.returncode == 1
+    assert re.search(r"^ok +slope/slope\.glsl$", done.stdout, re.MULTILINE)
+    assert re.search(r"^FAILED +slope/broken\.glsl\n +slope/broken\.glsl:4:", done.stdout, re.MULTILINE)
+    assert done.stdout.endswith("2 files checked, 1 failed\n")
 
 
 def test_check_tries_both_drivers(run: Run, tmp_path: Path):
@@ -601,16 +580,16 @@ def test_doctor_tells_the_context_as_words_and_as_json(run: Run):
     assert health["display"] == ""
 
 
-def test_doctor_without_a_context_says_the_mend_and_leaves_with_1(run: Run):
+def test_doctor_without_a_context_says_what_to_do_and_leaves_with_1(run: Run):
     done = run("doctor", "--json", "--device", "99")
     assert done.returncode == 1
     health = json.loads(done.stdout)
     assert not health["ok"] and health["context"] is None
     if sys.platform.startswith("linux"):
         assert "--device 99: there is no such EGL device" in health["trouble"]
-    told = run("--device", "99", "doctor")
-    assert told.returncode == 1
-    assert told.stderr.startswith("error: ")
+    done = run("--device", "99", "doctor")
+    assert done.returncode == 1
+    assert done.stderr.startswith("error: ")
 
 
 @pytest.mark.parametrize(
@@ -643,7 +622,7 @@ def test_a_new_sketch_passes_its_check_renders_and_is_never_overwritten(run: Run
     well(run("check", "my-land"))
     assert well(run("render", ".", "--size", "160x90", cwd=tmp_path / "my-land")).stdout == "my-land.png\n"
     picture, _ = read_png(tmp_path / "my-land/my-land.png")
-    assert picture[..., :3].std() > 15  # land, not one colour
+    assert picture[..., :3].std() > 15  # terrain, not one colour
     well(run("render", "my-land", "--texture", "height", "-o", "height.npy"))
     height = np.load(tmp_path / "height.npy")
     assert 0 <= height.min() < 0.3 and 0.6 < height.max() <= 1

@@ -1,4 +1,4 @@
-"""Fast variants on the command line: what is said, ``--plain``, and the commands that verify them."""
+"""Fast variants on the command line: what is printed, ``--plain``, and the commands that verify them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from playground.sketch.variant_record import NAME
 from .sketch_texts import map_of_height
 from .variants import trust
 
-KERNEL = """// land.glsl -- a slope.
+KERNEL = """// terrain.glsl -- a slope.
 #pragma kernel(output = "height:r32f")
 uniform float rise = 1.0;  //! slider(0, 4) How high the eastern edge is
 float kernel(ivec2 texel) { return rise * float(texel.x) / float(size.x - 1); }
@@ -29,15 +29,15 @@ use = "./same"
 [parameters]
 rise = "height.rise"
 """
-SKETCH = "format = 1\nsize = 33\n" + map_of_height(channel="red")
+SKETCH = "format = 1\nsize = 33\n" + map_of_height("./terrain", channel="red")
 
 
 @pytest.fixture
-def land(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A sketch whose kernel has a fast variant, verified; the current folder is beside it."""
-    folder = tmp_path / "land"
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A sketch whose kernel has a fast variant, verified; the current folder holds its folder."""
+    folder = tmp_path / "terrain"
     folder.mkdir()
-    for name, text in {"land.glsl": KERNEL, "same.glsl": KERNEL, "land.fast.toml": FAST}.items():
+    for name, text in {"terrain.glsl": KERNEL, "same.glsl": KERNEL, "terrain.fast.toml": FAST}.items():
         (folder / name).write_text(text)
     (folder / "sketch.toml").write_text(SKETCH)
     trust(folder)
@@ -47,52 +47,56 @@ def land(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def drawn(capsys: pytest.CaptureFixture[str], *more: str) -> tuple[np.ndarray, list[str]]:
     """Return the picture, and the lines on standard error."""
-    assert main(["render", "land", "-o", "land.png", "--size", "64x48", *more]) == 0
-    return read_png(Path("land.png"))[0], capsys.readouterr().err.splitlines()
+    assert main(["render", "terrain", "-o", "terrain.png", "--size", "64x48", *more]) == 0
+    return read_png(Path("terrain.png"))[0], capsys.readouterr().err.splitlines()
 
 
-def test_an_edit_changes_the_picture_and_one_line_says_what_does_not_run(land, capsys):
-    before, said = drawn(capsys)
-    assert said == []
-    (land / "land.glsl").write_text(KERNEL.replace("rise *", "0.2 * rise *"))
-    after, said = drawn(capsys)
+def test_an_edit_changes_the_picture_and_one_line_says_what_does_not_run(folder, capsys):
+    before, notes = drawn(capsys)
+    assert notes == []
+    (folder / "terrain.glsl").write_text(KERNEL.replace("rise *", "0.2 * rise *"))
+    after, notes = drawn(capsys)
     assert (after != before).any()
-    (line,) = said
-    assert line.startswith("note: land.fast.toml is left out, the plain form runs: land.glsl has changed")
-    again, said = drawn(capsys, "--plain")
+    (line,) = notes
+    assert line.startswith(
+        "note: terrain.fast.toml is left out, the plain form runs: terrain.glsl has changed"
+    )
+    again, notes = drawn(capsys, "--plain")
     np.testing.assert_array_equal(again, after)
-    assert said == []
+    assert notes == []
 
 
-def test_check_says_it_and_tries_it_all_the_same(land, capsys):
-    (land / "land.glsl").write_text(KERNEL.replace("rise *", "0.2 * rise *"))
-    assert main(["check", "--json", "land"]) == 0
+def test_check_says_it_and_tries_it_all_the_same(folder, capsys):
+    (folder / "terrain.glsl").write_text(KERNEL.replace("rise *", "0.2 * rise *"))
+    assert main(["check", "--json", "terrain"]) == 0
     reports = {Path(r["path"]).name: r for r in map(json.loads, capsys.readouterr().out.splitlines())}
-    assert set(reports) == {"land.glsl", "same.glsl", "land.fast.toml", "sketch.toml"}
-    told = {name for name, report in reports.items() if report["notes"]}
-    assert told == {"land.glsl", "land.fast.toml", "sketch.toml"}
-    (land / "same.glsl").write_text(KERNEL.replace("rise *", "nonsense *"))
-    assert main(["check", "land/land.fast.toml"]) == 1
+    assert set(reports) == {"terrain.glsl", "same.glsl", "terrain.fast.toml", "sketch.toml"}
+    noted = {name for name, report in reports.items() if report["notes"]}
+    assert noted == {"terrain.glsl", "terrain.fast.toml", "sketch.toml"}
+    (folder / "same.glsl").write_text(KERNEL.replace("rise *", "nonsense *"))
+    assert main(["check", "terrain/terrain.fast.toml"]) == 1
     assert "nonsense" in capsys.readouterr().out
-    assert main(["check", "--plain", "land/land.glsl", "land/sketch.toml"]) == 0
+    assert main(["check", "--plain", "terrain/terrain.glsl", "terrain/sketch.toml"]) == 0
     assert "note" not in capsys.readouterr().out
 
 
-def test_renew_records_what_agrees_beside_it_and_refuses_the_rest(land, capsys):
-    (land / NAME).unlink()
-    assert main(["variants", "list", "land"]) == 0
+def test_renew_records_what_agrees_in_its_folder_and_refuses_the_rest(folder, capsys):
+    (folder / NAME).unlink()
+    assert main(["variants", "list", "terrain"]) == 0
     assert "never verified" in capsys.readouterr().out
-    assert main(["variants", "verify", "land"]) == 0
-    assert "ok      land/land.fast.toml: height" in capsys.readouterr().out
-    assert not (land / NAME).exists(), "verify writes nothing"
-    assert main(["variants", "renew", "land/land.fast.toml"]) == 0
-    assert str(land / NAME) in capsys.readouterr().out and (land / NAME).exists()
+    assert main(["variants", "verify", "terrain"]) == 0
+    assert "ok      terrain/terrain.fast.toml: height" in capsys.readouterr().out
+    assert not (folder / NAME).exists(), "verify writes nothing"
+    assert main(["variants", "renew", "terrain/terrain.fast.toml"]) == 0
+    assert str(folder / NAME) in capsys.readouterr().out and (folder / NAME).exists()
     assert drawn(capsys)[1] == []
-    (land / "same.glsl").write_text(KERNEL.replace("rise *", "0.9 * rise *"))
-    assert main(["variants", "renew", "land"]) == 1
+    (folder / "same.glsl").write_text(KERNEL.replace("rise *", "0.9 * rise *"))
+    assert main(["variants", "renew", "terrain"]) == 1
     out = capsys.readouterr().out
-    assert "FAILED  land/land.fast.toml: height differs by" in out and "1 variant of 1 not verified" in out
-    assert json.loads((land / NAME).read_text())["variants"] == {}
+    assert (
+        "FAILED  terrain/terrain.fast.toml: height differs by" in out and "1 variant of 1 not verified" in out
+    )
+    assert json.loads((folder / NAME).read_text())["variants"] == {}
 
 
 def test_variants_that_ship_are_named_as_techniques_are(capsys):

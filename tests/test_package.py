@@ -73,7 +73,7 @@ def test_an_empty_environment_renders_the_default_sketch(wheel: Path, tmp_path: 
             timeout=600,
         )
     )
-    picture = tmp_path / "land.png"
+    picture = tmp_path / "terrain.png"
     done = subprocess.run(
         [str(scripts / "playground"), "render", "-o", str(picture), "--size", "320x180"],
         capture_output=True,

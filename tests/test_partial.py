@@ -1,4 +1,4 @@
-"""Half-written files: gone with whoever writes them, however that ends, and nobody else's are touched."""
+"""Half-written files: removed when their process ends in any way; those of others are untouched."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from playground.partial import partial_file, remove_left_over
 
 ROOT = Path(__file__).resolve().parent.parent
 PLAIN = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(0.5); }\n"
-UNCHANGED = ".land.png.0123456789ab.part"
+UNCHANGED = ".picture.png.0123456789ab.part"
 
 
 def names(folder: Path) -> list[str]:
@@ -38,7 +38,7 @@ def test_a_file_is_there_while_it_is_written_and_gone_after(tmp_path: Path):
 
 
 def test_what_a_dead_process_left_is_removed_and_nothing_else(tmp_path: Path):
-    others = [".land.png.part", "land.png.0123456789ab.part", ".a.0123456789az.part", "b.part"]
+    others = [".picture.png.part", "picture.png.0123456789ab.part", ".a.0123456789az.part", "b.part"]
     for name in (UNCHANGED, *others):
         (tmp_path / name).write_bytes(b"some")
     (tmp_path / ".folder.0123456789ab.part").mkdir()
@@ -59,7 +59,7 @@ with partial_file(Path(sys.argv[1])) as partial:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="an open file cannot be removed there")
 def test_what_another_process_writes_is_left_alone_until_it_is_dead(tmp_path: Path):
-    command = [sys.executable, "-c", WRITES, str(tmp_path / "land.png")]
+    command = [sys.executable, "-c", WRITES, str(tmp_path / "picture.png")]
     environ = os.environ | {"PYTHONPATH": str(ROOT)}
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environ) as writer:
         assert writer.stdout is not None
@@ -70,15 +70,15 @@ def test_what_another_process_writes_is_left_alone_until_it_is_dead(tmp_path: Pa
             assert names(tmp_path) == sorted(["a.png", written])
         finally:
             writer.kill()
-    assert written in names(tmp_path), "nobody could remove it"
+    assert written in names(tmp_path), "a killed process removes nothing"
     remove_left_over.cache_clear()
     with replacing(tmp_path / "a.png"):
         pass
     assert names(tmp_path) == ["a.png"]
 
 
-def hearing() -> None:
-    """Have a process hear of signals, whoever started the tests with them ignored, as nohup does."""
+def receive_signals() -> None:
+    """Let a process receive signals, also where the tests were started with them ignored, as by nohup."""
     for name in ("SIGINT", "SIGTERM", "SIGHUP"):
         signal.signal(getattr(signal, name), signal.SIG_DFL)
 
@@ -88,11 +88,11 @@ def begun(folder: Path) -> subprocess.Popen[bytes]:
     (folder / "plain.frag").write_text(PLAIN, encoding="utf-8")
     command = [sys.executable, "-m", "playground", "render", "plain.frag"]
     process = subprocess.Popen(
-        [*command, "--size", "30000x30000", "-o", "land.png"],
+        [*command, "--size", "6000x60000", "-o", "picture.png"],
         cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=hearing,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, preexec_fn=receive_signals,
     )  # fmt: skip
-    while process.poll() is None and not any(p.stat().st_size for p in folder.glob(".land.png.*.part")):
+    while process.poll() is None and not any(p.stat().st_size for p in folder.glob(".picture.png.*.part")):
         time.sleep(0.02)
     assert process.poll() is None, process.communicate()
     return process
@@ -116,8 +116,8 @@ def test_what_a_killed_picture_left_goes_with_the_next(tmp_path: Path):
     process.communicate(timeout=120)
     assert len(names(tmp_path)) == 2
     done = subprocess.run(
-        [sys.executable, "-m", "playground", "render", "plain.frag", "--size", "4x4", "-o", "land.png"],
+        [sys.executable, "-m", "playground", "render", "plain.frag", "--size", "4x4", "-o", "picture.png"],
         cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, timeout=120,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert names(tmp_path) == ["land.png", "plain.frag"]
+    assert names(tmp_path) == ["picture.png", "plain.frag"]

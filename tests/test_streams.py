@@ -1,7 +1,8 @@
-"""Standard streams of every kind: encodings that lack characters, closed ones, pipes that nobody reads."""
+"""Standard streams of every kind: encodings that lack characters, closed ones, pipes without a reader."""
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import subprocess
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from playground.cli import main
 from playground.streams import open_streams
 
 from .sketch_texts import map_of_height
@@ -39,22 +41,38 @@ def start(tmp_path: Path):
 # ── encodings ────────────────────────────────────────────────────────────────
 
 
+@pytest.fixture
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    """Run the command here, with standard streams of an encoding as Python opens them."""
+    (tmp_path / "läñd.frag").write_text(PLAIN, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+
+    def called(encoding: str, *arguments: str) -> subprocess.CompletedProcess[bytes]:
+        streams = [io.TextIOWrapper(io.BytesIO(), encoding, how) for how in ("strict", "backslashreplace")]
+        for name, stream in zip(("stdout", "stderr"), streams, strict=True):
+            monkeypatch.setattr(sys, name, stream)
+        status = main(arguments)
+        return subprocess.CompletedProcess(arguments, status, *(s.buffer.getvalue() for s in streams))
+
+    return called
+
+
 @pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
-def test_what_an_encoding_lacks_is_spelled(start, encoding: str):
-    done = start("list", "jacksboro", PYTHONIOENCODING=encoding)
+def test_what_an_encoding_lacks_is_spelled(run, encoding: str):
+    done = run(encoding, "list", "jacksboro")
     assert (done.returncode, done.stderr) == (0, b"")
     found = done.stdout.decode(encoding)
     assert "height.elevation" in found and "\\x" not in found and "\\u" not in found
-    written = start("render", "läñd.frag", "--size", "4x4", PYTHONIOENCODING=encoding)
+    written = run(encoding, "render", "läñd.frag", "--size", "4x4")
     assert written.returncode == 0 and b"Traceback" not in written.stderr
     assert written.stdout.decode(encoding) == ("land.png\n" if encoding == "ascii" else "läñd.png\n")
-    missing = start("render", "→", PYTHONIOENCODING=encoding)
+    missing = run(encoding, "render", "→")
     assert missing.returncode == 2 and b"->" in missing.stderr and b"Traceback" not in missing.stderr
 
 
-def test_json_in_another_encoding_is_the_same_json(start):
-    plain = start("list", "soft_cone", "--json", PYTHONIOENCODING="ascii")
-    whole = start("list", "soft_cone", "--json", PYTHONIOENCODING="utf-8")
+def test_json_in_another_encoding_is_the_same_json(run, start):
+    plain = start("list", "soft_cone", "--json", PYTHONIOENCODING="ascii")  # in a process of its own for once
+    whole = run("utf-8", "list", "soft_cone", "--json")
     assert plain.returncode == whole.returncode == 0, plain.stderr
     assert json.loads(plain.stdout.decode("ascii")) == json.loads(whole.stdout.decode("utf-8"))
     assert any(ord(c) > 127 for c in whole.stdout.decode("utf-8"))
@@ -92,7 +110,7 @@ def test_a_picture_for_a_closed_standard_output_is_refused(start):
     assert done.stderr == b"error: -o - writes a PNG to standard output, which is closed; redirect it\n"
 
 
-# ── pipes that nobody reads ──────────────────────────────────────────────────
+# ── pipes without a reader ──────────────────────────────────────────────────
 
 
 def broken_pipe() -> int:
@@ -103,7 +121,7 @@ def broken_pipe() -> int:
 
 @pytest.mark.parametrize(
     ("arguments", "status"),
-    [(["--help"], 141), (["nosuch"], 2)],
+    [(["--help"], 141), (["list", "lighting"], 141), (["nosuch"], 2)],
 )
 def test_a_reader_that_leaves_is_no_mistake(tmp_path: Path, arguments: list[str], status: int):
     for both in (False, True):
@@ -118,7 +136,7 @@ def test_a_reader_that_leaves_is_no_mistake(tmp_path: Path, arguments: list[str]
         assert both or (done.stderr == b"") == (status == 141)
 
 
-def test_notes_that_nobody_reads_do_not_end_a_command(tmp_path: Path):
+def test_notes_without_a_reader_do_not_end_a_command(tmp_path: Path):
     (tmp_path / "a.glsl").write_text(f"// a.glsl -- beyond 1, which is clamped\n{KERNEL}", encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     gone = broken_pipe()

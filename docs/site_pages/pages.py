@@ -8,6 +8,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from playground.lessons.glossary import FILE as GLOSSARY
+
 from . import commands, gallery, glossary, keys, python, shots, techniques
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -26,7 +28,7 @@ PICTURES = {
 """Pictures that written pages show, and where they come from."""
 
 TECHNIQUES = "reference/techniques/"
-"""The folder of the catalogue; in the navigation it stands for all of its pages."""
+"""The folder of the catalogue; in the navigation it represents all of its pages."""
 
 _PAGES: dict[str, Callable[[], str]] = {
     "reference/commands.md": commands.page,
@@ -67,7 +69,7 @@ def moved(text: str, source: str, page: str) -> str:
     What is no page of the site is named in place of a link.
     """
     homes = {home: place for place, home in ELSEWHERE.items()}
-    homes[glossary.FILE.relative_to(ROOT).as_posix()] = "reference/glossary.md"
+    homes[GLOSSARY.relative_to(ROOT).as_posix()] = "reference/glossary.md"
     up = "../" * page.count("/")
 
     def lead(match: re.Match[str]) -> str:

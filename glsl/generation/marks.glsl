@@ -28,7 +28,7 @@ ivec3 tile_grid(ivec2 texels, int things) {
 struct Marks {
     uint bits;   // of the channel that is being read
     uvec3 rest;  // of the channels after it
-    int first;   // the thing that the lowest of `bits` stands for
+    int first;   // the thing that the lowest of `bits` represents
 };
 
 Marks marks_of(vec4 texel, int first) {

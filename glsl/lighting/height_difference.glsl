@@ -2,7 +2,8 @@
 //
 //   gives    light: red, green, blue; alpha the share of light, 0..1
 //   needs    lighting/sun.glsl, terrain/heightfield.glsl
-//   units    heights and softness without unit, 1 is the relief; reach in texels of the heights
+//   units    heights and softness without unit, 1 is the relief; step_length in texels of the
+//            heights
 //   source   Belaiche 2010, section 3.5.1, where Reiter 1995 is cited for it (The Visual Computer
 //            11, 6)
 //   tested   tests/glsl/test_height_difference.py, against NumPy and planes
@@ -30,9 +31,9 @@ uniform float softness = 0.05;           //! log_slider(0.001, 1)
 
 float share_at(ivec2 grid, vec2 place) {
     vec2 way = to_sun(vec2(sun.x, 0.0)).xy / spacing_of(grid, extent);
-    vec2 towards = place + reach * way / max(abs(way.x), abs(way.y));
+    vec2 towards = place + step_length * way / max(abs(way.x), abs(way.y));
     vec2 last = vec2(grid - 1);
-    // A step that ends on the edge counts as inside, whatever the rounding.
+    // A step that ends on the edge counts as inside, despite rounding.
     bool off = any(lessThan(towards, vec2(-1e-3))) || any(greaterThan(towards, last + 1e-3));
     float rise = height_at(height, towards) - height_at(height, place);
     return off ? 1.0 : clamp(1.0 - rise / softness, 0.0, 1.0);

@@ -27,7 +27,7 @@
 // texel. There are half as many pairs of directions as directions; no buffer may be larger than
 // 128 MiB on some drivers, so that `room` says for how many pairs one buffer has lines.
 //
-// A light map coarser than the heights would miss what stands between its texels: give this pass
+// A light map coarser than the heights would miss what is between its texels: give this pass
 // at least as many texels as the heightmap has.
 #pragma compute( \
     stages = "0, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, \

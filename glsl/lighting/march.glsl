@@ -25,7 +25,7 @@ struct March {
     vec2 start;    // texels
     vec2 ahead;    // texels a step
     ivec2 across;  // one texel along the axis that the ray follows less
-    bool on_lines; // whether every place stands on a line of texels
+    bool on_lines; // whether every place is on a line of texels
     float relief;  // metres from height 0 to height 1
     float foot;    // the height where it begins   [m]
     float climb;   // of the ray, a step           [m]
@@ -50,9 +50,11 @@ float steps_inside(float place, float ahead, float last) {
     return (ahead > 0.0 ? last - place : place) / abs(ahead);
 }
 
-// Whole steps, of so many: one that ends on the edge counts, whatever the rounding.
+// Whole steps, of so many: one that ends on the edge counts, despite rounding. The limit is
+// over four times the texels that a texture may have a side, and far below the largest int.
+const float MOST_STEPS = 1e6;
 int whole_steps(float steps) {
-    return int(clamp(steps + 1e-3, 0.0, 65000.0));
+    return int(clamp(steps + 1e-3, 0.0, MOST_STEPS));
 }
 
 // A march over heights from a place on them towards a light, which is a unit vector. A step is so
@@ -121,7 +123,7 @@ int next_high_block(sampler2D block_maxima, March march, int from, int count,
         vec2 passed = place - vec2(block << BLOCK_SHIFT);
         vec2 room = mix(passed, float(1 << BLOCK_SHIFT) - passed, forwards) * steps_a_texel;
         // A little less than the room: a step just over the block's end asks the next block.
-        to = now + max(int(min(min(room.x, room.y), 65000.0) - 1e-3), 0) + 1;
+        to = now + max(int(min(min(room.x, room.y), MOST_STEPS) - 1e-3), 0) + 1;
         float line = march.foot + min(float(now) * climb, float(to - 1) * climb);
         float highest = texelFetch(block_maxima, block, 0).r * march.relief;
         // What rounding may add to a height between texels, or take from the line.

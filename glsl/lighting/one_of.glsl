@@ -18,7 +18,7 @@ uniform sampler2D third;   //! input("white")
 uniform sampler2D fourth;  //! input("white")
 uniform int chosen = 0;    //! menu("first", "second", "third", "fourth") Which light
 
-// The texel nearest to where this one stands.
+// The texel nearest to where this one is.
 vec4 read_at(sampler2D light, ivec2 texel) {
     return texelFetch(light, ivec2(place_on(textureSize(light, 0), texel, size) + 0.5), 0);
 }

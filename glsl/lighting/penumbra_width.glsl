@@ -11,8 +11,8 @@
 // The width is 1/|gradient of V|: how far it is from dark to light at the pace that V has here.
 // Along each axis the steeper of the two differences with the neighbours is taken, for at a
 // penumbra's rim one neighbour is beyond it and its V no longer falls or rises. A border narrower
-// than a texel cannot be told from one of up to two; where V has no slope the width is the
-// terrain's own, along its diagonal.
+// than a texel cannot be distinguished from one of up to two; where V has no slope the width is
+// the terrain's own, along its diagonal.
 #include "maths/land.glsl"
 #pragma kernel(output = "texels:r32f, metres:r32f, share:r32f")
 

@@ -11,7 +11,7 @@
 // It is what every method of shadows ends with.
 //
 // light = sun colour gain V max(0, N·L) + sky colour ambient F. V and F may have other sizes
-// than the light: they are read where the texel stands. F has three channels, since ground that
+// than the light: they are read where the texel is. F has three channels, since ground that
 // throws light back has a colour.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/sun.glsl"

@@ -1,4 +1,4 @@
-// lighting/sun_position.glsl -- where the sun stands over a place on Earth, by day and hour.
+// lighting/sun_position.glsl -- where the sun is over a place on Earth, by day and hour.
 //
 //   gives    days_from_2000, sun_course, sun_over, refraction, sun_position, sun_position_solar
 //   needs    maths/angle.glsl

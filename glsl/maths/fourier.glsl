@@ -40,7 +40,7 @@ void transform4(inout vec4 a, inout vec4 b, inout vec4 c, inout vec4 d) {
     d = even_rest - odd_rest;
 }
 
-// The transform of sixteen; number k of it stands at place16(k).
+// The transform of sixteen; number k of it is at place16(k).
 void transform16(inout vec4 v[16]) {
     for (int i = 0; i < 4; i++) {
         transform4(v[i], v[i + 4], v[i + 8], v[i + 12]);
@@ -68,7 +68,7 @@ void level(inout vec4 v[16], int span, bool wanted) {
 }
 
 // The transforms of blocks of 2^levels numbers, side by side, levels 0 to 4. At each place
-// stands then the number of its block that block_number tells.
+// is then the number of its block that block_number tells.
 void transform_blocks(inout vec4 v[16], int levels) {
     level(v, 8, levels > 3);
     level(v, 4, levels > 2);

@@ -1,4 +1,4 @@
-// maths/land.glsl -- where a texel stands on the terrain, and on a grid of another size.
+// maths/land.glsl -- where a texel is on the terrain, and on a grid of another size.
 //
 //   gives    share_of_texel, place_on, spacing_of, bilinear
 //   needs    nothing: pure functions, no uniforms, no textures
@@ -11,7 +11,7 @@
 #ifndef MATHS_LAND
 #define MATHS_LAND
 
-// Where a texel stands: 0 on the western and southern edge, 1 on the eastern and northern.
+// Where a texel is: 0 on the western and southern edge, 1 on the eastern and northern.
 vec2 share_of_texel(ivec2 texel, ivec2 grid) {
     return vec2(texel) / vec2(max(grid - 1, ivec2(1)));
 }

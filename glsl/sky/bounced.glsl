@@ -17,7 +17,7 @@
 const float LEAST_BOUNCED = 1e-13;
 const float LOWEST_SUN = -0.36;
 
-// The sine of the sun's elevation and the height that a place in the table stands for, both 0..1.
+// The sine of the sun's elevation and the height that a place in the table represents, both 0..1.
 vec2 bounced_start(vec2 share) {
     return vec2(mix(LOWEST_SUN, 1.0, share.x), AIR_HEIGHT * share.y * share.y);
 }

@@ -19,7 +19,7 @@
 
 const float HORIZON_MOST = 1132.254;  // from the top of the air [km]: sqrt(100 (2 · 6360 + 100))
 
-// The height and the rise that a place in the table stands for, both 0..1.
+// The height and the rise that a place in the table represents, both 0..1.
 vec2 column_start(vec2 share) {
     float far = share.y * HORIZON_MOST;
     float height = far * far / (sqrt(far * far + EARTH_RADIUS * EARTH_RADIUS) + EARTH_RADIUS);
@@ -50,13 +50,13 @@ vec3 column_at(sampler2D columns, float height, float rise) {
     return mix(south, north, part.y);
 }
 
-// How much of the sun's disc stands over the horizon: it sets in its own width, not at once. Its
+// How much of the sun's disc is over the horizon: it sets in its own width, not at once. Its
 // rim is taken as straight.
 float risen(float height, float rise) {
     return clamp(0.5 + 0.5 * (rise - horizon_rise(height)) / radians(SUN_RADIUS), 0.0, 1.0);
 }
 
-// What is left of the sun's light at a height where the sun stands at this rise.
+// What is left of the sun's light at a height where the sun is at this rise.
 vec3 left_of_sunlight(sampler2D columns, Air air, float height, float rise) {
     vec3 depth = extinction(air, column_at(columns, height, max(rise, horizon_rise(height))));
     return risen(height, rise) * exp(-min(depth, 50.0));

@@ -15,7 +15,7 @@
 // right half what aerosol scatters, without its phase, which is too sharp for so few texels.
 // Along x, in each half: from the sun's side round to the other, which is the same on both
 // ways. Along y: from the horizon to the zenith. Both are closest where the sky changes most. One
-// such table stands over the other for each of several heights, closest near the sea: from 600 m
+// such table is over the other for each of several heights, closest near the sea: from 600 m
 // a third more blue comes from the horizon, since half of the haze is below. The horizon lies
 // lower from higher up.
 #ifndef SKY_DOME
@@ -65,7 +65,7 @@ vec3 dome_of(sampler2D table, int foot, int rows, vec2 share, float phase) {
 }
 
 // What is seen in a direction from a height; below the horizon: what is on it. The tables begin at
-// row `foot`. Between two, what stands as far over the horizon of each.
+// row `foot`. Between two, what is as far over the horizon of each.
 vec3 dome_at(sampler2D table, int foot, vec3 direction, vec3 sun, float height) {
     float level = length(direction.xy) * length(sun.xy);
     float aside = level > 1e-9 ? clamp(dot(direction.xy, sun.xy) / level, -1.0, 1.0) : 0.0;

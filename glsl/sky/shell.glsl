@@ -8,7 +8,7 @@
 //
 // Squares of the Earth's radius take all of a float's digits, and heights are differences of
 // them. With d = 2 r rise way + way², the height after a way is h + d / (sqrt(r² + d) + r),
-// in which nothing cancels; h (2 R + h) stands for r² - R² in the same way.
+// in which nothing cancels; h (2 R + h) represents r² - R² in the same way.
 #ifndef SKY_SHELL
 #define SKY_SHELL
 

@@ -29,7 +29,7 @@ float height_at(sampler2D field, vec2 place) {
     return bilinear(corner, held - vec2(low));
 }
 
-// The same for a place that stands on a line of texels: `across` is one texel along that
+// The same for a place that is on a line of texels: `across` is one texel along that
 // line, and two fetches do, with the same bits.
 float height_on_line(sampler2D field, vec2 place, ivec2 across) {
     ivec2 last = textureSize(field, 0) - 1;

@@ -1,4 +1,4 @@
-// terrain/maps.glsl -- a map of another size, where a texel of this pass stands.
+// terrain/maps.glsl -- a map of another size, where a texel of this pass is.
 //
 //   gives    map_at
 //   needs    maths/land.glsl, maths/nodes.glsl; the texture comes as an argument

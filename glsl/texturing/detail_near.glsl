@@ -2,8 +2,7 @@
 //
 //   gives    detail_nearness, with_detail
 //   needs    nothing: pure functions, no uniforms, no textures
-//   units    distances and reach in metres; colours linear; strength from 0, 1 for the image's own
-//            contrast
+//   units    distances in metres; colours linear; strength from 0, 1 for the image's own contrast
 //   source   Belaiche 2010, section 2.7; the ratio to the mean in place of a blend: made here
 //   tested   tests/glsl/test_texturing_detail.py, against the same sum in float64
 //
@@ -13,9 +12,9 @@
 #ifndef TEXTURING_DETAIL_NEAR
 #define TEXTURING_DETAIL_NEAR
 
-// 1 at the eye, 0 from `reach` on, with no slope at either end.
-float detail_nearness(float distance, float reach) {
-    float share = clamp(1.0 - distance / max(reach, 1e-6), 0.0, 1.0);
+// 1 at the eye, 0 from `max_distance` on, with no slope at either end.
+float detail_nearness(float distance, float max_distance) {
+    float share = clamp(1.0 - distance / max(max_distance, 1e-6), 0.0, 1.0);
     return share * share * (3.0 - 2.0 * share);
 }
 

@@ -23,7 +23,7 @@ uniform float variety = 0.5;                  //! slider(0, 1) step(0.01)
 
 const uint SALT = 0x0a9acb0au;  // CRC-32 of "texturing/grass"
 
-// How high the tallest blade stands over a place (0: no blade), how dry it is, how far along it
+// How high the tallest blade is over a place (0: no blade), how dry it is, how far along it
 // is.
 vec3 tallest(vec2 place, ivec2 period, uint number, float blur) {
     vec3 found = vec3(0.0);

@@ -9,7 +9,7 @@
 //
 // Each hexagon shows another place of the image.
 //
-// It stands in the place of texturing/tiled, for one reading more. Where hexagons meet, two
+// It takes the place of texturing/tiled, for one reading more. Where hexagons meet, two
 // or three copies are seen through one another; the sharper, the narrower that border.
 #include "maths/angle.glsl"
 #include "maths/land.glsl"

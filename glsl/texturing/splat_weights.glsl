@@ -56,7 +56,7 @@ float alpha_of_layer(vec4 weights, int layer) {
     return below > 0.0 ? own / (below + own) : 1.0;
 }
 
-// Where materials meet, what stands higher there comes through: grains of snow lie in the
+// Where materials meet, what is higher there comes through: grains of snow lie in the
 // rock's cracks first. The odds of any two are multiplied by exp(contrast (difference of
 // heights)), so a material alone stays alone, one that is absent stays absent, and all of
 // it is smooth.

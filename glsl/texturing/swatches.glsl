@@ -4,7 +4,7 @@
 //   needs    images of any size; what is not wired is white
 //   units    none: each image fills a square, `gap` texels from the next
 //   source   the layout of Belaiche 2010, figure 2.3
-//   tested   tests/glsl/test_texturing_base.py: each image's colour stands in its place
+//   tested   tests/glsl/test_texturing_base.py: each image's colour is in its place
 #pragma kernel(output = "colour:rgba16f")
 
 uniform sampler2D first;   //! input("linear", "repeat", "mipmap", "white")
@@ -29,7 +29,7 @@ vec3 shown(sampler2D image, vec2 place, float texels) {
 vec4 kernel(ivec2 texel) {
     float side = min(float(size.x - gap * (count - 1)) / float(count), float(size.y));
     float pitch = side + float(gap);
-    // The row stands in the middle.
+    // The row is in the middle.
     vec2 place = vec2(texel) + 0.5 - 0.5 * (vec2(size)
                                             - vec2(pitch * float(count) - float(gap), side));
     float column = floor(place.x / pitch);

@@ -2,7 +2,7 @@
 //
 //   gives    colour, linear light
 //   needs    maths/land.glsl; an image that repeats
-//   units    the image stands `repeats` times side by side from west to east
+//   units    the image is `repeats` times side by side from west to east
 //   source   Belaiche 2010, section 2.3.3, without the second reading; less detail: section 5.5
 //   tested   tests/glsl/test_height_blend.py: so many repeats, the image's mean where they are
 //            too fine, and less contrast about the same mean where less detail is wanted

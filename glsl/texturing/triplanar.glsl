@@ -3,7 +3,7 @@
 //   gives    colour, linear light
 //   needs    lighting/sun.glsl, maths/land.glsl, terrain/heightfield.glsl,
 //            texturing/kept_contrast.glsl; an image that repeats, and a height 0..1
-//   units    the image stands `repeats` times side by side from west to east, and is as large
+//   units    the image is `repeats` times side by side from west to east, and is as large
 //            upwards; slopes in degrees from the level
 //   source   three planes weighted by the normal: Geiss 2007, "Generating Complex Procedural
 //            Terrains Using the GPU" (GPU Gems 3, chapter 1); only on cliffs: made here

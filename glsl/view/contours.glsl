@@ -7,7 +7,7 @@
 //            how much it changes from texel to texel
 //   tested   tests/glsl/test_view_contours.py, against lines on planes and cones in float64
 //
-// Where lines would lie closer than they can be told apart, the mean of lines and ground
+// Where lines would lie closer than they can be distinguished, the mean of lines and ground
 // replaces them. Level ground has no line, even where it lies at the elevation of one.
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "colour:rgba16f")

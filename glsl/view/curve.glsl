@@ -6,7 +6,7 @@
 //   source   none: a picture of numbers. A pixel is covered by how far it is from the curve
 //   tested   tests/glsl/test_curve_view.py, by where curves and axes must be in the picture
 //
-// Texel k of n stands at k / (n - 1) of the picture's width. Curves above each other stand in
+// Texel k of n is at k / (n - 1) of the picture's width. Curves above each other stand in
 // panels of the same height, the first row on top; the lowest number is at a panel's foot.
 #include "colour/encode.glsl"
 #include "maths/number.glsl"

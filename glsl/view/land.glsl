@@ -8,7 +8,7 @@
 //   units    metres; colours linear
 //   source   Belaiche 2010, section 2.3, figures 2.2 (wires) and 2.5 (texture), figure 1.3
 //            (facets), and section 2.7 (the detail image); the rest made here
-//   tested   tests/glsl/test_view.py, by where marked terrain stands in the picture; facets in
+//   tested   tests/glsl/test_view.py, by where marked terrain is in the picture; facets in
 //            tests/glsl/test_facets.py, against the normals of the faces in float64; tiles in
 //            tests/glsl/test_view_geomipmap.py and tests/glsl/test_view_morph.py; the detail image
 //            in tests/glsl/test_texturing_detail.py, against rays in float64
@@ -54,7 +54,7 @@ vec4 fragment(vec3 position, float mark, vec4 net) {
         vec2 tile = share * detail_repeats * vec2(1.0, extent.y / extent.x);
         vec3 fine = texture(detail_image, tile, SHARPER).rgb;
         vec3 mean = textureLod(detail_image, vec2(0.5), 99.0).rgb;
-        float nearness = detail_nearness(distance(eye, position), detail_reach);
+        float nearness = detail_nearness(distance(eye, position), detail_max_distance);
         shown = with_detail(shown, fine, mean, detail_strength * nearness);
     }
     shown *= facets ? vec3(light_of_face(position, facet_sun, facet_ambient))

@@ -17,7 +17,7 @@ const float SHARPER = -0.7;
 // A mark below this is around a vertex whose height is not a number.
 const float BROKEN = -10.0;
 
-// The place in x to z of a vertex that stands at a share of the terrain, `down` from the terrain
+// The place in x to z of a vertex that is at a share of the terrain, `down` from the terrain
 // to the skirt's foot: 0 or 1. In w a mark: that too, or far below BROKEN: far, because samples at
 // a triangle's rim are extrapolated.
 vec4 place_of_vertex(sampler2D field, vec2 share, float down, vec2 metres, float rise,

@@ -1,6 +1,6 @@
-"""Take what a sketch makes to other programs: heights, textures, the land as a mesh.
+"""Export what a sketch computes for other programs: heights, textures, the terrain as a mesh.
 
-`export` chooses; `endings` says what each kind of file holds; `values`, `pictures`, `exr`,
-`mesh`, `gltf` and `obj` turn arrays into bytes, and `together` writes those. Pictures of a
+`export` chooses; `extensions` says what each kind of file holds; `values`, `exr`,
+`mesh`, `gltf` and `obj` encode arrays as bytes, and `atomic_group` writes those. Pictures of a
 sketch are frames (`playground.engine.frame`), not exports.
 """

@@ -14,7 +14,7 @@ _LOOKED_AT = 4096  # bytes, within which an export says who made it
 
 
 def refuse_foreign_files(path: Path, sidecars: list[Path]) -> None:
-    """Raise ``DataError`` where a file that goes beside ``path`` would replace one that is no export."""
+    """Raise ``DataError`` where a file that goes with ``path`` would replace one that is no export."""
     for other in sidecars:
         try:
             if not other.exists():

@@ -1,14 +1,15 @@
-"""Export heights, textures and the land as a mesh: choose what is written, and in what form.
+"""Export heights, textures and the terrain as a mesh: choose what is written, and in what form.
 
-An ending and a texture tell what a file holds: heights become metres above sea level,
+The ending and the texture determine what a file holds: heights become metres above sea level,
 colours and light are encoded as sRGB where a format expects it, other numbers stay as they
-are; the land itself becomes a mesh with its texture. Everything is refused that can be
-before a texel is made.
+are; the terrain itself becomes a mesh with its texture. Whatever can be refused is refused
+before a texel is computed.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -21,15 +22,15 @@ from playground.capture.export_options import Form, bits_for, check, sidecar_pat
 from playground.capture.export_textures import height_of, kind_of
 from playground.capture.extensions import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, USUAL_GRID
 from playground.capture.gltf import encode_glb
-from playground.capture.lossy_images import encode_picture
-from playground.capture.mesh import grid_of, land_mesh, sampled
+from playground.capture.mesh import grid_of, sampled, terrain_mesh
 from playground.capture.obj import encode_mtl, encode_obj
-from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode
+from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode, encode_picture
 from playground.engine.engine import Engine, opened
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import view_input
 from playground.errors import DataError, SketchError
 from playground.images.files import encode_samples
+from playground.images.image_formats import naming
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 
 _NO_TEXTURE = "no texture: the view shows no colour; name one with --texture"
@@ -78,25 +79,21 @@ def export(
     steps: Mapping[str, int] | None = None,
     engine: Engine | None = None,
 ) -> Exported:
-    """Write a sketch's heights, one of its textures, or its land as a mesh, by the path's ending.
+    """Write a sketch's heights, one of its textures, or its terrain as a mesh, by the path's ending.
 
     ``.png``, ``.r16``, ``.r32``, ``.tif``, ``.exr`` and ``.npy`` hold the heights, in metres, or
-    the ``texture`` named; ``.webp`` and ``.jpg`` colours; ``.glb`` and ``.obj`` the land with its
+    the ``texture`` named; ``.webp`` and ``.jpg`` colours; ``.glb`` and ``.obj`` the terrain with its
     texture. Rows come from the north. The other arguments are those of ``Form``; ``time``, in
     seconds, and ``steps`` are as in ``Engine.render``. A file of that name is replaced, whole
     or not at all. Without an ``engine`` one is opened.
 
-    Raises ``PlaygroundError`` for any mistake in what is asked, or a file that cannot be written.
+    Raises ``PlaygroundError`` for any mistake in the arguments, or a file that cannot be written.
     """
-    form, found = (
-        Form(texture=texture, kind=kind, bits=bits, span=span, grid=grid, light=light),
-        opened(sketch),
-    )
+    form = Form(texture=texture, kind=kind, bits=bits, span=span, grid=grid, light=light)
+    found = opened(sketch)
     check(Path(path), form)
-    if engine is not None:
-        return run(engine, prepare(engine, found, Path(path), form, time=time, steps=steps))
-    with headless() as own:
-        return run(own, prepare(own, found, Path(path), form, time=time, steps=steps))
+    with nullcontext(engine) if engine is not None else headless() as used:
+        return run(used, prepare(used, found, Path(path), form, time=time, steps=steps))
 
 
 def prepare(
@@ -108,7 +105,7 @@ def prepare(
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
 ) -> ExportJob:
-    """Find the textures that an export needs; raise ``PlaygroundError`` where there are none."""
+    """Resolve the textures that an export needs; raise ``PlaygroundError`` where there are none."""
     check(path, form)
     plan = engine.plan_for(sketch, DEFAULT_PICTURE, time, steps)
     if path.suffix.lower() in MESHES:
@@ -158,7 +155,7 @@ def _read(engine: Engine, job: ExportJob, texture: str, kind: str) -> NDArray[np
         if channels != 1:
             raise SketchError(f"texture '{texture}' has {channels} channels; heights have one")
         relief, base = job.plan.terrain.relief, job.plan.terrain.base_elevation
-        assert relief is not None and base is not None  # a plan's land is known
+        assert relief is not None and base is not None  # a plan's terrain is known
         metres: NDArray[np.float32] = (values.astype(np.float64) * relief + base).astype(np.float32)
         return metres
     if kind == COLOUR:
@@ -180,13 +177,11 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
         )
     rows, cols = values.shape[:2]
     spacing = _spacing(job, (cols, rows))
-    try:
+    with naming(job.path):
         if job.ending in PICTURES:
             made = encode_picture(values, job.ending)
         else:
             made = encode(Layer(values, job.kind, spacing, job.form.bits, job.form.span), job.ending)
-    except DataError as error:
-        raise DataError(error.diagnostics[0].message, file=job.path) from error
     files = {job.path: made.data}
     sidecars = tuple(sidecar_paths(job.path)) if made.sidecar else ()
     files |= dict.fromkeys(sidecars, made.sidecar)
@@ -197,7 +192,7 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
 
 def _spacing(job: ExportJob, size: tuple[int, int]) -> tuple[float, float]:
     extent = job.plan.terrain.extent
-    assert extent is not None  # a plan's land is known
+    assert extent is not None  # a plan's terrain is known
     return extent[0] / max(size[0] - 1, 1), extent[1] / max(size[1] - 1, 1)
 
 
@@ -207,11 +202,9 @@ def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     size = grid_of((heights.shape[1], heights.shape[0]), wanted)
     baked, texels, warning = _texture(engine, job)
     extent = job.plan.terrain.extent
-    assert extent is not None  # a plan's land is known
-    try:
-        mesh = land_mesh(sampled(heights, size), extent, texels or (2, 2))
-    except DataError as error:
-        raise DataError(error.diagnostics[0].message, file=job.path) from error
+    assert extent is not None  # a plan's terrain is known
+    with naming(job.path):
+        mesh = terrain_mesh(sampled(heights, size), extent, texels or (2, 2))
     name = job.sketch.name
     sidecars: list[Path] = []
     if job.ending == ".glb":
@@ -233,7 +226,9 @@ def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     ]
     notes = [warning]
     if job.form.grid > max(size):
-        notes.append(f"the land has {max(size)} texels on its longer side, so the mesh has no more vertices")
+        notes.append(
+            f"the terrain has {max(size)} texels on its longer side, so the mesh has no more vertices"
+        )
     return Exported(job.path, "; ".join(parts), tuple(sidecars), tuple(filter(None, notes)))
 
 
@@ -250,15 +245,12 @@ def _texture(engine: Engine, job: ExportJob) -> tuple[bytes, tuple[int, int] | N
     colours = sampled(layers[0], size)
     for other in layers[1:]:
         colours = colours * sampled(other, size)
-    text = {"Software": SOFTWARE}
-    try:
+    with naming(job.path):
         if job.kind != COLOUR and not job.light:
             made: Encoded = encode(Layer(colours, NUMBERS, (1.0, 1.0), 8), ".png")
             return made.data, size, made.warning
         samples, warning = colour_samples(colours)
-    except DataError as error:
-        raise DataError(error.diagnostics[0].message, file=job.path) from error
-    return encode_samples(samples, text), size, warning
+    return encode_samples(samples, {"Software": SOFTWARE}), size, warning
 
 
 def _three(values: NDArray[np.float32]) -> NDArray[np.float32]:

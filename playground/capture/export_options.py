@@ -1,4 +1,4 @@
-"""Say what is to be exported and how, and refuse what no sketch could give."""
+"""Define what is exported and how, and refuse what no sketch could give."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ class Form:
     kind: str = ""  # height, colour or numbers; "": as the texture's name tells
     bits: int = 0  # of a number; 0: the format's usual
     span: tuple[float, float] | None = None  # what 0 and the largest whole number stand for
-    grid: int = 0  # vertices of a mesh's longer side; 0: as many as the land has texels, up to 513
+    grid: int = 0  # vertices of a mesh's longer side; 0: as many as the terrain has texels, up to 513
     light: bool = False  # multiply a mesh's texture by the light
 
 
 def check(path: Path, form: Form) -> None:
-    """Raise ``PlaygroundError`` for what is wrong whatever the sketch."""
+    """Raise ``PlaygroundError`` for what is wrong with any sketch."""
     ending = path.suffix.lower()
     if path.is_dir():
         raise DataError("is a folder; expected the name of a file to write", file=path)

@@ -1,4 +1,4 @@
-"""Find the textures that an export is made of, and tell what they hold."""
+"""Resolve the textures that an export is made of, and what they hold."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ def height_of(plan: Plan) -> str:
 
 
 def kind_of(plan: Plan, texture: str) -> str:
-    """Return what a texture holds, told by the names of the output and, if it is not named, of the pass."""
+    """Return what a texture holds, by the name of the output and, if it is not named, of the pass."""
     path, _, output = texture.partition(":")
     last = path.rpartition(".")[2]
     outputs = plan.flat.outputs[path]

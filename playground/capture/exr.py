@@ -30,7 +30,7 @@ def encode_exr(image: NDArray[Any], comments: str = "") -> bytes:
         image = image[..., None]
     rows, cols, count = image.shape
     kind = {"f2": _HALF, "f4": _FLOAT}[image.dtype.str[1:]]
-    # A line holds each channel in turn, in the order of their names.
+    # A line holds one channel after the other, in the order of their names.
     names = sorted(zip(_CHANNELS[count], range(count), strict=True))
     lines = np.ascontiguousarray(np.moveaxis(image[..., [index for _, index in names]], -1, 1))
     stored = lines.astype(image.dtype.newbyteorder("<")).view(np.uint8).reshape(rows, -1)

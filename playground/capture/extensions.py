@@ -1,4 +1,4 @@
-"""Say what each kind of exported file holds, and in how many bits."""
+"""List what each kind of exported file holds, and in how many bits."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ VALUES: dict[str, dict[str, tuple[int, ...]]] = {
 that 16 in an EXR, like 32 everywhere, are floats."""
 
 RAW = (".r16", ".raw", ".r32")
-"""Numbers and nothing else: a JSON beside the file tells what they are."""
+"""Numbers and nothing else: a JSON file next to it says what they are."""
 
 PICTURES = (".webp", ".jpg", ".jpeg")
 """Colours and nothing else."""
@@ -32,11 +32,11 @@ MESHES: dict[str, int] = {".glb": 2049, ".obj": 1025}
 """Ending → vertices that the longer side of a mesh may have; OBJ is text, six times as long."""
 
 USUAL_GRID = 513
-"""Vertices of the longer side where nobody asks for another number."""
+"""Vertices of the longer side unless another number is given."""
 
 ENDINGS = (*VALUES, *MESHES)
 
 
 def whole_numbers(ending: str, bits: int) -> bool:
-    """Say whether numbers of so many bits are whole ones in a file of that ending."""
+    """Return whether numbers of so many bits are whole ones in a file of that ending."""
     return bits < 32 and ending != ".exr"

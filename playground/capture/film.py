@@ -1,15 +1,15 @@
 """Films: pictures at one time after another, as a video or as numbered PNG files.
 
-Picture n of a film is that of the time ``n / fps``, whatever the machine's speed; what a
-sketch's keyframes, its text or its repeats make of the time is theirs. The land and its
-light are made anew only where they change with it, and nothing that a later picture does
-not use is kept.
+Picture n of a film is that of the time ``n / fps``, independent of the machine's speed; what a
+sketch's keyframes, its text or its repeats make of the time is theirs. The terrain and its
+light are computed again only where they change with it, and nothing that later pictures do
+not use stays in the cache.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -77,7 +77,7 @@ def film_of(
 
 @contextmanager
 def frame_uniforms(engine: Engine, film: Film, number: int) -> Iterator[None]:
-    """Progress plain shaders the number of a picture and the time between two, in the block."""
+    """Set the picture's number and the time between two pictures for plain shaders, in the block."""
     before = engine.runner.frame, engine.runner.delta
     engine.runner.frame, engine.runner.delta = number, float(1 / film.fps)
     try:
@@ -140,7 +140,5 @@ def render_video(
     Raises ``PlaygroundError`` in a sentence; a file of that name is replaced at the end.
     """
     film = film_of(sketch, seconds=seconds, fps=fps, size=size, start=start)
-    if engine is not None:
-        return write_film(engine, film, path, quality=quality)
-    with headless() as made:
-        return write_film(made, film, path, quality=quality)
+    with nullcontext(engine) if engine is not None else headless() as used:
+        return write_film(used, film, path, quality=quality)

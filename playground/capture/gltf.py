@@ -1,4 +1,4 @@
-"""Write glTF 2.0 in one binary file (.glb): the land's mesh, its texture inside.
+"""Write glTF 2.0 in one binary file (.glb): the terrain's mesh, its texture inside.
 
 Source: Khronos Group 2021, "glTF 2.0 Specification" (revision 2.0.1), sections 3 and 4, and
 the extension KHR_materials_unlit. A node, a mesh, a material, at most one image.
@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.capture.mesh import LandMesh
+from playground.capture.mesh import TerrainMesh
 from playground.errors import DataError
 
 _MAGIC, _VERSION, _JSON, _BIN = 0x46546C67, 2, 0x4E4F534A, 0x004E4942
@@ -25,11 +25,11 @@ _LARGEST = 2**32 - 1  # bytes of a file, whose length is 32 bits
 
 
 def encode_glb(
-    mesh: LandMesh, name: str, *, texture: bytes = b"", unlit: bool = False, software: str = ""
+    mesh: TerrainMesh, name: str, *, texture: bytes = b"", unlit: bool = False, software: str = ""
 ) -> bytes:
     """Return the bytes of a .glb.
 
-    ``texture`` is a PNG, sRGB; without one the land is white. ``unlit`` says that light is in
+    ``texture`` is a PNG, sRGB; without one the terrain is white. ``unlit`` says that light is in
     the texture already, so that a program adds none. Indices have 16 bits where they can.
 
     Raises:

@@ -1,6 +1,6 @@
 """A capture as one thing that can be sent to another process: a picture, pictures, a film or a sheet.
 
-What is captured is the sketch as it stands in the job, with all that was set by hand. A job
+What is captured is the sketch of the job, with all user edits. A job
 takes the first name that no file has, and leaves nothing behind when it is stopped or fails,
 but for numbered pictures: those that are whole stay.
 """
@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 from playground.capture.film import Film, film_of, write_film
 from playground.capture.large import count_tiles, is_large, write_large
@@ -57,70 +58,69 @@ def do(job: CaptureJob, engine: Engine, progress: Progress, notice: Notice) -> P
 
     Raises ``PlaygroundError`` in a sentence.
     """
-    name = re.sub(r"[^\w.-]+", "-", job.sketch.name).strip("-.") or "picture"
-    work = {PICTURE: _picture, PICTURES: _pictures, FILM: _film, SHEET: _sheet}[job.kind]
-    return work(job, engine, name, _Counter(progress), notice)
+    work = _Work(job, engine, progress, notice)
+    kinds = {PICTURE: work.picture, PICTURES: work.pictures, FILM: work.film, SHEET: work.sheet}
+    return kinds[job.kind]()
 
 
-class _Counter:
-    """Counts parts that are done."""
+class _Work:
+    """A job at work: what does each kind, and counts the parts that are done."""
 
-    def __init__(self, progress: Progress) -> None:
+    def __init__(self, job: CaptureJob, engine: Engine, progress: Progress, notice: Notice) -> None:
+        self.job, self.engine, self.notice = job, engine, notice
         self._progress = progress
         self._done = self._of = 0
+        name = re.sub(r"[^\w.-]+", "-", job.sketch.name).strip("-.") or "picture"
+        self._path = job.folder / name
 
-    def begin(self, of: int) -> None:
-        """Say how many parts there are."""
+    def _begin(self, of: int) -> None:
         self._done, self._of = 0, of
         self._progress(0, of)
 
-    def __call__(self) -> None:
+    def _advance(self) -> None:
         self._done += 1
         self._progress(self._done, self._of)
 
+    def picture(self) -> Path:
+        job = self.job
+        at: dict[str, Any] = {"time": job.time, "steps": job.steps}
+        with new_name(f"{self._path}.png") as path:
+            if is_large(self.engine, job.sketch, job.size):
+                self._begin(count_tiles(job.size))
+                return write_large(self.engine, job.sketch, path, job.size, **at, done=self._advance)
+            self._begin(1)
+            self.engine.render(job.sketch, size=job.size, **at).save(path)
+            self._advance()
+        return path
 
-def _picture(
-    job: CaptureJob, engine: Engine, name: str, done: _Counter, notice: Callable[[str], None]
-) -> Path:
-    with new_name(job.folder / f"{name}.png") as path:
-        if is_large(engine, job.sketch, job.size):
-            done.begin(count_tiles(job.size))
-            return write_large(engine, job.sketch, path, job.size, time=job.time, steps=job.steps, done=done)
-        done.begin(1)
-        engine.render(job.sketch, size=job.size, time=job.time, steps=job.steps).save(path)
-        done()
-    return path
+    def pictures(self) -> Path:
+        film = self._film()
+        with _new_folder(self._path.with_name(f"{self._path.name}-frames")) as folder:
+            self._begin(film.count)
+            write_sequence(self.engine, film, folder / "%05d.png", done=self._advance)
+        return folder
 
+    def film(self) -> Path:
+        film, quality = self._film(), self.job.quality
+        with new_name(f"{self._path}{self.job.ending}") as path:
+            self._begin(film.count)
+            return write_film(
+                self.engine, film, path, quality=quality, done=self._advance, notice=self.notice
+            )
 
-def _pictures(
-    job: CaptureJob, engine: Engine, name: str, done: _Counter, notice: Callable[[str], None]
-) -> Path:
-    film = _film_of(job)
-    with _new_folder(job.folder / f"{name}-frames") as folder:
-        done.begin(film.count)
-        write_sequence(engine, film, folder / "%05d.png", done=done)
-    return folder
+    def _film(self) -> Film:
+        job = self.job
+        return film_of(
+            job.sketch, seconds=job.seconds, fps=job.fps, size=job.size, start=job.time, steps=job.steps
+        )
 
-
-def _film(job: CaptureJob, engine: Engine, name: str, done: _Counter, notice: Notice) -> Path:
-    film = _film_of(job)
-    with new_name(job.folder / f"{name}{job.ending}") as path:
-        done.begin(film.count)
-        return write_film(engine, film, path, quality=job.quality, done=done, notice=notice)
-
-
-def _film_of(job: CaptureJob) -> Film:
-    return film_of(
-        job.sketch, seconds=job.seconds, fps=job.fps, size=job.size, start=job.time, steps=job.steps
-    )
-
-
-def _sheet(job: CaptureJob, engine: Engine, name: str, done: _Counter, notice: Notice) -> Path:
-    sketch = job.sketch.at(job.time)
-    rows = swept(sketch, [read_sweep(sketch, text, USUAL_STEPS) for text in job.sweeps])
-    with new_name(job.folder / f"{name}-sweep.png") as path:
-        done.begin(sum(map(len, rows)))
-        return write_sheet(engine, rows, path, size=job.size, time=job.time, done=done, notice=notice)
+    def sheet(self) -> Path:
+        job, sketch = self.job, self.job.sketch.at(self.job.time)
+        rows = swept(sketch, [read_sweep(sketch, text, USUAL_STEPS) for text in job.sweeps])
+        with new_name(f"{self._path}-sweep.png") as path:
+            self._begin(sum(map(len, rows)))
+            at: dict[str, Any] = {"size": job.size, "time": job.time}
+            return write_sheet(self.engine, rows, path, **at, done=self._advance, notice=self.notice)
 
 
 @contextmanager

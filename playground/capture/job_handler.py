@@ -10,7 +10,7 @@ from playground.process.child import Parent, Service
 
 
 def open_service(parent: Parent, options: tuple[bool, str]) -> Service:
-    """Give what does a job: on a software renderer, by which driver."""
+    """Return the service that does a job: on a software renderer, by which driver."""
     software, driver = options
 
     def answer(job: CaptureJob) -> Finished:

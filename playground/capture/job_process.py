@@ -1,4 +1,4 @@
-"""Run a capture in a worker process, and tell whoever started it how far it is and what came of it."""
+"""Run a capture in a worker process, and report its progress and result to its parent."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 
 from playground.capture.job import CaptureJob
 from playground.errors import PlaygroundError
-from playground.process.messages import Answer, Cancelled, UnexpectedError
+from playground.process.messages import Answer, Cancelled, summary_of
 from playground.process.worker import Launch, Worker, WorkerDied
 
 _GRACE = 10.0  # [s] that a job may take to stop by itself
@@ -91,7 +91,7 @@ def _finished(answer: Answer) -> Finished:
         return Finished(None, str(error))
     except MemoryError:
         return Finished(None, "there is not enough memory for a picture of that size")
-    except UnexpectedError as error:
-        return Finished(None, f"a bug of the playground itself, {error.summary}")
+    except Exception as error:
+        return Finished(None, f"a bug of the playground itself, {summary_of(error)}")
     assert isinstance(found, Finished)
     return found

@@ -9,7 +9,7 @@ one pixel in a thousand differs from the picture drawn whole, and by a few level
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import BinaryIO
 
@@ -32,7 +32,7 @@ MOST_WHOLE = 2**23
 
 
 def is_large(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> bool:
-    """Say whether a picture is drawn in parts.
+    """Return whether a picture is drawn in parts.
 
     More than the driver's textures hold must be; more than 3840 x 2160 is, where the sketch's
     passes allow it.
@@ -97,21 +97,15 @@ def strips(
         yield strip
 
 
-def pack_large(
-    engine: Engine,
-    sketch: Sketch | str | Path,
+def encode_strips(
     handle: BinaryIO,
     size: tuple[int, int],
-    *,
-    time: float = 0.0,
-    steps: Mapping[str, int] | None = None,
-    tile: tuple[int, int] = TILE,
+    rows: Iterable[NDArray[np.uint8]],
     text: Mapping[str, str] | None = None,
-    done: Callable[[], None] = lambda: None,
 ) -> None:
-    """Write a picture as a PNG to an open file; arguments as for ``write_large``."""
+    """Write a picture as a PNG to an open file, from what `strips` yields."""
     writer = PngStrips(handle, size, text=text)
-    for strip in strips(engine, sketch, size, time=time, steps=steps, tile=tile, done=done):
+    for strip in rows:
         writer.write(strip)
     writer.close()
 
@@ -134,12 +128,13 @@ def write_large(
 
     Arguments as for ``strips``; ``text`` as for ``Frame.save``. Of the picture, what is held is
     one strip, ``tile[1]`` rows, about five times over: 160 MiB at 16,384 pixels of width,
-    whatever the height.
+    independent of the height.
     """
     if Path(path).suffix.lower() != ".png":
         raise DataError(
             "a picture that is drawn in parts is written to a name ending in .png", file=str(path)
         )
+    rows = strips(engine, sketch, size, time=time, steps=steps, tile=tile, done=done)
     with replacing(path) as handle:
-        pack_large(engine, sketch, handle, size, time=time, steps=steps, tile=tile, text=text, done=done)
+        encode_strips(handle, size, rows, text)
     return Path(path)

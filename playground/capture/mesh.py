@@ -1,8 +1,8 @@
-"""Make the land a mesh that other programs understand: y up, metres, counter-clockwise from above.
+"""Convert the terrain to a mesh that other programs understand: y up, metres, counter-clockwise from above.
 
 x is east, y up and z south, as in glTF 2.0 (Khronos Group 2021, section 3.4: right-handed, +Y
-up); the middle of the land stands at x = z = 0, sea level at y = 0. A regular grid, its
-rows from the north: not reduced where the land is flat.
+up); the middle of the terrain is at x = z = 0, sea level at y = 0. A regular grid, its
+rows from the north: not reduced where the terrain is flat.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from playground.errors import DataError
 
 
 @dataclass(frozen=True, eq=False)
-class LandMesh:
+class TerrainMesh:
     """Vertices and how to join them."""
 
     positions: NDArray[np.float32]  # [m] (n, 3): x east, y up, z south
@@ -26,7 +26,7 @@ class LandMesh:
 
 
 def grid_of(size: tuple[int, int], longest: int) -> tuple[int, int]:
-    """Return the vertices east and north for land of a size in texels, ``longest`` on its longer side."""
+    """Return the vertices east and north for terrain of a size in texels, ``longest`` on its longer side."""
     most = max(size)
     if longest >= most:
         return size
@@ -47,7 +47,7 @@ def _along(values: NDArray[np.float32], axis: int, count: int) -> NDArray[np.flo
     here = values.shape[axis]
     if count == here:
         return values
-    # Whole numbers tell where texels meet, and that exactly.
+    # Integers say exactly where texels of both grids meet.
     whole, rest = np.divmod(np.arange(count) * (here - 1), max(count - 1, 1))
     part = (rest / max(count - 1, 1)).astype(np.float32)
     part = part.reshape([-1 if k == axis else 1 for k in range(values.ndim)])
@@ -57,21 +57,21 @@ def _along(values: NDArray[np.float32], axis: int, count: int) -> NDArray[np.flo
         return np.asarray(low + (high - low) * part, dtype=np.float32)
 
 
-def land_mesh(
+def terrain_mesh(
     heights: NDArray[np.float32], extent: tuple[float, float], texels: tuple[int, int] = (2, 2)
-) -> LandMesh:
+) -> TerrainMesh:
     """Return the mesh with a vertex at each height.
 
     ``heights`` is (rows, cols) in metres, north row first; ``extent`` in metres, east and
     north; ``texels`` the size of the texture that is draped: its first and last texels'
-    middles, not its edges, stand on the land's edges. Normals are those of central differences.
+    middles, not its edges, are on the terrain's edges. Normals are those of central differences.
 
     Raises:
         DataError: fewer than 2 x 2 heights, or some that are not finite.
     """
     rows, cols = heights.shape
     if min(rows, cols) < 2:
-        raise DataError(f"land of {cols} x {rows} texels has no mesh; expected at least 2 x 2")
+        raise DataError(f"terrain of {cols} x {rows} texels has no mesh; expected at least 2 x 2")
     bad = int(np.count_nonzero(~np.isfinite(heights)))
     if bad:
         raise DataError(f"{bad} of {heights.size} heights are not finite, and a mesh has no place for them")
@@ -89,7 +89,7 @@ def land_mesh(
 
     nx, ny = texels
     uv = np.stack([(east * (nx - 1) + 0.5) / nx, (south * (ny - 1) + 0.5) / ny], axis=-1)
-    return LandMesh(
+    return TerrainMesh(
         positions.reshape(-1, 3),
         normals.reshape(-1, 3).astype(np.float32),
         uv.reshape(-1, 2).astype(np.float32),

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.capture.export_options import one_word
-from playground.capture.mesh import LandMesh
+from playground.capture.mesh import TerrainMesh
 
 _ROWS = 65536  # formatted at once
 
 
-def encode_obj(mesh: LandMesh, name: str, *, library: str, software: str = "") -> bytes:
-    """Return the text of an OBJ whose material ``land`` is in the file ``library``, named from beside it."""
+def encode_obj(mesh: TerrainMesh, name: str, *, library: str, software: str = "") -> bytes:
+    """Return the text of an OBJ whose material ``land`` is in the file ``library``, in the same folder."""
     uv = mesh.uv.copy()
     uv[:, 1] = 1.0 - uv[:, 1]  # from the texture's southern edge
     corners = np.repeat(mesh.triangles.astype(np.int64) + 1, 3, axis=1)  # place, texture and normal are alike

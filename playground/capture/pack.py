@@ -1,7 +1,7 @@
 """Pack a sketch with all that it needs into one zip; ``playground.sketch.unpack`` opens it.
 
 In it are the sketch's own texts, the images and elevation files that its values, presets,
-shots and keyframes name, references, and a README and a licence beside it. Of what ships
+shots and keyframes name, references, and a README and a licence of its folder. Of what ships
 with the playground there are the names, and the version that it was packed with.
 
 The same files give the same bytes: names are sorted, dates are fixed, nothing says who
@@ -30,7 +30,7 @@ from playground.sketch.unpack import FORMAT, MANIFEST, MOST_BYTES, MOST_FILES
 _DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can say
 _PLAIN_FILE = 0o100644 << 16
 _UNIX = 3
-_BESIDE = ("README*", "readme*", "LICENSE*", "LICENCE*")
+_DOCUMENTS = ("README*", "readme*", "LICENSE*", "LICENCE*")
 
 
 def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] = ()) -> Path:
@@ -87,7 +87,7 @@ def contents(sketch: Sketch) -> tuple[dict[str, Path], str, list[str]]:
             message = f"lies outside the sketch's folder, {shown(folder)}; copy it there to pack the sketch"
             raise DataError(message, file=shown(file))
     if not folder.is_relative_to(GLSL):
-        for pattern in _BESIDE:
+        for pattern in _DOCUMENTS:
             for file in sorted(folder.glob(pattern)):
                 if file.is_file() and is_inside(file, (folder,)):
                     files[f"{top}/{file.name}"] = file

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from contextlib import nullcontext
 from dataclasses import dataclass
 from fractions import Fraction
 from pathlib import Path
@@ -18,11 +19,11 @@ from playground.capture.film import FPS, MOST_FRAMES, USUAL_SIZE, Film, frame_un
 from playground.capture.large import is_large, write_large
 from playground.engine.engine import Engine, opened
 from playground.errors import DataError, ParameterError
-from playground.images.files import read_png, reason
+from playground.images.files import make_folder, read_png
 from playground.sketch.model import Sketch
 
 MADE_OF = "Made of"
-"""The text of a PNG that stands for all that its picture depends on."""
+"""The text of a PNG that identifies all that its picture depends on."""
 
 _NUMBER = re.compile(r"%(0\d+)?d")
 
@@ -61,21 +62,17 @@ def write_sequence(
 
     ``numbers`` are those of the pictures, all of the film's unless given; ``pattern`` names the
     files, as ``frames/%05d.png``; its folder is made. With ``resume`` a file that is there
-    and good is kept. ``done`` is called after each. Raises ``DataError`` in a sentence.
+    and good stays. ``done`` is called after each. Raises ``DataError`` in a sentence.
     """
     check_pattern(pattern)
     wanted = range(film.count) if numbers is None else list(numbers)
-    folder = Path(pattern).expanduser().parent
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"cannot be made a folder: {reason(error)}", file=folder) from None
+    make_folder(Path(pattern).expanduser().parent)
     drawn, kept = [], []
     for number in wanted:
         path = numbered(pattern, number)
         made_of = engine.fingerprint(
             film.sketch, size=film.size, time=film.time(number), steps=film.steps
-        )  # before it is drawn, so that a mistake in the sketch is told first
+        )  # before it is drawn, so that a mistake in the sketch is reported first
         if resume and _is_good(path, film.size, made_of):
             kept.append(path)
         else:
@@ -97,7 +94,7 @@ def _write(engine: Engine, film: Film, number: int, path: Path, made_of: str) ->
 
 
 def _is_good(path: Path, size: tuple[int, int], made_of: str) -> bool:
-    """Say whether a file is there, whole to its last pixel, and the picture wanted."""
+    """Return whether a file is there, whole to its last pixel, and the picture wanted."""
     if not path.is_file():
         return False
     try:
@@ -120,7 +117,7 @@ def render_sequence(
     """Render pictures ``numbers`` of a sketch as PNG files named by ``pattern``, as ``frames/%05d.png``.
 
     Picture n is that of the time n / ``fps`` seconds; ``size`` in pixels. With ``resume``
-    good files are kept, whose sketch, size and time are the same. Without an ``engine`` one is
+    good files stay, whose sketch, size and time are the same. Without an ``engine`` one is
     opened. Raises ``PlaygroundError`` in a sentence.
     """
     wanted = list(numbers)
@@ -128,7 +125,5 @@ def render_sequence(
         raise ParameterError(f"pictures are numbered from 0 to {MOST_FRAMES - 1}; at least one was expected")
     rate = fps if isinstance(fps, Fraction) else Fraction(fps).limit_denominator(1001)
     film = Film(sketch=opened(sketch), count=max(wanted) + 1, fps=rate, size=size)
-    if engine is not None:
-        return write_sequence(engine, film, pattern, numbers=wanted, resume=resume)
-    with headless() as made:
-        return write_sequence(made, film, pattern, numbers=wanted, resume=resume)
+    with nullcontext(engine) if engine is not None else headless() as used:
+        return write_sequence(used, film, pattern, numbers=wanted, resume=resume)

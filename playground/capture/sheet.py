@@ -6,6 +6,7 @@ Or a film of the same pictures, one after another. The letters are Pillow's own.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import nullcontext
 from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -150,7 +151,7 @@ def write_sweep_film(
 
 def _counted(found: Iterator[NDArray[np.uint8]], done: Callable[[], None]) -> Iterator[NDArray[np.uint8]]:
     for picture in found:
-        done()  # before it is handed on: nobody asks again after the last one
+        done()  # before it is handed on: the generator is not resumed after the last one
         yield picture
 
 
@@ -171,7 +172,5 @@ def render_sweep(
     """
     found = opened(sketch)
     rows = swept(found, [read_sweep(found, text, steps) for text in sweeps])
-    if engine is not None:
-        return write_sheet(engine, rows, path, size=size, time=time)
-    with headless() as made:
-        return write_sheet(made, rows, path, size=size, time=time)
+    with nullcontext(engine) if engine is not None else headless() as used:
+        return write_sheet(used, rows, path, size=size, time=time)

@@ -1,8 +1,8 @@
-"""Turn a texture into the bytes of a file of heights or of other numbers.
+"""Encode a texture as the bytes of a file: heights, colours or other numbers.
 
 What whole numbers stand for is written where the format has a place for it (PNG's texts,
-GDAL's scale and offset in TIFF) and beside the file where it has none (raw). TIFF carries
-GeoTIFF's tags: texels are points, the land's south-west corner is (0, 0), metres.
+GDAL's scale and offset in TIFF) and in a JSON next to the file where it has none (raw). TIFF carries
+GeoTIFF's tags: texels are points, the terrain's south-west corner is (0, 0), metres.
 
 Sources: OGC GeoTIFF 1.1 (OGC 19-008r4, 2019) for tags and keys; GDAL's raster driver
 documentation for tag 42112.
@@ -23,6 +23,7 @@ from playground.capture.exr import encode_exr
 from playground.capture.extensions import COLOUR, HEIGHT, whole_numbers
 from playground.errors import DataError
 from playground.images.files import encode_samples
+from playground.images.image_formats import JPEG_QUALITY, encode_as
 from playground.sketch.colour import linear_to_srgb
 
 SOFTWARE = f"terrain shader playground {__version__}"
@@ -83,11 +84,11 @@ def usual_span(layer: Layer) -> tuple[float, float]:
         return 0.0, 1.0
     _check_finite(layer.values, "whole numbers")
     low, high = float(layer.values.min()), float(layer.values.max())
-    return low, high if high > low else low + 1.0  # flat land: any metre will do, but a metre
+    return low, high if high > low else low + 1.0  # flat terrain: any scale will do, but one metre
 
 
 def scale_of(span: tuple[float, float], bits: int) -> float:
-    """Return what one step of the whole numbers stands for."""
+    """Return the difference in value of one step of the whole numbers."""
     return (span[1] - span[0]) / float(2**bits - 1)
 
 
@@ -100,12 +101,25 @@ def colour_samples(
     warning = ""
     if outside:
         warning = (
-            f"{outside} of {values.size} values lay outside 0 to 1 "
+            f"{outside} of {values.size} values are outside 0 to 1 "
             f"(from {values.min():.4g} to {values.max():.4g}) and were clamped"
         )
     top = 2**bits - 1
     encoded = np.rint(linear_to_srgb(np.clip(values, 0.0, 1.0)) * top)
     return encoded.astype(np.uint8 if bits == 8 else np.uint16), warning
+
+
+def encode_picture(colours: NDArray[np.float32], ending: str) -> Encoded:
+    """Return the bytes of a WebP or a JPEG; ``colours`` is (rows, cols) or (rows, cols, 3), linear.
+
+    The north row comes first. WebP loses nothing; JPEG keeps its colours at full resolution.
+
+    Raises:
+        DataError: a picture larger than the format takes, or colours that are not finite.
+    """
+    samples, warning = colour_samples(colours)
+    lossless = "lossless" if ending == ".webp" else f"quality {JPEG_QUALITY}"
+    return Encoded(encode_as(ending, samples.astype(np.uint8)), (f"sRGB in 8 bits, {lossless}",), warning)
 
 
 def _quantised(
@@ -118,7 +132,7 @@ def _quantised(
     warning = ""
     if outside:
         warning = (
-            f"{outside} of {values.size} values lay outside {low:.7g} to {high:.7g}{layer.unit} "
+            f"{outside} of {values.size} values are outside {low:.7g} to {high:.7g}{layer.unit} "
             f"(from {values.min():.7g} to {values.max():.7g}) and were clamped"
         )
     share = np.clip((values.astype(np.float64) - low) / (high - low), 0.0, 1.0)
@@ -162,7 +176,7 @@ def _exr(layer: Layer, details: str) -> Encoded:
         with np.errstate(invalid="ignore"):  # comparing what is not a number
             outside = int(np.count_nonzero(np.abs(values) > limit))
         if outside:
-            warning = f"{outside} of {values.size} values lay beyond {limit:.0f}, where halves end; clamped"
+            warning = f"{outside} of {values.size} values are beyond {limit:.0f}, where halves end; clamped"
         with np.errstate(all="ignore"):
             values = np.clip(values, -limit, limit).astype(np.float16)
     return Encoded(encode_exr(values, comments), (details,), warning)
@@ -179,7 +193,7 @@ def _spacing(layer: Layer) -> str:
 
 
 def _text(layer: Layer, span: tuple[float, float] | None = None) -> dict[str, str]:
-    """Return what a PNG says of itself: number * scale + offset is what it stands for."""
+    """Return what a PNG says of itself: number * scale + offset is the value."""
     text = {"Software": SOFTWARE, "spacing_m": _spacing(layer)}
     if span is not None:
         unit = "_m" if layer.kind == HEIGHT else ""
@@ -188,7 +202,7 @@ def _text(layer: Layer, span: tuple[float, float] | None = None) -> dict[str, st
 
 
 def _description(layer: Layer, numbers: str, span: tuple[float, float] | None = None) -> bytes:
-    """Return the JSON that goes beside a raw file, which itself cannot even say how wide it is."""
+    """Return the JSON that goes with a raw file, which has no header for its size."""
     rows, cols = layer.values.shape[:2]
     description: dict[str, object] = {
         "software": SOFTWARE,

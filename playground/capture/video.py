@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from playground.errors import ContextError, DataError, ParameterError, PlaygroundError, counted, nearest
 from playground.images.extensions import VIDEO_ENDINGS
-from playground.images.files import reason
+from playground.images.files import reason, writing
 from playground.partial import partial_file
 from playground.paths import shown
 
@@ -53,11 +53,11 @@ class Video:
     """A video being written: use it with ``with``, and ``add()`` every picture.
 
     ``size`` in pixels; ``count`` pictures are expected. At the end the file is read back,
-    and takes its name if all are in it at the rate asked for. Where it cannot be read back it
+    and takes its name if all are in it at the given rate. Where it cannot be read back it
     takes its name all the same, and ``warning`` says so; where another number of pictures is
-    in it, it is kept as ``film-first-119.mp4`` and ``DataError`` says so. When the block fails
+    in it, it is named ``film-first-119.mp4`` and ``DataError`` says so. When the block fails
     before that, nothing is left; when it is interrupted, what is there becomes a shorter
-    video, as ``film-first-120.mp4``, and ``Stopped`` tells its name.
+    video, as ``film-first-120.mp4``, and ``Stopped`` has its name.
 
     Raises ``DataError``, ``ParameterError`` or ``ContextError`` in a sentence for another
     ending, odd sides, a rate that a GIF has not, a missing folder, and where PyAV is missing.
@@ -74,10 +74,8 @@ class Video:
         self._ending = check_video(self.path, size, fps, quality)
         self._av = _pyav()
         with ExitStack() as stack:
-            try:
+            with writing(self.path):
                 self._partial = stack.enter_context(partial_file(self.path))
-            except OSError as error:
-                raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
             self._open(quality)
             self._open_partial = stack.pop_all()
 
@@ -114,12 +112,11 @@ class Video:
             options |= {"row-mt": "1", "deadline": "good", "cpu-used": "3"}
         moved = {"movflags": "+faststart"} if form == "mp4" else {}
         try:
-            self._container: av.container.OutputContainer = self._av.open(
-                str(self._partial.path), "w", format=form, options=moved
-            )
-            self._stream: Any = self._container.add_stream(codec, rate=self.fps, options=options)
-        except OSError as error:
-            raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
+            with writing(self.path):
+                self._container: av.container.OutputContainer = self._av.open(
+                    str(self._partial.path), "w", format=form, options=moved
+                )
+                self._stream: Any = self._container.add_stream(codec, rate=self.fps, options=options)
         except ValueError as error:  # an encoder that this build has not
             raise ContextError(f"this PyAV cannot write {self._ending}: {reason(error)}") from None
         self._stream.width, self._stream.height = self.size
@@ -151,14 +148,12 @@ class Video:
         return self._av.VideoFrame.from_ndarray((np.array(found, np.uint8), colours), format="pal8")
 
     def _mux(self, frame: Any) -> None:
-        try:
+        with writing(self.path):
             for packet in self._stream.encode(frame):
                 self._container.mux(packet)
-        except OSError as error:
-            raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
 
     def _finish(self) -> None:
-        """Give the video its name; one that holds other pictures than were asked for gets another."""
+        """Rename the video; one that holds another number of pictures gets another."""
         if not self.added:
             raise DataError(f"no picture was drawn, of {self.count}", file=self.path)
         self._close()
@@ -167,7 +162,7 @@ class Video:
         except KeyboardInterrupt:
             self._name(self._first(self.added))
             raise Stopped(self._first(self.added), self.added) from None
-        except Exception as error:  # whatever a version of PyAV raises: the film is encoded, and is kept
+        except Exception as error:  # any error of any version of PyAV: the film is encoded, and stays
             self._name(self.path)
             why = error.diagnostics[0].message if isinstance(error, PlaygroundError) else reason(error)
             self.warning = f"{shown(self.path)} was written, but could not be checked: {why}"
@@ -175,27 +170,23 @@ class Video:
         if found == self.count and rate == self.fps:
             self._name(self.path)
             return
-        kept = self._first(found)
-        self._name(kept)
+        renamed = self._first(found)
+        self._name(renamed)
         raise DataError(
             f"the encoder wrote {found} pictures at {float(rate):g} a second, not {self.count} at "
-            f"{float(self.fps):g}; they are kept in {kept.name}",
+            f"{float(self.fps):g}; they are kept in {renamed.name}",
             file=self.path,
         )
 
     def _close(self) -> None:
         """Write what the encoder still holds, and the end of the file."""
         self._mux(None)
-        try:
+        with writing(self.path):
             self._container.close()
-        except OSError as error:
-            raise DataError(f"cannot be written: {reason(error)}", file=self.path) from None
 
     def _name(self, path: Path) -> None:
-        try:
+        with writing(path):
             self._partial.rename(path)
-        except OSError as error:
-            raise DataError(f"cannot be written: {reason(error)}", file=path) from None
 
     def _first(self, count: int) -> Path:
         return self.path.with_name(f"{self.path.stem}-first-{count}{self.path.suffix}")
@@ -216,7 +207,7 @@ class Video:
 
 
 def has_alpha(picture: NDArray[np.uint8]) -> bool:
-    """Say whether a picture, (height, width, 3 or 4) bytes, is not opaque somewhere."""
+    """Return whether a picture, (height, width, 3 or 4) bytes, is not opaque somewhere."""
     return picture.shape[2] == 4 and bool((picture[..., 3] < 255).any())
 
 

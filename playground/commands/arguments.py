@@ -147,7 +147,7 @@ def read_values(settings: Sequence[str] | None) -> dict[str, object]:
 
 
 def with_whole_paths(sketch: Sketch, values: dict[str, object]) -> dict[str, object]:
-    """Make the files among the values absolute: the user named them from the current folder.
+    """Resolve the files among the values: the user named them from the current folder.
 
     A name that is not there but in the sketch's folder or in ``glsl/`` is left as it is.
     """

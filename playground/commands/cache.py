@@ -86,11 +86,11 @@ def in_bytes(size: int) -> str:
 
 def _row(each: Listed) -> tuple[str, ...]:
     ago = _ago(max(time.time() - each.used, 0.0))
-    if each.kept is None:
+    if each.textures is None:
         return "(damaged)", "", in_bytes(each.bytes), "", ago
-    width, height = each.kept.size
-    cost = f"{each.kept.cost:.0f} ms" if each.kept.cost < 1000 else f"{each.kept.cost / 1e3:.1f} s"
-    return each.kept.made_for, f"{width}x{height}", in_bytes(each.bytes), cost, ago
+    (width, height), cost = each.textures.size, each.textures.cost
+    taken = f"{cost:.0f} ms" if cost < 1000 else f"{cost / 1e3:.1f} s"
+    return each.textures.made_for, f"{width}x{height}", in_bytes(each.bytes), taken, ago
 
 
 def _ago(seconds: float) -> str:
@@ -101,7 +101,7 @@ def _ago(seconds: float) -> str:
 
 
 def _as_json(each: Listed) -> dict[str, object]:
-    stored = each.kept
+    stored = each.textures
     return {
         "file": each.path.name,
         "bytes": each.bytes,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -72,20 +72,11 @@ def _findings(health: Health) -> Iterator[tuple[str, str]]:
     yield "playground", __version__
     for name, version in health.packages.items():
         yield name, version or "missing"
-    cached = _cache()
-    yield "terrain cached on disk", usage_text(**cached)
+    yield "terrain cached on disk", usage_text(**_cache())
 
 
-class _Cache(TypedDict):
-    """What is cached of expensive terrain."""
-
-    folder: str
-    files: int
-    bytes: int
-    most_bytes: int
-
-
-def _cache() -> _Cache:
+def _cache() -> dict[str, Any]:
+    """Return what is cached of expensive terrain, as `usage_text` takes it."""
     from playground.engine.disk_cache import bytes_in, limit_in, place
 
     files, size = bytes_in(place())

@@ -107,8 +107,7 @@ def open_window(
 
         with suppress(PlaygroundError):  # the window shows what is wrong with the sketch
             values = with_whole_paths(load(sketch, dialect=options.get("dialect", "")), values)
-    status = run(
-        sketch, size=size, software=renderer.software, values=values, keeps=limit, tell=complain, **options
-    )
+    options |= {"cache_limit": limit, "report": complain}
+    status = run(sketch, size=size, software=renderer.software, values=values, **options)
     if status:
         raise typer.Exit(status)

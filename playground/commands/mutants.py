@@ -15,7 +15,7 @@ import typer
 from playground.commands import options
 from playground.commands.arguments import FAILED, Renderer, help_text, read_pixels
 from playground.commands.options import value
-from playground.errors import DataError, counted
+from playground.errors import counted
 from playground.paths import shown
 from playground.terminal import note, painted, print_json, print_table, progress
 
@@ -73,7 +73,9 @@ def mutants(
     loaded = load(sketch)
     first = shot_of(loaded, shot, pixels)
     if pictures is not None:
-        _make(pictures)
+        from playground.images.files import make_folder
+
+        make_folder(pictures)
     results: list[Result] = []
     redrawn: list[Redrawn] = []
     with renderer.open_engine() as engine:
@@ -172,13 +174,6 @@ def _as_json(
         "tiers": tiers,
         "again": {"drawn": len(redrawn), "identical": identical, "refused": refused},
     }
-
-
-def _make(folder: Path) -> None:
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=shown(folder)) from error
 
 
 def _write(folder: Path, expected: Mapping[str, RenderedShot], results: Sequence[Result]) -> None:

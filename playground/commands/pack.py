@@ -36,14 +36,14 @@ def pack(
     """Pack a sketch into one zip."""
     from playground.capture import pack as packing
     from playground.sketch.load import load
-    from playground.sketch.unpack import ENDING, read_pack, said_of
+    from playground.sketch.unpack import ENDING, read_pack, summary
 
     loaded = load(sketch)
     usual = f"{loaded.name}{ENDING}"
     with output_file(output, usual, (ENDING,), "a pack is") as path, busy(f"packing {loaded.name}"):
         packing.pack(loaded, path, _references(loaded))
     print(path)
-    note(said_of(read_pack(path)))
+    note(summary(read_pack(path)))
 
 
 def _references(sketch: Sketch) -> Iterator[tuple[Path, str]]:

@@ -33,9 +33,7 @@ from playground.errors import ParameterError
 from playground.terminal import console_for, note
 
 if TYPE_CHECKING:
-    from playground.reduce.failures import Finding
-    from playground.reduce.initial_case import InitialCase, Question
-    from playground.reduce.output import Account
+    from playground.reduce.initial_case import Question
     from playground.reduce.search import Search, State
 
 HELP = help_text(
@@ -44,7 +42,7 @@ HELP = help_text(
     " failing means is chosen by an option; without one, what the compiler refuses, a crash, NaN and"
     " a difference between the two drivers are looked for, in that order. What is left goes into a folder,"
     " with a text for a report to the driver's makers. Ctrl-C keeps the smallest so far.",
-    "playground reduce my-land                         # whatever fails",
+    "playground reduce my-land                         # any failure",
     "playground reduce my-land --nan --pass height     # NaN or infinity in one pass",
     "playground reduce my-land --shot morning          # off its reference",
     "playground reduce my-land --drivers               # fragment and compute differ",
@@ -77,7 +75,7 @@ def reduce(
     nan: Annotated[bool, flag("--nan", "A value is NaN or infinite.")] = False,
     anywhere: Annotated[
         bool,
-        flag("--anywhere", "With --nan: let it turn up at other texels. Smaller, but maybe another NaN."),
+        flag("--anywhere", "With --nan: let it appear at other texels. Smaller, but maybe another NaN."),
     ] = False,
     error: Annotated[
         str,
@@ -212,16 +210,16 @@ def _environment(given: list[str] | None) -> dict[str, str]:
 def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: bool) -> None:
     """Shrink the sketch, and write what is left of it into the folder."""
     from playground.reduce.initial_case import CandidateBench
-    from playground.reduce.output import claim, plain_texts, write_folder
+    from playground.reduce.output import Account, claim, plain_texts, write_folder
     from playground.reduce.search import Search
 
     claim(folder)
-    with CandidateBench(question) as bench, _shown() as tell:
+    with CandidateBench(question) as bench, _shown() as show:
         beginning = bench.begin()
         probe, found = beginning.probe, beginning.finding
         # The message of a refusal is its kind; of the rest, the details say where and how much.
         note(found.kind if found.messages else f"{found.kind}: {found.details}")
-        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, progress=tell)
+        search = Search(beginning.case, found, probe, seconds=limit, tries=tries, progress=show)
         stopped = False
         try:
             search.run()
@@ -233,34 +231,14 @@ def _reduce(question: Question, folder: Path, limit: float, tries: int, plain: b
             finding = search.finding
         shader = plain_texts(search.best, probe, finding, bench.processes[0]) if plain else {}
         finding = replace(finding, details=finding.details.replace(f"{probe.folder}{os.sep}", ""))
-    for path in write_folder(folder, _account(question, beginning, search, finding, folder), shader):
+    command_line = f"playground {' '.join(map(quoted, sys.argv[1:]))}"
+    for path in write_folder(folder, Account(command_line, question, beginning, search, finding), shader):
         print(path)
     if plain and not shader:
         note("the plain shader does not fail in the same way, so none is written")
     note(_summary(beginning.case.lines, search))
     if stopped:
         raise typer.Exit(130)
-
-
-def _account(
-    question: Question, beginning: InitialCase, search: Search, finding: Finding, folder: Path
-) -> Account:
-    """Return what the text in the folder says."""
-    from playground.reduce.output import Account, to_reproduce
-
-    return Account(
-        command_line=f"playground {' '.join(map(quoted, sys.argv[1:]))}",
-        sketch=question.sketch.name,
-        before=beginning.case,
-        after=search.best,
-        finding=finding,
-        renderers=beginning.renderers,
-        environments=({}, question.environment),
-        tries=search.tries,
-        seconds=search.state.seconds,
-        finished=search.finished,
-        reproduce=to_reproduce(question, folder, search.best, beginning.probe.failure),
-    )
 
 
 def _summary(before: int, search: Search) -> str:
@@ -290,10 +268,10 @@ def _shown() -> Iterator[Callable[[State], None]]:
             yield lambda state: status.update(line(state))
         return
 
-    def tell(state: State) -> None:
+    def show(state: State) -> None:
         nonlocal last
         if clock.monotonic() - last > _EVERY:
             last = clock.monotonic()
             note(line(state))
 
-    yield tell
+    yield show

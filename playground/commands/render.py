@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -68,37 +68,15 @@ HELP = help_text(
 )
 
 
-@dataclass(frozen=True, kw_only=True)
-class Request:
-    """What ``render`` is to render."""
+@dataclass(frozen=True, slots=True)
+class Output:
+    """What is written of one moment, and where to."""
 
-    sketch: str = ""
-    output: str = ""
-    size: tuple[int, int] | None = None
-    time: float | None = None
-    values: dict[str, object] | None = None
-    driver: str = "auto"
-    shot: str = ""
-    preset: str = ""
-    texture: str = ""
+    file: str = ""  # "" for a new name, "-" for standard output
+    size: tuple[int, int] = DEFAULT_PICTURE  # pixels
+    texture: str = ""  # whose values are written, in place of the picture
     profile: bool = False
-    steps: dict[str, int] | None = None
-    plain: bool = False
-    dialect: str = ""
-    series: Series = field(default_factory=Series)  # more than one picture
-
-    def moment(self) -> Moment:
-        """Load the sketch, and set it as requested."""
-        from playground.sketch.load import load
-
-        return moment_of(
-            load(self.sketch, dialect=self.dialect).plainly(self.plain),
-            shot=self.shot,
-            preset=self.preset,
-            values=self.values,
-            steps=self.steps,
-            time=self.time,
-        )
+    driver: str = "auto"
 
 
 def render(
@@ -156,6 +134,8 @@ def render(
     device: options.Device = "",
 ) -> None:
     """Render a sketch to a file and print its path."""
+    from playground.sketch.load import load
+
     series = Series(
         video=video,
         seconds=read_option("--seconds", seconds, within(1e-6, 1e7), "a number above 0, as 10"),
@@ -167,43 +147,40 @@ def render(
         steps=read_option("-n", count, within(2, 99_999), "a whole number from 2, as 12"),
     )
     series.check(output, texture, profile)
-    request = Request(
-        sketch=sketch,
-        output=output,
-        size=read_pixels(size, LARGEST_PICTURE),
-        time=read_seconds(time),
-        values=read_values(settings),
-        driver=read_driver(driver),
+    pixels, seconds_in, values = read_pixels(size, LARGEST_PICTURE), read_seconds(time), read_values(settings)
+    runs_by, stops = read_driver(driver), read_steps(steps)
+    moment = moment_of(
+        load(sketch, dialect=dialect).plainly(plain),
         shot=shot,
         preset=preset,
-        texture=texture,
-        profile=profile,
-        steps=read_steps(steps),
-        plain=plain,
-        dialect=dialect,
-        series=series,
+        values=values,
+        steps=stops,
+        time=seconds_in,
     )
-    make_picture(request, ctx.obj.or_else(software, device))
+    renderer: Renderer = ctx.obj.or_else(software, device)
+    if series.many:
+        _note_hidden_defaults(moment.sketch)
+        make_series(SeriesJob(series, moment, output, pixels, renderer, runs_by))
+    else:
+        chosen = pixels or moment.size or DEFAULT_PICTURE
+        write_output(moment, Output(output, chosen, texture, profile, runs_by), renderer)
 
 
-def make_picture(request: Request, renderer: Renderer) -> None:
-    """Render what is requested to its file, and print the file's path."""
-    moment = request.moment()
+def write_output(moment: Moment, output: Output, renderer: Renderer) -> None:
+    """Render a moment to its file, and print the file's path."""
+    from playground.engine.error_place import located_at
+
     _note_hidden_defaults(moment.sketch)
-    if request.series.many:
-        make_series(SeriesJob(request.series, moment, request.output, request.size, renderer, request.driver))
-        return
-    from playground.engine.error_place import told_at
-
+    of_shot = moment.shot is not None and moment.steps == dict(moment.shot.steps)
     with (
-        told_at(moment.sketch, moment.shot) if moment.shot and not request.steps else nullcontext(),
-        _target(request, moment.sketch) as target,
-        renderer.open_engine(driver=request.driver) as engine,
+        located_at(moment.sketch, moment.shot) if moment.shot and of_shot else nullcontext(),
+        _target(output, moment) as target,
+        renderer.open_engine(driver=output.driver) as engine,
     ):
-        _draw(engine, request, moment, target)
-        if request.profile:
+        _draw(engine, output, moment, target)
+        if output.profile:
             _print_profile(engine)
-    if request.output != "-":
+    if output.file != "-":
         print(target)
 
 
@@ -219,21 +196,23 @@ def _note_hidden_defaults(sketch: Sketch) -> None:
         note(f"{more} that a set overrides: playground check lists them")
 
 
-def _draw(engine: Engine, request: Request, moment: Moment, target: Path) -> None:
+def _draw(engine: Engine, output: Output, moment: Moment, target: Path) -> None:
     """Draw the picture, or read the texture, and write it: in parts where it is too large for one frame."""
     from playground.capture.large import is_large
 
-    size = request.size or moment.size or DEFAULT_PICTURE
-    if not request.texture and is_large(engine, moment.sketch, size):
-        _check_large(request, target)
-        _draw_large(engine, moment, size, target)
+    if not output.texture and is_large(engine, moment.sketch, output.size):
+        if output.profile:
+            raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
+        if target.name != "-" and target.suffix.lower() != ".png":
+            raise DataError("a picture this large is drawn in parts, and written as .png", file=output.file)
+        _draw_large(engine, moment, output.size, target)
         return
-    at: dict[str, Any] = {"size": size, "time": moment.time, "steps": moment.steps}
+    at: dict[str, Any] = {"size": output.size, "time": moment.time, "steps": moment.steps}
     with busy(f"rendering {moment.sketch.name}"):
-        if request.profile:
-            _prepare_profile(engine, moment.sketch, request.texture, at)
-        if request.texture:
-            _write_texture(engine, moment.sketch, request.texture, target, at)
+        if output.profile:
+            _prepare_profile(engine, moment.sketch, output.texture, at)
+        if output.texture:
+            _write_texture(engine, moment.sketch, output.texture, target, at)
         else:
             _write_frame(engine, moment.sketch, target, at)
     _note_not_finite(engine)
@@ -265,38 +244,31 @@ def _note_not_finite(engine: Engine) -> None:
         note(f"{found[0]}{more}")
 
 
-def _check_large(request: Request, target: Path) -> None:
-    if request.profile:
-        raise ParameterError("--profile needs a picture that is drawn whole; choose a smaller --size")
-    if target.name != "-" and target.suffix.lower() != ".png":
-        raise DataError("a picture this large is drawn in parts, and written as .png", file=request.output)
-
-
 def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path) -> None:
-    from playground.capture.large import count_tiles, pack_large, write_large
+    from playground.capture.large import count_tiles, encode_strips, strips, write_large
 
     with progress(f"rendering {moment.sketch.name} in parts", count_tiles(size)) as done:
         at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "done": done}
         if target.name == "-":
-            pack_large(engine, moment.sketch, sys.stdout.buffer, size, **at)
+            encode_strips(sys.stdout.buffer, size, strips(engine, moment.sketch, size, **at))
         else:
             write_large(engine, moment.sketch, target, size, **at)
 
 
-def _target(request: Request, sketch: Sketch) -> AbstractContextManager[Path]:
+def _target(output: Output, moment: Moment) -> AbstractContextManager[Path]:
     """Open the file to write; refuse what could not be written before anything is drawn."""
-    endings = tuple(VALUE_ENDINGS) if request.texture else PICTURE_ENDINGS
-    if request.output == "-":
-        if request.texture:
+    endings = tuple(VALUE_ENDINGS) if output.texture else PICTURE_ENDINGS
+    if output.file == "-":
+        if output.texture:
             raise ParameterError(f"--texture needs a file: -o {either([f'NAME{e}' for e in endings])}")
         if sys.stdout.isatty():
             raise ParameterError("-o - writes a PNG to standard output, which is the terminal; redirect it")
         if isinstance(sys.stdout, Nowhere):
             raise ParameterError("-o - writes a PNG to standard output, which is closed; redirect it")
         return nullcontext(Path("-"))
-    parts = [sketch.name, request.shot, request.texture.replace(":", "-")]
+    parts = [moment.sketch.name, moment.shot.name if moment.shot else "", output.texture.replace(":", "-")]
     usual = "-".join(filter(None, parts)) + endings[0]
-    return output_file(request.output, usual, endings, "values are" if request.texture else "a picture is")
+    return output_file(output.file, usual, endings, "values are" if output.texture else "a picture is")
 
 
 def _prepare_profile(engine: Engine, sketch: Sketch, texture: str, at: dict[str, Any]) -> None:

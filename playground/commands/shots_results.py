@@ -128,13 +128,7 @@ def _folder_and_shots(names: list[str]) -> tuple[Path, list[str]]:
     """Split the folder, which may come first, from the shots."""
     from playground.shots.results import FOLDER
 
-    if names and _is_folder(names[0]):
+    # A folder that is there, unless a result has that very name.
+    if names and Path(names[0]).is_dir() and not (Path(FOLDER) / f"{names[0]}.json").is_file():
         return Path(names[0]), names[1:]
     return Path(FOLDER), names
-
-
-def _is_folder(name: str) -> bool:
-    """Whether a name means a folder: one that is there, unless a result has that very name."""
-    from playground.shots.results import FOLDER
-
-    return Path(name).is_dir() and not (Path(FOLDER) / f"{name}.json").is_file()

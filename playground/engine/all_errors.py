@@ -1,4 +1,4 @@
-"""Find every mistake of a sketch's shaders, not only that of the first pass that fails."""
+"""Find the errors of all shaders of a sketch, not only of the first pass that fails."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from playground.engine.engine import Engine
 from playground.errors import Diagnostic, PlaygroundError, ShaderError
 from playground.sketch.model import Sketch
 
-MOST = 200  # diagnostics; more help nobody
+MOST = 200  # diagnostics; more help no one
 
 
-def all_mistakes(
+def all_errors(
     error: PlaygroundError, engine: Engine, sketch: Sketch, *, size: tuple[int, int], time: float = 0.0
 ) -> PlaygroundError:
-    """Return an error with the mistakes of all other kernels of the sketch behind its own.
+    """Return an error with those of all other kernels of the sketch after its own.
 
     Each pass is compiled in the form that the engine would run; nothing is drawn. An error
     that is not a shader's, and one of a sketch with no plan, comes back as it is.
@@ -34,8 +34,8 @@ def all_mistakes(
             if (id(kernel), driver) in tried:
                 continue
             tried.add((id(kernel), driver))
-            if engine.runner.tell is not None:
-                engine.runner.tell(step)
+            if engine.runner.before_step is not None:
+                engine.runner.before_step(step)
             engine.runner.programs.get(kernel, driver)
         except ShaderError as other:
             _take(found, other)
@@ -45,7 +45,7 @@ def all_mistakes(
 
 
 def _take(found: dict[tuple[str, int, int, str], Diagnostic], error: ShaderError) -> None:
-    """Add an error's diagnostics; one of a file that several kernels include is told once."""
+    """Add an error's diagnostics; one of a file that several kernels include is added once."""
     for diagnostic in error.diagnostics:
         place = (diagnostic.file, diagnostic.line, diagnostic.column, diagnostic.message)
         found.setdefault(place, diagnostic)

@@ -1,9 +1,8 @@
-"""Return how the terrain so far is joined up where a run is stopped early.
+"""Interpolate between the texels that a run computed which is stopped early.
 
 A kernel with a ``stride`` sets, iteration by iteration, the nodes of an ever closer lattice; all else is
-still 0, and would stand around its nodes like a plain around nails. Its header says how the
-nodes are joined (``between``). Only pictures are filled so: values that are read stay as they
-are, and a run that goes on goes on from those. ``fill_between`` does it.
+still 0. Its header says how the nodes are joined (``between``). Only pictures are interpolated:
+values that are read stay as they are, and a run goes on from those. ``fill_between.frag`` does it.
 """
 
 from __future__ import annotations
@@ -36,17 +35,18 @@ def between_of(leaf: Leaf, repeat: int, whole: int, names: Mapping[str, Number])
     kernel = leaf.kernel
     if not kernel.between or not 0 < repeat < whole or _begins_with_something(leaf):
         return None
-    now, coming = (_stride(kernel, {**names, "iterations": whole}, turn) for turn in (repeat - 1, repeat))
+    now, coming = (_stride(kernel, {**names, "iterations": whole}, done) for done in (repeat - 1, repeat))
     if now < 1:
-        raise kernel.error(f"pass '{leaf.path}': stride '{kernel.stride}' gives {now} for turn {repeat - 1}")
+        where = f"pass '{leaf.path}': stride '{kernel.stride}'"
+        raise kernel.error(f"{where} gives {now} for iteration {repeat - 1}")
     if now == coming:
         return Between(now, CENTRES)
     return Between(now, TRIANGLES if kernel.between == "triangles" else SQUARES)
 
 
-def _stride(kernel: Kernel, names: Mapping[str, Number], turn: int) -> int:
+def _stride(kernel: Kernel, names: Mapping[str, Number], iteration: int) -> int:
     try:
-        return expressions.evaluate(kernel.stride, {**names, "iteration": turn})
+        return expressions.evaluate(kernel.stride, {**names, "iteration": iteration})
     except ExpressionError as error:
         raise kernel.error(f"stride {error}") from None
 

@@ -1,6 +1,6 @@
-"""Hand a program what it reads: given names, parameters, textures with their samplers.
+"""Bind what a program reads: given names, parameters, textures with their samplers.
 
-Image files become textures here, and are kept; so are samplers and the single texels that
+Image files become textures here, which are cached, as are samplers and the single texels that
 replace what is not wired.
 """
 
@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from playground.engine.files import content_hash
 from playground.engine.plan import Step
 from playground.engine.programs import Program
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Wired
 from playground.errors import ContextError
 from playground.gpu.textures import check_size, drain
+from playground.images.content_hash import content_hash
 from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 _SRGB8_ALPHA8 = 0x8C43  # GL_SRGB8_ALPHA8: the sampler decodes, before it filters
 _MAX_FILES = 32
-_ANISOTROPY = 8.0  # of what is filtered with mipmaps; on a software renderer it costs a hundred times as much
+_ANISOTROPY = 8.0  # of textures with mipmaps; on a software renderer it costs a hundred times as much
 _CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
 
 
@@ -48,7 +48,7 @@ class Binder:
         self._units = 0  # texture units used in this frame
 
     def release(self) -> None:
-        """Give back every texture and sampler kept."""
+        """Release every texture and sampler."""
         for texture in (*self._constants.values(), *self._files.values()):
             texture.release()
         for sampler in self._samplers.values():
@@ -66,29 +66,28 @@ class Binder:
     def bind(
         self, program: Program, step: Step, given: Mapping[str, Any], inputs: Mapping[str, Wired]
     ) -> int:
-        """Set what stays over the iterations of a step; return the next free texture unit."""
-        kernel, unit = step.kernel, 0
-        for name, value in given.items():
-            program.set(name, value)
-        program.set("size", step.whole_size)
+        """Set what is the same for all iterations of a step; return the next free texture unit."""
+        kernel, uniforms, unit = step.kernel, {**given, "size": step.whole_size}, 0
         if step.window is not None:
-            program.set(WINDOW, step.window.origin)
+            uniforms[WINDOW] = step.window.origin
         for parameter in kernel.parameters:
+            value = step.values[parameter.name]
             if parameter.widget.kind != "file":
-                program.set(parameter.name, step.values[parameter.name])
+                uniforms[parameter.name] = value
                 if parameter.widget.kind == "direction":
-                    towards = unit_vector(step.values[parameter.name])  # type: ignore[arg-type]
-                    program.set(f"{TOWARDS}{parameter.name}", towards)
-            elif parameter.name in program:
-                unit = self.file(program, parameter, step.values[parameter.name], unit)
-        program.set(UNWIRED, has_unwired(kernel, inputs))
+                    uniforms[f"{TOWARDS}{parameter.name}"] = unit_vector(value)  # type: ignore[arg-type]
+            elif parameter.name in program.uniforms:
+                unit = self.file(program, parameter, value, unit)
+        if UNWIRED in program.uniforms:
+            uniforms[UNWIRED] = has_unwired(kernel, inputs)
         for declared in kernel.inputs:
             texture = inputs.get(declared.name, NOT_WIRED).texture
-            program.set(f"{WIRED}{declared.name}", texture is not None)
-            program.set(f"{MATCHES}{declared.name}", texture is not None and texture.size == step.size)
+            uniforms[f"{WIRED}{declared.name}"] = texture is not None
+            uniforms[f"{MATCHES}{declared.name}"] = texture is not None and texture.size == step.size
             if declared.name in program.uniforms:
                 texture = self.wired(declared, inputs)
                 unit = self.texture(program, declared.name, unit, texture, declared.sampling)
+        program.set_all(uniforms)
         return unit
 
     def wired(self, declared: Input, inputs: Mapping[str, Wired]) -> moderngl.Texture:
@@ -108,7 +107,7 @@ class Binder:
         """Bind the textures of the iteration before; zeros where there is none."""
         for output in kernel.outputs:
             name = f"k_previous_{output.name}"
-            if name in program:
+            if name in program.uniforms:
                 texture = state.get(output.name) or self.constant("zero")
                 unit = self.texture(program, name, unit, texture, Sampling())
 
@@ -122,7 +121,10 @@ class Binder:
     def unit(self, unit: int, texture: moderngl.Texture, sampling: Sampling) -> int:
         """Bind one texture to a unit; return the next free one."""
         texture.use(unit)
-        self._sampler(sampling).use(unit)
+        sampler = self._samplers.get(sampling)
+        if sampler is None:
+            sampler = self._samplers[sampling] = self._new_sampler(sampling)
+        sampler.use(unit)
         self._units = max(self._units, unit + 1)
         return unit + 1
 
@@ -152,18 +154,15 @@ class Binder:
             self._constants[name] = self.ctx.texture((1, 1), 4, texel, dtype="f4")
         return self._constants[name]
 
-    def _sampler(self, sampling: Sampling) -> moderngl.Sampler:
-        sampler = self._samplers.get(sampling)
-        if sampler is None:
-            linear, around = sampling.filter == "linear", sampling.wrap == "repeat"
-            shrink = self.ctx.LINEAR if linear else self.ctx.NEAREST
-            if sampling.mipmap:
-                shrink = self.ctx.LINEAR_MIPMAP_LINEAR if linear else self.ctx.NEAREST_MIPMAP_NEAREST
-            sampler = self.ctx.sampler(repeat_x=around, repeat_y=around)
-            sampler.filter = (shrink, self.ctx.LINEAR if linear else self.ctx.NEAREST)
-            if linear and sampling.mipmap and self._anisotropy > 1:
-                sampler.anisotropy = self._anisotropy
-            self._samplers[sampling] = sampler
+    def _new_sampler(self, sampling: Sampling) -> moderngl.Sampler:
+        linear, around = sampling.filter == "linear", sampling.wrap == "repeat"
+        shrink = self.ctx.LINEAR if linear else self.ctx.NEAREST
+        if sampling.mipmap:
+            shrink = self.ctx.LINEAR_MIPMAP_LINEAR if linear else self.ctx.NEAREST_MIPMAP_NEAREST
+        sampler = self.ctx.sampler(repeat_x=around, repeat_y=around)
+        sampler.filter = (shrink, self.ctx.LINEAR if linear else self.ctx.NEAREST)
+        if linear and sampling.mipmap and self._anisotropy > 1:
+            sampler.anisotropy = self._anisotropy
         return sampler
 
     def _read(self, path: Path, *, encoded: bool) -> moderngl.Texture:
@@ -191,5 +190,4 @@ class Binder:
 
 def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:
     """Return whether nothing is wired to some input that may stay so."""
-    fallbacks = [i.name for i in kernel.inputs if i.fallback]
-    return None in [inputs.get(name, NOT_WIRED).texture for name in fallbacks]
+    return any([i.fallback and inputs.get(i.name, NOT_WIRED).texture is None for i in kernel.inputs])

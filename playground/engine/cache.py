@@ -1,4 +1,4 @@
-"""Keep what passes made, under a bound in bytes and in number; what was used least recently goes first."""
+"""Cache the results of passes, under a bound in bytes and in number; the least recently used goes first."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from playground.engine.results import Pool, Result
 
-# Results kept, whatever their size: a driver spends memory on each texture beside its texels, so
-# that thousands of small ones, one for each save of a small sketch, would grow past any bound in bytes.
+# Results of any size: a driver spends memory on each texture besides its texels, so that thousands
+# of small ones, one for each save of a small sketch, would grow past any bound in bytes.
 MOST = 512
 
 
@@ -17,14 +17,19 @@ class Cached:
     """The results of one pass, or of all passes of a loop after some iteration."""
 
     results: dict[str, Result]  # by the pass's path
-    turn: int = 0  # iterations done, of a loop
+    iterations: int = 0  # done, of a loop
+
+    @property
+    def result(self) -> Result:
+        """The only result, of a pass."""
+        return next(iter(self.results.values()))
 
     @property
     def bytes(self) -> int:
         """Bytes held."""
         return sum([result.bytes for result in self.results.values()])
 
-    def let_go(self, pool: Pool) -> None:
+    def release_to(self, pool: Pool) -> None:
         """Give the textures to a pool."""
         for result in self.results.values():
             pool.give(result)
@@ -32,15 +37,15 @@ class Cached:
 
 
 class Cache:
-    """What passes made, by key; what the frame being drawn uses is never dropped."""
+    """The results of passes, by key; what the frame being drawn uses is never dropped."""
 
     def __init__(self, limit: int, pool: Pool) -> None:
         self.limit = limit  # [bytes]
         self._pool = pool
-        self._kept: OrderedDict[str, Cached] = OrderedDict()
+        self._cached: OrderedDict[str, Cached] = OrderedDict()
         self._in_use: set[str] = set()
         self._may_grow: set[str] = set()  # used since they were weighed
-        self._sizes: dict[str, int] = {}  # [bytes] of what is kept, as it was when last looked at
+        self._sizes: dict[str, int] = {}  # [bytes] of what is cached, when last weighed
         self._total = 0  # their sum
         self._latest: dict[str, tuple[str, str, int]] = {}
 
@@ -51,15 +56,15 @@ class Cache:
         return self._total
 
     def __len__(self) -> int:
-        return len(self._kept)
+        return len(self._cached)
 
     def __contains__(self, key: str) -> bool:
-        return key in self._kept
+        return key in self._cached
 
-    def holds(self, key: str, turn: int) -> bool:
-        """Return whether a loop is cached after that iteration."""
-        kept = self._kept.get(key)
-        return kept is not None and kept.turn == turn
+    def holds(self, key: str, iterations: int) -> bool:
+        """Return whether a loop is cached after so many iterations."""
+        cached = self._cached.get(key)
+        return cached is not None and cached.iterations == iterations
 
     def begin(self) -> None:
         """Begin a frame: nothing is in use yet."""
@@ -72,79 +77,78 @@ class Cache:
         self.trim()
 
     def get(self, key: str) -> Cached | None:
-        """Return what is kept and mark it as used; None if there is nothing."""
-        kept = self._kept.get(key)
-        if kept is None:
-            return None
-        self._kept.move_to_end(key)
-        self._use(key)
-        return kept
+        """Return what is cached and mark it as used; None if there is nothing."""
+        cached = self._cached.get(key)
+        if cached is not None:
+            self._cached.move_to_end(key)
+            self._in_use.add(key)
+            self._may_grow.add(key)
+        return cached
 
     def peek(self, key: str) -> Cached | None:
-        """Return what is kept, as if nobody had looked."""
-        return self._kept.get(key)
+        """Return what is cached, without marking it as used."""
+        return self._cached.get(key)
 
-    def put(self, key: str, kept: Cached) -> None:
-        """Keep something, used by the current frame; what is over the bound goes."""
-        self.drop(key)
-        self._kept[key] = kept
-        self._use(key)
-        self.grew(key)
+    def put(self, key: str, cached: Cached) -> None:
+        """Cache something, used by the current frame; what is over the bounds goes."""
+        if key in self._cached:
+            self.drop(key)
+        self._cached[key] = cached
+        self._in_use.add(key)
+        self._may_grow.add(key)
+        self._weigh(key)
+        self.trim()
 
     def grew(self, key: str) -> None:
         """Weigh what has grown; what is over the bounds goes."""
         self._weigh(key)
         self.trim()
 
-    def note_turn(self, path: str, unfinished: str, key: str, turn: int) -> None:
+    def note_progress(self, path: str, unfinished: str, key: str, iterations: int) -> None:
         """Remember how far a pass that may go on has come."""
-        self._latest[path] = (unfinished, key, turn)
+        self._latest[path] = (unfinished, key, iterations)
 
-    def take_earlier(self, path: str, unfinished: str, turn: int) -> Result | None:
+    def take_earlier(self, path: str, unfinished: str, iterations: int) -> Result | None:
         """Hand over the same pass after fewer iterations to the caller, if this frame does not use it."""
         known, key, before = self._latest.get(path, ("", "", 0))
-        if known != unfinished or before >= turn or key in self._in_use or key not in self._kept:
+        if known != unfinished or before >= iterations or key in self._in_use or key not in self._cached:
             return None
-        (result,) = self._kept.pop(key).results.values()
+        result = self._cached.pop(key).result
         self._weigh(key)
         return result
 
     def drop(self, key: str) -> None:
         """Forget something."""
-        kept = self._kept.pop(key, None)
+        cached = self._cached.pop(key, None)
         self._in_use.discard(key)
         self._weigh(key)
-        if kept is not None:
-            kept.let_go(self._pool)
+        if cached is not None:
+            cached.release_to(self._pool)
 
     def drop_unused(self) -> None:
-        """Drop whatever the current frame does not use."""
-        for key in [key for key in self._kept if key not in self._in_use]:
+        """Drop what the current frame does not use."""
+        for key in [key for key in self._cached if key not in self._in_use]:
             self.drop(key)
 
     def trim(self) -> None:
         """Drop what was used least recently until the bounds hold or all that is left is in use."""
-        if self._total <= self.limit and len(self._kept) <= MOST:
+        if self._total <= self.limit and len(self._cached) <= MOST:
             return
-        for key in [key for key in self._kept if key not in self._in_use]:
+        for key in [key for key in self._cached if key not in self._in_use]:
             self.drop(key)
-            if self._total <= self.limit and len(self._kept) <= MOST:
+            if self._total <= self.limit and len(self._cached) <= MOST:
                 return
 
     def clear(self) -> None:
         """Drop everything."""
-        for kept in self._kept.values():
-            kept.let_go(self._pool)
-        self._kept.clear()
+        for cached in self._cached.values():
+            cached.release_to(self._pool)
+        self._cached.clear()
         self._in_use.clear()
         self._may_grow.clear()
         self._sizes.clear()
         self._total = 0
         self._latest.clear()
-
-    def _use(self, key: str) -> None:
-        self._in_use.add(key)
-        self._may_grow.add(key)
 
     def _weigh_used(self) -> None:
         """Weigh what was used since the last time: mipmaps may have been made."""
@@ -153,9 +157,9 @@ class Cache:
         self._may_grow.clear()
 
     def _weigh(self, key: str) -> None:
-        """Take in what one key holds now."""
-        kept = self._kept.get(key)
-        now = kept.bytes if kept is not None else 0
+        """Add what one key holds now to the total."""
+        cached = self._cached.get(key)
+        now = cached.bytes if cached is not None else 0
         self._total += now - self._sizes.pop(key, 0)
         if now:
             self._sizes[key] = now

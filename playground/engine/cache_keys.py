@@ -4,7 +4,7 @@ A pass is stale when its key changes. The key holds its text without comments, t
 and given names that the text uses, its size and count of iterations, its driver, its files by
 their contents, and the keys of what it reads. Inside a loop, what is fed back has a name
 in place of a key: a loop's key is the same at every iteration, so a loop can go on from the
-iteration that is kept.
+iteration that is cached.
 """
 
 from __future__ import annotations
@@ -17,14 +17,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from playground.engine.files import content_hash
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, sources_of, walk
+from playground.images.content_hash import content_hash
 from playground.sketch.flat import Fed, Source
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import TOWARDS
 from playground.terrain.meshes import mesh_parameters
 
 _MAX_TEXTS = 512
+_HEADER = ("kind", "outputs", "registry", "blend", "depth", "samples", "local", "buffers", "overwrites",
+           "aligned", "stages")  # fmt: skip
+"""The fields of a kernel's header that its textures depend on, besides its counts and its inputs."""
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 
 
@@ -34,14 +37,10 @@ class Keys:
 
     steps: dict[str, str] = field(default_factory=dict)  # by the step's path
     raw: dict[str, str] = field(default_factory=dict)  # the same of what it has, where more is shown
-    unfinished: dict[str, str] = field(default_factory=dict)  # the same whatever the number of steps
+    unfinished: dict[str, str] = field(default_factory=dict)  # the same after any number of iterations
     loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, likewise
-    step_loops: dict[str, frozenset[str]] = field(default_factory=dict)  # loops whose turns change a step
-    loop_loops: dict[str, frozenset[str]] = field(default_factory=dict)  # loops whose turns change a loop
-
-    def changes(self, node: PlanNode) -> frozenset[str]:
-        """Return the paths of the loops around a node whose turns change it."""
-        return self.loop_loops[node.path] if isinstance(node, LoopStep) else self.step_loops[node.path]
+    # The paths of the loops around a node whose iterations change it, by the node's identity.
+    changes: dict[int, frozenset[str]] = field(default_factory=dict)
 
 
 class KeyMaker:
@@ -58,25 +57,21 @@ class KeyMaker:
         self._text = text
         self._content = content
         self._texts: dict[int, tuple[Kernel, _Text]] = {}
-        self._known: dict[str, _Known] = {}  # of the last plan, by the step's path
+        self._last: dict[str, _StepKeys] = {}  # of the last plan, by the step's path
 
     def keys_of(
-        self,
-        plan: Plan,
-        driver: Callable[[Step], str],
-        given: Callable[[Step], Mapping[str, Any]],
-        continued: frozenset[str],
+        self, plan: Plan, driver: Callable[[Step], str], given: Callable[[Step], Mapping[str, Any]]
     ) -> Keys:
         """Return the keys of a plan.
 
-        ``driver`` chooses what a step runs by, ``given`` returns what the engine gives it beside its
-        parameters, ``continued`` are the paths of draws that a later draw goes on from.
+        ``driver`` chooses what a step runs by, ``given`` returns what the engine gives it besides its
+        parameters.
         """
-        made = _Made(self.text_of, self._content, driver, given, continued, self._known)
+        computation = _KeyComputation(self.text_of, self._content, driver, given, plan.continued, self._last)
         for node in plan.nodes:
-            made.add(node, "", {}, {})
-        self._known = made.known
-        return made.keys
+            computation.add(node, "", {}, {})
+        self._last = computation.found
+        return computation.keys
 
     def text_of(self, kernel: Kernel) -> _Text:
         """Return what a kernel's text says, worked out once: texts are long, and kernels seldom change."""
@@ -95,23 +90,14 @@ class _Text:
     """What a kernel's text says of staleness."""
 
     digest: str
-    used: frozenset[str]  # names that stand in the text besides their declaration, or in its header
+    used: frozenset[str]  # names in the text besides their declaration, or in its header
 
 
 def _read_text(kernel: Kernel, text: str) -> _Text:
     counts = [kernel.visits, kernel.groups, kernel.count, *(b.count for b in kernel.buffers)]
     if kernel.kind == "compute":
         counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
-    header: list[Any] = [kernel.kind, kernel.outputs, kernel.registry, kernel.blend, kernel.depth]
-    header += [
-        kernel.samples,
-        kernel.local,
-        kernel.buffers,
-        kernel.overwrites,
-        kernel.aligned,
-        kernel.stages,
-        counts,
-    ]
+    header: list[Any] = [*(getattr(kernel, name) for name in _HEADER), counts]
     header += [(i.name, i.sampling, i.fallback) for i in kernel.inputs]
     if kernel.dialect:
         header += [kernel.prelude, kernel.epilogue, kernel.vertex, kernel.meanings]
@@ -137,8 +123,8 @@ class _Reads(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class _Known:
-    """The keys that a step had in the last plan; they stay while the step and what it reads do."""
+class _StepKeys:
+    """The keys of a step in one plan; in the next they are the same if the step and what it reads are."""
 
     step: Step
     reads: str
@@ -147,8 +133,8 @@ class _Known:
     shown: str
 
 
-class _Made:
-    """The keys of one plan, being made; ``before`` are those of the last one."""
+class _KeyComputation:
+    """Computes the keys of one plan; ``before`` are those of the last one."""
 
     def __init__(
         self,
@@ -157,14 +143,12 @@ class _Made:
         driver: Callable[[Step], str],
         given: Callable[[Step], Mapping[str, Any]],
         continued: frozenset[str],
-        before: Mapping[str, _Known],
+        before: Mapping[str, _StepKeys],
     ) -> None:
         self.keys = Keys()
         self.before = before
-        self.known: dict[str, _Known] = {}
-        self.varies: dict[
-            str, frozenset[str]
-        ] = {}  # loops that a step changes with, as its next reader sees it
+        self.found: dict[str, _StepKeys] = {}
+        self.varies: dict[str, frozenset[str]] = {}  # loops that a step changes with, for its next reader
         self.text_of = text_of
         self.content = content
         self.driver = driver
@@ -180,12 +164,13 @@ class _Made:
             return
         kernel, path = node.kernel, node.path
         sources = [(name, self._source(source, fed) if source else "") for name, source in node.inputs]
-        files = [self.content(Path(str(node.values[p.name]))) for p in kernel.file_parameters]
+        named = kernel.file_parameters
+        files = [self.content(Path(str(node.values[p.name]))) for p in named] if named else []
         reads = _Reads(self.driver(node), files, sources, self.given(node), path in self.continued)
         known, written = self.before.get(path), repr(reads)
         if known is None or known.step is not node or known.reads != written:
             known = self._keys_of(node, reads, written)
-        self.known[path] = known
+        self.found[path] = known
         self.keys.unfinished[path], self.keys.raw[path] = known.unfinished, known.raw
         self.keys.steps[path] = known.shown
         varies = frozenset[str]()
@@ -193,9 +178,9 @@ class _Made:
             varies |= self._varies(source, varying) if source else varies
         if loop and kernel.repeat == "1" and kernel.reads("iteration"):
             varies |= {loop}
-        self.varies[path] = self.keys.step_loops[path] = varies
+        self.varies[path] = self.keys.changes[id(node)] = varies
 
-    def _keys_of(self, step: Step, reads: _Reads, written: str) -> _Known:
+    def _keys_of(self, step: Step, reads: _Reads, written: str) -> _StepKeys:
         """Return the keys of a step that reads so."""
         kernel, text = step.kernel, self.text_of(step.kernel)
         parts: list[Any] = [text.digest, reads.driver, step.size, step.window]
@@ -215,7 +200,7 @@ class _Made:
         raw = shown = _digest([step.repeat, parts])
         if step.between is not None:
             shown = _digest([raw, *step.between])
-        return _Known(step, written, _digest([step.path, parts]), raw, shown)
+        return _StepKeys(step, written, _digest([step.path, parts]), raw, shown)
 
     def _loop(self, loop: LoopStep, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]) -> None:
         inside = sorted({step.path for step in walk(loop.body)})
@@ -236,7 +221,7 @@ class _Made:
         if any("iterations" in self.text_of(step.kernel).used for step in walk(loop.body)):
             parts.append(loop.whole)
         key = self.keys.loops[loop.path] = _digest(parts)
-        self.keys.loop_loops[loop.path] = outer
+        self.keys.changes[id(loop)] = outer
         for path in inside:
             if loop.path in self.varies[path]:  # what reads it from here on sees the last iteration
                 self.keys.steps[path] = _digest([key, path, loop.repeat])

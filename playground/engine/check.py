@@ -1,12 +1,12 @@
 """Check files: compile every kernel by both drivers, load every sketch, draw one small frame of each.
 
-A kernel is drawn on a stage of its own: placeholder textures for its inputs, a placeholder
+A kernel is drawn in a sketch of its own: placeholder textures for its inputs, a placeholder
 picture for files that nothing names, and a view that only copies, so that a mistake
 elsewhere cannot pass for one of its own. What is drawn is drawn in the sandbox,
 where it can crash or hang.
 
 Numbers that are not finite are a mistake: any in a sketch, in a technique only where a whole
-texture holds nothing else, for placeholders may be what it has no answer to.
+texture holds nothing else, for placeholders may be what it cannot compute with.
 """
 
 from __future__ import annotations
@@ -18,9 +18,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from playground.engine.error_place import told_at
+from playground.engine.error_place import located_at
 from playground.engine.plan_warnings import kernel_warnings, source_warnings
-from playground.engine.planner import make_plan
+from playground.engine.planner import Planner
 from playground.engine.sandbox import Request, Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.engine.standalone import free_name, standalone_sketch, with_pictures
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
@@ -49,7 +49,7 @@ from playground.sketch.variants import (
     why_not,
     without_variants,
 )
-from playground.sketch.warnings import warnings_of_kernel
+from playground.sketch.warnings import former_names_used, warnings_of_kernel
 
 BOTH = (FRAGMENT, COMPUTE)
 _FRAME = (64, 36)  # pixels
@@ -179,12 +179,12 @@ class _Check:
             sketch = with_pictures(plain_sketch(self.path, kernel, self.root), self.picture)
             if isinstance(kernel, Graph):
                 self.notes = tuple(f"read as {k.dialect}" for _, k in kernel.kernels if k.dialect)
-                self.warnings |= dict.fromkeys(source_warnings(make_plan(sketch, frame_size=_FRAME)))
+                self.warnings |= dict.fromkeys(source_warnings(Planner().plan(sketch, frame_size=_FRAME)))
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif kernel.kind == "compute":
             raise lonely_variant(self.path)
         else:
-            self.on_stage(kernel)
+            self.check_standalone(kernel)
 
     def variant(self) -> None:
         """Try a fast variant, verified or not."""
@@ -205,32 +205,35 @@ class _Check:
     def technique(self) -> None:
         if is_variant(self.path):
             raise lonely_variant(self.path)
-        self.on_stage(self.read(self.path))
+        self.check_standalone(self.read(self.path))
 
     def sketch(self) -> None:
         sketch = load(self.path).plainly(self.plain)
         self.notes = left_out(sketch)
+        self.warnings |= dict.fromkeys(former_names_used(sketch))
         request = TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any")
         if reads := _names_files(sketch):  # a plan asks its files for their size: the child reads them first
             self.attempt(request)
             if self.errors:
                 return
         # The child draws small; what is wrong at the sketch's own size shows in the plan.
-        plan = make_plan(sketch, frame_size=_FRAME)
+        plan = Planner().plan(sketch, frame_size=_FRAME)
         self.warnings |= dict.fromkeys([*kernel_warnings(sketch.graph), *source_warnings(plan)])
         self.warnings |= dict.fromkeys(found.warning for found in shadowed_by_files(sketch))
         for preset in sketch.presets:
-            make_plan(sketch.with_preset(preset.name), frame_size=_FRAME)
+            Planner().plan(sketch.with_preset(preset.name), frame_size=_FRAME)
         for shot in sketch.shots:
-            with told_at(sketch, shot):
-                make_plan(sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps))
+            with located_at(sketch, shot):
+                Planner().plan(
+                    sketch.for_shot(shot), frame_size=shot.size, time=shot.time, steps=dict(shot.steps)
+                )
         if not reads:
             self.attempt(request)
 
     # ── trying ───────────────────────────────────────────────────────────────
 
-    def on_stage(self, technique: Technique) -> None:
-        """Try a technique: what it says by both drivers, then its fast variants, verified or not."""
+    def check_standalone(self, technique: Technique) -> None:
+        """Try a technique: its own text by both drivers, then its fast variants, verified or not."""
         self.notes = () if self.plain else left_out(self.standalone_sketch(technique))
         self.attempt(self.request(without_variants(technique), BOTH))
         if any_variants(technique) and not self.plain and not self.errors:
@@ -268,7 +271,7 @@ class _Check:
     @property
     def picture(self) -> Path:
         """The file that replaces those that nothing names."""
-        return self.scratch / "stand-in.png"
+        return self.scratch / "placeholder.png"
 
 
 def _inside(folder: Path) -> Iterator[Path]:

@@ -1,8 +1,8 @@
 """Run compute variants: compute shaders that write their images and buffers themselves.
 
-What one writes begins as zeros, but for what its header says it overwrites. Buffers
-are kept for the next run: fresh memory of such a size costs more than filling it. A buffer
-that bears an output's name is that output, and is copied to its texture after the last iteration:
+What one writes begins as zeros, except what its header says it overwrites. Buffers
+are used again by the next run: fresh memory of such a size costs more than filling it. A buffer
+with an output's name is that output, and is copied to its texture after the last iteration:
 llvmpipe takes five times as long to store texels in an image one by one.
 """
 
@@ -34,7 +34,7 @@ class ComputeVariants:
         self._spare: list[moderngl.Buffer] = []  # newest last
 
     def release(self) -> None:
-        """Give every spare buffer back to the driver."""
+        """Release every spare buffer."""
         for buffer in self._spare:
             buffer.release()
         self._spare.clear()
@@ -44,7 +44,7 @@ class ComputeVariants:
         step, kernel = job.step, job.step.kernel
         names = job.numbers()
         buffers: list[moderngl.Buffer] = []
-        whole = all(output.name in kernel.overwrites for output in kernel.outputs)
+        whole = all([output.name in kernel.overwrites for output in kernel.outputs])
         pool = self.kernels.pool
         result = pool.take(step.size, kernel.outputs) if whole else self.kernels.empty(step)
         try:
@@ -69,14 +69,15 @@ class ComputeVariants:
             pool.give(result)
             raise
         finally:
-            self._keep(buffers)
+            self._spare += buffers
+            self._trim(len(buffers))
         return result
 
     def _program(self, job: Job, iteration: int, bound: Program | None) -> Program:
         """Return the program of an iteration with all that it reads, if it is not the one that is ``bound``.
 
-        On a software renderer, there is one for each stage: what the others do would
-        be gone through as well, and thrown away.
+        On a software renderer, there is one for each stage: otherwise what the others do would
+        be computed as well, and discarded.
         """
         step, stages = job.step, job.step.kernel.stages
         stage = (("stage", stages[iteration]),) if stages else ()
@@ -93,11 +94,12 @@ class ComputeVariants:
         if size > _MAX_BUFFER:
             message = f"buffer '{declared.name}' would be {size / 2**20:.0f} MiB; 2048 at most"
             raise kernel.error(f"pass '{job.step.path}': {message}")
-        found = next((spare for spare in reversed(self._spare) if spare.size == size), None)
-        if found is None:
-            found = self.ctx.buffer(reserve=size)
+        for found in reversed(self._spare):
+            if found.size == size:
+                self._spare.remove(found)
+                break
         else:
-            self._spare.remove(found)
+            found = self.ctx.buffer(reserve=size)
         if declared.name not in kernel.overwrites:
             found.clear()
         return found
@@ -112,10 +114,10 @@ class ComputeVariants:
             raise job.step.kernel.error(f"pass '{job.step.path}': {message}, 32 bits a number")
         texture.write(buffer, alignment=aligned)
 
-    def _keep(self, buffers: list[moderngl.Buffer]) -> None:
-        self._spare += buffers
-        held = sum(buffer.size for buffer in self._spare)
-        while len(self._spare) > len(buffers) and held > self.kernels.pool.limit:
+    def _trim(self, newest: int) -> None:
+        """Release the oldest spare buffers over the bound in bytes; those of the last run stay."""
+        held = sum([buffer.size for buffer in self._spare])
+        while len(self._spare) > newest and held > self.kernels.pool.limit:
             oldest = self._spare.pop(0)
             held -= oldest.size
             oldest.release()

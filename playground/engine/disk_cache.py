@@ -1,13 +1,13 @@
-"""Keep the textures of passes on disk by what they are made from, so that a sketch reopens at once.
+"""Cache the textures of passes on disk by what they are computed from, so that a sketch reopens at once.
 
-A file holds what one pass made: a header of JSON, the texels as they are, a checksum. Its name is
-a hash of the pass's key (see ``keys``) and of what made it: the build of the renderer and this
-version of the playground, down to its own Python files. So nothing here is ever out of date; what
-nobody asks for any more goes when the bound in bytes is reached, least recently used first.
+A file holds the textures of one pass: a header of JSON, the texels as they are, a checksum. Its name is
+a hash of the pass's key (see ``cache_keys``) and of what computed it: the build of the renderer and this
+version of the playground, down to its own Python files. So nothing here is ever out of date; when the
+bound in bytes is reached, the least recently used files go first.
 
-A file is written beside its place and then given its name, so that another process sees all of it
-or nothing. One that is damaged, cut short or not ours is dropped, and the terrain is computed. Which
-passes are worth it, ``store_choice`` says; who reads and writes textures is ``store_keeping``.
+A file is written under a temporary name and then renamed, so that another process sees all of it
+or nothing. One that is damaged, cut short or not ours is dropped, and the terrain is computed.
+``disk_cache_choice`` chooses the passes that are worth it; ``disk_caching`` reads and writes textures.
 """
 
 from __future__ import annotations
@@ -46,19 +46,19 @@ SHARE = 4  # no file takes more than a quarter of the bound
 _MAGIC = b"playground land 1\n"
 _ENDING = ".land"
 _PART = ".part"
-_ABANDONED = 3600.0  # [s] after which a half-written file is nobody's
+_ABANDONED = 3600.0  # [s] after which a half-written file is removed
 _LONGEST_HEADER = 2**16  # [bytes]
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
-_LAYERS = ("engine", "gpu", "images", "sketch", "terrain")  # whose Python has a say in what a pass makes
+_LAYERS = ("engine", "gpu", "images", "sketch", "terrain")  # whose Python decides what a pass computes
 
 
 @dataclass(frozen=True)
 class CachedTextures:
-    """What one pass made, and where it came from."""
+    """The textures of one pass, and where they came from."""
 
     size: tuple[int, int]  # texels
     outputs: tuple[tuple[str, str], ...]  # name and format of each
-    cost: float  # [ms] that it took to make, with all that it reads
+    cost: float  # [ms] that they took to compute, with all that they depend on
     made_for: str = ""  # sketch and pass, for people: the key knows neither
     data: tuple[memoryview, ...] = field(default=(), repr=False)  # of each output; none where only listed
 
@@ -70,12 +70,12 @@ class CachedTextures:
 
 @dataclass(frozen=True)
 class Listed:
-    """A file of the store."""
+    """A file of the cache."""
 
     path: Path
     bytes: int  # of the file
     used: float  # [s since the epoch] when it was read or written last
-    kept: CachedTextures | None  # None: it cannot be read
+    textures: CachedTextures | None  # None: it cannot be read
 
 
 def place() -> Path:
@@ -84,18 +84,18 @@ def place() -> Path:
 
 
 def limit_in(environment: Mapping[str, str] = os.environ) -> int:
-    """Return the bound [bytes] that the environment asks for, 0 for no store; raise ``ParameterError``."""
-    said = environment.get(VARIABLE, "").strip()
-    if not said:
+    """Return the bound [bytes] that the environment sets, 0 for no disk cache; raise ``ParameterError``."""
+    given = environment.get(VARIABLE, "").strip()
+    if not given:
         return LIMIT
-    text = said.upper().removesuffix("IB").removesuffix("B")
+    text = given.upper().removesuffix("IB").removesuffix("B")
     unit = text[-1:] if text[-1:] in _UNITS else ""
     try:
         number = 0.0 if text == "OFF" else float(text.removesuffix(unit))
     except ValueError:
         number = -1.0
     if not 0 <= number < 1e15:
-        raise ParameterError(f"{VARIABLE}={said}: expected a size, as 500M or 2G, or 0 to keep nothing")
+        raise ParameterError(f"{VARIABLE}={given}: expected a size, as 500M or 2G, or 0 to cache nothing")
     return int(number * _UNITS[unit])
 
 
@@ -114,30 +114,30 @@ class DiskCache:
         return self._path(key).exists()
 
     def read(self, key: str) -> CachedTextures | None:
-        """Return what is kept under a key, whole and checked; None if there is nothing. It is now used."""
+        """Return what is cached under a key, checked, and mark it as used; None if there is nothing."""
         path = self._path(key)
         try:
             with path.open("rb") as file:
-                kept = _read(file, key)
+                textures = _read(file, key)
         except OSError:
             return None
-        if kept is None:
+        if textures is None:
             _drop(path)
             return None
         with suppress(OSError):
             os.utime(path)
-        return kept
+        return textures
 
     def fits(self, size: int) -> bool:
-        """Return whether so many bytes of texels may be kept."""
+        """Return whether so many bytes of texels may be cached."""
         return not self.trouble and size <= self.limit // SHARE
 
-    def keep(self, key: str, kept: CachedTextures) -> None:
-        """Have something written, in its own time; what cannot be is told in ``trouble``."""
+    def write(self, key: str, textures: CachedTextures) -> None:
+        """Have a thread write textures; ``trouble`` says why where it cannot."""
         if self._thread is None:
             self._thread = threading.Thread(target=self._write_all, name="store", daemon=True)
             self._thread.start()
-        self._waiting.put((key, kept))
+        self._waiting.put((key, textures))
 
     def close(self, patience: float = 30.0) -> None:
         """Wait until all is written, for so many seconds at most."""
@@ -152,30 +152,29 @@ class DiskCache:
 
     def _write_all(self) -> None:
         while (work := self._waiting.get()) is not None:
-            key, kept = work
+            key, textures = work
             path = self._path(key)
             try:
                 self.folder.mkdir(parents=True, exist_ok=True)
                 with replacing(path) as file:
-                    for part in _written(key, kept):
+                    for part in _written(key, textures):
                         file.write(part)
             except (PlaygroundError, OSError) as error:
-                if (
-                    not path.exists()
-                ):  # else another session wrote it, and reads it: Windows lets nobody rename then
-                    self.trouble = f"land cannot be kept on disk: {error}"
+                # Where it exists, another session wrote it, and reads it: Windows then refuses to rename.
+                if not path.exists():
+                    self.trouble = f"terrain cannot be cached on disk: {error}"
                 continue
             trim(self.folder, self.limit)
 
 
 def disk_cache_for(renderer: ContextInfo, limit: int, folder: Path | None = None) -> DiskCache:
-    """Return the store of a renderer's build, in the user's cache unless a folder is named."""
+    """Return the disk cache of a renderer's build, in the user's cache unless a folder is named."""
     return DiskCache(folder or place(), limit=limit, made_by=repr((build_of(renderer), tool())))
 
 
 @lru_cache(maxsize=1)
 def tool() -> str:
-    """Return a hash of what has a say beside the driver: the playground's own files, what reads images."""
+    """Return a hash of what decides a texture besides the driver: our own files, what reads images."""
     found: list[object] = [__version__]
     for package in ("moderngl", "numpy", "pillow", "tifffile"):
         with suppress(metadata.PackageNotFoundError):
@@ -188,27 +187,27 @@ def tool() -> str:
 
 
 def listed(folder: Path) -> list[Listed]:
-    """Return the files of a store, those used last first."""
+    """Return the files of a disk cache, those used last first."""
     found = []
     for entry, status in _entries(folder):
         path = Path(entry.path)
         try:
             with path.open("rb") as file:
-                kept = _head(file)[1]
+                textures = _head(file)[1]
         except (OSError, ValueError):
-            kept = None
-        found.append(Listed(path, status.st_size, status.st_mtime, kept))
+            textures = None
+        found.append(Listed(path, status.st_size, status.st_mtime, textures))
     return sorted(found, key=lambda each: -each.used)
 
 
 def bytes_in(folder: Path) -> tuple[int, int]:
-    """Return how many files a store holds, and their bytes."""
+    """Return how many files a disk cache holds, and their bytes."""
     sizes = [status.st_size for _, status in _entries(folder)]
     return len(sizes), sum(sizes)
 
 
 def clear(folder: Path) -> tuple[int, int]:
-    """Remove the files of a store; return how many went, and their bytes. Other files stay."""
+    """Remove the files of a disk cache; return how many went, and their bytes. Other files stay."""
     number, size = 0, 0
     for entry, status in _entries(folder):
         if _drop(Path(entry.path)):
@@ -229,7 +228,7 @@ def trim(folder: Path, limit: int, most: int = MOST) -> None:
 
 
 def _drop_abandoned(folder: Path) -> None:
-    """Remove what was left half-written; what is new may be another session's, which is at it."""
+    """Remove what was left half-written; what is new may be another session's."""
     for entry, status in _entries(folder, _PART):
         if time.time() - status.st_mtime > _ABANDONED:
             _drop(Path(entry.path))
@@ -254,18 +253,18 @@ def _drop(path: Path) -> bool:
     return True
 
 
-def _written(key: str, kept: CachedTextures) -> Iterator[bytes | memoryview]:
+def _written(key: str, textures: CachedTextures) -> Iterator[bytes | memoryview]:
     header = json.dumps(
         {
             "key": key,
-            "size": kept.size,
-            "outputs": kept.outputs,
-            "cost": round(kept.cost, 3),
-            "made_for": kept.made_for,
+            "size": textures.size,
+            "outputs": textures.outputs,
+            "cost": round(textures.cost, 3),
+            "made_for": textures.made_for,
         }
     ).encode()
     checksum = 0
-    parts: list[bytes | memoryview] = [_MAGIC, struct.pack("<I", len(header)), header, *kept.data]
+    parts: list[bytes | memoryview] = [_MAGIC, struct.pack("<I", len(header)), header, *textures.data]
     for part in parts:
         checksum = zlib.crc32(part, checksum)
         yield part
@@ -273,10 +272,10 @@ def _written(key: str, kept: CachedTextures) -> Iterator[bytes | memoryview]:
 
 
 def _head(file: IO[bytes]) -> tuple[bytes, CachedTextures, str]:
-    """Return a file's first bytes, what they say, and the key; raise ``ValueError`` if it is not ours."""
+    """Return a file's first bytes, its textures without texels, and the key; raise ``ValueError``."""
     start = file.read(len(_MAGIC) + 4)
     if len(start) < len(_MAGIC) + 4 or not start.startswith(_MAGIC):
-        raise ValueError("not a file of the store")
+        raise ValueError("not a file of the disk cache")
     (length,) = struct.unpack("<I", start[len(_MAGIC) :])
     if length > _LONGEST_HEADER:
         raise ValueError("not a header")
@@ -285,30 +284,30 @@ def _head(file: IO[bytes]) -> tuple[bytes, CachedTextures, str]:
         table: dict[str, Any] = read_json(header)
         width, height = (int(side) for side in table["size"])
         outputs = tuple((str(name), str(form)) for name, form in table["outputs"])
-        kept = CachedTextures((width, height), outputs, float(table["cost"]), str(table["made_for"]))
-        if min(width, height) < 1 or kept.bytes < 1:
+        textures = CachedTextures((width, height), outputs, float(table["cost"]), str(table["made_for"]))
+        if min(width, height) < 1 or textures.bytes < 1:
             raise ValueError("no texels")
-        return start + header, kept, str(table["key"])
+        return start + header, textures, str(table["key"])
     except (TypeError, KeyError, ArithmeticError) as error:
         raise ValueError(f"not a header: {error}") from None
 
 
 def _read(file: IO[bytes], key: str) -> CachedTextures | None:
-    """Return what a file holds; None if it is not whole, or not what was asked for."""
+    """Return what a file holds; None if it is not whole, or of another key."""
     try:
-        head, kept, named = _head(file)
+        head, textures, named = _head(file)
     except ValueError:
         return None
-    if named != key or os.fstat(file.fileno()).st_size != len(head) + kept.bytes + 4:
+    if named != key or os.fstat(file.fileno()).st_size != len(head) + textures.bytes + 4:
         return None
     body = memoryview(file.read())
-    if len(body) != kept.bytes + 4:
+    if len(body) != textures.bytes + 4:
         return None
     if zlib.crc32(body[:-4], zlib.crc32(head)) != struct.unpack("<I", body[-4:])[0]:
         return None
     parts, start = [], 0
-    for _, form in kept.outputs:
-        length = bytes_of(kept.size, form)
+    for _, form in textures.outputs:
+        length = bytes_of(textures.size, form)
         parts.append(body[start : start + length])
         start += length
-    return CachedTextures(kept.size, kept.outputs, kept.cost, kept.made_for, tuple(parts))
+    return CachedTextures(textures.size, textures.outputs, textures.cost, textures.made_for, tuple(parts))

@@ -1,12 +1,12 @@
-"""Choose what a frame takes from the store, and what is worth keeping there.
+"""Choose what a frame takes from the disk cache, and what is worth caching there.
 
 The camera, the window's size and the time change a sketch's last passes all the time; what
 they read of the terrain stays. Where that meets is the frontier: of the passes that stay, those
 that are read by one that does not. A reopened sketch takes the frontier from the disk, and
 the passes behind it are not run at all.
 
-Of a pass that stays, two times are weighed: what it took to make, with what it reads made or
-read in turn, and what it would take to read it. It is read where that saves enough.
+Of a pass that stays, two times are compared: what it took to compute, with what it depends on computed
+or read, and what it would take to read it. It is read where that saves enough.
 """
 
 from __future__ import annotations
@@ -22,7 +22,6 @@ from playground.engine.plan import (
     Plan,
     PlanNode,
     Step,
-    continued,
     every_node,
     needed,
     sources_of,
@@ -37,19 +36,18 @@ _PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names 
 
 
 def passing(plan: Plan, painted: Collection[Path] = ()) -> frozenset[str]:
-    """Return the paths of the steps and loops of a plan that are never kept.
+    """Return the paths of the steps and loops of a plan that are never cached on disk.
 
     What reads the time, the camera or the mouse, has a texel for each pixel of the picture, is
     stopped before its last iteration or gone on from by a later draw, or reads a file that is
-    ``painted`` in this process, which no other one knows by its version; and whatever reads such a one.
+    ``painted`` in this process, which no other one knows by its version; and each that reads such a one.
     """
     found: set[str] = set()
-    goes_on = continued(plan)
     for node in plan.nodes:
         reads = {source.path for source in sources_of(node) if isinstance(source, Ref)}
         steps = list(walk((node,)))
         loops = [loop for loop in every_node((node,)) if isinstance(loop, LoopStep)]
-        own = any(_passes(step, plan, goes_on) or _reads_one(step, painted) for step in steps)
+        own = any(_passes(step, plan) or _reads_one(step, painted) for step in steps)
         if own or reads & found or any(_stops(loop) for loop in loops):
             found |= {node.path, *(step.path for step in steps)}
     return frozenset(found)
@@ -65,9 +63,9 @@ def _stops(loop: LoopStep) -> bool:
     return by_time or loop.repeat != loop.whole
 
 
-def _passes(step: Step, plan: Plan, goes_on: frozenset[str]) -> bool:
+def _passes(step: Step, plan: Plan) -> bool:
     kernel = step.kernel
-    if kernel.kind.startswith("plain") or step.path in goes_on or step.window is not None:
+    if kernel.kind.startswith("plain") or step.path in plan.continued or step.window is not None:
         return True
     if step.size == plan.frame_size or step.repeat != step.whole:
         return True
@@ -81,7 +79,7 @@ class Chosen:
     """How a frame is made."""
 
     nodes: list[PlanNode]  # to be run, in order
-    taken: dict[str, Result]  # by the step's path: what is kept in memory, or was read
+    taken: dict[str, Result]  # by the step's path: cached in memory, or read
     skipped: frozenset[str]  # steps that are neither, since nothing that runs reads them
 
 
@@ -96,8 +94,8 @@ def choose(
 ) -> Chosen:
     """Choose how to make a texture; ``nodes`` are what it needs, in order.
 
-    ``held(key)`` is what is kept in memory. ``read(step)`` puts what the store keeps of a step there,
-    and says whether it could. ``skips``: what nothing asks for is left out.
+    ``held(key)`` is what is cached in memory. ``read(step)`` puts a step's textures there from the disk
+    cache, and says whether it could. ``skips``: what nothing that runs reads is left out.
     """
     known = list(nodes)
     wanted = {ref.path} if skips else {step.path for step in walk(tuple(known))}
@@ -108,7 +106,7 @@ def choose(
         inside = {step.path: step for step in walk((node,))}
         here = _in_memory(node, keys, held)
         if here is None:
-            # Of a loop that was read, each step that others read is kept by itself.
+            # Of a loop that was read, each step that others read is cached by itself.
             missing = [step for path, step in inside.items() if path in wanted and not held(keys.steps[path])]
             if all(read(step) for step in missing):
                 here = {path: found for path in inside if (found := _alone(held(keys.steps[path])))}
@@ -122,56 +120,56 @@ def choose(
 
 
 def _in_memory(node: PlanNode, keys: Keys, held: Callable[[str], Cached | None]) -> dict[str, Result] | None:
-    """Return what memory keeps of a node, by the step's path; None where it has to be run, or read."""
+    """Return what is cached in memory of a node, by the step's path; None where it has to be run, or read."""
     if isinstance(node, Step):
         found = _alone(held(keys.steps[node.path]))
         return None if found is None else {node.path: found}
-    kept = held(keys.loops[node.path])
-    if kept is None or kept.turn != node.repeat or not kept.results:
+    cached = held(keys.loops[node.path])
+    if cached is None or cached.iterations != node.repeat or not cached.results:
         return None
-    together = dict(kept.results)
+    together = dict(cached.results)
     for inside in every_node(node.body):
-        if not keys.changes(inside):
+        if not keys.changes[id(inside)]:
             together |= _in_memory(inside, keys, held) or {}
     return together
 
 
-def _alone(kept: Cached | None) -> Result | None:
-    return None if kept is None else next(iter(kept.results.values()), None)
+def _alone(cached: Cached | None) -> Result | None:
+    return None if cached is None else next(iter(cached.results.values()), None)
 
 
-# ── what is worth keeping ────────────────────────────────────────────────────
+# ── what is worth caching ────────────────────────────────────────────────────
 
 
 @dataclass(frozen=True)
 class Worth:
-    """A step whose textures are worth keeping."""
+    """A step whose textures are worth caching on disk."""
 
     path: str
     key: str
     cost: float  # [ms] that it took to make, with all that it reads
 
 
-def worth_keeping(
+def worth_caching(
     plan: Plan,
     keys: Keys,
     ref: Ref,
     passes: frozenset[str],
     costs: Mapping[str, float],
-    reading: Callable[[int], float],
+    read_time: Callable[[int], float],
     floor: float,
 ) -> list[Worth]:
-    """Return what is worth keeping of a texture's frame: those of the frontier that cost enough.
+    """Return the steps of a texture's frame that are worth caching: those of the frontier that cost enough.
 
     ``passes``: as ``passing`` returns them. ``costs`` [ms] of what ran, by the key of the step or the
-    loop; ``reading(bytes)`` [ms]. To read must save at least ``floor`` [ms].
+    loop; ``read_time(bytes)`` [ms]. To read must save at least ``floor`` [ms].
     """
     nodes = needed(plan.nodes, ref)
     home = {step.path: number for number, node in enumerate(nodes) for step in walk((node,))}
     sources = [_sources(node, number, home) for number, node in enumerate(nodes)]
     others = {ref.path}.union(*sources)
     steps = {step.path: step for step in walk(tuple(nodes))}
-    to_read = {path: reading(bytes_in(step)) for path, step in steps.items()}
+    to_read = {path: read_time(bytes_in(step)) for path, step in steps.items()}
     # What must be run or read to have a node by running it, each with its time, by what and which.
     ways: list[dict[tuple[bool, str], float]] = []
     wholes: list[dict[str, float]] = []  # what was run for a node, nothing read, each with its time
@@ -191,11 +189,11 @@ def worth_keeping(
     found: list[Worth] = []
     wanted = {ref.path}
     for number in reversed(range(len(nodes))):
-        asked = [step.path for step in walk((nodes[number],)) if step.path in wanted]
-        if asked and is_read[number]:
+        read_here = [step.path for step in walk((nodes[number],)) if step.path in wanted]
+        if read_here and is_read[number]:
             cost = sum(wholes[number].values())
-            found += [Worth(path, keys.steps[path], cost) for path in asked]
-        elif asked:
+            found += [Worth(path, keys.steps[path], cost) for path in read_here]
+        elif read_here:
             wanted |= sources[number]
     return found[::-1]
 

@@ -1,9 +1,9 @@
-"""Keep an engine's expensive textures in a store, and take them from there.
+"""Cache an engine's expensive textures on disk, and take them from there.
 
-What passes cost is measured as they run. Once the terrain has rested for a moment, the textures
-that are worth it are read back a piece at a time, and the store's own thread writes them: no
-frame waits for either. The next time, an engine with this store reads them and does not run
-the passes at all; a pass in between that is wanted after all, runs then.
+What passes cost is measured as they run. Once the terrain has not changed for a moment, the textures
+that are worth it are read back a piece at a time, and the disk cache's own thread writes them: no
+frame waits for either. The next time, an engine with this disk cache reads them and does not run
+the passes at all; a pass in between that is needed after all, runs then.
 """
 
 from __future__ import annotations
@@ -18,26 +18,25 @@ from typing import TYPE_CHECKING
 from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
 from playground.engine.disk_cache import CachedTextures, DiskCache
-from playground.engine.disk_cache_choice import choose, passing, worth_keeping
+from playground.engine.disk_cache_choice import choose, passing, worth_caching
 from playground.engine.execution import Execution
 from playground.engine.frame_record import FrameSource
 from playground.engine.plan import Plan, PlanNode, Step, needed
-from playground.engine.results import Result
-from playground.gpu.textures import bytes_of, make_framebuffer
+from playground.gpu.textures import bytes_of, read_block
 from playground.sketch.flat import Ref
 
 if TYPE_CHECKING:
-    import moderngl
+    pass
 
-FLOOR = 20.0  # [ms] that reading must save: less is not seen
+FLOOR = 20.0  # [ms] that a read must save: less is not visible
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
-REST = 1.0  # [s] without another piece of terrain before one is kept
+REST = 1.0  # [s] without another piece of terrain before one is written
 PIECE = 4 * 2**20  # [bytes] read back at once
 _MOST_COSTS = 4096
 
 
-def reading(size: int) -> float:
-    """Return what it takes to read so many bytes from the store [ms]."""
+def read_time(size: int) -> float:
+    """Return what it takes to read so many bytes from the disk cache [ms]."""
     return size / RATE
 
 
@@ -55,13 +54,13 @@ class DiskCaching:
         self.store = store
         self.floor = floor  # [ms]
         self.rest = rest  # [s]
-        self.skips = True  # passes whose textures nothing asks for are not run
+        self.skips = True  # passes whose textures nothing reads are not run
         self.skipped: frozenset[str] = frozenset()  # those of the last frame, by path
         self.reads = 0  # textures of passes read so far
         self._now = now
         self._costs: OrderedDict[str, float] = OrderedDict()  # [ms] by the key of the step or the loop
         self._costed_at = 0.0
-        self._is_new = False  # something was made that nobody has weighed yet
+        self._is_new = False  # something was computed since the last look
         self._work: Iterator[None] | None = None
 
     @property
@@ -72,7 +71,7 @@ class DiskCaching:
     # ── while a frame is made ────────────────────────────────────────────────
 
     def begin(self, execution: Execution, plan: Plan, ref: Ref) -> list[PlanNode]:
-        """Read what the store keeps of a texture, have the rest measured, and return what is to be run."""
+        """Read what the disk cache has of a texture, have the rest measured, and return what is to be run."""
         runner, keys = execution.runner, execution.keys
         passes = passing(plan, runner.painted)
 
@@ -109,16 +108,16 @@ class DiskCaching:
         self._note(key, (self._costed_at - start) * 1e3)
 
     def _take(self, execution: Execution, step: Step, key: str) -> bool:
-        """Put what the store keeps of a step into the cache in memory."""
-        kept, outputs = self.store.read(key), step.kernel.outputs
+        """Put what the disk cache has of a step into the cache in memory."""
+        cached, outputs = self.store.read(key), step.kernel.outputs
         wanted = step.size, tuple((o.name, o.format) for o in outputs)
-        if kept is None or (kept.size, kept.outputs) != wanted:
+        if cached is None or (cached.size, cached.outputs) != wanted:
             return False
         result = execution.runner.pool.take(step.size, outputs)
-        for output, data in zip(outputs, kept.data, strict=True):
+        for output, data in zip(outputs, cached.data, strict=True):
             result.textures[output.name].write(data, alignment=1)
         execution.cache.put(key, Cached({step.path: result}))
-        self._note(key, kept.cost)
+        self._note(key, cached.cost)
         self.reads += 1
         return True
 
@@ -131,7 +130,7 @@ class DiskCaching:
     # ── at rest ──────────────────────────────────────────────────────────────
 
     def look(self, source: FrameSource, plan: Plan) -> float | None:
-        """Do a piece of what is to be done for the frame of a plan; say in how many seconds to come again.
+        """Do a piece of the work for the frame of a plan; return in how many seconds to call again.
 
         None: not before another frame has run something.
         """
@@ -149,11 +148,11 @@ class DiskCaching:
         self._is_new = False
         if source.record.plan is not plan:  # a texture was read since
             source.recall(plan)
-        self._work = self._keep_all(source, plan)
+        self._work = self._write_all(source, plan)
         return 0.0
 
     def finish(self, source: FrameSource, plan: Plan) -> None:
-        """Do all that is to be done for the frame of a plan, rested or not, and wait until it is written."""
+        """Do all work for the frame of a plan at once, and wait until it is written."""
         self._costed_at -= self.rest
         while self.look(source, plan) is not None:
             pass
@@ -164,12 +163,11 @@ class DiskCaching:
         self._work = None
         self.store.close()
 
-    def _keep_all(self, source: FrameSource, plan: Plan) -> Iterator[None]:
-        """Keep what is worth it, a piece at a time; ends early where a texture is gone."""
+    def _write_all(self, source: FrameSource, plan: Plan) -> Iterator[None]:
+        """Write what is worth it, a piece at a time; ends early where a texture is gone."""
         keys, results = source.record.keys, source.record.results
-        ref = next(iter(plan.flat.outputs["view"].values()))
         passes = passing(plan, source.runner.painted)
-        for worth in worth_keeping(plan, keys, ref, passes, self._costs, reading, self.floor):
+        for worth in worth_caching(plan, keys, plan.picture, passes, self._costs, read_time, self.floor):
             result = results.get(worth.path)
             if result is None or worth.key in self.store:
                 continue
@@ -186,24 +184,13 @@ class DiskCaching:
                         self._is_new = True  # another frame was made, and the texture may be another's by now
                         return
                     north = min(south + rows, result.size[1])
-                    whole[south * row : north * row] = _read_rows(
-                        source.runner.ctx, result, output.name, south, north
-                    )
+                    rows_here = (result.size[0], north - south)
+                    part = read_block(result.textures[output.name], (0, south), rows_here)
+                    whole[south * row : north * row] = part
                     yield
                 parts.append(memoryview(whole).toreadonly())
             outputs = tuple((o.name, o.format) for o in result.outputs)
             made_for = f"{plan.sketch.name}: {worth.path}"
-            self.store.keep(
+            self.store.write(
                 worth.key, CachedTextures(result.size, outputs, worth.cost, made_for, tuple(parts))
             )
-
-
-def _read_rows(ctx: moderngl.Context, result: Result, output: str, south: int, north: int) -> bytes:
-    """Return rows of a texture in its own kind of number."""
-    texture = result.textures[output]
-    framebuffer = make_framebuffer(ctx, [texture])
-    try:
-        viewport = (0, south, result.size[0], north - south)
-        return framebuffer.read(viewport, texture.components, alignment=1, dtype=texture.dtype)
-    finally:
-        framebuffer.release()

@@ -1,9 +1,9 @@
 """Draw meshes: samples of colour and depth, blending, resolved into a texture at the end.
 
 Meshes stay on the graphics card, with a vertex array for each program that draws them;
-what a draw drew on is used again by the next draw of its size. Of a mesh that is chosen
-from, only what the view needs is drawn: the textures that the choice reads come from the
-graphics card once, when they were made.
+the surface of a draw is used again by the next draw of its size. Of a mesh with levels of
+detail, only what the view needs is drawn: the textures that the choice depends on are read
+back from the graphics card once, when they were computed.
 """
 
 from __future__ import annotations
@@ -44,17 +44,17 @@ class Draws:
     def __init__(self, ctx: moderngl.Context, kernels: Kernels) -> None:
         self.ctx = ctx
         self.kernels = kernels
-        self.finest: int | None = None  # no mesh is finer than this, whatever its draw asks for
+        self.finest: int | None = None  # no mesh is finer than this
         self._meshes: OrderedDict[_MeshKey, _Loaded] = OrderedDict()
         self._surfaces: list[Surface] = []  # spare, newest last
         self._tables: WeakKeyDictionary[Result, dict[str, NDArray[np.float32]]] = WeakKeyDictionary()
         limits = ctx.info["GL_MAX_VIEWPORT_DIMS"]
         self.widest: tuple[int, int] = (int(limits[0]), int(limits[1]))  # [pixels] of a viewport
-        self.triangles = 0  # of the last draw of a mesh that is chosen from
-        self.drawn = 0  # triangles of every draw that ran, since whoever counts put it back to 0
+        self.triangles = 0  # of the last draw of a mesh with levels of detail
+        self.drawn = 0  # triangles of every draw that ran
 
     def release(self) -> None:
-        """Give back every mesh and surface kept."""
+        """Release every mesh and surface."""
         for key, mesh in self._meshes.items():
             self.kernels.programs.forget_mesh(key)
             mesh.release()
@@ -94,16 +94,16 @@ class Draws:
         if job.keeps_surface:
             result.surface = surface
         else:
-            self._surfaces = [*self._surfaces, surface]
+            self._surfaces.append(surface)
             while len(self._surfaces) > _MAX_SURFACES:
                 self._surfaces.pop(0).release()
         return result
 
     def _look_through(self, window: Window, program: Program) -> None:
-        """Let a draw of the whole picture fall into a window of it.
+        """Clip a draw of the whole picture to a window of it.
 
         The whole's viewport leaves clip space as it is; where the driver has none so large, clip
-        space is stretched instead, whose rounding is another.
+        space is scaled instead, which rounds otherwise.
         """
         (x, y), (width, height), (wide, tall) = window.origin, window.size, window.whole
         if wide <= self.widest[0] and tall <= self.widest[1]:
@@ -114,14 +114,12 @@ class Draws:
         program.set(ZOOM, (wide / width, tall / height, *moved))
 
     def _surface(self, size: tuple[int, int], form: str, samples: int) -> Surface:
-        """Return something to draw on: a spare one where there is."""
+        """Return something to draw on: a spare surface if there is one."""
         for spare in self._surfaces:
             if (spare.size, spare.format, spare.samples) == (size, form, samples):
                 self._surfaces.remove(spare)
-                break
-        else:
-            spare = self._new_surface(size, form, samples)
-        return spare
+                return spare
+        return self._new_surface(size, form, samples)
 
     def _new_surface(self, size: tuple[int, int], form: str, samples: int) -> Surface:
         components, dtype = split_format(form)
@@ -129,16 +127,16 @@ class Draws:
         drain(self.ctx)
         colour = self.ctx.renderbuffer(size, components, samples=many, dtype=dtype)
         depth = self.ctx.depth_renderbuffer(size, samples=many)
-        fault = self.ctx.error
+        error = self.ctx.error
         try:
-            if fault != "GL_NO_ERROR":
-                raise RuntimeError(fault)
+            if error != "GL_NO_ERROR":
+                raise RuntimeError(error)
             framebuffer = make_framebuffer(self.ctx, [colour], depth)
-        except Exception as error:  # moderngl raises its own Error for an incomplete framebuffer
+        except Exception as refusal:  # moderngl raises its own Error for an incomplete framebuffer
             colour.release()
             depth.release()
             raise ContextError(
-                f"the driver refused to draw {size[0]} x {size[1]} {form} with {samples} samples: {error}"
+                f"the driver refused to draw {size[0]} x {size[1]} {form} with {samples} samples: {refusal}"
             ) from None
         return Surface(framebuffer, colour, depth, size, form, samples)
 
@@ -149,22 +147,30 @@ class Draws:
         if earlier is not None and (earlier.size, earlier.samples) == (surface.size, surface.samples):
             self.ctx.copy_framebuffer(surface.framebuffer, earlier.framebuffer)
             return
-        _clear(surface.framebuffer, colour=wired.texture is None)
+        surface.framebuffer.use()
+        surface.framebuffer.color_mask = (wired.texture is None,) * 4  # what is overwritten needs no clearing
+        surface.framebuffer.clear(0, 0, 0, 0, depth=1.0)
+        surface.framebuffer.color_mask = (True,) * 4
         if wired.texture is None:
             return
-        if wired.result is not None and _is_alike(wired.result, surface):
+        alike = surface.samples == 1 and wired.result is not None and wired.result.size == surface.size
+        if (
+            wired.result is not None
+            and alike
+            and [o.format for o in wired.result.outputs] == [surface.format]
+        ):
             # The same bits, on a software renderer in a tenth of the time.
             self.ctx.copy_framebuffer(surface.framebuffer, wired.result.framebuffer(self.ctx))
         else:
             self.kernels.copy(surface.framebuffer, surface.size, wired.texture)
 
     def _chosen(self, job: Job) -> Chosen:
-        """Return what to draw of a mesh that is chosen from."""
+        """Return what to draw of a mesh with levels of detail."""
         kernel, given = job.step.kernel, job.given
         chooser = CHOOSERS[kernel.registry]
         wanted = ("clip_from_world", "eye", "extent", "relief")
-        missing = [name for name in wanted if name not in given]
-        missing += [name for name in chooser.parameters if name not in job.step.values]
+        known = {*given, *job.step.values}
+        missing = [name for name in (*wanted, *chooser.parameters) if name not in known]
         if missing:
             raise kernel.error(f"mesh '{kernel.registry}' needs a draw that reads {', '.join(missing)}")
         matrix = np.array(given["clip_from_world"], np.float64).reshape(4, 4).T
@@ -176,7 +182,7 @@ class Draws:
         return chooser.choose(job.step.values, tables, view)
 
     def _table(self, job: Job, name: str) -> NDArray[np.float32]:
-        """Return the texels of an input, read once for each time that they are made."""
+        """Return the texels of an input, read once each time that they are computed."""
         result, texture, output = job.inputs.get(name, Wired())
         if result is None or texture is None:
             mesh = job.step.kernel.registry
@@ -207,22 +213,8 @@ class Draws:
         return self._meshes[key], array
 
 
-def _clear(framebuffer: moderngl.Framebuffer, *, colour: bool) -> None:
-    """Clear the depth, and the colour if wanted: one that is drawn over at once would be cleared in vain."""
-    framebuffer.use()
-    framebuffer.color_mask = (colour,) * 4
-    framebuffer.clear(0, 0, 0, 0, depth=1.0)
-    framebuffer.color_mask = (True,) * 4
-
-
-def _is_alike(result: Result, surface: Surface) -> bool:
-    """Return whether a result is one texture of the same size and format as a surface of single samples."""
-    formats = [output.format for output in result.outputs]
-    return surface.samples == 1 and result.size == surface.size and formats == [surface.format]
-
-
 def _mesh_values(job: Job) -> dict[str, Value]:
-    """Return a draw's parameters, and the count that its header works out."""
+    """Return a draw's parameters, and the count that its header computes."""
     step, kernel = job.step, job.step.kernel
     if not kernel.count:
         return dict(step.values)
@@ -232,7 +224,7 @@ def _mesh_values(job: Job) -> dict[str, Value]:
 
 
 def _enable(ctx: Any, depth: str, blend: str) -> None:
-    """Switch depth test and blending as a draw's header says; both "none" is how others find the context."""
+    """Switch depth test and blending as a draw's header says; with "none" twice, restore the defaults."""
     ctx.enable_only((ctx.DEPTH_TEST if depth != "none" else 0) | (ctx.BLEND if blend != "none" else 0))
     ctx.depth_func = "==" if depth == "equal" else "<"
     if blend == "add":
@@ -259,7 +251,7 @@ class _Loaded:
         ]
         self._indices = ctx.buffer(mesh.indices.astype(np.uint32).tobytes())
         self.triangles = mesh.indices.size // 3
-        # Of a mesh that is chosen from: the tiles of the piece being drawn.
+        # Of a mesh with levels of detail: the tiles of the piece being drawn.
         self.places = ctx.buffer(reserve=16, dynamic=True) if key[0] in CHOOSERS else None
 
     def array(self, program: Program) -> moderngl.VertexArray:
@@ -273,7 +265,7 @@ class _Loaded:
         )
 
     def render(self, array: moderngl.VertexArray, chosen: Chosen) -> int:
-        """Draw each piece once for all of its tiles; return how many triangles that were."""
+        """Draw each piece once for all of its tiles; return the number of triangles."""
         assert self.places is not None
         done, triangles = 0, 0
         for piece, count in chosen.runs:
@@ -286,7 +278,7 @@ class _Loaded:
         return triangles
 
     def release(self) -> None:
-        """Give the buffers back to the driver."""
+        """Release the buffers."""
         if self.places is not None:
             self.places.release()
         for buffer, _, _ in self._attributes:

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
+from functools import partial
 from hashlib import blake2b
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -26,9 +27,9 @@ from playground.engine.frame import Frame
 from playground.engine.frame_record import FrameRecord, Recorded
 from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
-from playground.engine.picture_hash import Drawn
+from playground.engine.picture_hash import PictureHasher
 from playground.engine.plain_forms import PlainForms, warn
-from playground.engine.plan import Plan, Step, Window, continued, needed
+from playground.engine.plan import LoopIteration, Plan, Step, Window, needed
 from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.planner import Planner, repeated_in
 from playground.engine.results import Pool, Result, Wired
@@ -57,7 +58,7 @@ class Engine(Recorded):
     The context is the caller's, unless ``owns_context``. ``driver`` is "fragment",
     "compute", or "auto": compute for what gains by it (visits) where there is compute,
     fragment for the rest. Fast variants that need compute run unless it is "fragment".
-    ``notice`` is told, once each, why a fast variant does not run.
+    ``notice`` is called, once each, with why a fast variant does not run.
     """
 
     def __init__(
@@ -73,7 +74,8 @@ class Engine(Recorded):
             raise ContextError(f"driver '{driver}': expected one of {', '.join(DRIVERS)}")
         self.ctx = ctx
         self.info: ContextInfo = context_info(ctx)
-        if driver == COMPUTE and not self.info.compute:
+        self._computes = self.info.compute  # whether there are compute shaders
+        if driver == COMPUTE and not self._computes:
             raise ContextError(f"this context is {self.info.opengl}; compute needs 4.3")
         self.driver = driver
         self.runs: Counter[str] = Counter()  # how often each pass ran, by path
@@ -81,15 +83,15 @@ class Engine(Recorded):
         self.profiling = False
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
-        self.painted = PaintedFiles()  # what is painted in this process, and stands for its files
+        self.painted = PaintedFiles()  # painted in this process, in place of their files
         self.runner = Runner(ctx, self.info, self.pool, self.painted)
         self.planner = Planner()
         self.warnings = PlanWarnings()
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
-        self.plain_forms = PlainForms(notice, self.info.compute and driver != FRAGMENT)
+        self.plain_forms = PlainForms(notice, self._computes and driver != FRAGMENT)
         self._keys = KeyMaker(content=self.painted.content)
-        self._drawn = Drawn()
+        self._hasher = PictureHasher()
         self._finite = FiniteCheck(self)
         self._timer: Timer | None = None
         self._owns_context = owns_context
@@ -109,9 +111,9 @@ class Engine(Recorded):
         self.release()
 
     def release(self) -> None:
-        """Give back every texture and program, and the context if it is the engine's own.
+        """Release every texture and program, and the context if it is the engine's own.
 
-        Once is enough. With the context that is its own gone, nothing more can be drawn.
+        A second call does nothing. Once its own context is gone, nothing more can be drawn.
         """
         if self._released:
             return
@@ -135,7 +137,7 @@ class Engine(Recorded):
         largest: int = LARGEST_SIDE,
         interpolated: bool | None = None,
     ) -> Plan:
-        """Make a sketch, or that of a name or path, concrete for this engine; see ``make_plan``."""
+        """Make a sketch, or that of a name or path, concrete for this engine; see ``Planner.plan``."""
         self._refuse_released()
         return self.planner.plan(
             opened(sketch),
@@ -160,7 +162,7 @@ class Engine(Recorded):
         """Return the picture of a sketch, or of that of a name or path.
 
         ``size`` in pixels, ``time`` in seconds; ``steps`` stops repeated passes after so
-        many iterations, by path. What a stopped pass has not reached yet is interpolated where its
+        many iterations, by path. What a stopped pass has not computed yet is interpolated where its
         header says how (see ``between``); without ``interpolated`` it is shown as it is, 0.
         Raises ``PlaygroundError`` for any mistake in the sketch.
         """
@@ -178,9 +180,8 @@ class Engine(Recorded):
         interpolated: bool = True,
     ) -> moderngl.Texture:
         """Draw the sketch's picture, as ``render``; return its texture, which lives until the next frame."""
-        return self._draw_above_terrain(
-            opened(sketch), lambda seen: self.plan_for(seen, size, time, steps, interpolated=interpolated)
-        )
+        plan_of = partial(self.plan_for, size=size, time=time, steps=steps, interpolated=interpolated)
+        return self._draw_above_terrain(opened(sketch), plan_of)
 
     def draw_window(
         self,
@@ -195,19 +196,15 @@ class Engine(Recorded):
         The whole picture may have up to ``LARGEST_PICTURE`` pixels a side, more than any texture.
         Raises ``SketchError`` at a pass that cannot be drawn in parts (see ``window``).
         """
-        return self._draw_above_terrain(
-            opened(sketch), lambda seen: self.plan_for_window(seen, window, time, steps)
-        )
+        plan_of = partial(self.plan_for_window, window=window, time=time, steps=steps)
+        return self._draw_above_terrain(opened(sketch), plan_of)
 
     def _draw_above_terrain(self, sketch: Sketch, plan_of: Callable[[Sketch], Plan]) -> moderngl.Texture:
-        """Draw a sketch; where the eye stood under the terrain, draw it again from just above it.
-
-        That is told among the warnings, once for a sketch.
-        """
+        """Draw a sketch; where the eye is under the terrain, warn once, and draw again from just above it."""
         plan, before = plan_of(sketch), None
         camera = self.eye_height.raised_as_before(plan, self.keys_of)
         if camera is None:
-            texture = self._texture(plan, _shown(plan))
+            texture = self._texture(plan, plan.picture)
             with self.borrowed():
                 camera = self.eye_height.raised(plan, self.record.keys, self.record.results, self.ctx)
             if camera is None:
@@ -216,7 +213,7 @@ class Engine(Recorded):
         warning = Diagnostic(self.eye_height.message, shown(sketch.file), severity="warning")
         self.warnings.once(warning, "the eye's height")
         raised = plan_of(sketch.with_camera(camera))
-        texture = self._texture(raised, _shown(raised))
+        texture = self._texture(raised, raised.picture)
         if before is not None:
             self.record = self.record.plus(before)
         return texture
@@ -246,7 +243,7 @@ class Engine(Recorded):
     ) -> moderngl.Texture:
         """Return the texture of ``pass[.inner…][:output]``; it lives until the next frame.
 
-        Runs only what it needs. What a stopped pass has not reached is 0, unless ``interpolated``.
+        Runs only what it needs. What a stopped pass has not computed is 0, unless ``interpolated``.
         """
         plan = self.plan_for(sketch, size, time, steps, ref, interpolated=interpolated)
         return self._texture(plan, plan.flat.ref(ref, plan.sketch.name))
@@ -265,7 +262,7 @@ class Engine(Recorded):
 
         float32, (ny, nx) or (ny, nx, components), row 0 in the south; heights are 0..1
         (times ``relief`` for metres), colours and light linear. What a stopped pass has not
-        reached is 0, unless ``interpolated``.
+        computed is 0, unless ``interpolated``.
         """
         texture = self.texture(sketch, ref, size=size, time=time, steps=steps, interpolated=interpolated)
         return read_texture(texture)
@@ -285,9 +282,9 @@ class Engine(Recorded):
         found = opened(sketch)
         repeated = repeated_in(found, path)
         node = self.plan_for(found, size, time, {repeated: 0}).node(repeated)
-        assert node is not None  # steps keep fast variants from standing in for it
-        for turn in range(node.whole + 1):
-            yield turn, self.read(found, repeated, size=size, time=time, steps={repeated: turn})
+        assert node is not None  # no fast variant replaces a pass that is stopped
+        for done in range(node.whole + 1):
+            yield done, self.read(found, repeated, size=size, time=time, steps={repeated: done})
 
     def drawn(self) -> str:
         """Return a hash of what the last frame's picture was drawn from; "" before the first.
@@ -312,12 +309,12 @@ class Engine(Recorded):
         return self._finite.looks()
 
     def recall(self, plan: Plan) -> None:
-        """Have ``plan`` and ``results`` be those of an earlier frame again; what is kept of it does not run.
+        """Restore ``plan`` and ``results`` of an earlier frame; what is cached of it does not run.
 
         What ran for the last frame, and what it took, stays as it was.
         """
         before = self.record
-        self._texture(plan, _shown(plan))
+        self._texture(plan, plan.picture)
         self.record = self.record.counted_as(before)
 
     def fingerprint(
@@ -328,22 +325,17 @@ class Engine(Recorded):
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
     ) -> str:
-        """Return letters and digits that are the same for the same picture, without drawing it.
-
-        They stand for all that it depends on, the renderer included.
-        """
+        """Return a hash of all that a picture depends on, the renderer included, without drawing it."""
         plan = self.plan_for(sketch, size, time, steps, largest=LARGEST_PICTURE)
         with self._supposing(plan):
             made = f"{self._hash_of(plan)} {self.info.renderer} {self.info.opengl}"
         return blake2b(made.encode(), digest_size=16).hexdigest()
 
     def _hash_of(self, plan: Plan) -> str:
-        return self._drawn.hash_of(
-            plan, _shown(plan), self.driver_for, self.runner.given_for_key, continued(plan)
-        )
+        return self._hasher.hash_of(plan, self.driver_for, self.runner.given_for_key)
 
     def forget_unused(self) -> None:
-        """Drop what is kept but was not used for the last frame; without it, a film keeps all its frames."""
+        """Drop what is cached but not used for the last frame; without it, a film caches all its frames."""
         self.cache.drop_unused()
 
     def stale(
@@ -357,15 +349,15 @@ class Engine(Recorded):
     ) -> list[str]:
         """Return the paths of the passes that drawing the sketch's picture would run; nothing is run."""
         plan = self.plan_for(sketch, size, time, steps, interpolated=interpolated)
-        keys, nodes = self.keys_of(plan), needed(plan.nodes, _shown(plan))
+        keys, nodes = self.keys_of(plan), needed(plan.nodes, plan.picture)
         if self.disk_caching is not None:
-            nodes = self.disk_caching.would_run(self.cache, plan, keys, _shown(plan), self.painted)
+            nodes = self.disk_caching.would_run(self.cache, plan, keys, plan.picture, self.painted)
         return would_run(keys, self.cache, nodes, plan)
 
     def keys_of(self, plan: Plan) -> Keys:
         """Return what each pass's textures depend on: see ``cache_keys``."""
         with self._supposing(plan):
-            return self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key, continued(plan))
+            return self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
 
     @contextmanager
     def _supposing(self, plan: Plan) -> Iterator[None]:
@@ -381,28 +373,18 @@ class Engine(Recorded):
 
     def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
         """Run what a texture needs and return it, with the context left as it was found."""
-        self._make_current()
-        self.plain_forms.tell(plan.sketch, plan.lacking)
+        self.plain_forms.report(plan.sketch, plan.lacking)
         self.record = record = FrameRecord(plan)
         self.cache.begin()
-        self.runner.begin(plan)
-        goes_on = continued(plan)
-        keys = record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key, goes_on)
-
-        def make(
-            step: Step,
-            inputs: Mapping[str, Wired],
-            turn: tuple[int, int] | None,
-            start: Result | None,
-        ) -> Result:
-            return self._make(step, inputs, turn, start, step.path in goes_on)
-
-        execution = Execution(keys, self.cache, self.runner, make, plan.steps)
-        nodes = needed(plan.nodes, ref)
-        if self.disk_caching is not None:
-            nodes = self.disk_caching.begin(execution, plan, ref)
+        self.runner.look_at(plan)
+        self.runner.programs.frame += 1
+        record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
+        execution = Execution(record.keys, self.cache, self.runner, self._compute, plan.steps)
         with self.borrowed():
-            execution.run(nodes)
+            if self.disk_caching is not None:
+                execution.run(self.disk_caching.begin(execution, plan, ref))
+            else:
+                execution.run(needed(plan.nodes, ref))
         self.cache.end()
         record.results = execution.results
         self.warnings.look(plan)
@@ -410,62 +392,64 @@ class Engine(Recorded):
 
     @contextmanager
     def borrowed(self) -> Iterator[None]:
-        """Lend the context, made current, and have it as it was afterwards, whatever was drawn."""
+        """Lend the context, made current, and restore its framebuffer and samplers afterwards."""
         self._make_current()
         bound = self.ctx.fbo
         try:
             yield
         finally:
-            self.runner.end()
-            # What stays bound here is bound again by later calls, so it may not be one that goes.
+            self.runner.binder.tidy()
+            # What stays bound here is bound again by later calls, so it may not be a released one.
             (bound if bound is not None and _is_alive(bound) else self._default).use()
 
-    def _make(
+    def _compute(
         self,
         step: Step,
         inputs: Mapping[str, Wired],
-        turn: tuple[int, int] | None,
+        iteration: LoopIteration | None,
         start: Result | None,
-        keeps_surface: bool,
     ) -> Result:
-        record, first = self.record, start.turn if start else 0
-        fresh, drawn = self._objects(), self.runner.draws.drawn
+        """Run a step, and record that and how it ran."""
+        record, runner, first = self.record, self.runner, start.iterations if start else 0
+        continued = record.plan is not None and step.path in record.plan.continued
+        objects, drawn = self.pool.made + runner.programs.compiled, runner.draws.drawn
         timed = self._timer_of().measure(record.times, step.path) if self.profiling else nullcontext()
         with timed:
-            result = self.runner.run(
-                step, self.driver_for(step), inputs, turn=turn, start=start, keeps_surface=keeps_surface
+            result = runner.run(
+                step,
+                self.driver_for(step),
+                inputs,
+                iteration=iteration,
+                start=start,
+                keeps_surface=continued,
             )
-        if fresh != self._objects():
-            # What has run without a fault before will do so again, and asking waits for the driver.
-            fault = self.ctx.error
-            if fault != "GL_NO_ERROR":
-                raise OpenGLFault(f"pass '{step.path}': OpenGL reports {fault}")
+        if objects != self.pool.made + runner.programs.compiled:
+            # What has run without an error before will do so again, and a query waits for the driver.
+            error = self.ctx.error
+            if error != "GL_NO_ERROR":
+                raise OpenGLFault(f"pass '{step.path}': OpenGL reports {error}")
         self.runs[step.path] += 1
         record.ran.append(step.path)
         record.texels += step.size[0] * step.size[1] * max(step.repeat - first, 1)
-        record.triangles += self.runner.draws.drawn - drawn
+        record.triangles += runner.draws.drawn - drawn
         return result
-
-    def _objects(self) -> tuple[int, int]:
-        """Return how many textures and programs were ever made."""
-        return self.pool.made, self.runner.programs.compiled
 
     def driver_for(self, step: Step) -> str:
         """Choose by which driver the kernel of a step runs."""
         kernel = step.kernel
         if kernel.kind in ("compute", "plain_compute"):
-            if not self.info.compute:
+            if not self._computes:
                 message = f"'{kernel.name}' is a compute shader; this context is {self.info.opengl}"
                 raise ContextError(f"{message}, and compute needs 4.3")
             return COMPUTE
-        if kernel.kind != "kernel" or not self.info.compute or self.driver == FRAGMENT:
+        if kernel.kind != "kernel" or not self._computes or self.driver == FRAGMENT:
             return FRAGMENT
         return COMPUTE if self.driver == COMPUTE or kernel.visits else FRAGMENT
 
     def _make_current(self) -> None:
-        """Make this engine's context the one that OpenGL speaks to: there may be others in the process.
+        """Make this engine's context current: there may be others in the process.
 
-        It stays so, since glcontext's way back leaves no context at all.
+        It stays current, since glcontext's way back leaves none.
         """
         self._refuse_released()
         context: Any = self.ctx
@@ -485,11 +469,6 @@ class Engine(Recorded):
 def opened(sketch: Sketch | str | Path) -> Sketch:
     """Return the sketch itself, or the one of that name or path."""
     return sketch if isinstance(sketch, Sketch) else load(sketch)
-
-
-def _shown(plan: Plan) -> Ref:
-    """Return the texture that is the picture."""
-    return next(iter(plan.flat.outputs["view"].values()))
 
 
 def _is_alive(framebuffer: moderngl.Framebuffer) -> bool:

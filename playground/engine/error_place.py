@@ -1,4 +1,4 @@
-"""Have a mistake point at the line of the sketch that asks for what is wrong."""
+"""Place an error at the line of the sketch that it comes from."""
 
 from __future__ import annotations
 
@@ -13,21 +13,20 @@ from playground.sketch.model import PassSpec, Shot, Sketch
 def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
     """Return an error of a data file at the pass that names it, the file in the sentence.
 
-    Where a file was set for the pass from outside, the sketch's text is not at fault, and
-    the error stays as it is.
+    Where an override set the file, the sketch's text is right, and the error stays as it is.
     """
-    by_hand = any(
+    overridden = any(
         path.partition(".")[0] == spec.name and isinstance(value, str) for path, value in sketch.overrides
     )
-    if by_hand or not spec.file:
+    if overridden or not spec.file:
         return error
     found = "; ".join(f"{d.place}: {d.message}" if d.place else d.message for d in error.diagnostics)
     return DataError(found, file=spec.file, line=spec.line)
 
 
 @contextmanager
-def told_at(sketch: Sketch, shot: Shot) -> Iterator[None]:
-    """Have a mistake in what a shot asks for, as its steps, point at the shot."""
+def located_at(sketch: Sketch, shot: Shot) -> Iterator[None]:
+    """Place an error in what a shot sets, as its steps, at the shot's line."""
     try:
         yield
     except ParameterError as error:

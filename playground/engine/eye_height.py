@@ -1,7 +1,7 @@
-"""Keep the eye over the terrain: one look at the height that stands under it, and a camera raised over that.
+"""Keep the eye above the terrain: read the height under it, and return a camera raised above that.
 
 The terrain is what the first draw reads as its input ``height``, if that draw names ``relief``
-and the camera. Its texels are read once for each place of the eye; an eye beside the
+and the camera. Its texels are read once for each place of the eye; an eye outside the
 terrain is left where it is.
 """
 
@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from playground.engine.cache_keys import Keys
-from playground.engine.plan import Plan, Step
+from playground.engine.plan import Plan
 from playground.engine.results import Result
 from playground.sketch.flat import Ref
 from playground.sketch.model import Camera
@@ -23,21 +23,23 @@ from playground.sketch.model import Camera
 if TYPE_CHECKING:
     import moderngl
 
-CLEARANCE = 0.002  # over the ground, as a share of the eye's distance from its target: see ``terrain.camera``
-_TURNED = 89.0  # [degrees] of elevation, at most
+CLEARANCE = (
+    0.002  # above the ground, as a share of the eye's distance from its target: see ``terrain.camera``
+)
+_HIGHEST = 89.0  # [degrees] of elevation, at most
 
 
 class EyeHeight:
     """Reads the height under the eye of the last frame, and raises the eye over it."""
 
     def __init__(self) -> None:
-        self.raised_by = 0.0  # [m] by which the last frame's eye was raised; 0: it stood over the terrain
+        self.raised_by = 0.0  # [m] by which the last frame's eye was raised; 0: it was above the terrain
         self._read: tuple[tuple[int, float, float], float] | None = None  # texture and place → height there
         self._terrain_key = ""  # of the texture under the eye
 
     @property
     def message(self) -> str:
-        """What there is to say of the last frame's eye; "" if it was left where it stood."""
+        """The warning about the last frame's eye; "" if it was not raised."""
         if not self.raised_by:
             return ""
         return f"the eye stood under the terrain and was raised by {self.raised_by:.0f} m, to just above it"
@@ -45,12 +47,12 @@ class EyeHeight:
     def raised_as_before(self, plan: Plan, keys_of: Callable[[Plan], Keys]) -> Camera | None:
         """Return a camera over the terrain where the last frame's eye was raised over the same terrain.
 
-        ``keys_of`` gives the keys of a plan. None: the terrain is to be drawn and looked at first.
+        ``keys_of`` gives the keys of a plan. None: the terrain must be drawn and read first.
         """
-        source = _terrain_of(plan)
-        if source is None or not self.raised_by or self._read is None:
+        if not self.raised_by or self._read is None:
             return None
-        if self._terrain_key != keys_of(plan).steps[source.path]:
+        source = _terrain_of(plan)
+        if source is None or self._terrain_key != keys_of(plan).steps[source.path]:
             return None
         return self._over(plan, self._read[0][1:], self._read[1])
 
@@ -82,28 +84,24 @@ class EyeHeight:
         if not z < lowest:  # or no number
             return None
         self.raised_by = lowest - z
-        return _seen_from((x, y, lowest), plan)
+        return _camera_at((x, y, lowest), plan)
 
 
 def _place_of(plan: Plan) -> tuple[float, float] | None:
-    """Return where the eye stands over the terrain, in shares of its sides; None beside it."""
+    """Return where the eye is above the terrain, in shares of its sides; None outside it."""
     if plan.terrain.extent is None or plan.terrain.relief is None:
         return None
-    x, y = (at / side for at, side in zip(plan.eye.position, plan.terrain.extent, strict=False))
+    (east, north, _), (width, height) = plan.eye.position, plan.terrain.extent
+    x, y = east / width, north / height
     return (x, y) if 0 <= x <= 1 and 0 <= y <= 1 else None
 
 
 def _terrain_of(plan: Plan) -> Ref | None:
     for step in plan.walk():
-        source = dict(step.inputs).get("height")
-        if isinstance(source, Ref) and _draws_terrain(step):
-            return source
+        if step.kernel.kind == "draw" and isinstance(source := dict(step.inputs).get("height"), Ref):
+            if step.kernel.reads("relief") and step.kernel.reads("clip_from_world"):
+                return source
     return None
-
-
-def _draws_terrain(step: Step) -> bool:
-    kernel = step.kernel
-    return kernel.kind == "draw" and all(map(kernel.reads, ("relief", "clip_from_world")))
 
 
 def _height_at(share: tuple[float, float], result: Result, output: str, ctx: moderngl.Context) -> float:
@@ -120,7 +118,7 @@ def _height_at(share: tuple[float, float], result: Result, output: str, ctx: mod
     return float(np.array([1 - q, q]) @ corners.astype(np.float64) @ np.array([1 - p, p]))
 
 
-def _seen_from(position: tuple[float, float, float], plan: Plan) -> Camera:
+def _camera_at(position: tuple[float, float, float], plan: Plan) -> Camera:
     """Return the camera that looks at the plan's target from another place."""
     target = plan.eye.target
     east, north, up = (a - b for a, b in zip(position, target, strict=True))
@@ -129,7 +127,7 @@ def _seen_from(position: tuple[float, float, float], plan: Plan) -> Camera:
     return replace(
         camera,
         azimuth=math.degrees(math.atan2(east, north)) if level > 0 else camera.azimuth,
-        elevation=min(math.degrees(math.atan2(up, level)), _TURNED),
+        elevation=min(math.degrees(math.atan2(up, level)), _HIGHEST),
         distance=math.hypot(level, up),
         target=target,
     )

@@ -41,7 +41,7 @@ class FrameRecord:
 
 
 class Recorded:
-    """Whatever draws frames, as far as the last one is concerned."""
+    """The record of the last frame, for what draws frames."""
 
     def __init__(self) -> None:
         self.record = FrameRecord()  # of the last frame

@@ -1,7 +1,7 @@
 """Run what computes texels: a kernel by either driver, or a plain shader.
 
-A kernel that repeats writes two sets of textures in turn, reading one and writing the
-other; one with visits, in compute, changes its only set in place. One whose turns fill a
+A kernel that repeats writes two sets of textures alternately: it reads one and writes the
+other; one with visits, in compute, changes its only set in place. One whose iterations fill a
 lattice ever more closely fills, in fragment, as small a part of its textures as that takes.
 """
 
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.binder import Binder, has_unwired
-from playground.engine.plan import Step
+from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
@@ -42,17 +42,16 @@ class Job:
     step: Step
     given: Mapping[str, Any]  # what the engine gives, by name
     inputs: Mapping[str, Wired]
-    turn: tuple[int, int] | None = None  # of the loop around it, and its iterations in all
+    loop_iteration: LoopIteration | None = None  # of the loop around it
     start: Result | None = None  # the same step after fewer iterations, to go on from; it is used up
     samples: int = 1  # of a draw
     keeps_surface: bool = False  # a later draw goes on from this one
 
-    def count(self, program: Program, iteration: int, repeat: str, whole: int, turns: int = 1) -> None:
+    def count(self, program: Program, iteration: int, repeat: str, whole: int, at_once: int = 1) -> None:
         """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""
-        now, total = (iteration, whole) if repeat != "1" or self.turn is None else self.turn
-        program.set("iteration", now)
-        program.set("iterations", total)
-        program.set("until", now + turns)
+        own, around = (iteration, whole), self.loop_iteration
+        now, total = own if repeat != "1" or around is None else around
+        program.set_all({"iteration": now, "iterations": total, "until": now + at_once})
 
     def numbers(self, **more: Number) -> dict[str, Number]:
         """Return what the expressions of a header may name."""
@@ -83,7 +82,7 @@ class Kernels:
         unit = self.binder.bind(program, step, job.given, job.inputs)
         if driver == COMPUTE and step.kernel.visits:
             return self._in_place(job, program, state)
-        return self._by_turns(job, program, driver, state, unit)
+        return self._alternately(job, program, driver, state, unit)
 
     def program(self, job: Job, driver: str, *more: tuple[str, int]) -> Program:
         """Return the program of a step.
@@ -99,25 +98,39 @@ class Kernels:
             for p in kernel.parameters
             if p.type == "bool" or p.widget.kind == "menu"
         ]
-        for name in (i.name for i in kernel.inputs):
-            texture = job.inputs.get(name, NOT_WIRED).texture
+        for declared in kernel.inputs:
+            name, texture = declared.name, job.inputs.get(declared.name, NOT_WIRED).texture
             if kernel.reads(f"{WIRED}{name}"):
                 choices.append((f"{WIRED}{name}", int(texture is not None)))
             if kernel.reads(f"{MATCHES}{name}"):
-                choices.append(
-                    (f"{MATCHES}{name}", int(texture is not None and texture.size == job.step.size))
-                )
+                matches = texture is not None and texture.size == job.step.size
+                choices.append((f"{MATCHES}{name}", int(matches)))
         if reads_unwired(kernel):
             choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
         return self.programs.get(kernel, driver, (*choices, *more))
 
+    def draw_own(
+        self, shader: str, target: moderngl.Framebuffer, source: moderngl.Texture, **uniforms: Any
+    ) -> None:
+        """Fill a framebuffer by one of the engine's own fragment shaders, which reads a texture."""
+        target.use()
+        program = self.programs.own(own_shader(shader))
+        self.binder.texture(program, "k_picture", 0, source, Sampling())
+        program.set_all(uniforms)
+        program.fill()
+
+    def drawn_own(self, shader: str, result: Result, **uniforms: Any) -> Result:
+        """Return new textures, the caller's, each filled from that of a result as ``draw_own`` does."""
+        found = self.pool.take(result.size, result.outputs)
+        for output in result.outputs:
+            target = make_framebuffer(self.ctx, [found.textures[output.name]])
+            self.draw_own(shader, target, result.textures[output.name], **uniforms)
+            target.release()
+        return found
+
     def copy(self, target: moderngl.Framebuffer, size: tuple[int, int], texture: moderngl.Texture) -> None:
         """Fill a framebuffer with a texture, nearest texel for nearest."""
-        target.use()
-        program = self.programs.own(own_shader("copy.frag"))
-        self.binder.texture(program, "k_picture", 0, texture, Sampling())
-        program.set("k_size", size)
-        program.fill()
+        self.draw_own("copy.frag", target, texture, k_size=size)
 
     def empty(self, step: Step) -> Result:
         """Return the textures of a step, all zeros."""
@@ -138,20 +151,20 @@ class Kernels:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
                 program.set(parameter.name, value)
-            elif parameter.name in program or kernel.dialect:
+            elif parameter.name in program.uniforms or kernel.dialect:
                 texture = self.binder.file_texture(parameter, value, encoded=True)
                 sizes[parameter.name] = texture.size
                 unit = self.binder.texture(program, parameter.name, unit, texture, parameter.sampling)
         for declared in kernel.inputs:
             texture = self.binder.wired(declared, job.inputs)
             sizes[declared.name] = texture.size
-            if declared.name in program:
+            if declared.name in program.uniforms:
                 unit = self.binder.texture(program, declared.name, unit, texture, declared.sampling)
         origin = step.window.origin if step.window is not None else (0, 0)
         program.set(WINDOW, origin)
         program.set(PART, _shares(step.whole_size, origin, step.size))
         for name, meaning in kernel.usual:
-            if name in program:
+            if name in program.uniforms:
                 _set_fitting(program, name, usual[meaning] if meaning in usual else _size(meaning, sizes))
         fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}
         fed |= {declared.name for declared in kernel.inputs}
@@ -172,24 +185,24 @@ class Kernels:
         program.fill()
         return result
 
-    # ── turns ────────────────────────────────────────────────────────────────
+    # ── iterations ───────────────────────────────────────────────────────────
 
-    def _by_turns(
+    def _alternately(
         self, job: Job, program: Program, driver: str, state: Mapping[str, moderngl.Texture], unit: int
     ) -> Result:
         step, kernel = job.step, job.step.kernel
         groups = (-(-step.size[0] // LOCAL), -(-step.size[1] // LOCAL))
         before, result = job.start, None  # two sets of textures that change places
-        iteration = before.turn if before else 0
-        at_once = max(self._evaluated("at_once", kernel.at_once, job), 1)
+        iteration = before.iterations if before else 0
+        at_once = 1 if kernel.at_once == "1" else max(self._evaluated("at_once", kernel.at_once, job), 1)
         # Where there is something to begin with, texels off the lattice count as well.
         lattice = bool(kernel.stride) and driver == FRAGMENT and not state
         shift = 0
         while iteration < step.repeat:
-            turns = min(at_once, step.repeat - iteration)
+            count = min(at_once, step.repeat - iteration)
             result = self.pool.take(step.size, kernel.outputs)
             self.binder.previous(program, kernel, state, unit)
-            job.count(program, iteration, kernel.repeat, step.whole, turns)
+            job.count(program, iteration, kernel.repeat, step.whole, count)
             if driver == COMPUTE:
                 self.images(result, read=False)
                 program.run(*groups)
@@ -199,18 +212,19 @@ class Kernels:
                 program.set("k_shift", shift)
                 framebuffer = result.framebuffer(self.ctx)
                 framebuffer.use()
-                width, height = (((side - 1) >> shift) + 1 for side in step.size)
+                width, height = [((side - 1) >> shift) + 1 for side in step.size]
                 self.ctx.viewport = (0, 0, width, height)
                 self._fill(program)
                 self.ctx.viewport = (0, 0, *step.size)
             if before is not None:
                 self.pool.give(before)
             before, state = result, result.textures
-            iteration += turns
+            iteration += count
         assert before is not None
-        if shift:
-            before = self._spread(before, shift)
-        before.turn = step.repeat
+        if shift:  # each texel of the lattice goes to its place, with zeros between
+            close, before = before, self.drawn_own("spread.frag", before, k_shift=shift)
+            self.pool.give(close)
+        before.iterations = step.repeat
         return before
 
     def _shift(self, job: Job, iteration: int) -> int:
@@ -218,31 +232,15 @@ class Kernels:
         kernel = job.step.kernel
         stride = self._evaluated("stride", kernel.stride, job, iteration=iteration, iterations=job.step.whole)
         if stride < 1 or stride & (stride - 1):
-            message = f"stride '{kernel.stride}' gives {stride} for turn {iteration}"
+            message = f"stride '{kernel.stride}' gives {stride} for iteration {iteration}"
             raise kernel.error(f"pass '{job.step.path}': {message}; a power of two was expected")
         return stride.bit_length() - 1
 
     def _evaluated(self, what: str, text: str, job: Job, **more: Number) -> int:
-        if text == "1":
-            return 1
         try:
             return expressions.evaluate(text, job.numbers(**more))
         except ExpressionError as error:
             raise job.step.kernel.error(f"pass '{job.step.path}': {what} {error}") from None
-
-    def _spread(self, close: Result, shift: int) -> Result:
-        """Return textures with each texel of a lattice where it belongs, and zeros between."""
-        result = self.pool.take(close.size, close.outputs)
-        for output in close.outputs:
-            single = make_framebuffer(self.ctx, [result.textures[output.name]])
-            single.use()
-            program = self.programs.own(own_shader("spread.frag"))
-            self.binder.texture(program, "k_picture", 0, close.textures[output.name], Sampling())
-            program.set("k_shift", shift)
-            program.fill()
-            single.release()
-        self.pool.give(close)
-        return result
 
     def _fill(self, program: Program) -> None:
         """Draw over the whole of the bound framebuffer.
@@ -265,7 +263,7 @@ class Kernels:
         step, kernel = job.step, job.step.kernel
         result = job.start or self._untouched(step, state)
         self.images(result, read=True)
-        for iteration in range(result.turn, step.repeat):
+        for iteration in range(result.iterations, step.repeat):
             job.count(program, iteration, kernel.repeat, step.whole)
             names = job.numbers(iteration=iteration, iterations=step.whole)
             try:
@@ -276,7 +274,7 @@ class Kernels:
             if min(cells) >= 1:
                 program.set("k_cells", cells)
                 program.run(-(-cells[0] // LOCAL), -(-cells[1] // LOCAL))
-        result.turn = step.repeat
+        result.iterations = step.repeat
         return result
 
     def _initial(self, job: Job) -> dict[str, moderngl.Texture]:

@@ -71,7 +71,7 @@ class FiniteCheck:
         self.source = source
         self.looked_at = 0  # textures read for the last frame
         # What was found of each result, and after how many iterations: some go on in place.
-        self._seen: WeakKeyDictionary[Result, tuple[int, NotFinite | None]] = WeakKeyDictionary()
+        self._checked: WeakKeyDictionary[Result, tuple[int, NotFinite | None]] = WeakKeyDictionary()
         self._wide: dict[int, tuple[Kernel, Kernel]] = {}  # kernels with outputs of floating point
 
     def first(self) -> NotFinite | None:
@@ -92,11 +92,11 @@ class FiniteCheck:
             result = record.results.get(step.path)
             if result is None:
                 continue
-            turn, found = self._seen.get(result, (-1, None))
-            if turn != result.turn:
+            iterations, found = self._checked.get(result, (-1, None))
+            if iterations != result.iterations:
                 with self.source.borrowed():
                     found = self._look(step, result, within)
-                self._seen[result] = result.turn, found
+                self._checked[result] = result.iterations, found
             # Another sketch may have the same result under another name.
             yield found if found is None else replace(found, path=step.path)
 

@@ -1,7 +1,7 @@
-"""Pictures that are painted in this process: they stand for their files, and only what changed goes over.
+"""Images that are painted in this process: they replace their files, and only what changed is uploaded.
 
 A file's contents are hashed, decoded and uploaded whole, which is too much for every step of a
-stroke. What is painted has a version in place of a hash, and a texture that is kept and written to
+stroke. What is painted has a version in place of a hash, and a texture that is written to
 where the brush has been.
 """
 
@@ -13,17 +13,17 @@ from typing import TYPE_CHECKING, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.engine.files import content_hash
 from playground.gpu.textures import make_texture, split_format, write_texels, write_texture
+from playground.images.content_hash import content_hash
 
 if TYPE_CHECKING:
     import moderngl
 
-_MOST = 4  # textures kept
+_MOST = 4  # textures cached
 
 
 class Painted(Protocol):
-    """One picture."""
+    """One image."""
 
     @property
     def token(self) -> str:
@@ -45,54 +45,54 @@ class Painted(Protocol):
 
 
 class PaintedFiles(dict[Path, Painted]):
-    """What is painted, by the file that it stands for."""
+    """What is painted, by the file that it replaces."""
 
     def of(self, path: Path) -> Painted | None:
-        """Return what stands for a file; None where the file itself is read."""
+        """Return what replaces a file; None where the file itself is read."""
         painted = self.get(path)
         return painted if painted is not None and painted.holds() else None
 
     def content(self, path: Path) -> str:
-        """Return what tells a file's contents from others: see ``content_hash``."""
+        """Return a hash of a file's contents, or the version of what is painted over it."""
         painted = self.of(path)
         return content_hash(path) if painted is None else f"painted {painted.token} {painted.version}"
 
 
 class PaintedTextures:
-    """A texture of each picture, on one context."""
+    """A texture of each painted image, on one context."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self._ctx = ctx
-        self._kept: dict[tuple[str, str], tuple[moderngl.Texture, int]] = {}  # and the version it shows
+        self._textures: dict[tuple[str, str], tuple[moderngl.Texture, int]] = {}  # and the version it shows
         self.uploaded = 0  # texels so far
 
     def texture_of(self, painted: Painted, form: str) -> moderngl.Texture:
-        """Return the texture of a picture in a format of four channels, its changes written to it."""
+        """Return the texture of an image in a format of four channels, its changes written to it."""
         key, pixels = (painted.token, form), painted.pixels
-        known = self._kept.pop(key, None)
+        known = self._textures.pop(key, None)
         if known is None:
-            while len(self._kept) >= _MOST:
-                self._kept.pop(next(iter(self._kept)))[0].release()
+            while len(self._textures) >= _MOST:
+                self._textures.pop(next(iter(self._textures)))[0].release()
             texture = make_texture(self._ctx, (pixels.shape[1], pixels.shape[0]), form)
-            write_texture(texture, _as_told(pixels, form))
+            write_texture(texture, _in_format(pixels, form))
             self.uploaded += pixels.shape[0] * pixels.shape[1]
         else:
             texture, version = known
             rows, columns = painted.changed_since(version)
             part = pixels[rows, columns]
             if part.size:
-                write_texels(texture, (columns.start, rows.start), _as_told(part, form))
+                write_texels(texture, (columns.start, rows.start), _in_format(part, form))
                 self.uploaded += part.shape[0] * part.shape[1]
-        self._kept[key] = texture, painted.version
+        self._textures[key] = texture, painted.version
         return texture
 
     def release(self) -> None:
-        """Give the textures back."""
-        for texture, _ in self._kept.values():
+        """Release the textures."""
+        for texture, _ in self._textures.values():
             texture.release()
-        self._kept.clear()
+        self._textures.clear()
 
 
-def _as_told(pixels: NDArray[np.uint8], form: str) -> NDArray[np.uint8] | NDArray[np.float32]:
+def _in_format(pixels: NDArray[np.uint8], form: str) -> NDArray[np.uint8] | NDArray[np.float32]:
     """Return pixels as a texture's format takes them: bytes for bytes, else 0..1."""
     return pixels if split_format(form)[1] == "f1" else np.asarray(pixels / np.float32(255), np.float32)

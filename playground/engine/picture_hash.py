@@ -19,31 +19,25 @@ from typing import Any
 from playground.engine.cache_keys import KeyMaker
 from playground.engine.plan import Plan, Step
 from playground.sketch.canonical import compiled_text
-from playground.sketch.flat import Ref
 
 _DIGITS = 9
 
 
-class Drawn:
-    """Makes the hashes; remembers what kernels' texts say."""
+class PictureHasher:
+    """Computes the hashes; remembers what kernels' texts say."""
 
     def __init__(self) -> None:
         self._keys = KeyMaker(lambda kernel: compiled_text(kernel.source.code))
 
     def hash_of(
-        self,
-        plan: Plan,
-        ref: Ref,
-        driver: Callable[[Step], str],
-        given: Callable[[Step], Mapping[str, Any]],
-        continued: frozenset[str],
+        self, plan: Plan, driver: Callable[[Step], str], given: Callable[[Step], Mapping[str, Any]]
     ) -> str:
-        """Return the hash of what a texture of a plan is made from; arguments as ``KeyMaker`` takes them."""
+        """Return the hash of what a plan's picture is made from; arguments as ``KeyMaker`` takes them."""
 
         def smoothed(step: Step) -> dict[str, Any]:
             return {name: rounded(value) for name, value in given(step).items()}
 
-        return self._keys.keys_of(plan, driver, smoothed, continued).steps[ref.path]
+        return self._keys.keys_of(plan, driver, smoothed).steps[plan.picture.path]
 
 
 def rounded(value: Any) -> Any:

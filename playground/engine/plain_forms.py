@@ -1,4 +1,4 @@
-"""Return where a technique runs in its plain form, though there is a fast variant: once for each."""
+"""Report where a technique runs in its plain form, though there is a fast variant: once for each."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ def warn(sentence: str) -> None:
 
 
 def silent(sentence: str) -> None:
-    """Say nothing: somebody else does."""
+    """Report nothing: the caller does."""
 
 
 class PlainForms:
-    """Tells ``notice`` of each fast variant that does not run; ``compute`` says whether all kinds could."""
+    """Calls ``notice`` for each fast variant that does not run; ``compute`` says whether all kinds could."""
 
     def __init__(self, notice: Callable[[str], None], compute: bool) -> None:
         self.notice = notice
         self.kinds = tuple(kind for kind in VARIANTS if compute or kind != "compute")
-        self._told: set[str] = set()
+        self._reported: set[str] = set()
 
-    def tell(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:
+    def report(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:
         """Report what is new of a sketch that is drawn; ``lacking`` are sentences of its plan."""
         for sentence in (*left_out(sketch, self.kinds), *lacking):
-            if sentence not in self._told:
-                self._told.add(sentence)
+            if sentence not in self._reported:
+                self._reported.add(sentence)
                 self.notice(sentence)

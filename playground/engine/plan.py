@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from playground.engine.between import Between
 from playground.sketch.flat import Flat, Ref, Source
 from playground.sketch.model import Kernel, PassSpec, Sketch, Value
 from playground.terrain.camera import Eye
 from playground.terrain.sources import Terrain
+
+LoopIteration = tuple[int, int]
+"""An iteration of a loop, from 0, and its iterations in all."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +80,17 @@ class Plan:
         """Return every step, those inside loops included."""
         return walk(self.nodes)
 
+    @cached_property
+    def picture(self) -> Ref:
+        """The texture that is the picture."""
+        return next(iter(self.flat.outputs["view"].values()))
+
+    @cached_property
+    def continued(self) -> frozenset[str]:
+        """The paths of the draws that a later draw goes on from, with their samples and depth."""
+        inputs = [each for step in self.walk() if step.kernel.kind == "draw" for each in step.inputs]
+        return frozenset([s.path for name, s in inputs if name == "initial" and isinstance(s, Ref)])
+
     def step(self, path: str) -> Step | None:
         """Return the step of that path, if there is one."""
         return next((s for s in self.walk() if s.path == path), None)
@@ -106,28 +121,16 @@ def every_node(nodes: tuple[PlanNode, ...]) -> list[PlanNode]:
     return found
 
 
-def continued(plan: Plan) -> frozenset[str]:
-    """Return the paths of the draws that a later draw goes on from, with their samples and depth."""
-    found = set()
-    for step in plan.walk():
-        if step.kernel.kind == "draw":
-            found |= {s.path for name, s in step.inputs if name == "initial" and isinstance(s, Ref)}
-    return frozenset(found)
-
-
 def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
     """Return the nodes that a texture depends on, in order."""
     wanted = {ref.path}
-    kept: list[PlanNode] = []
+    found: list[PlanNode] = []
     for node in reversed(nodes):
-        if isinstance(node, Step):
-            if node.path in wanted:
-                kept.append(node)
-                wanted |= {source.path for _, source in node.inputs if isinstance(source, Ref)}
-        elif not wanted.isdisjoint([step.path for step in walk(node.body)]):
-            kept.append(node)
-            wanted |= {source.path for source in sources_of(node) if isinstance(source, Ref)}
-    return kept[::-1]
+        inside = [node] if isinstance(node, Step) else walk(node.body)
+        if not wanted.isdisjoint([step.path for step in inside]):
+            found.append(node)
+            wanted.update([source.path for source in sources_of(node) if isinstance(source, Ref)])
+    return found[::-1]
 
 
 def sources_of(node: PlanNode) -> list[Source]:

@@ -1,4 +1,4 @@
-"""What a plan is made for besides a graph and its values, and checks of what a caller gives."""
+"""What a plan is made for besides a graph and its values, and checks of a caller's arguments."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from numbers import Integral, Real
 from playground.errors import ParameterError
 from playground.terrain.sources import Terrain
 
-DEFAULT_SIZE = (513, 513)  # texels of a terrain of which nothing says more
+DEFAULT_SIZE = (513, 513)  # texels of a terrain whose size nothing says
 DEFAULT_EXTENT = 10_240.0  # [m] from west to east
 DEFAULT_RELIEF = 1_800.0  # [m]
 
@@ -30,7 +30,7 @@ class PlanRequest:
 def checked_pixels(size: object, largest: int) -> tuple[int, int]:
     """Return width and height of a picture; raise ``ParameterError`` unless 1..``largest`` a side."""
     found = tuple(size) if isinstance(size, Iterable) and not isinstance(size, str) else ()
-    if len(found) != 2 or not all(isinstance(n, Integral) and not isinstance(n, bool) for n in found):
+    if len(found) != 2 or not all([isinstance(n, Integral) and not isinstance(n, bool) for n in found]):
         raise ParameterError(f"size {size!r}: expected two whole numbers, width and height in pixels")
     width, height = int(found[0]), int(found[1])
     if not (1 <= width <= largest and 1 <= height <= largest):

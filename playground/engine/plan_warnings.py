@@ -1,4 +1,4 @@
-"""Report what a plan's texts and files leave to be known, though they can be drawn: each warning once."""
+"""Report the warnings of a plan's texts and files, which can be drawn: each warning once."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from playground.paths import GLSL, shown
 from playground.sketch.dialects.foreign import unfed_warnings
 from playground.sketch.flat import Ref
 from playground.sketch.model import Graph, Kernel, kernels_of
-from playground.sketch.warnings import unheeded, warnings_of_kernel
+from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
 from playground.terrain.sources import source_kind
 
 
 class PlanWarnings:
-    """Tells whoever wants to know each warning of what is drawn, once."""
+    """Reports each warning of what is drawn, once."""
 
     def __init__(self) -> None:
-        self.tell: Callable[[Diagnostic], None] | None = None  # nobody wants to know
-        self._told: set[tuple[str, str]] = set()  # about what, and of which file
+        self.report: Callable[[Diagnostic], None] | None = None  # None: nothing is reported
+        self._reported: set[tuple[str, str]] = set()  # about what, and of which file
         self._graph: Graph | None = None  # whose kernels were looked at last
 
     def look(self, plan: Plan) -> None:
-        """Report the warnings of a plan that were not told yet."""
-        if self.tell is None:
+        """Report the warnings of a plan that were not reported yet."""
+        if self.report is None:
             return
-        found = list(source_warnings(plan))
+        found = [*former_names_used(plan.sketch), *source_warnings(plan)]
         if plan.sketch.graph is not self._graph:
             self._graph = plan.sketch.graph
             found += kernel_warnings(plan.sketch.graph, unheeded)
@@ -36,10 +36,10 @@ class PlanWarnings:
             self.once(warning, warning.message)
 
     def once(self, warning: Diagnostic, about: str) -> None:
-        """Report a warning, unless one of its file was told that is about the same."""
-        if self.tell is not None and (about, warning.file) not in self._told:
-            self._told.add((about, warning.file))
-            self.tell(warning)
+        """Report a warning, unless one of its file about the same was reported."""
+        if self.report is not None and (about, warning.file) not in self._reported:
+            self._reported.add((about, warning.file))
+            self.report(warning)
 
 
 def kernel_warnings(
@@ -63,7 +63,7 @@ def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
         if step.kernel.kind == "source":
             spec = plan.flat.user(step.path)
             notes: tuple[str, ...] = ()
-            with suppress(DataError):  # the file has gone since; whoever draws says so
+            with suppress(DataError):  # the file has gone since; drawing reports it
                 notes = source_kind(step.kernel.registry).notes(step.values)
             for note in notes:
                 file = spec.file or shown(step.kernel.path)

@@ -8,8 +8,9 @@ size or a count names a changed value or the time, or where the terrain's file i
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import zip_longest
 from pathlib import Path
 
@@ -32,22 +33,24 @@ from playground.paths import shown
 from playground.sketch import expressions
 from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node
+from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
-from playground.sketch.repeats import repeated_path, repeated_paths
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Terrain, source_kind
 
 MAX_REPEAT = 1_000_000
+_AXES = {"x": 0, "y": 1}
+Names = Mapping[str, Number] | Callable[[str], Number]
+"""The numbers of the names in an expression."""
 _MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
 
 
 @dataclass(frozen=True, slots=True)
-class _Known:
-    """A plan, and what it would be made anew for."""
+class _LastPlan:
+    """The last plan of a graph, and what it depends on."""
 
     plan: Plan
     values: Mapping[str, Mapping[str, Value]]  # of each leaf, by its path
@@ -61,7 +64,7 @@ class Planner:
 
     def __init__(self) -> None:
         self.made_whole = 0  # plans that were not made of an earlier one
-        self._plans: OrderedDict[object, _Known] = OrderedDict()
+        self._plans: OrderedDict[object, _LastPlan] = OrderedDict()
 
     def plan(
         self,
@@ -75,7 +78,16 @@ class Planner:
         interpolated: bool | None = None,
         largest: int = LARGEST_SIDE,
     ) -> Plan:
-        """Make a plan as ``make_plan`` does."""
+        """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
+
+        ``variants`` are the kinds of fast variants that may replace techniques, but not
+        those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
+        path (that of a technique will do where one pass inside it repeats), and no later than they
+        end unless their number changes with time or keyframes. What a stopped pass has not computed is
+        ``interpolated`` in pictures and not in what is ``wanted``, unless given (see ``between``).
+        Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
+        kernel's header.
+        """
         size, seconds = checked_pixels(frame_size, largest), checked_seconds(time)
         varies = any(keyframe.values for keyframe in sketch.keyframes)
         sketch = sketch.at(seconds)
@@ -86,79 +98,36 @@ class Planner:
         terrain = Terrain(sketch.size, sketch.extent, sketch.relief, sketch.base_elevation)
         request = PlanRequest(size, tuple(stopped.items()), fills, "compute" in variants, varies, terrain)
         place = (Identity(sketch.graph), sketch.folder, sketch.plain, tuple(variants), wanted, request)
-        known = self._plans.pop(place, None)
 
-        def planning(refused: Iterable[str], known: _Known | None = None) -> _Planning:
-            flat = flatten(
+        def flat(refused: Iterable[str], before: Flat | None = None) -> Flat:
+            return flatten(
                 sketch,
                 variants=variants,
                 opened=(wanted,) if wanted else (),
                 stopped=tuple(stopped),
                 refused=tuple(refused),
-                before=known.plan.flat if known else None,
+                before=before,
             )
-            return _Planning(sketch, flat, request, seconds, known)
 
-        found = planning(known.refusals, known).renewed() if known else None
+        found = None
+        if known := self._plans.pop(place, None):
+            now = flat(known.refusals, known.plan.flat)
+            found = _Planning(sketch, now, request, seconds, known=known).renewed()
         if found is None:
             self.made_whole += 1
-            refused: dict[str, str] = {}
-            named: set[str] = set()  # what the sizes of refused variants name
-            by_time = False
-            attempt = planning(())
-            while more := {path: why for path, why in attempt.refusals().items() if path not in refused}:
+            making, refused = _Planning(sketch, flat(()), request, seconds), dict[str, str]()
+            while more := making.refusals(refused):
                 refused |= more
-                copied = attempt.flat.shape.copied
-                named |= {copied.get(path, path) for path in attempt.named}
-                by_time |= attempt.by_time
-                attempt = planning(refused)
-            found = attempt.whole()
-            if refused:
-                known_names = found.named | (named & found.plan.flat.values.keys())
-                plan = replace(found.plan, lacking=(*found.plan.lacking, *refused.values()))
-                by_time |= found.by_time
-                found = replace(found, plan=plan, named=known_names, by_time=by_time, refusals=refused)
+                making = _Planning(sketch, flat(refused), request, seconds, after=making)
+            found = making.whole(refused)
         self._plans[place] = found
         while len(self._plans) > _MOST_PLANS:
             self._plans.popitem(last=False)
         return found.plan
 
 
-def make_plan(
-    sketch: Sketch,
-    *,
-    frame_size: tuple[int, int],
-    time: float = 0.0,
-    variants: Collection[str] = (),
-    steps: Mapping[str, int] | None = None,
-    wanted: str = "",
-    interpolated: bool | None = None,
-    largest: int = LARGEST_SIDE,
-) -> Plan:
-    """Make a sketch concrete for one frame of at most ``largest`` pixels a side, its keyframes included.
-
-    ``variants`` are the kinds of fast variants that may replace techniques, but not
-    those around the pass that is ``wanted`` itself; ``steps`` stops repeated passes early, by
-    path (that of a technique will do where one pass inside it repeats), and no later than they
-    end unless their number changes with time or keyframes. What a stopped pass has not reached is
-    ``interpolated`` in pictures and not in what is ``wanted``, unless told (see ``between``).
-    Raises ``SketchError`` or ``DataError`` at the pass that is wrong, ``ShaderError`` at a
-    kernel's header.
-    """
-    return Planner().plan(
-        sketch,
-        frame_size=frame_size,
-        time=time,
-        variants=variants,
-        steps=steps,
-        wanted=wanted,
-        interpolated=interpolated,
-        largest=largest,
-    )
-
-
 def repeated_in(sketch: Sketch, path: str) -> str:
-    """Return the path of the repeated pass that a path stands for, or raise ``SketchError``.
+    """Return the path of the repeated pass that a path means, or raise ``SketchError``.
 
     It is the path itself, or that of the only pass that repeats inside a technique.
     """
@@ -173,17 +142,27 @@ def repeated_in(sketch: Sketch, path: str) -> str:
 def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
     """Return the iterations in all of every repeated kernel and loop, by path; what draws is left out."""
     found: dict[str, int] = {}
-    for node in every_node(make_plan(sketch, frame_size=frame_size, time=time).nodes):
+    for node in every_node(Planner().plan(sketch, frame_size=frame_size, time=time).nodes):
         if isinstance(node, LoopStep) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
             found.setdefault(node.path, node.whole)
     return found
 
 
 class _Planning:
-    """One plan being made; ``known`` is the last of the same graph, made for the same request."""
+    """One plan being made.
+
+    ``known`` is the last of the same graph, made for the same request; ``after``: an attempt in which
+    fast variants refused their sizes, which depends on what those sizes name.
+    """
 
     def __init__(
-        self, sketch: Sketch, flat: Flat, request: PlanRequest, time: float, known: _Known | None
+        self,
+        sketch: Sketch,
+        flat: Flat,
+        request: PlanRequest,
+        time: float,
+        known: _LastPlan | None = None,
+        after: _Planning | None = None,
     ) -> None:
         self.sketch = sketch
         self.flat = flat
@@ -191,9 +170,10 @@ class _Planning:
         self.time = time
         self.stopped = dict(request.stopped)
         self.known = known if known and known.plan.flat.shape is flat.shape else None
-        self.lacking: dict[str, None] = {}  # techniques that asked for compute shaders, in vain, by path
-        self.named: set[str] = set()
-        self.by_time = False
+        self.lacking: dict[str, None] = {}  # techniques that lack compute shaders, by path
+        copied = after.flat.shape.copied if after else {}
+        self.named: set[str] = {copied.get(path, path) for path in after.named} if after else set()
+        self.by_time: bool = after is not None and after.by_time
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
         self._values: dict[str, Mapping[str, Value]] = {}
@@ -202,12 +182,12 @@ class _Planning:
         for leaf, earlier in zip_longest(flat.leaves, same):
             values = before[leaf.path] if leaf is earlier else {}
             if leaf is not earlier or leaf.kernel.file_parameters:
-                now = self._with_files(leaf)  # another file may have come to stand before the one known
+                now = self._with_files(leaf)  # a file may have come that is found first
                 values = values if values == now else now
             self._values[leaf.path] = values
         self.terrain = self._described()
 
-    def renewed(self) -> _Known | None:
+    def renewed(self) -> _LastPlan | None:
         """Return the known plan with the values of now; None where it has to be made whole."""
         known = self.known
         if (
@@ -232,8 +212,8 @@ class _Planning:
         values = self._values[node.path]
         return node if node.values is values else replace(node, values=values)
 
-    def whole(self) -> _Known:
-        """Make the plan from nothing."""
+    def whole(self, refused: Mapping[str, str]) -> _LastPlan:
+        """Make the plan from nothing; ``refused``: the sentences that ``refusals`` gave, by technique."""
         # What has the terrain's own size first: the others' sizes follow from it.
         for leaf in self.flat.leaves:
             if leaf.spec.size is None:
@@ -254,16 +234,20 @@ class _Planning:
             time=self.time,
             steps=self.stopped,
             interpolated=self.request.fills,
-            lacking=lacking,
+            lacking=(*lacking, *refused.values()),
         )
-        return _Known(plan, self._values, frozenset(self.named), self.by_time, {})
+        named = frozenset(self.named & self.flat.values.keys())
+        return _LastPlan(plan, self._values, named, self.by_time, refused)
 
-    def refusals(self) -> dict[str, str]:
-        """Return a sentence for each technique whose fast variant does not take its size, by its path."""
+    def refusals(self, before: Collection[str]) -> dict[str, str]:
+        """Return a sentence for each technique whose fast variant does not take its size, by its path.
+
+        Those of ``before`` are left out.
+        """
         found: dict[str, str] = {}
         for leaf in self.flat.leaves:
             path, accepts = sizes_of_variant(leaf, self.flat)
-            if accepts and path not in found:
+            if accepts and path not in found and path not in before:
                 size = self._size_of_leaf(leaf)
                 if not expressions.is_accepted(accepts, size):
                     found[path] = (
@@ -280,7 +264,8 @@ class _Planning:
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
             prefix = node.path.rpartition(".")[0]
-            whole = self._count(node.repeat, node.spec.name, node.spec, Names(self, prefix, node.spec))
+            names = partial(self._number, prefix, node.spec)
+            whole = self._count(node.repeat, node.spec.name, node.spec, names)
             count = self._stopped(node.path, whole, node.repeat)
             body = tuple(self._node(inside) for inside in node.body)
             return LoopStep(
@@ -290,13 +275,15 @@ class _Planning:
         size = self._size_of_leaf(node)
         values = self._values[node.path]
         self._refuse(node, size)
-        names: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
-        names |= {k: v for k, v in values.items() if isinstance(v, int | float)}
-        self._note_names(node)
-        whole = self._count(kernel.repeat, node.path, kernel, names)
-        # Where a kernel that repeats stands in a loop of the same path, the loop is what stops.
+        numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
+        numbers |= {k: v for k, v in values.items() if isinstance(v, int | float)}
+        if kernel.repeat != "1" or kernel.stride:
+            self._note_names(node)
+        whole = 1 if kernel.repeat == "1" else self._count(kernel.repeat, node.path, kernel, numbers)
+        # Of a kernel that repeats in a loop of the same path, the loop is what stops.
         repeat = whole if node.spec.repeat else self._stopped(node.path, whole, kernel.repeat)
-        between = between_of(node, repeat, whole, names) if self.request.fills else None
+        fills = self.request.fills and kernel.between
+        between = between_of(node, repeat, whole, numbers) if fills else None
         return Step(
             path=node.path,
             kernel=kernel,
@@ -311,24 +298,21 @@ class _Planning:
 
     def _note_names(self, leaf: Leaf) -> None:
         """Note what a kernel's own counts name."""
-        texts = [text for text in (leaf.kernel.repeat, leaf.kernel.stride) if text not in ("", "1")]
-        names = frozenset[str]().union(*map(expressions.names_in, texts))
+        names = frozenset[str]()
+        for text in (leaf.kernel.repeat, leaf.kernel.stride):
+            names |= expressions.names_in(text) if text else names
         self.by_time |= "time" in names
         self.named |= {path for name, path in self.flat.shape.paths[leaf.path] if name in names}
 
     def _stopped(self, path: str, whole: int, repeat: str) -> int:
         """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
-        asked = self.stopped.get(path, whole)
-        if asked > whole and not self.request.varies and "time" not in expressions.names_in(repeat):
-            raise ParameterError(f"steps: '{path}' stops after {asked} steps, but it has {whole} in all")
-        return min(asked, whole)
+        steps = self.stopped.get(path, whole)
+        if steps > whole and not self.request.varies and "time" not in expressions.names_in(repeat):
+            raise ParameterError(f"steps: '{path}' stops after {steps} steps, but it has {whole} in all")
+        return min(steps, whole)
 
-    def _count(
-        self, text: str, name: str, owner: PassSpec | Kernel, names: Mapping[str, Number] | Names
-    ) -> int:
+    def _count(self, text: str, name: str, owner: PassSpec | Kernel, names: Names) -> int:
         """Return how many iterations; ``owner`` is what says so, and where a mistake is."""
-        if text == "1":
-            return 1
         try:
             count = expressions.evaluate(text, names)
         except ExpressionError as error:
@@ -415,11 +399,11 @@ class _Planning:
         if path in self._open:
             raise spec.error(f"the sizes of {' and '.join(self._open)} depend on each other")
         self._open.append(path)
-        base = self._base(path, prefix)
+        base = self._size_around(path, prefix)
         size = base
         if spec.size is not None:
             try:
-                names = Names(self, prefix, spec)
+                names = partial(self._number, prefix, spec)
                 size = (expressions.evaluate(spec.size[0], names), expressions.evaluate(spec.size[1], names))
             except ExpressionError as error:
                 raise spec.error(f"pass '{spec.name}': size {error}") from None
@@ -432,60 +416,54 @@ class _Planning:
         self._sizes[path] = size
         return size
 
-    def _base(self, path: str, prefix: str) -> tuple[int, int]:
+    def _size_around(self, path: str, prefix: str) -> tuple[int, int]:
+        """Return the size that a pass has unless it says another: that of the technique around it."""
         if prefix:
             return self.size_of(prefix)
         assert self.terrain.size is not None
         return self.request.frame_size if path == "view" else self.terrain.size
 
+    def _number(self, prefix: str, spec: PassSpec, name: str) -> Number:
+        """Return the number of a name in an expression of a pass: a size, or a parameter around it.
 
-class Names:
-    """What names stand for in an expression of a pass: sizes, and the parameters around it."""
-
-    def __init__(self, planner: _Planning, prefix: str, spec: PassSpec) -> None:
-        self.planner = planner
-        self.prefix = prefix
-        self.spec = spec
-
-    def __call__(self, name: str) -> Number:
-        """Return the number of a name, or raise ``KeyError``."""
-        planner = self.planner
+        Raises ``KeyError`` for any other name.
+        """
         if name == "time":
-            planner.by_time = True
-            return planner.time
-        axes = {"x": 0, "y": 1}
+            self.by_time = True
+            return self.time
         head, _, axis = name.rpartition(".")
-        if axis in axes and head == "size":
-            path = f"{self.prefix}.{self.spec.name}" if self.prefix else self.spec.name
-            return planner._base(path, self.prefix)[axes[axis]]
-        if axis in axes and head.endswith(".size"):
-            return planner.size_of(self._path_of(head.removesuffix(".size")))[axes[axis]]
-        graph = planner.flat.graphs[self.prefix]
+        if axis in _AXES and head == "size":
+            return self._size_around(_inside(prefix, spec.name), prefix)[_AXES[axis]]
+        if axis in _AXES and head.endswith(".size"):
+            return self.size_of(self._path_of(prefix, head.removesuffix(".size")))[_AXES[axis]]
         try:
-            target = resolve(graph, name)[0].path
+            target = resolve(self.flat.graphs[prefix], name)[0].path
         except PlaygroundError:
             if name != "compute":
                 raise KeyError(name) from None
-            if not planner.request.compute:
-                planner.lacking[self.prefix] = None
-            return int(planner.request.compute)
-        path = f"{self.prefix}.{target}" if self.prefix else target
-        planner.named.add(path)
-        value = planner.flat.values[path]
+            if not self.request.compute:
+                self.lacking[prefix] = None
+            return int(self.request.compute)
+        path = _inside(prefix, target)
+        self.named.add(path)
+        value = self.flat.values[path]
         if not isinstance(value, int | float):
             raise KeyError(name)
         return value
 
-    def _path_of(self, name: str) -> str:
-        """Return the path of the pass, or of what feeds the technique's input, that a name stands for."""
-        flat = self.planner.flat
-        path = f"{self.prefix}.{name}" if self.prefix else name
-        if path in flat.specs:
+    def _path_of(self, prefix: str, name: str) -> str:
+        """Return the path of the pass of a name, or of what feeds the technique's input of that name."""
+        path = _inside(prefix, name)
+        if path in self.flat.specs:
             return path
-        source = flat.wires[self.prefix][name]
+        source = self.flat.wires[prefix][name]
         if isinstance(source, Fed):
-            output = dict(flat.specs[source.loop].feedback)[source.name]
-            source = flat.outputs[source.loop][output]
+            output = dict(self.flat.specs[source.loop].feedback)[source.name]
+            source = self.flat.outputs[source.loop][output]
         if source is None:
             raise KeyError(name)
         return source.path
+
+
+def _inside(prefix: str, name: str) -> str:
+    return f"{prefix}.{name}" if prefix else name

@@ -1,4 +1,4 @@
-"""Keep compiled programs: one for each text, for as long as it is used.
+"""Cache compiled programs: one for each text, for as long as it is used.
 
 A kernel is wrapped once for each driver, and a text is compiled once; setting a uniform
 that the driver dropped does nothing.
@@ -9,10 +9,11 @@ from __future__ import annotations
 import struct
 import time
 from collections import OrderedDict
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from playground.gpu.own_shaders import TRIANGLE
 from playground.gpu.program import compile_wrapped
-from playground.gpu.triangle import TRIANGLE
 from playground.gpu.wrap import CORNER, with_choices, wrap
 from playground.sketch.model import Kernel
 
@@ -23,7 +24,7 @@ Choices = tuple[tuple[str, int], ...]
 """Checkboxes and menus with their values."""
 
 _CORNERS = struct.pack("6f", -1.0, -1.0, 3.0, -1.0, -1.0, 3.0)  # of a triangle over the whole picture
-_SPARE = 64  # programs kept beyond those of the current frame
+_SPARE = 64  # programs cached beyond those of the current frame
 
 
 class Program:
@@ -37,14 +38,18 @@ class Program:
         self.frame = 0  # when it was last used
         self._corners: moderngl.Buffer | None = None
 
-    def __contains__(self, name: str) -> bool:
-        return name in self.uniforms
-
     def set(self, name: str, value: Any) -> None:
-        """Set a uniform if the driver kept it."""
+        """Set a uniform, unless the driver dropped it."""
         uniform = self.uniforms.get(name)
         if uniform is not None:
             uniform.value = value
+
+    def set_all(self, values: Mapping[str, Any]) -> None:
+        """Set uniforms by name; those that the driver dropped are left out."""
+        for name, value in values.items():
+            uniform = self.uniforms.get(name)
+            if uniform is not None:
+                uniform.value = value
 
     def fill(self) -> None:
         """Draw one triangle over the whole of the bound framebuffer."""
@@ -58,12 +63,12 @@ class Program:
         array.render(self.ctx.TRIANGLES, vertices=3)
 
     def run(self, x: int, y: int) -> None:
-        """Run so many work groups, and let what they wrote be seen."""
+        """Dispatch so many work groups, and make what they wrote visible."""
         self.compiled.run(x, y)
         self.ctx.memory_barrier()
 
     def release(self) -> None:
-        """Give it back to the driver."""
+        """Release it and its vertex arrays."""
         for array in self.arrays.values():
             array.release()
         self.arrays.clear()
@@ -79,17 +84,13 @@ class Programs:
         self.ctx = ctx
         self.compile_times: dict[str, float] = {}  # [ms] of each program compiled, by file
         self.compiled = 0  # how many programs were compiled
-        self._frame = 0
+        self.frame = 0  # frames begun: programs of the current one stay
         self._by_text: OrderedDict[tuple[str, ...], Program] = OrderedDict()
-        # The kernel stands beside its texts so that its identity stays its own.
+        # The kernel is held with its texts so that its identity stays its own.
         self._texts: OrderedDict[tuple[int, str, Choices], tuple[Kernel, tuple[str, ...]]] = OrderedDict()
 
     def __len__(self) -> int:
         return len(self._by_text)
-
-    def begin(self) -> None:
-        """Begin a frame."""
-        self._frame += 1
 
     def get(self, kernel: Kernel, driver: str, choices: Choices = ()) -> Program:
         """Return the program of a kernel, some of its checkboxes and menus written in as constants.
@@ -129,7 +130,7 @@ class Programs:
                 array.release()
 
     def release(self) -> None:
-        """Give every program back to the driver."""
+        """Release every program."""
         for program in self._by_text.values():
             program.release()
         self._by_text.clear()
@@ -138,12 +139,12 @@ class Programs:
     def _used(self, text: tuple[str, ...]) -> Program:
         self._by_text.move_to_end(text)
         program = self._by_text[text]
-        program.frame = self._frame
+        program.frame = self.frame
         return program
 
     def _keep(self, text: tuple[str, ...], compiled: Any) -> None:
         self.compiled += 1
         self._by_text[text] = Program(self.ctx, compiled)
         for old in list(self._by_text)[:-_SPARE]:
-            if self._by_text[old].frame != self._frame and old != text:
+            if self._by_text[old].frame != self.frame and old != text:
                 self._by_text.pop(old).release()

@@ -1,4 +1,4 @@
-"""Hold the textures that one pass made, and give those that nobody needs to the next pass.
+"""Hold the textures that one pass computed, and give those that are no longer used to the next pass.
 
 A ``Result`` is the textures of one pass; the ``Pool`` keeps spare ones.
 """
@@ -28,13 +28,8 @@ class Surface:
     format: str
     samples: int  # 1: without multisampling
 
-    @property
-    def bytes(self) -> int:
-        """Bytes held."""
-        return (bytes_of(self.size, self.format) + 4 * self.size[0] * self.size[1]) * self.samples
-
     def release(self) -> None:
-        """Give it back to the driver."""
+        """Release its framebuffer and renderbuffers."""
         self.framebuffer.release()
         self.colour.release()
         self.depth.release()
@@ -42,12 +37,12 @@ class Surface:
 
 @dataclass(eq=False)
 class Result:
-    """The textures that one pass made."""
+    """The textures that one pass computed."""
 
     size: tuple[int, int]
     outputs: tuple[Output, ...]
     textures: dict[str, moderngl.Texture]  # by output
-    turn: int = 0  # iterations done, of a pass that repeats
+    iterations: int = 0  # done, of a pass that repeats
     number: int = 0  # of all that its pool has handed out: textures are used again, it is not
     surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
@@ -60,7 +55,10 @@ class Result:
         for output in self.outputs:
             each = bytes_of(self.size, output.format)
             total += each + (each // 3 if output.name in self.mipmapped else 0)
-        return total + (self.surface.bytes if self.surface else 0)
+        if (surface := self.surface) is not None:
+            width, height = surface.size
+            total += (bytes_of(surface.size, surface.format) + 4 * width * height) * surface.samples
+        return total
 
     def framebuffer(self, ctx: moderngl.Context) -> moderngl.Framebuffer:
         """Return the framebuffer that draws to all of its textures."""
@@ -69,7 +67,7 @@ class Result:
         return self._framebuffer
 
     def release(self) -> None:
-        """Give the textures back to the driver."""
+        """Release its textures and what draws to them."""
         if self._framebuffer is not None:
             self._framebuffer.release()
             self._framebuffer = None
@@ -92,7 +90,7 @@ UNWIRED = Wired()
 
 
 class Pool:
-    """Results that nobody needs, to be used again: making a texture costs more than filling it."""
+    """Spare results, to be used again: making a texture costs more than filling it."""
 
     def __init__(self, ctx: moderngl.Context, limit: int) -> None:
         self.ctx = ctx
@@ -134,7 +132,7 @@ class Pool:
         return Result(size, wanted, made, number=self._taken)
 
     def give(self, result: Result) -> None:
-        """Take a result that nobody reads any more; it may be released at once."""
+        """Take a result that is no longer read; it may be released at once."""
         if result.surface is not None:
             result.surface.release()
             result.surface = None

@@ -1,6 +1,6 @@
-"""Run one step on a context, whatever its kind, and know what the engine gives it.
+"""Run one step of any kind on a context, and know what the engine gives it.
 
-Programs, meshes and file textures are kept here; results are the caller's.
+Programs, meshes and file textures stay here; results are the caller's.
 """
 
 from __future__ import annotations
@@ -9,15 +9,13 @@ import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
-from playground.engine.between import Between
 from playground.engine.binder import Binder
 from playground.engine.compute_variant import ComputeVariants
 from playground.engine.draws import Draws
 from playground.engine.error_place import placed
-from playground.engine.fill_between import filled
 from playground.engine.kernels import Job, Kernels, usual_of
 from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextures
-from playground.engine.plan import Plan, Step
+from playground.engine.plan import LoopIteration, Plan, Step
 from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
 from playground.errors import DataError
@@ -40,7 +38,7 @@ class Runner:
         self.ctx = ctx
         self.info = info
         self.pool = pool
-        # What plain shaders are told; who has a window and a clock sets it before each frame.
+        # Uniforms of plain shaders; what has a window and a clock sets them before each frame.
         self.mouse = (0.0, 0.0, 0.0, 0.0)  # pixels from the lower left, then where it was pressed
         self.hover = (0.0, 0.0)  # pixels from the lower left, pressed or not
         self.drag = (0.0, 0.0, 0.0, 0.0)  # as ShaderToy's iMouse
@@ -54,7 +52,14 @@ class Runner:
         self.draws = Draws(ctx, self.kernels)
         self.painted = PaintedFiles() if painted is None else painted
         self.paint = PaintedTextures(ctx)
-        self.tell: Callable[[Step], None] | None = None  # called before each step runs
+        self.before_step: Callable[[Step], None] | None = None  # called before each step runs
+        self._other_kinds: dict[str, Callable[[Job], Result]] = {  # than kernels
+            "source": self._source,
+            "draw": self.draws.run,
+            "compute": self.compute_variants.run,
+            "plain_fragment": self._plain,
+            "plain_compute": self._plain,
+        }
         self._plan: Plan | None = None
         self._given: dict[str, Any] = {}
 
@@ -62,11 +67,6 @@ class Runner:
     def compile_times(self) -> dict[str, float]:
         """Milliseconds of each program compiled, by file."""
         return self.programs.compile_times
-
-    def begin(self, plan: Plan) -> None:
-        """Begin a frame."""
-        self.look_at(plan)
-        self.programs.begin()
 
     def look_at(self, plan: Plan) -> None:
         """Take terrain, time and camera from a plan."""
@@ -82,12 +82,8 @@ class Runner:
             "eye": eye.position,
         }
 
-    def end(self) -> None:
-        """End a frame: leave no sampler behind."""
-        self.binder.tidy()
-
     def release(self) -> None:
-        """Give back every program, mesh and texture kept."""
+        """Release every program, mesh and texture."""
         self.paint.release()
         self.draws.release()
         self.compute_variants.release()
@@ -95,15 +91,15 @@ class Runner:
         self.programs.release()
 
     def given_for(self, step: Step) -> dict[str, Any]:
-        """Return what the engine gives beside the parameters and the iteration, where the text names it."""
+        """Return what the engine gives besides the parameters and the iteration, where the text names it."""
         kernel = step.kernel
         if kernel.kind.startswith("plain"):
             return dict(usual_of(kernel, self._usual(step)))
         found: dict[str, Any] = {}
         for name in kernel.given:
             if name == "spacing":
-                extent = self._given["extent"]
-                found[name] = tuple(e / max(s - 1, 1) for e, s in zip(extent, step.whole_size, strict=True))
+                (width, height), (wide, tall) = self._given["extent"], step.whole_size
+                found[name] = width / max(wide - 1, 1), height / max(tall - 1, 1)
             elif name in self._given:
                 found[name] = self._given[name]
         return found
@@ -118,64 +114,45 @@ class Runner:
         assert self._plan is not None, "look_at() comes first"
         return max(min(kernel.samples or self._plan.sketch.samples, self.info.max_samples), 1)
 
-    def empty(self, step: Step) -> Result:
-        """Return the textures of a step, all zeros."""
-        return self.kernels.empty(step)
-
-    def filled(self, result: Result, between: Between) -> Result:
-        """Return new textures, with what a stopped run has not reached joined up: see ``between``."""
-        return filled(self.kernels, self.pool, result, between)
-
-    def copy(self, target: moderngl.Texture, source: moderngl.Texture) -> None:
-        """Fill a texture with another, nearest texel for nearest."""
-        self.kernels.copy_texture(target, source)
-
     def run(
         self,
         step: Step,
         driver: str,
         inputs: Mapping[str, Wired],
         *,
-        turn: tuple[int, int] | None = None,
+        iteration: LoopIteration | None = None,
         start: Result | None = None,
         keeps_surface: bool = False,
     ) -> Result:
         """Run a step and return its textures, which are the caller's.
 
-        ``turn`` is that of the loop around it; ``start`` the same step after fewer iterations, which
+        ``iteration`` is that of the loop around it; ``start`` the same step after fewer iterations, which
         is used up; ``keeps_surface`` says that a later draw goes on from this one.
         """
-        assert self._plan is not None, "begin() comes first"
-        if self.tell is not None:
-            self.tell(step)
+        assert self._plan is not None, "look_at() comes first"
+        if self.before_step is not None:
+            self.before_step(step)
         given, samples = self.given_for(step), self._samples_for(step.kernel)
-        job = Job(step, given, inputs, turn=turn, start=start, samples=samples, keeps_surface=keeps_surface)
+        job = Job(step, given, inputs, iteration, start, samples, keeps_surface)
         self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
+        other = self._other_kinds.get(step.kernel.kind)
         try:
-            return self._run(job, driver)
+            return other(job) if other else self.kernels.run(job, driver)
         except DataError as error:
             raise placed(error, self._plan.sketch, self._plan.flat.user(step.path)) from error
 
-    def _run(self, job: Job, driver: str) -> Result:
-        step = job.step
-        kind = step.kernel.kind
-        if kind == "source":
-            return self._source(step)
-        if kind == "draw":
-            return self.draws.run(job)
-        if kind == "compute":
-            return self.compute_variants.run(job)
-        if kind.startswith("plain"):
-            return self.kernels.plain(job, self._usual(step))
-        return self.kernels.run(job, driver)
+    def _plain(self, job: Job) -> Result:
+        return self.kernels.plain(job, self._usual(job.step))
 
-    def _source(self, step: Step) -> Result:
-        kind = source_kind(step.kernel.registry)
+    def _source(self, job: Job) -> Result:
+        step, kind = job.step, source_kind(job.step.kernel.registry)
         result = self.pool.take(step.size, step.kernel.outputs)
         painted = self._painted_for(step, kind)
         if painted is not None:
             output = step.kernel.outputs[0]
-            self.copy(result.textures[output.name], self.paint.texture_of(painted, output.format))
+            self.kernels.copy_texture(
+                result.textures[output.name], self.paint.texture_of(painted, output.format)
+            )
             return result
         arrays = kind.make(step.values, step.size)
         for output in step.kernel.outputs:

@@ -8,8 +8,8 @@ The limit on time is for each pass, in all its steps: whichever exceeds it is na
 many slow passes is tried to its end.
 
 A worker that died is replaced at once, and one that takes suspiciously long has a spare,
-warm by the time that it is needed. Whoever submits something newer does not wait for a
-worker that hangs: it is killed, and the spare takes its place.
+warm by the time that it is needed. A newer request does not wait for a
+worker that hangs: that is killed, and the spare takes its place.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.process.crash_report import CrashReport
-from playground.process.messages import Answer, UnexpectedError
+from playground.process.messages import Answer, summary_of
 from playground.process.worker import Closing, Launch, Replaceable, Worker, WorkerDied
 from playground.sketch.model import Sketch
 
@@ -222,7 +222,6 @@ def _report_of(answer: Answer) -> SandboxReport:
     error = answer.error
     if isinstance(error, MemoryError):
         error = PlaygroundError("the sandbox ran out of memory")
-    elif isinstance(error, UnexpectedError):
-        error = PlaygroundError(error.summary)
-    assert isinstance(error, PlaygroundError)
+    elif not isinstance(error, PlaygroundError):
+        error = PlaygroundError(f"the sandbox failed: {summary_of(error)}")
     return SandboxReport(False, error, seconds=answer.seconds)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from playground.engine.accepted_sizes import smallest_terrain
-from playground.engine.all_errors import all_mistakes
+from playground.engine.all_errors import all_errors
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step
@@ -66,7 +66,7 @@ class _Handler:
 
     def _draw(self, request: TrySketch, driver: str) -> None:
         engine = self._engine(driver)
-        engine.runner.tell = partial(self._before_step, driver if len(request.drivers) > 1 else "")
+        engine.runner.before_step = partial(self._before_step, driver if len(request.drivers) > 1 else "")
         small = replace(request.sketch, size=smallest_terrain(request.sketch), samples=1)
         drain(engine.ctx)  # what an earlier, failed request left behind
         try:
@@ -77,7 +77,7 @@ class _Handler:
             if request.refuses:
                 _refuse(engine, request.refuses)
         except ShaderError as wrong:
-            raise all_mistakes(wrong, engine, request.sketch, size=request.size, time=request.time) from None
+            raise all_errors(wrong, engine, request.sketch, size=request.size, time=request.time) from None
 
     def _engine(self, driver: str) -> Engine:
         if driver not in self._engines:

@@ -1,6 +1,6 @@
-"""A stage: a sketch of one technique alone, on placeholders for what it reads.
+"""Build a sketch of one technique alone, with placeholders for what it reads.
 
-Nothing else is on it, so that a mistake elsewhere cannot pass for one of the technique's own.
+Nothing else is in it, so that a mistake elsewhere cannot pass for one of the technique's own.
 """
 
 from __future__ import annotations

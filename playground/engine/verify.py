@@ -1,6 +1,6 @@
 """Verify a fast variant: draw it and the canonical form, and compare by the bound that it states.
 
-A technique is drawn on a stage of its own, and inside the smallest of the techniques that use
+A technique is drawn in a sketch of its own, and inside the smallest of the techniques that use
 it, where it reads what it is made for. Both forms are drawn at several sizes, square and not,
 with the same and with unequal spacing along x and y, of two terrains and two seeds; then with
 each choice of its menus and both ends of its sliders.
@@ -44,7 +44,7 @@ SIZES = ((33, 33), (64, 48), (129, 129), (97, 130), (257, 193))
 _EXTENTS = ((1000.0, 1000.0), (700.0, 1900.0))  # [m]
 _RELIEF = 180.0  # [m]
 _SEEDS = (7, 1234)
-_USERS = 2  # techniques that use it, beside the stage
+_USERS = 2  # techniques that use it, besides the sketch of its own
 
 
 @dataclass(frozen=True)
@@ -79,11 +79,11 @@ class Verdict:
         """How closely they agree, or what is wrong."""
         if self.wrong or self.skipped:
             return self.wrong or self.skipped
-        told = [
-            f"{name} to the last bit" if not bound.most else f"{name} {found:.2g} of {bound}"
-            for name, (found, bound) in self.worst.items()
+        found = [
+            f"{name} to the last bit" if not bound.most else f"{name} {apart:.2g} of {bound}"
+            for name, (apart, bound) in self.worst.items()
         ]
-        return f"{', '.join(told)} ({self.drawings} drawings)"
+        return f"{', '.join(found)} ({self.drawings} drawings)"
 
 
 def places_in(sketch: Sketch, folder: Path) -> Iterator[Place]:
@@ -107,13 +107,15 @@ def places_of(
         key=lambda pair: sum(1 for _ in kernels_of(pair[0])),
     )
     for number, seed in enumerate(_SEEDS):
-        yield Place(_staged(technique, seed, picture), _subject(technique), technique, variant, number == 0)
+        yield Place(
+            _standalone(technique, seed, picture), _subject(technique), technique, variant, number == 0
+        )
     for user, path in found[:_USERS]:
-        yield Place(_staged(user, _SEEDS[0], picture), f"{_subject(user)}.{path}", technique, variant)
+        yield Place(_standalone(user, _SEEDS[0], picture), f"{_subject(user)}.{path}", technique, variant)
 
 
 def verify(engine: Engine, variant: Variant, technique: Technique, places: Iterable[Place]) -> Verdict:
-    """Draw a technique by both forms wherever it is said to be, and compare them."""
+    """Draw a technique by both forms at each place, and compare them."""
     verdict = Verdict(variant, (content_of(technique), content_of(variant.technique)))
     if not variant.technique.agrees:
         verdict.wrong = 'it does not say how closely it agrees, as agrees = "1e-5"'
@@ -167,7 +169,7 @@ def _subject(technique: Technique) -> str:
     return free_name("subject", technique)
 
 
-def _staged(technique: Technique, seed: int, picture: Path) -> Sketch:
+def _standalone(technique: Technique, seed: int, picture: Path) -> Sketch:
     folder = GLSL if Path(technique.path).is_relative_to(GLSL) else Path(technique.path).parent
     made = standalone_sketch(technique, _subject(technique), folder, picture, seed=seed)
     starts = {export.name for export in technique.inputs if _starts(technique, export.name)}
@@ -209,8 +211,8 @@ def _cases(place: Place) -> Iterator[tuple[str, Sketch]]:
     seeds = [path for path in all_paths(place.sketch.graph) if path.rpartition(".")[2] == "seed"]
     own = [path for path in seeds if path.partition(".")[0] == place.path.partition(".")[0]]
     for number, size in enumerate(sizes):
-        for turn, seed in enumerate(_SEEDS if own else _SEEDS[:1]):
-            extent = _EXTENTS[(number + turn) % len(_EXTENTS)]
+        for order, seed in enumerate(_SEEDS if own else _SEEDS[:1]):
+            extent = _EXTENTS[(number + order) % len(_EXTENTS)]
             sketch = replace(place.sketch, size=size, extent=extent, relief=_RELIEF)
             values = {path: seed for path in own}
             yield f"{size[0]} x {size[1]} texels, seed {seed}", sketch.with_values(values)

@@ -20,7 +20,7 @@ from playground.sketch.variant_record import Verified, read, record_of, written
 
 @dataclass(frozen=True)
 class Subject:
-    """A fast variant, the technique that it is beside, and where the two are compared."""
+    """A fast variant, its technique, and where the two are compared."""
 
     variant: Variant
     technique: Technique
@@ -103,7 +103,7 @@ def _of_library(places: list[Path], picture: Path) -> Iterator[Subject]:
 
 
 def _of_file(path: Path, picture: Path) -> Iterator[Subject]:
-    """Yield the variant in a file, or those beside a technique."""
+    """Yield the variant in a file, or those of a technique."""
     owner = canonical_of(path) if is_variant(path) else path
     if owner is None:
         raise SketchError("there is no .glsl and no .toml beside it to verify it against", file=shown(path))

@@ -1,10 +1,9 @@
 """Draw a part of a picture so that it is what the whole picture would show there.
 
 A picture may be larger than any texture. Its passes that have a texel for each pixel then
-run for a window of it at a time: they are told the size of the whole and where the window
+run for a window of it at a time: they get the size of the whole and where the window
 lies, and everything else, the terrain, its light, is made once and stays. The camera is that
-of the whole picture, and so are a draw's clip space and its viewport, of which the window
-is all that is kept.
+of the whole picture, and so are a draw's clip space and its viewport, clipped to the window.
 
 A kernel's text is changed for that in three places: it gets the texel of the whole, reads
 the window's own textures at the window's texel, and `gl_FragCoord` counts from the whole's
@@ -84,12 +83,12 @@ def _changed(key: Identity[Kernel], inputs: tuple[str, ...]) -> Kernel | str:
     code = kernel.source.code
     if kernel.kind == "kernel":
         if kernel.repeat != "1" or kernel.visits or _names(code, "previous", *_previous(kernel)):
-            return "it goes by turns"
+            return "it goes by iterations"
         found = _kernel_code(kernel, code, inputs)
     else:
-        beside = [name for name in inputs if name != "initial" and _names(code, name)]
-        if beside:
-            return f"it reads '{beside[0]}' while it draws"
+        others = [name for name in inputs if name != "initial" and _names(code, name)]
+        if others:
+            return f"it reads '{others[0]}' while it draws"
         found = _with_coordinates(kernel, code), ""
     changed, why = found
     return why if changed is None else replace(kernel, source=_source(kernel.source, changed))

@@ -56,7 +56,7 @@ class Flight:
         self._first, self._first_hour = self.craft, self.parts.hour
         self._next: _Next | None = None
         self._look()
-        self._take_daylight()
+        _take_daylight(self.engine, self.plot, self.parts.hour, self.scene)
 
     def __enter__(self) -> Flight:
         return self
@@ -115,7 +115,7 @@ class Flight:
         """Set the time of day; the light of the parts follows as they are tended."""
         if self.plot.hour and hour % 24.0 != self.parts.hour:
             self.parts.hour = hour % 24.0
-            self._take_daylight()
+            _take_daylight(self.engine, self.plot, self.parts.hour, self.scene)
 
     def make_all(self) -> int:
         """Make every part that is wanted here; return how many."""
@@ -206,9 +206,6 @@ class Flight:
             return Craft(middle, middle, up)
         up = max(start[2], self.floor(start[0], start[1]) + CLEARANCE)
         return Craft(start[0], start[1], up, math.radians(start[3]) % math.tau)
-
-    def _take_daylight(self) -> None:
-        _take_daylight(self.engine, self.plot, self.parts.hour, self.scene)
 
 
 class _Next(NamedTuple):

@@ -21,7 +21,7 @@ PartName = tuple[int, int]
 """Which part of the terrain, counted east and north."""
 
 _HEIGHT, _COLOUR, _LIGHT, _DAYLIGHT = "height", "colour", "light", "daylight"
-_PART, _APRON, _HOUR, _REACH = "part", "apron", "hour", "reach"
+_PART, _APRON, _HOUR, _REACH = "part", "apron", "hour", "max_distance"
 _FINEST = 1024  # intervals of a part, and texels of its ground
 FARTHEST = 2**20
 """Parts east or north of the first beyond which a node's number no longer fits 32 bits."""

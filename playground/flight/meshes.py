@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.terrain.meshes import skirted
+
 LEVELS = 4
 
 
@@ -23,17 +25,4 @@ def steps_of(intervals: int) -> tuple[int, ...]:
 
 def part_mesh(intervals: int, step: int) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
     """Return vertices (n, 3): node east, node north, 1 at the skirt's foot; and indices, three a triangle."""
-    nodes = np.arange(0, intervals + 1, step, dtype=np.float32)
-    n = len(nodes)
-    east, north = np.meshgrid(nodes, nodes)
-    top = np.stack([east.ravel(), north.ravel(), np.zeros(n * n, np.float32)], axis=1)
-    index = np.arange(n * n, dtype=np.uint32).reshape(n, n)
-    a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
-    faces = np.stack([a, b, c, a, c, d], axis=-1).reshape(-1)
-    rim = np.concatenate([index[0, :-1], index[:-1, -1], index[-1, :0:-1], index[:0:-1, 0]])
-    foot = top[rim].copy()
-    foot[:, 2] = 1.0
-    low = np.arange(len(rim), dtype=np.uint32) + np.uint32(n * n)
-    after = np.roll(np.arange(len(rim)), -1)
-    wall = np.stack([rim, low, low[after], rim, low[after], rim[after]], axis=-1).reshape(-1)
-    return np.concatenate([top, foot]), np.concatenate([faces, wall]).astype(np.uint32)
+    return skirted(np.arange(0, intervals + 1, step, dtype=np.float32))

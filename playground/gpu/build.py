@@ -21,7 +21,7 @@ _ARM |= {"0x61": "Apple", "0xc0": "Ampere"}
 
 
 def build_of(renderer: ContextInfo) -> tuple[str, ...]:
-    """Return what a context's build is: its own words, its OpenGL, the processor where that draws."""
+    """Return what a context's build is: its own strings, its OpenGL, the processor where that draws."""
     own = (renderer.renderer, renderer.vendor, renderer.version, renderer.opengl)
     return (*own, *(processor() if renderer.software else ()))
 
@@ -41,15 +41,15 @@ def processor() -> tuple[str, str]:
 
 def processor_in(cpuinfo: str) -> tuple[str, str]:
     """Return the same from the text of Linux's ``/proc/cpuinfo``."""
-    said: dict[str, str] = {}
+    fields: dict[str, str] = {}
     for line in cpuinfo.splitlines():
         name, colon, text = line.partition(":")
         if colon:
-            said.setdefault(name.strip(), text.strip())
-    if "CPU implementer" in said:
-        code = said["CPU implementer"]
+            fields.setdefault(name.strip(), text.strip())
+    if "CPU implementer" in fields:
+        code = fields["CPU implementer"]
         return _ARM.get(code, f"ARM implementer {code}"), ""
-    if "flags" not in said:
-        return said.get("vendor_id", ""), ""
-    there = set(said["flags"].split())
-    return said.get("vendor_id", ""), " ".join(name for name in _SIMD if name in there) or "none"
+    if "flags" not in fields:
+        return fields.get("vendor_id", ""), ""
+    there = set(fields["flags"].split())
+    return fields.get("vendor_id", ""), " ".join(name for name in _SIMD if name in there) or "none"

@@ -1,7 +1,7 @@
-"""Open an OpenGL context with no window, and say what it can do.
+"""Open an OpenGL context with no window, and report what it can do.
 
 EGL on Linux (no display and no GPU needed), a hidden native context elsewhere. Versions
-4.3, 4.1 and 3.3 are asked for in turn; compute shaders exist from 4.3 on.
+4.3, 4.1 and 3.3 are tried in this order; compute shaders exist from 4.3 on.
 """
 
 from __future__ import annotations
@@ -156,7 +156,7 @@ def adopt_context(address_of: Callable[[str], int | None] | None = None) -> mode
     """Return the context that a window has made current, at the version that it has.
 
     ``address_of`` finds an OpenGL function by name, as ``glfw.get_proc_address`` does; without
-    it the platform's usual library is asked, which knows nothing of Wayland's contexts.
+    it, functions come from the platform's usual library, which does not know Wayland's contexts.
     """
     import moderngl
 
@@ -167,18 +167,18 @@ def adopt_context(address_of: Callable[[str], int | None] | None = None) -> mode
 
 
 def abandon(ctx: moderngl.Context) -> None:
-    """Give a lost context back.
+    """Release a lost context.
 
-    What was made in it and is found unused later is not deleted: by number, that would
-    take what was made since in another context.
+    Objects of it that are collected later are not deleted: by their numbers, that would
+    delete newer objects of another context.
     """
     ctx.gc_mode = None  # type: ignore[assignment]
-    with suppress(Exception):  # it may be past answering
+    with suppress(Exception):  # it may no longer respond
         ctx.release()
 
 
 class _Functions:
-    """What moderngl asks of whoever owns a context: its functions, and nothing else."""
+    """The interface that moderngl needs from the owner of a context: its functions."""
 
     def __init__(self, address_of: Callable[[str], int | None]) -> None:
         self._address_of = address_of

@@ -1,6 +1,6 @@
 """Report what this machine offers: an OpenGL context, its limits, a display, the packages.
 
-It opens a context and gives it back; what cannot be had is said in a sentence, with the advice for it.
+It opens a context and releases it; what is missing is reported in a sentence, with the advice for it.
 """
 
 from __future__ import annotations
@@ -54,21 +54,10 @@ class Health:
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it."""
-        context = None
+        found = {"ok": self.ok, **asdict(self), "playground": __version__}
         if self.context is not None:
-            context = asdict(self.context)
-            context |= {"compute": self.context.compute, "software": self.context.software}
-        return {
-            "ok": self.ok,
-            "trouble": self.trouble,
-            "context": context,
-            "limits": self.limits,
-            "display": self.display,
-            "system": self.system,
-            "python": self.python,
-            "playground": __version__,
-            "packages": self.packages,
-        }
+            found["context"] |= {"compute": self.context.compute, "software": self.context.software}
+        return found
 
 
 def examine(*, software: bool = False, device: int | None = None) -> Health:

@@ -1,21 +1,21 @@
-r"""Read what an OpenGL driver says about a shader: entries with lines, and hints in plain words.
+r"""Read the log of an OpenGL driver for a shader: entries with lines, and hints in plain words.
 
 Every driver words and numbers its log differently; here all of them become the same
 `LogEntry`. Pure text: no context, no files. Turning a line of the flattened text into
-(file, line) belongs to whoever flattened it.
+(file, line) is left to ``program``.
 
 What the drivers count:
 
 * The number before the line is the source string (`0:12`, `0(12)`, `3:27`). A shader here
   is one string, so it is ignored: it could only be a leftover of `#line`.
-* Lines are 1-based everywhere; 0 stands for "no place": Mesa prints `0:0(0)`, NVIDIA `(0)`.
+* Lines are 1-based everywhere; 0 means "no place": Mesa prints `0:0(0)`, NVIDIA `(0)`.
   Only Mesa prints a column, and it counts in the *preprocessed* line, where a run of blanks
   or a comment is one space and macros are expanded: `source_column` undoes the blanks.
 * Mesa 22.3.6 gives every part of a line continued by `\` the number of its first part, and
   code behind the `*/` of a long comment the line where the comment began (so comments are
   blanked before compiling). The lines after are right again.
 * A syntax error is placed where the compiler gave up: after a missing `;` that is the line
-  of the *next* word. Intel on Windows is said to be off at times (DaemonEngine/Daemon#1241).
+  of the *next* word. Intel on Windows is reported to be off at times (DaemonEngine/Daemon#1241).
 * `#line n` names the next line n from GLSL 3.30 on, and n + 1 before it; Mesa moreover
   applies its string number to some errors and not to others (seen in 22.3.6), and tools
   that emit it report errors off by one (3Dickulus/FragM#71, #157); a file name after it is
@@ -153,8 +153,8 @@ def parse_log(log: str) -> tuple[LogEntry, ...]:
         line = raw.strip()
         if line and not _BENIGN.fullmatch(line) and not _FRAME.fullmatch(line):
             _take(drafts, line, indented=raw[0].isspace())
-    told = [draft for draft in drafts if not _SUMMARY.fullmatch(draft.head)] or drafts
-    return tuple(dict.fromkeys(draft.entry() for draft in told))
+    entries = [draft for draft in drafts if not _SUMMARY.fullmatch(draft.head)] or drafts
+    return tuple(dict.fromkeys(draft.entry() for draft in entries))
 
 
 def _take(drafts: list[_Draft], line: str, indented: bool) -> None:
@@ -213,9 +213,9 @@ def _clean(message: str) -> str:
 
 
 def source_column(line: str, column: int) -> int:
-    """Turn a driver's column into the column of the source line it means; 0 where there is none.
+    """Convert a driver's column to the column of the source line it means; 0 where there is none.
 
-    Exact unless a macro or a comment that was not blanked stands before it on the line.
+    Exact unless a macro or a comment that was not blanked is before it on the line.
     """
     counted, blank = 0, False
     for place, character in enumerate(line, start=1):
@@ -243,157 +243,121 @@ _UNKNOWN = r"(?:undeclared|undefined|no function|no matching|not known|removed|d
 # (pattern, sentence): the first pattern found gives the sentence; {0} is its group, {1} that in lower case.
 # More telling mistakes come first: `texture2D` is also an undeclared identifier.
 _HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
-    (re.compile(pattern, flags), sentence)
-    for pattern, flags, sentence in (
+    (re.compile(pattern, re.IGNORECASE), sentence)
+    for pattern, sentence in (
         (
             rf"^(?=.*{_UNKNOWN}).*?\b({_OLD_LOOKUP})\b",
-            re.I,
             "`{0}` is not in core GLSL: call `texture`, or `textureLod` and `texelFetch` in a kernel.",
         ),
         (
             rf"^(?=.*{_UNKNOWN}).*?\b(gl_Frag(?:Color|Data))\b",
-            re.I,
             "`{0}` is not in core GLSL: declare an `out vec4` of your own and write to that.",
         ),
-        (
-            rf"{_Q}(attribute|varying){_Q}",
-            re.I,
-            "`{0}` is not in core GLSL: write `in` or `out`.",
-        ),
+        (rf"{_Q}(attribute|varying){_Q}", "`{0}` is not in core GLSL: write `in` or `out`."),
         (
             r"#version must|#version (?:is )?required|only valid for function parameters in GLSL"
             r"|requires \"?#version",
-            re.I,
             "The text needs a newer `#version` on its very first line, such as `#version 330`.",
         ),
         (
             r"(?:GLSL|version|version number) '?([0-9.]+)'? (?:is )?not supported"
             r"|unsupported version ([0-9]+)",
-            re.I,
             "This driver has no GLSL `{0}`: ask for a lower `#version`.",
         ),
         (
             rf"extension:? {_Q}?(\w+){_Q}? ?:? ?.*(?:unsupported|not supported)"
             rf"|{_Q}(\w+){_Q} ?:.*extension.*not supported",
-            re.I,
             "This driver lacks the extension `{0}`: do without it, or guard it with `#ifdef {0}`.",
         ),
-        (
-            r"#extension (\w+)",
-            re.I,
-            "This needs an extension: add `#extension {0} : enable` below `#version`.",
-        ),
+        (r"#extension (\w+)", "This needs an extension: add `#extension {0} : enable` below `#version`."),
         (
             r"not supported for this version|unrecognized layout identifier|Unknown identifier .* in layout"
             r"|(?:only )?(?:available|allowed|supported) (?:only )?in (?:GLSL|version)|GLSL .* required",
-            re.I,
             "The `#version` at the top is too old for this: raise it, or add the right `#extension`.",
         ),
         (
             rf"(?:reserved word:? {_Q}?|keyword {_Q})(\w+)|{_Q}(\w+){_Q} ?:.*reserved word",
-            re.I,
             "`{0}` is a reserved word of GLSL: choose another name.",
         ),
         (
-            rf"unexpected ({_TOKENS})\b|(?:at token|Syntax error:) \"({_WORDS})\""
-            rf"|{_Q}({_WORDS}){_Q} ?: syntax error",
-            0,
+            rf"(?-i:unexpected ({_TOKENS})\b|(?:at token|Syntax error:) \"({_WORDS})\""
+            rf"|{_Q}({_WORDS}){_Q} ?: syntax error)",
             "`{1}` is a reserved word of GLSL: choose another name.",
         ),
-        (r"unexpected ERROR_TOK", 0, ""),  # Mesa said why in the entry before
+        (r"(?-i:unexpected ERROR_TOK)", ""),  # Mesa gives the reason in the entry before
         (
             rf"{_Q}(gl_\w*){_Q}.*(?:reserved|prefix|redeclared)",
-            re.I,
             "Names that begin with `gl_` belong to GLSL: choose another name.",
         ),
         (
             r"unexpected (?:end of file|\$end|\$undefined|EOF)|at token \"<EOF>\"|premature end",
-            re.I,
             "The text ends too soon: a `{{`, a `(` or a `;` is missing its partner somewhere above.",
         ),
         (
             r"unexpected '\}', expecting end of file|unexpected '\}' at token|extraneous",
-            re.I,
             "There is one closing brace too many here or above.",
         ),
         (
-            r"syntax error.*expecting[^a-z]*(?:','|';'|COMMA|SEMICOLON)",
-            0,
+            r"(?-i:syntax error.*expecting[^a-z]*(?:','|';'|COMMA|SEMICOLON))",
             "A `;` is missing, usually at the end of the line above, or a type name is misspelt.",
         ),
         (
             r"unexpected NEW_IDENTIFIER|undeclared type|typename expected",
-            re.I,
             "A word that GLSL does not know stands where a type should be: check its spelling.",
         ),
         (
             r"\b(?:syntax|parse) error|Syntax error",
-            re.I,
             "GLSL cannot read this: look for a missing `;`, comma or bracket here and on the line above.",
         ),
         (
             r"of operator % must be an integer|operands to \"%\" must be integral|'%' ?:.*\bfloat\b",
-            re.I,
             "`%` is for whole numbers: write `mod(a, b)` for floats.",
         ),
         (
             r"(?:if-statement|loop) condition must be scalar boolean",
-            re.I,
             "A condition is a bool: compare a number, as in `x > 0.0`.",
         ),
-        (r"recursion", re.I, "GLSL has no recursion: write a loop."),
-        (
-            r"C-style initialization",
-            re.I,
-            "Braces do not fill an array here: write `float[](1.0, 2.0)`.",
-        ),
+        (r"recursion", "GLSL has no recursion: write a loop."),
+        (r"C-style initialization", "Braces do not fill an array here: write `float[](1.0, 2.0)`."),
         (
             r"swizzle|field selection|cannot access field|unknown field|no such field",
-            re.I,
             "These components do not exist here: a `vec3` has x y z (or r g b), a scalar has none, "
             "and the two sets do not mix.",
         ),
         (
             r"read-only|l-?value required|can(?:'t|not) modify|non-lvalue|assignment to const",
-            re.I,
             "This cannot be written to: `uniform`, `const` and `in` are read-only, so copy it into a local "
             "variable first.",
         ),
         (
             r"no return statement|does not return a value|missing return|not all .*paths? return"
             r"|`?return'? with no value",
-            re.I,
             "A function that promises a value must end in `return` with one on every path.",
         ),
         (
             r"redeclar|redefin|already (?:defined|declared|has a body)|conflicts with previous declaration",
-            re.I,
             "This name is taken already in the same scope or by an included file: rename one of the two, "
             "or drop the repetition.",
         ),
         (
             r"too few components to construct|too little data in type constructor|not enough data"
             r"|too few arguments.*construct",
-            re.I,
             "The constructor gets too few components: a `vec4` takes four numbers in all, or a single one.",
         ),
         (
             r"too many parameters to .*constructor|too much data in type constructor"
             r"|too many arguments.*construct|constructor.*too many arguments",
-            re.I,
             "The constructor gets too many components: count those of its arguments together.",
         ),
         (
             rf"no function with name {_Q}(\w+)|invalid call of (?:undeclared identifier )?{_Q}(\w+)"
             rf"|{_Q}(\w+){_Q} ?: function is not known",
-            re.I,
             "No function `{0}` is known here: check its spelling, the `#include` that brings it and the "
             "`#version`, and that no variable has the same name.",
         ),
         (
             rf"{_Q}(\w+){_Q} ?:? ?undeclared"
             rf"|(?:undefined variable|undeclared (?:identifier|variable)):? {_Q}?(\w+)",
-            re.I,
             "`{0}` is not declared at this point: check its spelling, and that its declaration or `#include` "
             "stands above.",
         ),

@@ -1,6 +1,6 @@
-"""What a driver says of a text that it takes: its warnings, which moderngl keeps to itself.
+"""Read a driver's warnings of a text that compiles, which moderngl does not give.
 
-Mesa says nothing of a text that it finds in its cache on disk, so each stage is compiled
+Mesa reports nothing of a text that it finds in its cache on disk, so each stage is compiled
 once more, with a comment at its end that no cache can know, and thrown away.
 """
 
@@ -30,8 +30,8 @@ def warnings_of(ctx: moderngl.Context, wrapped: Wrapped) -> tuple[Diagnostic, ..
     """Return what a driver warns of in a kernel's text, in the kernel's own files.
 
     Only what is at a line of the files, not of what the wrapper adds. Empty where the text
-    does not compile, and where OpenGL's functions cannot be reached: they are asked of whatever
-    moderngl asks, which is not among its promises.
+    does not compile, and where OpenGL's functions cannot be reached: they are taken from where
+    moderngl takes them, which is not part of its interface.
     """
     load = getattr(getattr(ctx.mglo, "_context", None), "load_opengl_function", None)
     found: dict[tuple[str, int, str], Diagnostic] = {}

@@ -1,4 +1,4 @@
-"""Read the playground's own GLSL: what wraps a kernel's text, and small programs beside the passes.
+"""Read the playground's own GLSL: what wraps a kernel's text, and small programs besides the passes.
 
 A file ending in .vert or .frag is a whole shader; of the others each is a part of one. ``$name`` in a
 part is filled in: names and types that a kernel's header declares.
@@ -22,3 +22,7 @@ def own_shader(name: str) -> str:
 def own_part(part: str, **names: str) -> str:
     """Return the text of a part with its names filled in, without its last line's end."""
     return Template(own_shader(part)).substitute(names).rstrip("\n")
+
+
+TRIANGLE = own_shader("triangle.vert")
+"""The vertex shader of one triangle that covers a whole target: draw three vertices without a buffer."""

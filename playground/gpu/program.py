@@ -1,4 +1,4 @@
-"""Compile wrapped kernels; give a driver's complaints back their file, line and column."""
+"""Compile wrapped kernels; map a driver's messages to their file, line and column."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def compile_library(ctx: moderngl.Context, source: SourceText) -> None:
 
 
 def explain(text: str, wrapped: Wrapped) -> ShaderError:
-    """Turn moderngl's error text into diagnostics in the kernel's own files."""
+    """Convert moderngl's error text to diagnostics in the kernel's own files."""
     stage_name, log = split_moderngl(text)
     stage = wrapped.stages.get(stage_name) or wrapped.stages.get("fragment") or wrapped.stages["compute"]
     found: dict[tuple[str, int, str], Diagnostic] = {}

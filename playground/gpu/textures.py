@@ -53,12 +53,12 @@ def make_texture(
     check_size(ctx, size, "a texture")
     drain(ctx)
     texture = ctx.texture(size, components, data, alignment=1, dtype=dtype)
-    fault = ctx.error
-    if fault != "GL_NO_ERROR":
+    error = ctx.error
+    if error != "GL_NO_ERROR":
         texture.release()
         megabytes = bytes_of(size, form) / 2**20
         raise ContextError(
-            f"the driver refused a texture of {size[0]} x {size[1]} {form} ({megabytes:.0f} MiB): {fault}"
+            f"the driver refused a texture of {size[0]} x {size[1]} {form} ({megabytes:.0f} MiB): {error}"
         )
     return texture
 
@@ -132,8 +132,12 @@ def read_texture(texture: moderngl.Texture) -> NDArray[np.float32]:
 
     r8 and r16 formats give 0..1.
     """
-    raw = read_raw(texture)
-    values = np.array(raw, np.float32)  # a copy: what is read may be written to
+    return _as_floats(read_raw(texture))
+
+
+def _as_floats(raw: NDArray[Any]) -> NDArray[np.float32]:
+    """Return a copy as float32; of whole numbers, as parts of their largest."""
+    values = np.array(raw, np.float32)
     if raw.dtype.kind == "u":
         values /= np.float32(np.iinfo(raw.dtype).max)
     return values
@@ -146,16 +150,17 @@ def read_texels(
 
     ``corner``: the south-west texel of the block, which must lie inside the texture.
     """
+    raw: NDArray[Any] = np.frombuffer(read_block(texture, corner, size), _NUMPY[texture.dtype])
+    return _as_floats(raw).reshape(size[1], size[0], texture.components)
+
+
+def read_block(texture: moderngl.Texture, corner: tuple[int, int], size: tuple[int, int]) -> bytes:
+    """Read a block of texels as bytes in the texture's own kind of number; arguments as ``read_texels``."""
     framebuffer = make_framebuffer(texture.ctx, [texture])
     try:
-        data = framebuffer.read((*corner, *size), texture.components, alignment=1, dtype=texture.dtype)
+        return framebuffer.read((*corner, *size), texture.components, alignment=1, dtype=texture.dtype)
     finally:
         framebuffer.release()
-    raw: NDArray[Any] = np.frombuffer(data, _NUMPY[texture.dtype])
-    values = raw.astype(np.float32)
-    if raw.dtype.kind == "u":
-        values /= np.float32(np.iinfo(raw.dtype).max)
-    return values.reshape(size[1], size[0], texture.components)
 
 
 def read_picture(texture: moderngl.Texture) -> NDArray[np.uint8]:

@@ -1,6 +1,6 @@
 """Wrap a kernel's text for a driver: the fragment driver (GL 3.3 up) or the compute driver (GL 4.3 up).
 
-Both drivers get the same lines; only what stands before and after them differs. Each
+Both drivers get the same lines; only what is before and after them differs. Each
 wrapped stage remembers where the kernel's own lines begin, so that a driver's log can be
 given back its file and line.
 """
@@ -12,8 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from playground.errors import ShaderError
-from playground.gpu.own_shaders import own_part
-from playground.gpu.triangle import TRIANGLE
+from playground.gpu.own_shaders import TRIANGLE, own_part
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.reserved_names import (
     FETCHES,
@@ -47,7 +46,7 @@ class ShaderStage:
     """The text of one shader stage."""
 
     text: str
-    first: int  # line of the text, from 1, on which the kernel's first line stands; 0: none of it is in here
+    first: int  # line of the text, from 1, of the kernel's first line; 0: it has none
     source: SourceText
     expected: str  # the signatures that the kernel's file should have, for errors outside its lines
 
@@ -79,9 +78,10 @@ def wrap(kernel: Kernel, driver: str, version_code: int = 330) -> Wrapped:
     if kernel.dialect:
         return _wrap_foreign(kernel, version_code)
     if kernel.kind == "plain_fragment":
-        return Wrapped(
-            kernel, FRAGMENT, {"vertex": _quad(kernel, _version(kernel)), "fragment": _whole(kernel)}
-        )
+        version = version_line(kernel.source)
+        assert version is not None  # or it would be no plain shader
+        stages = {"vertex": _quad(kernel, version.code.strip()), "fragment": _whole(kernel)}
+        return Wrapped(kernel, FRAGMENT, stages)
     if kernel.kind == "plain_compute":
         return Wrapped(kernel, COMPUTE, {"compute": _whole(kernel)})
     _check_signature(kernel)
@@ -89,7 +89,7 @@ def wrap(kernel: Kernel, driver: str, version_code: int = 330) -> Wrapped:
 
 
 def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrapped:
-    """Write checkboxes and menus into a wrapped text as constants, lines and columns kept.
+    """Write checkboxes and menus into a wrapped text as constants, which changes no line and no column.
 
     A software renderer goes both ways of every ``if``: what was not chosen costs as much
     as what was, unless the compiler can see that it never happens.
@@ -190,12 +190,6 @@ def version_line(source: SourceText) -> Line | None:
     return next((line for line in source.lines if _VERSION.match(line.code)), None)
 
 
-def _version(kernel: Kernel) -> str:
-    line = version_line(kernel.source)
-    assert line is not None  # or it would be no plain shader
-    return line.code.strip()
-
-
 def reads_unwired(kernel: Kernel) -> bool:
     """Return whether a kernel fetches texels while some input of it may stay unwired."""
     return any(i.fallback for i in kernel.inputs) and any(map(kernel.reads, FETCHES))
@@ -212,8 +206,8 @@ def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expec
 
 def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:
     found = [(kind, name) for name, (kind, _) in GIVEN.items() if kernel.reads(name) or name in always]
-    asked = [f"{begins}{i.name}" for i in kernel.inputs for begins in (WIRED, MATCHES)]
-    found += [("bool", name) for name in asked if kernel.reads(name)]
+    wanted = [f"{begins}{i.name}" for i in kernel.inputs for begins in (WIRED, MATCHES)]
+    found += [("bool", name) for name in wanted if kernel.reads(name)]
     found += [
         ("vec3", f"{TOWARDS}{p.name}")
         for p in kernel.parameters
@@ -345,7 +339,7 @@ def _line_of(kernel: Kernel, name: str) -> Line:
 
 
 def _without(code: str, name: str) -> str:
-    """Blank a function's definition, keeping lines: what one stage calls may not exist in the other."""
+    """Blank a function's definition, not its line ends: what one stage calls may be missing in the other."""
     match = re.search(_SIGNATURE.format(name=name), code)
     if not match:
         return code
@@ -395,14 +389,14 @@ def _check_previous(kernel: Kernel) -> None:
         for match in re.finditer(r"\bprevious(?:_(\w+))?\s*\(", line.code):
             called = match.group().rstrip("( \t")
             if called in names and kernel.repeat == "1":
-                message = f"{called} is the turn before, but the kernel has one turn only; give it a repeat"
+                message = f"{called} is the iteration before, but the kernel has one only; give it a repeat"
                 raise kernel.source.lines[number].error(message, match.start() + 1)
             if called not in names and called in (
                 "previous",
                 *(f"previous_{o.name}" for o in kernel.outputs),
             ):
                 raise kernel.source.lines[number].error(
-                    f"the turn before is read by {' and '.join(names)}, not {called}", match.start() + 1
+                    f"the iteration before is read by {' and '.join(names)}, not {called}", match.start() + 1
                 )
 
 

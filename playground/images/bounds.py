@@ -12,7 +12,7 @@ from pathlib import Path
 from playground.errors import DataError
 
 MAX_TEXELS = 2**28  # 16384 x 16384: what a graphics card takes, and 1 GiB as float32
-ALWAYS_FINE = 2**29  # [bytes] unpacked, whatever the ratio
+ALWAYS_FINE = 2**29  # [bytes] unpacked, at any ratio
 MOST_RATIO = 200  # of what is unpacked to what is on the disk
 
 
@@ -33,9 +33,9 @@ def refuse_too_many(path: Path, width: int, height: int) -> None:
 
 
 def webp_size(start: bytes) -> tuple[int, int] | None:
-    """Return the width and height that a WebP's first 30 bytes tell; None for what is none.
+    """Return the width and height in a WebP's first 30 bytes; None for another format.
 
-    Whoever opens one takes memory for all of it at once. RFC 9649 (2024), sections 2.5 to 2.7.
+    A WebP is decoded as a whole, into memory for all of it. RFC 9649 (2024), sections 2.5 to 2.7.
     """
     if len(start) < 30 or start[:4] != b"RIFF" or start[8:12] != b"WEBP":
         return None

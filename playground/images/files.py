@@ -1,7 +1,7 @@
 """Move pictures and grids of values between files and NumPy arrays.
 
 Pictures have their top (north) row first, in the file and in the array; grids
-of values have row 0 in the south, as in the engine, and are turned over where
+of values have row 0 in the south, as in the engine, and are flipped where
 a format is an image. A file is written whole or not at all: a temporary file
 in the same folder takes the name only when it is complete.
 
@@ -9,8 +9,8 @@ It does not decode sRGB (`playground.sketch.colour` does), does not apply ICC
 profiles, and knows nothing of metres (`playground.terrain.elevation` does).
 
 16-bit PNG: Pillow keeps the precision of grey but not of colour. Reading colour
-therefore asks Pillow's decoder for the high bytes and for the low bytes in
-turn; writing is done here, since a PNG without adaptive filters is four chunks
+therefore asks Pillow's decoder for the high bytes, then for the low
+bytes; writing is done here, since a PNG without adaptive filters is four chunks
 (W3C PNG specification, third edition, 2025, clauses 5, 9 and 11).
 """
 
@@ -57,7 +57,6 @@ class Image:
     pixels: NDArray[np.uint8] | NDArray[np.float32]  # (rows, cols, 4), top row first; uint8 0..255
     # from 8-bit files, float32 0..1 from 16-bit ones; alpha is full where the file has none
     name: str  # the file's name, for messages
-    transparent: bool  # whether any pixel is not opaque
     has_alpha: bool  # whether the file holds an alpha channel at all, be it full everywhere
 
     @property
@@ -71,7 +70,7 @@ class Image:
 
 
 def read_image(path: str | Path) -> Image:
-    """Read a PNG, JPEG or WebP picture (told by content, not by the file's name).
+    """Read a PNG, JPEG or WebP picture (recognised by content, not by the file's name).
 
     Palettes, grey and CMYK become RGBA; a camera's orientation mark is obeyed;
     of an animation, the first picture counts. Alpha is straight, not premultiplied.
@@ -86,19 +85,18 @@ def read_image(path: str | Path) -> Image:
             samples = _png_samples(handle, path)
             pixels: NDArray[np.uint8] | NDArray[np.float32]
             pixels = _four_channels(samples).astype(np.float32) / np.float32(65535.0)
-            opaque, has_alpha = bool((pixels[..., 3] == 1.0).all()), samples.shape[-1] in (2, 4)
+            has_alpha = samples.shape[-1] in (2, 4)
         else:
             picture = _open(handle, path)
             has_alpha = picture.mode in _WITH_ALPHA or "transparency" in picture.info
             pixels = _eight_bit(picture)
-            opaque = bool((pixels[..., 3] == 255).all())
-    return Image(pixels, path.name, not opaque, has_alpha)
+    return Image(pixels, path.name, has_alpha)
 
 
 def read_png(path: str | Path) -> tuple[NDArray[np.uint8], dict[str, str]]:
     """Read a PNG as uint8 (rows, cols, 4), top row first, and the texts it carries.
 
-    Of 16-bit files only the high bytes are kept; `read_image` keeps all.
+    Of 16-bit files only the high bytes are read; `read_image` reads all.
 
     Raises:
         DataError: missing, not a PNG, damaged or too large.
@@ -128,7 +126,7 @@ def read_samples(path: str | Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
     path = checked_file(path)
     with _reading(path) as handle:
         if not _png_header(handle)[0]:
-            raise DataError("not a PNG file, whatever its name says; expected one", file=path)
+            raise DataError("not a PNG file, despite its name; expected one", file=path)
         return _png_samples(handle, path)
 
 
@@ -144,7 +142,7 @@ def read_texts(path: str | Path) -> dict[str, str]:
 
 
 def checked_file(path: str | Path) -> Path:
-    """Return the path if a file that is not empty lies there.
+    """Return the path of a file that exists and is not empty.
 
     Raises:
         DataError: nothing there (with the nearest name in that folder), a folder,
@@ -411,12 +409,12 @@ def _values_as_png(image: NDArray[np.float32], path: Path) -> tuple[bytes, str]:
         )
     low, high = float(image.min()), float(image.max())
     outside = int(np.count_nonzero((image < 0.0) | (image > 1.0)))
-    said = ""
+    note = ""
     if outside:
-        said = f"{outside} of {image.size} values lay outside 0..1 (from {low:.6g} to {high:.6g}); clamped."
+        note = f"{outside} of {image.size} values are outside 0..1 (from {low:.6g} to {high:.6g}); clamped."
     with np.errstate(all="ignore"):
         scaled = np.rint(np.clip(image, 0.0, 1.0).astype(np.float64) * 65535.0)
-    return encode_samples(scaled.astype(np.uint16)), said
+    return encode_samples(scaled.astype(np.uint16)), note
 
 
 def chunk(kind: bytes, data: bytes) -> bytes:
@@ -425,8 +423,26 @@ def chunk(kind: bytes, data: bytes) -> bytes:
 
 
 @contextmanager
+def writing(path: str | Path) -> Iterator[None]:
+    """Raise an ``OSError`` of the block as a ``DataError`` that says that the file cannot be written."""
+    try:
+        yield
+    except OSError as error:
+        raise DataError(f"cannot be written: {reason(error)}", file=path) from error
+
+
+def make_folder(path: Path) -> Path:
+    """Make a folder, with its parents, where there is none; raise ``DataError`` where it cannot be made."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise DataError(f"no folder can be made: {reason(error)}", file=path) from error
+    return path
+
+
+@contextmanager
 def new_name(path: str | Path) -> Iterator[Path]:
-    """Take the first of `land.png`, `land-2.png` and so on that no file has, to write to in the block.
+    """Reserve the first of `hills.png`, `hills-2.png` and so on that no file has, to write to in the block.
 
     An empty file holds the name from here on, so that no other program takes it; it is
     removed when the block fails.
@@ -460,7 +476,7 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
     """Open a new file that takes the name `path` when the block ends well.
 
     It is written in the same folder. When the block fails, the temporary file is
-    removed and whatever had the name stays as it was.
+    removed and a file that had the name stays as it was.
 
     Raises:
         DataError: a missing folder, a folder of that name, no permission, a full disk.
@@ -468,7 +484,7 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
     path = Path(path)
     if "\0" in str(path):
         raise DataError("a file's name cannot hold a zero character", file=repr(str(path)))
-    try:
+    with writing(path):
         if not path.parent.is_dir():
             raise DataError(f"there is no folder '{shown(path.parent)}' to write into", file=path)
         if path.is_dir():
@@ -476,5 +492,3 @@ def replacing(path: str | Path) -> Iterator[BinaryIO]:
         with partial_file(path) as partial:
             yield partial.handle
             partial.rename(path)
-    except OSError as error:
-        raise DataError(f"cannot be written: {reason(error)}", file=path) from error

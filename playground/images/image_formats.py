@@ -7,7 +7,8 @@ resolution. Files of numbers are `playground.images.files` and `playground.captu
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
 
@@ -21,6 +22,15 @@ from playground.images.files import encode_png, replacing
 _LONGEST = {".webp": 16383, ".jpg": 65500, ".jpeg": 65500}  # pixels a side that libwebp and libjpeg take
 JPEG_QUALITY = 95  # of 100: above it files grow and nothing is seen
 _NO_TEXT: Mapping[str, str] = MappingProxyType({})
+
+
+@contextmanager
+def naming(path: str | Path) -> Iterator[None]:
+    """Raise a ``DataError`` of the block with the name of a file."""
+    try:
+        yield
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=path) from error
 
 
 def picture_ending(path: str | Path) -> str:
@@ -78,10 +88,8 @@ def write_picture(path: str | Path, array: NDArray[np.uint8], *, text: Mapping[s
         DataError: what `picture_ending` and `encode_as` refuse, a missing folder, no permission, a full disk.
     """
     ending = picture_ending(path)
-    try:
+    with naming(path):
         data = encode_as(ending, array, text)
-    except DataError as error:
-        raise DataError(error.diagnostics[0].message, file=path) from error
     with replacing(path) as handle:
         handle.write(data)
     lost = ending in (".jpg", ".jpeg") and array.shape[2] == 4 and bool((array[..., 3] < 255).any())

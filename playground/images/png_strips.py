@@ -1,7 +1,7 @@
 """Write a PNG strip by strip, so that a picture need not fit in memory.
 
 The picture goes through one compressor, a strip at a time: what is held is the strip, its
-filtered rows and the compressor's window, whatever the picture's height.
+filtered rows and the compressor's window, independent of the picture's height.
 
 Source: W3C PNG specification, third edition, 2025: clause 9.2 (filters) and 12.7 (each row
 takes the filter whose bytes, counted as signed numbers, sum to the least).

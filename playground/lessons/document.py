@@ -11,6 +11,7 @@ from playground.lessons.markdown import Piece, pieces
 from playground.lessons.model import Prose
 from playground.sketch.source import read_text
 from playground.sketch.toml_table import TomlFile
+from playground.sketch.values import spell
 
 _EDGE = "+++"
 _HEADING = re.compile(r"^#+\s*(.*?)\s*#*$")
@@ -49,8 +50,8 @@ def prose_of(piece: Piece) -> Prose:
 
 
 def texts_in(front: TomlFile, key: str) -> tuple[str, ...]:
-    """Return a list of texts of the front matter."""
+    """Return the list of texts that a key has; raise ``SketchError`` for anything else."""
     found = front.take(front.table, key, list, [])
     if not all(isinstance(item, str) for item in found):
-        raise front.error(f"{key}: expected a list of texts in quotes", key)
+        raise front.error(f"{key} = {spell(found)}: expected texts in quotes", key)
     return tuple(found)

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.lessons import model
+from playground.lessons.document import texts_in
 from playground.lessons.markdown import Piece
 from playground.lessons.measures import MEASURES
 from playground.lessons.scenes import FRAME, PICTURE, STATE, Sketches, read_scene, with_steps, with_value
@@ -54,10 +55,7 @@ class Fence:
 
     def texts(self, key: str) -> tuple[str, ...]:
         """Return the list of texts that a key has."""
-        found = self.take(key, list, [])
-        if not all(isinstance(item, str) for item in found):
-            raise self.error(f"{key} = {spell(found)}: expected texts in quotes", key)
-        return tuple(item.strip() for item in found)
+        return tuple(item.strip() for item in texts_in(self.file, key))
 
     def block(self, kind: type[B], **fields: Any) -> B:
         """Return the block with these fields; its line, its name and its texts are read."""

@@ -61,27 +61,27 @@ def pieces(text: str) -> list[Piece]:
 
 def formulas(text: str) -> Iterator[str]:
     """Yield the formulas of a text, as LaTeX."""
-    for token in walk(parser().parse(text)):
+    for token in every_token(parser().parse(text)):
         if token.type.startswith("math_"):
             yield token.content
 
 
 def links(text: str) -> Iterator[str]:
     """Yield the addresses that a text links to."""
-    for token in walk(parser().parse(text)):
+    for token in every_token(parser().parse(text)):
         if token.type == "link_open":
             yield str(token.attrs["href"])
 
 
 def images(text: str) -> Iterator[str]:
     """Yield the addresses of a text's images."""
-    for token in walk(parser().parse(text)):
+    for token in every_token(parser().parse(text)):
         if token.type == "image":
             yield str(token.attrs["src"])
 
 
-def walk(tokens: list[Token]) -> Iterator[Token]:
+def every_token(tokens: list[Token]) -> Iterator[Token]:
     """Yield every token, those inside of others too."""
     for token in tokens:
         yield token
-        yield from walk(token.children or [])
+        yield from every_token(token.children or [])

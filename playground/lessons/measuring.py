@@ -13,7 +13,7 @@ import numpy as np
 
 from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan, Step, every_node, needed
-from playground.engine.planner import make_plan
+from playground.engine.planner import Planner
 from playground.errors import SketchError
 from playground.lessons.measures import MEASURES, Grid, OfTexture
 from playground.lessons.model import Lesson, Markdown, Measure, Scene
@@ -101,7 +101,7 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
         bytes_a_channel = {"f1": 1, "f2": 2, "f4": 4}[texture.dtype]
         return float(width * height * texture.components * bytes_a_channel)
     # Of the plain form: a fast variant has other iterations than the text that the lesson shows.
-    plan = make_plan(
+    plan = Planner().plan(
         scene.sketch, frame_size=scene.pixels, time=scene.time, steps=at["steps"], wanted=measure.of
     )
     nodes = needed(plan.nodes, plan.flat.ref(measure.of, scene.sketch.name))

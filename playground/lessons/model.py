@@ -211,6 +211,11 @@ class Lesson:
         """Its numbers."""
         return tuple(block for block in self.blocks if isinstance(block, Measure))
 
+    def number_of(self, exercise: Exercise) -> int:
+        """Return an exercise's number, from 1."""
+        names = [block.name for block in self.blocks if isinstance(block, Exercise)]
+        return names.index(exercise.name) + 1
+
     def texts(self) -> Iterator[Markdown]:
         """Yield all that a reader reads of it."""
         yield self.title

@@ -9,10 +9,11 @@ from latex2mathml.converter import convert
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
-from playground.errors import PlaygroundError
+from playground.errors import PlaygroundError, nearest
 from playground.lessons import model
 from playground.lessons.excerpt import excerpt
 from playground.lessons.figure_renders import broken, draw
+from playground.lessons.glossary import terms
 from playground.lessons.library import lesson_files
 from playground.lessons.markdown import formulas, images, links
 from playground.lessons.measuring import measured, named_in
@@ -118,32 +119,37 @@ def _sections(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
 
 def _references(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     measures = {measure.name for measure in lesson.measures}
-    for text in lesson.texts():
+    targets = {"lesson": lesson_files(), "sketch": shipped_sketches(), "term": list(terms())}
+    linked: set[str] = set()
+    texts = [(1, lesson.title), (1, lesson.goal)]
+    texts += [(block.line, text) for block in lesson.blocks for text in model.texts_of(block)]
+    for line, text in texts:
         for latex in formulas(text):
-            yield from _formula(latex)
+            yield from ((line, message) for message in _formula(latex))
         for name in named_in(text):
             if name not in measures:
-                yield 1, f"{{{{{name}}}}}: there is no measure of that name"
+                yield line, f"{{{{{name}}}}}: there is no measure of that name"
         for address in images(text):
-            yield 1, f"an image of '{address}': pictures are blocks of their own"
+            yield line, f"an image of '{address}': pictures are blocks of their own"
         for address in links(text):
             kind, _, what = address.partition(":")
-            if kind == "lesson" and what not in lesson_files():
-                yield 1, f"a link to lesson '{what}', which there is not"
-            elif kind == "sketch" and what not in shipped_sketches():
-                yield 1, f"a link to sketch '{what}', which there is not"
+            if kind in targets and what not in targets[kind]:
+                yield line, f"a link to {kind} '{what}', which there is not{nearest(what, targets[kind])}"
             elif kind == "thesis" and not all(part.isdigit() for part in what.split(".")):
-                yield 1, f"a link to section '{what}' of the thesis, which is no number"
-            elif kind not in ("lesson", "sketch", "thesis", "https"):
-                yield 1, f"a link to '{address}': expected lesson:, sketch:, thesis: or https:"
+                yield line, f"a link to section '{what}' of the thesis, which is no number"
+            elif kind == "term" and address in linked:
+                yield line, f"a second link to term '{what}': only its first appearance has one"
+            elif kind not in (*targets, "thesis", "https"):
+                yield line, f"a link to '{address}': expected {':, '.join(targets)}:, thesis: or https:"
+            linked.add(address)
 
 
-def _formula(latex: str) -> Iterator[tuple[int, str]]:
+def _formula(latex: str) -> Iterator[str]:
     try:
         known = "\\" not in convert(latex)  # a command that it does not know stays as it is
     except Exception as error:  # its errors have no class in common
         message = str(error) or type(error).__name__.removesuffix("Error")
-        yield 1, f"formula ${latex}$ cannot be read: {message}"
+        yield f"formula ${latex}$ cannot be read: {message}"
         return
     if not known:
-        yield 1, f"formula ${latex}$ holds a command that cannot be shown"
+        yield f"formula ${latex}$ holds a command that cannot be shown"

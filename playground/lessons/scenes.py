@@ -69,7 +69,7 @@ def read_scene(
     begun = sketch.for_shot(shot)
     try:
         made = begun.with_preset(preset) if preset else begun
-        made = made.with_values(dict(values))
+        made = replace(made.with_values(dict(values)), warnings=(*made.warnings, *file.warnings))
     except PlaygroundError as error:
         raise file.error(error.diagnostics[0].message, *place, "preset" if preset else "set") from None
     if "camera" in whole:
@@ -107,11 +107,11 @@ def _joined(
 
 def _check_steps(file: TomlFile, place: Place, scene: Scene) -> None:
     """Raise ``SketchError`` where a pass cannot be stopped at the iteration that is named."""
-    from playground.engine.planner import make_plan  # it needs what is loaded by then only
+    from playground.engine.planner import Planner  # it needs what is loaded by then only
 
     try:
         if scene.steps:
-            make_plan(scene.sketch, frame_size=scene.pixels, time=scene.time, steps=dict(scene.steps))
+            Planner().plan(scene.sketch, frame_size=scene.pixels, time=scene.time, steps=dict(scene.steps))
     except ParameterError as error:
         raise file.error(error.diagnostics[0].message, *place, "steps") from None
 

@@ -11,6 +11,7 @@ import difflib
 import hashlib
 import re
 import tomllib
+from collections.abc import Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
@@ -52,21 +53,7 @@ def stale(english: Document, other: Document) -> Stale:
 
     Raises ``SketchError`` where the translation has other blocks than it was marked with.
     """
-    now, then = hashes(english), _source(other)
-    changed: list[int] = []
-    added: list[int] = []
-    removed = 0
-    for tag, low, high, first, last in difflib.SequenceMatcher(None, then, now, False).get_opcodes():
-        if tag == "replace":
-            both = min(high - low, last - first)
-            changed += range(first, first + both)
-            added += range(first + both, last)
-            removed += high - low - both
-        elif tag == "insert":
-            added += range(first, last)
-        elif tag == "delete":
-            removed += high - low
-    return Stale(tuple(changed), tuple(added), removed)
+    return _matched(_source(other), hashes(english))[1]
 
 
 def translated(lesson: Lesson, english: Document, other: Document, language: str) -> Lesson:
@@ -79,7 +66,7 @@ def translated(lesson: Lesson, english: Document, other: Document, language: str
     front = other.front
     front.only(front.table, _FRONT)
     if then := _source(other):
-        pairs, lost = _pairs(then, hashes(english)), stale(english, other)
+        pairs, lost = _matched(then, hashes(english))
     else:
         pairs, lost = dict(enumerate(range(len(other.pieces)))), Stale()
         if len(other.pieces) != len(lesson.blocks):
@@ -143,13 +130,24 @@ def _source(other: Document) -> tuple[str, ...]:
     return found
 
 
-def _pairs(then: tuple[str, ...], now: list[str]) -> dict[int, int]:
-    """Map English blocks to those of a translation: equal ones, and those that took the place of others."""
+def _matched(then: Sequence[str], now: Sequence[str]) -> tuple[dict[int, int], Stale]:
+    """Map English blocks to those of a translation, equal or replaced; say what it lacks of the English.
+
+    The map counts blocks without the front, ``Stale`` with it.
+    """
     found: dict[int, int] = {}
+    changed: list[int] = []
+    added: list[int] = []
+    removed = 0
     for tag, low, high, first, last in difflib.SequenceMatcher(None, then, now, False).get_opcodes():
-        if tag in ("equal", "replace"):
-            found |= dict(zip(range(first, last), range(low, high), strict=False))
-    return {new - 1: old - 1 for new, old in found.items() if new and old}
+        both = min(high - low, last - first)
+        found |= dict(zip(range(first, first + both), range(low, low + both), strict=True))
+        if tag != "equal":
+            changed += range(first, first + both)
+            added += range(first + both, last)
+            removed += high - low - both
+    pairs = {new - 1: old - 1 for new, old in found.items() if new and old}
+    return pairs, Stale(tuple(changed), tuple(added), removed)
 
 
 def _put(block: Block, piece: Piece, other: Document, sketches: Sketches) -> Block:

@@ -43,11 +43,13 @@ from playground.live.part_labels import draw_part_labels
 from playground.live.status import Status
 from playground.live.window import Window, wake
 from playground.live.window_place import Place
+from playground.paths import DEFAULT_SKETCH
 from playground.sketch.allowed_files import TEXTS
+from playground.sketch.assign import current_paths
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, Kernel, Value
-from playground.workbench.autosave import QUIET, Rememberer, memory_of
+from playground.workbench.autosave import QUIET, Autosave, memory_of
 from playground.workbench.bench import Bench
 from playground.workbench.disk_caching import SessionCaching
 from playground.workbench.editors import Opener
@@ -69,7 +71,7 @@ FRAME = 1 / 60  # [s] between pictures while time runs
 IDLE = 1.0  # [s] between frames while nothing happens
 _SANDBOX = 0.004  # [s] between questions to the sandbox
 _SETTLES = 3  # frames that the panel takes to settle after something happened
-_LONGEST_STEP = 0.25  # [s] time never jumps by more, whatever a picture took
+_LONGEST_STEP = 0.25  # [s] time never jumps by more, however long a frame took
 
 
 def run(
@@ -84,26 +86,26 @@ def run(
     fresh: bool = False,
     lesson: str = "",
     language: str = "",
-    beside: bool = False,
-    keeps: int = 0,
+    show_lessons: bool = False,
+    cache_limit: int = 0,
     time_limit: float | None = None,
-    tell: Callable[[str], None] = to_log,
+    report: Callable[[str], None] = to_log,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
     ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. The user's edits
     of the last time are restored, unless ``fresh``. ``lesson`` opens one by name, in a
-    ``language`` by code; ``beside`` opens the one read last, or the first, beside the sketch,
+    ``language`` by code; ``show_lessons`` opens the one read last, or the first, next to the sketch,
     unless the reader has closed the lessons. Expensive terrain is cached on disk, in at most
-    ``keeps`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
-    ``tell`` receives each error, for the terminal.
+    ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
+    ``report`` receives each error, for the terminal.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
     """
     if lesson:
         lesson_file(lesson, language or SOURCE)  # says so before a window opens, where there is none
-    path, unpacked = opened_from(Path(sketch)) if sketch else (find_default(), "")
+    path, unpacked = opened_from(Path(sketch)) if sketch else (find(DEFAULT_SKETCH), "")
     checked = _checked(path, values or {}, dialect)
     if software:
         prefer_software()
@@ -126,28 +128,21 @@ def run(
             is_lost=lambda: window.lost,
         )
         session.notes.extend(filter(None, [complaint, unpacked]))
-        rememberer = Rememberer(session, memory, found)
+        autosave = Autosave(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
-        live = Live(window, session, watcher, rememberer, SessionCaching(session, keeps), tell)
+        live = Live(window, session, watcher, autosave, SessionCaching(session, cache_limit), report)
         if found.at is not None:
-            live.place.stand_at(found.at)
-        live.lessons.begin(lesson, language, beside=beside)
+            live.place.move_to(found.at)
+        live.lessons.begin(lesson, language, show_lessons=show_lessons)
         stack.callback(live.release)
         stack.callback(live.bench.captures.close)
-        stack.callback(rememberer.close)
+        stack.callback(autosave.close)
         stack.callback(live.caching.close)
         try:
             live.run(time_limit)
         except KeyboardInterrupt:
             return 130
     return 0
-
-
-def find_default() -> Path:
-    """Return the file of the sketch that opens when none is named."""
-    from playground.paths import DEFAULT_SKETCH
-
-    return find(DEFAULT_SKETCH)
 
 
 def title_of(path: Path) -> str:
@@ -165,24 +160,27 @@ def _checked(path: Path, values: Mapping[str, object], dialect: str) -> dict[str
         sketch = load(path, dialect=dialect) if values else None
     except PlaygroundError:
         sketch = None
-    taken = dict(sketch.with_values(values).overrides) if sketch is not None else {}
-    return {name: taken.get(name, cast(Value, value)) for name, value in values.items()}
+    if sketch is None:
+        return cast(dict[str, Value], dict(values))
+    taken = dict(sketch.with_values(values).overrides)
+    names = current_paths(sketch.graph, values)
+    return {name: taken.get(name, cast(Value, values[path])) for path, name in names.items()}
 
 
 class Live:
-    """The window, the session and the watcher, frame by frame."""
+    """Runs the frames of a window: wait, read saved files, draw the interface, draw the sketch."""
 
     def __init__(
         self,
         window: Window,
         session: Session,
         watcher: Watcher,
-        rememberer: Rememberer,
+        autosave: Autosave,
         caching: SessionCaching,
-        tell: Callable[[str], None],
+        report: Callable[[str], None],
     ) -> None:
         self.window = window
-        self.rememberer = rememberer
+        self.autosave = autosave
         self.caching = caching
         self.session = session
         self.follower = Follower(session, watcher)
@@ -197,25 +195,26 @@ class Live:
         self.bench = Bench(session, controls, opener=Opener(wake), size=remembered_size())
         self.drops = Drops(self.bench.commands)
         self.guard = Guard(self.bench.notices.say)
-        self.terminal = TerminalErrors(tell)
+        self.terminal = TerminalErrors(report)
         self.warnings = Warnings(self._review)
         self.painter = Painter(window.ctx)
-        self.status = Status.from_environment()
-        rememberer.compare = self.bench.inspection.compare
+        self.status = Status()
+        autosave.compare = self.bench.inspection.compare
+        self.bench.commands.opens = autosave.open
         self._settling = _SETTLES
         self._last = time.perf_counter()
         self._reloads = session.last_reload
         self.mouse = PictureMouse(session, self.bench.painting)
         self.finite = FiniteWatch()
-        self.lessons = Lessons(self.bench, rememberer, self._remember)
+        self.lessons = Lessons(self.bench, autosave, self._remember)
 
     def run(self, time_limit: float | None = None) -> None:
-        """Go on until the window is closed, or so many seconds have passed."""
+        """Run frames until the window is closed, or for a limited time [s]."""
         end = None if time_limit is None else time.perf_counter() + time_limit
         self.guard.run("watching the files", self.follower.follow, None)
-        while self._stays():
+        while self._stays_open():
             now = self.bench.notices.now()
-            others = self.bench.inspection.patience(now), self.lessons.reading.patience(now)
+            others = self.bench.inspection.patience(now), self.lessons.reader.patience(now)
             patience = min(self._patience(), *others)
             if end is not None:
                 left = end - time.perf_counter()
@@ -234,13 +233,13 @@ class Live:
         if self.follower.take(self.bench.painting.files):
             self._settling = _SETTLES  # an error grows to its size
 
-    def _stays(self) -> bool:
+    def _stays_open(self) -> bool:
         """Return whether the window stays; the user decides where it is to close over unsaved texts."""
         if self.window.open:
             return True
         if not unsaved(self.bench.files.editing):
             return False
-        self.window.stay()
+        self.window.cancel_close()
         self.bench.files.leaving, self._settling = True, _SETTLES
         return True
 
@@ -253,7 +252,7 @@ class Live:
         self.session.engine.release()
 
     def recover(self) -> None:
-        """Build everything anew in a new context, after the driver took the old one."""
+        """Rebuild everything in a new context, after the driver lost the old one."""
         driver = self.session.engine.driver
         with suppress(Exception):  # a lost context may refuse even this
             self.release()
@@ -264,7 +263,7 @@ class Live:
         self._settling = _SETTLES
 
     def _patience(self) -> float:
-        """Say how long nothing needs to be done [s]."""
+        """Return how long nothing needs to be done [s]."""
         if self.session.animated and self.session.clock.playing:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
         if self._settling > 0:
@@ -279,7 +278,7 @@ class Live:
             return self.finite.patience
         if self.caching.patience is not None:
             return min(self.caching.patience, QUIET / 2)
-        if self.rememberer.waits:
+        if self.autosave.waits:
             return QUIET / 2
         if self.bench.captures.working is not None or self.bench.notices.items:
             return 0.1
@@ -301,7 +300,7 @@ class Live:
         """Draw the window once; a part of it that fails is left out, and a notice says so."""
         window, bench, guard = self.window, self.bench, self.guard
         look = window.theme
-        window.call(title_of(self.session.path))
+        window.set_title(title_of(self.session.path))
         guard.run("taking in what was dropped", lambda: self.drops.take(self.place.dropped()), None)
         window.zoom = bench.interface.size.size
         window.begin()
@@ -337,11 +336,11 @@ class Live:
         draws, error = session.draws, session.error
         picture = session.frame(size)
         if session.draws != draws or session.error is not error:
-            self._settling = _SETTLES  # the panel tells what the picture took; an error grows to its size
+            self._settling = _SETTLES  # the panel shows what the frame took; an error grows to its size
         return picture
 
     def _take_in(self) -> None:
-        """Take in what the picture, or the error in its place, has brought."""
+        """Update the watches, the notices and the list of errors from the last frame."""
         bench, session = self.bench, self.session
         self.finite.update(session, held=imgui.is_mouse_down(0) or imgui.is_mouse_down(1))
         self.caching.update(bench.inspection, self.finite)
@@ -368,7 +367,7 @@ class Live:
             parted, free = session.sketch, below_bar(bench.inspection.compare, look, area)
             draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)
         view = bench, picture, look, area, self.window.density
-        draw("what is shown besides the picture", lambda: draw_inspection(*view), None)
+        draw("what is shown over the picture", lambda: draw_inspection(*view), None)
         draw("the notices", lambda: draw_notices(bench.notices, look, area), None)
         draw("what was dropped", lambda: self.drops.draw(look), None)
         draw("the key map", lambda: draw_keymap(bench.interface, look), None)
@@ -386,7 +385,7 @@ class Live:
             self.painter.paint(picture, window.screen, area)
 
     def _follow_up(self) -> None:
-        """Do what waits for a moment without anything else to do."""
+        """Do what may wait until the frame is shown: driver warnings, the status, the lessons."""
         rests = self._settling == 0 and not self.session.drafts.testing
         if rests:
             self.warnings.look()
@@ -395,7 +394,7 @@ class Live:
 
     def _remember(self) -> None:
         geometry = self.place.geometry()
-        self.rememberer.look((geometry.width, geometry.height), (geometry.x, geometry.y))
+        self.autosave.look((geometry.width, geometry.height), (geometry.x, geometry.y))
 
     def _review(self, kernel: Kernel) -> tuple[Diagnostic, ...]:
         """Return what the driver warns of in a kernel that it has drawn with."""
@@ -409,9 +408,9 @@ class Live:
             return ()
 
     def _say_reload(self) -> None:
-        """Say so when a save has become a picture."""
+        """Show a notice when a save has become a picture."""
         latest = self.session.last_reload
         if latest is not self._reloads:
-            if self._reloads is not None and self.lessons.reading.figure.own is None:
+            if self._reloads is not None and self.lessons.reader.figure.before_lesson is None:
                 self.bench.notices.say(f"reloaded in {latest.seconds * 1e3:.0f} ms" if latest else "")
             self._reloads = latest

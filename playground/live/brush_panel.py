@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from imgui_bundle import imgui
 
-from playground.live.draw import button, choose
+from playground.live.draw import buttons, choose
 from playground.live.panel_rows import row
 from playground.live.sliders import slide
 from playground.workbench.brush import ERASER
@@ -31,31 +32,25 @@ def draw_paintbox(painting: Painting) -> None:
         layer = choose("##layer", _LAYERS[brush.layer], _LAYERS, brush.layer, name=_LAYERS.__getitem__)
         if layer is not None:
             brush = replace(brush, layer=layer)
-    side = painting.side
-    with row("Radius", "The brush's, on the ground", fixed=True):
-        ends = NARROWEST * side, WIDEST * side
-        radius = slide("##radius", brush.radius, ends, "%.0f m", logarithmic=True)
-        if radius is not None:
-            brush = replace(brush, radius=radius)
-    with row("Strength", "How much of what was there one pass over a place covers", fixed=True):
-        strength = slide("##strength", brush.strength, (0.01, 1.0), "%.2f")
-        if strength is not None:
-            brush = replace(brush, strength=strength)
-    with row("Softness", "The share of the radius over which the brush fades", fixed=True):
-        softness = slide("##softness", brush.softness, (0.0, 1.0), "%.2f")
-        if softness is not None:
-            brush = replace(brush, softness=softness)
+    widths = NARROWEST * painting.side, WIDEST * painting.side
+    for name, note, ends, form in (
+        ("radius", "The brush's, on the ground", widths, "%.0f m"),
+        ("strength", "How much of what was there one pass over a place covers", (0.01, 1.0), "%.2f"),
+        ("softness", "The share of the radius over which the brush fades", (0.0, 1.0), "%.2f"),
+    ):
+        with row(name.capitalize(), note, fixed=True):
+            value = slide(f"##{name}", getattr(brush, name), ends, form, logarithmic=name == "radius")
+        if value is not None:
+            changed: dict[str, Any] = {name: value}
+            brush = replace(brush, **changed)
     painting.brush = brush
     canvas = painting.canvas
     undoes, redoes = (canvas.can_undo, canvas.can_redo) if canvas is not None else (False, False)
-    if button("Undo stroke", "Ctrl+Z, while painting", enabled=undoes):
-        painting.undo()
-    imgui.same_line()
-    if button("Redo stroke", "Ctrl+Shift+Z or Ctrl+Y, while painting", enabled=redoes):
-        painting.redo()
-    imgui.same_line()
-    if button("Clear", "Remove all paint; that can be undone"):
-        painting.clear()
+    buttons(
+        ("Undo stroke", "Ctrl+Z, while painting", painting.undo, undoes),
+        ("Redo stroke", "Ctrl+Shift+Z or Ctrl+Y, while painting", painting.redo, redoes),
+        ("Clear", "Remove all paint; that can be undone", painting.clear, True),
+    )
     if canvas is not None:
         imgui.text_disabled(canvas.path.name)
         imgui.set_item_tooltip(str(canvas.path))

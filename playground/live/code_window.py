@@ -11,7 +11,8 @@ from imgui_bundle import imgui_color_text_edit as text_edit
 
 from playground.errors import Diagnostic, PlaygroundError
 from playground.live import theme
-from playground.live.draw import QUIET, Area, button, styled
+from playground.live.draw import QUIET, Area, button, buttons, styled
+from playground.live.text_field import ctrl_held
 from playground.live.theme import Theme
 from playground.workbench.dependencies import path_named
 from playground.workbench.notices import Notices
@@ -73,7 +74,7 @@ def ask_to_close(editing: Editing, files: OpenFiles) -> None:
 
 
 def stay(files: OpenFiles) -> None:
-    """Answer every question about what is not saved by leaving all as it is."""
+    """Dismiss every question about unsaved changes; nothing is saved or closed."""
     files.leaving = False
     for editing in files.editing:
         view = _view_of(editing)
@@ -108,7 +109,7 @@ def _view_of(editing: Editing) -> _View:
         editor.set_tab_size(4)
         editor.set_insert_spaces_on_tabs(True)
         editor.set_show_whitespaces_enabled(False)
-        editor.set_complete_paired_glyphs(False)  # it would put a second one beside each that is typed
+        editor.set_complete_paired_glyphs(False)  # it would add a second one to each that is typed
         editor.set_text(editing.text.base)
         editing.view = _View(editor, editor.get_undo_index())
     return editing.view
@@ -160,24 +161,19 @@ def _draw(editing: Editing, notices: Notices, problems: Problems, look: Theme, a
 
 
 def _take_keys(editing: Editing, notices: Notices) -> None:
-    io = imgui.get_io()
-    # In a slow frame Ctrl may come up again together with the key that it was held for.
-    ctrl = io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl)
-    if ctrl and imgui.is_key_pressed(imgui.Key.s, False):
+    if ctrl_held() and imgui.is_key_pressed(imgui.Key.s, False):
         save(editing, notices)
-    io.want_text_input = True  # keys are this editor's, not the picture's
+    imgui.get_io().want_text_input = True  # keys are this editor's, not the picture's
 
 
 def _bar(editing: Editing, view: _View, notices: Notices, look: Theme) -> None:
     note = "Ctrl+S; what is saved is checked at once, as from any editor"
-    if button("Save", note, enabled=view.changed, small=True):
-        save(editing, notices)
-    imgui.same_line()
-    if button("Undo", enabled=view.editor.can_undo(), small=True):
-        view.editor.undo()
-    imgui.same_line()
-    if button("Redo", enabled=view.editor.can_redo(), small=True):
-        view.editor.redo()
+    buttons(
+        ("Save", note, lambda: save(editing, notices), view.changed),
+        ("Undo", "", view.editor.undo, view.editor.can_undo()),
+        ("Redo", "", view.editor.redo, view.editor.can_redo()),
+        small=True,
+    )
     imgui.same_line()
     place = view.editor.get_main_cursor_position()
     with look.font(look.text, theme.SMALL):
@@ -185,7 +181,7 @@ def _bar(editing: Editing, view: _View, notices: Notices, look: Theme) -> None:
 
 
 def _mark(editing: Editing, view: _View, problems: Problems) -> None:
-    """Mark the lines that are wrong."""
+    """Mark the lines that have diagnostics."""
     mine = tuple(d for d in problems.all if d.file and d.line and path_named(d.file) == editing.text.path)
     if mine == view.marked:
         return
@@ -221,7 +217,7 @@ def _question(title: str, text: str, answers: Sequence[tuple[str, str]]) -> str:
 
 
 def _ask_to_leave(files: OpenFiles, quit_window: Callable[[], None]) -> None:
-    """Ask what is to become of all that is not saved, when the whole window is to close."""
+    """Ask whether to save unsaved files before the window closes."""
     answers = [("Save and quit", ""), ("Quit", ""), ("Stay", "")]
     answer = _question(_LEAVING, f"Not saved: {', '.join(unsaved(files.editing))}", answers)
     if not answer:
@@ -235,15 +231,18 @@ def _ask_to_leave(files: OpenFiles, quit_window: Callable[[], None]) -> None:
 
 
 def _ask(editing: Editing, view: _View, notices: Notices) -> bool:
-    """Ask what is to become of changes that cannot just be saved; return False to close the file."""
+    """Ask about a clash, or about closing with unsaved changes; return False to close the file."""
     if view.clash:
         answer = _question(_CLASH, view.clash, _CLASH_ANSWERS)
-        if answer == "Merge both":
-            _merge(editing, view, notices)
-        elif answer == "Take theirs":
-            _reload(editing, view, notices)
-        elif answer:
-            view.clash = ""
+        try:
+            if answer == "Merge both":
+                _merge(editing, view, notices)
+            elif answer == "Take theirs":
+                _reload(editing, view)
+            elif answer:
+                view.clash = ""
+        except PlaygroundError as error:
+            notices.say(str(error))
         if answer == "Save mine":
             save(editing, notices, over=True)
     if view.closing:
@@ -255,11 +254,7 @@ def _ask(editing: Editing, view: _View, notices: Notices) -> bool:
 
 
 def _merge(editing: Editing, view: _View, notices: Notices) -> None:
-    try:
-        found = editing.text.merged(view.written())
-    except PlaygroundError as error:
-        notices.say(str(error))
-        return
+    found = editing.text.merged(view.written())
     if found is None:
         view.clash = "Both changed the same lines, or lines side by side: choose one of the two."
         return
@@ -268,18 +263,14 @@ def _merge(editing: Editing, view: _View, notices: Notices) -> None:
     save(editing, notices)
 
 
-def _reload(editing: Editing, view: _View, notices: Notices) -> None:
-    try:
-        text = editing.text.reload()
-    except PlaygroundError as error:
-        notices.say(str(error))
-        return
+def _reload(editing: Editing, view: _View) -> None:
+    text = editing.text.reload()
     view.clash = ""
     _replace(view.editor, text)
     view.saved_at = view.editor.get_undo_index()
 
 
 def _replace(editor: text_edit.TextEditor, text: str) -> None:
-    """Put another text in, so that it can be undone."""
+    """Replace the text as one step that can be undone."""
     editor.select_all()
     editor.replace_text_in_current_cursor(text)

@@ -13,7 +13,7 @@ import numpy as np
 from imgui_bundle import ImVec2, imgui, implot
 
 from playground.live import theme
-from playground.live.draw import table
+from playground.live.draw import header, table
 from playground.live.inspect import plots
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
@@ -32,8 +32,7 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
     """Draw the plots, then the table of what ran, how often and how long."""
     engine, record = session.engine, inspection.record
     imgui.spacing()
-    with look.font(look.bold):
-        opened = imgui.collapsing_header("Cost###costs")
+    opened = header("Cost###costs", look)
     if not opened:
         return
     inspection.costs_shown = True
@@ -71,32 +70,33 @@ def _plots(record: Record, look: Theme) -> None:
     """Draw each expensive pass over the last pictures, and what was computed and drawn for them."""
     size = ImVec2(-1, _HIGH * look.scale)
     axes = implot.AxisFlags_.no_decorations, implot.AxisFlags_.auto_fit
-    held = len(record.whole.values)
+    held = len(record.whole)
     across: np.ndarray = np.arange(record.pictures - held, record.pictures, dtype=np.float64)
-    dear = record.dearest(_MOST)
+    expensive = record.most_expensive(_MOST)
     with plots.plot("##ms", size, implot.Flags_.no_legend.value) as drawn:
         if drawn:
             implot.setup_axes("", "", axes[0] | implot.AxisFlags_.auto_fit, axes[1])
             implot.setup_axis_format(implot.ImAxis_.y1, "%g ms")
-            for number, path in enumerate(dear):
-                implot.plot_line(path, across, record.passes[path].values.copy(), plots.line(number))
+            for number, path in enumerate(expensive):
+                implot.plot_line(path, across, np.array(record.passes[path]), plots.line(number))
     draw, side = imgui.get_window_draw_list(), imgui.get_font_size() * 0.6
-    for number, path in enumerate(dear):
-        values = record.passes[path].values
+    for number, path in enumerate(expensive):
+        spent = record.passes[path]
         corner = imgui.get_cursor_screen_pos()
         top = corner.y + (imgui.get_font_size() - side) / 2
         colour = theme.packed(plots.COLOURS[number % len(plots.COLOURS)])
         draw.add_rect_filled(ImVec2(corner.x, top), ImVec2(corner.x + side, top + side), colour, 2)
         imgui.set_cursor_pos_x(imgui.get_cursor_pos_x() + 2 * side)
-        text = f"{path}  {values.mean():.2f} ms, most {values.max():.2f}"
+        text = f"{path}  {sum(spent) / len(spent):.2f} ms, most {max(spent):.2f}"
         imgui.text_unformatted(fitting(text, imgui.get_content_region_avail().x))
-    whole = record.whole.values
-    imgui.text_disabled(f"in all {whole[-1]:.1f} ms; median of {held}: {np.median(whole):.1f} ms")
-    for name, ring in (("texels computed", record.texels), ("triangles drawn", record.triangles)):
+    imgui.text_disabled(
+        f"in all {record.whole[-1]:.1f} ms; median of {held}: {np.median(record.whole):.1f} ms"
+    )
+    for name, numbers in (("texels computed", record.texels), ("triangles drawn", record.triangles)):
         imgui.plot_lines(
             f"##{name}",
-            ring.values.astype(np.float32),
-            overlay_text=f"{ring.values[-1]:,.0f} {name}",
+            np.array(numbers, np.float32),
+            overlay_text=f"{numbers[-1]:,.0f} {name}",
             scale_min=0.0,
             graph_size=ImVec2(-1, 2.2 * imgui.get_font_size()),
         )
@@ -111,8 +111,7 @@ def _compiling(times: Mapping[str, float]) -> None:
         imgui.text_unformatted(Path(path).name)
         imgui.set_item_tooltip(path)
 
-    dearest = sorted(times.items(), key=lambda item: -item[1])
-    table(
-        "compiled", 2, [(partial(name, p), partial(imgui.text, f"{ms:.1f} ms")) for p, ms in dearest], _TABLE
-    )
+    ranked = sorted(times.items(), key=lambda item: -item[1])
+    rows = [(partial(name, path), partial(imgui.text, f"{ms:.1f} ms")) for path, ms in ranked]
+    table("compiled", 2, rows, _TABLE)
     imgui.tree_pop()

@@ -1,16 +1,16 @@
-"""Move the lines that part a picture with the mouse: parameters whose widget is a divider."""
+"""Move the lines that divide a picture with the mouse: parameters whose widget is a divider."""
 
 from __future__ import annotations
 
 from playground.sketch.assign import shown_parameters, value_of, values_of
 from playground.sketch.model import Sketch
 
-REACH = 6.0
-"""How far beside a line it can be taken hold of, in the screen's units."""
+GRAB_DISTANCE = 6.0
+"""How far from a line the mouse can grab it, in the screen's units."""
 
 
 def dividers_of(sketch: Sketch) -> dict[str, float]:
-    """Return where the lines stand, in shares of the picture's width from its left, by path."""
+    """Return where the lines are, in shares of the picture's width from its left, by path."""
     leaves = values_of(sketch)
     found = {
         shown.path: value_of(sketch, shown.path, leaves)
@@ -23,11 +23,11 @@ def dividers_of(sketch: Sketch) -> dict[str, float]:
 def divider_at(sketch: Sketch, across: float, width: float) -> str:
     """Return the path of the line nearest to a place ``across`` a picture ``width`` wide, in the same units.
 
-    "" where none is in reach.
+    "" where none is near enough.
     """
     away = {path: abs(share * width - across) for path, share in dividers_of(sketch).items()}
     nearest = min(away, key=away.__getitem__, default="")
-    return nearest if nearest and away[nearest] <= REACH else ""
+    return nearest if nearest and away[nearest] <= GRAB_DISTANCE else ""
 
 
 def moved(across: float, width: float) -> float:

@@ -102,6 +102,21 @@ def button(
     return bool(pressed)
 
 
+def buttons(*row: tuple[str, str, Callable[[], object], bool], small: bool = False) -> None:
+    """Draw buttons on one line: each a label, a tooltip, what it does, and whether it can be pressed."""
+    for number, (label, note, act, enabled) in enumerate(row):
+        if number:
+            imgui.same_line()
+        if button(label, note, enabled=enabled, small=small):
+            act()
+
+
+def header(label: str, look: theme.Theme, flags: int = 0) -> bool:
+    """Draw the bar that opens a part of the panel; return whether it is open."""
+    with look.font(look.bold):
+        return imgui.collapsing_header(label, flags)
+
+
 def choose(
     label: str,
     shown: str,

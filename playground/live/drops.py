@@ -21,7 +21,7 @@ _TITLE = "dropped"
 
 
 def opened_from(sketch: Path) -> tuple[Path, str]:
-    """Return the file of a sketch to work on, and a notice for it: a zip is unpacked beside it.
+    """Return the file of a sketch to work on, and a notice for it: a zip is unpacked next to it.
 
     Raises ``SketchError`` or ``DataError`` for one that cannot be opened.
     """
@@ -87,7 +87,7 @@ class Drops:
         room = imgui.get_main_viewport().size
         imgui.set_next_window_pos(ImVec2(room.x / 2, room.y / 2), imgui.Cond_.always, ImVec2(0.5, 0.5))
         if not imgui.begin_popup(_TITLE):
-            self.waiting = []  # a click beside it
+            self.waiting = []  # a click outside closed it
             return
         with look.font(look.bold):
             imgui.text_unformatted(f"Put {self.waiting[0].name} where?")

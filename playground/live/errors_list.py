@@ -19,7 +19,7 @@ from playground.workbench.problems import Problems, passes_of
 from playground.workbench.session import Session
 
 MOST = 60
-"""Diagnostics drawn; more help nobody."""
+"""Diagnostics drawn at most."""
 _TALLEST = 0.5  # share of the picture that the list may cover
 _GROUND = (0.17, 0.075, 0.075)  # under errors
 _MILD = (0.125, 0.118, 0.095)  # under warnings alone
@@ -38,7 +38,7 @@ class ErrorsList:
     interface: Interface
 
     def draw(self, look: Theme, area: Area) -> None:
-        """Draw the list while it is open; while it is not, the badge, if there is anything to tell."""
+        """Draw the list while it is open; while it is not, the badge, if there is any diagnostic."""
         if self.problems.errors or self.problems.warnings:
             (self._list if self.problems.open else self._badge)(look, area)
 
@@ -47,7 +47,7 @@ class ErrorsList:
         return theme.ALARM if self.problems.errors else theme.WARM
 
     def _window(self, name: str, area: Area, look: Theme, **sizes: ImVec2) -> AbstractContextManager[None]:
-        """Draw a window in the lower left corner of an area, in the colour of what it tells."""
+        """Draw a window in the lower left corner of an area, in the colour of their severity."""
         margin = 14 * look.scale
         place = ImVec2(area[0] + margin, area[1] + area[3] - margin)
         imgui.set_next_window_pos(place, imgui.Cond_.always, ImVec2(0, 1))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from functools import partial
 
 from imgui_bundle import imgui
@@ -11,55 +10,49 @@ from imgui_bundle import imgui
 from playground.live.code_window import ask_to_close, stay
 from playground.workbench.bench import Bench
 
-
-@dataclass(frozen=True)
-class Layer:
-    """Something open, and what closes it."""
-
-    name: str
-    close: Callable[[], None]
+Layer = tuple[str, Callable[[], None]]
+"""The name of something open, and what closes it."""
 
 
 def close_one(bench: Bench) -> None:
     """Close what is topmost; where nothing is open, say how to quit."""
-    top = next(_open(bench), None)
-    if top is None:
-        bench.notices.say("nothing is open that Esc could close; Ctrl+Q quits")
-    else:
-        top.close()
+    for _, close in _open(bench):
+        close()
+        return
+    bench.notices.say("nothing is open that Esc could close; Ctrl+Q quits")
 
 
 def open_layers(bench: Bench) -> list[str]:
     """Return the names of what is open, topmost first."""
-    return [layer.name for layer in _open(bench)]
+    return [name for name, _ in _open(bench)]
 
 
 def _open(bench: Bench) -> Iterator[Layer]:
     inspection = bench.inspection
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
-        yield Layer("popup", lambda: _close_popup(bench))
+        yield "popup", lambda: _close_popup(bench)
     if bench.interface.keymap_shown:
-        yield Layer("keys", bench.interface.toggle_keymap)
+        yield "keys", bench.interface.toggle_keymap
     if bench.captures.shown:
-        yield Layer("capture", bench.captures.toggle)
+        yield "capture", bench.captures.toggle
     for editing in reversed(bench.files.editing):
-        yield Layer(f"editor {editing.text.path.name}", partial(ask_to_close, editing, bench.files))
+        yield f"editor {editing.text.path.name}", partial(ask_to_close, editing, bench.files)
     if inspection.graph.on:
-        yield Layer("graph", inspection.graph.toggle)
+        yield "graph", inspection.graph.toggle
     if inspection.inspector.on:
-        yield Layer("inspector", inspection.inspector.toggle)
+        yield "inspector", inspection.inspector.toggle
     if bench.painting.on:
-        yield Layer("brush", bench.painting.toggle)
+        yield "brush", bench.painting.toggle
     if inspection.compare.on:
-        yield Layer("A/B", inspection.compare.toggle)
+        yield "A/B", inspection.compare.toggle
     if bench.window.is_full():
-        yield Layer("full screen", bench.window.toggle_full)
+        yield "full screen", bench.window.toggle_full
     if bench.lessons.is_shown():
-        yield Layer("lesson", bench.lessons.toggle)
+        yield "lesson", bench.lessons.toggle
 
 
 def _close_popup(bench: Bench) -> None:
-    """Close the innermost popup; one that asks something is answered by leaving all as it is."""
+    """Close the innermost popup; a question in it is dismissed."""
     stay(bench.files)
     depth = len(imgui.get_current_context().open_popup_stack)
     imgui.internal.close_popup_to_level(max(depth - 1, 0), True)

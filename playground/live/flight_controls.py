@@ -1,10 +1,9 @@
-"""Turn what the user does on keys, a mouse or a gamepad into the controls of a craft."""
+"""Convert input from keys, a mouse or a gamepad to the controls of a craft."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
 
 from playground.flight.craft import Controls
 
@@ -16,56 +15,36 @@ FULL = 0.3
 """Of the window's height: so far from where the button went down, the mouse is a full stick."""
 
 
-@dataclass(frozen=True)
-class Keys:
-    """Which of the keys that fly are down."""
-
-    up: bool = False  # nose up
-    down: bool = False
-    left: bool = False
-    right: bool = False
-    yaw_left: bool = False
-    yaw_right: bool = False
-    faster: bool = False
-    slower: bool = False
+_AXES = (("faster", "slower"), ("up", "down"), ("right", "left"), ("yaw_right", "yaw_left"))
 
 
-def by_keys(keys: Keys) -> Controls:
-    """Return what keys ask for: all or nothing."""
-
-    def pair(more: bool, less: bool) -> int:
-        return 100 * (more - less)
-
-    return Controls(
-        pair(keys.faster, keys.slower),
-        pair(keys.up, keys.down),
-        pair(keys.right, keys.left),
-        pair(keys.yaw_right, keys.yaw_left),
-    )
+def by_keys(held: Collection[str]) -> Controls:
+    """Return the controls of the keys that are held, by name: full or nothing; "up" is nose up."""
+    return Controls(*(100 * ((more in held) - (less in held)) for more, less in _AXES))
 
 
 def by_mouse(across: float, down: float, height: float) -> Controls:
-    """Return what a mouse asks for that went so far [pixels] since its button went down; down is nose up."""
+    """Return the controls for a drag of the mouse [pixels] since its button went down; down is nose up."""
     if height <= 0:
         return Controls()
-    reach = FULL * height
-    return Controls(0, round(100 * down / reach), round(100 * across / reach), 0).within()
+    full = FULL * height
+    return Controls(0, round(100 * down / full), round(100 * across / full), 0).within()
 
 
 class Wheel:
-    """The mouse's wheel as a throttle: a notch is held for some steps, for it takes no time itself."""
+    """The mouse wheel as a throttle: a notch is held for ``NOTCH`` steps."""
 
     def __init__(self) -> None:
         self._owed = 0.0  # steps, with the sign of their way
 
-    def turn(self, notches: float) -> None:
-        """Take in so many notches; one the other way ends what is left."""
+    def scroll(self, notches: float) -> None:
+        """Add notches; one in the other direction cancels what is left."""
         if notches * self._owed < 0:
             self._owed = 0.0
         self._owed += notches * NOTCH
 
     def next(self) -> Controls:
-        """Return what the next step is to do."""
+        """Return the controls of the next step."""
         if abs(self._owed) < 1:
             self._owed = 0.0
             return Controls()
@@ -75,7 +54,7 @@ class Wheel:
 
 
 def by_gamepad(axes: Sequence[float]) -> Controls:
-    """Return what a gamepad asks for.
+    """Return the controls of a gamepad.
 
     ``axes`` as GLFW's standard mapping has them: left stick across and down, right stick
     across and down, left and right trigger, all -1..1. The left stick back is nose up; the
@@ -83,14 +62,14 @@ def by_gamepad(axes: Sequence[float]) -> Controls:
     """
     if len(axes) < 6:
         return Controls()
-    across, down, turn = (_away(axes[n]) for n in (0, 1, 2))
+    across, down, yaw = (_away(axes[n]) for n in (0, 1, 2))
     faster, slower = ((1 + axes[n]) / 2 for n in (5, 4))
     throttle = _away(faster - slower)
-    return Controls(*(round(100 * n) for n in (throttle, down, across, turn))).within()
+    return Controls(*(round(100 * n) for n in (throttle, down, across, yaw))).within()
 
 
 def together(*controls: Controls) -> Controls:
-    """Return what several ask for at once."""
+    """Return the sum of several controls, within their range."""
     sums = (sum(axis) for axis in zip(*(h.values for h in controls), strict=True))
     return Controls(*sums).within()
 

@@ -1,4 +1,4 @@
-"""A window to fly in: hands in, steps of a sixtieth of a second, parts for some milliseconds, a picture.
+"""A window to fly in: input, steps of a sixtieth of a second, parts for some milliseconds, a picture.
 
 All parts visible are made before the first step. From then on each picture leaves a little
 time to make parts; what is not there yet is far away, in the haze.
@@ -6,9 +6,7 @@ time to make parts; what is not there yet is far away, in the haze.
 
 from __future__ import annotations
 
-import json
 import math
-import os
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import ExitStack
@@ -28,10 +26,11 @@ from playground.flight.craft import STEP, Controls
 from playground.flight.flight import CACHE_BYTES, RADIUS, Flight
 from playground.flight.record import Header, Moment, Record, Recorder
 from playground.gpu.context import context_info, prefer_software
-from playground.live.flight_controls import Keys, Wheel, by_gamepad, by_keys, by_mouse, together
+from playground.live.flight_controls import Wheel, by_gamepad, by_keys, by_mouse, together
 from playground.live.instruments import Instruments
-from playground.live.keys import ctrl_held, pressed_sign
-from playground.live.status import VARIABLE
+from playground.live.keys import pressed_sign
+from playground.live.status import add_line, status_file
+from playground.live.text_field import ctrl_held, letters
 from playground.live.window import Window, wake
 from playground.sketch.model import Sketch
 from playground.workbench.flight_reload import SaveFollower
@@ -41,22 +40,22 @@ from playground.workbench.last_frame import Painter
 MAKING = 0.005  # [s] of each picture for parts
 OPENING = 0.05  # [s] between pictures before the first step
 DRAWN = 640 * 360  # [pixels] that a processor draws in time; a larger window shows them larger
-MOST_STEPS = 6  # of one picture: on a slower machine time goes slower, and the hands keep up
+MOST_STEPS = 6  # of one picture: on a slower machine time goes slower
 HOURS = 0.5  # that a key moves the time of day
 _IDLE = 0.1  # [s] between frames while it is paused
 _WRITES = 0.05  # [s] between lines of the status
 
 _K = imgui.Key
-_HOLDS: tuple[tuple[str, tuple[imgui.Key, ...]], ...] = (
-    ("up", (_K.s, _K.down_arrow)),
-    ("down", (_K.w, _K.up_arrow)),
-    ("left", (_K.a, _K.left_arrow)),
-    ("right", (_K.d, _K.right_arrow)),
-    ("yaw_left", (_K.q,)),
-    ("yaw_right", (_K.e,)),
-    ("faster", (_K.left_shift, _K.right_shift, _K.page_up)),
-    ("slower", (_K.left_ctrl, _K.right_ctrl, _K.page_down)),
-)
+_HOLDS: dict[str, tuple[imgui.Key, ...]] = {
+    "up": (_K.s, _K.down_arrow),
+    "down": (_K.w, _K.up_arrow),
+    "left": (_K.a, _K.left_arrow),
+    "right": (_K.d, _K.right_arrow),
+    "yaw_left": (_K.q,),
+    "yaw_right": (_K.e,),
+    "faster": (_K.left_shift, _K.right_shift, _K.page_up),
+    "slower": (_K.left_ctrl, _K.right_ctrl, _K.page_down),
+}
 
 
 def run(
@@ -140,11 +139,11 @@ class Fly:
         self._reset = False
         self._buttons: tuple[int, ...] = ()
         self._wheel = Wheel()
-        self._status = Path(os.environ[VARIABLE]) if os.environ.get(VARIABLE) else None
+        self._status = status_file()
         self._written = 0.0
 
     def run(self, time_limit: float | None = None) -> None:
-        """Go on until the window is closed, or so many seconds have passed."""
+        """Run frames until the window is closed, or for a limited time [s]."""
         end = math.inf if time_limit is None else time.perf_counter() + time_limit
         while self.window.open and time.perf_counter() < end:
             busy = self.flight.changing or (self.saves is not None and self.saves.waits)
@@ -183,7 +182,7 @@ class Fly:
         self._write_status()
 
     def _take_saves(self) -> None:
-        """Go on over what was saved, once its parts are made; until then time stands still."""
+        """Switch to what was saved, once its parts are made; until then time is paused."""
         saves, flight = self.saves, self.flight
         if saves is None:
             return
@@ -207,12 +206,12 @@ class Fly:
         return max(round(size[0] * share), 1), max(round(size[1] * share), 1)
 
     def _fly(self, passed: float) -> None:
-        """Fly as many steps as time has passed, or as many as a slow machine may."""
+        """Fly the steps of the time that has passed, at most ``MOST_STEPS``."""
         self._owed = min(self._owed + passed, MOST_STEPS * STEP)
-        hands = self._hands() if self.replay is None else Controls()
+        controls = self._controls() if self.replay is None else Controls()
         while self._owed >= STEP:
             self._owed -= STEP
-            moment = Moment(together(hands, self._wheel.next()), self._hour, self._reset)
+            moment = Moment(together(controls, self._wheel.next()), self._hour, self._reset)
             if self.replay is not None:
                 found = next(self.replay, None)
                 if found is None:
@@ -224,7 +223,7 @@ class Fly:
             self.flight.step(moment, 0)
 
     def _record(self, moment: Moment) -> None:
-        """Write a step down; where that fails, say so and fly on."""
+        """Record a step; where that fails, show so and fly on."""
         if self.recorder is None:
             return
         try:
@@ -233,12 +232,12 @@ class Fly:
             self.recorder, self.instruments.recording = None, False
             self.instruments.trouble = f"no longer recorded: {error.diagnostics[0].message}"
 
-    # ── hands ────────────────────────────────────────────────────────────────
+    # ── input ────────────────────────────────────────────────────────────────
 
-    def _hands(self) -> Controls:
-        self._wheel.turn(imgui.get_io().mouse_wheel)
-        down = {name: any(imgui.is_key_down(key) for key in keys) for name, keys in _HOLDS}
-        found = [by_keys(Keys(**down))]
+    def _controls(self) -> Controls:
+        self._wheel.scroll(imgui.get_io().mouse_wheel)
+        held = {name for name, keys in _HOLDS.items() if any(map(imgui.is_key_down, keys))}
+        found = [by_keys(held)]
         if imgui.is_mouse_down(0):
             gone = imgui.get_mouse_drag_delta(0, 0.0)
             found.append(by_mouse(gone.x, gone.y, imgui.get_main_viewport().size.y))
@@ -255,7 +254,7 @@ class Fly:
         return None
 
     def _take_keys(self) -> None:
-        """Do what was pressed since the last frame; each once."""
+        """Act on each key pressed since the last frame, once."""
         pressed = _pressed()
         pad = self._gamepad()
         if pad is not None:
@@ -267,7 +266,8 @@ class Fly:
         if self.paused and "quit" in pressed and ctrl:
             self.window.ask_to_close()
         if ctrl:
-            self._resize("0" if imgui.is_key_pressed(imgui.Key._0) else self._sign())
+            zero = imgui.is_key_pressed(imgui.Key._0)
+            self._resize("0" if zero else pressed_sign(lambda: self.window.sign_held))
         if "leave" in pressed:
             self._leave()
         if "help" in pressed:
@@ -280,12 +280,9 @@ class Fly:
             self._reset, self.paused = True, False
         for name, hours in (("earlier", -HOURS), ("later", HOURS)):
             if name in pressed and self.flight.plot.hour:
-                asked = self.flight.hour if self._hour is None else self._hour
-                self._hour = (asked + hours) % 24.0
+                hour = self.flight.hour if self._hour is None else self._hour
+                self._hour = (hour + hours) % 24.0
                 self.paused = False
-
-    def _sign(self) -> str:
-        return pressed_sign(lambda: self.window.sign_held)
 
     def _resize(self, key: str) -> None:
         """Draw text larger, smaller or as large as the screen says, and remember it for every window."""
@@ -296,14 +293,14 @@ class Fly:
         self.window.zoom = self.size.size
 
     def _leave(self) -> None:
-        """Close the help; else pause. Nothing quits by a slip: in flight Ctrl and Q are hands."""
+        """Close the help; else pause. Esc never quits: in flight Ctrl and Q are controls."""
         if self.instruments.help:
             self.instruments.help = False
         else:
             self.paused = True
 
     def _write_status(self) -> None:
-        """Add a line for a test that follows, at most twenty a second."""
+        """Append a line of status, at most twenty a second."""
         now = time.perf_counter()
         if self._status is None or now - self._written < _WRITES:
             return
@@ -327,8 +324,7 @@ class Fly:
             "changes": self.changes,
             "error": str(self.saves.error) if self.saves is not None and self.saves.error else "",
         }
-        with self._status.open("a", encoding="utf-8") as file:
-            file.write(json.dumps(line) + "\n")
+        add_line(self._status, line)
 
 
 _PRESSES: dict[imgui.Key, str] = {
@@ -349,11 +345,4 @@ _PAD = {4: "earlier", 5: "later", 6: "reset", 7: "pause"}
 
 def _pressed() -> set[str]:
     found = {name for key, name in _PRESSES.items() if imgui.is_key_pressed(key, repeat=False)}
-    if any(chr(c) == "?" for c in _typed()):
-        found.add("help")
-    return found
-
-
-def _typed() -> list[int]:
-    """Return the characters typed since the last frame: where ? stands depends on the keyboard."""
-    return [int(c) for c in imgui.get_io().input_queue_characters]
+    return found | ({"help"} if "?" in letters() else set())  # its key depends on the keyboard

@@ -1,6 +1,6 @@
 """Keep the window alive: a part of a frame that fails becomes a notice, and the rest goes on.
 
-imgui's own checks raise an exception as well, in the middle of whatever was drawn. What was begun
+imgui's own checks raise an exception as well, in the middle of drawing. What was begun
 and not ended by then (windows, ids, colours, fonts) is ended here, so that the next part finds imgui
 as the one before had left it.
 """
@@ -40,7 +40,7 @@ class Guard:
                 imgui.internal.error_recovery_try_to_recover_state(before)
 
     def run(self, part: str, act: Callable[[], Result], otherwise: Result) -> Result:
-        """Do a part that draws nothing; return ``otherwise`` where it fails."""
+        """Run a part that draws nothing; return ``otherwise`` where it fails."""
         try:
             return act()
         except Exception as error:
@@ -48,7 +48,7 @@ class Guard:
             return otherwise
 
     def _report(self, part: str, error: Exception) -> None:
-        """Put a failure on the screen, and once, with its traceback, on the terminal."""
+        """Show a failure on the screen, and log it once, with its traceback."""
         sentence = f"{part} failed and is left out, by a bug of the playground: {_brief(error)}"
         self._say(sentence)
         if sentence not in self._reported:
@@ -58,24 +58,17 @@ class Guard:
 
 @contextmanager
 def _without_complaint() -> Iterator[None]:
-    """Have imgui end what is open without raising, printing or showing anything."""
+    """Let imgui end what is open without raising, printing or showing anything."""
     io = imgui.get_io()
-    before = (
-        io.config_error_recovery_enable_assert,
-        io.config_error_recovery_enable_debug_log,
-        io.config_error_recovery_enable_tooltip,
-    )
-    io.config_error_recovery_enable_assert = False
-    io.config_error_recovery_enable_debug_log = False
-    io.config_error_recovery_enable_tooltip = False
+    names = [f"config_error_recovery_enable_{way}" for way in ("assert", "debug_log", "tooltip")]
+    before = {name: getattr(io, name) for name in names}
+    for name in names:
+        setattr(io, name, False)
     try:
         yield
     finally:
-        (
-            io.config_error_recovery_enable_assert,
-            io.config_error_recovery_enable_debug_log,
-            io.config_error_recovery_enable_tooltip,
-        ) = before
+        for name, value in before.items():
+            setattr(io, name, value)
 
 
 def _brief(error: Exception) -> str:

@@ -8,9 +8,10 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import PlaygroundError, counted
 from playground.flight.flight import Flight
-from playground.live.theme import ALARM, DIM, INK, WARM, Theme, packed
+from playground.live.draw import plate
+from playground.live.theme import ALARM, DIM, INK, WARM, Rgb, Theme, packed
 
-_MARGIN = 14.0
+_MARGIN, _PADDING = 14.0, 8.0
 _ERRORS = 6  # lines of what is wrong that are shown
 _WINDS = ("N", "NE", "E", "SE", "S", "SW", "W", "NW")
 
@@ -49,18 +50,17 @@ class Instruments:
         if not ready:
             there = len(flight.parts.wanted) - flight.parts.missing
             text = f"making the terrain: {there} of {len(flight.parts.wanted)} parts"
-            self._box(text, theme, room.x / 2, room.y / 2, centred=True)
+            _plate(text, theme, (room.x / 2, room.y / 2), align=(0.5, 0.5))
             return
-        self._box(self._reading(flight), theme, _MARGIN, room.y - _MARGIN, from_below=True)
-        hint = "?  help"
-        state = [word for word, so in self._states(paused) if so]
-        self._box(
-            "   ".join([*state, hint]), theme, room.x - _MARGIN, room.y - _MARGIN, right=True, from_below=True
-        )
+        low = room.y - _MARGIN
+        _plate(self._values(flight), theme, (_MARGIN, low), align=(0.0, 1.0))
+        state = "   ".join([*(label for label, on in self._states(paused) if on), "?  help"])
+        ink = ALARM if state.startswith("end") else INK
+        _plate(state, theme, (room.x - _MARGIN, low), align=(1.0, 1.0), ink=ink)
         if self.error is not None:
             self._draw_error(self.error, theme, room)
         elif self.changing:
-            self._box("taking in what was saved", theme, room.x / 2, _MARGIN, centred=True)
+            _plate("taking in what was saved", theme, (room.x / 2, _MARGIN), align=(0.5, 0.5))
         if self.help:
             self._draw_help(theme, room)
 
@@ -73,7 +73,7 @@ class Instruments:
             ("paused: P flies on, Ctrl+Q quits", paused and not self.ended),
         )
 
-    def _reading(self, flight: Flight) -> str:
+    def _values(self, flight: Flight) -> str:
         craft = flight.craft
         degrees = round(math.degrees(craft.heading)) % 360
         wind = _WINDS[round(degrees / 45) % 8]
@@ -86,44 +86,13 @@ class Instruments:
             lines[-1] += f"   {clock(flight.hour)}"
         return "\n".join(lines)
 
-    def _box(
-        self,
-        text: str,
-        theme: Theme,
-        x: float,
-        y: float,
-        *,
-        right: bool = False,
-        from_below: bool = False,
-        centred: bool = False,
-    ) -> None:
-        """Write text on a dark plate; x and y are the corner that the flags say."""
-        with theme.font(theme.code):
-            size, pad = imgui.calc_text_size(text), 8.0
-            wide, high = size.x + 2 * pad, size.y + 2 * pad
-            left = x - wide / 2 if centred else x - wide if right else x
-            top = y - high / 2 if centred else y - high if from_below else y
-            over = imgui.get_foreground_draw_list()
-            plate = packed((0.04, 0.05, 0.06), 0.55)
-            over.add_rect_filled(ImVec2(left, top), ImVec2(left + wide, top + high), plate, 6.0)
-            colour = ALARM if text.startswith("end") else INK
-            over.add_text(ImVec2(left + pad, top + pad), packed(colour), text)
-
     def _draw_error(self, error: PlaygroundError, theme: Theme, room: ImVec2) -> None:
-        """Write what is wrong in what was saved along the upper edge, its first lines."""
+        """Write the first lines of a save's error along the upper edge."""
         lines = str(error).split("\n")
         more = f"\n… and {counted(len(lines) - _ERRORS, 'more line')}" if len(lines) > _ERRORS else ""
         text = "\n".join(lines[:_ERRORS]) + more + "\nthe last good save is flown over"
-        with theme.font(theme.code):
-            pad = 8.0
-            wide = max(room.x - 2 * (_MARGIN + pad), 80.0)
-            size = imgui.calc_text_size(text, False, wide)
-            low = ImVec2(_MARGIN, _MARGIN)
-            corner = ImVec2(low.x + size.x + 2 * pad, low.y + size.y + 2 * pad)
-            over = imgui.get_foreground_draw_list()
-            over.add_rect_filled(low, corner, packed((0.04, 0.05, 0.06), 0.85), 6.0)
-            place, font, points = ImVec2(low.x + pad, low.y + pad), imgui.get_font(), imgui.get_font_size()
-            over.add_text(font, points, place, packed(ALARM), text, wide)
+        wide = max(room.x - 2 * (_MARGIN + _PADDING), 80.0)
+        _plate(text, theme, (_MARGIN, _MARGIN), ink=ALARM, alpha=0.85, wrap=wide)
 
     def _draw_help(self, theme: Theme, room: ImVec2) -> None:
         with theme.font(theme.text):
@@ -139,6 +108,31 @@ class Instruments:
                 y = top + pad + number * line
                 over.add_text(ImVec2(left + pad, y), packed(WARM), key)
                 over.add_text(ImVec2(left + pad + keys + gap, y), packed(INK if meaning else DIM), meaning)
+
+
+def _plate(
+    text: str,
+    theme: Theme,
+    place: tuple[float, float],
+    *,
+    align: tuple[float, float] = (0.0, 0.0),
+    ink: Rgb = INK,
+    alpha: float = 0.55,
+    wrap: float = -1.0,
+) -> None:
+    """Write text on a dark plate, as ``draw.plate`` places it."""
+    with theme.font(theme.code):
+        plate(
+            imgui.get_foreground_draw_list(),
+            text,
+            place,
+            ink=packed(ink),
+            ground=packed((0.04, 0.05, 0.06), alpha),
+            padding=_PADDING,
+            rounding=6.0,
+            wrap=wrap,
+            align=align,
+        )
 
 
 def clock(hour: float) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 from imgui_bundle import imgui
 
-from playground.live.draw import button, choose, pushed_id
+from playground.live.draw import button, choose, header, pushed_id
 from playground.live.panel_rows import cross, slot
 from playground.live.theme import Theme
 from playground.sketch.keyframes import EASES
@@ -30,9 +30,7 @@ class KeyframeList:
         """Draw the list, folded unless there is a keyframe."""
         known = edits.keyframes
         imgui.spacing()
-        with look.font(look.bold):
-            flags = imgui.TreeNodeFlags_.default_open if known else 0
-            opened = imgui.collapsing_header("Keyframes###keyframes", flags)
+        opened = header("Keyframes###keyframes", look, imgui.TreeNodeFlags_.default_open if known else 0)
         if not opened:
             return
         with pushed_id("keyframes"):

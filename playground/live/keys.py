@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from imgui_bundle import imgui
 
 from playground.live.escape_layers import close_one
-from playground.live.text_field import keeps_keys, left_a_field
+from playground.live.text_field import ctrl_held, keeps_keys, left_a_field, letters
 from playground.workbench.bench import Bench
 from playground.workbench.interface import resize
 
@@ -97,24 +97,20 @@ def _resize(bench: Bench, by: int) -> None:
 
 
 def _step(bench: Bench) -> None:
-    io = imgui.get_io()
-    bench.problems.step(-1 if io.key_shift or imgui.is_key_released(imgui.Key.mod_shift) else 1)
+    bench.problems.step(-1 if _shift_held() else 1)
 
 
-def ctrl_held() -> bool:
-    """Say whether Ctrl is down; in a slow frame it may be up again together with the key it was held for."""
-    io = imgui.get_io()
-    return bool(io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl))
+def _shift_held() -> bool:
+    return imgui.get_io().key_shift or imgui.is_key_released(imgui.Key.mod_shift)
 
 
 def act_on_keys(bench: Bench) -> None:
-    """Do what the keys pressed since the last frame mean, unless they belong to a text field or a menu.
+    """Act on the keys pressed since the last frame, unless they belong to a text field or a menu.
 
     Two belong to neither: Esc, unless it leaves the field itself, and what quits.
     """
     io = imgui.get_io()
-    ctrl = ctrl_held()
-    shift = io.key_shift or imgui.is_key_released(imgui.Key.mod_shift)
+    ctrl, shift = ctrl_held(), _shift_held()
     if ctrl and imgui.is_key_pressed(imgui.Key.q, repeat=False):
         bench.window.quit()
         return
@@ -126,17 +122,15 @@ def act_on_keys(bench: Bench) -> None:
         return
     if imgui.is_popup_open("", imgui.PopupFlags_.any_popup):
         return
-    typed = {chr(letter) for letter in io.input_queue_characters}
+    typed = letters()
     sign = pressed_sign(bench.window.sign_held) if ctrl else ""
     for key in KEYS:
         if key.sign:
-            if key.sign == sign:
-                key.act(bench)
-            continue
-        if key.letter:
-            if key.letter in typed and not ctrl:
-                key.act(bench)
-            continue
-        fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
-        if fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key != imgui.Key.s):
+            pressed = key.sign == sign
+        elif key.letter:
+            pressed = key.letter in typed and not ctrl
+        else:
+            fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
+            pressed = fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key != imgui.Key.s)
+        if pressed:
             key.act(bench)

@@ -1,4 +1,4 @@
-"""What the mouse does over the picture: it turns the terrain or the sun, moves a divider, or paints."""
+"""What the mouse does over the picture: it orbits the terrain, moves the sun or a divider, or paints."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class PictureMouse:
     strokes: bool = False  # it paints
 
     def act(self, area: Area, density: float) -> None:
-        """Do what the mouse says over the picture, unless it is the panel's."""
+        """Act on the mouse over the picture, unless the panel uses it."""
         io, session = imgui.get_io(), self.session
         if self.strokes and not imgui.is_mouse_down(0):
             self.painting.release()
@@ -64,7 +64,7 @@ class PictureMouse:
             session.point((x, y, x - gone.x * density, y + gone.y * density))
 
     def _divide(self, across: float, width: float) -> bool:
-        """Move the line that is held, or take hold of the one under the mouse; say whether one is held."""
+        """Move the line that is held, or grab the one under the mouse; return whether one is held."""
         session = self.session
         if session.view.map is not None or session.sketch is None:
             return False
@@ -82,7 +82,7 @@ class PictureMouse:
         return bool(self.divider)
 
     def _paint(self, area: Area) -> bool:
-        """Paint where the left button is down, and show the brush; say whether the button is the brush's."""
+        """Paint while the left button is down, and show the brush; return whether it paints."""
         painting, io = self.painting, imgui.get_io()
         if not painting.on or not self.session.orbits:
             return False
@@ -107,9 +107,9 @@ class PictureMouse:
 
 
 def _dragged(button: int) -> bool:
-    """Say whether the mouse's way since the last frame was a drag.
+    """Return whether the mouse's motion since the last frame was a drag.
 
-    The way to where a button went down is none; the way to where it came up is one.
+    The motion up to the press is none; the motion up to the release is one.
     """
     return (imgui.is_mouse_down(button) and not imgui.is_mouse_clicked(button)) or imgui.is_mouse_released(
         button

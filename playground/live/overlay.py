@@ -24,7 +24,7 @@ def draw_waiting(text: str, area: Area) -> None:
 
 
 def draw_checking(session: Session, look: Theme, area: Area) -> None:
-    """Show what the sandbox checks, once it has taken so long that a person wonders."""
+    """Show what the sandbox checks, once it has taken longer than ``PATIENCE``."""
     checking = session.drafts.checking
     if checking is not None and checking[1] >= PATIENCE:
         margin = 14 * look.scale

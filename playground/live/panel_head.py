@@ -6,7 +6,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import counted
 from playground.live import theme
-from playground.live.draw import button, choose, disabled, inked, menu, styled
+from playground.live.draw import button, buttons, choose, disabled, inked, menu, styled
 from playground.live.panel_memory import Memory
 from playground.live.panel_rows import fitting, fitting_choice, row
 from playground.live.sliders import slide
@@ -112,11 +112,10 @@ def draw_search(memory: Memory, ahead: TypedAhead) -> None:
 
 def _undo(memory: Memory, undo: Undo, look: Theme) -> None:
     history, paints = undo.history, undo.painting.on
-    if button("Undo", "Ctrl+Z", enabled=history.can_undo or paints):
-        undo.undo()
-    imgui.same_line()
-    if button("Redo", "Ctrl+Shift+Z, Ctrl+Y", enabled=history.can_redo or paints):
-        undo.redo()
+    buttons(
+        ("Undo", "Ctrl+Z", undo.undo, history.can_undo or paints),
+        ("Redo", "Ctrl+Shift+Z, Ctrl+Y", undo.redo, history.can_redo or paints),
+    )
     imgui.same_line()
     with menu("History", "history", "Every step; click on one to go there") as opened:
         if opened:

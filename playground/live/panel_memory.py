@@ -10,7 +10,7 @@ from playground.workbench.parameter_list import Filter, Listing
 
 @dataclass
 class Memory:
-    """One panel's."""
+    """The state of one panel between frames."""
 
     listing: Listing = field(default_factory=Listing)
     filter: Filter = field(default_factory=Filter)

@@ -66,16 +66,22 @@ def slot() -> float:
 
 def cross(label: str, note: str, high: float = 0.0) -> bool:
     """Draw a row's reset where the cursor is, as high as the row; return whether it is clicked on."""
+    clicked, hovered, middle = slot_button(label, note, high)
+    size, ink = imgui.calc_text_size("×"), theme.INK if hovered else theme.WARM
+    place = ImVec2(middle.x - size.x / 2, middle.y - size.y / 2)
+    imgui.get_window_draw_list().add_text(place, theme.packed(ink), "×")
+    return clicked
+
+
+def slot_button(label: str, note: str, high: float = 0.0) -> tuple[bool, bool, ImVec2]:
+    """Make an empty button of one slot; return whether it is clicked on and hovered, and its middle."""
     side, high = slot(), high or imgui.get_frame_height()
     corner = imgui.get_cursor_screen_pos()
     clicked = imgui.invisible_button(label, ImVec2(side, high))
     hovered = imgui.is_item_hovered()
     if hovered:
         imgui.set_tooltip(note)
-    size, ink = imgui.calc_text_size("×"), theme.INK if hovered else theme.WARM
-    place = ImVec2(corner.x + (side - size.x) / 2, corner.y + (high - size.y) / 2)
-    imgui.get_window_draw_list().add_text(place, theme.packed(ink), "×")
-    return bool(clicked)
+    return clicked, hovered, ImVec2(corner.x + side / 2, corner.y + high / 2)
 
 
 def fitting(text: str, width: float) -> str:

@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.errors import ParameterError
 from playground.live import theme
 from playground.live.panel_memory import Memory
-from playground.live.panel_rows import cross, row, slot
+from playground.live.panel_rows import cross, row, slot, slot_button
 from playground.live.text_field import await_field, letters, with_typed_ahead
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
@@ -22,7 +22,7 @@ from playground.workbench.session import Session
 from playground.workbench.typed_values import read_typed
 
 TYPED = frozenset({"number", "slider", "log_slider", "angle", "divider"})
-"""Widgets that turn into a field at a double click, or a click with Ctrl."""
+"""Widgets that become a field at a double click, or a click with Ctrl."""
 
 _MENU = "parameter"
 _PRESSED = imgui.HoveredFlags_.allow_when_blocked_by_active_item.value  # as while the lock is pressed
@@ -100,7 +100,7 @@ class Rows:
         self.memory.entry_text = write(item.parameter, self.values.of[item.path])
 
     def _is_typing(self, item: Item) -> bool:
-        """Take in a click on a widget; return whether it opens a field to type in.
+        """Handle a click on a widget; return whether it opens a field to type in.
 
         The first click of a double click has moved the slider already: that is undone.
         """
@@ -145,19 +145,15 @@ class Rows:
 
 def _lock(path: str, locked: bool, look: Theme) -> bool:
     """Draw a padlock, open or closed; return whether it is clicked on."""
-    side, high = slot(), imgui.get_frame_height()
-    corner = imgui.get_cursor_screen_pos()
-    clicked = imgui.invisible_button(f"lock {path}", ImVec2(side, high))
-    hovered = imgui.is_item_hovered()
-    if hovered:
-        what = "Locked: randomising, presets, resets and reloads leave it. Click to unlock"
-        imgui.set_tooltip(what if locked else "Lock: randomising, presets, resets and reloads leave it")
+    note = "randomising, presets, resets and reloads leave it"
+    note = f"Locked: {note}. Click to unlock" if locked else f"Lock: {note}"
+    clicked, hovered, middle = slot_button(f"lock {path}", note)
     ink = theme.WARM if locked else theme.INK if hovered else theme.DIM
     unit, draw = look.scale, imgui.get_window_draw_list()
-    x, y = corner.x + side / 2, corner.y + high / 2
+    x, y = middle.x, middle.y
     body = ImVec2(x - 4 * unit, y - unit), ImVec2(x + 4 * unit, y + 5 * unit)
     draw.add_rect_filled(*body, theme.packed(ink), unit)
     shift = 0.0 if locked else 3 * unit
     draw.path_arc_to(ImVec2(x + shift, y - unit), 2.5 * unit, 3.1416, 6.2832, 10)
     draw.path_stroke(theme.packed(ink), 1.5 * unit)
-    return bool(clicked)
+    return clicked

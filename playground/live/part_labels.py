@@ -2,7 +2,7 @@
 
 A view whose dividing kernel has ``divider`` parameters puts one picture between each two lines.
 Which pass makes a part is what the part's own inputs are wired to: of inputs that all parts
-share nothing is said. Only the window writes the names over the picture; in a shot, or a
+share nothing is shown. Only the window writes the names over the picture; in a shot, or a
 picture that is saved, there is nothing but the picture.
 """
 
@@ -26,7 +26,7 @@ _WIDEST = 260.0
 
 @dataclass(frozen=True)
 class Part:
-    """One picture between two lines, or the whole where they are laid over one another."""
+    """One picture between two lines, or the whole where they are blended."""
 
     start: float  # share of the picture's width from its left
     end: float
@@ -66,7 +66,7 @@ def _dividers(spec: PassSpec) -> list[str]:
 
 
 def _menus(spec: PassSpec) -> list[str]:
-    """Return the dividing kernel's menus: beyond their first choice pictures are laid over one another."""
+    """Return the dividing kernel's menus: any choice but the first blends the pictures."""
     assert isinstance(spec.technique, Kernel)
     return [p.name for p in spec.technique.parameters if p.widget.kind == "menu"]
 

@@ -10,7 +10,7 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import counted
 from playground.live import theme
-from playground.live.draw import choose, inked, pushed_id
+from playground.live.draw import choose, header, inked, pushed_id
 from playground.live.panel_memory import Memory
 from playground.live.panel_rows import cross, fitting_choice, row, slot
 from playground.live.parameter_row import Rows
@@ -21,6 +21,7 @@ from playground.sketch.replace_technique import choices
 from playground.workbench.bench import Bench
 from playground.workbench.commands import Commands
 from playground.workbench.edits import Draft
+from playground.workbench.inspect.pass_graph import cost_of
 from playground.workbench.open_files import OpenFiles, editor_name
 from playground.workbench.parameter_list import Group, Item, Section, in_words
 from playground.workbench.session import Session
@@ -112,8 +113,7 @@ class _Drawing:
         """Draw the parameters that the sketch is about, under a bar of their own."""
         imgui.spacing()
         flags = imgui.TreeNodeFlags_.default_open | imgui.TreeNodeFlags_.allow_overlap
-        with self.look.font(self.look.bold):
-            opened = imgui.collapsing_header("Main parameters###main", flags)
+        opened = header("Main parameters###main", self.look, flags)
         imgui.set_item_tooltip("What this sketch is about, by its own list: main = [...] in its file")
         self._reset("Main parameters", items)
         if opened:
@@ -122,22 +122,17 @@ class _Drawing:
     def header(self, spec: PassSpec, section: Section | None, *, opened: bool) -> bool:
         """Draw a pass's bar: its name, how often it ran, and a reset where something is changed.
 
-        ``opened``: whether it is open as long as nobody has clicked on it.
+        ``opened``: whether it is open until it is clicked on.
         """
         session, look = self.rows.session, self.look
-        engine = session.engine
-        mine = [path for path in engine.runs if path == spec.name or path.startswith(f"{spec.name}.")]
-        ran = any(path in mine for path in engine.ran)
         flags = imgui.TreeNodeFlags_.allow_overlap
         if opened:
             flags |= imgui.TreeNodeFlags_.default_open
-        with look.font(look.bold):
-            unfolded = imgui.collapsing_header(f"{in_words(spec.name)}###pass", flags)
+        unfolded = header(f"{in_words(spec.name)}###pass", look, flags)
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
-        text = counted(sum(engine.runs[path] for path in mine), "run")
-        spent = [session.times[path] for path in mine if path in session.times]
-        if engine.profiling and spent:
-            text = f"{sum(spent):.1f} ms    {text}"
+        text, ran, spent = cost_of(session, spec.name)
+        if session.engine.profiling and spent is not None:
+            text = f"{spent:.1f} ms    {text}"
         size = imgui.calc_text_size(text)
         right = high.x - slot() - 8 * look.scale
         place = ImVec2(right - size.x, (low.y + high.y - size.y) / 2)
@@ -149,7 +144,7 @@ class _Drawing:
         _files(spec, self.files)
         if section is not None:
             self._reset(spec.name, section.items)
-        return bool(unfolded)
+        return unfolded
 
     def section(self, section: Section) -> None:
         """Draw a pass's parameters, those inside its technique folded."""

@@ -1,7 +1,7 @@
 """Draw numbers to slide, drag or step: the knob leaves the number free, and each part of a vector is named.
 
 A number that would lie under its slider's knob moves to the wider side of the knob. The parts of
-a vector stand one below the other, so that each has a name and room for its number.
+a vector are one below the other, so that each has a name and room for its number.
 """
 
 from __future__ import annotations
@@ -94,7 +94,7 @@ def slide(
     """
     low, high = ends
     flags = _CLAMP | (_LOGARITHMIC if logarithmic else 0) | (0 if typed else _PLAIN)
-    with _unseen_number(typed) as unseen:
+    with _hidden_number(typed) as hidden:
         changed, now = imgui.slider_float(label, number, low, high, form, flags)
     held = min(max(now, low), high)
     if high <= low:  # nothing to choose from, as for a brush while there is no terrain
@@ -103,7 +103,7 @@ def slide(
         share = math.log(held / low) / math.log(high / low)
     else:
         share = (held - low) / (high - low)
-    if unseen:
+    if hidden:
         _write_number(form % now, share)
     return now if changed else None
 
@@ -113,29 +113,29 @@ def slide_whole(
 ) -> int | None:
     """Draw a slider of whole numbers, which ``words`` writes; else as ``slide`` does."""
     low, high = ends
-    with _unseen_number(typed) as unseen:
+    with _hidden_number(typed) as hidden:
         changed, now = imgui.slider_int(label, number, low, high, "%d", _CLAMP | (0 if typed else _PLAIN))
-    if unseen:
+    if hidden:
         _write_number(words(now), (min(max(now, low), high) - low) / max(high - low, 1), high - low + 1)
     return now if changed else None
 
 
 @contextmanager
-def _unseen_number(typed: bool) -> Iterator[bool]:
+def _hidden_number(typed: bool) -> Iterator[bool]:
     """Have imgui draw a slider without its number, which it would write in its middle.
 
     Gives False where the number is visible after all: while it may be that very number which is typed.
     """
-    unseen = not (typed and imgui.get_io().want_text_input)
-    if unseen:
+    hidden = not (typed and imgui.get_io().want_text_input)
+    if hidden:
         imgui.push_style_color(imgui.Col_.text, theme.colour(theme.INK, 0.0))
-    yield unseen
-    if unseen:
+    yield hidden
+    if hidden:
         imgui.pop_style_color()
 
 
 def _write_number(text: str, share: float, values: int = 0) -> None:
-    """Write a number on the slider that was drawn last, beside the knob; see ``knob_of``."""
+    """Write a number on the slider that was drawn last, clear of the knob; see ``knob_of``."""
     left, right = imgui.get_item_rect_min(), imgui.get_item_rect_max()
     size, style = imgui.calc_text_size(text), imgui.get_style()
     knob = knob_of(share, right.x - left.x, style.grab_min_size, values)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 import json
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,18 +26,24 @@ from playground.workbench.text_file import unsaved
 VARIABLE = "PLAYGROUND_STATUS"
 
 
-class Status:
-    """A file that follows the session; does nothing without a path."""
+def status_file() -> Path | None:
+    """Return the file that the environment names; None where it names none."""
+    return Path(os.environ[VARIABLE]) if os.environ.get(VARIABLE) else None
 
-    def __init__(self, path: str | None = None) -> None:
-        self.path = Path(path) if path else None
+
+def add_line(path: Path, line: Mapping[str, object]) -> None:
+    """Append a line of JSON."""
+    with path.open("a", encoding="utf-8") as file:
+        file.write(json.dumps(line) + "\n")
+
+
+class Status:
+    """Follows the session in the file of the environment; does nothing without one."""
+
+    def __init__(self) -> None:
+        self.path = status_file()
         self._last: dict[str, Any] = {}
         self._hashed = (-1, "")  # the draw that was hashed, and its hash
-
-    @classmethod
-    def from_environment(cls) -> Status:
-        """Return the status that the environment asks for."""
-        return cls(os.environ.get(VARIABLE))
 
     def write(self, bench: Bench, not_finite: Sequence[NotFinite] = ()) -> None:
         """Add a line if anything is new."""
@@ -67,8 +73,7 @@ class Status:
         }
         if now != self._last:
             self._last = now
-            with self.path.open("a", encoding="utf-8") as file:
-                file.write(json.dumps(now) + "\n")
+            add_line(self.path, now)
 
     def _hash(self, session: Session) -> str:
         draws = session.draws

@@ -20,7 +20,7 @@ def await_field(ahead: TypedAhead) -> None:
 
 
 def keeps_keys(ahead: TypedAhead) -> bool:
-    """Say whether this frame's keys are for a field that is about to open, and store its letters."""
+    """Return whether this frame's keys are for a field that is about to open, and store its letters."""
     if not ahead.frames:
         return False
     if _is_active():
@@ -49,7 +49,7 @@ def with_typed_ahead(ahead: TypedAhead, text: str, before: str, typed: str) -> s
 
 
 def left_a_field() -> bool:
-    """Say whether a field had the keys when this frame began: its Esc is its own."""
+    """Return whether a field had the keys when this frame began: its Esc is its own."""
     context = imgui.get_current_context()
     return context.active_id_previous_frame not in (0, None) and (
         context.active_id_previous_frame == context.input_text_state.id_
@@ -59,6 +59,12 @@ def left_a_field() -> bool:
 def letters() -> str:
     """Return what was typed in this frame and not taken by a field yet."""
     return "".join(chr(letter) for letter in imgui.get_io().input_queue_characters)
+
+
+def ctrl_held() -> bool:
+    """Return whether Ctrl is down, or went up in this frame, as in a slow one together with its key."""
+    io = imgui.get_io()
+    return bool(io.key_ctrl or io.key_super or imgui.is_key_released(imgui.Key.mod_ctrl))
 
 
 def _is_active() -> bool:

@@ -13,6 +13,7 @@ from pathlib import Path
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import dome, theme
+from playground.live.draw import choose
 from playground.live.panel_rows import fitting_choice
 from playground.live.sliders import draw_numbers, part_names
 from playground.paths import shown
@@ -77,14 +78,8 @@ def _checkbox(parameter: Parameter, value: Value, place: Place) -> Value | None:
 def _menu(parameter: Parameter, value: Value, place: Place) -> Value | None:
     choices = parameter.widget.choices
     now = int(value) if isinstance(value, int) and 0 <= value < len(choices) else 0
-    chosen: int | None = None
-    if imgui.begin_combo(place.label, fitting_choice(choices[now])):
-        for index, choice in enumerate(choices):
-            if imgui.selectable(choice, index == now)[0]:
-                chosen = index
-            if index == now:
-                imgui.set_item_default_focus()
-        imgui.end_combo()
+    shown = fitting_choice(choices[now])
+    chosen = choose(place.label, shown, range(len(choices)), now, name=choices.__getitem__)
     return chosen if chosen != now else None
 
 
@@ -107,12 +102,8 @@ def _colour(parameter: Parameter, value: Value, place: Place) -> Value | None:
 
 def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None:
     azimuth, elevation = _as_list(value)
-    wide = imgui.calc_item_width()
-    origin = imgui.get_cursor_screen_pos()
-    side = min(_PAD * place.scale, wide)
-    radius, beside = side / 2, wide - side - imgui.get_style().item_spacing.x
-    dragged = _pad(place, side)
-    draw = imgui.get_window_draw_list()
+    origin, side, field, dragged = _pad(place)
+    radius, draw = side / 2, imgui.get_window_draw_list()
     middle = ImVec2(origin.x + radius, origin.y + radius)
     draw.add_circle_filled(middle, radius - 1, theme.packed(theme.FIELD))
     for share in (1.0, 2 / 3, 1 / 3):  # the horizon, 30 and 60 degrees
@@ -132,11 +123,11 @@ def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None
     imgui.same_line()
     imgui.begin_group()
     _name("azimuth")
-    imgui.set_next_item_width(beside)
+    imgui.set_next_item_width(field)
     turned, azimuth = imgui.drag_float(f"{place.label}-azimuth", azimuth, 0.5, -720, 720, "%.1f°", _CLAMP)
     imgui.set_item_tooltip("Azimuth: clockwise from north")
     _name("elevation")
-    imgui.set_next_item_width(beside)
+    imgui.set_next_item_width(field)
     raised, elevation = imgui.drag_float(
         f"{place.label}-elevation", elevation, 0.25, -90, 90, "%.1f°", _CLAMP
     )
@@ -156,11 +147,7 @@ def _name(text: str) -> None:
 
 def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
     x, y = _as_list(value)
-    origin = imgui.get_cursor_screen_pos()
-    wide = imgui.calc_item_width()
-    side = min(_PAD * place.scale, wide)
-    beside = wide - side - imgui.get_style().item_spacing.x
-    dragged = _pad(place, side)
+    origin, side, field, dragged = _pad(place)
     draw = imgui.get_window_draw_list()
     corner = ImVec2(origin.x + side, origin.y + side)
     draw.add_rect_filled(origin, corner, theme.packed(theme.FIELD), 5 * place.scale)
@@ -173,23 +160,29 @@ def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
         result = (round(dragged[0], 4), round(1 - dragged[1], 4))
     imgui.same_line()
     imgui.begin_group()
-    imgui.set_next_item_width(beside)
+    imgui.set_next_item_width(field)
     east, x = imgui.drag_float(f"{place.label}-x", x, 0.002, 0, 1, "%.3f E", _CLAMP)
-    imgui.set_next_item_width(beside)
+    imgui.set_next_item_width(field)
     north, y = imgui.drag_float(f"{place.label}-y", y, 0.002, 0, 1, "%.3f N", _CLAMP)
     imgui.end_group()
     return (tidied(x), tidied(y)) if east or north else result
 
 
-def _pad(place: Place, side: float) -> tuple[float, float] | None:
-    """Make a square to drag in; return the mouse's share of it, right and down, while it is dragged."""
-    origin = imgui.get_cursor_screen_pos()
+def _pad(place: Place) -> tuple[ImVec2, float, float, tuple[float, float] | None]:
+    """Make a square to drag in.
+
+    Return its upper left corner, its side, the width that is left for fields, and while it is dragged
+    the mouse's share of it, right and down.
+    """
+    origin, wide = imgui.get_cursor_screen_pos(), imgui.calc_item_width()
+    side = min(_PAD * place.scale, wide)
+    field = wide - side - imgui.get_style().item_spacing.x
     imgui.invisible_button(place.label, ImVec2(side, side))
     if not imgui.is_item_active():
-        return None
+        return origin, side, field, None
     mouse = imgui.get_io().mouse_pos
     across, down = (mouse.x - origin.x) / side, (mouse.y - origin.y) / side
-    return min(max(across, 0.0), 1.0), min(max(down, 0.0), 1.0)
+    return origin, side, field, (min(max(across, 0.0), 1.0), min(max(down, 0.0), 1.0))
 
 
 def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
@@ -229,18 +222,13 @@ def _files_in(folder: Path) -> list[str]:
 
 
 def _as_list(value: object) -> list[float]:
-    if isinstance(value, bool):
-        return [float(value)]
     if isinstance(value, int | float):
         return [float(value)]
     return [float(v) for v in value] if isinstance(value, Sequence) and not isinstance(value, str) else [0.0]
 
 
 def _back(parameter: Parameter, numbers: Sequence[float]) -> Value:
-    if is_whole(parameter.type):
-        whole = tuple(round(n) for n in numbers)
-        return whole[0] if length_of(parameter.type) == 1 else whole
-    found = tuple(tidied(n) for n in numbers)
+    found: tuple[float, ...] = tuple(round(n) if is_whole(parameter.type) else tidied(n) for n in numbers)
     return found[0] if length_of(parameter.type) == 1 else found
 
 

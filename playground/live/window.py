@@ -30,6 +30,14 @@ if TYPE_CHECKING:
     import moderngl
 
 _VERSIONS = ((4, 3), (4, 1), (3, 3))
+_HINTS = {
+    glfw.OPENGL_PROFILE: glfw.OPENGL_CORE_PROFILE,
+    glfw.OPENGL_FORWARD_COMPAT: True,
+    glfw.SCALE_TO_MONITOR: True,
+    glfw.DEPTH_BITS: 0,
+    glfw.STENCIL_BITS: 0,
+    glfw.CONTEXT_ROBUSTNESS: glfw.LOSE_CONTEXT_ON_RESET,
+}
 _SMALLEST = (480, 320)
 _SIGNS = {"+": "+", "=": "+", "-": "-"}  # what a key's own name asks for; + is over = on many keyboards
 _SIGN_KEYS = (glfw.KEY_EQUAL, glfw.KEY_MINUS, glfw.KEY_RIGHT_BRACKET, glfw.KEY_SLASH, glfw.KEY_BACKSLASH)
@@ -40,7 +48,7 @@ class Window:
     """An open window. Use it with ``with``, or call ``close()``."""
 
     def __init__(self, title: str, size: tuple[int, int]) -> None:
-        glfw.ERROR_REPORTING = "ignore"  # what failed is read below, and reported in a sentence
+        glfw.ERROR_REPORTING = "ignore"  # errors are read below, and reported in a sentence
         if not glfw.init():
             raise _refused("glfw.init failed")
         self._title = title
@@ -70,12 +78,12 @@ class Window:
 
     @property
     def open(self) -> bool:
-        """Whether nobody has closed it."""
+        """Whether it has not been closed."""
         return not glfw.window_should_close(self._handle)
 
     @property
     def lost(self) -> bool:
-        """Whether the driver was reset, and took the context with it; False where nobody can tell."""
+        """Whether the driver was reset, and the context lost with it; False where it does not report that."""
         return self._reset_status is not None and self._reset_status() != 0
 
     @property
@@ -114,8 +122,8 @@ class Window:
                     return _SIGNS[name]
         return ""
 
-    def call(self, title: str) -> None:
-        """Give it another title."""
+    def set_title(self, title: str) -> None:
+        """Set its title."""
         if title != self._title:
             self._title = title
             glfw.set_window_title(self._handle, title)
@@ -124,29 +132,29 @@ class Window:
         """Close it at the end of this frame."""
         glfw.set_window_should_close(self._handle, True)
 
-    def stay(self) -> None:
-        """Take back that it was to close."""
+    def cancel_close(self) -> None:
+        """Cancel a request to close it."""
         glfw.set_window_should_close(self._handle, False)
 
     def wait(self, seconds: float) -> None:
-        """Sleep until something happens or ``wake`` is called, at most ``seconds``; then take it in."""
-        self._clicks.asks()
+        """Sleep until an event or a call of ``wake``, at most ``seconds``; then handle the events."""
+        self._clicks.before_poll()
         if seconds <= 0:
             glfw.poll_events()
         else:
             glfw.wait_events_timeout(seconds)
-        self._clicks.asked()
+        self._clicks.after_poll()
 
     def begin(self) -> None:
         """Begin a frame of the interface."""
         self.theme.rescale(self.scale * self.zoom)
         imgui.backends.opengl3_new_frame()
         imgui.backends.glfw_new_frame()
-        io, longest = imgui.get_io(), self._clicks.longest()
+        io, longest = imgui.get_io(), self._clicks.double_click_time()
         io.mouse_double_click_time, io.mouse_single_click_delay = longest, longest + 0.25
         imgui.new_frame()
         if imgui.is_mouse_clicked(0):
-            self._clicks.taken()
+            self._clicks.handled()
 
     def end(self) -> None:
         """Draw the interface over what is on the screen, and show it."""
@@ -227,14 +235,10 @@ def _create(title: str, size: tuple[int, int]) -> Any:
         glfw.default_window_hints()
         glfw.window_hint(glfw.CONTEXT_VERSION_MAJOR, major)
         glfw.window_hint(glfw.CONTEXT_VERSION_MINOR, minor)
-        glfw.window_hint(glfw.OPENGL_PROFILE, glfw.OPENGL_CORE_PROFILE)
-        glfw.window_hint(glfw.OPENGL_FORWARD_COMPAT, True)
-        glfw.window_hint(glfw.SCALE_TO_MONITOR, True)
-        glfw.window_hint(glfw.DEPTH_BITS, 0)
-        glfw.window_hint(glfw.STENCIL_BITS, 0)
-        glfw.window_hint_string(glfw.WAYLAND_APP_ID, "terrain-shader-playground")
-        glfw.window_hint_string(glfw.X11_CLASS_NAME, "terrain-shader-playground")
-        glfw.window_hint(glfw.CONTEXT_ROBUSTNESS, glfw.LOSE_CONTEXT_ON_RESET)
+        for hint, value in _HINTS.items():
+            glfw.window_hint(hint, value)
+        for hint in (glfw.WAYLAND_APP_ID, glfw.X11_CLASS_NAME):
+            glfw.window_hint_string(hint, "terrain-shader-playground")
         handle = glfw.create_window(*size, title, None, None)
         if handle:
             return handle

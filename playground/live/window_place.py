@@ -1,4 +1,4 @@
-"""What a window does besides drawing: it fills the screen and comes back, and takes files dropped on it."""
+"""The place of a window: full screen and back, restored on a screen; and files dropped on it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Geometry:
 
 
 class Place:
-    """One window's; ``handle`` gives GLFW's window of the moment."""
+    """The place of one window; ``handle`` gives its current GLFW window."""
 
     def __init__(self, handle: Callable[[], Any]) -> None:
         self._handle = handle
@@ -49,8 +49,8 @@ class Place:
         (x, y), (width, height) = glfw.get_window_pos(handle), glfw.get_window_size(handle)
         return Geometry(x, y, width, height, bool(glfw.get_window_attrib(handle, glfw.MAXIMIZED)))
 
-    def stand_at(self, at: tuple[int, int]) -> None:
-        """Put its upper left corner somewhere, or as near as all of it is on a screen."""
+    def move_to(self, at: tuple[int, int]) -> None:
+        """Move its upper left corner, at most as far as all of it stays on a screen."""
         handle = self._handle()
         width, height = glfw.get_window_size(handle)
         left, top, right, bottom = glfw.get_window_frame_size(handle)
@@ -91,7 +91,7 @@ class Place:
         return found
 
     def drop(self, _: object, names: Iterable[str]) -> None:
-        """Take in the names of files, as GLFW calls it."""
+        """Store the names of dropped files; GLFW's callback."""
         self._dropped += [Path(name) for name in names]
 
 

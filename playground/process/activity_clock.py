@@ -24,46 +24,51 @@ class _Current:
     began: float  # as time.monotonic
     waits: Waits  # when it began, or shortly before
     earlier: float  # [s] that it took in its steps before
+    before: float  # [s] of all that was done before this step
 
 
 class ActivityClock:
-    """Measures what a process does; one thread sets it, others may read it."""
+    """Measures what a process does; one thread sets it, others may read it.
+
+    A reader reads ``_current`` once, which holds all that it needs and is replaced whole.
+    """
 
     def __init__(self, waits: Callable[[], Waits]) -> None:
         self._waits_now = waits
         self._waits: Waits = {}
         self._read_at = -_FRESH
-        self._spent: dict[Hashable, float] = {}
-        self._ended = 0.0  # [s] of all that has ended
+        self._spent: dict[Hashable, float] = {}  # [s] of each activity, the current one left out
         self._current: _Current | None = None
 
     def clear(self) -> None:
         """Forget all: nothing is being done."""
-        self._spent, self._ended, self._current = {}, 0.0, None
+        self._spent, self._current = {}, None
 
     def begin(self, what: Hashable) -> None:
         """Begin an activity, or continue it; the one before has ended."""
+        before = 0.0
         if self._current is not None:
-            self._ended += self.seconds - self._current.earlier
-            self._spent[self._current.what] = self.seconds
+            passed = self._passed(self._current)
+            before = self._current.before + passed
+            self._spent[self._current.what] = self._current.earlier + passed
         now = time.monotonic()
         if now - self._read_at > _FRESH:
             self._waits, self._read_at = self._waits_now(), now
-        self._current = _Current(what, now, self._waits, self._spent.get(what, 0.0))
+        self._current = _Current(what, now, self._waits, self._spent.get(what, 0.0), before)
+
+    def _passed(self, current: _Current) -> float:
+        """Return how long the step at work has taken so far [s]."""
+        passed = time.monotonic() - current.began
+        return worked(passed, current.waits, self._waits_now()) if passed >= _SHORT else passed
 
     @property
     def seconds(self) -> float:
-        """How long the current activity has taken so far, in all its steps; 0 while there is none."""
+        """How long the current activity has taken so far, in all its steps [s]; 0 while there is none."""
         current = self._current
-        if current is None:
-            return 0.0
-        passed = time.monotonic() - current.began
-        if passed >= _SHORT:
-            passed = worked(passed, current.waits, self._waits_now())
-        return current.earlier + passed
+        return 0.0 if current is None else current.earlier + self._passed(current)
 
     @property
     def total(self) -> float:
         """How long all activities together have taken [s]."""
         current = self._current
-        return 0.0 if current is None else self._ended + self.seconds - current.earlier
+        return 0.0 if current is None else current.before + self._passed(current)

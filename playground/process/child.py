@@ -127,7 +127,7 @@ def _refusal(error: PlaygroundError) -> Callable[[object], object]:
 def main() -> None:
     """Serve the parent by the module that it names."""
     requests, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
-    # Whatever a driver or a program that is started here prints or reads must not get between the frames.
+    # What a driver or a program that is started here prints or reads must not get between the frames.
     os.dup2(2, 1)
     nowhere = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nowhere, 0)

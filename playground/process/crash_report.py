@@ -16,7 +16,7 @@ class CrashReport:
     """How a process ended."""
 
     status: int | None  # as in ``subprocess``: negative for a signal; None: not known
-    output: str = ""  # what it printed and nobody has read
+    output: str = ""  # what it printed and was not read yet
     progress: object = None  # what it reported last of its request
     not_a_frame: str = ""  # what it sent instead of a message
     was_ready: bool = True  # whether it had started

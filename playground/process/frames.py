@@ -1,6 +1,6 @@
 """Frame messages on a pipe: a mark, a length, then as many bytes.
 
-The mark tells a frame from whatever a driver, or a library that it loads, may write into the pipe.
+The mark tells a frame from what a driver, or a library that it loads, may write into the pipe.
 """
 
 from __future__ import annotations

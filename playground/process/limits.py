@@ -1,4 +1,4 @@
-"""Bound a worker process from inside: its memory, and its life once nobody can end it any more."""
+"""Bound a worker process from inside: its memory, and its life once its parent is gone."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def limit_memory(memory_bytes: int | None) -> None:
         _, hard = resource.getrlimit(resource.RLIMIT_DATA)
         if hard == resource.RLIM_INFINITY or memory_bytes < hard:
             resource.setrlimit(resource.RLIMIT_DATA, (memory_bytes, memory_bytes))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # it may die often, and nobody reads what it leaves
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))  # it may crash often, and no core file is read
     except (ImportError, ValueError, OSError):  # Windows; a system that does not say, or does not let
         pass
 
@@ -36,7 +36,7 @@ def end_after(seconds: float) -> None:
 def end_with_parent(life: int) -> None:
     """Have Linux end this process when its parent is gone, even in the middle of a draw.
 
-    ``life`` is the end of a pipe into which nobody writes. When its other end closes, Linux
+    ``life`` is the end of a pipe that is never written to. When its other end closes, Linux
     sends SIGIO, which ends a process that has no handler for it; elsewhere it is ignored.
     """
     import fcntl

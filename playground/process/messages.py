@@ -25,7 +25,7 @@ class Setup:
 
     options: object  # for its handler
     memory_bytes: int | None  # that it may take; None: as many as the machine has
-    alarm_seconds: float  # after which the system ends it, should nobody else; 0: never
+    alarm_seconds: float  # after which the system ends it, if its parent does not; 0: never
     life: int  # file number of a pipe that the parent holds open while it lives; -1: none
 
 
@@ -69,10 +69,10 @@ class UnexpectedError(RuntimeError):
     ``args`` are "Type: message", and the traceback.
     """
 
-    @property
-    def summary(self) -> str:
-        """Its type and message."""
-        return str(self.args[0])
-
     def __str__(self) -> str:
         return f"in the child process:\n{self.args[1]}"
+
+
+def summary_of(error: Exception | None) -> str:
+    """Return an error's type and message, of an ``UnexpectedError`` those that the child met."""
+    return str(error.args[0]) if isinstance(error, UnexpectedError) else f"{type(error).__name__}: {error}"

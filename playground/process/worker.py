@@ -1,8 +1,8 @@
 """The parent's end of a worker: start a child process, send it requests, receive answers, kill it.
 
-A thread talks to the process, so that nobody waits for one that hangs. Besides its answers
-the process reports when it is ready, and what it is about to do: so whoever finds it dead
-knows what killed it.
+A thread talks to the process, so that no caller waits for one that hangs. Besides its answers
+the process reports when it is ready, and what it is about to do: so it is known
+what killed it.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ START_SECONDS = 120.0
 
 _GRACE = 60.0  # [s] that the parent has to end a request before the system does
 _POLL = 0.05  # [s] between two looks at the clock
-_PRINTED = 2**20  # characters that are kept of what was printed
+_PRINTED = 2**20  # characters that are stored of what was printed
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +91,7 @@ class Worker(Closing):
         self._output = _Output()
         life, self._life = os.pipe() if launch.ends_with_parent and sys.platform == "linux" else (-1, -1)
         try:
-            # -P: what lies in the user's folder is no module of ours, whatever its name.
+            # -P: what lies in the user's folder is no module of ours, even under the same name.
             self._process = subprocess.Popen(
                 [sys.executable, "-P", "-m", "playground.process.child", launch.handler],
                 stdin=subprocess.PIPE,
@@ -102,6 +102,9 @@ class Worker(Closing):
                 pass_fds=() if life < 0 else (life,),
                 start_new_session=True,
             )
+        except BaseException:
+            self._release()
+            raise
         finally:
             if life >= 0:
                 os.close(life)
@@ -150,7 +153,7 @@ class Worker(Closing):
         self.busy, self.progress = True, None
         self._sent = self._cancelled = False
         try:
-            # Here, not in the thread that sends: whoever submits may change what it holds meanwhile.
+            # Here, not in the thread that sends: the caller may change what it holds meanwhile.
             self._requests.put(self._encoder.encode(request))
         except Exception as error:  # it cannot be pickled
             self._answers.put(Answer(error=error))
@@ -171,7 +174,7 @@ class Worker(Closing):
         except queue.Empty:
             return None
         if answer is None:
-            raise WorkerDied(self._buried())
+            raise WorkerDied(self._report_death())
         self.busy = False
         return answer
 
@@ -184,7 +187,7 @@ class Worker(Closing):
             if self.starting_seconds > limit:
                 raise WorkerTimeout(self.end(kill=True))
         if self._ready is None:
-            raise WorkerDied(self._buried())
+            raise WorkerDied(self._report_death())
         if self._ready.error is not None:
             raise self._ready.error
         return self._ready.info
@@ -228,13 +231,17 @@ class Worker(Closing):
         with contextlib.suppress(subprocess.TimeoutExpired):
             self._process.wait(5.0)
         self._thread.join(5.0)
+        status, output = self._process.returncode, self._release()
+        return CrashReport(status, output, self.progress, self._not_a_frame, was_ready=self.is_ready)
+
+    def _release(self) -> str:
+        """Close this end of the life pipe and the file of what was printed; return its rest."""
         if self._life >= 0:
             os.close(self._life)
             self._life = -1
-        status, output = self._process.returncode, self._output.close()
-        return CrashReport(status, output, self.progress, self._not_a_frame, was_ready=self.is_ready)
+        return self._output.close()
 
-    def _buried(self) -> CrashReport:
+    def _report_death(self) -> CrashReport:
         """Report how the process ended, whose pipe is closed."""
         self._thread.join(5.0)
         return self.end(kill=bool(self._not_a_frame), patience=2.0)
@@ -242,7 +249,7 @@ class Worker(Closing):
     def _talk(self, setup: Setup) -> None:
         requests, answers = self._process.stdin, self._process.stdout
         assert requests is not None and answers is not None
-        # Its pipes are closed here, where they are used: closing waits for whoever reads.
+        # Its pipes are closed here, where they are used: closing waits for a reader.
         try:
             with contextlib.suppress(OSError), answers:
                 try:
@@ -259,7 +266,7 @@ class Worker(Closing):
                     pass
                 with contextlib.suppress(OSError):
                     requests.close()
-        finally:  # whoever waits is told, whatever went wrong here
+        finally:  # a caller that waits gets an answer, even if something went wrong here
             self._answers.put(None)
             self._started.set()
 
@@ -316,7 +323,7 @@ class Replaceable:
         return self.start()
 
     def end(self, *, kill: bool = False, patience: float = 5.0) -> CrashReport | None:
-        """End the worker, as ``Worker.end`` does; the spare is kept."""
+        """End the worker, as ``Worker.end`` does; the spare stays."""
         worker, self.worker = self.worker, None
         if worker is None:
             return None

@@ -48,7 +48,7 @@ def parse(text: str) -> Nodes:
             stack.append((line, []))
         else:
             stack[-1][1].append(Node(line))
-    while len(stack) > 1:  # a brace that nobody closes: its lines are lines
+    while len(stack) > 1:  # a brace that is never closed: its lines are single lines
         head, body = stack.pop()
         stack[-1][1].extend([Node(head), *body])
     return tuple(stack[0][1])
@@ -60,7 +60,7 @@ def text_of(nodes: Nodes) -> str:
 
 
 def fewer_lines(text: str, test: Test) -> str:
-    """Return the text with lines and blocks left out at every depth, each level 1-minimal in its turn.
+    """Return the text with lines and blocks left out at every depth, each level made 1-minimal.
 
     The whole level goes first, then what is inside each block that stays, so a function
     that nothing needs costs one try.
@@ -69,12 +69,12 @@ def fewer_lines(text: str, test: Test) -> str:
     def holds(nodes: Nodes) -> bool:
         return test(text_of(nodes))
 
-    kept = tuple(ddmin(parse(text), lambda some: holds(tuple(some))))
-    return text_of(_inside_each(kept, holds))
+    level = tuple(ddmin(parse(text), lambda some: holds(tuple(some))))
+    return text_of(_inside_each(level, holds))
 
 
 def _inside_each(level: Nodes, holds: Callable[[Nodes], bool]) -> Nodes:
-    """Make each block of a level smaller in turn."""
+    """Make each block of a level smaller, one after the other."""
     index = 0
     while index < len(level):
         before, node, after = level[:index], level[index], level[index + 1 :]
@@ -84,7 +84,7 @@ def _inside_each(level: Nodes, holds: Callable[[Nodes], bool]) -> Nodes:
 
 
 def _between(before: Nodes, after: Nodes, holds: Callable[[Nodes], bool]) -> Callable[[Nodes], bool]:
-    """Return the test of what stands between some nodes."""
+    """Return the test of what is between some nodes."""
     return lambda nodes: holds((*before, *nodes, *after))
 
 

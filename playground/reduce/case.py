@@ -86,12 +86,12 @@ class Case:
     def live(self) -> tuple[Pass, ...]:
         """The passes that lead to the target, in order, the target last."""
         wanted = {self.target}
-        kept = []
+        found = []
         for one in reversed(self.passes):
             if one.name in wanted:
-                kept.append(one)
+                found.append(one)
                 wanted |= {source.partition(":")[0] for _, source in one.live_inputs}
-        return tuple(kept[::-1])
+        return tuple(found[::-1])
 
     @property
     def lines(self) -> int:

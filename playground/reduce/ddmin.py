@@ -21,20 +21,20 @@ def ddmin(items: Sequence[Item], test: Callable[[list[Item]], bool]) -> list[Ite
     ``items`` themselves must pass, which is not tried. The test is tried on the same lists
     in the same order every time; it should give the same answer to the same list.
     """
-    kept = list(items)
-    if kept and test([]):
+    left = list(items)
+    if left and test([]):
         return []
-    parts = min(2, len(kept))
-    while len(kept) > 1:
-        # From the end: what stands later in a text is seldom needed by what stands before.
+    parts = min(2, len(left))
+    while len(left) > 1:
+        # From the end: what is later in a text is seldom needed by what is before it.
         for part in reversed(range(parts)):
-            low, high = part * len(kept) // parts, (part + 1) * len(kept) // parts
-            rest = kept[:low] + kept[high:]
+            low, high = part * len(left) // parts, (part + 1) * len(left) // parts
+            rest = left[:low] + left[high:]
             if rest and test(rest):
-                kept, parts = rest, min(max(parts - 1, 2), len(rest))
+                left, parts = rest, min(max(parts - 1, 2), len(rest))
                 break
         else:
-            if parts == len(kept):
+            if parts == len(left):
                 break
-            parts = min(2 * parts, len(kept))
-    return kept
+            parts = min(2 * parts, len(left))
+    return left

@@ -53,7 +53,7 @@ def expressions(text: str, literals: Sequence[str] = LITERALS) -> Iterator[str]:
 def in_both(text: str, other: str, literals: Sequence[str] = LITERALS) -> Iterator[tuple[str, str]]:
     """Yield two texts with the same expression made simpler in each, where both have it once.
 
-    A kernel and the compute shader that stands for it agree only as long as both change.
+    A kernel and the compute shader that replaces it agree only as long as both change.
     """
     tokens, others = tokens_of(text), tokens_of(other)
     for low, high, instead in _in_order(tokens, literals):
@@ -64,7 +64,7 @@ def in_both(text: str, other: str, literals: Sequence[str] = LITERALS) -> Iterat
 
 
 def _only_place(tokens: list[str], part: list[str]) -> int | None:
-    """Return where some tokens stand in others, if they do so once."""
+    """Return where some tokens occur in others, if they do so once."""
     found = [i for i in range(len(tokens) - len(part) + 1) if tokens[i : i + len(part)] == part]
     return found[0] if len(found) == 1 else None
 
@@ -164,7 +164,7 @@ def _of_region(
 
 
 def _begins_primary(tokens: list[str], index: int) -> bool:
-    """Say whether a token begins an operand: not a declared name, a type, or what is assigned to."""
+    """Return whether a token begins an operand: not a declared name, a type, or what is assigned to."""
     token = tokens[index]
     before = tokens[index - 1] if index else ""
     if token == "(":
@@ -362,12 +362,12 @@ def undefined(text: str) -> frozenset[str]:
 
 
 def _is_outermost(tokens: list[str], index: int) -> bool:
-    """Say whether a closing brace ends what stands at the text's own level."""
+    """Return whether a closing brace ends what is at the text's outermost level."""
     return tokens[: index + 1].count("{") == tokens[: index + 1].count("}")
 
 
 def _returns(body: list[str]) -> bool:
-    """Say whether a function's own level has a return that hangs on nothing."""
+    """Return whether a function's own level has a return that hangs on nothing."""
     depth = 0
     for index, token in enumerate(body):
         depth += (token == "{") - (token == "}")
@@ -377,7 +377,7 @@ def _returns(body: list[str]) -> bool:
 
 
 def _is_set(tokens: list[str], name: str, start: int, pairs: dict[int, int]) -> bool:
-    """Say whether a name is assigned to from a token on, within its function, or given to another."""
+    """Return whether a name is assigned to from a token on, within its function, or given to another."""
     brackets: list[int] = []
     for index in range(start, len(tokens)):
         token = tokens[index]

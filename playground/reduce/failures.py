@@ -1,7 +1,7 @@
 """What counts as failing, and as failing in the same way.
 
 A candidate that fails in another way is no smaller form of the failure in question: taking
-out a line that kept a divisor from zero makes a NaN of its own. So each failure says of
+out a line that prevents a zero divisor makes a NaN of its own. So each failure says of
 what came of a candidate what it found there, and whether that is the same.
 """
 
@@ -52,7 +52,7 @@ class FailureKind(ABC):
         """Return what is wrong with a candidate; None where nothing of this kind is."""
 
     def same(self, before: Finding, after: Finding) -> bool:
-        """Say whether a candidate fails as the one before did, and at no texel that was good."""
+        """Return whether a candidate fails as the one before did, and at no texel that was good."""
         if before.kind != after.kind:
             return False
         if before.where is None or after.where is None or before.where.shape != after.where.shape:
@@ -76,7 +76,7 @@ class Refused(FailureKind):
         return None if hit is None else Finding(hit, results[0].details, messages=frozenset(short))
 
     def same(self, before: Finding, after: Finding) -> bool:
-        """Say whether it is the same message, and none that was not there before."""
+        """Return whether it is the same message, and none that was not there before."""
         return before.kind == after.kind and after.messages <= before.messages
 
 
@@ -95,7 +95,7 @@ class Died(FailureKind):
 class NotFinite(FailureKind):
     """A value is NaN or infinite.
 
-    No texel may turn bad that was good, and what was bad in places may not become bad
+    No texel may become bad that was good, and what was bad in places may not become bad
     everywhere; nor are zeros put in, which make NaNs of their own. ``anywhere`` lets go of
     the first two: what is left is smaller, and may be a NaN of another making.
     """
@@ -154,7 +154,7 @@ class Differs(FailureKind):
     def _compared(self, one: NDArray[Any], other: NDArray[Any]) -> Finding | None:
         first, second = one.astype(np.float64), other.astype(np.float64)
         good = np.isfinite(first) & np.isfinite(second)
-        # NaN is NaN, of whatever bits; an infinity is itself.
+        # NaN equals NaN, with any bits; an infinity is itself.
         with np.errstate(invalid="ignore"):
             alike = (first == second) | (np.isnan(first) & np.isnan(second))
             apart = np.where(good, np.abs(first - second), 0.0)
@@ -185,7 +185,7 @@ class Differs(FailureKind):
 class OffReference(FailureKind):
     """A shot is not its reference: the pixels that were wrong must stay wrong in the same way.
 
-    Any other picture would differ from the reference too, so what is kept is how each
+    Any other picture would differ from the reference too, so the requirement is how each
     wrong pixel looks; those that were right are free.
     """
 

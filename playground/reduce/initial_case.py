@@ -42,7 +42,7 @@ KINDS = ("", "shot", "drivers", "against", "nan", "error", "crash", "hang", "com
 
 @dataclass(frozen=True, kw_only=True)
 class Question:
-    """What fails, as it was question."""
+    """What fails, and how to look for it."""
 
     sketch: Sketch
     kind: str = ""  # one of KINDS
@@ -141,7 +141,7 @@ class CandidateBench:
             yield from ((failure, one) for failure in self._failures("drivers") for one in self._chosen(case))
 
     def _chosen(self, case: Case) -> list[Case]:
-        """Return the case looking at each pass in turn, or at the one that was named."""
+        """Return the case looking at each pass, or at the one that was named."""
         names = [one.name for one in case.passes]
         if not self.question.path:
             return [case.looking_at(name) for name in names]
@@ -211,12 +211,12 @@ class CandidateBench:
 
 
 def _nothing(question: Question) -> str:
-    """Say that nothing fails, in the words of what was question."""
+    """Return the message that nothing fails, in the words of the question."""
     name = question.sketch.name
     if question.kind == "shot":
         return (
             f"shot '{question.shot}' of {name} is off its reference, but not once its techniques are inlined;"
-            " a compute shader that stands for a whole technique may be the cause: try --driver fragment"
+            " a compute shader that replaces a whole technique may be the cause: try --driver fragment"
         )
     nothing = {
         "": "it compiles and draws, every value is finite, and both drivers give the same bits",

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step
-from playground.engine.planner import make_plan
+from playground.engine.planner import Planner
 from playground.errors import SketchError
 from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
@@ -15,7 +15,7 @@ from playground.sketch.flat import Ref, Source
 from playground.sketch.model import Kernel, Sketch, Value
 from playground.sketch.reserved_names import MATCHES, WIRED
 from playground.sketch.source import SourceText
-from playground.sketch.variants import standing
+from playground.sketch.variants import active_variant
 
 _IFNDEF = re.compile(r"\s*#\s*ifndef\s+(\w+)\s*$")
 _DEFINE = re.compile(r"\s*#\s*define\s+(\w+)\s*$")
@@ -30,22 +30,22 @@ def inline_sketch(
     Raises ``PlaygroundError`` for what is wrong before any shader is compiled, and
     ``SketchError`` for a loop of several passes, which has no place in an inlined sketch.
     """
-    plan = make_plan(sketch, frame_size=frame, time=time, steps=steps)
+    plan = Planner().plan(sketch, frame_size=frame, time=time, steps=steps)
     leaves = list(plan.walk())
     alone = len(leaves) == 1 or Path(sketch.file).suffix != ".toml"  # the rest stands in for its channels
     if alone and leaves[-1].kernel.kind.startswith("plain"):
         return _plain(leaves[-1], plan)
     inliner = _Inliner(plan, leaves[-1].path)
     passes = tuple(inliner.one(node) for node in plan.nodes)
-    land = plan.terrain
-    assert land.size is not None and land.extent is not None
+    terrain = plan.terrain
+    assert terrain.size is not None and terrain.extent is not None
     return Case(
         passes=passes,
         target=passes[-1].name,
-        size=land.size,
-        extent=land.extent,
-        relief=land.relief,
-        base_elevation=land.base_elevation or None,
+        size=terrain.size,
+        extent=terrain.extent,
+        relief=terrain.relief,
+        base_elevation=terrain.base_elevation or None,
         camera=sketch.camera,
         samples=sketch.samples,
         frame=frame,
@@ -93,7 +93,7 @@ class _Inliner:
             feedback = tuple((name, ref.output) for name, _, ref in node.feedback)
             initial = {name: first for name, first, _ in node.feedback}
         assert isinstance(step, Step)
-        variant = standing(step.kernel, ("compute",))
+        variant = active_variant(step.kernel, ("compute",))
         text = written(step.kernel)
         variant_text = written(variant.technique) if variant and isinstance(variant.technique, Kernel) else ""
         inputs = []
@@ -149,7 +149,7 @@ def _lines(source: SourceText) -> list[str]:
 
 
 def _without_guards(lines: list[str]) -> list[str]:
-    """Leave out include guards, and what they keep from standing twice."""
+    """Remove include guards, and what they keep from being there twice."""
     found: list[str] = []
     guards: set[str] = set()
     stack: list[str] = []  # of each open condition: "guard", "twice" or "other"

@@ -11,17 +11,17 @@ from shlex import quote as quoted
 
 from playground._version import __version__
 from playground.errors import DataError, counted
-from playground.gpu.context import ContextInfo
 from playground.gpu.wrap import wrap
-from playground.images.files import replacing
+from playground.images.files import replacing, writing
 from playground.json_text import read_json
 from playground.paths import shown
 from playground.reduce.candidate_process import CandidateProcess
 from playground.reduce.case import SHOT, Case, copied
 from playground.reduce.draw_handler import DrawTask
 from playground.reduce.failures import Commanded, Died, FailureKind, Finding, Refused
-from playground.reduce.initial_case import Question
+from playground.reduce.initial_case import InitialCase, Question
 from playground.reduce.probe import Probe
+from playground.reduce.search import Search
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 
@@ -29,25 +29,19 @@ RECORD = "reduced.json"
 """The file by which a folder is known to be one of ours."""
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False)
 class Account:
     """What the text in the folder says."""
 
     command_line: str
-    sketch: str
-    before: Case
-    after: Case
-    finding: Finding
-    renderers: tuple[ContextInfo, ...]
-    environments: tuple[Mapping[str, str], ...]
-    tries: int
-    seconds: float
-    finished: bool  # nothing more goes; else it was stopped
-    reproduce: tuple[str, ...]  # commands
+    question: Question
+    initial: InitialCase
+    search: Search
+    finding: Finding  # of what is left
 
 
 def claim(folder: Path) -> None:
-    """See that a folder can be written: it is not there, is empty, or an earlier one of ours."""
+    """Check that a folder can be written: it is not there, is empty, or an earlier one of ours."""
     if folder.is_symlink() or (folder.exists() and not folder.is_dir()):
         raise DataError("is no folder; choose another name with -o", file=shown(folder))
     if folder.is_dir() and any(folder.iterdir()) and not (folder / RECORD).is_file():
@@ -67,28 +61,22 @@ def write_folder(folder: Path, account: Account, more: Mapping[str, str]) -> lis
     Raises ``DataError`` where it cannot be written.
     """
     claim(folder)
-    texts = account.after.texts()
-    data = copied(account.after.files, texts)
-    texts |= {"README.txt": readme_text(account), **more}
+    texts = account.search.best.texts()
+    data = copied(account.search.best.files, texts)
+    texts |= {"README.txt": readme_text(account, folder), **more}
     names = sorted([*texts, *(name for name, _ in data), RECORD])
-    try:
+    with writing(shown(folder)):
         folder.mkdir(exist_ok=True)
         for name in set(_earlier(folder)) - set(names):
             (folder / name).unlink(missing_ok=True)
-        record = {"playground": __version__, "sketch": account.sketch, "files": names}
+        record = {"playground": __version__, "sketch": account.question.sketch.name, "files": names}
         texts[RECORD] = json.dumps(record, indent=2) + "\n"
         for name, text in texts.items():
-            _write(folder / name, text)
+            with replacing(folder / name) as handle:
+                handle.write(text.encode())
         for name, source in data:
             shutil.copyfile(source, folder / name)
-    except OSError as error:
-        raise DataError(f"cannot be written: {error.strerror}", file=shown(folder)) from error
     return [folder / name for name in names]
-
-
-def _write(path: Path, text: str) -> None:
-    with replacing(path) as handle:
-        handle.write(text.encode())
 
 
 def _earlier(folder: Path) -> list[str]:
@@ -100,33 +88,34 @@ def _earlier(folder: Path) -> list[str]:
         return []
 
 
-def readme_text(account: Account) -> str:
+def readme_text(account: Account, folder: Path) -> str:
     """Return the text that goes with a report of the failure."""
-    before, after = account.before, account.after
+    question, initial, search = account.question, account.initial, account.search
+    before, after = initial.case, search.best
     lines = [
-        f"{account.sketch}, reduced: {account.finding.kind}",
+        f"{question.sketch.name}, reduced: {account.finding.kind}",
         "",
         f"    {account.finding.details.strip()}".replace("\n", "\n    "),
         "",
         "To see it:",
         "",
-        *(f"    {command}" for command in account.reproduce),
+        *(f"    {command}" for command in to_reproduce(question, folder, after, initial.probe.failure)),
         "",
         f"Looked at: pass '{after.target}', the last of {len(after.live)}.",
         f"Reduced from {before.lines} to {counted(after.lines, 'line')} of GLSL,"
         f" from {before.settings} to {counted(after.settings, 'parameter')},"
         f" from {len(before.live)} to {len(after.live)} passes,"
-        f" in {account.tries} tries and {account.seconds:.0f} s.",
+        f" in {search.tries} tries and {search.state.seconds:.0f} s.",
         "Nothing more goes: without any one of its lines it fails no more, or otherwise."
-        if account.finished
+        if search.finished
         else "It was stopped before nothing more went: it may be shortened further.",
         "",
     ]
-    for index, info in enumerate(account.renderers):
-        name = "Renderer" if len(account.renderers) == 1 else f"Renderer {index + 1}"
+    for index, info in enumerate(initial.renderers):
+        name = "Renderer" if len(initial.renderers) == 1 else f"Renderer {index + 1}"
         lines += [f"{name}:", f"    {info.renderer}", f"    {info.version}", f"    {info.vendor}"]
-        environment = account.environments[index] if index < len(account.environments) else {}
-        lines += [f"    {key}={value}" for key, value in environment.items()]
+        if index == 1:
+            lines += [f"    {key}={value}" for key, value in question.environment.items()]
     lines += ["", f"Made by terrain-shader-playground {__version__}:", f"    {account.command_line}", ""]
     return "\n".join(lines)
 

@@ -47,12 +47,12 @@ class Probe:
         return self.failure.found(results)
 
     def renew(self) -> None:
-        """Let the next case meet fresh processes."""
+        """End the processes, so that the next case gets new ones."""
         for process in self._processes:
             process.renew()
 
     def write(self, case: Case) -> None:
-        """Let the folder hold this case, and only it."""
+        """Write this case into the folder, and remove the files of the one before."""
         texts = case.texts()
         for name in self._written.keys() - texts.keys():
             (self.folder / name).unlink(missing_ok=True)

@@ -54,7 +54,7 @@ class Enough(Exception):
 
 
 class Search:
-    """Shrinks one case; ``best`` is the smallest found so far, whatever ends the search."""
+    """Shrinks one case; ``best`` is the smallest found so far, however the search ends."""
 
     def __init__(
         self,
@@ -96,7 +96,7 @@ class Search:
             return False
 
     def holds(self, case: Case, *, resized: bool = False) -> bool:
-        """Say whether a case fails as the best one does, and let it be the best if so.
+        """Return whether a case fails as the best one does, and let it be the best if so.
 
         ``resized``: its texels are others, so what is wrong is known by its place anew.
         """
@@ -173,13 +173,13 @@ class Search:
                 self.holds(self.best.with_pass(replace(current, variant="")))
 
     def _settings(self) -> None:
-        """Take back what is set: all of it at once if that goes, then one after the other."""
+        """Remove what is set: all of it at once if that goes, then one after the other."""
         start = self.best
-        land = [name for name, plain in _PLAIN.items() if getattr(start, name) != plain]
+        terrain = [name for name, plain in _PLAIN.items() if getattr(start, name) != plain]
         given = [(one.name, name) for one in start.live for name, _ in one.live_values]
-        kept = [("", name) for name in land] + given
-        if kept:
-            ddmin(kept, lambda some: self.holds(_with_settings(start, frozenset(some))))
+        settings = [("", name) for name in terrain] + given
+        if settings:
+            ddmin(settings, lambda some: self.holds(_with_settings(start, frozenset(some))))
         for name in [one.name for one in self.best.live]:
             self._first_of(name, self._folded)
 
@@ -239,7 +239,7 @@ class Search:
     ) -> None:
         """Go through the candidates once, and take each that holds; the next are those of the smaller text.
 
-        What stood before it in the order is tried again in the next round, by when lines may have gone.
+        What is before it in the order is tried again in the next round, by when lines may have gone.
         """
         begin = held = 0
         while begin >= 0:
@@ -277,13 +277,13 @@ def _undefined_in(text: str) -> frozenset[str]:
     return edits.undefined(text)
 
 
-def _with_settings(case: Case, kept: frozenset[tuple[str, str]]) -> Case:
+def _with_settings(case: Case, settings: frozenset[tuple[str, str]]) -> Case:
     """Return the case with these settings alone: (pass, parameter), or the terrain's own as ("", name)."""
     passes = tuple(
-        replace(one, values=tuple(pair for pair in one.values if (one.name, pair[0]) in kept))
+        replace(one, values=tuple(pair for pair in one.values if (one.name, pair[0]) in settings))
         for one in case.passes
     )
-    plain = {name: value for name, value in _PLAIN.items() if ("", name) not in kept}
+    plain = {name: value for name, value in _PLAIN.items() if ("", name) not in settings}
     return replace(case, passes=passes, **plain)  # type: ignore[arg-type]
 
 

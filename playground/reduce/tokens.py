@@ -40,17 +40,17 @@ def tokens_of(text: str) -> list[str]:
 
 
 def is_word(token: str) -> bool:
-    """Say whether a token is an identifier or a keyword."""
+    """Return whether a token is an identifier or a keyword."""
     return bool(_WORD.fullmatch(token))
 
 
 def is_number(token: str) -> bool:
-    """Say whether a token is a literal number."""
+    """Return whether a token is a literal number."""
     return bool(_NUMBER.match(token))
 
 
 def is_line(token: str) -> bool:
-    """Say whether a token is a whole line: of the preprocessor, or a uniform."""
+    """Return whether a token is a whole line: of the preprocessor, or a uniform."""
     return token.startswith("#") or token.startswith("uniform ")
 
 
@@ -131,5 +131,5 @@ def _parted(last: str, token: str, unary: bool) -> bool:
 
 
 def _names_block(tokens: Sequence[str], index: int) -> bool:
-    """Say whether the word after a closing brace names what the block declared, as ``} light;``."""
+    """Return whether the word after a closing brace names what the block declared, as ``} light;``."""
     return index + 2 < len(tokens) and tokens[index + 2] in (";", "[") and tokens[index + 1] not in CONTROL

@@ -1,4 +1,4 @@
-"""The record of a case's fast variants: what is reduced runs, though nobody verified it."""
+"""The record of a case's fast variants: what is reduced runs without being verified."""
 
 from __future__ import annotations
 

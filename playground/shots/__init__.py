@@ -1,6 +1,6 @@
 """Comparing the pictures that sketches promise with their references, by hand or in pytest.
 
-    names.py        folders, and what tests report to the plugin
+    plugin_constants.py    folders, and what tests report to the plugin
     compare.py      two arrays → a verdict, how much, how many, where; flip.py: as an eye sees it
     fingerprint.py  what a picture comes from
     references.py   where references live; reading, writing, finding those that nothing uses
@@ -11,7 +11,7 @@
     page/           what shows them, as HTML
     report.py       one file of a folder of results, with no network
     accept.py       a picture of them becomes a reference; undoing that
-    session.py      what is reviewed: accepted, undone, changed meanwhile
+    review_session.py    what is reviewed: accepted, undone, changed meanwhile
     review.py       the same page, served on this machine alone
     renderer_process.py, render_handler.py    render shots in a worker process
     recording.py, checking.py    draw, compare, write, and say it, for one process of pytest

@@ -1,4 +1,4 @@
-"""Make references of pictures in a folder of results, and undo that.
+"""Accept pictures of a folder of results as references, and undo that.
 
 A picture becomes a reference as it was looked at: its pixels, and the fingerprint of what
 drew it. Nothing is drawn again. It is refused, in a sentence, where it would be wrong: a
@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, ParameterError, nearest
-from playground.images.files import read_png, replacing, write_png
+from playground.images.files import make_folder, read_png, replacing, write_png
 from playground.paths import shown
 from playground.shots.references import FOLDER, accepted_in
 from playground.shots.results import NEVER_ACCEPTED, Record, digest_of, digests_of
@@ -40,12 +40,12 @@ class Change:
 
     @property
     def further(self) -> bool:
-        """Whether it stands beside the references that were there."""
+        """Whether it was added to the references that were there."""
         return self.written is not None and bool(self.before) and self.written not in self.before
 
     @property
     def sentences(self) -> list[str]:
-        """Say what was done, a line for each file."""
+        """Return what was done, a line for each file."""
         if self.written is None:
             return [f"{self.name}: a reference is this picture already"]
         replaced = "a further one that may match" if self.further else "the first"
@@ -58,7 +58,7 @@ class Change:
 
 
 def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
-    """Make the picture of a record in ``folder`` its shot's reference.
+    """Write the picture of a record in ``folder`` as its shot's reference.
 
     It takes the place of all references that its renderer has for the shot; with ``also``
     they stay, and it becomes a further one that may match. Raises ``DataError`` where it
@@ -69,7 +69,7 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
     if record.word in NEVER_ACCEPTED:
         raise DataError(f"{record.name}: no reference can be made of it ({record.sentence})")
     if also and record.word == "unreadable":
-        raise DataError(f"{record.name}: its reference is damaged, so that cannot stay beside this one")
+        raise DataError(f"{record.name}: its reference is damaged, so it cannot stay next to this one")
     place = _place(record)
     pixels = _picture(folder, record)
     there = accepted_in(place, record.shot)
@@ -79,10 +79,7 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
         raise DataError(f"{record.name}: {_changed(record, there)} since it was checked; run the tests again")
     before = {path: path.read_bytes() for path in there}
     written = _further(place, record.shot, there) if also and there else place / f"{record.shot}.png"
-    try:
-        place.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=place) from error
+    make_folder(place)
     write_png(written, pixels, text=record.texts)
     removed = () if also else tuple(path for path in there if path != written)
     for path in removed:
@@ -91,7 +88,7 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
 
 
 def undo(change: Change) -> list[str]:
-    """Put the references back as they were before a change, and say so, a line for each file.
+    """Restore the references as they were before a change, and return a line for each file.
 
     Raises ``DataError`` where one has been written since: that would be lost.
     """

@@ -136,11 +136,11 @@ class Checker:
         return renderer
 
     def _say_plain_forms(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo) -> None:
-        """Say, once in this process, which fast variants do not run."""
+        """Report, once in this process, which fast variants do not run."""
         if self._plain_forms is None:
             self._plain_forms = PlainForms(silent, renderer.compute)
         self._plain_forms.notice = lambda sentence: node.user_properties.append((SUMMARY_LINE, sentence))
-        self._plain_forms.tell(case.sketch)
+        self._plain_forms.report(case.sketch)
 
     def show_what_was_printed(self, node: pytest.Item) -> None:
         """Add what the child printed to the test's report, where pytest shows it if the test fails."""
@@ -175,7 +175,7 @@ class Checker:
 
     @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> None:
-        """Leave the record of a test that failed for what `raised` gave it."""
+        """Write the record of a test that failed for what `raised` gave it."""
         raised = item.stash.get(_RAISED, None)
         if raised and call.when == "call" and call.excinfo and call.excinfo.value is raised.error:
             self.recorder.forget_earlier(item, raised.case)

@@ -46,7 +46,6 @@ class SketchFile(pytest.File):
             )
         for shot in sketch.shots:
             item = ShotItem.from_parent(self, name=shot.name, case=ShotCase(sketch, shot))
-            item.add_marker("shots")
             known = _marks(self.config)
             for mark in shot.marks:
                 if mark not in known and self.config.getoption("strict_markers", False):
@@ -56,9 +55,7 @@ class SketchFile(pytest.File):
                     item.add_marker(mark)
             yield item
         name = references_name({shot.name for shot in sketch.shots})
-        last = ReferencesItem.from_parent(self, name=name, sketch=sketch)
-        last.add_marker("shots")
-        yield last
+        yield ReferencesItem.from_parent(self, name=name, sketch=sketch)
 
     def _failing(self, message: str) -> Iterator[pytest.Item]:
         """Yield the test that says what is wrong, under each name that was given."""
@@ -66,17 +63,30 @@ class SketchFile(pytest.File):
         here = self.config.invocation_params.dir
         names = [name for file, _, name in arguments if name and here / file == self.path]
         for name in dict.fromkeys(names or ["sketch"]):
-            item = FailingItem.from_parent(self, name=name, message=message)
-            item.add_marker("shots")
-            yield item
+            yield FailingItem.from_parent(self, name=name, message=message)
 
 
-class ShotItem(pytest.Item):
+class SketchItem(pytest.Item):
+    """A test of a sketch, on one line of it."""
+
+    line = 0  # from 0
+    title = ""
+
+    def __init__(self, **named: object) -> None:
+        super().__init__(**named)  # type: ignore[arg-type]
+        self.add_marker("shots")
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Return where it is written, the line from 0, and its name."""
+        return self.path, self.line, self.title or self.name
+
+
+class ShotItem(SketchItem):
     """The test of one shot."""
 
     def __init__(self, *, case: ShotCase, **named: object) -> None:
-        super().__init__(**named)  # type: ignore[arg-type]
-        self.case = case
+        super().__init__(**named)
+        self.case, self.line, self.title = case, max(case.shot.line - 1, 0), str(case)
         self.trouble = ""  # what is wrong with it as a test
 
     def runtest(self) -> None:
@@ -85,17 +95,13 @@ class ShotItem(pytest.Item):
             checker_of(self.config).fail(self, self.case, self.trouble)
         checker_of(self.config).shot(self, self.case)
 
-    def reportinfo(self) -> tuple[Path, int, str]:
-        """Return where it is written, the line from 0, and its name."""
-        return self.path, max(self.case.shot.line - 1, 0), str(self.case)
 
-
-class ReferencesItem(pytest.Item):
+class ReferencesItem(SketchItem):
     """The test that finds unused references."""
 
     def __init__(self, *, sketch: Sketch, **named: object) -> None:
-        super().__init__(**named)  # type: ignore[arg-type]
-        self.sketch = sketch
+        super().__init__(**named)
+        self.sketch, self.title = sketch, f"references of {sketch.name}"
         try:
             homes = self.config.stash.setdefault(_HOMES, set())
             home = home_of(sketch)
@@ -121,33 +127,24 @@ class ReferencesItem(pytest.Item):
             checker.fail(self, case, f"no shot uses {counted(len(own), 'reference')}; remove:{files}")
         checker.recorder.forget(self, case)
 
-    def reportinfo(self) -> tuple[Path, int, str]:
-        """Return where it is written, the line from 0, and its name."""
-        return self.path, 0, f"references of {self.sketch.name}"
 
-
-class FailingItem(pytest.Item):
+class FailingItem(SketchItem):
     """A test that only says what is wrong with a sketch."""
 
     def __init__(self, *, message: str, **named: object) -> None:
-        super().__init__(**named)  # type: ignore[arg-type]
+        super().__init__(**named)
         self.message = message
 
     def runtest(self) -> None:
         """Fail."""
-        folder = str(self.path.parent)
         name = self.path.parent.name if self.path.name == "sketch.toml" else self.path.stem
-        sketch = Sketch(name, str(self.path), folder, Graph(name, str(self.path), ()))
+        sketch = Sketch(name, str(self.path), str(self.path.parent), Graph(name, str(self.path), ()))
         shot = Shot(re.sub(r"[./\\\0]", "-", self.name))
         checker_of(self.config).fail(self, ShotCase(sketch, shot), self.message)
 
-    def reportinfo(self) -> tuple[Path, int, str]:
-        """Return where it is written, the line from 0, and its name."""
-        return self.path, 0, self.name
-
 
 def _is_reference(path: Path, home: Path) -> bool:
-    """Say whether a picture is a reference of a sketch; others may keep their pictures beside them."""
+    """Return whether a picture is a reference of a sketch; other pictures may be in the same folder."""
     folder, *others = path.relative_to(home).parts
     if folder.endswith(".py"):  # of a test file
         return False

@@ -1,4 +1,4 @@
-"""Say what a picture comes from: which build of which renderer, on what processor, drew what.
+"""Identify what a picture comes from: which build of which renderer, on what processor, drew what.
 
 A reference carries this in its PNG's texts, and a picture just drawn has one too. Comparing
 the two explains a failure, and chooses how strictly the pictures are compared. What each part
@@ -6,7 +6,7 @@ means for that:
 
     renderer, version     the build: driver, its version, and for Mesa its LLVM and the width of
                           the vectors it compiles for. Another build may round the other way.
-    vendor                GL's word for who wrote the driver. Told, but not a build: between two
+    vendor                GL's word for who wrote the driver. Shown, but no part of a build: between two
                           versions Mesa changed it from "Mesa/X.org" to "Mesa".
     mesa, llvm            read out of the two strings, for people; they decide nothing twice.
     cpu, simd             of a renderer that draws on the processor, part of the build: `gpu.build` says
@@ -14,7 +14,7 @@ means for that:
                           comparison.
     drawn                 hash of what was drawn: sketch, shot, kernels, values, sizes, wiring,
                           files (see ``engine.picture_hash``). It never makes a comparison less strict:
-                          that an edit changed the picture is what the test is there to tell.
+                          that an edit changed the picture is what the test has to report.
     size                  the picture's. Pictures of two sizes are never compared.
     tool                  the playground's version. It never makes a comparison less strict either:
                           a bug of the playground must not excuse itself.
@@ -87,11 +87,11 @@ class Fingerprint:
         return tuple(found)
 
     def same_build(self, other: Fingerprint) -> bool:
-        """Say whether the same build of a renderer drew both, as far as both say."""
+        """Return whether the same build of a renderer drew both, as far as both say."""
         return not set(BUILD) & set(self.differs_in(other))
 
     def differences(self, reference: Fingerprint) -> tuple[str, ...]:
-        """Say in words, one to a line, how this picture's origin differs from a reference's."""
+        """Return, a sentence each, how this picture's origin differs from a reference's."""
         names = self.differs_in(reference)
         found = []
         for name in names:

@@ -1,6 +1,6 @@
 """The ``shot`` fixture: draw sketches apart from the test's process, compare pictures of any origin.
 
-A test's references lie beside its file, as ``screenshots/<test file>/<renderer>/<name>.png``:
+A test's references are in the folder of its file, as ``screenshots/<test file>/<renderer>/<name>.png``:
 ``screenshots/test_land.py/llvmpipe/dawn.png``. The folder's name ends in ``.py``, so that no
 sketch can have the same.
 """
@@ -43,7 +43,7 @@ class ShotFixture:
         self._node = node
         self._checker = checker_of(node.config)
         self._names: set[str] = set()
-        self._drawn: dict[int, tuple[Frame, ContextInfo]] = {}  # frames kept, so that their ids stay theirs
+        self._drawn: dict[int, tuple[Frame, ContextInfo]] = {}  # frames held, so that their ids stay theirs
         self._started = time.perf_counter()
         self._begun = False
 
@@ -115,7 +115,7 @@ class ShotFixture:
         self._checker.hold(self._node, case, _drawn_by(picture, by), info, start)
 
     def _find(self, sketch: str | Path) -> Path:
-        """Return where a sketch is: beside the test file, or where a command would find it."""
+        """Return where a sketch is: in the test file's folder, or where a command would find it."""
         neighbour = self._node.path.parent / Path(sketch).expanduser()
         return find(neighbour if neighbour.exists() else sketch)
 
@@ -140,7 +140,7 @@ class ShotFixture:
             self._checker.recorder.forget_earlier(self._node, case)
 
     def _renderer_of(self, case: ShotCase, picture: object, by: By | None) -> ContextInfo:
-        if isinstance(by, str):  # a folder that is named is wanted, whatever OpenGL is there
+        if isinstance(by, str):  # a folder that is named is used with any OpenGL
             if not by or ContextInfo(0, by, "", "", 0).slug != by:
                 raise ValueError(f"by = {by!r}: a folder's name is lower-case letters, digits and -")
             return ContextInfo(0, by, "", "", 0)

@@ -275,8 +275,8 @@ def _features(lightness: Floats) -> tuple[Floats, Floats]:
 
 def _trimmed(line: NDArray[np.float64]) -> Floats:
     """Return a symmetric line of weights without its ends that weigh nothing."""
-    kept = np.flatnonzero(line > _SMALLEST * line.max())
-    return line[kept[0] : kept[-1] + 1].astype(np.float32)
+    used = np.flatnonzero(line > _SMALLEST * line.max())
+    return line[used[0] : used[-1] + 1].astype(np.float32)
 
 
 def _along(values: Floats, line: Floats, axis: int) -> Floats:

@@ -50,7 +50,7 @@ OTHER_TOLERANCE = 3
 
 Mesa 22.3.6 and 25.0.7 were 1 apart at most in 219 of the 220 shipped shots, and 3 at one pixel
 of the last. A change of processor can be more: without AVX, shadows and reflections fell the
-other way at single pixels, by up to 20. Such a picture is accepted beside the first, as
+other way at single pixels, by up to 20. Such a picture is accepted as a further one,
 ``<shot>.2.png``.
 """
 
@@ -126,7 +126,7 @@ def judge(
     """Judge a picture, uint8 (height, width, 4), by its renderer's references.
 
     Where there are none it is judged by ``others``, those of another renderer. ``not_finite`` and
-    ``gl_error`` say what is wrong with it whatever it looks like. Returns with the judgement the
+    ``gl_error`` say what is wrong with it, and fail it. Returns with the judgement the
     reference that it is by: one that matches, else the nearest; None where there is none. Raises
     ``DataError`` for an array of another dtype or shape.
     """
@@ -190,7 +190,7 @@ def _distance(judgement: Judgement) -> tuple[bool, bool, float, int, int]:
 def _judged(
     actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, same: bool, strict: bool
 ) -> Judgement:
-    """Judge by one reference of the same renderer; ``strict`` allows one level whoever drew it."""
+    """Judge by one reference of the same renderer; ``strict`` allows one level even of another build."""
     found = _by_pixels(actual, fingerprint, reference, SAME_BUILD if same else OTHER_BUILD)
     comparison = found.comparison
     if strict or comparison.verdict in _FINAL:

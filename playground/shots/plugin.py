@@ -9,7 +9,7 @@
         shot.check(shot.render("hills.toml", time=20.0), "evening")
 
 The package's entry point has this module's name, so that `pytest_plugins` and ``-p`` may name
-it too. It is loaded with every pytest that the package is installed beside, so it imports
+it too. It is loaded with every pytest of an environment that has the package, so it imports
 next to nothing, and does nothing until there is a shot: `collect`, `checking` and `fixture`
 come in then.
 """
@@ -108,7 +108,7 @@ def _seconds(text: str) -> float:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Make the marker known, and add the sketches of the configuration to what is tested."""
+    """Register the marker, and add the sketches of the configuration to what is tested."""
     if config.getoption("--shots-plain") and config.getoption("--shots-update"):
         raise pytest.UsageError("--shots-plain compares with references; --shots-update would write others")
     config.addinivalue_line("markers", "shots: compares a picture with its reference")
@@ -172,7 +172,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Let ``-m shots`` find the tests in Python that compare pictures, too."""
+    """Mark the tests in Python that compare pictures, for ``-m shots``."""
     for item in items:
         if "shot" in getattr(item, "fixturenames", ()):
             item.add_marker("shots")
@@ -184,7 +184,7 @@ def shot(request: pytest.FixtureRequest) -> ShotFixture:
     """Draw sketches in a process of their own, and compare pictures with their references.
 
     ``shot.render("hills.toml")`` gives a frame; ``shot.check(frame, "evening")`` fails unless it is
-    the reference in ``screenshots/<test file>/<renderer>/evening.png`` beside the test file.
+    the reference in ``screenshots/<test file>/<renderer>/evening.png`` in the test file's folder.
     """
     from playground.shots.fixture import ShotFixture
 
@@ -200,12 +200,12 @@ class Results:
         self.left = 0  # references that --shots-update left alone
         self.loose: Counter[str] = Counter()  # shots compared by structure only, by renderer
         self.uncompared: Counter[str] = Counter()  # shots that were skipped, by why
-        self.unrecorded: dict[str, None] = {}  # why results could not be kept
+        self.unrecorded: dict[str, None] = {}  # why results could not be recorded
         self.checked = self.failed = False  # whether a shot was checked, and whether one failed
         self.uses = used.Uses(config.rootpath, config.getoption("--shots-renderer"))
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
-        """Take note of a finished test, which may come from another process."""
+        """Record a finished test, which may come from another process."""
         if report.when != "call":
             return
         self.uses.add(report)
@@ -262,7 +262,7 @@ class Results:
         )
 
     def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
-        """Say what was written, what was left alone, and where there is something to look at."""
+        """Print what was written, what was left alone, and where the results are."""
         if self.lines:
             terminalreporter.section("shots")
             for line in self.lines:

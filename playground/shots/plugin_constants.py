@@ -6,7 +6,7 @@ A test tells the summary of its run by user properties, which come along from wo
 from __future__ import annotations
 
 SCREENSHOTS = "screenshots"
-"""The folder of references, beside a sketch or a test file."""
+"""The folder of references, in the folder of a sketch or a test file."""
 
 REPORT = "shots-report"
 """Where results go unless another folder is named: in the folder the tests were started in."""
@@ -29,8 +29,8 @@ STRUCTURE_COMPARED = "shots-structure-only"
 UNCOMPARED = "shots-uncompared"
 """… that says why a shot was not compared."""
 
-UNRECORDED = "shots-unkept"
-"""… that says why a result could not be kept."""
+UNRECORDED = "shots-unrecorded"
+"""… that says why a result could not be recorded."""
 
 USED = "shots-used"
 """… that names a reference which a test in Python has used, as "llvmpipe/dawn"."""

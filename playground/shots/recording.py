@@ -1,4 +1,4 @@
-"""Leave a record of each checked shot in the results folder of this run of pytest."""
+"""Write a record of each checked shot into the results folder of this run of pytest."""
 
 from __future__ import annotations
 
@@ -50,11 +50,11 @@ class Recorder:
         self._earlier: dict[str, list[Record]] = {}  # by place: records that were there at the first look
 
     def record(self, node: pytest.Item, outcome: Outcome, seconds: float, command: str) -> str:
-        """Leave the record of a picture that was compared, with the pictures unless it passed.
+        """Write the record of a picture that was compared, with the pictures unless it passed.
 
         Where it cannot be written, that is returned, a sentence, and goes to the summary; else "".
         """
-        found, perceived, reference = outcome.comparison, outcome.judgement.perceived, outcome.reference
+        found, perceived, reference = outcome.comparison, outcome.perceived, outcome.reference
         name, own = outcome.case.shot.name, outcome.renderer.slug
         record = self._begun(node, outcome.case, outcome.word, outcome.sentence, seconds)
         record = replace(
@@ -78,7 +78,7 @@ class Recorder:
         return self._write(node, outcome.case, record, {} if outcome.ok else images_of(outcome))
 
     def record_none(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> str:
-        """Leave the record of a shot of which there is no picture; returns what `record` does."""
+        """Write the record of a shot of which there is no picture; returns what `record` does."""
         first, _, rest = sentence.partition("\n")
         record = replace(self._begun(node, case, word, first, seconds), error=rest)
         return self._write(node, case, record, {})
@@ -179,10 +179,13 @@ def typed(node: pytest.Item) -> str:
 
     Pytest's own begins at its root folder, which may be another.
     """
-    root, path = node.config.invocation_params.dir, node.path
-    file = path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
     _, parted, rest = node.nodeid.partition("::")
-    return file + parted + rest
+    return _from(node.config.invocation_params.dir, node.path) + parted + rest
+
+
+def _from(root: Path, path: Path) -> str:
+    """Return a path from a folder if it is inside, else whole."""
+    return path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
 
 
 def references_name(shots: Collection[str]) -> str:
@@ -192,14 +195,13 @@ def references_name(shots: Collection[str]) -> str:
 
 def _home(case: ShotCase, root: Path) -> str:
     try:
-        home = home_of(case.sketch)
+        return _from(root, home_of(case.sketch))
     except DataError:
         return ""
-    return home.relative_to(root).as_posix() if home.is_relative_to(root) else str(home)
 
 
 def _numbers(outcome: Outcome) -> dict[str, float]:
-    found, judgement = outcome.comparison, outcome.judgement
+    found = outcome.comparison
     if found.verdict in ("blank", "missing", "size"):
         return {}
     numbers: dict[str, float] = {
@@ -207,22 +209,20 @@ def _numbers(outcome: Outcome) -> dict[str, float]:
         f"pixels over {found.tolerance}": found.over,
         f"pixels over {found.tolerance}, %": 100.0 * found.over / (found.size[0] * found.size[1]),
     }
-    if judgement.crowd is not None:
-        numbers["pixels in the most crowded window"] = judgement.crowd.count
-    if judgement.perceived is not None:
-        numbers |= {"FLIP, mean": judgement.perceived.mean, "FLIP, worst tile": judgement.perceived.tile}
+    if outcome.crowd is not None:
+        numbers["pixels in the most crowded window"] = outcome.crowd.count
+    if outcome.perceived is not None:
+        numbers |= {"FLIP, mean": outcome.perceived.mean, "FLIP, worst tile": outcome.perceived.tile}
     return numbers
 
 
 def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[str, object]]:
-    """Leave a record that a test file has unused references; return the user properties of its report."""
+    """Write a record that a test file has unused references; return the user properties of its report."""
     recorder = Recorder(config)
-    home = str(path.parent / SCREENSHOTS)
-    root = recorder.root
-    file = path.relative_to(root).as_posix() if path.is_relative_to(root) else str(path)
     first, _, rest = message.partition("\n")
     try:
-        place = place_of(recorder.folder, path.name, Path(home))
+        home = path.parent / SCREENSHOTS
+        place = place_of(recorder.folder, path.name, home)
         # Of the same run as what its tests have left, which may have run in other processes.
         runs = {record.when: record.run for record in records_in(recorder.folder)}
         record = Record(
@@ -230,10 +230,10 @@ def record_stale(config: pytest.Config, path: Path, message: str) -> list[tuple[
             shot="references",
             word="error",
             sentence=first,
-            root=str(root),
-            home=home,
+            root=str(recorder.root),
+            home=str(home),
             error=rest,
-            node=f"{file}::references",
+            node=f"{_from(recorder.root, path)}::references",
             when=time.time(),
             run=runs[max(runs)] if runs else "",
             folder="" if place == path.name else place,
@@ -266,7 +266,7 @@ def finish(config: pytest.Config, complete: Mapping[Path, set[str]], wanted: boo
 
 
 def _unrecorded(error: Exception) -> str:
-    return f"no results are kept: {error}; --shots-output names another folder"
+    return f"no results are recorded: {error}; --shots-output names another folder"
 
 
 def report(folder: Path) -> list[str]:

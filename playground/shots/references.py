@@ -1,7 +1,7 @@
-"""Keep reference pictures: where they live, what they say of themselves, which of them nothing uses.
+"""Store reference pictures: where they live, what they say of themselves, which of them nothing uses.
 
 ``screenshots/<sketch>/<renderer>/<shot>.png``, in the checkout for the sketches that ship,
-beside the sketch for a user's own. ``<shot>.2.png``, ``<shot>.3.png`` … are further pictures
+in the sketch's folder for a user's own. ``<shot>.2.png``, ``<shot>.3.png`` … are further pictures
 that may match (another build of the same renderer, say).
 
 A reference carries texts: its fingerprint, and which shot of which sketch it shows. There is no
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from playground import paths
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
-from playground.images.files import read_png, write_png
+from playground.images.files import make_folder, read_png, write_png
 from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
 from playground.shots.plugin_constants import SCREENSHOTS
 from playground.sketch.model import Sketch
@@ -43,16 +43,6 @@ class Reference:
     def fingerprint(self) -> Fingerprint:
         """What it comes from, as far as the file says."""
         return read_fingerprint(self.text)
-
-    @property
-    def drawn_by(self) -> str:
-        """Renderer and OpenGL version that drew it; "" where the file does not say."""
-        return ", ".join(self.text[key] for key in ("renderer", "version") if key in self.text)
-
-
-def drawn_by(renderer: ContextInfo) -> str:
-    """Name a renderer and its OpenGL version, for comparing with a reference's."""
-    return f"{renderer.renderer}, {renderer.version}"
 
 
 def home_of(sketch: Sketch) -> Path:
@@ -115,11 +105,7 @@ def write_reference_in(
     Those would otherwise let the old picture pass for ever. Returns what was written and
     what was removed. Raises ``DataError`` where the folder cannot be written to.
     """
-    path = folder / f"{shot}.png"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=folder) from error
+    path = make_folder(folder) / f"{shot}.png"
     write_png(path, pixels, text=reference_texts(fingerprint, sketch, shot))
     further = [other for other in accepted_in(folder, shot) if other != path]
     for other in further:
@@ -133,7 +119,7 @@ def reference_texts(fingerprint: Fingerprint, sketch: str, shot: str) -> dict[st
 
 
 def stale_references(sketches: Iterable[Sketch]) -> list[Path]:
-    """List the reference files, of whatever renderer, that no shot uses.
+    """List the reference files, of all renderers, that no shot uses.
 
     Give every sketch whose references are to be judged, with shots or without. Pictures of
     a sketch that is not given count only if there is no such sketch any more.
@@ -144,7 +130,7 @@ def stale_references(sketches: Iterable[Sketch]) -> list[Path]:
         of_home.setdefault(sketch.name, set()).update(shot.name for shot in sketch.shots)
     stale: list[Path] = []
     for home, known in shots.items():
-        others = _sketches_beside(home) - known.keys()
+        others = _sketches_of(home) - known.keys()
         for path in home.rglob("*.png"):
             folders = path.relative_to(home).parts[:-1]  # sketch and renderer, if it is where it should be
             if folders and folders[0] in others:
@@ -155,7 +141,7 @@ def stale_references(sketches: Iterable[Sketch]) -> list[Path]:
     return sorted(stale)
 
 
-def _sketches_beside(home: Path) -> set[str]:
+def _sketches_of(home: Path) -> set[str]:
     """Return the names of the sketches whose references are in ``home``."""
     folder = paths.SKETCHES if paths.CHECKOUT and home == paths.CHECKOUT / FOLDER else home.parent
     names = {path.stem for path in folder.glob("*.toml")}

@@ -1,11 +1,11 @@
-"""Make one HTML file of a folder of results: what failed, to look at from all sides, with no network.
+"""Write one HTML file of a folder of results: what failed, to look at from all sides, with no network.
 
-Everything is inside, the pictures as data URLs, so that the file can be sent, or kept by a
+Everything is inside, the pictures as data URLs, so that the file can be sent, or stored by a
 continuous integration. It can be read without its script, and printed; the script adds
 swiping, blinking, zooming and the values of pixels. Passed shots have a line each.
 
 Pictures are embedded until they would make the file too large to open; the others are then
-links to the files beside it, and the page says so.
+links to the files next to it, and the page says so.
 """
 
 from __future__ import annotations
@@ -38,24 +38,24 @@ def write_report(folder: Path = Path(FOLDER), file: Path | None = None) -> Path:
     """
     target = file or folder / NAME
     try:
-        beside = os.path.relpath(folder.absolute(), target.absolute().parent)
+        links = os.path.relpath(folder.absolute(), target.absolute().parent)
     except ValueError:  # on Windows, another drive
-        beside = str(folder.absolute())
-    text = report_html(read_results(folder), folder, Path(beside))
+        links = str(folder.absolute())
+    text = report_html(read_results(folder), folder, Path(links))
     with replacing(target) as handle:
         handle.write(text.encode())
     return target
 
 
-def report_html(records: Sequence[Record], folder: Path, beside: Path = Path(), most: int = EMBEDDED) -> str:
+def report_html(records: Sequence[Record], folder: Path, links: Path = Path(), most: int = EMBEDDED) -> str:
     """Return the report on records whose pictures are in ``folder``, with at most ``most`` bytes of them.
 
-    ``beside`` is the folder as the report has to name it in links. A picture that is not there
+    ``links`` is the folder of the results as links of the report name it. A picture that is not there
     any more is left out, which the page says.
     """
     pictures = _Pictures(folder, most)
-    links = "" if beside == Path() else f"{beside.as_posix()}/"
-    setting = Setting(shown(folder), pictures.source, links)
+    prefix = "" if links == Path() else f"{links.as_posix()}/"
+    setting = Setting(shown(folder), pictures.source, prefix)
     failed = [record for record in records if not record.ok]
     for record in failed:  # in the order of the page: the first failures have their pictures
         pictures.take(record)
@@ -95,12 +95,12 @@ class _Pictures:
         return self.urls.get(record.pictures[kind], "")
 
     def notes(self) -> list[str]:
-        """Say what is not inside."""
+        """Return what is not inside, a sentence each."""
         found = []
         if self.linked:
             found.append(
                 f"The pictures of {counted(self.linked, 'failure')} are not in this file, which would be too"
-                " large to open; they are links to the files beside it."
+                " large to open; they are links to the files next to it."
             )
         if self.gone:
             found.append(

@@ -1,4 +1,4 @@
-"""Know where in the results folder a sketch's records are, and remove those that mean nothing any more.
+"""Resolve where in the results folder a sketch's records are, and remove those that mean nothing any more.
 
 Sketches of one name in several folders, and test files of one name, are several: the first to
 come has the folder of that name, each other one its own, ``hills-1a2b3c4d``. ``.home`` in the
@@ -15,7 +15,7 @@ from pathlib import Path
 
 from playground.errors import DataError
 from playground.images.files import replacing
-from playground.shots.results import PICTURES, Record, make_folder, read_result
+from playground.shots.results import PICTURES, Record, make_results_folder, read_result
 
 _CLAIM = ".home"
 
@@ -26,7 +26,7 @@ def place_of(folder: Path, sketch: str, home: Path) -> str:
     ``home`` is the folder of its references. Makes the folder of the sketch's name if it is
     not there; raises ``DataError`` or ``OSError`` where it cannot.
     """
-    make_folder(folder)
+    make_results_folder(folder)
     try:
         key = Path(os.path.relpath(home, folder)).as_posix()
     except ValueError:  # on Windows, another drive
@@ -65,7 +65,7 @@ def clean(folder: Path, root: Path, complete: Mapping[Path, Collection[str]]) ->
 
     ``root`` is the folder that the tests were started in: records of others stay. ``complete``
     has, for test files of which every test ran and passed, what pictures those have checked.
-    To be called when no test runs any more: a folder that is empty then is nobody's.
+    Call it when no test runs any more: a folder that is empty then is not in use.
     """
     for record in list(records_in(folder)):
         file = file_of(record, root)

@@ -1,4 +1,4 @@
-"""Keep what came of each checked shot in a folder: one record a shot, as JSON, and its pictures.
+"""Store the result of each checked shot in a folder: one record a shot, as JSON, and its pictures.
 
     <folder>/<sketch>/<shot>.json             what came of it: always
     <folder>/<sketch>/<shot>.actual.png       unless it passed; with the texts of a reference
@@ -6,9 +6,9 @@
     <folder>/<sketch>/<shot>.difference.png   16 times as strong
     <folder>/<sketch>/<shot>.flip.png         where an eye would see it
 
-A second sketch of that name has a folder of its own beside the first's: see `places`.
+A second sketch of that name has a folder of its own next to the first's: see `result_paths`.
 
-A record stands alone: the report, ``review`` and ``accept`` need neither the sketch nor a
+A record is complete: the report, ``review`` and ``accept`` need neither the sketch nor a
 graphics card, so a folder that was made elsewhere (by a continuous integration, say) can be
 looked at and accepted here. Each file is written whole or not at all, so that several
 processes may fill one folder, a shot each.
@@ -30,7 +30,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
-from playground.images.files import encode_png, replacing
+from playground.images.files import encode_png, make_folder, replacing
 from playground.json_text import read_json
 from playground.shots.plugin_constants import REPORT
 
@@ -49,10 +49,8 @@ PASSED = "same"
 NEVER_ACCEPTED = frozenset({"blank", "nan", "gl-error", "crash", "hang", "error"})
 """The words of results that no reference may be made of: the picture is broken, or there is none."""
 
-Digests = Mapping[str, str]
-
-_SHOT = re.compile(r"[^./\\\0][^./\\\0]*")
-_SKETCH = re.compile(r"(?!\.{1,2}$)[^/\\\0]+")
+_SHOT = r"[^./\\\0]+"
+_SKETCH = r"(?!\.{1,2}$)[^/\\\0]+"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,7 +127,7 @@ def from_json(text: str, file: str | Path = "a record") -> Record:
         raise DataError("not the record of a shot: expected an object with a 'format'", file=file)
     if found.pop("format") != FORMAT:
         raise DataError(f"a record of another format; this version reads format {FORMAT}", file=file)
-    unknown = sorted(found.keys() - _READERS.keys())
+    unknown = sorted(found.keys() - _TESTS.keys())
     if unknown:
         raise DataError(f"a record has no '{unknown[0]}'", file=file)
     missing = sorted(_REQUIRED - found.keys())
@@ -137,13 +135,12 @@ def from_json(text: str, file: str | Path = "a record") -> Record:
         raise DataError(f"a record without its '{missing[0]}'", file=file)
     values: dict[str, Any] = {}
     for name, value in found.items():
-        expected, reader = _READERS[name]
-        try:
-            values[name] = reader(value)
-        except (TypeError, ValueError):
+        expected, is_valid = _TESTS[name]
+        if not is_valid(value):
             text = json.dumps(value, ensure_ascii=False)
             text = text if len(text) < 60 else text[:57] + "…"
-            raise DataError(f"'{name}' in a record is {expected}; found {text}", file=file) from None
+            raise DataError(f"'{name}' in a record is {expected}; found {text}", file=file)
+        values[name] = tuple(value) if isinstance(value, list) else value
     record = Record(**values)
     for word, name in record.pictures.items():
         if name != _picture_name(record, word):
@@ -153,7 +150,7 @@ def from_json(text: str, file: str | Path = "a record") -> Record:
 
 
 def write_result(folder: Path, record: Record, pictures: Mapping[str, NDArray[np.uint8]]) -> Record:
-    """Leave a shot's record and its pictures in ``folder``, and remove what a run before left of them.
+    """Write a shot's record and its pictures into ``folder``, and remove what a run before left of them.
 
     ``pictures`` has some of `PICTURES`, uint8 (height, width, 4), top row first; none for a
     shot that passed. The record goes last, and an old one is removed first: one that can be
@@ -163,12 +160,7 @@ def write_result(folder: Path, record: Record, pictures: Mapping[str, NDArray[np
     that cannot be a file's.
     """
     _check_names(record.sketch, record.shot, folder)
-    place = folder / record.place_name
-    make_folder(folder)
-    try:
-        place.mkdir(exist_ok=True)
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=place) from error
+    make_folder(make_results_folder(folder) / record.place_name)
     result_path(folder, record).unlink(missing_ok=True)
     files: dict[str, str] = {}
     digest = ""
@@ -189,15 +181,11 @@ def write_result(folder: Path, record: Record, pictures: Mapping[str, NDArray[np
     return whole
 
 
-def make_folder(folder: Path) -> Path:
+def make_results_folder(folder: Path) -> Path:
     """Make the results folder if it is not there, with a ``.gitignore`` of everything in it."""
-    try:
-        if not folder.is_dir():
-            folder.mkdir(parents=True, exist_ok=True)
-            with replacing(folder / ".gitignore") as handle:
-                handle.write(b"# Results of screenshot tests: made anew by every run.\n*\n")
-    except OSError as error:
-        raise DataError(f"no folder can be made: {error.strerror}", file=folder) from error
+    if not folder.is_dir():
+        with replacing(make_folder(folder) / ".gitignore") as handle:
+            handle.write(b"# Results of screenshot tests: made anew by every run.\n*\n")
     return folder
 
 
@@ -255,88 +243,62 @@ def _picture_name(record: Record, word: str) -> str:
 
 
 def _check_names(sketch: str, shot: str, file: str | Path) -> None:
-    if not _SKETCH.fullmatch(sketch):
+    if not re.fullmatch(_SKETCH, sketch):
         raise DataError(f"{sketch!r} cannot be a sketch's folder", file=file)
-    if not _SHOT.fullmatch(shot):
+    if not re.fullmatch(_SHOT, shot):
         raise DataError(f"{shot!r} cannot be a shot's name: no dot, no slash", file=file)
 
 
-# Reading, a kind of value each; ValueError or TypeError says that it is another
+# What each field may be as JSON: in words, and as a test
 
 
 def _no_constant(text: str) -> float:
     raise ValueError(f"{text} is no number")
 
 
-def _text(value: object) -> str:
-    if not isinstance(value, str):
-        raise TypeError
-    return value
+def _is_text(value: object) -> bool:
+    return isinstance(value, str)
 
 
-def _matching(pattern: re.Pattern[str]) -> Callable[[object], str]:
-    def read(value: object) -> str:
-        if not pattern.fullmatch(_text(value)):
-            raise ValueError
-        return _text(value)
-
-    return read
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def _number(value: object) -> float:
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise TypeError
-    return value
+def _matches(pattern: str) -> Callable[[object], bool]:
+    return lambda value: isinstance(value, str) and bool(re.fullmatch(pattern, value))
 
 
-def _object_of(read: Callable[[object], Any]) -> Callable[[object], dict[str, Any]]:
-    def read_all(value: object) -> dict[str, Any]:
-        if not isinstance(value, dict):
-            raise TypeError
-        return {_text(key): read(entry) for key, entry in value.items()}
-
-    return read_all
+def _is_object_of(test: Callable[[object], bool]) -> Callable[[object], bool]:
+    return lambda value: isinstance(value, dict) and all(map(test, value.values()))
 
 
-def _lines(value: object) -> tuple[str, ...]:
-    if not isinstance(value, list):
-        raise TypeError
-    return tuple(_text(line) for line in value)
+def _is_pair_from(lowest: int) -> Callable[[object], bool]:
+    def test(value: Any) -> bool:
+        pair = isinstance(value, list) and len(value) == 2
+        return value is None or (pair and all(isinstance(side, int) and side >= lowest for side in value))
+
+    return test
 
 
-def _pair(lowest: int) -> Callable[[object], tuple[int, int] | None]:
-    def read(value: object) -> tuple[int, int] | None:
-        if value is None:
-            return None
-        if not isinstance(value, list) or len(value) != 2:
-            raise TypeError
-        if not all(isinstance(side, int) and side >= lowest for side in value):
-            raise ValueError
-        return value[0], value[1]
-
-    return read
-
-
-def _pictures(value: object) -> dict[str, str]:
-    found = _object_of(_text)(value)
-    if not found.keys() <= set(PICTURES):
-        raise ValueError
-    return found
-
-
-_READERS_OF_TYPES: dict[str, tuple[str, Callable[[object], Any]]] = {
-    "str": ("a text", _text),
-    "float": ("a number", _number),
-    "dict[str, str]": ("an object of texts", _object_of(_text)),
-    "dict[str, float]": ("an object of numbers", _object_of(_number)),
-    "tuple[str, ...]": ("a list of texts", _lines),
-    "tuple[int, int] | None": ("two numbers of pixels", _pair(1)),
+_TESTS_OF_TYPES: dict[str, tuple[str, Callable[[Any], bool]]] = {
+    "str": ("a text", _is_text),
+    "float": ("a number", _is_number),
+    "dict[str, str]": ("an object of texts", _is_object_of(_is_text)),
+    "dict[str, float]": ("an object of numbers", _is_object_of(_is_number)),
+    "tuple[str, ...]": (
+        "a list of texts",
+        lambda value: isinstance(value, list) and all(map(_is_text, value)),
+    ),
+    "tuple[int, int] | None": ("two numbers of pixels", _is_pair_from(1)),
 }
-_READERS = {f.name: _READERS_OF_TYPES[str(f.type)] for f in fields(Record)} | {
-    "sketch": ("the name of a sketch", _matching(_SKETCH)),
-    "shot": ("the name of a shot", _matching(_SHOT)),
-    "folder": ("the name of a folder", _matching(re.compile(f"(?:{_SKETCH.pattern})?"))),
-    "place": ("x and y of a pixel", _pair(0)),
-    "pictures": (f"an object of files, of {', '.join(PICTURES)}", _pictures),
+_TESTS = {f.name: _TESTS_OF_TYPES[str(f.type)] for f in fields(Record)} | {
+    "sketch": ("the name of a sketch", _matches(_SKETCH)),
+    "shot": ("the name of a shot", _matches(_SHOT)),
+    "folder": ("the name of a folder", _matches(f"(?:{_SKETCH})?")),
+    "place": ("x and y of a pixel", _is_pair_from(0)),
+    "pictures": (
+        f"an object of files, of {', '.join(PICTURES)}",
+        lambda value: _is_object_of(_is_text)(value) and value.keys() <= set(PICTURES),
+    ),
 }
 _REQUIRED = {f.name for f in fields(Record) if f.default is MISSING and f.default_factory is MISSING}

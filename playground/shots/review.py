@@ -88,11 +88,11 @@ class Review:
         self._server.serve_forever(poll_interval=0.1)
 
     def end(self) -> None:
-        """Let `serve` return, once what is under way is answered."""
+        """Stop `serve`, once what is under way is answered."""
         threading.Thread(target=self._server.shutdown, daemon=True).start()
 
     def summary(self) -> list[str]:
-        """Say what was accepted and not undone."""
+        """Return what was accepted and not undone."""
         done = self.session.changes.values()
         written = [line for change in done if change.written for line in change.sentences]
         return written or ["nothing was accepted"]
@@ -139,7 +139,7 @@ class _Server(ThreadingHTTPServer):
     allow_reuse_address = os.name == "posix"
 
     def handle_error(self, request: Any, client_address: Any) -> None:
-        """Say nothing of a connection that broke: a browser's page was closed."""
+        """Ignore a connection that broke: a browser's page was closed."""
         if not isinstance(sys.exc_info()[1], ConnectionError | TimeoutError):
             super().handle_error(request, client_address)
 
@@ -238,7 +238,7 @@ class _Handler(BaseHTTPRequestHandler):
                 self.served.end()
 
     def log_message(self, format: str, *args: object) -> None:
-        """Say nothing of each request: the token would be in it."""
+        """Log no request: the token would be in it."""
 
 
 def _json(value: object) -> Answer:

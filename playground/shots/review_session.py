@@ -1,4 +1,4 @@
-"""Keep what is reviewed: the results as they are now, what was accepted of them, and how to undo it.
+"""Hold what is reviewed: the results as they are now, what was accepted of them, and how to undo it.
 
 Several pages may ask at once. A result is meant by its shot and its stamp: where the tests
 have run again since, or a reference has changed, the request is refused with a reason; all

@@ -1,6 +1,6 @@
 """From sketches to the pictures they promise, and from pictures to what came of them.
 
-``shots_of`` lists the cases, ``take`` draws one, ``check`` compares it with its reference,
+``shots_of`` lists the cases, ``render_shot`` draws one, ``check`` compares it with its reference,
 ``images_of`` gives what there is to look at. No pytest, no options: a command or a report
 calls the same four.
 """
@@ -10,24 +10,24 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.error_place import told_at
+from playground.engine.error_place import located_at
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
-from playground.shots.compare import Comparison, difference_picture
-from playground.shots.fingerprint import Fingerprint, fingerprint_of
+from playground.shots.compare import difference_picture
+from playground.shots.fingerprint import fingerprint_of
 from playground.shots.flip import flip_picture
 from playground.shots.judge import Judgement, judge, unreadable
 from playground.shots.plugin_constants import REFERENCE_RENDERER
 from playground.shots.references import (
     Reference,
     accepted,
-    drawn_by,
     read_reference,
     reference_path,
 )
@@ -56,61 +56,19 @@ class RenderedShot(Frame):
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Outcome:
-    """What came of one shot."""
+class Outcome(Judgement):
+    """What came of one shot: its judgement, and what was judged."""
 
     case: ShotCase
     frame: Frame
-    judgement: Judgement
     path: Path  # of the reference that it was judged by, or where that would be
     renderer: ContextInfo  # that drew the frame
     reference: Reference | None = None  # that it was judged by; None: missing or unreadable
 
     @property
-    def ok(self) -> bool:
-        """Whether the picture passes."""
-        return self.judgement.ok
-
-    @property
-    def word(self) -> str:
-        """What came of it, in one of `playground.shots.judge.WORDS`."""
-        return self.judgement.word
-
-    @property
-    def sentence(self) -> str:
-        """What there is to say of it, beginning with the word."""
-        return self.judgement.sentence
-
-    @property
-    def tier(self) -> str:
-        """How strictly it was compared: "same build", "another build", "another renderer"; "": it was not."""
-        return self.judgement.tier
-
-    @property
-    def comparison(self) -> Comparison:
-        """The pixels' comparison, with the reference that is nearest."""
-        return self.judgement.comparison
-
-    @property
-    def fingerprint(self) -> Fingerprint:
-        """What the picture comes from."""
-        return self.judgement.fingerprint
-
-    @property
-    def differences(self) -> tuple[str, ...]:
-        """How what it comes from differs from what the reference comes from, in words, one to a line."""
-        return self.judgement.differences
-
-    @property
     def own_path(self) -> Path:
         """Where its renderer's reference is, or would be: what accepting it writes."""
         return reference_path(self.case.sketch, self.case.shot.name, self.renderer.slug)
-
-    @property
-    def other_build(self) -> str:
-        """Say what drew the reference, if that was another build of the renderer; else ""."""
-        before = self.reference.drawn_by if self.reference else ""
-        return before if before != drawn_by(self.renderer) else ""
 
 
 def shots_of(sketches: Iterable[Sketch | str | Path]) -> list[ShotCase]:
@@ -125,12 +83,12 @@ def shots_of(sketches: Iterable[Sketch | str | Path]) -> list[ShotCase]:
 def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
     """Draw one shot: its size, time, camera, preset, values, steps and samples.
 
-    An OpenGL error left behind is recorded in the frame: whatever that looks like, it is not to be
-    trusted. Raises ``PlaygroundError`` for a mistake in the sketch, ``OpenGLFault`` where a pass
-    fails and there is no frame.
+    An OpenGL error left behind is recorded in the frame, which is not to be trusted then.
+    Raises ``PlaygroundError`` for a mistake in the sketch, ``OpenGLFault`` where a pass fails and
+    there is no frame.
     """
     shot = case.shot
-    with told_at(case.sketch, shot):
+    with located_at(case.sketch, shot):
         sketch = case.sketch.for_shot(shot)
         frame = engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
     error = engine.ctx.error
@@ -151,8 +109,8 @@ def check(
     """Judge a frame by the references of its renderer; any may match, else the nearest decides.
 
     Without any, it is judged by those of ``reference_renderer``, a slug; of that renderer itself
-    a reference that is not there is missing, whatever others have drawn. A frame that `take`
-    made says as well what was drawn, and what was wrong with it.
+    a reference that is not there is missing, even where other renderers have one. A frame of `render_shot`
+    also says what was drawn, and what was wrong with it.
     """
     name = case.shot.name
     drawn, not_finite, gl_error = "", "", ""
@@ -164,18 +122,13 @@ def check(
     own = bool(files)
     if not own and renderer.slug != reference_renderer:
         files = accepted(case.sketch, name, reference_renderer)
+    origin: dict[str, Any] = {"case": case, "frame": frame, "renderer": renderer}
     references = []
     for file in files:
         try:
             references.append(read_reference(file))
         except DataError as error:
-            return Outcome(
-                case=case,
-                frame=frame,
-                judgement=unreadable(frame.array, fingerprint, str(error)),
-                path=file,
-                renderer=renderer,
-            )
+            return Outcome(**vars(unreadable(frame.array, fingerprint, str(error))), **origin, path=file)
     judgement, reference = judge(
         frame.array,
         fingerprint,
@@ -185,12 +138,7 @@ def check(
         gl_error=gl_error,
     )
     return Outcome(
-        case=case,
-        frame=frame,
-        judgement=judgement,
-        path=reference.path if reference else path,
-        renderer=renderer,
-        reference=reference,
+        **vars(judgement), **origin, path=reference.path if reference else path, reference=reference
     )
 
 

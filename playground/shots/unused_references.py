@@ -62,7 +62,7 @@ class Uses:
         self._files: dict[str, _File] = {}
 
     def add(self, report: pytest.TestReport) -> None:
-        """Take note of a test that has passed."""
+        """Record a test that has passed."""
         tests = [value for name, value in report.user_properties if name == TESTS]
         if not tests or not report.passed:
             return

@@ -6,7 +6,7 @@ by. Bounds of single outputs are parted by semicolons, and may count otherwise:
     "sky: 0.012 rms; ahead, behind: 0.9 degrees rms; exact"
 
 ``rms`` bounds the root of the mean square of the differences, ``degrees`` compares tangents as
-angles. What stands without a name is for all outputs that have no bound of their own.
+angles. A bound without a name is for all outputs that have none of their own.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def read_agreement(text: str) -> tuple[Bound, ...]:
             raise ValueError(f"'{part}' states no bound; expected {EXAMPLE}")
         for name in [n.strip() for n in (match["names"] or "").split(",")]:
             if name in [bound.output for bound in found]:
-                raise ValueError(f"'{part}': {name or 'all other outputs'} stands twice")
+                raise ValueError(f"'{part}': {name or 'all other outputs'} appears twice")
             most = float(match["most"] or 0.0)
             found.append(Bound(name, most, bool(match["degrees"]), bool(match["rms"])))
     return tuple(found)

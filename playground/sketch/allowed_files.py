@@ -11,6 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path, PurePosixPath, PureWindowsPath
+from typing import TypeVar
 
 from playground.paths import GLSL
 
@@ -24,9 +25,11 @@ TEXTS = (*SHADERS, ".toml")
 """Endings of the text files that a sketch may be made of."""
 
 FAST = (".comp", ".fast.toml")
-"""Endings of fast variants, beside the technique of their name; the fastest first."""
+"""Endings of fast variants, in the folder of the technique of their name; the fastest first."""
 
 _MOST_FOLDERS = 500
+
+T = TypeVar("T")
 
 Signature = tuple[int, int, int]
 """Inode, time of change [ns] and size of a file: what differs when it was saved since."""
@@ -39,17 +42,13 @@ _led: ContextVar[dict[Path, Path | None] | None] = ContextVar("led", default=Non
 def noting_places() -> Iterator[dict[Path, Signature | None]]:
     """Note every place where a file was looked for, and the signature of what was there, None for nothing.
 
-    The same places give the same sketch: whoever follows them misses no file that comes,
-    goes or changes, also one that would stand before another from then on. Meanwhile links
-    are followed once each.
+    The same places give the same sketch: who watches them misses no file that comes, goes or
+    changes, nor one that takes precedence over another from then on. Meanwhile links are
+    followed once each.
     """
     found: dict[Path, Signature | None] = {}
-    noted, led = _noted.set(found), _led.set({})
-    try:
+    with _set(_noted, found), _set(_led, {}):
         yield found
-    finally:
-        _noted.reset(noted)
-        _led.reset(led)
 
 
 @contextmanager
@@ -58,31 +57,36 @@ def following_links_once() -> Iterator[None]:
 
     A sketch names hundreds of places in a few folders, most of them several times.
     """
-    led = _led.set({} if (known := _led.get()) is None else known)
-    try:
+    with _set(_led, {} if (known := _led.get()) is None else known):
         yield
-    finally:
-        _led.reset(led)
 
 
 @contextmanager
 def noting_part() -> Iterator[dict[Path, Signature | None]]:
-    """Note what a part of a reading looks for by itself; whoever notes the whole notes it too."""
+    """Note the places of a part of a load by itself; they are noted for the whole load, too."""
     found: dict[Path, Signature | None] = {}
-    noted = _noted.set(found)
     try:
-        yield found
+        with _set(_noted, found):
+            yield found
     finally:
-        _noted.reset(noted)
         note_again(found)
+
+
+@contextmanager
+def _set(variable: ContextVar[T], value: T) -> Iterator[None]:
+    token = variable.set(value)
+    try:
+        yield
+    finally:
+        variable.reset(token)
 
 
 def note_again(places: Mapping[Path, Signature | None]) -> None:
     """Note places with what is known to be there; what is noted already stays as it is."""
     noted = _noted.get()
     if noted is not None:
-        for path, seen in places.items():
-            noted.setdefault(path, seen)
+        for path, known in places.items():
+            noted.setdefault(path, known)
 
 
 def note(path: Path) -> None:
@@ -138,10 +142,10 @@ def is_variant(path: Path) -> bool:
 
 
 def canonical_of(path: Path) -> Path | None:
-    """Return the technique that a fast variant lies beside; None where there is none."""
+    """Return the technique that a fast variant replaces: of its name, in its folder; None for none."""
     name = next((path.name.removesuffix(ending) for ending in FAST if path.name.endswith(ending)), "")
-    beside = (path.with_name(f"{name}{ending}") for ending in (".glsl", ".toml"))
-    return next((found for found in beside if name and is_file(found)), None)
+    candidates = (path.with_name(f"{name}{ending}") for ending in (".glsl", ".toml"))
+    return next((candidate for candidate in candidates if name and is_file(candidate)), None)
 
 
 def root_of(path: Path) -> Path:
@@ -164,7 +168,7 @@ def is_inside(path: Path, roots: Iterable[Path]) -> bool:
 def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
     """Return whether a data file that a sketch names lies outside its ``folder`` and ``glsl/``.
 
-    ``declared_in`` is the kernel that has the parameter: files are also looked for beside it.
+    ``declared_in`` is the kernel that has the parameter: files are also looked for in its folder.
     Names of files that are not there are judged by where they would be.
     """
     if is_absolute(text):

@@ -1,4 +1,4 @@
-"""Read calls as they stand in a ``//!`` annotation or in the brackets of a ``#pragma``.
+"""Read calls as they are written in a ``//!`` annotation or in the brackets of a ``#pragma``.
 
 ``slider(0, 1) step(0.01) The tooltip`` becomes calls with their arguments, and a tooltip.
 Which calls there are, and what their arguments mean, is known elsewhere.
@@ -23,17 +23,17 @@ Argument = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """The text of one annotation, and the lines that it stands on."""
+    """The text of one annotation, and the lines that it is on."""
 
     text: str
     lines: tuple[tuple[int, Line], ...]  # where in the text each line's part begins, and that line
 
     def line_at(self, position: int) -> Line:
-        """Return the line that a position of the text stands on."""
+        """Return the line that a position of the text is on."""
         return next(line for start, line in reversed(self.lines) if start <= position)
 
     def error(self, message: str, word: str, position: int) -> ShaderError:
-        """Return an error that points at a word of the note, which stands at or before a position."""
+        """Return an error that points at a word of the note, at or before a position."""
         line = self.line_at(position)
         return line.error(message, line.text.find(word) + 1)
 
@@ -52,7 +52,7 @@ def note_at(lines: Sequence[Line], index: int) -> Note:
 
 
 def arguments(text: str, line: Line) -> list[Argument]:
-    """Split what stands in brackets at its commas; texts lose their quotes. Raises ``ShaderError``."""
+    """Split the text in brackets at its commas; texts lose their quotes. Raises ``ShaderError``."""
     found: list[Argument] = []
     position, end = 0, len(text.rstrip())
     while position < end:
@@ -71,7 +71,7 @@ def arguments(text: str, line: Line) -> list[Argument]:
 def calls(note: Note, words: Collection[str], bare: Collection[str]) -> tuple[dict[str, list[str]], str]:
     """Return (the calls of a note with their arguments, the tooltip that follows them).
 
-    ``words`` may be called; those of ``bare`` may also stand alone, as the first word.
+    ``words`` may be called; those of ``bare`` need no brackets as the first word.
     Raises ``ShaderError`` for a word in brackets that is nearly one of ``words``.
     """
     found: dict[str, list[str]] = {}
@@ -90,7 +90,7 @@ def calls(note: Note, words: Collection[str], bare: Collection[str]) -> tuple[di
             position = match.end()
             continue
         if word in found:
-            raise note.error(f"'{word}' stands twice", word, start)
+            raise note.error(f"'{word}' appears twice", word, start)
         end = _closing(note.text, match.end())
         if end < 0:
             raise note.error(f"'{word}(' is not closed", word, start)

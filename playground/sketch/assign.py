@@ -1,12 +1,12 @@
 """Find parameters by path and set them.
 
-A path is ``pass[.inner…].parameter``. A name that a technique exports stands for its
+A path is ``pass[.inner…].parameter``. A name that a technique exports means its
 targets inside; every inner parameter can be reached as well.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Protocol
@@ -14,10 +14,21 @@ from typing import Protocol
 from playground.errors import ParameterError, nearest
 from playground.sketch.identity import Identity
 from playground.sketch.parameter import LARGEST_SIDE, Parameter, Value
-from playground.sketch.technique import Graph, Kernel, Technique
+from playground.sketch.technique import Export, Graph, Kernel, Technique
 from playground.sketch.values import coerce, spell
 
-TERRAIN_KEYS = ("size", "extent", "relief", "base_elevation")
+# How many numbers at most, which, and what a message expects.
+_TERRAIN: dict[str, tuple[int, Callable[[float], bool], str]] = {
+    "size": (
+        2,
+        lambda n: n.is_integer() and 1 <= n <= LARGEST_SIDE,
+        f"1 to {LARGEST_SIDE} texels a side, as 513 or 513x257",
+    ),
+    "extent": (2, lambda n: 0 < n < 1e9, "metres above 0, as 10240 or 10240x8000"),
+    "relief": (1, lambda n: 0 <= n < 1e9, "a number of metres, 0 or more"),
+    "base_elevation": (1, lambda n: abs(n) < 1e9, "a number of metres"),
+}
+TERRAIN_KEYS = tuple(_TERRAIN)
 """What belongs to the sketch itself, and may be set like a parameter."""
 
 
@@ -39,7 +50,7 @@ class Settable(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """A leaf parameter that a path stands for."""
+    """A leaf parameter that a path resolves to."""
 
     path: str  # "height.detail.frequency"
     parameter: Parameter
@@ -47,7 +58,7 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A parameter as a person meets it."""
+    """A parameter as it is listed: one entry of a panel."""
 
     path: str  # as ``--set`` takes it
     parameter: Parameter  # of the first target
@@ -55,13 +66,83 @@ class Shown:
 
 
 def resolve(technique: Technique, path: str) -> tuple[Target, ...]:
-    """Return the leaf parameters that a path stands for, at least one.
+    """Resolve a path to leaf parameters, at least one.
 
     Raises ``ParameterError`` that names the nearest path.
     """
-    found = _resolve(technique, path)
+    found = find_targets(technique, path)
     if not found:
         raise ParameterError(f"no parameter '{path}'{nearest(path, all_paths(technique))}")
+    return found
+
+
+def find_targets(technique: Technique, path: str) -> tuple[Target, ...]:
+    """Resolve a path, present or former, to leaf parameters; none where there is no such parameter."""
+    if isinstance(technique, Kernel):
+        parameter = technique.parameter(path) or technique.parameter(technique.former_names.get(path, ""))
+        return (Target(parameter.name, parameter),) if parameter else ()
+    head, _, rest = path.partition(".")
+    if rest:
+        spec = technique.find(head)
+        found = find_targets(spec.technique, rest) if spec else ()
+        return tuple([Target(f"{head}.{t.path}", t.parameter) for t in found])
+    export = _export(technique, head) or _export(technique, former_names(technique).get(head, ""))
+    # A target is a path inside: one without a dot would be another export, perhaps this one.
+    targets = [target for target in export.targets if "." in target] if export else []
+    return tuple([found for target in targets for found in find_targets(technique, target)])
+
+
+def current_path(technique: Technique, path: str) -> str:
+    """Return a path by present names: a parameter may be named as it was before it was renamed."""
+    head, dot, rest = path.partition(".")
+    if dot:
+        spec = technique.find(head) if isinstance(technique, Graph) else None
+        return f"{head}.{current_path(spec.technique, rest)}" if spec else path
+    known = technique.parameters
+    return path if any(one.name == path for one in known) else former_names(technique).get(path, path)
+
+
+def current_paths(technique: Technique, paths: Iterable[str]) -> dict[str, str]:
+    """Return each path by present names; raise ``ParameterError`` where two are of one parameter."""
+    found: dict[str, str] = {}
+    for path in paths:
+        name = current_path(technique, path)
+        if name in found.values():
+            other = next(old for old, new in found.items() if new == name)
+            former = path if path != name else other
+            raise ParameterError(f"'{former}' is the former name of '{name}': set one of them, not both")
+        found[path] = name
+    return found
+
+
+def renamed(technique: Technique, path: str, given: object) -> str:
+    """Return the sentence that names what is written by a former name, "" where nothing is."""
+    name = current_path(technique, path)
+    if name != path:
+        return f"'{path}' is called '{name}' now; the former name is still read"
+    found = find_targets(technique, path)
+    choices = dict(found[0].parameter.widget.renamed) if found else {}
+    if isinstance(given, str) and given in choices:
+        return f"{path} = '{given}' is called '{choices[given]}' now; the former name is still read"
+    return ""
+
+
+def former_names(technique: Technique) -> Mapping[str, str]:
+    """Return former name → name of a technique's parameters.
+
+    A name that a technique of several passes exports has the former names of its parameter, if it is
+    that parameter's own name.
+    """
+    return technique.former_names if isinstance(technique, Kernel) else _former_exports(Identity(technique))
+
+
+@lru_cache(maxsize=512)
+def _former_exports(key: Identity[Graph]) -> Mapping[str, str]:
+    found: dict[str, str] = {}
+    for export in key.object.parameters:
+        for target in find_targets(key.object, export.name)[:1]:
+            if target.parameter.name == export.name:
+                found |= dict.fromkeys(target.parameter.former, export.name)
     return found
 
 
@@ -77,7 +158,7 @@ def all_paths(technique: Technique) -> list[str]:
 def shown_parameters(sketch: Settable) -> Iterator[Shown]:
     """Yield every parameter of a sketch, pass by pass, exported ones before inner ones.
 
-    An inner parameter that an export stands for is not yielded a second time.
+    An inner parameter that is exported is not yielded a second time.
     """
     for spec in sketch.graph.passes:
         technique = spec.technique
@@ -91,7 +172,7 @@ def shown_parameters(sketch: Settable) -> Iterator[Shown]:
             covered |= {t.path for t in targets}
             parameter = replace(targets[0].parameter, name=export.name)
             yield Shown(f"{spec.name}.{export.name}", parameter, True)
-        for path, parameter in _leaves(technique):
+        for path, parameter in technique.leaf_parameters.items():
             if path not in covered:
                 yield Shown(f"{spec.name}.{path}", parameter, False)
 
@@ -104,15 +185,11 @@ def flat_values(technique: Technique, given: Mapping[str, object], prefix: str =
     found: dict[str, object] = {}
     for key, value in given.items():
         path = f"{prefix}{key}"
-        inside = isinstance(value, Mapping) and not _resolve(technique, path)
-        new = (
-            flat_values(technique, value, f"{path}.")
-            if inside and isinstance(value, Mapping)
-            else {path: value}
-        )
-        for name in new:
-            if name in found:
-                raise ParameterError(f"'{name}' is set twice")
+        new = {path: value}
+        if isinstance(value, Mapping) and not find_targets(technique, path):
+            new = flat_values(technique, value, f"{path}.")
+        for name in new.keys() & found.keys():
+            raise ParameterError(f"'{name}' is set twice")
         found |= new
     return found
 
@@ -120,13 +197,13 @@ def flat_values(technique: Technique, given: Mapping[str, object], prefix: str =
 def check_value(sketch: Settable, path: str, given: object) -> Value:
     """Return a value as the parameter, or the part of the terrain, takes it; raise ``ParameterError``."""
     if path in TERRAIN_KEYS:
-        return _land_value(path, given)
-    try:
-        target = resolve(sketch.graph, path)[0]
-    except ParameterError:
+        return _terrain_value(path, given)
+    path = current_path(sketch.graph, path)
+    targets = find_targets(sketch.graph, path)
+    if not targets:
         valid = [*TERRAIN_KEYS, *all_paths(sketch.graph)]
-        raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, valid)}") from None
-    return coerce(target.parameter, given, path)
+        raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, valid)}")
+    return coerce(targets[0].parameter, given, path)
 
 
 def effective_values(technique: Technique) -> dict[str, Value]:
@@ -174,32 +251,11 @@ def values_of(sketch: Settable) -> dict[str, Value]:
     return found
 
 
-def _resolve(technique: Technique, path: str) -> tuple[Target, ...]:
-    if isinstance(technique, Kernel):
-        parameter = technique.parameter(path)
-        return (Target(path, parameter),) if parameter else ()
-    head, _, rest = path.partition(".")
-    if rest:
-        spec = technique.find(head)
-        found = _resolve(spec.technique, rest) if spec else ()
-        return tuple([Target(f"{head}.{t.path}", t.parameter) for t in found])
-    export = next((e for e in technique.parameters if e.name == head), None)
-    # A target is a path inside: one without a dot would be another export, perhaps this one.
-    targets = [target for target in export.targets if "." in target] if export else []
-    return tuple([found for target in targets for found in _resolve(technique, target)])
+def _export(graph: Graph, name: str) -> Export | None:
+    return next((export for export in graph.parameters if export.name == name), None)
 
 
-def _leaves(technique: Graph) -> Iterator[tuple[str, Parameter]]:
-    for spec in technique.passes:
-        if isinstance(spec.technique, Kernel):
-            for parameter in spec.technique.parameters:
-                yield f"{spec.name}.{parameter.name}", parameter
-        else:
-            for path, parameter in _leaves(spec.technique):
-                yield f"{spec.name}.{path}", parameter
-
-
-def _land_value(key: str, given: object) -> Value:
+def _terrain_value(key: str, given: object) -> Value:
     if hasattr(given, "tolist"):  # a NumPy scalar or array
         given = given.tolist()
     parts = given.replace("x", ",").split(",") if isinstance(given, str) else given
@@ -208,17 +264,9 @@ def _land_value(key: str, given: object) -> Value:
         values = [float(str(n)) for n in numbers]
     except ValueError:
         values = []
-    if key == "size":
-        if len(values) not in (1, 2) or not all(v.is_integer() and 1 <= v <= LARGEST_SIDE for v in values):
-            raise ParameterError(
-                f"size = {spell(given)}: expected 1 to {LARGEST_SIDE} texels a side, as 513 or 513x257"
-            )
-        return int(values[0]), int(values[-1])
-    if key == "extent":
-        if len(values) not in (1, 2) or not all(0 < v < 1e9 for v in values):
-            raise ParameterError(f"extent = {spell(given)}: expected metres above 0, as 10240 or 10240x8000")
-        return values[0], values[-1]
-    if len(values) != 1 or not abs(values[0]) < 1e9 or (key == "relief" and values[0] < 0):
-        wanted = "a number of metres, 0 or more" if key == "relief" else "a number of metres"
+    most, fits, wanted = _TERRAIN[key]
+    if not 1 <= len(values) <= most or not all(map(fits, values)):
         raise ParameterError(f"{key} = {spell(given)}: expected {wanted}")
-    return values[0]
+    if key == "size":
+        return int(values[0]), int(values[-1])
+    return (values[0], values[-1]) if most == 2 else values[0]

@@ -1,7 +1,7 @@
-"""Return in one hash what a technique's text says, so that two readings of it can be compared.
+"""Hash what a technique's text says, so that two versions of it can be compared.
 
 The text of a kernel counts as the compiler takes it: with its includes, without comments,
-whatever its white space. Of a technique of several passes each pass counts, and how they are
+with any white space. Of a technique of several passes each pass counts, and how they are
 wired. What a person reads besides (titles, labels, tooltips, units) does not; nor do names of
 files, nor fast variants.
 """
@@ -53,7 +53,7 @@ def _of_kernel(kernel: Kernel) -> list[Any]:
     header += [(o.name, o.format) for o in kernel.outputs]
     header += [(i.name, _sampling(i), i.fallback) for i in kernel.inputs]
     header += [_parameter(p) for p in kernel.parameters]
-    # Only where it is there: records of others keep their hashes.
+    # Only where it is there: hashes of others in records stay valid.
     more = [kernel.own_accepts] if kernel.own_accepts else []
     return [header, kernel.agrees, compiled_text(kernel.source.code), *more]
 

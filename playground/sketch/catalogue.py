@@ -1,12 +1,12 @@
-"""Report what there is to choose from: sketches, techniques, and the parameters of each.
+"""List sketches, techniques, and the parameters of each.
 
-Reads text only. A file that is wrong has its place here too, with what is wrong with it,
-so that one mistake does not hide the rest.
+Reads text only. A file that is wrong is listed too, with its error, so that one
+mistake does not hide the rest.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 from playground.errors import PlaygroundError, SketchError, nearest
@@ -83,18 +83,8 @@ class Entry:
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it."""
-        return {
-            "name": self.name,
-            "kind": self.kind,
-            "title": self.title,
-            "file": self.file,
-            "inputs": list(self.inputs),
-            "outputs": list(self.outputs),
-            "shots": list(self.shots),
-            "presets": list(self.presets),
-            "parameters": [choice.as_json() for choice in self.parameters],
-            "error": self.error,
-        }
+        table: dict[str, object] = {field.name: getattr(self, field.name) for field in fields(self)}
+        return table | {"parameters": [choice.as_json() for choice in self.parameters]}
 
 
 def sketches() -> list[Entry]:
@@ -112,7 +102,7 @@ def sketches() -> list[Entry]:
 def techniques(within: str = "") -> list[Entry]:
     """List the techniques in ``glsl/``, or in one of its folders; library files are none.
 
-    The parts of a technique are listed only where its own folder is asked for.
+    The parts of a technique are listed only for its own folder.
     """
     found = []
     read = Techniques()
@@ -130,9 +120,9 @@ def techniques(within: str = "") -> list[Entry]:
 
 
 def one(name: str) -> list[Entry]:
-    """Return what a name stands for: a sketch, a technique, or all techniques of a folder of ``glsl/``.
+    """Return what a name means: a sketch, a technique, or all techniques of a folder of ``glsl/``.
 
-    A path stands for the sketch or the shader there. Raises ``SketchError`` with the nearest name.
+    A path means the sketch or the shader there. Raises ``SketchError`` with the nearest name.
     """
     if Path(name).is_file() or (Path(name) / "sketch.toml").is_file():
         sketch = load(name)
@@ -169,13 +159,10 @@ def _of_sketch(name: str, sketch: Sketch) -> Entry:
 
 
 def _of_technique(name: str, technique: Technique) -> Entry:
-    # A sketch of this one pass knows how its parameters are shown.
-    stage = Sketch(name, technique.path, "", Graph(name, "", (PassSpec("it", name, technique),)))
-    values = values_of(stage)
-    choices = []
-    for shown in shown_parameters(stage):
-        choice = _choice(stage, shown, values)
-        choices.append(replace(choice, path=choice.path.removeprefix("it.")))
+    # A sketch of this one pass lists its parameters.
+    alone = Sketch(name, technique.path, "", Graph(name, "", (PassSpec("it", name, technique),)))
+    values = values_of(alone)
+    choices = [_choice(alone, shown, values) for shown in shown_parameters(alone)]
     return Entry(
         name,
         technique.kind if isinstance(technique, Kernel) else "several passes",
@@ -183,7 +170,7 @@ def _of_technique(name: str, technique: Technique) -> Entry:
         technique.path,
         input_names(technique),
         output_names(technique),
-        tuple(choices),
+        tuple(replace(choice, path=choice.path.removeprefix("it.")) for choice in choices),
     )
 
 

@@ -1,9 +1,9 @@
 """Evaluate expressions safely: a sketch's sizes, repeats, visits, accepted sizes; numbers that are typed.
 
-An expression is read as Python's grammar and walked; nothing is ever handed to
+An expression is parsed by Python's grammar, and its tree is evaluated here, never by
 ``eval``. There are + - * / // % **, comparisons, ``a if b else c``, and the
 functions ``log2`` (exact), ``min``, ``max``, ``abs``, ``floor``, ``ceil``. Names may be
-dotted (``size.x``, ``height.size.y``); the caller says what they stand for. Whole
+dotted (``size.x``, ``height.size.y``); the caller gives their values. Whole
 numbers are divided exactly: ``3 * (n / 3)`` is n.
 """
 
@@ -16,6 +16,7 @@ import warnings
 from collections.abc import Callable, Collection, Mapping
 from fractions import Fraction
 from functools import lru_cache
+from typing import cast
 
 from playground.errors import nearest
 from playground.sketch.model import LARGEST_SIDE
@@ -27,11 +28,11 @@ _DEEPEST = 100
 
 
 class ExpressionError(ValueError):
-    """An expression is wrong; the caller adds where it stands."""
+    """An expression is wrong; the caller adds its place."""
 
 
 def evaluate(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -> int:
-    """Return the integer that ``text`` stands for.
+    """Evaluate an expression to an integer.
 
     ``names`` maps a dotted name to its number, or is a function that does so and
     raises ``KeyError``. Raises ``ExpressionError`` in a sentence.
@@ -41,12 +42,12 @@ def evaluate(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -
     found = [(name, type(names[name]), names[name]) for name in _names(text) if name in names]
     if len(found) < len(_names(text)):
         return _evaluated(text, names.__getitem__, tuple(names))
-    return _remembered(text, tuple(found))
+    return _cached(text, tuple(found))
 
 
 @lru_cache(maxsize=4096)
-def _remembered(text: str, found: tuple[tuple[str, type, Number], ...]) -> int:
-    """Return what a text stands for: turns ask the same over and over. Types count: 1 is not 1.0 in 1 / 3."""
+def _cached(text: str, found: tuple[tuple[str, type, Number], ...]) -> int:
+    """Evaluate once for the same names: steps repeat them. Types count: 1 is not 1.0 in 1 / 3."""
     return _evaluated(text, {name: number for name, _, number in found}.__getitem__, ())
 
 
@@ -56,7 +57,7 @@ def _names(text: str) -> tuple[str, ...]:
 
 
 def _evaluated(text: str, look_up: Callable[[str], Number], known: tuple[str, ...]) -> int:
-    value = _walk(_parse(text), text, look_up, known)
+    value = _value_of(_parse(text), text, look_up, known)
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     if not isinstance(value, int):
@@ -65,8 +66,8 @@ def _evaluated(text: str, look_up: Callable[[str], Number], known: tuple[str, ..
 
 
 def evaluate_number(text: str, names: Mapping[str, Number]) -> float:
-    """Return the number that ``text`` stands for, whole or not. Raises ``ExpressionError`` in a sentence."""
-    return float(_walk(_parse(text), text, names.__getitem__, tuple(names)))
+    """Evaluate an expression to a number, whole or not. Raises ``ExpressionError`` in a sentence."""
+    return float(_value_of(_parse(text), text, names.__getitem__, tuple(names)))
 
 
 def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
@@ -75,7 +76,7 @@ def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
 
 
 def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -> tuple[int, int]:
-    """Return the two integers of ``"w, h"``."""
+    """Evaluate the two integers of ``"w, h"``."""
     parts = _parts(text)
     if len(parts) != 2:
         raise ExpressionError(f"'{text}' should be two expressions parted by a comma")
@@ -89,25 +90,19 @@ def check(text: str, known: Collection[str], *, count: int = 1) -> None:
         what = "one expression" if count == 1 else f"{count} expressions parted by a comma"
         raise ExpressionError(f"'{text}' should be {what}")
     for part in parts:
-        _walk(_parse(part), part, dict.fromkeys(known, 1).__getitem__, tuple(known), dry=True)
+        _value_of(_parse(part), part, dict.fromkeys(known, 1).__getitem__, tuple(known), dry=True)
 
 
 def names_in(text: str) -> frozenset[str]:
     """Return the dotted names that an expression, or several parted by commas, reads."""
     found: set[str] = set()
 
-    def visit(node: ast.AST) -> None:
-        if isinstance(node, ast.Name | ast.Attribute):
-            found.add(_dotted(node, text))
-        elif isinstance(node, ast.Call):
-            for argument in node.args:
-                visit(argument)
-        else:
-            for child in ast.iter_child_nodes(node):
-                visit(child)
+    def look_up(name: str) -> int:
+        found.add(name)
+        return 1
 
     for part in _parts(text):
-        visit(_parse(part))
+        _value_of(_parse(part), part, look_up, (), dry=True)
     return frozenset(found)
 
 
@@ -191,9 +186,7 @@ def _parse(text: str) -> ast.expr:
         raise ExpressionError(f"an expression may not be longer than {_LONGEST} characters")
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter(
-                "ignore"
-            )  # "1 if 2else 3" is deprecated, and not worth a line on the console
+            warnings.simplefilter("ignore")  # "1 if 2else 3" is deprecated: no line on the console for it
             tree = ast.parse(text.strip(), mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise ExpressionError(f"'{text}' is not an expression") from None
@@ -266,36 +259,31 @@ _FUNCTIONS: dict[str, Callable[..., Number]] = {
 }
 
 
-def _walk(
+def _value_of(
     node: ast.expr, text: str, look_up: Callable[[str], Number], known: tuple[str, ...], *, dry: bool = False
 ) -> Number:
     """Return the value of a node; ``dry`` looks at names and kinds only, in both branches of an ``if``."""
 
     def go(inner: ast.expr) -> Number:
-        return _walk(inner, text, look_up, known, dry=dry)
+        return _value_of(inner, text, look_up, known, dry=dry)
 
     value: Number
-    if (
-        isinstance(node, ast.Constant)
-        and isinstance(node.value, int | float)
-        and not isinstance(node.value, bool)
-    ):
-        value = node.value
+    if isinstance(node, ast.Constant) and type(node.value) in (int, float):
+        value = cast(Number, node.value)
     elif isinstance(node, ast.Name | ast.Attribute):
         name = _dotted(node, text)
         try:
             value = look_up(name)
         except KeyError:
-            raise ExpressionError(
-                f"'{text}' names '{name}', which is not known here{nearest(name, known)}"
-            ) from None
+            message = f"'{text}' names '{name}', which is not known here{nearest(name, known)}"
+            raise ExpressionError(message) from None
     elif isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
         left, right = go(node.left), go(node.right)
-        value = 1 if dry else _binary(type(node.op), left, right)
-    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-        value = -go(node.operand)
-    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.UAdd):
-        value = +go(node.operand)
+        if not dry and right == 0 and isinstance(node.op, ast.Div | ast.FloorDiv | ast.Mod):
+            raise ExpressionError("division by zero")
+        value = 1 if dry else _BINARY[type(node.op)](left, right)
+    elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub | ast.UAdd):
+        value = go(node.operand) * (-1 if isinstance(node.op, ast.USub) else 1)
     elif isinstance(node, ast.IfExp):
         test = go(node.test)
         value = go(node.body) if test or dry else go(node.orelse)
@@ -310,20 +298,13 @@ def _walk(
         try:
             value = _FUNCTIONS[node.func.id](*([1] * len(arguments) if dry else arguments))
         except TypeError:
-            raise ExpressionError(
-                f"'{text}' calls '{node.func.id}' with the wrong number of values"
-            ) from None
+            message = f"'{text}' calls '{node.func.id}' with the wrong number of values"
+            raise ExpressionError(message) from None
     else:
         raise ExpressionError(
             f"'{text}' holds something other than numbers, names, + - * / // % ** and log2()"
         )
     return _checked(value, text)
-
-
-def _binary(kind: type[ast.operator], left: Number, right: Number) -> Number:
-    if right == 0 and kind in (ast.Div, ast.FloorDiv, ast.Mod):
-        raise ExpressionError("division by zero")
-    return _BINARY[kind](left, right)
 
 
 def _checked(value: Number, text: str) -> Number:

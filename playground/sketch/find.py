@@ -5,14 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from playground.errors import SketchError, nearest
-from playground.paths import GLSL, SKETCHES, shown
+from playground.paths import GLSL, SKETCHES
 from playground.sketch.allowed_files import SHADERS, TECHNIQUES, TEXTS, exists, is_file, is_inside, is_variant
 from playground.sketch.dialects import refuse_export
 from playground.sketch.unpack import is_pack, unpacked
 
 
 def find(name: str | Path) -> Path:
-    """Return the file that a sketch's name or path stands for; raise ``SketchError`` if there is none.
+    """Return the file of a sketch's name or path; raise ``SketchError`` if there is none.
 
     A zip is unpacked into the cache first: ``DataError`` says why one cannot be.
     """
@@ -29,7 +29,7 @@ def find(name: str | Path) -> Path:
             return unpacked(path)
         if path.suffix not in TEXTS:
             refuse_export(path)
-            raise SketchError(f"a sketch is a .toml, a shader ends in {', '.join(SHADERS)}", file=shown(path))
+            raise SketchError(f"a sketch is a .toml, a shader ends in {', '.join(SHADERS)}", file=path)
         return path
     text = str(name)
     places = [SKETCHES / f"{text}.toml"] if "/" not in text and "\\" not in text else []
@@ -38,9 +38,9 @@ def find(name: str | Path) -> Path:
         if candidate.suffix in TEXTS and is_file(candidate) and is_inside(candidate, (GLSL,)):
             return candidate
     if is_folder:
-        raise SketchError("this folder holds no sketch.toml", file=shown(path))
+        raise SketchError("this folder holds no sketch.toml", file=path)
     if exists(path):
-        raise SketchError("this is a pipe, a socket or a device; a file was expected", file=shown(path))
+        raise SketchError("this is a pipe, a socket or a device; a file was expected", file=path)
     raise SketchError(f"there is no file and no shipped sketch '{text}'{nearest(text, shipped_sketches())}")
 
 

@@ -78,7 +78,7 @@ class Flat:
         return leaves_of(self.nodes)
 
     def accepted(self, size: tuple[int, int]) -> tuple[int, int]:
-        """Return the size of terrain, or the next larger one, that every kernel of the terrain takes."""
+        """Return the size of terrain, or the next larger one, that every kernel of the terrain accepts."""
         for leaf in self.leaves:
             accepts = leaf.kernel.accepts if leaf.spec.size is None else ""
             if accepts and leaf.path.partition(".")[0] != "view" and not is_accepted(accepts, size):
@@ -90,7 +90,7 @@ class Flat:
         return self.specs[path.partition(".")[0]]
 
     def ref(self, text: str, sketch: str) -> Ref:
-        """Return the texture that ``pass[.inner…][:output]`` stands for; raise ``SketchError``."""
+        """Return the texture that ``pass[.inner…][:output]`` names; raise ``SketchError``."""
         path, _, output = text.partition(":")
         if path not in self.outputs:
             raise SketchError(f"no pass '{path}' in sketch {sketch}{nearest(path, self.outputs)}")
@@ -116,7 +116,7 @@ class Shape:
     copied: dict[str, str]  # of the same: path → that of the technique's value, which it has as well
     rules: tuple[Rule, ...]  # of parameters that follow others until they are set
     readers: dict[str, set[str]]  # path of a value → the leaves that have it
-    targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override that was met
+    targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override so far
 
 
 def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> list[Leaf]:
@@ -128,3 +128,23 @@ def leaves_of(nodes: tuple[Node, ...] | list[Node]) -> list[Leaf]:
         else:
             found.append(node)
     return found
+
+
+def repeated_paths(nodes: tuple[Node, ...]) -> list[str]:
+    """Return the paths of the passes that repeat, those inside loops included."""
+    kernels = {leaf.path for leaf in leaves_of(nodes) if leaf.kernel.repeat != "1"}
+    return sorted(kernels | _loops_of(nodes))
+
+
+def repeated_path(path: str, nodes: tuple[Node, ...]) -> str | None:
+    """Return the pass that repeats at a path: the pass itself, or the only one inside it."""
+    valid = repeated_paths(nodes)
+    if path in valid:
+        return path
+    inside = [name for name in valid if name.startswith(f"{path}.")]
+    return inside[0] if len(inside) == 1 else None
+
+
+def _loops_of(nodes: tuple[Node, ...]) -> set[str]:
+    loops = [node for node in nodes if isinstance(node, Loop)]
+    return {loop.path for loop in loops}.union(*(_loops_of(loop.body) for loop in loops))

@@ -4,13 +4,13 @@ The result names no sizes and no pixels: ``engine.plan`` adds those. Wiring foll
 rule at every level: an input takes what its pass wires, else what the technique's own
 caller wires through ``[inputs]``, else the latest earlier pass of its name, else the
 latest earlier pass with an output of its name. What is wired to a path inside a technique
-wins over what is wired to the export that stands for it.
+wins over what is wired to its export.
 
 Where a fast variant replaces a technique (see ``variants``), its own kernel or passes are
 in the result; those of a ``.fast.toml`` are at ``pass.fast.inner``, which no path may name.
 
-The shape of the result depends on the graph alone, so it is worked out once for each; a
-slider only puts new values into it.
+The shape of the result depends on the graph alone and is computed once for each; a slider
+only puts new values into it.
 """
 
 from __future__ import annotations
@@ -20,15 +20,15 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-from playground.errors import ParameterError, SketchError, nearest
+from playground.errors import SketchError, nearest
 from playground.paths import shown
-from playground.sketch.assign import effective_values, resolve
+from playground.sketch.assign import effective_values, find_targets, resolve
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
 from playground.sketch.variant_check import INSIDE
-from playground.sketch.variants import standing
+from playground.sketch.variants import active_variant
 from playground.sketch.wiring import (
     initial_names,
     inner,
@@ -48,20 +48,20 @@ def flatten(
     refused: tuple[str, ...] = (),
     before: Flat | None = None,
 ) -> Flat:
-    """Flatten a sketch; fast variants of the kinds named may stand in, where they are verified.
+    """Flatten a sketch; fast variants of the kinds named replace techniques, where they are verified.
 
     A variant gives its technique's outputs only, and after the last step: it does not replace
     a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
-    or a parameter inside that is set and that it does not have, nor for one that is itself among
-    the ``stopped`` or the ``refused``, or that starts from something wired.
-    Of ``before``, an earlier result, the leaves are taken whose values are the same objects still.
+    or a parameter inside that is set and that it does not have, nor one that is itself among
+    the ``stopped`` or the ``refused``, or whose initial state is wired.
+    Leaves of ``before``, an earlier result, are reused where their values are the same objects.
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
     """
     graph = sketch.graph
     kinds = frozenset[str]() if sketch.plain else frozenset(variants)
     inside = sorted({path for path, _ in sketch.overrides if path.count(".") > 1})
-    asked = (opened, stopped, refused, tuple(inside)) if kinds else ((), (), (), ())
-    shape = _shape(Identity(graph), kinds, *asked)
+    limits = (opened, stopped, refused, tuple(inside)) if kinds else ((), (), (), ())
+    shape = _shape(Identity(graph), kinds, *limits)
     values = effective_values(graph)
     for path, value in sketch.overrides:
         if path not in shape.targets:
@@ -70,15 +70,12 @@ def flatten(
             values[target] = value
     follow(shape.rules, values)
     values |= shape.constants | {path: values[source] for path, source in shape.copied.items()}
-    fill = _Filler(shape, values, sketch.folder)
-    if before is None or before.shape is not shape or before.folder != sketch.folder:
-        nodes = tuple([fill.node(node) for node in shape.nodes])
-    else:
+    nodes, stale = shape.nodes, None
+    if before is not None and before.shape is shape and before.folder == sketch.folder:
         changed = [path for path, value in values.items() if value is not before.values[path]]
-        stale = set[str]().union(*[shape.readers.get(path, ()) for path in changed])
-        nodes = fill.renewed(before.nodes, stale)
+        nodes, stale = before.nodes, set[str]().union(*[shape.readers.get(path, ()) for path in changed])
     return Flat(
-        nodes=nodes,
+        nodes=_filled(nodes, shape, values, sketch.folder, stale),
         specs=shape.specs,
         graphs=shape.graphs,
         values=values,
@@ -129,52 +126,32 @@ def _shape(
     )
 
 
-class _Filler:
-    """Puts values into the leaves of a shape."""
-
-    def __init__(self, shape: Shape, values: Mapping[str, Value], folder: str) -> None:
-        self.shape = shape
-        self.values = values
-        self.folder = folder
-
-    def node(self, node: Node) -> Node:
-        """Return a node of the shape with its values."""
+def _filled(
+    nodes: tuple[Node, ...],
+    shape: Shape,
+    values: Mapping[str, Value],
+    folder: str,
+    stale: Collection[str] | None,
+) -> tuple[Node, ...]:
+    """Return nodes with values in their leaves; where ``stale`` is not None, new ones in those alone."""
+    if stale is not None and not stale:
+        return nodes
+    found: list[Node] = []
+    for node in nodes:
         if isinstance(node, Loop):
-            return replace(node, body=tuple([self.node(inside) for inside in node.body]))
-        values = self.values
-        own = tuple([(name, values[path]) for name, path in self.shape.paths[node.path]])
-        return Leaf(
-            path=node.path,
-            kernel=node.kernel,
-            values=own,
-            inputs=node.inputs,
-            folder=self.folder,
-            spec=node.spec,
-        )
-
-    def renewed(self, nodes: tuple[Node, ...], stale: Collection[str]) -> tuple[Node, ...]:
-        """Return nodes that had values, with those of now in the ``stale`` leaves."""
-        if not stale:
-            return nodes
-        return tuple(
-            [
-                replace(node, body=self.renewed(node.body, stale))
-                if isinstance(node, Loop)
-                else self.node(node)
-                if node.path in stale
-                else node
-                for node in nodes
-            ]
-        )
+            found.append(replace(node, body=_filled(node.body, shape, values, folder, stale)))
+        elif stale is None or node.path in stale:
+            own = tuple([(name, values[path]) for name, path in shape.paths[node.path]])
+            found.append(Leaf(node.path, node.kernel, own, node.inputs, folder, node.spec))
+        else:
+            found.append(node)
+    return tuple(found)
 
 
 def _is_exported(graph: Graph, path: str) -> bool:
-    """Return whether a technique shows a parameter inside, and nothing else, by a name of its own."""
-    try:
-        wanted = {target.path for target in resolve(graph, path)}
-        return any({t.path for t in resolve(graph, e.name)} == wanted for e in graph.parameters)
-    except ParameterError:  # whoever sets it says so
-        return False
+    """Return whether a technique exports a parameter inside, and nothing else, by some name."""
+    wanted = {target.path for target in find_targets(graph, path)}
+    return any({t.path for t in find_targets(graph, e.name)} == wanted for e in graph.parameters)
 
 
 class _Flattener:
@@ -206,7 +183,7 @@ class _Flattener:
                 self._open_set(graph, "", path)
 
     def _open(self, prefix: str, path: str) -> None:
-        """Keep fast variants from standing in for the techniques around a pass."""
+        """Bar fast variants from replacing the techniques around a pass."""
         parts = path.partition(":")[0].split(".")
         self.opened |= {_join(prefix, ".".join(parts[:i])) for i in range(1, len(parts))}
 
@@ -227,7 +204,7 @@ class _Flattener:
                 self._open_wired(spec.technique, _join(prefix, spec.name))
 
     def _open_set(self, graph: Graph, prefix: str, path: str) -> None:
-        """Keep fast variants from standing in for the techniques that show a parameter inside by no name."""
+        """Bar fast variants from replacing the techniques that do not export a parameter inside."""
         first, _, rest = path.partition(".")
         spec = graph.find(first)
         if spec is None or not isinstance(spec.technique, Graph) or "." not in rest:
@@ -237,12 +214,12 @@ class _Flattener:
             self.opened.add(here)
         self._open_set(spec.technique, here, rest)
 
-    def _standing(self, technique: Technique, path: str) -> Variant | None:
+    def _active(self, technique: Technique, path: str) -> Variant | None:
         """Return the fast variant that may replace a technique, if any may."""
-        return standing(technique, self.kinds) if self.kinds and path not in self.opened else None
+        return active_variant(technique, self.kinds) if self.kinds and path not in self.opened else None
 
     def real(self, source: Source | None) -> Any:
-        """Return what gives a texture: where a variant of several passes stands in, one of those."""
+        """Return what gives a texture: the pass inside, where a variant of several passes is active."""
         if isinstance(source, Ref) and source.path in self.inside:
             return self.inside[source.path][source.output]
         return source
@@ -272,7 +249,7 @@ class _Flattener:
     def _outputs_of(self, technique: Technique, path: str) -> dict[str, Ref]:
         if isinstance(technique, Kernel):
             return {o.name: Ref(path, o.name) for o in technique.outputs}
-        if self._standing(technique, path):
+        if self._active(technique, path):
             return {name: Ref(path, name) for name in output_names(technique)}
         found = {}
         for name in output_names(technique):
@@ -310,9 +287,9 @@ class _Flattener:
 
     def _body(self, spec: PassSpec, path: str, wires: Mapping[str, Source | None]) -> list[Node]:
         technique = spec.technique
-        variant = self._standing(technique, path)
+        variant = self._active(technique, path)
         if isinstance(technique, Kernel) and any(wires.get(name) for name in initial_names(technique)):
-            variant = None  # what a repeat starts from is the canonical form's own affair
+            variant = None  # only the canonical form takes an initial state
         if variant and isinstance(variant.technique, Graph):
             return self._passes(variant.technique, spec, path, wires)
         if isinstance(technique, Kernel):
@@ -323,7 +300,7 @@ class _Flattener:
         elif variant and isinstance(variant.technique, Kernel):
             kernel = variant.technique
             self.wires[path] = dict(wires)
-            self._know(technique, path)
+            self._add_replaced(technique, path)
             self.paths[path] = tuple((p.name, _own(technique, path, p.name)) for p in kernel.parameters)
         else:
             return self.expand(technique, path, wires)
@@ -334,12 +311,12 @@ class _Flattener:
     def _passes(
         self, variant: Graph, spec: PassSpec, path: str, wires: Mapping[str, Source | None]
     ) -> list[Node]:
-        """Return the passes of a fast variant, which stand where its technique would."""
+        """Return the passes of a fast variant, in place of its technique."""
         place = _join(path, INSIDE)
         self.specs[place] = PassSpec(INSIDE, spec.use, variant, file=spec.file, line=spec.line)
         if isinstance(spec.technique, Graph):
             self.wires[path] = dict(wires)
-            self._know(spec.technique, path)
+            self._add_replaced(spec.technique, path)
         self.constants |= {_join(place, name): value for name, value in effective_values(variant).items()}
         for export in variant.parameters:
             for target in resolve(variant, export.name):
@@ -350,7 +327,7 @@ class _Flattener:
         return nodes
 
     def _rewired(self, node: Node) -> Node:
-        """Return a node that reads what variants of several passes give, where they stand in."""
+        """Return a node that reads from variants of several passes, where they are active."""
         if not self.inside:
             return node
         if isinstance(node, Loop):
@@ -358,13 +335,13 @@ class _Flattener:
             return replace(node, body=tuple(map(self._rewired, node.body)), feedback=feedback)
         return replace(node, inputs=tuple((name, self.real(source)) for name, source in node.inputs))
 
-    def _know(self, graph: Graph, prefix: str) -> None:
-        """Know the passes that a fast variant replaces: their sizes are still asked for."""
+    def _add_replaced(self, graph: Graph, prefix: str) -> None:
+        """Add the passes that a fast variant replaces: expressions may still name their sizes."""
         self.graphs[prefix] = graph
         for spec in graph.passes:
             self.specs[_join(prefix, spec.name)] = spec
             if isinstance(spec.technique, Graph):
-                self._know(spec.technique, _join(prefix, spec.name))
+                self._add_replaced(spec.technique, _join(prefix, spec.name))
 
     def _ref(self, text: str, wanted: str, prefix: str, spec: PassSpec) -> Ref:
         where, _, output = text.partition(":")
@@ -401,14 +378,13 @@ class _Flattener:
             for outputs in [self.outputs[_join(prefix, other.name)]]
             for output in outputs
         ]
-        hint = f"; candidates: {', '.join(candidates)}" if candidates else "; there is no earlier pass"
-        raise spec.error(
-            f"pass '{spec.name}' needs its input '{name}' wired, as inputs = {{ {name} = \"…\" }}{hint}"
-        )
+        hint = f"candidates: {', '.join(candidates)}" if candidates else "there is no earlier pass"
+        message = f"pass '{spec.name}' needs its input '{name}' wired, as inputs = {{ {name} = \"…\" }}"
+        raise spec.error(f"{message}; {hint}")
 
 
 def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]) -> bool:
-    """Return whether all that an exported input stands for is wired by paths inside."""
+    """Return whether all targets of an exported input are wired by paths inside."""
     if isinstance(technique, Kernel):
         return False
     return all(

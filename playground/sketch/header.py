@@ -109,7 +109,7 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
         key: options[key] for key in ("accepts", "visits", "stride", "between", "at_once") if key in options
     }
     kernel = replace(kernel, repeat=repeat, **texts)  # type: ignore[arg-type]
-    _check_turns(kernel, numbers, line)
+    _check_steps(kernel, numbers, line)
     _check_accepts(kernel.accepts, line)
     return kernel
 
@@ -122,13 +122,13 @@ def _check_accepts(accepts: str, line: Line) -> None:
         raise line.error(f'accepts: {error}; as accepts = "2**n + 1"') from None
 
 
-def _check_turns(kernel: Kernel, numbers: Collection[str], line: Line) -> None:
-    """Check how a kernel's turns run: which texels they visit, how far apart those lie, how many at once."""
-    turn = (*_SIZE, "iteration", "iterations", *numbers)
+def _check_steps(kernel: Kernel, numbers: Collection[str], line: Line) -> None:
+    """Check how a kernel's steps run: which texels they visit, how far apart those are, how many at once."""
+    known = (*_SIZE, "iteration", "iterations", *numbers)
     if kernel.visits:
-        _check("visits", kernel.visits, turn, line, count=2)
+        _check("visits", kernel.visits, known, line, count=2)
     if kernel.stride:
-        _check("stride", kernel.stride, turn, line)
+        _check("stride", kernel.stride, known, line)
         if not kernel.visits:
             raise line.error("stride says how far apart the texels of visits lie; give the kernel visits")
     if kernel.between:
@@ -142,10 +142,10 @@ def _check_turns(kernel: Kernel, numbers: Collection[str], line: Line) -> None:
     if kernel.visits:
         raise line.error("at_once and visits: a kernel has one or the other")
     if kernel.repeat == "1":
-        raise line.error("at_once is of turns, but the kernel has one turn only; give it a repeat")
+        raise line.error("at_once counts steps, but the kernel has one step only; give it a repeat")
     if not kernel.reads("until"):
         raise line.error(
-            "at_once: the kernel must do the turns from iteration up to until, but never names until"
+            "at_once: the kernel must do the steps from iteration up to until, but never names until"
         )
 
 
@@ -163,7 +163,7 @@ def title_of(source: SourceText) -> str:
 
 
 def _titled(text: str) -> str:
-    """Return a sentence as a heading: no full stop, a capital, of a long one what stands before its colon."""
+    """Return a sentence as a heading: no full stop, a capital, of a long one the part before its colon."""
     if len(text) > _LONGEST_TITLE:
         text = text.partition(": ")[0]
     text = text.removesuffix(".")
@@ -240,7 +240,7 @@ def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
     if not all(re.fullmatch(r"[0-9]{1,4}", part, re.ASCII) for part in stages):
         raise line.error(f'stages = "{options["stages"]}": expected whole numbers parted by commas')
     if stages and "repeat" in options:
-        raise line.error("stages says how many turns there are; leave repeat out")
+        raise line.error("stages says how many steps there are; leave repeat out")
     if options.get("aligned", "8") not in ("4", "8"):
         raise line.error(
             f'aligned = "{options["aligned"]}": expected 4 or 8, the bytes that rows are filled up to'
@@ -314,7 +314,7 @@ def _outputs(text: str, line: Line) -> tuple[Output, ...]:
         if form not in FORMATS:
             raise line.error(f"output '{name}' has no format '{form}'{nearest(form, FORMATS)}")
         if name in [o.name for o in found]:
-            raise line.error(f"output '{name}' stands twice")
+            raise line.error(f"output '{name}' appears twice")
         check_name(name, line, "output")
         found.append(Output(name, form))
     if len(found) > 8:
@@ -366,5 +366,5 @@ def _refuse_driver_bound(source: SourceText) -> None:
                 raise line.error(f"a kernel may not use '{word}': {DRIVER_BOUND[word]}", match.start() + 1)
             if word.startswith("gl_"):
                 raise line.error(
-                    f"a kernel may not use '{word}': it is told its texel as an argument", match.start() + 1
+                    f"a kernel may not use '{word}': its texel is an argument", match.start() + 1
                 )

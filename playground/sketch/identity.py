@@ -1,7 +1,7 @@
-"""Let a cache ask whether it is the very same object, which is cheap, not whether it is an equal one.
+"""Compare cache keys by identity, which is cheap, not by equality.
 
 Techniques are frozen and large: a slider makes a new sketch around the same graph, so
-what is worked out from the graph alone can be kept.
+what is computed from the graph alone can be cached.
 """
 
 from __future__ import annotations

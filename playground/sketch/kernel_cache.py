@@ -1,8 +1,8 @@
-"""Keep parsed kernels for as long as the files that they were made of stay the same.
+"""Cache parsed kernels for as long as the files that they were made of stay the same.
 
 A live session reads its sketch anew at every save, and most of its kernels have not
-changed; parsing them all again would take longer than drawing. A kernel that is kept is
-also the same object, which whoever works something out from its text can go by.
+changed; parsing them all again would take longer than drawing. A cached kernel is
+also the same object, by whose identity other caches go.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from playground.sketch.source import Origin, read_source_and_origin
 
 _MOST = 256
 
-_kept: OrderedDict[tuple[str, Path, tuple[Path, ...]], tuple[Kernel | None, Origin]] = OrderedDict()
-# What each was made of is held too, so that identities stay their own.
+_parsed: OrderedDict[tuple[str, Path, tuple[Path, ...]], tuple[Kernel | None, Origin]] = OrderedDict()
+# What each was made of is referenced too, so that its identity is not given to another object.
 _replaced: OrderedDict[tuple[Any, ...], tuple[Kernel, dict[str, Any], Kernel]] = OrderedDict()
 
 
 def parsed_kernel(name: str, path: Path, roots: Sequence[Path]) -> Kernel | None:
     """Return what ``parse_kernel`` makes of a file, parsed again only if anything it is made of changed."""
     key = (name, path, tuple(roots))
-    known = _kept.get(key)
+    known = _parsed.get(key)
     if known is None or not known[1].holds():
         source, origin = read_source_and_origin(path, roots)
-        known = _kept[key] = (parse_kernel(name, source), origin)
-        while len(_kept) > _MOST:
-            _kept.popitem(last=False)
-    _kept.move_to_end(key)
+        known = _parsed[key] = (parse_kernel(name, source), origin)
+        while len(_parsed) > _MOST:
+            _parsed.popitem(last=False)
+    _parsed.move_to_end(key)
     return known[0]
 
 

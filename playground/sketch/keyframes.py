@@ -1,13 +1,13 @@
-"""Return which camera and values a sketch with keyframes has at a time: a pure function of both.
+"""Interpolate the camera and the values of a sketch with keyframes: a pure function of the time.
 
 Each thing that keyframes set, a parameter or one number of the camera, has a track of its
 own: the keyframes that name it. Before its first and after its last it stays. What goes on
 from a keyframe to the next of the track is that keyframe's ``ease``: linear, smooth or hold.
 
 Smooth is a cubic whose slopes at the keyframes keep it monotone between any two, so that
-nothing leaves the range of the values given; where a track turns, begins, ends or meets
-another ease it is at rest. Azimuths go the short way round, colours in linear light (as
-they are kept), whole numbers, checkboxes, menus and files hold.
+nothing leaves the range of the values given; where a track changes direction, begins, ends or meets
+another ease its slope is 0. Azimuths go the short way round, colours in linear light (as
+they are stored), whole numbers, checkboxes, menus and files hold.
 
 Source: Fritsch and Butland 1984, "A Method for Constructing Local Monotone Piecewise Cubic
 Interpolants" (SIAM J. Sci. Stat. Comput. 5(2)): the slope between two secants of one sign is
@@ -31,8 +31,7 @@ from playground.sketch.values import is_whole
 EASES = ("smooth", "linear", "hold")
 """How values go from a keyframe to the next; the first where it does not say."""
 
-_TURN = 360.0
-_NO_TURN, _CAMERA_TURN = (), (0,)
+_CIRCLE = 360.0
 
 
 @dataclass(frozen=True)
@@ -53,8 +52,8 @@ class Track:
     times: tuple[float, ...]  # [s] increasing
     values: tuple[Value, ...]
     eases: tuple[str, ...]  # from each on
-    holds: bool = False  # whatever the ease
-    turns: tuple[int, ...] = ()  # which of its numbers are azimuths
+    holds: bool = False  # with any ease
+    angles: tuple[int, ...] = ()  # which of its numbers are azimuths
 
     def at(self, time: float) -> Value:
         """Return the value at a time in seconds."""
@@ -69,8 +68,8 @@ class Track:
         found = []
         for which in range(len(many[0])):
             column = [numbers[which] for numbers in many]
-            if which in self.turns:
-                found.append(_within_turn(self._between(_unwound(column), index, time)))
+            if which in self.angles:
+                found.append(self._between(_unwound(column), index, time) % _CIRCLE)
             else:
                 found.append(self._between(column, index, time))
         return tuple(found) if isinstance(here, tuple) else found[0]
@@ -110,39 +109,36 @@ def at(
 ) -> tuple[dict[str, Any], tuple[tuple[str, Value], ...]]:
     """Return what keyframes say of the camera's fields and of a graph's parameters at a time in seconds."""
     cameras, tracks = _tracks(keyframes, Identity(graph))
-    return {name: track.at(time) for name, track in cameras}, tuple(
-        (path, track.at(time)) for path, track in tracks
-    )
+    camera = {name: track.at(time) for name, track in cameras.items()}
+    return camera, tuple((path, track.at(time)) for path, track in tracks.items())
 
 
 @lru_cache(maxsize=64)
 def _tracks(
     keyframes: tuple[Keyframe, ...], graph: Identity[Graph]
-) -> tuple[tuple[tuple[str, Track], ...], tuple[tuple[str, Track], ...]]:
+) -> tuple[dict[str, Track], dict[str, Track]]:
     """Return the tracks of the camera and of the parameters, by name and path."""
-    cameras = dict.fromkeys(name for keyframe in keyframes for name, _ in keyframe.camera)
-    paths = dict.fromkeys(path for keyframe in keyframes for path, _ in keyframe.values)
-    found = []
-    for path in paths:
+    names = dict.fromkeys(name for keyframe in keyframes for name, _ in keyframe.camera)
+    cameras = {
+        name: _track(keyframes, "camera", name, angles=(0,) if name == "azimuth" else ()) for name in names
+    }
+    tracks = {}
+    for path in dict.fromkeys(path for keyframe in keyframes for path, _ in keyframe.values):
         parameter = resolve(graph.object, path)[0].parameter
-        given = [(k, dict(k.values)[path]) for k in keyframes if path in dict(k.values)]
-        found.append((path, _track(given, holds=_holds(parameter), turns=_turns(parameter))))
-    seen = []
-    for name in cameras:
-        given = [(k, dict(k.camera)[name]) for k in keyframes if name in dict(k.camera)]
-        seen.append((name, _track(given, turns=_CAMERA_TURN if name == "azimuth" else _NO_TURN)))
-    return tuple(seen), tuple(found)
+        how = {"holds": _holds(parameter), "angles": _angles(parameter)}
+        tracks[path] = _track(keyframes, "values", path, **how)
+    return cameras, tracks
 
 
-def _track(
-    given: Sequence[tuple[Keyframe, Value]], *, holds: bool = False, turns: tuple[int, ...] = ()
-) -> Track:
+def _track(keyframes: Sequence[Keyframe], part: str, name: str, **how: Any) -> Track:
+    """Return the track of a camera field or a parameter: the keyframes that name it."""
+    given = [(keyframe, dict(getattr(keyframe, part))) for keyframe in keyframes]
+    given = [(keyframe, values) for keyframe, values in given if name in values]
     return Track(
         tuple(keyframe.time for keyframe, _ in given),
-        tuple(value for _, value in given),
+        tuple(values[name] for _, values in given),
         tuple(keyframe.ease for keyframe, _ in given),
-        holds,
-        turns,
+        **how,
     )
 
 
@@ -151,11 +147,11 @@ def _holds(parameter: Parameter) -> bool:
     return is_whole(parameter.type) or parameter.type in ("bool", "sampler2D") or widget in ("menu", "file")
 
 
-def _turns(parameter: Parameter) -> tuple[int, ...]:
-    """Return which numbers are azimuths; an angle is one where its range holds a whole turn."""
+def _angles(parameter: Parameter) -> tuple[int, ...]:
+    """Return which numbers are azimuths; an angle is one where its range has 360 degrees."""
     widget = parameter.widget
     low, high = widget.low, widget.high
-    whole = low is None or high is None or (low <= 0.0 and high >= _TURN)
+    whole = low is None or high is None or (low <= 0.0 and high >= _CIRCLE)
     return (0,) if widget.kind == "direction" or (widget.kind == "angle" and whole) else ()
 
 
@@ -164,13 +160,8 @@ def _numbers(value: Value) -> tuple[float, ...]:
 
 
 def _unwound(column: Sequence[float]) -> list[float]:
-    """Return azimuths moved by whole turns, so that each is within half a turn of the one before."""
+    """Return azimuths moved by 360 degrees, so that each is within 180 of the one before."""
     found = [column[0]]
     for value in column[1:]:
-        found.append(value - _TURN * round((value - found[-1]) / _TURN))
+        found.append(value - _CIRCLE * round((value - found[-1]) / _CIRCLE))
     return found
-
-
-def _within_turn(angle: float) -> float:
-    """Return an azimuth between keyframes as 0 to 360 degrees."""
-    return angle % _TURN

@@ -23,13 +23,13 @@ from playground.sketch.assign import effective_values, shown_parameters
 from playground.sketch.dialects import check_name
 from playground.sketch.find import find
 from playground.sketch.flatten import flatten
-from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, kernels_of
+from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.techniques import (
     Techniques,
+    check_kernel_count,
     lonely_variant,
     nothing_to_run,
     read_technique,
-    refuse_monster,
     technique_beside,
 )
 from playground.sketch.toml_graph import TECHNIQUE_KEYS
@@ -52,8 +52,11 @@ def load(name: str | Path = "", *, dialect: str = "") -> Sketch:
 
 
 @following_links_once()
-def load_with(techniques: Techniques, name: str | Path = "") -> Sketch:
-    """Load a sketch as ``load`` does, but take what these techniques have read already as still the same."""
+def load_with(techniques: Techniques, name: str | Path = "", text: str | None = None) -> Sketch:
+    """Load a sketch as ``load`` does, but read again no technique that these techniques have read.
+
+    ``text`` is what a TOML file would hold, and is read in place of it.
+    """
     if not isinstance(name, str | Path):
         raise SketchError(f"a sketch is loaded by its name or its path, not by {name!r}")
     path = find(name or DEFAULT_SKETCH).resolve()
@@ -62,17 +65,17 @@ def load_with(techniques: Techniques, name: str | Path = "") -> Sketch:
         if path.suffix in SHADERS:
             return _shader_alone(path, techniques)
         if techniques.dialect:
-            raise SketchError("--dialect is for a shader file", file=shown(path))
-        file = TomlFile(path, path.parent)
+            raise SketchError("--dialect is for a shader file", file=path)
+        file = TomlFile(path, path.parent, text)
         if is_variant(path):
             raise lonely_variant(path)
         if _holds_technique(file):
-            return _staged(path, techniques.graph(path, f"./{path.stem}", root_of(path)))
+            return _in_default_sketch(path, techniques.graph(path, f"./{path.stem}", root_of(path)))
         sketch = read_sketch(file, techniques.read)
-        refuse_monster(sketch.graph)
+        check_kernel_count(sketch.graph)
         return sketch
     except RecursionError:
-        raise SketchError("its tables or techniques nest too deeply", file=shown(path)) from None
+        raise SketchError("its tables or techniques nest too deeply", file=path) from None
 
 
 def is_technique(path: Path) -> bool:
@@ -100,7 +103,7 @@ def _shader_alone(path: Path, techniques: Techniques) -> Sketch:
     if isinstance(found, Kernel) and found.kind == "compute":
         raise lonely_variant(path)
     if isinstance(found, Kernel) and not found.kind.startswith("plain"):
-        return _staged(path, found)
+        return _in_default_sketch(path, found)
     return plain_sketch(path, found, _folder_of(path))
 
 
@@ -122,11 +125,11 @@ def _folder_of(path: Path) -> Path:
     return path.parent if root == GLSL else root
 
 
-def _staged(path: Path, technique: Technique) -> Sketch:
+def _in_default_sketch(path: Path, technique: Technique) -> Sketch:
     """Return the default sketch with a technique in the place of the pass that has its outputs."""
-    stage = load(DEFAULT_SKETCH)
+    default = load(DEFAULT_SKETCH)
     outputs = set(output_names(technique))
-    passes = list(stage.graph.passes)
+    passes = list(default.graph.passes)
     place = next((i for i, p in enumerate(passes) if outputs & set(output_names(p.technique))), None)
     folder = _folder_of(path)
     use = f"./{path.relative_to(folder).with_suffix('').as_posix()}"
@@ -142,7 +145,7 @@ def _staged(path: Path, technique: Technique) -> Sketch:
         passes = [*passes[:-1], replace(spec, name=name), view]
     graph = Graph(path.stem, str(path), tuple(passes), title=technique.title)
     sketch = replace(
-        stage,
+        default,
         name=path.stem,
         file=str(path),
         folder=str(folder),
@@ -151,7 +154,7 @@ def _staged(path: Path, technique: Technique) -> Sketch:
         presets=(),
         shots=(),
         keyframes=(),
-        overrides=_stage_files(graph, stage),
+        overrides=_default_files(graph, default),
     )
     own = next(p.name for p in passes if p.technique is technique)
     shown_first = (s.path for s in shown_parameters(sketch) if s.exported)
@@ -160,18 +163,16 @@ def _staged(path: Path, technique: Technique) -> Sketch:
     return sketch
 
 
-def _stage_files(graph: Graph, stage: Sketch) -> tuple[tuple[str, Value], ...]:
-    """Return the data files of the stage's own passes, whole: they are not beside the technique."""
+def _default_files(graph: Graph, default: Sketch) -> tuple[tuple[str, Value], ...]:
+    """Return the data files of the default sketch's own passes by absolute path: they are in its folder."""
     values = effective_values(graph)
-    kept = {spec.name for spec in graph.passes if spec in stage.graph.passes}
+    remaining = {spec.name for spec in graph.passes if spec in default.graph.passes}
     found: list[tuple[str, Value]] = []
-    for leaf, kernel in kernels_of(graph):
-        for parameter in kernel.parameters:
-            path = f"{leaf}.{parameter.name}"
-            text = str(values[path])
-            if parameter.widget.kind != "file" or leaf.partition(".")[0] not in kept or is_absolute(text):
-                continue
-            beside = Path(stage.folder) / text
-            if text and is_file(beside):
-                found.append((path, str(beside)))
+    for path, parameter in graph.leaf_parameters.items():
+        text = str(values[path])
+        if parameter.widget.kind != "file" or path.partition(".")[0] not in remaining or is_absolute(text):
+            continue
+        file = Path(default.folder) / text
+        if text and is_file(file):
+            found.append((path, str(file)))
     return tuple(found)

@@ -1,7 +1,7 @@
 """Join calls of function-like macros that span lines, for a driver that miscounts them.
 
 Mesa's preprocessor (22.3) forgets the line ends inside such a call, so that every later error
-names a line too early. A joined call stands on its first line; the lines it took stay, empty.
+names a line too early. A joined call is on its first line; the lines it took stay, empty.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ def with_calls_joined(codes: Sequence[str]) -> list[str]:
     macros: set[str] = set()
     for index, code in enumerate(found):
         if define := _DEFINE.match(code):
-            name, bracket, stands_for = define.groups()
-            if bracket == "(" or stands_for in macros:
+            name, bracket, meaning = define.groups()
+            if bracket == "(" or meaning in macros:
                 macros.add(name)
         elif macros and not _DIRECTIVE.match(code):
             _join(found, index, macros)

@@ -10,7 +10,7 @@ from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import input_names
 
 USE = "view/map"
-_SEEN = "seen"  # what the view is called inside the one that shows a texture of it
+_INNER = "seen"  # the name of the view inside the one that shows a texture of it
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Map:
         """Return the sketch's own path of a pass that ran for this map; "" for the map's."""
         if path.partition(".")[0] != "view":
             return path
-        inside = f"view.{_SEEN}"
+        inside = f"view.{_INNER}"
         return f"view{path.removeprefix(inside)}" if path.startswith(inside) else ""
 
     def with_value(self, name: str, value: Value) -> Map:
@@ -59,17 +59,17 @@ def _within(sketch: Sketch, view: PassSpec, shown: Map) -> Sketch:
     Both are passes of the view, so that each has the size that it has there.
     """
     names = dict.fromkeys((*input_names(view.technique), *(n for n, _ in view.inputs if "." not in n)))
-    inputs = tuple((f"{_SEEN}.{name}" if "." in name else name, ref) for name, ref in view.inputs)
-    own = replace(view, name=_SEEN, inputs=())
+    inputs = tuple((f"{_INNER}.{name}" if "." in name else name, ref) for name, ref in view.inputs)
+    own = replace(view, name=_INNER, inputs=())
     of = PassSpec(
-        "map", USE, shown.kernel, inputs=(("shown", f"{_SEEN}{shown.ref[4:]}"),), values=shown.values
+        "map", USE, shown.kernel, inputs=(("shown", f"{_INNER}{shown.ref[4:]}"),), values=shown.values
     )
-    exports = tuple(Export(name, (f"{_SEEN}.{name}",)) for name in names)
+    exports = tuple(Export(name, (f"{_INNER}.{name}",)) for name in names)
     both = Graph(USE, view.technique.path, (own, of), inputs=exports)
     spec = replace(view, use=USE, technique=both, inputs=inputs, values=())
     passes = tuple(spec if p.name == "view" else p for p in sketch.graph.passes)
     overrides = tuple(
-        (f"view.{_SEEN}{path[4:]}" if path.startswith("view.") else path, value)
+        (f"view.{_INNER}{path[4:]}" if path.startswith("view.") else path, value)
         for path, value in sketch.overrides
     )
     return replace(sketch, graph=replace(sketch.graph, passes=passes), overrides=overrides)

@@ -6,11 +6,11 @@ Its parts are in ``parameter``, ``technique`` and ``keyframes``; all of them can
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
-from playground.errors import ParameterError, SketchError, nearest
-from playground.sketch.assign import TERRAIN_KEYS, check_value
+from playground.errors import Diagnostic, ParameterError, SketchError, nearest
+from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed
 from playground.sketch.keyframes import Keyframe, at
 from playground.sketch.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
 from playground.sketch.technique import (
@@ -56,10 +56,10 @@ __all__ = [
 ]
 
 LARGEST_PICTURE = 65_536
-"""Pixels that a side of a picture drawn in parts may have: so far, single precision tells pixels apart."""
+"""Pixels that a side of a picture drawn in parts may have: the limit of single precision."""
 
 DEFAULT_PICTURE = (1280, 720)
-"""Size in pixels of a picture for which nobody asks another."""
+"""Size in pixels of a picture unless another is given."""
 
 DRIVERS = ("auto", "fragment", "compute")
 """What may run kernels; "auto" takes for each the one that it gains by."""
@@ -69,7 +69,7 @@ DRIVERS = ("auto", "fragment", "compute")
 class Camera:
     """An eye that orbits a point of the terrain."""
 
-    azimuth: float = 200.0  # [degrees] clockwise from north: where the eye stands, seen from the target
+    azimuth: float = 200.0  # [degrees] clockwise from north: the eye, seen from the target
     elevation: float = 32.0  # [degrees] of the eye above the target's horizon, -89..89
     distance: float = 0.0  # [m] from the target; 0: as far as shows the whole terrain
     target: tuple[float, float, float] | None = None  # [m]; None: the terrain's middle, at half its relief
@@ -87,7 +87,7 @@ class Shot:
     values: tuple[tuple[str, Value], ...] = ()  # parameter path → value
     preset: str = ""
     samples: int | None = None  # None: the view's
-    steps: tuple[tuple[str, int], ...] = ()  # pass → turn to stop at
+    steps: tuple[tuple[str, int], ...] = ()  # pass → step to stop at
     marks: tuple[str, ...] = ()  # pytest's markers of its test, as "slow"
     line: int = 0
 
@@ -102,7 +102,7 @@ class Preset:
 
 @dataclass(frozen=True)
 class Sketch:
-    """A whole sketch: what a user opens, shares and keeps under version control."""
+    """A whole sketch: what a user opens, shares and puts under version control."""
 
     name: str
     file: str  # absolute path of the TOML, or of the kernel opened alone
@@ -118,9 +118,10 @@ class Sketch:
     shots: tuple[Shot, ...] = ()
     presets: tuple[Preset, ...] = ()
     overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets
-    keyframes: tuple[Keyframe, ...] = ()  # by time; what is set by the user stands over them
+    keyframes: tuple[Keyframe, ...] = ()  # by time; user edits override them
     plain: bool = False  # every technique in its canonical form: no fast variant runs
     main: tuple[str, ...] = ()  # paths of the parameters that it is about: a panel shows them first
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # of former names that are used
 
     @property
     def files(self) -> tuple[str, ...]:
@@ -139,21 +140,25 @@ class Sketch:
     def with_values(self, values: Mapping[str, object]) -> Sketch:
         """Return the sketch with parameters set, by path; text is read as on the command line.
 
-        ``size``, ``extent``, ``relief`` and ``base_elevation`` may be set as well.
-        Raises ``ParameterError`` naming the nearest path or the range.
+        ``size``, ``extent``, ``relief`` and ``base_elevation`` may be set as well; a former name of a
+        parameter sets it under its present one. Raises ``ParameterError`` naming the nearest path or the
+        range, or a parameter that is set by both its names.
         """
-        overrides, terrain = dict(self.overrides), dict[str, Any]()
+        overrides, changes = dict(self.overrides), dict[str, Any]()
+        names = current_paths(self.graph, values)
         for path, given in values.items():
             found = check_value(self, path, given)
             if path in TERRAIN_KEYS:
-                terrain[path] = found
+                changes[path] = found
             else:
-                overrides.pop(path, None)  # what is set last comes last, and wins
-                overrides[path] = found
-        return replace(self, overrides=tuple(overrides.items()), **terrain)
+                overrides.pop(names[path], None)  # what is set last comes last, and wins
+                overrides[names[path]] = found
+        if former := [sentence for p, v in values.items() if (sentence := renamed(self.graph, p, v))]:
+            changes["warnings"] = (*self.warnings, *(Diagnostic(one, severity="warning") for one in former))
+        return replace(self, overrides=tuple(overrides.items()), **changes)
 
     def with_camera(self, camera: Camera) -> Sketch:
-        """Return the sketch seen by another camera, whatever its keyframes say of theirs."""
+        """Return the sketch seen by another camera, without the camera of its keyframes."""
         keyframes = tuple(replace(keyframe, camera=()) for keyframe in self.keyframes)
         return replace(self, camera=camera, keyframes=keyframes)
 

@@ -19,6 +19,7 @@ class Widget:
     low: float | None = None  # None: unbounded
     high: float | None = None
     choices: tuple[str, ...] = ()  # of a menu
+    renamed: tuple[tuple[str, str], ...] = ()  # former choice → choice; a former one is still read
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,12 +59,13 @@ class Parameter:
     tooltip: str = ""
     sampling: Sampling = AS_IT_IS  # of a file
     painted: bool = False  # a file that may be painted on in the window
-    follows: Follows | None = None  # where its value comes from while nobody sets it
+    follows: Follows | None = None  # where its value comes from while it is not set
     parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
+    former: tuple[str, ...] = ()  # names that it had, which are still read
     file: str = ""
     line: int = 0
 
     @property
     def title(self) -> str:
-        """What a panel writes beside it."""
+        """Its label in a panel."""
         return self.label or self.name.replace("_", " ").capitalize()

@@ -8,12 +8,13 @@ found out by drawing.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch.allowed_files import TECHNIQUES
-from playground.sketch.assign import resolve
+from playground.sketch.assign import current_path, find_targets, resolve
 from playground.sketch.find import is_part, shipped_names
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Kernel, PassSpec, Sketch, Technique, Value
@@ -30,12 +31,9 @@ def choices(sketch: Sketch, pass_name: str) -> list[str]:
     """
     spec = _pass(sketch, pass_name)
     outputs = set(output_names(spec.technique))
-    found = []
     whole = [name for name in shipped_names() if not is_part(name)]
-    for use in dict.fromkeys([*whole, *_own_names(sketch), spec.use]):
-        if use == spec.use or _fits(sketch, spec, use, outputs):
-            found.append(use)
-    return found
+    uses = dict.fromkeys([*whole, *_own_names(sketch), spec.use])
+    return [use for use in uses if use == spec.use or _fits(sketch, spec, use, outputs)]
 
 
 def with_technique(sketch: Sketch, pass_name: str, use: str) -> Sketch:
@@ -65,9 +63,9 @@ def _read(sketch: Sketch, use: str) -> Technique:
 
 
 def _own_names(sketch: Sketch) -> list[str]:
-    """Name the files beside the sketch that could be techniques; library files and other sketches as well."""
-    beside = [p for p in Path(sketch.folder).glob("*.*") if p.suffix in TECHNIQUES and str(p) != sketch.file]
-    return sorted({f"./{p.stem}" for p in beside if p.is_file()})
+    """Name the files in the sketch's folder that could be techniques; library files and sketches as well."""
+    files = [p for p in Path(sketch.folder).glob("*.*") if p.suffix in TECHNIQUES and str(p) != sketch.file]
+    return sorted({f"./{p.stem}" for p in files if p.is_file()})
 
 
 def _fits(sketch: Sketch, spec: PassSpec, use: str, outputs: set[str]) -> bool:
@@ -97,7 +95,7 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
         use=use,
         technique=technique,
         inputs=tuple((name, source) for name, source in spec.inputs if takes_input(technique, name)),
-        values=_kept(technique, spec.values),
+        values=_values_taken(technique, spec.values),
         feedback=feedback,
         repeat=spec.repeat if feedback or not spec.feedback else "",
     )
@@ -105,26 +103,18 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
     prefix = f"{spec.name}."
     own = [(path.removeprefix(prefix), value) for path, value in sketch.overrides if path.startswith(prefix)]
     overrides = [pair for pair in sketch.overrides if not pair[0].startswith(prefix)]
-    overrides += [(prefix + path, value) for path, value in _kept(technique, own)]
+    overrides += [(prefix + path, value) for path, value in _values_taken(technique, own)]
     graph = replace(sketch.graph, passes=passes)
-    main = tuple(path for path in sketch.main if _is_there(graph, path))
+    main = tuple(path for path in sketch.main if find_targets(graph, path))
     result = replace(sketch, graph=graph, main=main, overrides=tuple(overrides))
     flatten(result)
     return result
 
 
-def _is_there(technique: Technique, path: str) -> bool:
-    try:
-        return bool(resolve(technique, path))
-    except ParameterError:
-        return False
-
-
-def _kept(technique: Technique, values: Iterable[tuple[str, Value]]) -> tuple[tuple[str, Value], ...]:
+def _values_taken(technique: Technique, values: Iterable[tuple[str, Value]]) -> tuple[tuple[str, Value], ...]:
     found = []
     for path, value in values:
-        try:
-            found.append((path, coerce(resolve(technique, path)[0].parameter, value, path)))
-        except ParameterError:
-            continue
+        with suppress(ParameterError):
+            coerced = coerce(resolve(technique, path)[0].parameter, value, path)
+            found.append((current_path(technique, path), coerced))
     return tuple(found)

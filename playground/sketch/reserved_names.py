@@ -1,4 +1,4 @@
-"""List which names a kernel may not take: GLSL's own, and those the engine gives it.
+"""List the names that a kernel may not take: GLSL's own, and those the engine gives it.
 
 Source: The OpenGL Shading Language 4.60.8, chapter 3.6 (keywords, reserved
 words) and chapter 8 (built-in functions). A parameter named after one of them
@@ -12,18 +12,18 @@ PREFIX = "k_"
 
 GIVEN: dict[str, tuple[str, str]] = {
     "size": ("ivec2", "texels of this pass's textures"),
-    "iteration": ("int", "this turn of a repeated kernel, from 0"),
-    "iterations": ("int", "turns in all"),
-    "stage": ("int", "what this turn of a compute variant does, where its header lists stages"),
-    "until": ("int", "the turn after the last of this run, where one run takes several"),
+    "iteration": ("int", "this step of a repeated kernel, from 0"),
+    "iterations": ("int", "steps in all"),
+    "stage": ("int", "what this step of a compute variant does, where its header lists stages"),
+    "until": ("int", "the step after the last of this run, where one run takes several"),
     "time": ("float", "seconds"),
     "spacing": ("vec2", "metres from one texel of this pass to the next, east and north"),
-    "extent": ("vec2", "metres from the land's first texel to its last, east and north"),
+    "extent": ("vec2", "metres from the terrain's first texel to its last, east and north"),
     "relief": ("float", "metres from height 0 to height 1"),
     "base_elevation": ("float", "metres above sea level at height 0"),
-    "clip_from_world": ("mat4", "the camera: metres of the land to clip space"),
+    "clip_from_world": ("mat4", "the camera: metres of the terrain to clip space"),
     "world_from_clip": ("mat4", "its inverse"),
-    "eye": ("vec3", "where the camera stands, metres of the land"),
+    "eye": ("vec3", "position of the camera, metres of the terrain"),
 }
 """Name → (GLSL type, meaning) of what every kernel and draw is given; declared where its text names it."""
 
@@ -38,7 +38,7 @@ UNWIRED = "k_unwired"
 """Whether any input that may stay unwired is, a bool; declared where a text fetches texels."""
 
 FETCHES = {"texelFetch": "k_fetch_in", "texelFetchOffset": "k_fetch_in_shift"}
-"""What stands for GLSL's own functions, as long as these, where an input may stay unwired: the one
+"""What replaces GLSL's own functions, as long as these, where an input may stay unwired: the one
 texel of its white or black answers for every place."""
 
 WINDOW = "k_window"

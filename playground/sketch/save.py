@@ -1,33 +1,42 @@
 """Write what was set by the user back into a sketch's own TOML, and touch nothing else in it.
 
 Values go to the ``set`` of their pass, the camera to ``[view]``, a technique to ``use``. A
-value that stands there already is written over in its place; what its file does not hold
-yet comes in at the end of its table. The result is loaded before it takes the file's
-place: it says exactly what was set, or nothing is written.
+value that is in the file already is written over in its place; what the file does not hold
+yet is added at the end of its table. The result is loaded before it replaces the file:
+it says exactly what was set, or nothing is written.
 """
 
 from __future__ import annotations
 
 import os
-import secrets
 import shutil
 import stat
 import tomllib
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 from dataclasses import fields, replace
 from pathlib import Path
 
-from playground.errors import DataError, ParameterError, PlaygroundError, SketchError
-from playground.paths import GLSL, shown
+from playground.errors import DataError, PlaygroundError, SketchError
+from playground.partial import partial_file
+from playground.paths import GLSL
 from playground.sketch.allowed_files import leads_outside
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
-from playground.sketch.load import load
-from playground.sketch.model import Camera, Parameter, PassSpec, Sketch, Value
-from playground.sketch.save_values import said_so_far, written_land, written_number, written_value
+from playground.sketch.load import load, load_with
+from playground.sketch.model import Camera, PassSpec, Sketch, Value
+from playground.sketch.save_values import (
+    with_current_names,
+    written_number,
+    written_so_far,
+    written_terrain_value,
+    written_value,
+)
+from playground.sketch.source import normalised
+from playground.sketch.techniques import Techniques
 from playground.sketch.toml_edit import append, drop, put, text_of
 from playground.sketch.toml_places import Place
 from playground.sketch.values import shortest
+
+_CHANGED = "the file has changed meanwhile: save again once it shows"
 
 
 class ReadOnlySketch(DataError):
@@ -42,7 +51,7 @@ def saved_text(text: str, file: Sketch, wanted: Sketch) -> str:
     for key in TERRAIN_KEYS:
         value = getattr(wanted, key)
         if value is not None and value != getattr(file, key):
-            text = put(text, (), key, written_land(value))
+            text = put(text, (), key, written_terrain_value(value))
     for spec in wanted.graph.passes:
         was = file.graph.find(spec.name)
         assert was is not None
@@ -87,8 +96,8 @@ def save_preset(file: Sketch, name: str, values: Mapping[str, Value]) -> None:
 
     def holds(found: Sketch) -> bool:
         preset = next((p for p in found.presets if p.name == name), None)
-        said = {path: shortest(value) for path, value in preset.values} if preset is not None else {}
-        return all(said.get(path) == shortest(value) for path, value in values.items())
+        found_values = {path: shortest(value) for path, value in preset.values} if preset else {}
+        return all(found_values.get(path) == shortest(value) for path, value in values.items())
 
     write_over(Path(file.file), file, lambda text: with_preset(text, file, name, values), holds)
 
@@ -131,7 +140,7 @@ def _table(file: Sketch, name: str) -> Place:
 
 def _view(text: str, file: Sketch, name: str) -> str:
     """Return the text with a [view], where the pass is the view and the file leaves that out."""
-    if name != "view" or "view" in tomllib.loads(_plain(text)):
+    if name != "view" or "view" in tomllib.loads(normalised(text)):
         return text
     spec = file.graph.find("view")
     assert spec is not None
@@ -160,7 +169,7 @@ def _with_value(text: str, file: Sketch, wanted: Sketch, path: str, value: Value
     names = [key for key, _ in spec.values if {t.path for t in resolve(spec.technique, key)} == mine]
     table = (*_table(file, name), "set")
     for key in names or [inner]:
-        written = written_value(wanted, f"{name}.{key}", value, said_so_far(text, table, key))
+        written = written_value(wanted, f"{name}.{key}", value, written_so_far(text, table, key))
         text = put(text, table, key, written)
     return text
 
@@ -175,9 +184,7 @@ def _with_camera(text: str, file: Sketch, camera: Camera) -> str:
         if value is None:
             text = drop(text, table, part.name)
         else:
-            numbers = value if isinstance(value, tuple) else (value,)
-            written = ", ".join(map(written_number, numbers))
-            text = put(text, table, part.name, f"[{written}]" if isinstance(value, tuple) else written)
+            text = put(text, table, part.name, written_number(value))
     return text
 
 
@@ -188,17 +195,13 @@ def _read(path: Path) -> str:
     try:
         return path.read_bytes().decode()
     except (OSError, UnicodeDecodeError) as error:
-        raise DataError(f"cannot be read: {error}", file=shown(path)) from None
-
-
-def _plain(text: str) -> str:
-    return text.removeprefix("\ufeff").replace("\r\n", "\n")
+        raise DataError(f"cannot be read: {error}", file=path) from None
 
 
 def write_over(
     path: Path, file: Sketch, change: Callable[[str], str], is_right: Callable[[Sketch], bool]
 ) -> None:
-    """Write a sketch's text anew: whole, where it still says what ``file`` does, and only what proves right.
+    """Replace a sketch's text: whole, where it still says what ``file`` does, and only by what is right.
 
     ``change`` makes the new text of the old one, and ``is_right`` judges the sketch that is
     loaded of it. Raises ``ReadOnlySketch`` where the file is not to be written to,
@@ -207,85 +210,76 @@ def write_over(
     """
     path = path.resolve()  # a link stays a link: what it leads to is written
     if path.suffix != ".toml":
-        raise ReadOnlySketch("a shader opened alone has no sketch file to save into", file=shown(path))
+        raise ReadOnlySketch("a shader opened alone has no sketch file to save into", file=path)
     if path.is_relative_to(GLSL.resolve()):
-        raise ReadOnlySketch("this sketch belongs to the playground itself", file=shown(path))
+        raise ReadOnlySketch("this sketch belongs to the playground itself", file=path)
     if not os.access(path, os.W_OK) or not os.access(path.parent, os.W_OK):
-        raise ReadOnlySketch("this sketch cannot be written to", file=shown(path))
+        raise ReadOnlySketch("this sketch cannot be written to", file=path)
     text = _read(path)
     if not _same_text(load(path), file):
-        raise SketchError("the file has changed meanwhile: save again once it shows", file=shown(path))
+        raise SketchError(_CHANGED, file=path)
     mark = "\ufeff" if text.startswith("\ufeff") else ""
-    new = mark + change(text.removeprefix(mark))
+    new = mark + change(with_current_names(text.removeprefix(mark), file))
     if new == text:
         return
-    beside = path.with_name(f".{path.stem[:40]}.{secrets.token_hex(6)}.toml")
     try:
-        beside.write_bytes(new.encode())
-        beside.chmod(stat.S_IMODE(path.stat().st_mode))
-        try:
-            right = is_right(load(beside))
-        except PlaygroundError:
-            right = False
-        if not right:
-            message = "what was set cannot be written into this file; copy it as --set words instead"
-            raise SketchError(message, file=shown(path))
-        if _read(path) != text:
-            raise SketchError("the file has changed meanwhile: save again once it shows", file=shown(path))
-        beside.replace(path)
+        right = is_right(load_with(Techniques(), path, normalised(new)))
+    except PlaygroundError:
+        right = False
+    if not right:
+        message = "what was set cannot be written into this file; copy it as --set words instead"
+        raise SketchError(message, file=path)
+    try:
+        with partial_file(path) as partial:
+            partial.handle.write(new.encode())
+            partial.path.chmod(stat.S_IMODE(path.stat().st_mode))
+            if _read(path) != text:
+                raise SketchError(_CHANGED, file=path)
+            partial.rename(path)
     except OSError as error:
-        raise DataError(f"cannot be written: {error.strerror}", file=shown(path)) from None
-    finally:
-        with suppress(OSError):
-            beside.unlink(missing_ok=True)
+        raise DataError(f"cannot be written: {error.strerror}", file=path) from None
 
 
 def _same_text(a: Sketch, b: Sketch) -> bool:
-    """Return whether two sketches were read from the same words, whatever their kernels say."""
+    """Return whether two sketches were read from the same TOML, whatever their kernels are."""
 
-    def words(sketch: Sketch) -> object:
-        parts = [
+    def parts(sketch: Sketch) -> object:
+        passes = [
             (p.name, p.use, p.inputs, p.values, p.size, p.repeat, p.feedback) for p in sketch.graph.passes
         ]
-        return parts, replace(sketch, graph=a.graph)
+        return passes, replace(sketch, graph=a.graph)
 
-    return words(a) == words(b)
+    return parts(a) == parts(b)
 
 
 def says_same_as(wanted: Sketch) -> Callable[[Sketch], bool]:
     """Return a check that a sketch says what is wanted; files may have moved into its folder."""
+    files = {p for p, v in values_of(wanted).items() if isinstance(v, str)}
 
-    def said(sketch: Sketch) -> object:
-        files = {p for p, v in values_of(wanted).items() if isinstance(v, str)}
+    def parts(sketch: Sketch) -> object:
         values = {path: shortest(value) for path, value in values_of(sketch).items() if path not in files}
         uses = [(spec.name, spec.use, spec.inputs) for spec in sketch.graph.passes]
         return values, uses, sketch.camera, [getattr(sketch, key) for key in TERRAIN_KEYS]
 
-    return lambda found: said(found) == said(wanted)
+    return lambda found: parts(found) == parts(wanted)
 
 
 def _with_files_inside(wanted: Sketch) -> Sketch:
-    """Return the sketch with every file from elsewhere copied beside it, for a sketch names only its own."""
+    """Return the sketch with every file from elsewhere copied into its folder, as it may name no others."""
     folder, overrides = Path(wanted.folder), []
     for path, value in wanted.overrides:
-        parameter = _parameter(wanted, path)
-        if parameter is not None and parameter.widget.kind == "file" and isinstance(value, str) and value:
+        parameter = resolve(wanted.graph, path)[0].parameter
+        if parameter.widget.kind == "file" and isinstance(value, str) and value:
             if leads_outside(value, folder, parameter.file):
-                value = _brought(Path(value), folder)
+                value = _copied_into(folder, Path(value))
             elif Path(value).is_absolute():
                 value = Path(value).relative_to(folder).as_posix()
         overrides.append((path, value))
     return replace(wanted, overrides=tuple(overrides))
 
 
-def _parameter(sketch: Sketch, path: str) -> Parameter | None:
-    try:
-        return resolve(sketch.graph, path)[0].parameter
-    except ParameterError:
-        return None
-
-
-def _brought(source: Path, folder: Path) -> str:
+def _copied_into(folder: Path, source: Path) -> str:
+    """Copy a file whole or not at all; return its name there, numbered where another file has it."""
     if source.is_absolute() and source.is_relative_to(folder):
         return source.relative_to(folder).as_posix()
     target, number = folder / source.name, 2
@@ -293,9 +287,13 @@ def _brought(source: Path, folder: Path) -> str:
         data = source.read_bytes()
         while target.exists() and target.read_bytes() != data:
             target, number = folder / f"{source.stem}-{number}{source.suffix}", number + 1
-        target.write_bytes(data)
+        with partial_file(target) as partial:
+            partial.handle.write(data)
+            partial.rename(target)
     except OSError as error:
-        raise DataError(f"cannot be copied beside the sketch: {error.strerror}", file=source) from None
+        raise DataError(
+            f"cannot be copied into the folder of the sketch: {error.strerror}", file=source
+        ) from None
     return target.name
 
 
@@ -313,7 +311,7 @@ def _new_folder(folder: Path, name: str) -> Path:
 
 
 def _own_files(file: Sketch, wanted: Sketch) -> list[str]:
-    """Return the files in the sketch's own folder that it needs, as seen from there; its TOML apart."""
+    """Return the files that a sketch needs in its own folder, relative to it, without its TOML."""
     folder, found = Path(file.folder), dict[str, None]()
     texts = [Path(name) for name in (*file.files, *wanted.files)]
     values = [v for v in values_of(wanted).values() if isinstance(v, str) and v]

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import fields, replace
 from itertools import pairwise
+from operator import attrgetter
 from pathlib import Path
 
 from playground.errors import SketchError
@@ -17,8 +18,8 @@ from playground.paths import shown
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch, Value
 from playground.sketch.save import says_same_as, write_over
-from playground.sketch.save_values import said_so_far, written_number, written_value
-from playground.sketch.toml_edit import drop, newline_of, put, text_of
+from playground.sketch.save_values import written_number, written_so_far, written_value
+from playground.sketch.toml_edit import append, drop, newline_of, put, text_of
 from playground.sketch.toml_places import Place, TomlPlaces
 from playground.sketch.values import shortest
 
@@ -60,13 +61,14 @@ def with_keyframes(text: str, file: Sketch, wanted: Sequence[Keyframe]) -> str:
     blocks = [text[start:end] for start, end in spans]
     newline = newline_of(text)
     made = [
-        blocks[index] if index is not None else newline.join(_lines(file, keyframe)) + newline
+        blocks[index] if index is not None else _new_block(file, keyframe, newline)
         for keyframe, index in zip(wanted, before, strict=True)
     ]
-    if not spans:
-        head = text if text.endswith("\n") or not text else text + newline
-        return head + "".join(newline + block for block in made)
-    return _placed(text, spans, made, newline)
+    if spans:
+        return _placed(text, spans, made, newline)
+    for block in made:
+        text = append(text, block.splitlines())
+    return text
 
 
 def _placed(text: str, spans: list[tuple[int, int]], made: list[str], newline: str) -> str:
@@ -97,15 +99,10 @@ def _blocks(text: str) -> list[tuple[int, int]]:
             continue
         following = (s for s, h in headers[number + 1 :] if h.keys[0] != "keyframe" or len(h.keys) == 1)
         end = next((_above(text, s) for s in following), len(text))
-        body = text[start:end]
-        found.append((_above(text, start), start + len(body.rstrip()) + _line_end(body)))
+        last = start + len(text[start:end].rstrip())  # the end of the last line that is not empty
+        line_end = text.find("\n", last, end)
+        found.append((_above(text, start), line_end + 1 if line_end >= 0 else end))
     return found
-
-
-def _line_end(body: str) -> int:
-    """Return how long the end of the last line that is not empty is."""
-    rest = body[len(body.rstrip()) :]
-    return rest.find("\n") + 1 if "\n" in rest else len(rest)
 
 
 def _above(text: str, start: int) -> int:
@@ -122,30 +119,19 @@ def _matched(known: Sequence[Keyframe], wanted: Sequence[Keyframe]) -> list[int 
     """Return which known keyframe each wanted one was: the same, else at its time, else with its values."""
     left = dict(enumerate(_plain(known)))
     found: list[int | None] = [None] * len(wanted)
-    for same in (_whole, _moment, _content):
+    for names in (["time", "camera", "values", "ease"], ["time"], ["camera", "values"]):
+        key = attrgetter(*names)
         for number, keyframe in enumerate(_plain(wanted)):
             if found[number] is None:
-                hit = next((i for i, other in left.items() if same(other) == same(keyframe)), None)
+                hit = next((i for i, other in left.items() if key(other) == key(keyframe)), None)
                 if hit is not None:
                     found[number] = hit
                     del left[hit]
     return found
 
 
-def _whole(keyframe: Keyframe) -> object:
-    return keyframe
-
-
-def _moment(keyframe: Keyframe) -> object:
-    return keyframe.time
-
-
-def _content(keyframe: Keyframe) -> object:
-    return keyframe.camera, keyframe.values
-
-
 def _plain(keyframes: Sequence[Keyframe]) -> list[Keyframe]:
-    """Return keyframes by what they say, wherever and in whatever order it is written."""
+    """Return keyframes without their lines, camera fields and values in one order."""
 
     def values(keyframe: Keyframe) -> tuple[tuple[str, Value], ...]:
         return tuple(sorted(((p, shortest(v)) for p, v in keyframe.values), key=lambda v: v[0]))
@@ -157,40 +143,23 @@ def _changed(text: str, file: Sketch, place: Place, was: Keyframe, now: Keyframe
     """Return the text with what differs between two keyframes written over in the first one's table."""
     if now.time != was.time:
         text = put(text, place, "time", repr(float(now.time)))
-    if now.ease != was.ease:
-        text = put(text, place, "ease", text_of(now.ease))
     cameras, values = dict(was.camera), dict(was.values)
-    for name, seen in now.camera:
-        if name not in cameras or cameras[name] != seen:
-            text = put(text, (*place, "camera"), name, _camera_value(seen))
+    order = [part.name for part in fields(Camera)]
+    for name, number in sorted(now.camera, key=lambda pair: order.index(pair[0])):
+        if name not in cameras or cameras[name] != number:
+            text = put(text, (*place, "camera"), name, written_number(number))
     for name, value in now.values:
         if name not in values or values[name] != value:
             table = (*place, "set")
-            text = put(text, table, name, written_value(file, name, value, said_so_far(text, table, name)))
+            text = put(text, table, name, written_value(file, name, value, written_so_far(text, table, name)))
     for name in cameras.keys() - dict(now.camera).keys():
         text = drop(text, (*place, "camera"), name)
     for name in values.keys() - dict(now.values).keys():
         text = drop(text, (*place, "set"), name)
-    return text
+    return text if now.ease == was.ease else put(text, place, "ease", text_of(now.ease))
 
 
-def _lines(file: Sketch, keyframe: Keyframe) -> list[str]:
+def _new_block(file: Sketch, keyframe: Keyframe, newline: str) -> str:
     """Return a new keyframe as TOML writes it."""
-    lines = ["[[keyframe]]", f"time = {float(keyframe.time)!r}"]
-    given = dict(keyframe.camera)
-    if given:
-        order = [part.name for part in fields(Camera) if part.name in given]
-        pairs = ", ".join(f"{name} = {_camera_value(given[name])}" for name in order)
-        lines.append(f"camera = {{ {pairs} }}")
-    if keyframe.values:
-        pairs = ", ".join(f"{text_of(p)} = {written_value(file, p, v, '')}" for p, v in keyframe.values)
-        lines.append(f"set = {{ {pairs} }}")
-    if keyframe.ease != EASES[0]:
-        lines.append(f"ease = {text_of(keyframe.ease)}")
-    return lines
-
-
-def _camera_value(value: float | tuple[float, ...]) -> str:
-    numbers = value if isinstance(value, tuple) else (value,)
-    written = ", ".join(map(written_number, numbers))
-    return f"[{written}]" if isinstance(value, tuple) else written
+    empty = Keyframe(-1.0, ease=EASES[0])
+    return _changed(f"[[keyframe]]{newline}", file, ("keyframe", 0), empty, keyframe)

@@ -1,6 +1,6 @@
-"""Find defaults that have no effect because something sets the parameter: a sketch, a technique, a hand.
+"""Find defaults that have no effect because a sketch, a technique or the user sets the parameter.
 
-A person who edits a kernel's default looks at the picture, and sees nothing change.
+Someone who edits such a default in a kernel sees nothing change.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from pathlib import Path
 from playground.errors import Diagnostic
 from playground.paths import GLSL, shown
 from playground.sketch.assign import apply, effective_values, resolve
-from playground.sketch.model import Graph, Parameter, Sketch, Value, kernels_of
+from playground.sketch.model import Graph, Parameter, Sketch, Value
 from playground.sketch.values import write
 
 PANEL = "the panel"
-"""What sets a value that no file does, as a person at the window meets it."""
+"""The name in messages of what sets a value that no file sets."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,14 +45,14 @@ class Shadowed:
 def shadowed_by_files(sketch: Sketch) -> list[Shadowed]:
     """Return the defaults in the sketch's own kernels that its own files set over.
 
-    Techniques that ship are there to be set, and what is set by the user is known to who set it.
+    Techniques that ship are there to be set, and users know what they set.
     """
     by, values = _setters(sketch.graph, ""), effective_values(sketch.graph)
-    by_hand = {target.path for path, _ in sketch.overrides for target in resolve(sketch.graph, path)}
+    by_user = {target.path for path, _ in sketch.overrides for target in resolve(sketch.graph, path)}
     found = []
-    for path, parameter in _parameters(sketch).items():
+    for path, parameter in sketch.graph.leaf_parameters.items():
         own = not Path(parameter.file).is_relative_to(GLSL)
-        if own and path in by and path not in by_hand and values[path] != parameter.default:
+        if own and path in by and path not in by_user and values[path] != parameter.default:
             found.append(Shadowed(path, parameter, values[path], by[path]))
     return found
 
@@ -62,10 +62,10 @@ def newly_shadowed(before: Sketch, now: Sketch) -> list[Shadowed]:
 
     ``now`` is the sketch after the edit, with what is set by the user in it.
     """
-    was = {path: parameter.default for path, parameter in _parameters(before).items()}
+    was = {path: parameter.default for path, parameter in before.graph.leaf_parameters.items()}
     changed = {
         path: parameter
-        for path, parameter in _parameters(now).items()
+        for path, parameter in now.graph.leaf_parameters.items()
         if path in was and was[path] != parameter.default
     }
     if not changed:
@@ -80,14 +80,6 @@ def newly_shadowed(before: Sketch, now: Sketch) -> list[Shadowed]:
         for path, parameter in changed.items()
         if path in by and values[path] != parameter.default
     ]
-
-
-def _parameters(sketch: Sketch) -> dict[str, Parameter]:
-    return {
-        f"{path}.{parameter.name}": parameter
-        for path, kernel in kernels_of(sketch.graph)
-        for parameter in kernel.parameters
-    }
 
 
 def _setters(graph: Graph, prefix: str) -> dict[str, str]:

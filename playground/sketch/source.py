@@ -2,7 +2,7 @@
 
 The driver is given ``SourceText.code``: comments, ``#include`` and the project's
 pragmas are blanked (quotes and anything beyond ASCII are outside GLSL 3.30), lines
-are kept, and ``#line`` is never used, because drivers differ in what they make of it;
+are kept, and ``#line`` is never used, because drivers treat it differently;
 one in a file is left out. A macro's call that spans lines is joined: see ``macro_calls``.
 
 A backslash at a line's end joins it to the next, comments included, as GLSL 4.20 has it;
@@ -67,11 +67,11 @@ class SourceText:
     files: tuple[str, ...] = ()  # absolute paths of every file read, outermost first
 
     def __hash__(self) -> int:
-        # A string keeps its hash; a thousand lines would be hashed anew each time.
+        # A string caches its hash; a thousand lines would be hashed each time.
         return hash(self.code)
 
     def __getstate__(self) -> dict[str, object]:
-        # What is worked out from the lines need not travel to a child process.
+        # What is computed from the lines is not sent to a child process.
         return {"path": self.path, "lines": self.lines, "files": self.files}
 
     @cached_property
@@ -92,13 +92,13 @@ class SourceText:
 
 @dataclass(frozen=True, slots=True)
 class Origin:
-    """What a flattened text was made of: reading it again gives the same as long as this holds."""
+    """The files and texts of a flattened text, which is up to date as long as they are the same."""
 
     texts: tuple[tuple[str, str], ...]  # of each file read, by absolute path
     places: tuple[tuple[Path, Path | None], ...]  # where includes were looked for, and the file found there
 
     def holds(self) -> bool:
-        """Say whether every file still has the same text, and every place still leads where it led.
+        """Return whether every file still has the same text, and every place still leads to the same file.
 
         Texts are compared, not times: two saves may fall into one tick of a file system's clock.
         """
@@ -113,7 +113,7 @@ class Origin:
 def read_source(path: Path, roots: Sequence[Path], instead: Mapping[str, str] | None = None) -> SourceText:
     """Read a GLSL file and everything it includes.
 
-    An include is looked for beside the file that includes it, then in each of
+    An include is looked for in the folder of the file that includes it, then in each of
     ``roots`` (the sketch's own folder, then ``glsl/``), and must lie in one of them. A
     file of ``glsl/`` includes from there alone, so that no sketch changes what it means.
     ``instead`` has texts, by absolute path, that are taken in place of the files'.
@@ -121,31 +121,20 @@ def read_source(path: Path, roots: Sequence[Path], instead: Mapping[str, str] | 
     Raises ``ShaderError`` naming file and line for a missing, outlying or cyclic
     include, and ``SketchError`` when the file itself cannot be read.
     """
-    return _read(path, roots, instead or {})[0]
+    return read_source_and_origin(path, roots, instead)[0]
 
 
-def read_source_and_origin(path: Path, roots: Sequence[Path]) -> tuple[SourceText, Origin]:
-    """Read a GLSL file as ``read_source`` does; say as well what it was made of."""
-    return _read(path, roots, {})
-
-
-def read_foreign_source(
-    path: Path, root: Path, instead: Mapping[str, str] | None = None
+def read_source_and_origin(
+    path: Path, roots: Sequence[Path], instead: Mapping[str, str] | None = None, *, foreign: bool = False
 ) -> tuple[SourceText, Origin]:
-    """Read a shader of another tool as ``read_source_and_origin`` does.
+    """Read a GLSL file as ``read_source`` does; return its files and texts as well.
 
-    An include is also looked for in each folder from the includer's up to ``root``, and each file is
-    included once.
+    Of a ``foreign`` file, a shader of another tool, an include is also looked for in each folder from the
+    includer's up to those of ``roots``, and each file is included once.
     """
-    return _read(path, (root,), instead or {}, foreign=True)
-
-
-def _read(
-    path: Path, roots: Sequence[Path], instead: Mapping[str, str], *, foreign: bool = False
-) -> tuple[SourceText, Origin]:
     path = path.resolve()
     own = tuple(dict.fromkeys(root.resolve() for root in roots))
-    reader = _Reader(own, GLSL.resolve(), instead, foreign)
+    reader = _Reader(own, GLSL.resolve(), instead or {}, foreign)
     reader.flatten(path, reader.read(path), (), (str(path),))
     codes = with_calls_joined([line.code for line in reader.lines])
     lines = tuple(
@@ -163,28 +152,27 @@ def read_text(path: Path) -> str:
     try:
         state = path.stat()
         if not (stat.S_ISREG(state.st_mode) or stat.S_ISDIR(state.st_mode)):  # reading it may never end
-            raise SketchError("this is a pipe, a socket or a device; a file was expected", file=shown(path))
+            raise SketchError("this is a pipe, a socket or a device; a file was expected", file=path)
         if state.st_size > _MAX_BYTES:
-            raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=shown(path))
+            raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=path)
         data = path.read_bytes()
-        return data.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+        return normalised(data.decode())
     except FileNotFoundError:
-        raise SketchError("there is no such file", file=shown(path)) from None
+        raise SketchError("there is no such file", file=path) from None
     except IsADirectoryError:
-        raise SketchError("this is a folder; a file was expected", file=shown(path)) from None
+        raise SketchError("this is a folder; a file was expected", file=path) from None
     except UnicodeDecodeError as error:
-        line, column = _place_in(data, data.find(error.object) + error.start)
+        before = normalised(data[: error.start].decode()).split("\n")
         message = f"not UTF-8 text (byte {error.start}); save the file as UTF-8"
-        raise SketchError(message, file=shown(path), line=line, column=column) from None
+        raise SketchError(message, file=path, line=len(before), column=len(before[-1]) + 1) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
-        raise SketchError(f"cannot be read: {reason}", file=shown(path)) from None
+        raise SketchError(f"cannot be read: {reason}", file=path) from None
 
 
-def _place_in(data: bytes, position: int) -> tuple[int, int]:
-    """Return the line and the column, from 1, of a byte after text that is UTF-8."""
-    lines = data[:position].decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n").split("\n")
-    return len(lines), len(lines[-1]) + 1
+def normalised(text: str) -> str:
+    """Return a text whose lines end in LF, without a byte order mark."""
+    return text.removeprefix("\ufeff").replace("\r\n", "\n").replace("\r", "\n")
 
 
 class _Reader:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
+from pathlib import Path
 
-from playground.errors import ShaderError, SketchError
+from playground.errors import Diagnostic, ShaderError, SketchError
 from playground.sketch.agreement import Bound
 from playground.sketch.parameter import AS_IT_IS, Parameter, Sampling, Value
 from playground.sketch.reserved_names import GIVEN, PLAIN_UNIFORMS
@@ -68,7 +69,7 @@ class Kernel:
     visits: str = ""
     stride: str = ""  # after a step, only texels at multiples of it are known
     between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
-    at_once: str = "1"  # turns that one run may take
+    at_once: str = "1"  # steps that one run may take
     registry: str = ""  # of a source or a draw: the name of the source or mesh
     blend: str = "none"
     depth: str = "less"
@@ -80,9 +81,9 @@ class Kernel:
     aligned: int = 8  # bytes that rows of an output's buffer are filled up to
     stages: tuple[int, ...] = ()  # of a compute variant: what each of its steps does
     overwrites: tuple[str, ...] = ()  # of a compute variant: outputs and buffers that need not begin as zeros
-    agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique beside it
+    agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique that it replaces
     title: str = ""  # the sentence that the file begins with
-    variants: tuple[Variant, ...] = ()  # the fast variants beside it, the fastest first
+    variants: tuple[Variant, ...] = ()  # its fast variants, the fastest first
     dialect: str = ""  # of another tool's shader: the name of a row of sketch/dialects
     prelude: tuple[str, ...] = ()  # likewise: lines that the driver gets before the file's
     epilogue: str = ""  # likewise: the file of gpu/shaders that follows the file's lines
@@ -134,6 +135,11 @@ class Kernel:
         return self._parameters_by_name.get(name)
 
     @cached_property
+    def former_names(self) -> dict[str, str]:
+        """Former name → name of its parameters that were renamed."""
+        return {former: parameter.name for parameter in self.parameters for former in parameter.former}
+
+    @cached_property
     def _parameters_by_name(self) -> dict[str, Parameter]:
         return {parameter.name: parameter for parameter in reversed(self.parameters)}
 
@@ -149,7 +155,7 @@ class Kernel:
 
 @dataclass(frozen=True, slots=True)
 class Export:
-    """A name that a technique of several passes shows outside, and what it stands for inside."""
+    """A name that a technique of several passes exports, and its targets inside."""
 
     name: str
     targets: tuple[str, ...]  # paths inside; the first gives annotation and default
@@ -165,7 +171,7 @@ class PassSpec:
     technique: Technique
     inputs: tuple[tuple[str, str], ...] = ()  # input → "pass[.inner…][:output]"
     values: tuple[tuple[str, Value], ...] = ()  # parameter path inside the technique → value
-    size: tuple[str, str] | None = None  # expressions; None: the size of what it stands in
+    size: tuple[str, str] | None = None  # expressions; None: the size of what it is in
     repeat: str = ""
     feedback: tuple[tuple[str, str], ...] = ()  # input → own output
     file: str = ""
@@ -188,34 +194,38 @@ class Graph:
     inputs: tuple[Export, ...] = ()
     outputs: tuple[tuple[str, str], ...] = ()  # name → "inner:output"; empty: the last pass's
     title: str = ""
-    agrees: tuple[Bound, ...] = ()  # of a fast variant: how closely, with the technique beside it
-    variants: tuple[Variant, ...] = ()  # the fast variants beside it, the fastest first
+    agrees: tuple[Bound, ...] = ()  # of a fast variant: how closely, with the technique that it replaces
+    variants: tuple[Variant, ...] = ()  # its fast variants, the fastest first
     line: int = 0  # of its outputs
+    warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # former names that its file uses
 
     @property
     def files(self) -> tuple[str, ...]:
         """Absolute paths of every file the technique is made of."""
-        found = dict.fromkeys([self.path])
-        for spec in self.passes:
-            found |= dict.fromkeys(spec.technique.files)
-        for variant in self.variants:
-            found |= dict.fromkeys(variant.files)
-        return tuple(found)
+        parts = (*(spec.technique for spec in self.passes), *self.variants)
+        return tuple(dict.fromkeys([self.path, *(file for part in parts for file in part.files)]))
 
     @cached_property
     def kernels(self) -> tuple[tuple[str, Kernel], ...]:
         """Every kernel inside, by its path."""
-        found: list[tuple[str, Kernel]] = []
-        for spec in self.passes:
-            if isinstance(spec.technique, Kernel):
-                found.append((spec.name, spec.technique))
-            else:
-                found += [(f"{spec.name}.{path}", kernel) for path, kernel in spec.technique.kernels]
-        return tuple(found)
+        return tuple(
+            (f"{spec.name}.{path}" if path else spec.name, kernel)
+            for spec in self.passes
+            for path, kernel in kernels_of(spec.technique)
+        )
+
+    @cached_property
+    def leaf_parameters(self) -> dict[str, Parameter]:
+        """Every parameter of every kernel inside, by its path."""
+        return {f"{path}.{p.name}": p for path, kernel in self.kernels for p in kernel.parameters}
 
     @cached_property
     def _passes_by_name(self) -> dict[str, PassSpec]:
         return {spec.name: spec for spec in reversed(self.passes)}
+
+    def error(self, message: str, line: int = 0) -> SketchError:
+        """Return an error that points at a line of its TOML."""
+        return SketchError(message, file=Path(self.path), line=line)
 
     def find(self, name: str) -> PassSpec | None:
         """Return the pass of that name, if there is one."""

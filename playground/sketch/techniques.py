@@ -1,4 +1,4 @@
-"""Read techniques: a GLSL file or a TOML of several passes, each with the fast variants beside it."""
+"""Read techniques: a GLSL file or a TOML of several passes, each with its fast variants."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ _MAX_KERNELS = 1_000
 
 
 def read_kernel(path: Path, folder: Path) -> Kernel | None:
-    """Read one GLSL file with the fast variants beside it; None for a library file.
+    """Read one GLSL file with its fast variants; None for a library file.
 
     ``folder`` is where its includes and its files may be, besides ``glsl/``.
     """
@@ -54,37 +54,33 @@ def nothing_to_run(path: Path) -> SketchError:
     """Return the error of a shader file that is opened alone and has nothing to run."""
     if path.suffix == ".glsl":
         message = "a library file: it has no #pragma kernel, source or draw to run"
-        return SketchError(message, file=shown(path))
-    return SketchError("nothing to run: no main, mainImage or #pragma kernel", file=shown(path))
+        return SketchError(message, file=path)
+    return SketchError("nothing to run: no main, mainImage or #pragma kernel", file=path)
 
 
 def technique_beside(path: Path) -> Path | None:
     """Return the technique that a fast variant replaces; None for another file, and where there is none.
 
-    A ``.comp`` with its own ``#version`` is a plain shader, whatever stands beside it.
+    A ``.comp`` with its own ``#version`` is a plain shader and replaces none.
     """
-    if not is_variant(path) or (path.suffix == ".comp" and _is_plain(path)):
+    if not is_variant(path):
         return None
-    return canonical_of(path)
-
-
-def _is_plain(path: Path) -> bool:
-    kernel = read_kernel(path, root_of(path))
-    return kernel is not None and kernel.kind.startswith("plain")
+    kernel = read_kernel(path, root_of(path)) if path.suffix == ".comp" else None
+    return None if kernel is not None and kernel.kind.startswith("plain") else canonical_of(path)
 
 
 def lonely_variant(path: Path) -> SketchError:
-    """Return the error of a fast variant with no technique beside it."""
+    """Return the error of a fast variant whose technique is missing."""
     name = path.name.removesuffix(".comp").removesuffix(".fast.toml")
     return SketchError(
-        f"a fast variant runs in place of {name}.glsl or {name}.toml, which is missing", file=shown(path)
+        f"a fast variant runs in place of {name}.glsl or {name}.toml, which is missing", file=path
     )
 
 
 def shipped_techniques() -> list[str]:
     """List the names of the techniques in ``glsl/``: kernels, draws, sources and TOML techniques.
 
-    One whose files are wrong is listed as well: it is there, and reading it says what is wrong.
+    One whose files are wrong is listed as well: it exists, and reading it raises the error.
     """
     names = []
     for name in shipped_names():
@@ -107,7 +103,7 @@ class Techniques:
         self.deepest = 0  # the most that were open at once
 
     def has_room_for(self, depth: int) -> bool:
-        """Return whether techniques nested so deep may stand where the reading is."""
+        """Return whether techniques nested so deep may be read inside those that are open."""
         return len(self.open) + depth <= _MAX_NESTING
 
     def read(self, use: str, folder: Path, root: Path) -> Technique:
@@ -176,7 +172,7 @@ class Techniques:
         self.deepest = max(self.deepest, len(self.open))
         try:
             graph = read_graph(TomlFile(path, root), name, self.read)
-            refuse_monster(graph)
+            check_kernel_count(graph)
         finally:
             self.open.pop()
         return graph
@@ -184,14 +180,14 @@ class Techniques:
     def _variants(self, path: Path, of: Technique, root: Path) -> tuple[Variant, ...]:
         """Return the fast variants of a technique in a file, the fastest first."""
         return tuple(
-            self._variant(beside, of, root)
+            self._variant(variant, of, root)
             for ending in FAST
-            if is_file(beside := path.with_name(f"{path.stem}{ending}"))
+            if is_file(variant := path.with_name(f"{path.stem}{ending}"))
         )
 
     def _variant(self, path: Path, of: Technique, root: Path) -> Variant:
         if not is_inside(path, (root, GLSL)):
-            raise SketchError("lies outside the sketch's own folder and glsl/", file=shown(path))
+            raise SketchError("lies outside the sketch's own folder and glsl/", file=path)
         found: Technique
         if path.suffix == ".comp":
             found = _compute_variant(path, root, of)
@@ -199,7 +195,7 @@ class Techniques:
             found = without_variants(self._graph(path, name_of(path), root))
         agreed, record = verified(Path(found.path))
         if agreed is None or agreed[0] == content_of(of):
-            check_shape(found, of)  # beside an edited text it is left out, whatever it has
+            check_shape(found, of)  # else it is left out anyway
         return Variant(found, agreed, record)
 
 
@@ -221,13 +217,11 @@ class WithLibrary(Techniques):
         return super().read(use, folder, root) if own else self._library.read(use, folder, root)
 
 
-def refuse_monster(graph: Graph) -> None:
+def check_kernel_count(graph: Graph) -> None:
     """Raise ``SketchError`` for more kernels than any terrain needs: a few lines can nest millions."""
     count = _count(graph, {})
     if count > _MAX_KERNELS:
-        raise SketchError(
-            f"{count} passes with those inside; {_MAX_KERNELS} is the most", file=shown(graph.path)
-        )
+        raise graph.error(f"{count} passes with those inside; {_MAX_KERNELS} is the most")
 
 
 def _count(technique: Technique, known: dict[int, int]) -> int:
@@ -254,21 +248,16 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
     if present:
         return present[0].resolve(), limit
     ending = f" (without '{base.suffix}')" if base.suffix in TECHNIQUES else ""
-    raise SketchError(f"there is no technique '{use}'{ending}{nearest(use, _known_names(own, folder))}")
-
-
-def _known_names(own: bool, folder: Path) -> list[str]:
-    if not own:
-        return shipped_names()
-    files = names_below((folder,), TECHNIQUES)
-    return [f"./{name.rpartition('.')[0]}" for name in files]
+    files = names_below((folder,), TECHNIQUES) if own else []
+    names = [f"./{name.rpartition('.')[0]}" for name in files] if own else shipped_names()
+    raise SketchError(f"there is no technique '{use}'{ending}{nearest(use, names)}")
 
 
 def _compute_variant(path: Path, folder: Path, of: Technique) -> Kernel:
     found = parsed_kernel(path.stem, path, (folder,))
     if found is None or found.kind != "compute":
         message = 'a .comp beside a kernel begins with #pragma compute(groups = "…", agrees = "…")'
-        raise SketchError(message, file=shown(path))
+        raise SketchError(message, file=path)
     outputs = of.outputs if isinstance(of, Kernel) else outputs_with_formats(of)
     return replaced(found, outputs=outputs, accepts=_accepts(of))
 

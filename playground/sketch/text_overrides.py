@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import cast
 
 from playground.errors import DataError
-from playground.paths import GLSL, shown
+from playground.paths import GLSL
 from playground.sketch.dialects import read_foreign
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Graph, Kernel, Sketch, Technique
@@ -30,44 +30,36 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
     """
     if not texts:
         return sketch
-    return replace(sketch, graph=_Reread(texts, Path(sketch.folder)).technique(sketch.graph))
+    known: dict[int, Technique] = {}  # one technique may be in several passes
 
-
-class _Reread:
-    """Parses anew what is made of some texts."""
-
-    def __init__(self, texts: Mapping[str, str], folder: Path) -> None:
-        self.texts = texts
-        self.folder = folder
-        self.known: dict[int, Any] = {}  # one technique may stand in several passes
-
-    def technique(self, technique: Any) -> Any:
+    def reread(technique: Technique) -> Technique:
         """Return the technique itself where none of the texts is in it."""
-        if not any(file in self.texts for file in technique.files):
+        if not any(file in texts for file in technique.files):
             return technique
-        if id(technique) not in self.known:
-            self.known[id(technique)] = self._reread(technique)
-        return self.known[id(technique)]
+        if id(technique) not in known:
+            variants = tuple(replace(v, technique=reread(v.technique)) for v in technique.variants)
+            if isinstance(technique, Graph):
+                passes = tuple(replace(p, technique=reread(p.technique)) for p in technique.passes)
+                known[id(technique)] = replace(technique, passes=passes, variants=variants)
+            else:
+                kernel = _parsed_again(technique, texts, Path(sketch.folder))
+                known[id(technique)] = replace(kernel, variants=variants)
+        return known[id(technique)]
 
-    def _reread(self, technique: Technique) -> Technique:
-        variants = tuple(replace(v, technique=self.technique(v.technique)) for v in technique.variants)
-        if isinstance(technique, Graph):
-            passes = tuple(replace(p, technique=self.technique(p.technique)) for p in technique.passes)
-            return replace(technique, passes=passes, variants=variants)
-        return replace(self.kernel(technique), variants=variants)
+    return replace(sketch, graph=cast(Graph, reread(sketch.graph)))
 
-    def kernel(self, kernel: Kernel) -> Kernel:
-        path = Path(kernel.path)
-        root = self.folder if not path.is_relative_to(GLSL) else GLSL
-        found: Kernel | None
-        if kernel.dialect:
-            read = Techniques().read
-            graph = read_foreign(path, kernel.name, root, read, kernel.dialect, instead=self.texts)
-            found = graph.kernels[-1][1] if graph is not None else None
-        else:
-            found = parse_kernel(kernel.name, read_source(path, (root,), self.texts))
-        if found is None:
-            raise DataError("no kernel is left of this text", file=shown(path))
-        if kernel.kind == "compute":  # a compute variant has these of its technique
-            return replace(found, outputs=kernel.outputs, accepts=kernel.accepts)
-        return found
+
+def _parsed_again(kernel: Kernel, texts: Mapping[str, str], folder: Path) -> Kernel:
+    path = Path(kernel.path)
+    root = folder if not path.is_relative_to(GLSL) else GLSL
+    found: Kernel | None
+    if kernel.dialect:
+        graph = read_foreign(path, kernel.name, root, Techniques().read, kernel.dialect, instead=texts)
+        found = graph.kernels[-1][1] if graph is not None else None
+    else:
+        found = parse_kernel(kernel.name, read_source(path, (root,), texts))
+    if found is None:
+        raise DataError("no kernel is left of this text", file=path)
+    if kernel.kind == "compute":  # a compute variant has these of its technique
+        return replace(found, outputs=kernel.outputs, accepts=kernel.accepts)
+    return found

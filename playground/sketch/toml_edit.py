@@ -1,7 +1,7 @@
 """Change single values of a TOML text and leave every other byte of it as it is.
 
-``toml_places`` finds where its keys and values stand; the text is changed by cutting and pasting
-there: comments, order, spaces, line endings and the way that tables are written stay.
+``toml_places`` locates its keys and values; the text is changed only there: comments, order,
+spaces, line endings and the way that tables are written stay.
 It must be TOML already; nothing is checked here.
 """
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,15 @@ from playground.paths import shown
 from playground.sketch import wiring
 from playground.sketch.agreement import read_agreement
 from playground.sketch.allowed_files import is_variant, leads_outside
-from playground.sketch.assign import TERRAIN_KEYS, check_value, flat_values, resolve
-from playground.sketch.model import Export, Graph, Parameter, PassSpec, Sketch, Technique, Value
+from playground.sketch.assign import (
+    check_value,
+    current_paths,
+    find_targets,
+    flat_values,
+    renamed,
+    resolve,
+)
+from playground.sketch.model import Export, Graph, PassSpec, Sketch, Technique, Value
 from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import coerce, spell
@@ -22,12 +30,12 @@ TECHNIQUE_KEYS = ("parameters", "inputs", "outputs")
 """What a technique's TOML may hold and a sketch's may not."""
 
 Read = Callable[[str, Path, Path], Technique]
-"""Returns the technique that ``use`` names, seen from a folder inside a root."""
+"""Returns the technique that ``use`` names, from a folder inside a root."""
 
 _PASS_KEYS = ("name", "use", "inputs", "set", "size", "repeat", "feedback")
 
 
-def read_graph(file: TomlFile, name: str, read: Read) -> Graph:
+def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
     """Return a technique of several passes; raise ``SketchError`` at the line that is wrong."""
     more = ("agrees",) if is_variant(file.path) else ()
     file.only(file.table, ("format", "title", "pass", *TECHNIQUE_KEYS, *more))
@@ -38,7 +46,7 @@ def read_graph(file: TomlFile, name: str, read: Read) -> Graph:
     except ValueError as error:
         raise file.error(f"agrees: {error}", "agrees") from None
     graph = Graph(
-        name,
+        use,
         str(file.path),
         read_passes(file, read),
         _exports(file, "parameters"),
@@ -47,14 +55,13 @@ def read_graph(file: TomlFile, name: str, read: Read) -> Graph:
         file.take(file.table, "title", str, ""),
         agrees,
         line=file.line("outputs"),
+        warnings=tuple(file.warnings),
     )
-    for key, names in (
-        ("parameters", [e.name for e in graph.parameters]),
-        ("inputs", [e.name for e in graph.inputs]),
-        ("outputs", [name for name, _ in graph.outputs]),
-    ):
-        for wrong in (name for name in names if not name.isidentifier()):
-            raise file.error(f"'{wrong}': expected a name of letters, digits and _", key, *wrong.split("."))
+    names = [("parameters", export.name) for export in graph.parameters]
+    names += [("inputs", export.name) for export in graph.inputs]
+    for key, name in (*names, *(("outputs", name) for name, _ in graph.outputs)):
+        if not name.isidentifier():
+            raise file.error(f"'{name}': expected a name of letters, digits and _", key, name)
     wiring.check_graph(graph)
     return graph
 
@@ -69,23 +76,20 @@ def read_passes(file: TomlFile, read: Read) -> tuple[PassSpec, ...]:
         place = ("pass", index)
         file.only(table, _PASS_KEYS, *place)
         name = file.take(table, "name", str, "", *place)
+        wrong = ""
         if not name.isidentifier():
-            raise file.error(
-                f"name = {spell(name)}: a pass needs a name of letters, digits and _", *place, "name"
-            )
-        if name in found:
-            raise file.error(f"a second pass named '{name}'", *place, "name")
-        if name == "view":
-            raise file.error(
-                "a pass may not be named 'view'; that is the [view] table's name", *place, "name"
-            )
+            wrong = f"name = {spell(name)}: a pass needs a name of letters, digits and _"
+        elif name in found:
+            wrong = f"a second pass named '{name}'"
+        elif name == "view":
+            wrong = "a pass may not be named 'view'; that is the [view] table's name"
+        if wrong:
+            raise file.error(wrong, *place, "name")
         found[name] = read_pass(file, table, place, name, read)
     return tuple(found.values())
 
 
-def read_pass(
-    file: TomlFile, table: Mapping[str, Any], place: tuple[str | int, ...], name: str, read: Read
-) -> PassSpec:
+def read_pass(file: TomlFile, table: Mapping[str, Any], place: Place, name: str, read: Read) -> PassSpec:
     """Return what one table, a pass's or the view's, says of a pass."""
     use = file.take(table, "use", str, "", *place)
     if not use:
@@ -102,7 +106,7 @@ def read_pass(
         raise file.error(f"pass '{name}': feedback needs a repeat, as repeat = 8", *place, "feedback")
     if repeat and not feedback:
         example = ', as feedback = { water = "water" }'
-        message = f"pass '{name}': repeat needs feedback{example}: without, each turn gives the same"
+        message = f"pass '{name}': repeat needs feedback{example}: without, each step gives the same"
         raise file.error(message, *place, "repeat")
     inputs = file.texts(table, "inputs", *place)
     for key, pairs in (("inputs", inputs), ("feedback", feedback)):
@@ -110,13 +114,16 @@ def read_pass(
             if not wiring.takes_input(technique, wanted):
                 valid = [*wiring.input_names(technique), *_inner_inputs(technique)]
                 message = f"{use} has no input '{wanted}'{nearest(wanted, valid)}"
-                raise file.error(message, *place, key, *wanted.split("."))
+                raise file.error(message, *place, key, wanted)
     for wanted, output in feedback:
         if output not in wiring.output_names(technique):
             hint = nearest(output, wiring.output_names(technique))
-            raise file.error(f"{use} has no output '{output}'{hint}", *place, "feedback", *wanted.split("."))
-    values = _values(file, table, place, name, technique)
-    given = table.get("set", {})
+            raise file.error(f"{use} has no output '{output}'{hint}", *place, "feedback", wanted)
+
+    def read_value(path: str, given: object) -> Value:
+        return coerce(resolve(technique, path)[0].parameter, given, path)
+
+    values = _read_values(file, table, place, technique, read_value, f"pass '{name}'")
     return PassSpec(
         name=name,
         use=use,
@@ -128,70 +135,57 @@ def read_pass(
         feedback=feedback,
         file=shown(file.path),
         line=file.line(*place),
-        set_lines=tuple((p, file.line(*_place_of_value(place, given, p))) for p, _ in values),
+        set_lines=_set_lines(file, place, table.get("set", {}), technique),
     )
 
 
-def read_values(
+def _read_values(
     file: TomlFile,
     table: Mapping[str, Any],
-    place: tuple[str | int, ...],
+    place: Place,
     technique: Technique,
-    read_value: Callable[[str, object], tuple[Value, Parameter | None]],
+    read_value: Callable[[str, object], Value],
     who: str,
 ) -> tuple[tuple[str, Value], ...]:
-    """Return what ``set`` says, checked: each value, and that no file lies outside.
-
-    ``read_value`` takes a path and what stands there, and returns the value and its parameter.
-    """
-    given = file.take(table, "set", dict, {}, *place)
+    """Return what ``set`` says, checked: each value by ``read_value``, and that no file lies outside."""
     try:
-        flat = flat_values(technique, given)
+        given = flat_values(technique, file.take(table, "set", dict, {}, *place))
+        names = current_paths(technique, given)
     except ParameterError as error:
         raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set") from None
     found = []
-    for path, raw in flat.items():
-        at = _place_of_value(place, given, path)
+    for path, raw in given.items():
         try:
-            value, parameter = read_value(path, raw)
+            value = read_value(path, raw)
         except ParameterError as error:
-            raise file.error(f"{who}: {error.diagnostics[0].message}", *at) from None
-        if parameter and parameter.widget.kind == "file" and value:
-            if leads_outside(str(value), file.root, parameter.file):
-                message = f"{who}: {path} = {spell(value)} lies outside the sketch's own folder and glsl/"
-                raise file.error(message, *at)
-        found.append((path, value))
+            raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set", path) from None
+        parameters = [target.parameter for target in find_targets(technique, path)[:1]]
+        files = [parameter.file for parameter in parameters if parameter.widget.kind == "file"]
+        if value and any(leads_outside(str(value), file.root, declared_in) for declared_in in files):
+            message = f"{who}: {path} = {spell(value)} lies outside the sketch's own folder and glsl/"
+            raise file.error(message, *place, "set", path)
+        if sentence := renamed(technique, path, raw):
+            file.warn(f"{who}: {sentence}", *place, "set", path)
+        found.append((names[path], value))
     return tuple(found)
 
 
-def _place_of_value(place: Place, given: Mapping[str, Any], path: str) -> Place:
-    """Return where a table's ``set`` has a path: in quotes, as one key, or without, as several."""
-    return (*place, "set", *([path] if path in given else path.split(".")))
+def _set_lines(
+    file: TomlFile, place: Place, given: Mapping[str, Any], technique: Technique
+) -> tuple[tuple[str, int], ...]:
+    """Return the line of each path that a pass's ``set`` has."""
+    paths = current_paths(technique, flat_values(technique, given))
+    return tuple((name, file.line(*place, "set", path)) for path, name in paths.items())
 
 
 def read_set(
     file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place, who: str
 ) -> tuple[tuple[str, Value], ...]:
     """Return what a shot, a preset or a keyframe sets, checked; ``who`` begins the sentence of a mistake."""
-
-    def read_value(path: str, raw: object) -> tuple[Value, Parameter | None]:
-        value = check_value(sketch, path, raw)
-        return value, None if path in TERRAIN_KEYS else resolve(sketch.graph, path)[0].parameter
-
-    return read_values(file, table, place, sketch.graph, read_value, who)
+    return _read_values(file, table, place, sketch.graph, partial(check_value, sketch), who)
 
 
-def _values(
-    file: TomlFile, table: Mapping[str, Any], place: tuple[str | int, ...], name: str, technique: Technique
-) -> tuple[tuple[str, Value], ...]:
-    def read_value(path: str, raw: object) -> tuple[Value, Parameter | None]:
-        parameter = resolve(technique, path)[0].parameter
-        return coerce(parameter, raw, path), parameter
-
-    return read_values(file, table, place, technique, read_value, f"pass '{name}'")
-
-
-def _repeat(file: TomlFile, table: Mapping[str, Any], place: tuple[str | int, ...]) -> str:
+def _repeat(file: TomlFile, table: Mapping[str, Any], place: Place) -> str:
     given = table.get("repeat", "")
     if isinstance(given, bool) or not isinstance(given, int | str) or ("repeat" in table and given == ""):
         raise file.error(
@@ -200,7 +194,7 @@ def _repeat(file: TomlFile, table: Mapping[str, Any], place: tuple[str | int, ..
     return _expression(file, given, *place, "repeat")
 
 
-def _size(file: TomlFile, table: Mapping[str, Any], place: tuple[str | int, ...]) -> tuple[str, str] | None:
+def _size(file: TomlFile, table: Mapping[str, Any], place: Place) -> tuple[str, str] | None:
     given = table.get("size")
     if given is None:
         return None
@@ -219,7 +213,7 @@ def _expression(file: TomlFile, given: int | str, *place: str | int) -> str:
 
 
 def _axis(expression: str, axis: str) -> str:
-    """Let ``size = "size"`` or ``"height.size // 2"`` stand for both axes."""
+    """Return the expression of one axis: ``size``, as in ``"height.size // 2"``, is for both."""
     return re.sub(r"\bsize\b(?!\s*\.)", f"size.{axis}", expression)
 
 

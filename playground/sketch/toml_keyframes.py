@@ -29,7 +29,14 @@ def read_keyframes(file: TomlFile, sketch: Sketch) -> tuple[Keyframe, ...]:
         who = f"keyframe at {time:g} s"
         values = read_set(file, sketch, table, place, who)
         for path, _ in values:
-            _check_path(file, sketch, table, place, who, path, names)
+            if path in TERRAIN_KEYS:
+                message = f"'{path}' is the terrain's; keyframes set parameters and the camera"
+                raise file.error(f"{who}: {message}", *place, "set", path)
+            for target in resolve(sketch.graph, path):
+                other = names.setdefault(target.path, path)
+                if other != path:
+                    message = f"'{path}' is what '{other}' sets in another keyframe"
+                    raise file.error(f"{who}: {message}", *place, "set", path)
         camera = _camera(file, table, place)
         if not values and not camera:
             raise file.error(f"{who}: it sets nothing; expected camera = {{ … }} or set = {{ … }}", *place)
@@ -54,25 +61,6 @@ def _time(file: TomlFile, table: Mapping[str, Any], place: Place, before: list[K
     return time
 
 
-def _check_path(
-    file: TomlFile,
-    sketch: Sketch,
-    table: Mapping[str, Any],
-    place: Place,
-    who: str,
-    path: str,
-    names: dict[str, str],
-) -> None:
-    """Raise ``SketchError`` for what is no parameter, or is set under another name as well."""
-    at = (*place, "set", *([path] if path in table["set"] else path.split(".")))
-    if path in TERRAIN_KEYS:
-        raise file.error(f"{who}: '{path}' is the land's; keyframes set parameters and the camera", *at)
-    for target in resolve(sketch.graph, path):
-        other = names.setdefault(target.path, path)
-        if other != path:
-            raise file.error(f"{who}: '{path}' is what '{other}' sets in another keyframe", *at)
-
-
 def _camera(
     file: TomlFile, table: Mapping[str, Any], place: Place
 ) -> tuple[tuple[str, float | tuple[float, ...]], ...]:
@@ -83,9 +71,9 @@ def _camera(
 
 
 def _check_distances(file: TomlFile, found: list[Keyframe]) -> None:
-    """Raise ``SketchError`` where a camera goes between so many metres and "as far as shows the terrain"."""
+    """Raise ``SketchError`` where the distance is metres in one keyframe and 0, automatic, in another."""
     far = {bool(dict(k.camera)["distance"]) for k in found if "distance" in dict(k.camera)}
     for index, keyframe in enumerate(found):
         if len(far) > 1 and dict(keyframe.camera).get("distance") == 0.0:
-            message = "distance = 0 shows the whole land, to which no way leads from metres; give metres"
+            message = "distance = 0 shows the whole terrain and cannot be mixed with metres; give metres"
             raise file.error(message, "keyframe", index, "camera", "distance")

@@ -1,7 +1,7 @@
-"""Find where everything stands in a TOML text: the line of each key, and the span of its value.
+"""Locate everything in a TOML text: the line of each key, and the span of its value.
 
 The standard reader gives a line for a syntax error only; a wrong value deserves one too, and a value
-that is saved is written over where it stands. Any text is read, also one that is not TOML: what was
+that is saved is written over in its place. Any text is read, also one that is not TOML: what was
 found before its first mistake is there.
 """
 
@@ -11,6 +11,7 @@ import re
 import tomllib
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 Place = tuple[str | int, ...]
@@ -42,12 +43,12 @@ class Header(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """Where a key and its value stand."""
+    """The span of a key and its value."""
 
     key: int  # where the key begins
     value: int  # where the value begins
     end: int  # behind the value
-    inline: bool  # it stands in { … }, not on a line of its own
+    inline: bool  # it is in { … }, not on a line of its own
 
 
 class _Token(NamedTuple):
@@ -61,7 +62,7 @@ class _End(Exception):
 
 
 class TomlPlaces:
-    """Where everything stands in a text."""
+    """The lines and spans of all keys and values in a text."""
 
     def __init__(self, text: str) -> None:
         self.lines: dict[Place, int] = {}  # of each table, key and value in a list, from 1
@@ -75,13 +76,21 @@ class TomlPlaces:
             self._document()
 
     def line(self, place: Place) -> int:
-        """Return the line of a place, or of the nearest table around it; 0 if none is known."""
+        """Return the line of a place, or of the nearest table around it; 0 if none is known.
+
+        A key may be a dotted path, however the text writes its dots: in quotes or without.
+        """
+        place = _split(place)
         while place:
             for known in (place, (*place, 0)):  # a list of tables begins with its first
-                if known in self.lines:
-                    return self.lines[known]
+                if known in self._lines_by_parts:
+                    return self._lines_by_parts[known]
             place = place[:-1]
         return 0
+
+    @cached_property
+    def _lines_by_parts(self) -> dict[Place, int]:
+        return {_split(place): line for place, line in reversed(self.lines.items())}
 
     def find(self, table: Place, key: str) -> Place | None:
         """Return the place of a dotted key in a table, however its dots are written."""
@@ -201,6 +210,11 @@ class TomlPlaces:
         return self._behind()
 
 
+def _split(place: Place) -> Place:
+    """Return a place with each dotted key split into its parts."""
+    return tuple(part for key in place for part in (key.split(".") if isinstance(key, str) else (key,)))
+
+
 def _tokens(text: str) -> list[_Token]:
     """Return the tokens of a text, without spaces and comments, and an empty one at its end."""
     found, line = [], 1
@@ -213,7 +227,7 @@ def _tokens(text: str) -> list[_Token]:
 
 
 def _unquoted(token: str) -> str:
-    """Return the key that a token stands for."""
+    """Return the key that a token writes."""
     if token[0] not in "\"'":
         return token
     try:

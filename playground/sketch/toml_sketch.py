@@ -8,18 +8,10 @@ from typing import Any
 
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve
+from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed, resolve
+from playground.sketch.flat import repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
-from playground.sketch.model import (
-    LARGEST_SIDE,
-    Camera,
-    Graph,
-    PassSpec,
-    Preset,
-    Shot,
-    Sketch,
-)
-from playground.sketch.repeats import repeated_path, repeated_paths
+from playground.sketch.model import LARGEST_SIDE, Camera, Graph, PassSpec, Preset, Shot, Sketch
 from playground.sketch.toml_camera import read_camera
 from playground.sketch.toml_graph import Read, read_pass, read_passes, read_set
 from playground.sketch.toml_keyframes import read_keyframes
@@ -34,6 +26,7 @@ SKETCH_KEYS = frozenset({*TERRAIN_KEYS, "main", "view", "shot", "preset", "keyfr
 _TOP = ("format", "title", "pass", *sorted(SKETCH_KEYS))
 _VIEW = ("use", "inputs", "set", "camera", "samples")
 _SHOT = ("name", "size", "time", "camera", "set", "preset", "samples", "steps", "marks")
+_PAIRS = {"size": "a whole number of texels, or [x, y]", "extent": "metres, or [east, north]"}
 _DEFAULT_VIEW = "view/terrain"
 _PLAIN_VIEW = "view/map"  # of a sketch without [view]: its last pass from above
 
@@ -46,7 +39,7 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
     view, camera, samples = _view(file, passes, read)
     name = file.path.parent.name if file.path.name == "sketch.toml" else file.path.stem
     title = file.take(file.table, "title", str, "")
-    land = {key: _land(file, key) for key in TERRAIN_KEYS if key in file.table}
+    terrain = {key: _terrain_value(file, key) for key in TERRAIN_KEYS if key in file.table}
     sketch = Sketch(
         name=name,
         file=str(file.path),
@@ -55,31 +48,23 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
         title=title or name,
         camera=camera,
         samples=samples,
-        **land,
+        **terrain,
     )
     check_graph(sketch.graph)
     flatten(sketch)
     sketch = replace(sketch, main=_main(file, sketch))
     sketch = replace(sketch, presets=_presets(file, sketch))
     sketch = replace(sketch, shots=_shots(file, sketch))
-    return replace(sketch, keyframes=read_keyframes(file, sketch))
+    sketch = replace(sketch, keyframes=read_keyframes(file, sketch))
+    return replace(sketch, warnings=tuple(file.warnings))
 
 
-def _land(file: TomlFile, key: str) -> Any:
+def _terrain_value(file: TomlFile, key: str) -> Any:
     given = file.table[key]
-    whole = key == "size"
     numbers = given if isinstance(given, list) else [given]
-    wanted = (int,) if whole else (int, float)
-    pair = key in ("size", "extent")
-    if len(numbers) > (2 if pair else 1) or any(type(n) not in wanted for n in numbers):
-        noun = (
-            "a whole number of texels, or [x, y]"
-            if whole
-            else "metres, or [east, north]"
-            if pair
-            else "metres"
-        )
-        raise file.error(f"{key} = {spell(given)}: expected {noun}", key)
+    types = (int,) if key == "size" else (int, float)
+    if len(numbers) > (2 if key in _PAIRS else 1) or any(type(n) not in types for n in numbers):
+        raise file.error(f"{key} = {spell(given)}: expected {_PAIRS.get(key, 'metres')}", key)
     try:
         return check_value(Sketch("", "", "", Graph("", "", ())), key, given)
     except ParameterError as error:
@@ -109,8 +94,13 @@ def _main(file: TomlFile, sketch: Sketch) -> tuple[str, ...]:
         except ParameterError as error:
             raise file.error(f"main: {error.diagnostics[0].message}", "main") from None
         if paths.count(path) > 1:
-            raise file.error(f"main: '{path}' stands twice", "main")
-    return tuple(paths)
+            raise file.error(f"main: '{path}' appears twice", "main")
+        if sentence := renamed(sketch.graph, path, None):
+            file.warn(f"main: {sentence}", "main")
+    try:
+        return tuple(current_paths(sketch.graph, paths).values())
+    except ParameterError as error:
+        raise file.error(f"main: {error.diagnostics[0].message}", "main") from None
 
 
 def _samples(file: TomlFile, table: Mapping[str, Any], default: int, place: Place) -> int:
@@ -186,5 +176,5 @@ def read_steps(
         for path, _ in steps:
             if repeated_path(path, nodes) is None:
                 message = f"steps: no repeated pass '{path}'{nearest(path, repeated_paths(nodes))}"
-                raise file.error(message, *place, "steps", *path.split("."))
+                raise file.error(message, *place, "steps", path)
     return steps

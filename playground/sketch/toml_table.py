@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Any
 
-from playground.errors import SketchError, nearest
+from playground.errors import Diagnostic, SketchError, nearest
 from playground.paths import shown
 from playground.sketch.source import read_text
-from playground.sketch.toml_places import TomlPlaces
+from playground.sketch.toml_places import Place, TomlPlaces
 from playground.sketch.values import spell
 
 FORMAT = 1
@@ -34,10 +34,11 @@ class TomlFile:
         """Read ``path``; ``root`` is the folder that what it names must stay in.
 
         ``text`` is the part of the file that is TOML, where not all of it is, and ``before`` how
-        many lines stand before that part. Raises ``SketchError`` if it cannot be read or is not TOML.
+        many lines come before that part. Raises ``SketchError`` if it cannot be read or is not TOML.
         """
         self.path = path.resolve()
         self.root = root
+        self.warnings: dict[Diagnostic, None] = {}  # of what it says, though it can be read
         self._before = before
         if text is None:
             text = read_text(self.path)
@@ -47,9 +48,9 @@ class TomlFile:
         except tomllib.TOMLDecodeError as error:
             raise self._syntax(error, text) from None
         except RecursionError:
-            raise SketchError("not TOML: nested too deeply", file=shown(self.path)) from None
+            raise SketchError("not TOML: nested too deeply", file=self.path) from None
         except ValueError as error:  # a number of thousands of digits, a date that is none
-            raise SketchError(f"not TOML: {error}", file=shown(self.path)) from None
+            raise SketchError(f"not TOML: {error}", file=self.path) from None
 
     def _syntax(self, error: tomllib.TOMLDecodeError, text: str) -> SketchError:
         message = str(error)
@@ -57,26 +58,32 @@ class TomlFile:
         if place is None:
             last = text.count("\n") + 1
             message = f"not TOML: {message.split(' (at')[0]}"
-            return SketchError(message, file=shown(self.path), line=self._before + last)
-        line, column = int(place.group(1)), int(place.group(2))
-        excerpt = text.split("\n")[line - 1]
-        cause = message[: place.start()]
+            return SketchError(message, file=self.path, line=self._before + last)
+        line, column = map(int, place.groups())
         return SketchError(
-            f"not TOML: {cause}",
-            file=shown(self.path),
+            f"not TOML: {message[: place.start()]}",
+            file=self.path,
             line=self._before + line,
             column=column,
-            excerpt=excerpt,
+            excerpt=text.split("\n")[line - 1],
         )
 
     def line(self, *place: str | int) -> int:
-        """Return the line of a place, or of the nearest table around it; 0 if none is known."""
+        """Return the line of a place, or of the nearest table around it; 0 if none is known.
+
+        A key may be a dotted path, however the text writes its dots.
+        """
         found = self._places.line(place)
         return self._before + found if found or self._before else 0
 
     def error(self, message: str, *place: str | int) -> SketchError:
         """Return an error that points at a place."""
-        return SketchError(message, file=shown(self.path), line=self.line(*place))
+        return SketchError(message, file=self.path, line=self.line(*place))
+
+    def warn(self, message: str, *place: str | int) -> None:
+        """Add a warning that points at a place."""
+        line = self.line(*place)
+        self.warnings[Diagnostic(message, shown(self.path), line, severity="warning")] = None
 
     def version(self, *, required: bool) -> None:
         """Raise ``SketchError`` if the format is one that cannot be read."""
@@ -114,25 +121,25 @@ class TomlFile:
         return value
 
     def texts(self, table: Mapping[str, Any], key: str, *place: str | int) -> tuple[tuple[str, str], ...]:
-        """Return the pairs of a table whose values are texts; dotted keys may stand without quotes."""
-        pairs = _joined(self.take(table, key, dict, {}, *place))
-        for name, value in pairs:
-            if not isinstance(value, str):
-                raise self.error(
-                    f"{name} = {spell(value)}: expected text in quotes", *place, key, *name.split(".")
-                )
-        return tuple(pairs)
+        """Return the pairs of a table whose values are texts; dotted keys need no quotes."""
+        return self._pairs(table, key, place, _NOUNS[str], lambda value: isinstance(value, str))
 
     def whole_numbers(
         self, table: Mapping[str, Any], key: str, *place: str | int
     ) -> tuple[tuple[str, int], ...]:
-        """Return the pairs of a table whose values are 0, 1, 2, …; dotted keys may stand without quotes."""
-        pairs = _joined(self.take(table, key, dict, {}, *place))
+        """Return the pairs of a table whose values are 0, 1, 2, …; dotted keys need no quotes."""
+        return self._pairs(
+            table, key, place, f"{_NOUNS[int]}, 0 or more", lambda v: type(v) is int and 0 <= v < 2**31
+        )
+
+    def _pairs(
+        self, table: Mapping[str, Any], key: str, place: Place, wanted: str, fits: Callable[[Any], bool]
+    ) -> tuple[tuple[str, Any], ...]:
+        pairs = tuple(_joined(self.take(table, key, dict, {}, *place)))
         for name, value in pairs:
-            if type(value) is not int or not 0 <= value < 2**31:
-                message = f"{name} = {spell(value)}: expected a whole number, 0 or more"
-                raise self.error(message, *place, key, *name.split("."))
-        return tuple(pairs)
+            if not fits(value):
+                raise self.error(f"{name} = {spell(value)}: expected {wanted}", *place, key, name)
+        return pairs
 
 
 def _joined(table: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 from playground.errors import Diagnostic, ParameterError, nearest
 from playground.paths import shown
@@ -47,7 +48,7 @@ _LONGEST_LITERAL = 64
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
 _BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
-_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "follows"})
+_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "follows", "was"})
 
 Calls = dict[str, list[str]]
 
@@ -81,7 +82,7 @@ def read_uniforms(
             check_name(name, line, "parameter")
             _refuse_given_elsewhere(name, initial, line)
         if name in seen:
-            # A file that is included twice stands here twice; its guard leaves one to the driver.
+            # A file that is included twice is here twice; its guard leaves one to the driver.
             if (seen[name].file, seen[name].number) == (line.file, line.number):
                 continue
             first = f"{shown(seen[name].file)}:{seen[name].number}"
@@ -106,6 +107,7 @@ def read_uniforms(
     for number, words, line in following:
         found = read_follows(parameters[number], words, parameters, line)
         parameters[number] = replace(parameters[number], follows=found)
+    _check_former_names(parameters, seen)
     return tuple(parameters), tuple(inputs)
 
 
@@ -119,17 +121,17 @@ def unfed_samplers(source: SourceText) -> tuple[Diagnostic, ...]:
             for one in re.finditer(r"([A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?(?:,|$)", names):
                 name, column = one.group(1), match.start(2) + one.start() + 1
                 example = f'uniform sampler2D {name};  //! file("picture.png")'
-                more = (
-                    f"an image file does: {example}" if kind == "sampler2D" else "only a sampler2D may be fed"
-                )
-                message = f"nothing feeds '{name}', so it reads black; {more}"
+                more = f"an image file does: {example}"
+                if kind != "sampler2D":
+                    more = "only a sampler2D may be fed"
                 if name not in fed:
+                    message = f"nothing feeds '{name}', so it reads black; {more}"
                     found.append(line.diagnostic(message, column, "warning"))
     return tuple(dict.fromkeys(found))
 
 
 def is_given(name: str) -> bool:
-    """Say whether a name is one that the engine gives, or calls."""
+    """Return whether a name is one that the engine gives, or calls."""
     return name in GIVEN or name in RESERVED or name.startswith(("previous_", WIRED, MATCHES, TOWARDS))
 
 
@@ -146,7 +148,7 @@ def check_name(name: str, line: Line, what: str) -> None:
 
 
 def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
-    """Refuse a uniform that only plain shaders are given: here it would keep its default for ever.
+    """Refuse a uniform that only plain shaders are given: here it would always have its default.
 
     One with an annotation is meant as a parameter, and so is a plain word with a default.
     """
@@ -154,24 +156,20 @@ def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:
     if not meaning or line.comment.startswith("!") or (name == meaning and initial is not None):
         return
     column = line.code.index(name) + 1
-    said = f"'{name}' is given to plain shaders only, and here nothing would set it"
+    wrong = f"'{name}' is given to plain shaders only, and here nothing would set it"
     if name in GIVEN_INSTEAD:
         given = GIVEN_INSTEAD[name]
-        raise line.error(f"{said}; did you mean '{given}'? It is given: take this line out", column)
-    raise line.error(f"{said}; an annotation makes it a parameter, as //! point for a vec2", column)
+        raise line.error(f"{wrong}; did you mean '{given}'? It is given: take this line out", column)
+    raise line.error(f"{wrong}; an annotation makes it a parameter, as //! point for a vec2", column)
 
 
 def _check_declaration(line: Line, match: re.Match[str] | None) -> None:
-    words = _WORD_UNIFORM.findall(line.code)
-    if (
-        words
-        and not line.code.lstrip().startswith("#")
-        and not _IMAGE.search(line.code)
-        and (not match or len(words) > 1)
-    ):
-        raise line.error(
-            "a uniform is declared on one line of its own: uniform TYPE NAME = LITERAL;  //! annotation"
-        )
+    count = len(_WORD_UNIFORM.findall(line.code))
+    if line.code.lstrip().startswith("#") or _IMAGE.search(line.code) or count == bool(match):
+        return
+    raise line.error(
+        "a uniform is declared on one line of its own: uniform TYPE NAME = LITERAL;  //! annotation"
+    )
 
 
 def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | Input:
@@ -185,9 +183,14 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
     path = words.pop(0) if is_file and words else ""
     if "\0" in path:
         raise line.error(f"the path of '{name}' holds a zero byte")
-    valid = {"nearest", "linear", "clamp", "repeat", "mipmap"} | (
-        {"paint"} if is_file else {"white", "black"}
-    )
+    valid = [
+        "nearest",
+        "linear",
+        "clamp",
+        "repeat",
+        "mipmap",
+        *(["paint"] if is_file else ["white", "black"]),
+    ]
     for word in words:
         if word not in valid:
             raise line.error(f"'{word}' is not a way to read a texture{nearest(word, valid)}")
@@ -207,13 +210,10 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         "sampler2D",
         path,
         Widget("file"),
-        group=_text(calls, "group", line),
-        label=_text(calls, "label", line),
-        tooltip=tooltip,
         sampling=sampling,
         painted="paint" in words,
-        file=line.file,
-        line=line.number,
+        **_described(calls, tooltip, line),
+        former=_former_names(name, calls, line),
     )
 
 
@@ -233,19 +233,17 @@ def _parameter(
     step = _numbers(name, "step", calls["step"], 1, line)[0] if "step" in calls else None
     if step is not None and step <= 0:
         raise line.error(f"step of '{name}': expected a number above 0")
+    widget = _widget(name, kind, calls.get(kind, []), line)
     parameter = Parameter(
         name,
         glsl_type,
         0,
-        _widget(name, kind, calls.get(kind, []), line),
+        replace(widget, renamed=_renamed_choices(name, widget, calls, line)),
         step,
         _text(calls, "unit", line),
-        _text(calls, "group", line),
-        _text(calls, "label", line),
-        tooltip,
         parts=_parts(name, glsl_type, kind, calls, line),
-        file=line.file,
-        line=line.number,
+        **_described(calls, tooltip, line),
+        former=_former_names(name, calls, line),
     )
     default = _literal(name, glsl_type, initial, line)
     try:
@@ -267,6 +265,39 @@ def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tu
         wanted = f"{count} different names, as parts({example})" if count > 1 else "a vector"
         raise line.error(f"parts of '{name}', a {glsl_type}: expected {wanted}")
     return found
+
+
+def _former_names(name: str, calls: Calls, line: Line) -> tuple[str, ...]:
+    """Return the names that ``was("stride")`` gives; ``was("mended: repaired")`` is of a menu's choices."""
+    found = tuple(word for word in calls.get("was", ()) if ":" not in word)
+    wrong = next((word for word in found if not word.isidentifier()), None)
+    if wrong is not None or ("was" in calls and not calls["was"]):
+        example = 'as was("stride"), or of a choice was("former: present")'
+        raise line.error(f"was of '{name}': expected its former name, {example}")
+    return found
+
+
+def _renamed_choices(name: str, widget: Widget, calls: Calls, line: Line) -> tuple[tuple[str, str], ...]:
+    """Return former choices of a menu with what each is called now."""
+    pairs = [word.partition(":") for word in calls.get("was", ()) if ":" in word]
+    found = tuple((former.strip(), present.strip()) for former, _, present in pairs)
+    for former, present in found:
+        if present not in widget.choices:
+            raise line.error(f"was of '{name}': no choice '{present}'{nearest(present, widget.choices)}")
+        if former in widget.choices:
+            raise line.error(f"was of '{name}': '{former}' is one of its choices still")
+    return found
+
+
+def _check_former_names(parameters: Sequence[Parameter], seen: Mapping[str, Line]) -> None:
+    """Raise ``ShaderError`` for a former name that something else of the file has, or had."""
+    owners: dict[str, str] = {}
+    for parameter in parameters:
+        for former in parameter.former:
+            other = former if former in seen else owners.setdefault(former, parameter.name)
+            if other != parameter.name or former in seen:
+                message = f"was of '{parameter.name}': '{former}' is the name of '{other}'"
+                raise seen[parameter.name].error(message)
 
 
 def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
@@ -294,11 +325,15 @@ def _numbers(name: str, word: str, arguments: list[str], count: int, line: Line)
         numbers = ()
     ordered = count == 1 or (len(numbers) == 2 and numbers[0] < numbers[1])
     if len(numbers) != count or not ordered or not all(map(math.isfinite, numbers)):
-        wanted = (
-            f"two numbers, the lower first, as {word}(0, 1)" if count == 2 else "one number, as step(0.01)"
-        )
-        raise line.error(f"{word} of '{name}': expected {wanted}")
+        two = f"two numbers, the lower first, as {word}(0, 1)"
+        raise line.error(f"{word} of '{name}': expected {two if count == 2 else 'one number, as step(0.01)'}")
     return numbers
+
+
+def _described(calls: Calls, tooltip: str, line: Line) -> dict[str, Any]:
+    """Return the fields that any parameter has, of a number or a file."""
+    texts = {word: _text(calls, word, line) for word in ("group", "label")}
+    return {**texts, "tooltip": tooltip, "file": line.file, "line": line.number}
 
 
 def _text(calls: Calls, word: str, line: Line) -> str:

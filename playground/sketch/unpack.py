@@ -1,9 +1,9 @@
 """Open a packed sketch: a zip with a sketch and all that it needs but what ships with the playground.
 
-A zip is a stranger's: nothing of it lands outside its folder, no link is made, and how many
+A zip is not trusted: nothing of it is written outside its folder, no link is made, and how many
 files and bytes it may become is known before the first is written. Commands read it from
 the cache, in a folder named after its bytes, which is made anew where a file of it was
-changed; a window opens a copy beside it, whose files may be edited.
+changed; a window opens a copy in the same folder, whose files may be edited.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ FORMAT = 1
 MOST_FILES = 2000
 MOST_BYTES = 2**30
 _MOST_RATIO = 200  # of what is unpacked to the zip; what is drawn or measured stays far below
-_ALWAYS_FINE = 2**26  # [bytes] unpacked, whatever the ratio
-_MOST_KEPT = 16  # packs in the cache
+_ALWAYS_FINE = 2**26  # [bytes] unpacked, with any ratio
+_MOST_PACKS = 16  # packs in the cache
 _STAMP = ".unpacked-from"
 _MOST_MANIFEST = 2**20
 
-# Windows takes these for devices, whatever follows the first point.
+# Windows takes these for devices, with any ending.
 _DEVICES = {"con", "prn", "aux", "nul", *(f"{name}{n}" for name in ("com", "lpt") for n in range(1, 10))}
 _FORBIDDEN = re.compile(r'[\x00-\x1f<>:"|?*\\]')
 _LEFT_OUT = ("__MACOSX/", "/.DS_Store", "/Thumbs.db", "/desktop.ini")  # what systems put into zips
@@ -78,29 +78,25 @@ def unpacked(path: Path, cache: Path | None = None) -> Path:
 
 
 def unpacked_beside(path: Path, cache: Path | None = None) -> tuple[Path, str]:
-    """Return the sketch's file of a zip in a folder beside it, to be edited, and a sentence that says so.
+    """Return the sketch's file of a zip in a new folder next to it, to be edited, and a message.
 
     A folder that came of the same zip before is opened again, with what was edited there.
     Where the zip's own folder cannot be written to, it is one in the cache, and stays there.
     """
     pack = read_pack(path)
-    name = PurePosixPath(pack.manifest.sketch).parts[0] if "/" in pack.manifest.sketch else path.stem
-    inner = (
-        pack.manifest.sketch if "/" not in pack.manifest.sketch else pack.manifest.sketch.partition("/")[2]
-    )
+    top, in_folder, inner = pack.manifest.sketch.partition("/")
+    name, inner = (top, inner) if in_folder else (path.stem, top)
     for home in (path.resolve().parent, (cache or cache_folder()) / "edited" / pack.digest):
         for number in range(1, 1000):
             target = home / (name if number == 1 else f"{name}-{number}")
             if _stamp_of(target) == pack.digest and (target / inner).is_file():
-                return (
-                    target / inner,
-                    f"{path.name} is unpacked in {target}: this is what opens, and edits stay",
-                )
+                message = f"{path.name} is unpacked in {target}: this is what opens, and edits stay"
+                return target / inner, message
             if target.exists() or target.is_symlink():
                 continue
             if not _can_make(target):
                 break
-            _unpack(pack, target, strip="/" in pack.manifest.sketch)
+            _unpack(pack, target, strip=bool(in_folder))
             return target / inner, f"{path.name} is unpacked into {target}: edits go there, the zip stays"
     raise DataError("no folder could be made to unpack it into", file=path)
 
@@ -110,10 +106,12 @@ def read_pack(path: Path) -> Pack:
     try:
         with zipfile.ZipFile(path) as archive:
             entries = [e for e in archive.infolist() if not e.is_dir() and not _is_left_out(e.filename)]
-            _check(path, entries)
+            _check(entries, path.stat().st_size)
             files = {entry.filename: entry for entry in entries}
-            manifest = _manifest(path, archive, files)
+            manifest = _manifest(archive, files)
         digest = _digest(path)
+    except DataError as error:
+        raise DataError(error.diagnostics[0].message, file=path) from None
     except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, zlib.error, EOFError) as error:
         raise DataError(f"is no zip that can be read: {_reason(error)}", file=path) from None
     missing = [name for name in manifest.shipped if not (GLSL / name).is_file()]
@@ -126,45 +124,47 @@ def read_pack(path: Path) -> Pack:
     return Pack(path, digest, manifest, {name: files[name] for name in files if name != MANIFEST})
 
 
-def _check(path: Path, entries: list[zipfile.ZipInfo]) -> None:
+def _check(entries: list[zipfile.ZipInfo], size: int) -> None:
+    """Raise ``DataError`` for what is not safe to unpack; ``size`` is the zip's own, in bytes."""
     if not entries:
-        raise DataError("holds no file; expected a packed sketch", file=path)
+        raise DataError("holds no file; expected a packed sketch")
     if len(entries) > MOST_FILES:
-        raise DataError(f"holds {len(entries)} files; at most {MOST_FILES} are unpacked", file=path)
-    whole, size = sum(e.file_size for e in entries), path.stat().st_size
+        raise DataError(f"holds {len(entries)} files; at most {MOST_FILES} are unpacked")
+    whole = sum(e.file_size for e in entries)
     if sum(e.compress_size for e in entries) > size:
-        raise DataError("its files overlap, as those of a zip bomb do; it is not unpacked", file=path)
+        raise DataError("its files overlap, as those of a zip bomb do; it is not unpacked")
     if whole > MOST_BYTES or (whole > _ALWAYS_FINE and whole > _MOST_RATIO * size):
         raise DataError(
-            f"would become {whole / 2**20:.0f} MiB from {size / 2**20:.2g}: that is too much to unpack",
-            file=path,
+            f"would become {whole / 2**20:.0f} MiB from {size / 2**20:.2g}: that is too much to unpack"
         )
     names = set()
     for entry in entries:
-        _check_entry(path, entry)
+        _check_entry(entry)
         folded = entry.filename.casefold()  # some systems tell no capitals
         if folded in names:
-            raise DataError(f"holds '{entry.filename}' twice", file=path)
+            raise DataError(f"holds '{entry.filename}' twice")
         names.add(folded)
     for name in names:
         if any(folder.as_posix() in names for folder in PurePosixPath(name).parents):
-            raise DataError(f"'{_plain(name)}' lies in what is a file", file=path)
+            raise DataError(f"'{_plain(name)}' lies in what is a file")
 
 
-def _check_entry(path: Path, entry: zipfile.ZipInfo) -> None:
-    name, mode = entry.filename, entry.external_attr >> 16
-    if stat.S_IFMT(mode) not in (0, stat.S_IFREG):
-        raise DataError(f"'{_plain(name)}' is a link or a device; only plain files are unpacked", file=path)
-    if entry.flag_bits & 1:
-        raise DataError(f"'{_plain(name)}' is encrypted; a packed sketch has no password", file=path)
-    if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise DataError(f"'{_plain(name)}' is compressed in a way other than deflate", file=path)
-    parts = name.split("/")
-    wrong = name.startswith("/") or _FORBIDDEN.search(name) is not None or len(name) > 200
-    if wrong or entry.orig_filename != name or any(_is_bad_part(part) for part in parts):
-        raise DataError(
-            f"'{_plain(name)}' is no name that a file of a sketch may have; nothing was unpacked", file=path
-        )
+def _check_entry(entry: zipfile.ZipInfo) -> None:
+    name, wrong = entry.filename, ""
+    if stat.S_IFMT(entry.external_attr >> 16) not in (0, stat.S_IFREG):
+        wrong = "is a link or a device; only plain files are unpacked"
+    elif entry.flag_bits & 1:
+        wrong = "is encrypted; a packed sketch has no password"
+    elif entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
+        wrong = "is compressed in a way other than deflate"
+    elif (
+        (name.startswith("/") or len(name) > 200 or entry.orig_filename != name)
+        or _FORBIDDEN.search(name)
+        or any(map(_is_bad_part, name.split("/")))
+    ):
+        wrong = "is no name that a file of a sketch may have; nothing was unpacked"
+    if wrong:
+        raise DataError(f"'{_plain(name)}' {wrong}")
 
 
 def _is_bad_part(part: str) -> bool:
@@ -180,33 +180,28 @@ def _plain(name: str) -> str:
     return "".join(c if c.isprintable() else "?" for c in name)[:80]
 
 
-def _manifest(path: Path, archive: zipfile.ZipFile, files: dict[str, zipfile.ZipInfo]) -> Manifest:
+def _manifest(archive: zipfile.ZipFile, files: dict[str, zipfile.ZipInfo]) -> Manifest:
     """Return what the zip says of itself; of one that was made by the user, where its sketch is."""
     if MANIFEST not in files:
-        found = [n for n in files if PurePosixPath(n).name == "sketch.toml" and n.count("/") <= 1]
-        if len(found) == 1:
-            return Manifest(found[0])
-        what = f"{len(found)} of them" if found else "none"
+        sketches = [n for n in files if PurePosixPath(n).name == "sketch.toml" and n.count("/") <= 1]
+        if len(sketches) == 1:
+            return Manifest(sketches[0])
+        what = f"{len(sketches)} of them" if sketches else "none"
         raise DataError(
-            f"is no packed sketch: expected one sketch.toml, in it or in its only folder, and found {what}",
-            file=path,
+            f"is no packed sketch: expected one sketch.toml, in it or in its only folder, and found {what}"
         )
     if files[MANIFEST].file_size > _MOST_MANIFEST:
-        raise DataError(f"its {MANIFEST} is too large", file=path)
+        raise DataError(f"its {MANIFEST} is too large")
     try:
-        said = read_json(archive.read(MANIFEST))
-        if said["format"] != FORMAT:
-            raise DataError(
-                f"is of format {said['format']}; this playground ({__version__}) reads {FORMAT}", file=path
-            )
-        found_manifest = Manifest(str(said["sketch"]), str(said["version"]), tuple(map(str, said["shipped"])))
+        table = read_json(archive.read(MANIFEST))
+        if table["format"] != FORMAT:
+            raise DataError(f"is of format {table['format']}; this playground ({__version__}) reads {FORMAT}")
+        found = Manifest(str(table["sketch"]), str(table["version"]), tuple(map(str, table["shipped"])))
     except (ValueError, KeyError, TypeError) as error:
-        raise DataError(f"its {MANIFEST} cannot be read: {_reason(error)}", file=path) from None
-    if found_manifest.sketch not in files or found_manifest.sketch == MANIFEST:
-        raise DataError(
-            f"says that it opens '{_plain(found_manifest.sketch)}', and does not hold it", file=path
-        )
-    return found_manifest
+        raise DataError(f"its {MANIFEST} cannot be read: {_reason(error)}") from None
+    if found.sketch not in files or found.sketch == MANIFEST:
+        raise DataError(f"says that it opens '{_plain(found.sketch)}', and does not hold it")
+    return found
 
 
 def _unpack(pack: Pack, target: Path, *, strip: bool = False) -> None:
@@ -275,8 +270,8 @@ def _can_make(target: Path) -> bool:
 
 
 def _drop_oldest(home: Path, but: Path) -> None:
-    kept = sorted((p for p in home.iterdir() if p.is_dir() and p != but), key=lambda p: p.stat().st_mtime)
-    for old in kept[: max(len(kept) + 1 - _MOST_KEPT, 0)]:
+    packs = sorted((p for p in home.iterdir() if p.is_dir() and p != but), key=lambda p: p.stat().st_mtime)
+    for old in packs[: max(len(packs) + 1 - _MOST_PACKS, 0)]:
         shutil.rmtree(old, ignore_errors=True)
 
 
@@ -285,6 +280,6 @@ def _reason(error: BaseException) -> str:
     return " ".join(text.split()).rstrip(".") or type(error).__name__
 
 
-def said_of(pack: Pack) -> str:
-    """Return in a few words what a pack holds."""
+def summary(pack: Pack) -> str:
+    """Return how many files and bytes a pack holds."""
     return f"{counted(len(pack.files), 'file')}, {sum(e.file_size for e in pack.files.values())} bytes"

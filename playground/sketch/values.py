@@ -139,7 +139,7 @@ def shortest(value: Value) -> Value:
 
 
 def spell(value: object) -> str:
-    """Return a value as a message shows it: short, whatever it is."""
+    """Return any value as a message shows it, short."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, str):
@@ -160,6 +160,7 @@ def _digits(value: float | int | bool) -> str:
 def _menu(parameter: Parameter, given: object, name: str) -> int:
     choices = parameter.widget.choices
     if isinstance(given, str):
+        given = dict(parameter.widget.renamed).get(given, given)
         if given in choices:
             return choices.index(given)
         raise ParameterError(

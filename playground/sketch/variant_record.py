@@ -1,7 +1,7 @@
 """The record of fast variants that were found to agree with their canonical form.
 
 One generated file, ``glsl/fast_variants.json``, is for all that ships; a user's own variants
-have one beside them. It holds the contents of both forms (see ``canonical``) by the variant's
+have one in their folder. It holds the contents of both forms (see ``canonical``) by the variant's
 path from the record's folder. ``playground variants renew`` writes it, after the two forms were
 drawn and compared; nothing else does.
 """

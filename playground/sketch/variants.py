@@ -1,10 +1,9 @@
 """Fast variants: which of them may run in place of a technique, and why another may not.
 
-A technique's canonical form is its plain text. A fast variant beside it, a ``.comp`` or the
+A technique's canonical form is its plain text. A fast variant of it, a ``.comp`` or the
 passes of a ``.fast.toml``, runs only while both texts are those that were found to agree:
-their contents (see ``canonical``) are in a record (see ``variant_record``). What is asked here
-is asked of the techniques as they are at hand, so a text that replaces a file's, or a
-kernel that was changed in memory, counts as well.
+their contents (see ``canonical``) are in a record (see ``variant_record``). Techniques are
+compared as they are in memory, so a text that replaces a file's counts as well.
 """
 
 from __future__ import annotations
@@ -21,7 +20,7 @@ from playground.sketch.identity import Identity
 from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, Variant
 
 
-def standing(technique: Technique, kinds: Collection[str]) -> Variant | None:
+def active_variant(technique: Technique, kinds: Collection[str]) -> Variant | None:
     """Return the fast variant of some ``kinds`` that runs in place of a technique, if one may."""
     found = (v for v in technique.variants if v.kind in kinds and is_verified(technique, v))
     return next(found, None)
@@ -45,7 +44,7 @@ def _left_out(key: Identity[Graph], kinds: frozenset[str]) -> tuple[str, ...]:
 
 
 def _sentences(technique: Technique, kinds: frozenset[str]) -> Iterator[str]:
-    other = standing(technique, kinds)
+    other = active_variant(technique, kinds)
     runs = Path(other.path).name if other else "the plain form"
     for variant in technique.variants:
         if variant.kind in kinds and not is_verified(technique, variant):
@@ -58,14 +57,14 @@ def _sentences(technique: Technique, kinds: frozenset[str]) -> Iterator[str]:
 def why_not(technique: Technique, variant: Variant) -> str:
     """Return why a fast variant that is not verified is not."""
     renew = f"`playground variants renew {quote(shown(variant.path))}` verifies it"
-    beside = Path(technique.path).name
+    canonical = Path(technique.path).name
     if not variant.technique.agrees:
         return 'it does not say how closely it agrees, as agrees = "1e-5"'
     if variant.verified is None:
-        return f"it was never verified against {beside}; {renew}"
+        return f"it was never verified against {canonical}; {renew}"
     if variant.verified[0] == content_of(technique):
-        return f"it has changed since it was verified against {beside}; {renew}"
-    what = f"{beside}, or what it is made of," if isinstance(technique, Graph) else beside
+        return f"it has changed since it was verified against {canonical}; {renew}"
+    what = f"{canonical}, or what it is made of," if isinstance(technique, Graph) else canonical
     return f"{what} has changed since the two were found to agree; {renew} anew"
 
 

@@ -1,15 +1,19 @@
-"""Warn of what in a kernel's text has no effect, or another one than its author can see."""
+"""Warn of what in a sketch's texts has no effect, another one than its author can see, or a former name."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
 from playground.errors import Diagnostic
-from playground.sketch.model import Kernel
+from playground.paths import GLSL
+from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.uniforms import unfed_samplers
-from playground.sketch.unused_parameters import unread
 
 
 def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:
-    """Return what a kernel's author should know: parameters that nothing reads, and ``unheeded``."""
+    """Return warnings of what has no effect: parameters that nothing reads, and ``unheeded``."""
     return (*unread(kernel), *unheeded(kernel))
 
 
@@ -23,3 +27,43 @@ def unheeded(kernel: Kernel) -> tuple[Diagnostic, ...]:
         if line.left_out
     ]
     return tuple(dict.fromkeys(found))
+
+
+def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
+    """Return a warning for each parameter and input of a kernel that nothing reads.
+
+    Included declarations count, at their own file and line. What a fast variant, a pragma or a macro
+    reads counts as read. Sources and draws are left alone: the engine reads their uniforms.
+    """
+    if kernel.kind in ("source", "draw"):
+        return ()
+    variants = [inner for v in kernel.variants for _, inner in kernels_of(v.technique)]
+    texts = [each.source for each in (kernel, *variants)]
+    code = "\n".join([text.code for text in texts] + [line.pragma for text in texts for line in text.lines])
+    found = []
+    for name in [*(p.name for p in kernel.parameters), *(i.name for i in kernel.inputs)]:
+        declared = rf"\buniform\b[^;\n]*?\b{re.escape(name)}\s*(?:=[^;\n]*)?;"
+        rest = re.sub(declared, "", code)
+        if re.search(rf"\b(?:\w+_)?{re.escape(name)}\b", rest):
+            continue
+        for line in kernel.source.lines:
+            if match := re.search(declared, line.code):
+                column = match.start() + match[0].index(name) + 1
+                found.append(
+                    line.diagnostic(f"nothing reads '{name}', so it has no effect", column, "warning")
+                )
+                break
+    return tuple(found)
+
+
+def former_names_used(sketch: Sketch) -> tuple[Diagnostic, ...]:
+    """Return a warning for each former name in a sketch, in its own techniques or in what is set over it."""
+    return tuple(dict.fromkeys([*sketch.warnings, *_of_graph(sketch.graph)]))
+
+
+def _of_graph(graph: Graph) -> Iterator[Diagnostic]:
+    if not Path(graph.path).is_relative_to(GLSL):
+        yield from graph.warnings
+    for spec in graph.passes:
+        if isinstance(spec.technique, Graph):
+            yield from _of_graph(spec.technique)

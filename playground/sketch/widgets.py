@@ -1,6 +1,6 @@
-"""What each widget of a ``//!`` annotation is for: one row a widget.
+"""List the widgets of a ``//!`` annotation and what each takes: one row a widget.
 
-How it is drawn is another table, in ``live/widgets.py``; a test keeps the two alike.
+How it is drawn is another table, in ``live/widgets.py``; a test compares the two.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ class Kind:
 
     @property
     def bare(self) -> bool:
-        """Whether it may stand without brackets."""
+        """Whether it may be written without brackets."""
         return self.takes not in ("range", "choices")
 
 

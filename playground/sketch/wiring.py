@@ -1,16 +1,17 @@
-"""Know a technique's inputs and outputs, and whether what its TOML says of them stands for something."""
+"""List a technique's inputs and outputs, and check what its TOML says of them."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 
 from playground.errors import SketchError, nearest
-from playground.paths import shown
 from playground.sketch import expressions
-from playground.sketch.assign import resolve
+from playground.sketch.assign import find_targets, resolve
 from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Export, Graph, Kernel, Output, PassSpec, Technique
+from playground.sketch.widgets import SCALARS
+
+_GIVEN = ("time", "compute", "size.x", "size.y")  # what every expression may name
 
 
 def output_names(technique: Technique) -> tuple[str, ...]:
@@ -66,7 +67,7 @@ def is_optional(technique: Technique, name: str) -> bool:
 
 
 def target_of(technique: Graph, name: str) -> str:
-    """Return what a technique's output stands for, as ``inner:output``; by default the last pass has it."""
+    """Return the target of a technique's output, as ``inner:output``; by default the last pass has it."""
     return dict(technique.outputs).get(name, f"{technique.passes[-1].name}:{name}")
 
 
@@ -86,7 +87,7 @@ def outputs_with_formats(graph: Graph) -> tuple[Output, ...]:
 
 
 def check_graph(graph: Graph) -> None:
-    """Raise ``SketchError`` for an export, an output or an expression that stands for nothing."""
+    """Raise ``SketchError`` for an export, an output or an expression without a target."""
     for export in graph.parameters:
         _check_parameter(graph, export)
     for export in graph.inputs:
@@ -94,7 +95,7 @@ def check_graph(graph: Graph) -> None:
             if "." not in target or not takes_input(graph, target):
                 valid = [f"{s.name}.{i}" for s in graph.passes for i in input_names(s.technique)]
                 message = f"input '{export.name}': nothing inside takes '{target}'{nearest(target, valid)}"
-                raise SketchError(message, file=shown(graph.path), line=export.line)
+                raise graph.error(message, export.line)
     for name, _ in graph.outputs:
         _leaf_output(graph, name)
     for spec in graph.passes:
@@ -103,7 +104,7 @@ def check_graph(graph: Graph) -> None:
 
 def _check_parameter(graph: Graph, export: Export) -> None:
     def wrong(message: str) -> SketchError:
-        return SketchError(f"{export.name}: {message}", file=shown(graph.path), line=export.line)
+        return graph.error(f"{export.name}: {message}", export.line)
 
     types: dict[str, str] = {}
     for target in export.targets:
@@ -132,31 +133,25 @@ def _check_expressions(graph: Graph, spec: PassSpec) -> None:
 
 
 def _is_number(graph: Graph, name: str) -> bool:
-    if name in ("time", "compute", "size.x", "size.y"):
+    if name in _GIVEN:
         return True
     head, _, axis = name.rpartition(".")
     if axis in ("x", "y") and head.endswith(".size"):
         sized = head.removesuffix(".size")
         if inner(graph, sized) is not None or sized in input_names(graph):
             return True
-    try:
-        return resolve(graph, name)[0].parameter.type in ("float", "int", "uint", "bool")
-    except SketchError:
-        return False
+    return any(target.parameter.type in SCALARS for target in find_targets(graph, name)[:1])
 
 
-def _numbers(graph: Graph) -> Iterable[str]:
+def _numbers(graph: Graph) -> list[str]:
     """Return names that an expression may well mean, for a hint."""
-    yield from ("time", "compute", "size.x", "size.y")
-    for spec in graph.passes:
-        yield from (f"{spec.name}.size.x", f"{spec.name}.size.y")
-    for name in input_names(graph):
-        yield from (f"{name}.size.x", f"{name}.size.y")
-    for export in graph.parameters:
-        yield export.name
-    for spec in graph.passes:
-        names = spec.technique.parameters
-        yield from (f"{spec.name}.{p.name}" for p in names)
+    sized = [spec.name for spec in graph.passes] + list(input_names(graph))
+    return [
+        *_GIVEN,
+        *(f"{name}.size.{axis}" for name in sized for axis in "xy"),
+        *(export.name for export in graph.parameters),
+        *(f"{spec.name}.{p.name}" for spec in graph.passes for p in spec.technique.parameters),
+    ]
 
 
 def _leaf_output(graph: Graph, name: str) -> Output:
@@ -164,7 +159,7 @@ def _leaf_output(graph: Graph, name: str) -> Output:
     technique = inner(graph, path)
 
     def wrong(message: str) -> SketchError:
-        return SketchError(f"output '{name}': {message}", file=shown(graph.path), line=graph.line)
+        return graph.error(f"output '{name}': {message}", graph.line)
 
     if technique is None:
         raise wrong(f"no pass '{path}' inside{nearest(path, [s.name for s in graph.passes])}")

@@ -10,10 +10,10 @@ Fixed (slip 5 of the thesis's listing): the triangles that are destroyed are gat
 one list and leave the triangulation; construction skips neighbours that are in that list
 themselves, and takes the edges of the terrain's border, which have no neighbour.
 
-Places are whole numbers on a lattice, so which way three points turn and whether a circle
+Places are whole numbers on a lattice, so the orientation of three points and whether a circle
 holds a point are exact: no case is degenerate but a tie. A circle does not hold the points
 on it. That is what a lifted paraboloid gives when each new point is lifted by the least
-amount more than all before it, so both ways leave the same edge of a tie, whatever the order.
+amount more than all before it, so both ways leave the same edge of a tie, in any order.
 
 No point falls on an edge. The greatest of 2 n + 2 triangles has at least the mean area, so
 no altitude of it is shorter than 1 / (n + 1) / sqrt(2) of a square terrain's side, and a
@@ -197,7 +197,7 @@ class _Growing:
                 return triangle, -area
 
     def _rank(self, triangles: Iterable[int]) -> None:
-        """Put triangles into the heap: by area, and equal areas by their points, whatever the numbering."""
+        """Put triangles into the heap: by area, then by their points, so that numbering does not count."""
         for t in triangles:
             heapq.heappush(self.greatest, (-self._area(t), self._triple(t), t))
 
@@ -208,7 +208,7 @@ class _Growing:
             a, b, c = self._drawn(point, 1)
             weights = (64 + (a >> 24), 64 + (b >> 24), 64 + (c >> 24))
         whole = sum(weights)
-        # In the order that does not depend on how the triangle is kept.
+        # In the order that does not depend on how the triangle is stored.
         corners = self._triple(triangle)
         x = sum(w * self.x[c] for w, c in zip(weights, corners, strict=True))
         y = sum(w * self.y[c] for w, c in zip(weights, corners, strict=True))

@@ -1,6 +1,6 @@
 """Read real terrain from elevation files.
 
-Whatever the file's order, heights come out as float32 with row 0 in the south
+Heights come out as float32 with row 0 in the south
 and NaN where the file has no data. Heights stand on nodes: n texels in a row
 are n - 1 spacings long, so the corners of the terrain are the corners of the grid.
 
@@ -133,7 +133,7 @@ def read_elevation(
     with _damage_explained(path):
         if ending == ".png":
             found = from_channels(read_samples(path), packing, path)
-            found = _as_told(found, read_texts(path)) if packing == "grey" else found
+            found = _scaled(found, read_texts(path)) if packing == "grey" else found
         elif ending in (".tif", ".tiff"):
             found = read_tiff(path, packing)
         elif ending == ".npy":
@@ -147,7 +147,7 @@ def read_elevation(
     return _finish(found, path, first_row)
 
 
-def _as_told(found: Found, text: Mapping[str, str]) -> Found:
+def _scaled(found: Found, text: Mapping[str, str]) -> Found:
     """Return what was found in metres, where a PNG's texts say what its numbers stand for."""
     scale, offset = (_numbers(text.get(name, ""), 1) for name in ("scale_m", "offset_m"))
     if not scale or not offset or scale[0] <= 0.0 or found.code_range is None:

@@ -36,7 +36,7 @@ def read_tiff(path: Path, packing: Packing) -> Found:
         with _without_log("tifffile"):
             tif = tifffile.TiffFile(path)
     except tifffile.TiffFileError as error:
-        raise DataError(f"not a TIFF file, whatever its name says: {reason(error)}", file=path) from error
+        raise DataError(f"not a TIFF file, although its name says so: {reason(error)}", file=path) from error
     with _without_log("tifffile"), tif:
         pages = tif.pages
         page = pages[0]
@@ -205,8 +205,8 @@ def _geography(page: tifffile.TiffPage, rows_cols: tuple[int, ...], path: Path) 
     if model == 2:
         if not math.isfinite(north):
             return _Geography(None, True, height_unit, ("its texels are degrees at an unknown latitude",))
-        turn = math.degrees(1.0) if keys.get(2054) == 9101 else 1.0
-        spacing, notes = spacing_from_degrees(dx * turn, dy * turn, north * turn)
+        degrees = math.degrees(1.0) if keys.get(2054) == 9101 else 1.0
+        spacing, notes = spacing_from_degrees(dx * degrees, dy * degrees, north * degrees)
         return _Geography(spacing, True, height_unit, notes)
     if model == 1:
         unit = keys.get(3076, 9001)

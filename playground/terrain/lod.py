@@ -7,7 +7,7 @@ error. Tiles outside the view are left out.
 The choice is made here and not in the vertex shader, though that would read nothing back:
 there every vertex of the finest level goes through it, 45 ms a frame for 1025 x 1025
 texels on llvmpipe with all triangles of a tile but two collapsed, where drawing those two
-takes 3 ms, choosing them 1 ms, and reading the tiles' errors 0.03 ms, once for each terrain.
+takes 3 ms, choosing them 1 ms, and downloading the tiles' errors 0.03 ms, once for each terrain.
 """
 
 from __future__ import annotations
@@ -70,10 +70,10 @@ def tiles_at(levels: Levels, boxes: Boxes, view: View) -> Chosen:
     j, i = np.indices((ny, nx))
     # Of the last level, four tiles in a square make a fan.
     sides = np.where(levels == LEVELS - 1, (i + j) % 2, coarser_of(levels))
-    places = [_gathered("fans", levels, sides, boxes.seen(view))]
-    seen = boxes.with_walls(view).seen(view)
+    places = [_gathered("fans", levels, sides, boxes.visible(view))]
+    visible = boxes.with_walls(view).visible(view)
     for side, rim in rims_of(ny, nx).items():
-        places.append(_gathered("wall", levels, np.full((ny, nx), side, np.int8), seen & rim))
+        places.append(_gathered("wall", levels, np.full((ny, nx), side, np.int8), visible & rim))
     runs = tuple(run for found, _ in places for run in found)
     return Chosen(runs, np.concatenate([each for _, each in places]))
 
@@ -99,7 +99,7 @@ DETAILS = ("full grid", "geomipmap", "morph")
 """What ``detail`` of mesh "terrain" may be, by number."""
 
 
-def choose_land(values: Mapping[str, object], tables: Callable[[], Tables], view: View) -> Chosen:
+def choose_terrain(values: Mapping[str, object], tables: Callable[[], Tables], view: View) -> Chosen:
     """Choose what to draw of mesh "terrain"; its full grid is drawn whole, once."""
     if values["detail"] == 0:
         return Chosen(((WHOLE, 1),), np.zeros((1, 4), np.float32))
@@ -116,6 +116,6 @@ class Chooser:
 
 
 CHOOSERS: dict[str, Chooser] = {
-    "land": Chooser(choose_land, ("tolerance",), ("spans", "errors")),
+    "land": Chooser(choose_terrain, ("tolerance",), ("spans", "errors")),
 }
 """Meshes of which only a part is drawn, by name; they have an attribute ``tile`` for each instance."""

@@ -35,8 +35,8 @@ def read_mask(path: Path, size: tuple[int, int], stated: tuple[int, int] = (0, 0
         )
     if abs(width * size[1] - height * size[0]) > max(width, height, *size):
         raise DataError(
-            f"this alpha map has {width} x {height} texels, which the land's weights, {size[0]} x {size[1]}, "
-            "would stretch; the same proportions were expected",
+            f"this alpha map has {width} x {height} texels, which the terrain's weights, "
+            f"{size[0]} x {size[1]}, would stretch; the same proportions were expected",
             file=path,
         )
     return resized(weights_of(image), size)

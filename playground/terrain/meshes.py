@@ -1,7 +1,7 @@
 """Build the meshes that draws may ask for, by name.
 
 A closed registry: a sketch is data and cannot bring Python. A builder takes the draw's
-parameters that it declares, and nothing else, so that a mesh is kept while they stay.
+parameters that it declares, and nothing else, so that a mesh stays valid while they do not change.
 """
 
 from __future__ import annotations
@@ -29,9 +29,17 @@ def grid(values: Mapping[str, int]) -> Mesh:
 
     Attribute ``corner``: east and north, 0..1, and 0 on the terrain or 1 at the skirt's foot.
     """
-    n = values["grid"]
-    steps = np.linspace(0.0, 1.0, n, dtype=np.float32)
-    east, north = np.meshgrid(steps, steps)
+    corner, indices = skirted(np.linspace(0.0, 1.0, values["grid"], dtype=np.float32))
+    return Mesh({"corner": corner}, indices)
+
+
+def skirted(along: NDArray[np.float32]) -> tuple[NDArray[np.float32], NDArray[np.uint32]]:
+    """Return a square grid with a skirt around it, its vertices at the places ``along`` each side.
+
+    Vertices (n, 3): east and north, and 0 on the terrain or 1 at the skirt's foot; indices, three a triangle.
+    """
+    n = len(along)
+    east, north = np.meshgrid(along, along)
     top = np.stack([east.ravel(), north.ravel(), np.zeros(n * n, np.float32)], axis=1)
     index = np.arange(n * n, dtype=np.uint32).reshape(n, n)
     a, b, c, d = index[:-1, :-1], index[:-1, 1:], index[1:, 1:], index[1:, :-1]
@@ -42,8 +50,7 @@ def grid(values: Mapping[str, int]) -> Mesh:
     low = np.arange(len(rim), dtype=np.uint32) + np.uint32(n * n)
     following = np.roll(np.arange(len(rim)), -1)
     wall = np.stack([rim, low, low[following], rim, low[following], rim[following]], axis=-1)
-    indices = np.concatenate([faces.ravel(), wall.ravel()]).astype(np.uint32)
-    return Mesh({"corner": np.concatenate([top, foot])}, indices)
+    return np.concatenate([top, foot]), np.concatenate([faces.ravel(), wall.ravel()]).astype(np.uint32)
 
 
 def sheet(values: Mapping[str, int]) -> Mesh:
@@ -64,7 +71,7 @@ def triangles(values: Mapping[str, int]) -> Mesh:
     return Mesh({"corner": corner.reshape(-1, 3)}, np.arange(3 * n, dtype=np.uint32))
 
 
-def land(values: Mapping[str, int]) -> Mesh:
+def terrain(values: Mapping[str, int]) -> Mesh:
     """Return a grid, or, where ``detail`` is not 0, one tile with every list of indices of ``tiles``.
 
     Attribute ``corner`` of a tile: nodes east and north, 0..16, and 0 on top or 1 at the skirt's foot.
@@ -78,7 +85,7 @@ MESHES: dict[str, tuple[Callable[[Mapping[str, int]], Mesh], dict[str, tuple[int
     "grid": (grid, {"grid": (2, 4097)}),
     "sheet": (sheet, {}),
     "triangles": (triangles, {"count": (1, 2**20)}),
-    "land": (land, {"detail": (0, len(lod.DETAILS) - 1), "grid": (2, 4097)}),
+    "land": (terrain, {"detail": (0, len(lod.DETAILS) - 1), "grid": (2, 4097)}),
 }
 """Name → (builder, the draw's parameters that it reads with their least and greatest).
 

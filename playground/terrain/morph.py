@@ -2,7 +2,7 @@
 
 Every square is drawn by the same 512 triangles. Their vertices slide into those of the
 next level as the distance grows (view/vertices.glsl), so that no level begins or ends in
-one picture, and no edge needs stitching. How far a level reaches is one number for the
+one picture, and no edge needs stitching. The distance of each level is one number for the
 whole terrain: its roughest place among those near enough to matter rules all of it.
 """
 
@@ -33,17 +33,17 @@ def pyramid(spans: NDArray[np.float32]) -> list[NDArray[np.float32]]:
     return found
 
 
-def reaches(
+def level_distances(
     tables: Mapping[str, NDArray[np.float32]],
     squares: Sequence[NDArray[np.float32]],
     view: View,
     tolerance: float,
 ) -> Floats:
-    """Return the distance [m] that each level of morphing tiles reaches; the last has no end.
+    """Return the distance [m] up to which each level of morphing tiles is drawn; the last has no end.
 
     The next level shows through from ``START`` of it on, and must be within ``tolerance``
     pixels there. Of levels whose quads are larger than a tile, the error is taken to be all
-    that heights differ in a quad. A level also reaches so far that the next one lies wholly
+    that heights differ in a quad. A level is also drawn so far that the next one lies wholly
     within its own unmorphed part wherever the two meet.
     """
     tiles = tables["spans"].shape[1::-1]
@@ -75,32 +75,34 @@ def _furthest(boxes: Boxes, fine: Floats, view: View) -> float:
 
 
 def morph(values: Mapping[str, object], tables: Mapping[str, NDArray[np.float32]], view: View) -> Chosen:
-    """Choose tiles of a quadtree in the view, each cut in four where its children reach."""
+    """Choose tiles of a quadtree in the view, each cut in four where its children are drawn."""
     tolerance = values["tolerance"]
     assert isinstance(tolerance, float)
     squares = pyramid(tables["spans"])
-    reach = reaches(tables, squares, view, tolerance)
+    distances = level_distances(tables, squares, view, tolerance)
     places: list[tuple[Piece, NDArray[np.float32]]] = []
-    reached = np.ones(squares[-1].shape[:2], bool)
+    inside = np.ones(squares[-1].shape[:2], bool)
     for level in range(len(squares) - 1, -1, -1):
         boxes = boxes_of(squares[level], view, CELLS * 2**level, tables["spans"].shape[1::-1])
-        cut = np.zeros_like(reached)
+        cut = np.zeros_like(inside)
         if level:
-            cut = reached & (boxes.distances(view.eye)[0] < reach[level - 1])
-        drawn = reached & ~cut
-        seen, beyond = drawn & boxes.seen(view), boxes.distances(view.eye)[0] >= reach[level]
-        places.append((("fans", 0, 0), _placed(seen & ~beyond, level, level, reach)))
+            cut = inside & (boxes.distances(view.eye)[0] < distances[level - 1])
+        drawn = inside & ~cut
+        visible, beyond = drawn & boxes.visible(view), boxes.distances(view.eye)[0] >= distances[level]
+        places.append((("fans", 0, 0), _placed(visible & ~beyond, level, level, distances)))
         # What has become its parent's quarter altogether, and is drawn as that.
         for quarter in ((0, 0), (0, 1), (1, 0), (1, 1)):
-            here = np.zeros_like(seen)
+            here = np.zeros_like(visible)
             here[quarter[1] :: 2, quarter[0] :: 2] = True
-            places.append((("quarter", *quarter), _placed(seen & beyond & here, level, level + 1, reach)))
-        walls = drawn & boxes.with_walls(view).seen(view)
+            places.append(
+                (("quarter", *quarter), _placed(visible & beyond & here, level, level + 1, distances))
+            )
+        walls = drawn & boxes.with_walls(view).visible(view)
         for side, rim in rims_of(*drawn.shape).items():
-            places.append((("wall", 0, side), _placed(walls & rim, level, level, reach)))
+            places.append((("wall", 0, side), _placed(walls & rim, level, level, distances)))
         if level:
             ny, nx = squares[level - 1].shape[:2]
-            reached = np.repeat(np.repeat(cut, 2, axis=0), 2, axis=1)[:ny, :nx]
+            inside = np.repeat(np.repeat(cut, 2, axis=0), 2, axis=1)[:ny, :nx]
     runs: list[tuple[Piece, int]] = []
     order = sorted(places, key=lambda each: each[0])
     for piece in dict.fromkeys(piece for piece, _ in order):
@@ -108,9 +110,9 @@ def morph(values: Mapping[str, object], tables: Mapping[str, NDArray[np.float32]
     return Chosen(tuple(runs), np.concatenate([found for _, found in order]))
 
 
-def _placed(chosen: NDArray[np.bool_], level: int, shown: int, reach: Floats) -> NDArray[np.float32]:
+def _placed(chosen: NDArray[np.bool_], level: int, shown: int, distances: Floats) -> NDArray[np.float32]:
     """Return the places of squares of a level, or of those of another that they lie in."""
     north, east = (CELLS * 2**shown * (at >> (shown - level)) for at in np.nonzero(chosen))
-    last = min(shown, len(reach) - 1)
-    each = np.broadcast_arrays(east, north, np.float32(shown), np.float32(reach[last]))
+    last = min(shown, len(distances) - 1)
+    each = np.broadcast_arrays(east, north, np.float32(shown), np.float32(distances[last]))
     return np.stack(each, axis=1).astype(np.float32)

@@ -24,7 +24,7 @@ def ground_under(
     terrain's sides, east and north. Steps are as long as a texel, so that a needle between two may
     be missed; between steps the ground is halved in.
     """
-    found = walk_over(eye, place, heights.shape[::-1], extent)
+    found = ray_over(eye, place, heights.shape[::-1], extent)
     if found is None:
         return None
     origin, way, entry, leave, steps = found
@@ -44,16 +44,16 @@ def ground_under(
     return float(np.clip(x, 0.0, 1.0)), float(np.clip(y, 0.0, 1.0))
 
 
-def walk_over(
+def ray_over(
     eye: Eye, place: tuple[float, float], size: tuple[int, ...], extent: tuple[float, float]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float, int] | None:
     """Return how to look for the ground under a place of the picture; None where its ray meets no terrain.
 
     Where the ray begins [m], its unit vector, from where to where along it [m] it is over a terrain of
-    ``size`` texels (nx, ny), and in how many steps, each no longer than a texel, to walk that way.
+    ``size`` texels (nx, ny), and in how many steps, each no longer than a texel, to march that way.
     """
     origin, way = _ray(eye, place)
-    entry, leave = _over_land(origin, way, extent)
+    entry, leave = _over_terrain(origin, way, extent)
     if not entry < leave:
         return None
     texel = min(extent[0] / max(size[0] - 1, 1), extent[1] / max(size[1] - 1, 1))
@@ -87,7 +87,7 @@ def _ray(eye: Eye, place: tuple[float, float]) -> tuple[NDArray[np.float64], NDA
     return origin, way / np.linalg.norm(way)
 
 
-def _over_land(
+def _over_terrain(
     origin: NDArray[np.float64], way: NDArray[np.float64], extent: tuple[float, float]
 ) -> tuple[float, float]:
     """Return from where to where a ray is over the terrain's rectangle, in metres along it."""

@@ -57,13 +57,13 @@ def _numbers(path: Path, dtype: str, size: tuple[int, int] | None) -> NDArray[An
 def _not_square(length: int) -> str:
     count = length // 2
     side = math.isqrt(count)
-    said = f"holds {count} heights of 16 bits, which is no square ({side} x {side} would be {side * side}"
-    said += f", {side + 1} x {side + 1} {(side + 1) ** 2})"
+    message = f"holds {count} heights of 16 bits, which is no square ({side} x {side} would be {side * side}"
+    message += f", {side + 1} x {side + 1} {(side + 1) ** 2})"
     for bits in (8, 32):
         other = math.isqrt(length * 8 // bits)
         if other * other * bits == length * 8:
-            said += f"; it is {other} x {other} of {bits} bits, which is not read here"
-    return said + (_fitting(length) or "; raw_size must give its width and height")
+            message += f"; it is {other} x {other} of {bits} bits, which is not read here"
+    return message + (_fitting(length) or "; raw_size must give its width and height")
 
 
 def _fitting(length: int) -> str:

@@ -24,7 +24,7 @@ def resample(
 
     One cubic kernel (Keys 1981, a = -1/2: "Catmull-Rom"), as wide as the coarser of
     the two grids, so that shrinking averages and does not alias. Beyond its edges the
-    terrain goes on as its image turned half round about the edge: the corners keep their
+    terrain goes on as its point reflection in the edge: the corners keep their
     heights, two tiles that share an edge still share it, a plane stays a plane, a
     constant stays exact. Next to a cliff a cubic overshoots by some 8 % of the cliff;
     `within` cuts that off at the lowest and highest height there may be. It is the caller's
@@ -91,13 +91,13 @@ def _taps(
         tilt = broad * (away - (broad * away).sum(axis=1, keepdims=True) / broad.sum(axis=1, keepdims=True))
         mean = (weights * away).sum(axis=1, keepdims=True)
         weights -= tilt * (mean / (tilt * away).sum(axis=1, keepdims=True))
-    # Turned half round about its edges, the terrain repeats with period p, raised each time by twice
+    # Reflected in the points of its edges, the terrain repeats with period p, raised each time by twice
     # its rise: v[q p + r] = 2 q (v[n-1] - v[0]) + (v[r] if r < n else 2 v[n-1] - v[p - r]).
     period = 2 * (n - 1)
-    turns, place = np.divmod(index, period)
+    periods, place = np.divmod(index, period)
     inside = place < n
-    first = -2.0 * (weights * turns).sum(axis=1)
-    last = 2.0 * (weights * (turns + ~inside)).sum(axis=1)
+    first = -2.0 * (weights * periods).sum(axis=1)
+    last = 2.0 * (weights * (periods + ~inside)).sum(axis=1)
     return np.where(inside, weights, -weights), np.where(inside, place, period - place), first, last
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, SketchError, nearest
+from playground.images.content_hash import content_hash
 from playground.paths import shown
 from playground.sketch.model import Value
 from playground.terrain.delaunay import Rules, tables, triangulate
@@ -59,7 +60,7 @@ def source_kind(name: str) -> SourceKind:
 @lru_cache(maxsize=4)
 def _read(
     path: str,
-    stamp: tuple[int, int],
+    content: str,  # its hash
     raw_size: tuple[int, int] | None,
     packing: Packing,
     voids: Voids,
@@ -79,41 +80,24 @@ def _memory_explained(path: Path) -> Iterator[None]:
 
 def _elevation(values: Mapping[str, Value]) -> Elevation:
     path = Path(str(values["elevation"]))
-    try:
-        stat = path.stat()
-    except OSError as error:
-        raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
     raw = values["raw_size"]
     size = (int(raw[0]), int(raw[1])) if isinstance(raw, tuple) and raw[0] and raw[1] else None
     packing: Packing = "rgb" if values["packing"] == 1 else "grey"
     voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
     first_row: Edge = "south" if values["first_row"] == 1 else "north"
     with _memory_explained(path):
-        return _read(str(path), (stat.st_mtime_ns, stat.st_size), size, packing, voids, first_row)
-
-
-def _range(values: Mapping[str, Value], elevation: Elevation) -> tuple[float, float] | None:
-    """Return the metres that the file's lowest and highest codes stand for, if anything says."""
-    low, high = values["metres"] if isinstance(values["metres"], tuple) else (0.0, 0.0)
-    if low != high:
-        return float(low), float(high)
-    return None
-
-
-def _span(elevation: Elevation) -> tuple[float, float]:
-    """Return the numbers of the file that become heights 0 and 1."""
-    return elevation.lowest, elevation.highest
+        return _read(str(path), content_hash(path), size, packing, voids, first_row)
 
 
 def _describe_elevation(values: Mapping[str, Value]) -> Terrain:
     elevation = _elevation(values)
-    low, high = _span(elevation)
-    asked = _range(values, elevation)
+    low, high = elevation.lowest, elevation.highest
+    metres = values["metres"]  # of the file's lowest and highest codes; equal: nothing is known
     relief = base = None
-    if asked is not None:
+    if isinstance(metres, tuple) and metres[0] != metres[1]:
         codes = elevation.code_range or (low, high)
-        scale = (asked[1] - asked[0]) / ((codes[1] - codes[0]) or 1.0)
-        base, relief = asked[0] + (low - codes[0]) * scale, (high - low) * scale
+        scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
+        base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
     elif elevation.in_metres:
         base, relief = low, high - low
     return Terrain(elevation.size, elevation.extent, relief, base)
@@ -121,8 +105,7 @@ def _describe_elevation(values: Mapping[str, Value]) -> Terrain:
 
 def _make_elevation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
     elevation = _elevation(values)
-    low, high = _span(elevation)
-    span = high - low
+    low, span = elevation.lowest, elevation.highest - elevation.lowest
     with _memory_explained(Path(str(values["elevation"]))):
         heights = (
             (elevation.heights - np.float32(low)) / np.float32(span)

@@ -36,7 +36,7 @@ class Chosen:
     """What to draw: instances of pieces, in order."""
 
     runs: tuple[tuple[Piece, int], ...]  # a piece, and how many of the places it takes, one after another
-    places: NDArray[np.float32]  # (n, 4): node of the south-west corner, level, sides or reach [m]
+    places: NDArray[np.float32]  # (n, 4): node of the south-west corner, level, sides or distance [m]
 
 
 def vertices() -> NDArray[np.float32]:

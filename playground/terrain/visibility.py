@@ -1,4 +1,4 @@
-"""Report what a view sees of the boxes around tiles, how deep they lie, and how long a metre looks there."""
+"""Find which boxes around tiles a view sees, how deep they lie, and how long a metre looks there."""
 
 from __future__ import annotations
 
@@ -71,8 +71,8 @@ class Boxes:
     north: Floats  # (2, ny): south and north sides
     up: Floats  # (2, ny, nx): lowest and highest
 
-    def reach(self, plane: Floats) -> Floats:
-        """Return, (ny, nx), the most of a plane's first three times a place of each box, plus its last."""
+    def support(self, plane: Floats) -> Floats:
+        """Return the support of each box (ny, nx): the most of a plane's equation at a place of it."""
         east, north = (plane[0] * self.east).max(axis=0), (plane[1] * self.north).max(axis=0)
         found: Floats = plane[2] * self.up[int(plane[2] > 0)]
         found += east
@@ -80,8 +80,8 @@ class Boxes:
         return found
 
     def depths(self, view: View) -> Floats:
-        """Return the least depth [m] of each that can be seen."""
-        least: Floats = np.maximum(-self.reach(-view.forward), view.near)
+        """Return the least depth [m] of each that can be visible."""
+        least: Floats = np.maximum(-self.support(-view.forward), view.near)
         return least
 
     @property
@@ -99,12 +99,12 @@ class Boxes:
             furthest.append(np.maximum(np.abs(low - at), np.abs(high - at)) ** 2)
         return _length(*nearest), _length(*furthest)
 
-    def seen(self, view: View) -> NDArray[np.bool_]:
+    def visible(self, view: View) -> NDArray[np.bool_]:
         """Return which are not wholly outside one of the six planes of the view."""
         found = np.ones(self.up.shape[1:], bool)
         for row in (0, 1, 2):
             for sign in (1.0, -1.0):
-                found &= self.reach(view.clip_from_world[3] + sign * view.clip_from_world[row]) >= 0
+                found &= self.support(view.clip_from_world[3] + sign * view.clip_from_world[row]) >= 0
         return found
 
     def with_walls(self, view: View) -> Boxes:

@@ -1,8 +1,8 @@
-"""Have a session go on where it was left: what it shows is remembered as one goes.
+"""Remember what a session shows while it is worked on, so that the next one starts from there.
 
 A change is written once half a second has passed without another, so that a slider
 costs one write and not a hundred; time that runs by itself is written every few
-seconds. Nothing here is needed to go on: where it cannot be written, one gets one notice.
+seconds. A session works without it: where nothing can be written, one notice says so.
 """
 
 from __future__ import annotations
@@ -11,9 +11,11 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from playground.errors import PlaygroundError, SandboxError
 from playground.folders import state_folder
+from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.workbench.edit_merge import FileValue, file_values
 from playground.workbench.edits import Draft
@@ -30,7 +32,7 @@ def memory_of(sketch: Path, folder: Path | None = None) -> Memory:
     return Memory(sketch, folder or state_folder() / "sessions")
 
 
-class Rememberer:
+class Autosave:
     """Remembers what one session shows."""
 
     def __init__(
@@ -44,12 +46,13 @@ class Rememberer:
     ) -> None:
         self.session = session
         self._memory = memory
-        self._path = session.path
+        self._path = session.path  # the sketch that ``_memory`` is of
+        self._opened: Path | None = None  # the sketch that was opened last with what is remembered of it
         self._now = now
         self.compare = compare  # what is compared with the session
         self._written: Remembered | None = None
-        self._seen: Remembered | None = None
-        self._seen_at = 0.0
+        self._latest: Remembered | None = None  # what was shown at the last ``look``
+        self._changed_at = 0.0
         self._written_at = now()
         self._is_reported = False
         self._recalled = False  # what is shown was set in an earlier session
@@ -60,17 +63,22 @@ class Rememberer:
     @property
     def waits(self) -> bool:
         """Whether something is still to be written."""
-        return self._seen != self._written or self._compared is not None
+        return self._latest != self._written or self._compared is not None
 
     def open(self, sketch: Path) -> None:
-        """Open another sketch in the session, with what is remembered of it."""
-        self.close()
-        self._memory = Memory(sketch, self._memory.path.parent)
-        found, complaint = self._memory.read()
-        session = self.session
-        session.open(sketch, start=found.start)
+        """Open another sketch with what is remembered of it; the one that is shown is only read again.
+
+        Until the other is shown, edits are remembered of this one. Raises as ``Session.open``.
+        """
+        session, path = self.session, find(sketch).absolute()
+        self.write()
+        if self._latest is not None and path == self._path:
+            session.drafts.stay()
+            return
+        found, complaint = Memory(path, self._memory.path.parent).read()
+        session.open(path, start=found.start)
         session.notes.extend(filter(None, [complaint]))
-        self._path, self._seen, self._written, self._is_reported = session.path, None, None, False
+        self._opened = path
         self._recall(found)
 
     def look(self, window: tuple[int, int], at: tuple[int, int] | None = None) -> None:
@@ -79,50 +87,64 @@ class Rememberer:
         ``window``: width and height, ``at``: where its upper left corner is, in the screen's units.
         """
         session, now = self.session, self._now()
-        if session.path != self._path:  # another sketch was opened in this window
-            self.close()
-            self._memory, self._path = Memory(session.path, self._memory.path.parent), session.path
-            self._seen = self._written = None
-            self._is_reported, self._compared = False, None
         if session.shown is None or session.drafts.opening:
             if self._recalled and isinstance(session.error, SandboxError):
                 session.notes.append("playground live --fresh opens it without your edits")
                 self._recalled = False
-            return
-        self._recalled = False
-        if self._compared is not None and (self.compare is None or self.compare.recall(self._compared)):
-            self._compared = None
-        found = self._snapshot(session.shown, window, at)
-        if self._seen is None or replace(found, time=self._seen.time) != self._seen:
-            self._seen_at = now
-        self._seen = found
+            if session.shown is None or self._latest is None:
+                return
+            found = replace(self._latest, **self._edits_of(session.shown))
+        else:
+            if session.path != self._path:
+                self._switch()
+            self._recalled = False
+            if self._compared is not None and (self.compare is None or self.compare.recall(self._compared)):
+                self._compared = None
+            found = self._snapshot(session.shown, window, at)
+        if self._latest is None or replace(found, time=self._latest.time) != self._latest:
+            self._changed_at = now
+        self._latest = found
         is_moment = self._written is not None and replace(found, time=self._written.time) == self._written
-        rested = now - self._seen_at >= QUIET
-        if self._seen != self._written and rested and (not is_moment or now - self._written_at >= TIME):
+        rested = now - self._changed_at >= QUIET
+        if found != self._written and rested and (not is_moment or now - self._written_at >= TIME):
             self.write()
 
     def write(self) -> None:
         """Write what was shown last, unless another window remembers this sketch."""
-        if self._seen is None or self._seen == self._written:
+        if self._latest is None or self._latest == self._written:
             return
         self._written_at = self._now()
         try:
             if not self._memory.claim():
                 self._report("another window has this sketch open, and remembers it; this one does not")
                 return
-            self._memory.write(self._seen)
+            self._memory.write(self._latest)
         except PlaygroundError as error:
             self._report(f"your edits cannot be remembered: {error}")
             return
-        self._written = self._seen
+        self._written = self._latest
+
+    def pause(self) -> None:
+        """Write what is still to be written, and remember nothing until this or another sketch is shown."""
+        self.write()
+        self._latest = self._written = None
 
     def close(self) -> None:
         """Write what is still to be written, and let other windows remember."""
         self.write()
         self._memory.close()
 
+    def _switch(self) -> None:
+        """Remember another sketch from now on: the one that is shown."""
+        self.close()
+        path = self.session.path
+        self._memory, self._path = Memory(path, self._memory.path.parent), path
+        self._latest, self._written, self._is_reported = None, None, False
+        if path != self._opened:  # it was opened without what is remembered of it
+            self._compared = None
+
     def _recall(self, found: Remembered) -> None:
-        """Have the session show what is remembered beside what was edited."""
+        """Have the session show what is remembered besides the edits."""
         session, clock = self.session, self.session.clock
         self._compared = found.compared  # A of the last session, until it is there again
         self._recalled = not found.is_nothing
@@ -131,25 +153,28 @@ class Rememberer:
             clock.set_loop(*found.loop)
         session.restore_view(dict(found.steps), Map(found.map, found.map_values) if found.map else None)
 
-    def _snapshot(self, draft: Draft, window: tuple[int, int], at: tuple[int, int] | None) -> Remembered:
-        session = self.session
+    def _edits_of(self, draft: Draft) -> dict[str, Any]:
+        """Return the fields of ``Remembered`` that hold a draft's edits."""
         if self._in_file[0] is not draft:
             paths = [path for path, _ in draft.edits.values]
             self._in_file = draft, tuple(file_values(draft.base, paths).items())
+        camera = draft.file.camera if draft.edits.camera is not None else None
+        return {"edits": draft.edits, "in_file": self._in_file[1], "camera_in_file": camera}
+
+    def _snapshot(self, draft: Draft, window: tuple[int, int], at: tuple[int, int] | None) -> Remembered:
+        session, clock, view = self.session, self.session.clock, self.session.view
         return Remembered(
-            draft.edits,
-            self._in_file[1],
-            session.clock.time if session.animated else 0.0,
-            session.clock.playing,
-            session.clock.speed,
-            session.view.map.ref if session.view.map else "",
-            session.view.map.values if session.view.map else (),
-            tuple(sorted(session.view.steps.items())),
-            window,
-            at,
-            draft.file.camera if draft.edits.camera is not None else None,
-            session.clock.loop,
-            self._compared or (self.compare.remembered() if self.compare is not None else None),
+            time=clock.time if session.animated else 0.0,
+            playing=clock.playing,
+            speed=clock.speed,
+            map=view.map.ref if view.map else "",
+            map_values=view.map.values if view.map else (),
+            steps=tuple(sorted(view.steps.items())),
+            window=window,
+            at=at,
+            loop=clock.loop,
+            compared=self._compared or (self.compare.remembered() if self.compare is not None else None),
+            **self._edits_of(draft),
         )
 
     def _report(self, sentence: str) -> None:

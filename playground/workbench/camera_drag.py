@@ -1,4 +1,4 @@
-"""Turn what a mouse does over the picture into a camera."""
+"""Convert mouse gestures over the picture to a camera."""
 
 from __future__ import annotations
 

@@ -28,15 +28,17 @@ class Commands:
     undo: Undo
     file: SketchFile
     folder: Path
+    opens: Callable[[Path], None] | None = None  # opens a sketch with its remembered edits
 
     def open(self, path: Path) -> None:
-        """Open another sketch; nothing of this one can be undone there."""
+        """Open another sketch, with a history of its own; the one that is shown is read again."""
         try:
-            self.session.open(path)
+            (self.opens or self.session.open)(path)
         except PlaygroundError as error:
             self.notices.say(str(error))
         else:
-            self.undo.history = History()
+            if self.session.drafts.opening:
+                self.undo.begin(History())
 
     # ── many values at once ──────────────────────────────────────────────────
 
@@ -147,7 +149,7 @@ def rounded(camera: Camera) -> Camera:
 
 
 def _values_in_file(draft: Draft) -> dict[Key, object]:
-    """Return what the file said of everything that is edited."""
+    """Return what the file sets for everything that is edited."""
     values = values_of(draft.base)
     found: dict[Key, object] = {}
     for path in draft.applied:

@@ -1,14 +1,14 @@
 """Which images and elevation files have been drawn with: new contents go through the sandbox first.
 
-Nobody knows yet what a new file does to its reader; a process of its own finds out.
+What a new file does to its reader is not known yet; a process of its own finds out.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from playground.engine.files import content_hash
 from playground.errors import PlaygroundError
+from playground.images.content_hash import content_hash
 from playground.sketch.allowed_files import Signature, signature
 from playground.sketch.model import Sketch
 from playground.workbench.dependencies import data_files

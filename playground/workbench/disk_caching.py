@@ -1,7 +1,7 @@
 """Cache a session's expensive terrain on disk while its picture does not change: see ``engine.disk_caching``.
 
 Nothing is cached of a picture in which a number is not finite: the passes would not run the next
-time, and nobody would learn which of them made it.
+time, and which of them made it would not be found.
 """
 
 from __future__ import annotations

@@ -4,6 +4,11 @@ There are at most two. ``shown`` is the last one that drew well; ``coming`` is w
 saved or chosen since: it goes through the sandbox (where there is one), is then drawn,
 and only then replaces ``shown``. If it fails, its error is reported and ``shown`` stays.
 ``workbench.session`` draws them.
+
+User edits change ``shown`` at once, and ``coming`` as well. A technique or a new data file that
+the user chooses has to be checked first: it joins what is coming, so that a save and several
+choices are checked together. If that fails, the latest choice is left out, a note says why, and the
+rest is checked again. While another sketch is opened, edits change the one that is shown.
 """
 
 from __future__ import annotations
@@ -12,24 +17,28 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import reduce
 from pathlib import Path
 from typing import Protocol
 
 from playground.engine.sandbox import SandboxReport, TrySketch
-from playground.errors import ContextError, ParameterError, PlaygroundError
+from playground.errors import ParameterError, PlaygroundError
+from playground.paths import shown as shown_path
 from playground.sketch.allowed_files import Signature, noting_places
 from playground.sketch.assign import TERRAIN_KEYS
 from playground.sketch.find import find
 from playground.sketch.load import load_with
 from playground.sketch.model import Camera, Sketch, Value
 from playground.sketch.shadowed import newly_shadowed
-from playground.sketch.technique_cache import KeptTechniques
+from playground.sketch.technique_cache import TechniqueCache
 from playground.sketch.text_overrides import with_texts
 from playground.sketch.values import shortest
 from playground.sketch.variants import left_out
 from playground.workbench.dependencies import watched
 from playground.workbench.edits import Draft, Edits, reload_draft, taken
-from playground.workbench.reload_stages import ReloadStage, Sandbox, explained, missing_file_error
+from playground.workbench.history import applied, changes_between, edits_of, state_of
+from playground.workbench.pending import Change, Choice, choice_of
+from playground.workbench.reload_stages import ReloadStage, Sandbox, explained, missing_file_error, refusal
 from playground.workbench.resume import StoredEdits, first_draft, stored
 from playground.workbench.sun_drag import suns_of, turned
 
@@ -75,7 +84,7 @@ class Drafts:
         self.coming: Draft | None = None
         self.stage = ReloadStage.NONE
         self.revision = 0  # counts what may change the picture
-        self.notes: deque[str] = deque(maxlen=32)  # sentences for a person; whoever shows them removes them
+        self.notes: deque[str] = deque(maxlen=32)  # sentences for the user; removed when they are shown
         self.read_at = 0.0  # [s since the epoch] when the files were last read
         self.places: dict[Path, Signature | None] = {}  # where files were looked for, and what was there
         self.texts: Mapping[str, str] = {}  # replace shaders' files, by absolute path
@@ -84,17 +93,21 @@ class Drafts:
         self.opening = False  # another sketch is coming than the one that is shown
         self.started = 0.0  # when what is coming began to be read
         self.sandbox_seconds = 0.0  # [s] that the sandbox took for it
+        self.reads = 0  # how often what is shown was replaced by what its files say now
+        self.read_edits = Edits()  # those left when that was done last, without what was chosen meanwhile
         self.sandboxed = checks.sandbox is not None
         self._checks = checks
         self._drawn = drawn
         self._start = start or StoredEdits()
-        self._techniques = KeptTechniques()
+        self._techniques = TechniqueCache()
         self._techniques.dialect = dialect
         self._subject = self.path.name  # what is read, or checked
-        self._new_file = False  # what is coming names a data file that the user chose
+        self._saved: Draft | None = None  # what is coming, without what the user has chosen meanwhile
+        self._choices: list[Choice] = []  # of the user, that are checked with what is coming, in order
         self._aside: Sketch | None = None  # what the sandbox got last, where that is not what is coming
         self._coming_notes: list[str] = []
-        self._file_error: PlaygroundError | None = None  # of what is coming
+        self._load_error: PlaygroundError | None = None  # of the files as they were read last
+        self._check_error: PlaygroundError | None = None  # of what is coming
 
     # ── state ────────────────────────────────────────────────────────────────
 
@@ -106,7 +119,17 @@ class Drafts:
     @property
     def error(self) -> PlaygroundError | None:
         """What is wrong just now."""
-        return self._file_error or self.draw_error
+        return self._check_error or self._load_error or self.draw_error
+
+    @property
+    def latest(self) -> Draft | None:
+        """What is shown, or what will be shown of the same sketch if it proves good."""
+        return self.coming if self._is_checked else self.shown
+
+    @property
+    def _is_checked(self) -> bool:
+        """Whether a new state of the sketch that is shown is being checked."""
+        return not self.opening and self.stage in (ReloadStage.SANDBOX, ReloadStage.DRAW)
 
     @property
     def testing(self) -> bool:
@@ -125,14 +148,14 @@ class Drafts:
         See ``dependencies.watched``.
         """
         drafts = [draft for draft in (self.shown, self.coming) if draft is not None]
-        errors = [error for error in (self._file_error, self.draw_error) if error is not None]
+        errors = [e for e in (self._load_error, self._check_error, self.draw_error) if e is not None]
         sketches = [sketch for draft in drafts for sketch in (draft.sketch, draft.file)]
         return watched(self.path, sketches, errors, self.places)
 
     @property
     def stored(self) -> StoredEdits:
         """What ``open`` takes to restore the edits of the sketch that is open; it may not be shown yet."""
-        draft = self.coming if self.opening else self.shown or self.coming
+        draft = self.coming if self.opening else self.latest or self.coming
         return self._start if draft is None else stored(draft)
 
     # ── files ────────────────────────────────────────────────────────────────
@@ -144,31 +167,33 @@ class Drafts:
         """
         self._begin(_listed(changed) or self.path.name)
         self.read_at = time.time()
-        chosen = self._unproved
-        old = None if self.opening else chosen or self.shown or self.coming
+        if self.stage is ReloadStage.FAILED:
+            self._choices = []
+        shown = None if self.opening else self.shown
+        old = None if self.opening else self.shown or self.coming
         try:
             with noting_places() as self.places:
                 loaded = with_texts(load_with(self._techniques.begin(), self.path), self.texts)
             loaded = loaded.plainly(self.plain)
             draft, notes = reload_draft(old, loaded) if old else first_draft(loaded, self._start)
         except Exception as error:
-            self._drop_coming()
-            self._file_error = missing_file_error(self.path) or explained(error, self.path)
+            self._load_error = missing_file_error(self.path) or explained(error, self.path)
+            self._saved = self._check_error = None
+            self._propose([])
             return
-        shown = None if self.opening else self.shown
-        if chosen is None and shown is not None and loaded == shown.file:
-            self._drop_coming()
-            self._file_error = self.draw_error = None
+        self._load_error = self._check_error = None
+        self._saved = draft
+        if shown is not None and loaded == shown.file:
+            self.draw_error = None
             self.revision += 1  # the texts are the same, but an image may have changed
-            if self.sandboxed and self._drawn.reads_new_data(shown.sketch):
-                self._propose(shown, [])
-            return
-        if shown is not None:
+            is_new = self.sandboxed and self._drawn.reads_new_data(shown.sketch)
+            self._saved, notes = shown if is_new else None, []
+        elif shown is not None:
             notes += map(str, newly_shadowed(shown.file, draft.sketch))
         variants = self._checks.variants
         known = () if old is None else left_out(old.base, variants)
         notes += [note for note in left_out(draft.base, variants) if note not in known]
-        self._propose(draft, notes, new_file=chosen is not None)
+        self._propose(notes)
 
     def open(
         self,
@@ -183,11 +208,19 @@ class Drafts:
         ``keep``: it is a copy of this one, and the user's edits go on. ``start``: the edits of the
         other; ``texts`` replace some of its files.
         """
-        self.path, self.texts = find(path).absolute(), texts or {}
+        found = find(path).absolute()
         self._techniques.dialect = ""
         if not keep:
-            self._start, self.opening = start or StoredEdits(), True
+            self._leave_out("another sketch is opened", self._choices if self._is_checked else [])
+            self._start, self._choices = start or StoredEdits(), []
+        self.path, self.texts, self.opening = found, texts or {}, not keep
         self.reload()
+
+    def stay(self) -> None:
+        """Read the files of the sketch that is shown again, and open no other."""
+        if self.shown is not None:
+            self.path, self.texts, self.opening = Path(self.shown.file.file), {}, False
+            self.reload()
 
     def read_as(self, texts: Mapping[str, str]) -> None:
         """Replace shaders' files by texts, by absolute path; nothing is written."""
@@ -203,24 +236,38 @@ class Drafts:
 
     def choose(self, pass_name: str, use: str) -> None:
         """Fill a pass with another technique, once that has proved good."""
-        if self.shown is None:
-            return
-        chosen = self._unproved
-        draft = chosen or self.shown
-        self._begin(use)
-        self._propose_made(lambda: draft.choose(pass_name, use), new_file=chosen is not None)
+        self._change(lambda draft: draft.choose(pass_name, use))
+
+    def show(self, draft: Draft) -> None:
+        """Show a draft of this sketch that was drawn before; what is saved since goes on being checked."""
+        self.revision += 1
+        self.shown, self._choices = draft, []
+        if self._is_checked:
+            notes: list[str] = []
+            if self._saved is not None:
+                self._saved, notes = reload_draft(draft, self._saved.file)
+            self._propose(notes)
 
     def drawn_well(self) -> None:
         """Replace what is shown by what was coming: it has been drawn."""
+        assert self.coming is not None
+        if self.shown is None or self.shown.file is not self.coming.file:
+            self.reads += 1
+            self.read_edits = (self._saved or self.coming).edits
         self.shown, self.opening = self.coming, False
         self.notes.extend(self._coming_notes)
         self._drop_coming()
-        self._file_error = self.draw_error = None
+        self._check_error = self.draw_error = None
 
     def failed(self, error: Exception) -> None:
-        """Report why what is coming cannot be shown."""
-        self.stage = ReloadStage.FAILED
-        self._file_error = explained(error, self.path)
+        """Report why what is coming cannot be shown; where it is more than one thing, check the rest."""
+        found, checked = explained(error, self.path), [c for c in self._choices if c.chosen]
+        if checked and (self._saved is not None or len(checked) > 1):
+            self._choices.remove(checked[-1])
+            self._leave_out(found.diagnostics[0].message, checked[-1:])
+            self._propose(self._coming_notes)
+        else:
+            self.stage, self._check_error = ReloadStage.FAILED, found
 
     def report(self, error: Exception) -> None:
         """Report why what is shown cannot be drawn any more."""
@@ -229,23 +276,34 @@ class Drafts:
     def _begin(self, subject: str) -> None:
         self.started, self._subject = self._checks.now(), subject
 
-    def _propose_made(self, make: Callable[[], Draft], *, new_file: bool = False) -> None:
-        try:
-            self._propose(make(), [], new_file=new_file)
-        except PlaygroundError as error:
-            self._file_error = explained(error, self.path)
-
-    def _propose(self, draft: Draft, notes: list[str], *, new_file: bool = False) -> None:
-        self.coming, self._coming_notes, self._new_file = draft, notes, new_file
-        self._file_error, self.sandbox_seconds = None, 0.0
+    def _propose(self, notes: list[str]) -> None:
+        """Check what was saved together with what the user has chosen since, if there is either."""
+        draft, choices, self._choices = self._saved or self.shown, self._choices, []
+        for choice in choices:
+            assert draft is not None  # who chooses sees something
+            try:
+                draft = choice.change(draft)
+                self._choices.append(choice)
+            except PlaygroundError as error:
+                self._leave_out(error.diagnostics[0].message, [choice])
+        if draft is None or not (self._saved or any(choice.chosen for choice in self._choices)):
+            self._drop_coming()
+            return
+        self.coming, self._coming_notes = draft, notes
+        self._check_error, self.sandbox_seconds = None, 0.0
         if self._checks.sandbox is None or not self._drawn.needs_drawing(draft.sketch):
             self.stage = ReloadStage.DRAW
             return
         self.stage, self._aside = ReloadStage.SANDBOX, None
         self._submit(self._checks.sandbox, draft.sketch)
 
+    def _leave_out(self, why: str, choices: Iterable[Choice]) -> None:
+        """Say that choices of the user are not taken."""
+        self.notes.extend(f"{choice.label} is not taken: {why}" for choice in choices)
+
     def _drop_coming(self) -> None:
         self.coming, self.stage, self._coming_notes = None, ReloadStage.NONE, []
+        self._saved, self._choices = None, []
 
     # ── the sandbox ──────────────────────────────────────────────────────────
 
@@ -272,11 +330,11 @@ class Drafts:
         report = self._checks.sandbox.poll() if self._checks.sandbox is not None else None
         if report is None:
             return
-        # Without a context the sandbox can check nothing; this one may well have what it takes.
-        if report.ok or isinstance(report.error, ContextError):
+        error = refusal(report)
+        if error is None:
             self.stage, self.sandbox_seconds = ReloadStage.DRAW, report.seconds
         else:
-            self.failed(report.error or PlaygroundError("the sandbox failed without saying why"))
+            self.failed(error)
 
     def _submit(self, sandbox: Sandbox, sketch: Sketch) -> None:
         sandbox.submit(TrySketch(sketch, time=self._checks.sketch_time(), drivers=(self._checks.driver,)))
@@ -293,15 +351,18 @@ class Drafts:
             self.notes.append(str(error))
             return
         known = edited.edits.values[-1][1]
-        self._take(edited, lambda edits: edits.with_value(path, known))
+        self._change(lambda draft: draft.with_edits(draft.edits.with_value(path, known)), edited)
 
     def set_all(self, values: Mapping[str, Value]) -> None:
         """Set several parameters at once; those that are locked, gone or do not take theirs stay."""
         if self.shown is not None:
             free = [(p, v) for p, v in values.items() if p not in self.shown.edits.locked]
             fit = {p: v for p, given in free if (v := taken(self.shown.base, p, given)) is not None}
-            others = [(p, v) for p, v in self.shown.edits.values if p not in fit]
-            self._edit(lambda edits: replace(edits, values=(*others, *fit.items())))
+            self._edit(
+                lambda edits: replace(
+                    edits, values=(*(v for v in edits.values if v[0] not in fit), *fit.items())
+                )
+            )
 
     def shorten_values(self) -> None:
         """Write edited values in the fewest digits that a shader reads as the same numbers."""
@@ -316,27 +377,38 @@ class Drafts:
 
     def unset(self, *paths: str) -> None:
         """Reset parameters to the file's values."""
-        draft = self.shown
-        if draft is not None:
-            for path in paths:
-                draft = draft.without(path)
-            left = draft.edits.values
-            self._edit(lambda edits: replace(edits, values=left))
+        self._change(lambda draft: reduce(Draft.without, paths, draft))
 
     def lock(self, path: str, locked: bool) -> None:
         """Lock a parameter against presets, randomising and reloads, or unlock it."""
         self._edit(lambda edits: edits.with_lock(path, locked))
 
-    def restore(self, edits: Edits) -> None:
-        """Replace the edits: values and camera at once, techniques once they have proved good."""
-        shown = self.shown
-        if shown is None:
-            return
-        if edits.techniques == shown.edits.techniques:
-            self._edit(lambda old: replace(edits, techniques=old.techniques))
-            return
-        self._begin(self.path.name)
-        self._propose_made(lambda: shown.with_techniques(edits.techniques).with_edits(edits))
+    def restore(self, edits: Edits) -> bool:
+        """Replace the edits: values and camera at once, techniques once they have proved good.
+
+        Returns whether they are taken; a note or the error says why not.
+        """
+        if self.latest is None:
+            return False
+        known = self.latest.edits
+        _, changes = changes_between(known, edits)
+
+        def change(draft: Draft) -> Draft:
+            """Make the changes between the two; on the edits that were known, exactly those wanted."""
+            wanted = edits if draft.edits == known else edits_of(applied(state_of(draft.edits, {}), changes))
+            return draft.with_all(wanted)
+
+        return self._change(change)
+
+    def restore_with_save(self, edits: Edits) -> None:
+        """Replace values and camera in what was just saved; what is shown stays until that is drawn."""
+        if self._is_checked and self._saved is not None:
+            self._saved = self._saved.with_edits(replace(edits, techniques=self._saved.edits.techniques))
+            self.coming = self._saved
+            for choice in self._choices:
+                self.coming = choice.change(self.coming)
+        else:
+            self.restore(edits)
 
     def set_camera(self, camera: Camera | None) -> None:
         """Set the camera; None: the file's."""
@@ -356,47 +428,59 @@ class Drafts:
             self.restore(replace(self.shown.edits, values=left, techniques=()))
 
     def _edit(self, change: Callable[[Edits], Edits]) -> None:
+        self._change(lambda draft: draft.with_edits(change(draft.edits)))
+
+    def _change(self, change: Change, edited: Draft | None = None) -> bool:
+        """Change what is shown, and what is coming; what is new to the driver is checked first.
+
+        ``edited`` is what is shown with the change, where that is known. Returns whether it is taken.
+        """
         shown = self.shown
-        self._take(shown.with_edits(change(shown.edits)) if shown is not None else None, change)
-
-    def _take(self, edited: Draft | None, change: Callable[[Edits], Edits]) -> None:
-        """Show an edited draft, and make the same change to what is coming."""
+        if shown is None:
+            return False
         self.revision += 1
-        if self.sandboxed and self.shown is not None and edited is not None:
-            if _names_another_file(self.shown, edited):
-                self._drop_failed_file()
-                if self._drawn.reads_new_data(edited.sketch):
-                    draft = self.coming or self.shown
-                    self._check_new_file(draft.with_edits(change(draft.edits)))
-                    return
-        self.shown = edited
-        if self.coming is not None:
-            edited = self.coming.with_edits(change(self.coming.edits))
-            if self._new_file and _names_another_file(self.coming, edited):
-                self._check_new_file(edited)  # what is checked, or has failed, is no longer what is chosen
-            else:
-                self.coming = edited
+        coming = self.coming if self._is_checked or self._choices else None
+        saved = self._saved if self._is_checked else None
+        try:
+            edited = edited or change(shown)
+            changed = change(coming) if coming is not None else edited
+            saved = change(saved) if saved is not None else None
+        except PlaygroundError as error:
+            self._check_error = explained(error, self.path)
+            return False
+        made = choice_of(change, shown.edits, edited.edits)
+        is_new = self._is_new(shown, edited) if made.chosen else False
+        choice = choice_of(change, coming.edits, changed.edits) if coming is not None else made
+        if is_new and not choice.chosen:
+            choice = made  # it is being checked already
+        if self.opening and is_new:
+            self._leave_out(f"{shown_path(self.path)} is being opened, and not shown yet", [choice])
+            return False
+        if self.stage is ReloadStage.FAILED and not self.opening:
+            if is_new or (choice.chosen and self._choices):
+                self._drop_coming()  # another is chosen in place of what has failed
+                self._check_error = coming = None
+        if not is_new:
+            self.shown = edited
+            self._saved = saved or self._saved
+        if is_new or (choice.chosen and coming is not None):
+            if not is_new:  # it takes back what is being checked
+                self._choices = [other for other in self._choices if not other.keys <= choice.keys]
+            self._choices.append(choice)
+            self._begin(choice.use or self.path.name)
+            self._propose(self._coming_notes)
+        elif self._is_checked:
+            self.coming = changed
+            if any(other.keys & choice.keys for other in self._choices):  # it comes after them
+                left = [other for other in self._choices if other.chosen or not other.keys <= choice.keys]
+                self._choices = [*left, choice]
+        return True
 
-    @property
-    def _unproved(self) -> Draft | None:
-        """What is coming, while it is not known yet whether a data file that the user chose is good."""
-        return self.coming if self._new_file and self.stage is not ReloadStage.FAILED else None
-
-    def _check_new_file(self, draft: Draft) -> None:
-        """Send data files that the user chose through the sandbox first."""
-        self._begin(self.path.name)
-        self._propose(draft, self._coming_notes, new_file=self._drawn.reads_new_data(draft.sketch))
-
-    def _drop_failed_file(self) -> None:
-        """Forget a data file that the user chose and that failed: another is chosen in its place."""
-        if self._new_file and self.stage is ReloadStage.FAILED:
-            self._drop_coming()
-            self._file_error, self._new_file = None, False
-
-
-def _names_another_file(before: Draft, edited: Draft) -> bool:
-    """Say whether an edit sets another text, as the name of a file is one."""
-    return any(isinstance(value, str) for _, value in {*edited.edits.values} ^ {*before.edits.values})
+    def _is_new(self, shown: Draft, edited: Draft) -> bool:
+        """Say whether a choice has to be checked first: a technique, or data that was never drawn with."""
+        if edited.edits.techniques != shown.edits.techniques:
+            return True
+        return self.sandboxed and self._drawn.reads_new_data(edited.sketch)
 
 
 def _listed(files: Iterable[Path]) -> str:

@@ -1,4 +1,4 @@
-"""Merge user edits with what the files say: one rule, for a reload and for a new start.
+"""Merge user edits with what the files set: one rule, for a reload and for a new start.
 
 An edit stays, unless the files now set another value themselves: by the sketch's own ``set``,
 added, changed or removed, or by its size, extent or relief. A new default alone does not win.
@@ -47,8 +47,8 @@ def newer_value(
 ) -> FileValue | None:
     """Return what the files say where it wins over the user's edit; None where the edit stays.
 
-    ``was`` is what they said when it was edited or last shown, as ``file_values`` gives it; ``locked``
-    are the paths whose values stay whatever the files say.
+    ``was`` is what they set when it was edited or last shown, as ``file_values`` gives it; ``locked``
+    are the paths whose values stay over any change of the files.
     """
     before, after = was.get(path), now.get(path)
     if path in locked or before is None or after is None or before.value == after.value:

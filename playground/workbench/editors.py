@@ -24,7 +24,7 @@ from playground.workbench.shell_quoting import MARK, with_file
 
 VARIABLES = ("PLAYGROUND_EDITOR", "VISUAL", "EDITOR")
 BUILT_IN = "builtin"
-_LEAST = 4000  # bytes of what a failing editor errors that are looked at
+_LEAST = 4000  # last bytes of a failing editor's messages that are read
 
 _COLON = ("{file}:{line}:{column}",)
 _PLUS = ("+{line}", "{file}")
@@ -64,7 +64,7 @@ TERMINALS: dict[str, tuple[str, ...]] = {
     "wezterm": ("start", "--"),
     "xterm": ("-e",),
 }
-"""What stands between each terminal and the command that runs in it; ``-e`` for any other."""
+"""What comes between each terminal and the command that runs in it; ``-e`` for any other."""
 
 _WINDOWED = ("code", "codium", "cursor", "zed", "subl", "kate", "gedit", "geany", "notepad++")
 _ON_A_MAC = ("bbedit", "mate", "xed")
@@ -103,7 +103,7 @@ class Editor:
 def find_editor(
     environ: Mapping[str, str] | None = None, which: Which = shutil.which, platform: str = sys.platform
 ) -> tuple[Editor | None, str]:
-    """Return (the editor to use, a sentence on what was requested and cannot be).
+    """Return (the editor to use, a sentence on a requested one that cannot be used).
 
     None: the one in the window. The sentence is ``""`` where there is nothing to say.
     """
@@ -119,15 +119,13 @@ def find_editor(
         if found is not None:
             return found, complaint
         complaint = complaint or f"${variable} {why}"
-    for name in (*_WINDOWED, *(_ON_A_MAC if platform == "darwin" else ())):
+    names = [*_WINDOWED, *(_ON_A_MAC if platform == "darwin" else ())]
+    if platform == "win32":
+        folders = filter(None, (environ.get(name) for name in ("ProgramFiles", "ProgramFiles(x86)")))
+        names += [rf"{folder}\Notepad++\notepad++.exe" for folder in folders]
+    for name in names:
         if path := which(name):
             return Editor((path,)), complaint
-    if platform == "win32":
-        folders = [environ.get(name, "") for name in ("ProgramFiles", "ProgramFiles(x86)")]
-        for folder in filter(None, folders):
-            path = rf"{folder}\Notepad++\notepad++.exe"
-            if which(path):
-                return Editor((path,)), complaint
     if platform == "darwin" and which("open"):
         return Editor(("open", "-t")), complaint
     terminal = find_terminal(environ, which)
@@ -188,7 +186,7 @@ class Opener:
     """Starts editors and waits for them in the background; what went wrong is in ``notes``."""
 
     def __init__(self, wake: Callable[[], None] = lambda: None) -> None:
-        self.notes: deque[str] = deque(maxlen=8)  # sentences; whoever shows them takes them out
+        self.notes: deque[str] = deque(maxlen=8)  # sentences; removed when they are shown
         self.threads: list[threading.Thread] = []
         self._wake = wake
 

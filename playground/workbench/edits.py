@@ -9,7 +9,7 @@ Edits survive a reload. In full, for an edited parameter:
 * it keeps its value while the files change elsewhere, and also where its declaration changes:
   another default, label, step or wider range;
 * where the sketch's own ``set`` (or the terrain's size, extent, relief or base elevation) now says
-  another value than it said, the file wins (see ``edit_merge``): its value is taken, and a notice
+  another value than before, the file wins (see ``edit_merge``): its value is taken, and a notice
   says so, unless it is the very value that the user had set;
 * where its range no longer holds the value, the nearest end of the range is taken, with a notice;
 * where its type is another now, or its menu has lost the choice, it goes back to the file's value,
@@ -20,7 +20,7 @@ Edits survive a reload. In full, for an edited parameter:
 
 A parameter that is not edited shows what the files say, new defaults included. A camera set by the
 user stays until the file moves the camera, and a technique chosen by the user until the file fills
-that pass with another. A locked parameter keeps its value, edited or not, whatever the files say, as
+that pass with another. A locked parameter keeps its value, edited or not, over any change of the files, as
 long as it fits at all.
 """
 
@@ -30,7 +30,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from playground.errors import ParameterError, PlaygroundError
-from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve, values_of
+from playground.sketch.assign import TERRAIN_KEYS, check_value, current_path, resolve, values_of
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.values import is_whole, write
@@ -78,7 +78,7 @@ class Draft:
     def applied(self) -> dict[str, Value]:
         """The values edited that fit the sketch of the moment, by path; the others wait."""
         found = ((path, taken(self.base, path, value)) for path, value in self.edits.values)
-        return {path: value for path, value in found if value is not None}
+        return {current_path(self.base.graph, p): value for p, value in found if value is not None}
 
     @cached_property
     def sketch(self) -> Sketch:
@@ -92,6 +92,7 @@ class Draft:
 
     def with_value(self, path: str, given: object) -> Draft:
         """Return the draft with one parameter set; raise ``ParameterError`` where it cannot be."""
+        path = current_path(self.base.graph, path)
         sketch = self.sketch.with_values({path: given})
         value = dict(sketch.overrides).get(path, given)
         made = self.with_edits(self.edits.with_value(path, value))  # type: ignore[arg-type]
@@ -99,13 +100,13 @@ class Draft:
         return made
 
     def without(self, path: str) -> Draft:
-        """Return the draft with a parameter as the file says, by whatever name it was set."""
-        mine = _leaves(self.base, path)
+        """Return the draft with a parameter as the file says, by any name that it was set by."""
+        mine = leaves(self.base, path)
         return self.with_edits(
             replace(
                 self.edits,
                 values=tuple(
-                    v for v in self.edits.values if v[0] != path and not mine & _leaves(self.base, v[0])
+                    v for v in self.edits.values if v[0] != path and not mine & leaves(self.base, v[0])
                 ),
             )
         )
@@ -128,9 +129,10 @@ class Draft:
             base = with_technique(base, name, use)
         return Draft(self.file, base, replace(self.edits, techniques=techniques))
 
-    def reset(self) -> Draft:
-        """Return the draft as the files say it."""
-        return Draft(self.file, self.file)
+    def with_all(self, edits: Edits) -> Draft:
+        """Return the same files with other edits, techniques included; raise as ``with_techniques``."""
+        same = edits.techniques == self.edits.techniques
+        return (self if same else self.with_techniques(edits.techniques)).with_edits(edits)
 
 
 def taken(sketch: Sketch, path: str, value: Value) -> Value | None:
@@ -212,7 +214,7 @@ def _after_reload(old: Draft, base: Sketch, notes: list[str]) -> list[tuple[str,
             left.append((path, stays))
         if note:
             notes.append(note)
-    return left
+    return [(current_path(base.graph, path), value) for path, value in left]
 
 
 def _with_locked(old: Draft, after: dict[str, Value]) -> list[tuple[str, Value]]:
@@ -221,10 +223,10 @@ def _with_locked(old: Draft, after: dict[str, Value]) -> list[tuple[str, Value]]
     if old.edits.locked:
         now = values_of(old.sketch)
         for path in old.edits.locked:
-            leaves = _leaves(old.base, path)
-            moved = any(leaf in after and after[leaf] != now[leaf] for leaf in leaves)
+            inner = leaves(old.base, path)
+            moved = any(leaf in after and after[leaf] != now[leaf] for leaf in inner)
             if moved and not old.edits.has(path):
-                found.append((path, now[min(leaves)]))
+                found.append((path, now[min(inner)]))
     return found
 
 
@@ -259,7 +261,7 @@ def _clamped(parameter: Parameter, value: Value, low: float, high: float) -> Val
     return found if isinstance(value, tuple) else found[0]
 
 
-def _leaves(sketch: Sketch, path: str) -> set[str]:
+def leaves(sketch: Sketch, path: str) -> set[str]:
     """Return the paths of the parameters that a path represents; none where it is gone."""
     try:
         return {target.path for target in resolve(sketch.graph, path)}

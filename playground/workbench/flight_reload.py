@@ -11,12 +11,12 @@ from pathlib import Path
 from types import TracebackType
 
 from playground.engine.sandbox import TrySketch
-from playground.errors import ContextError, PlaygroundError
+from playground.errors import PlaygroundError
 from playground.sketch.allowed_files import Signature, noting_places
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.workbench.dependencies import watched
-from playground.workbench.reload_stages import Sandbox, explained
+from playground.workbench.reload_stages import Sandbox, explained, refusal
 from playground.workbench.watcher import Watcher
 
 
@@ -70,13 +70,11 @@ class SaveFollower:
         report = self._sandbox.poll()
         if report is None:
             return None
-        good, self._checked = self._checked, None
-        # Without a context the child can try nothing; this one may well have what it takes.
-        if not report.ok and not isinstance(report.error, ContextError):
-            self.error = report.error or PlaygroundError("the sandbox failed without saying why")
+        good, self._checked, self.error = self._checked, None, refusal(report)
+        if self.error is not None:
             self._follow(time.time())
             return None
-        self._shown, self.error = good, None
+        self._shown = good
         return good
 
     def refuse(self, error: Exception) -> None:

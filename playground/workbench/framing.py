@@ -1,6 +1,6 @@
 """Keep what a picture shows from side to side as the room for it narrows.
 
-A camera's field of view is its vertical one. Beside the panels a picture is narrower than what
+A camera's field of view is its vertical one. Next to the panels a picture is narrower than what
 the sketch was framed for, and would be cut at its sides: it is opened instead, so that more is
 visible above and below. Only the window does so; a render of a size is that of the sketch's camera.
 """

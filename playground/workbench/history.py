@@ -1,14 +1,14 @@
 """Undo and redo: what each step changed, from what to what.
 
 Edits need not be reported to it. It gets the state at the end of every frame and
-keeps what differs from the frame before, so that whatever can be set can be undone. A
+keeps what differs from the frame before, so that all that can be set can be undone. A
 step holds only the things that it changed: undoing it leaves all else alone, also
 after the files have been reloaded in between.
 
 What changes while a mouse button is held is one step, and so is what goes on changing
 in the same way within a moment, as the wheel does. A reload is no step: what it takes
 away, it says. Saving moves values into the file: for the steps before it, "as the file
-says" then means what the file said.
+says" then means what the file set before.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ State = Mapping[Key, object]
 class Step:
     """What one action changed."""
 
-    before: State  # of each thing that changed; None: as the file said
+    before: State  # of each thing that changed; None: as in the file
     after: State
-    name: str = ""  # in words, where whoever did it gave one
+    name: str = ""  # in words, where one was given
     at: float = 0.0  # [s] when it last went on
 
 
@@ -49,7 +49,7 @@ def state_of(edits: Edits, steps: Mapping[str, int]) -> dict[Key, object]:
     found: dict[Key, object] = {("value", path): value for path, value in edits.values}
     found |= {("technique", name): use for name, use in edits.techniques}
     found |= {("lock", path): True for path in edits.locked}
-    found |= {("step", path): turn for path, turn in steps.items()}
+    found |= {("step", path): step for path, step in steps.items()}
     if edits.camera is not None:
         found["camera", ""] = edits.camera
     return found
@@ -67,7 +67,7 @@ def edits_of(state: State) -> Edits:
 
 def steps_of(state: State) -> dict[str, int]:
     """Return the repeats that a state stops early."""
-    return {path: cast(int, turn) for (kind, path), turn in state.items() if kind == "step"}
+    return {path: cast(int, step) for (kind, path), step in state.items() if kind == "step"}
 
 
 class History:
@@ -79,7 +79,7 @@ class History:
         self._most = most
         self._seen: object = None  # the edits that were looked at last, to know at once that nothing moved
         self._state: dict[Key, object] | None = None
-        self._of: object = None  # the files that the state is of
+        self._of = 0  # how often the files had been read
         self._due: dict[Key, object] = {}  # what an undo has requested and is not there yet
         self._open = False  # the last step goes on while the button is held
         self._name = ""
@@ -98,11 +98,22 @@ class History:
         """Give the next change a name, for one that its parts would not explain."""
         self._name = name
 
-    def look(self, edits: Edits, steps: Mapping[str, int], of: object, *, held: bool, now: float) -> None:
+    def look(
+        self,
+        edits: Edits,
+        steps: Mapping[str, int],
+        of: int,
+        *,
+        held: bool,
+        now: float,
+        read: Edits | None = None,
+        rests: bool = False,
+    ) -> None:
         """Take in the state at the end of a frame.
 
-        ``of`` is the sketch as its files say it: another one is a reload. ``held``: a mouse
-        button is down. ``now``: seconds of any clock.
+        ``of`` counts how often the files were read: another number is a reload, which left the edits
+        ``read``. ``held``: a mouse button is down. ``now``: seconds of any clock. ``rests``: nothing
+        is being checked, so that an undo which has not come by now never will: it is no longer done.
         """
         if self._open and not held:
             self._close()
@@ -110,14 +121,22 @@ class History:
         before, self._state = self._state, self._state if seen == self._seen else state_of(edits, steps)
         assert self._state is not None
         self._seen = seen
-        if before is None or of is not self._of:
-            self._of = of
+        if before is not None and of != self._of:
+            before = state_of(edits if read is None else read, steps)
+        self._of = of
+        if before is None:
             return
         changed = {key for key in {*before, *self._state} if before.get(key) != self._state.get(key)}
         for key in list(changed):
             if key in self._due and self._due[key] == self._state.get(key):
                 del self._due[key]
                 changed.discard(key)
+        if rests and self._due:
+            missed = {key: value for key, value in self._due.items() if self._state.get(key) != value}
+            self._due = {}
+            if any(kind == "technique" for kind, _ in missed):
+                before = {**before, **missed}
+                changed |= missed.keys()
         if changed:
             after = {key: self._state.get(key) for key in changed}
             self._add({key: before.get(key) for key in changed}, after, held=held, now=now)
@@ -132,31 +151,27 @@ class History:
         self._name = name
         self._add(before, after, held=False, now=now)
 
-    def undo(self) -> State:
-        """Undo a step; return what has to be set, None for what is to be as the file says."""
-        if not self.can_undo:
-            return {}
-        self.done -= 1
-        return self._asked(self.steps[self.done].before)
+    def go(self, by: int, apply: Callable[[State], bool]) -> bool:
+        """Undo (-1) or redo (1) a step: ``apply`` sets what it changed, None for what the file says.
 
-    def redo(self) -> State:
-        """Redo a step; return what has to be set."""
-        if not self.can_redo:
-            return {}
-        self.done += 1
-        return self._asked(self.steps[self.done - 1].after)
+        Where there is none, or ``apply`` returns False, nothing is done, and False is returned.
+        """
+        if not (self.can_redo if by > 0 else self.can_undo):
+            return False
+        step = self.steps[self.done if by > 0 else self.done - 1]
+        wanted = step.after if by > 0 else step.before
+        if not apply(wanted):
+            return False
+        self.done, self._open = self.done + by, False
+        self._due |= {key: value for key, value in wanted.items() if key[0] not in (KEYFRAMES, "time")}
+        return True
 
     def saved(self, before: State) -> None:
-        """Take in that these are in the file from now on, and what the file said before."""
+        """Take in that these are in the file from now on, and what the file set before."""
         self.steps = [
-            replace(step, before=_said(step.before, before), after=_said(step.after, before))
+            replace(step, before=_filled(step.before, before), after=_filled(step.after, before))
             for step in self.steps
         ]
-
-    def _asked(self, wanted: State) -> State:
-        self._open = False
-        self._due |= wanted
-        return wanted
 
     def settle(self, edits: Edits, steps: Mapping[str, int]) -> None:
         """Take a state for granted: an undo has made it. What is still to come of it is no step either."""
@@ -228,7 +243,7 @@ def in_words(step: Step, name_of: Callable[[str], str], write: Callable[[str, ob
     return f"{name_of(path)}: {write(path, before)} to {write(path, after)}"
 
 
-def _said(state: State, before: State) -> State:
+def _filled(state: State, before: State) -> State:
     return {key: before.get(key) if value is None else value for key, value in state.items()}
 
 

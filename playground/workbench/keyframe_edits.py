@@ -15,7 +15,7 @@ from playground.sketch.assign import TERRAIN_KEYS, resolve, value_of, values_of
 from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch
 from playground.workbench.commands import rounded
-from playground.workbench.edits import Edits
+from playground.workbench.edits import Edits, leaves
 from playground.workbench.history import KEYFRAMES, Key, changes_between
 from playground.workbench.notices import Notices
 from playground.workbench.session import Session
@@ -77,7 +77,7 @@ class KeyframeEdits:
             values=tuple((dict(base.values) | named).items()),
         )
         keyed = {target.path for path in paths for target in resolve(draft.base.graph, path)}
-        left = tuple(v for v in draft.edits.values if not keyed & _leaves(draft.base, v[0]))
+        left = tuple(v for v in draft.edits.values if not keyed & leaves(draft.base, v[0]))
         edits = replace(draft.edits, values=left, camera=None if camera else draft.edits.camera)
         others = [keyframe for keyframe in known if keyframe is not here]
         return self._write([*others, made], f"Keyframe at {time:g} s", edits)
@@ -118,11 +118,7 @@ class KeyframeEdits:
         if edits is not None and edits != draft.edits:
             old, new = changes_between(draft.edits, edits)
             before, after = before | old, after | new
-            if drafts.coming is not None:  # what is shown stays as it is until the keyframe is in it
-                techniques = drafts.coming.edits.techniques
-                drafts.coming = drafts.coming.with_edits(replace(edits, techniques=techniques))
-            else:
-                drafts.restore(edits)
+            drafts.restore_with_save(edits)
         self.undo.history.record(before, after, name, now=self.notices.now())
         self.undo.settle()
         return True
@@ -138,7 +134,7 @@ class KeyframeEdits:
         if parts["target"] is None and "target" in named and plan is not None:
             parts["target"] = tuple(round(float(n), 2) for n in plan.eye.target)
         if parts["field_of_view"] == file.camera.field_of_view and "field_of_view" not in named:
-            del parts["field_of_view"]  # nobody changes it
+            del parts["field_of_view"]  # it never changes
         return {name: value for name, value in parts.items() if value is not None}
 
 
@@ -152,18 +148,11 @@ def _name_for(file: Sketch, known: Sequence[Keyframe], path: str) -> str:
     """Return the name that keyframes have for a parameter already, else its own."""
     if path in TERRAIN_KEYS:
         raise ParameterError(f"'{path}' is of the terrain; keyframes set parameters and the camera")
-    mine = _leaves(file, path)
+    mine = leaves(file, path)
     if not mine:
         raise ParameterError(f"'{path}' is of a technique chosen here; save that into the sketch first")
     names = dict.fromkeys(name for keyframe in known for name, _ in keyframe.values)
-    return next((name for name in names if mine & _leaves(file, name)), path)
-
-
-def _leaves(sketch: Sketch, path: str) -> set[str]:
-    try:
-        return {target.path for target in resolve(sketch.graph, path)}
-    except ParameterError:
-        return set()
+    return next((name for name in names if mine & leaves(file, name)), path)
 
 
 def _rounded_time(time: float) -> float:

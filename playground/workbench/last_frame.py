@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 
 class Painter:
-    """Draws textures into whatever framebuffer is bound."""
+    """Draws textures into framebuffers."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx

@@ -1,8 +1,8 @@
 """Remember of each sketch what was edited, in a file of its own in the user's state folder.
 
-One file a sketch, JSON with a format number, written whole or not at all. Whoever holds
-the lock beside it may write: so two windows on one sketch do not take turns in undoing
-each other. The system gives the lock back when a process ends, however it ends.
+One file a sketch, JSON with a format number, written whole or not at all. Only the window that
+holds the lock file next to it may write, so that two windows on one sketch do not overwrite each
+other. The system releases the lock when a process ends, however it ends.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import hashlib
 import json
 import math
 import sys
-from dataclasses import asdict, dataclass, field, fields, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -44,7 +44,7 @@ class Remembered:
     """What is remembered of one sketch."""
 
     edits: Edits = field(default_factory=Edits)
-    in_file: tuple[tuple[str, FileValue], ...] = ()  # what the files said of each value edited
+    in_file: tuple[tuple[str, FileValue], ...] = ()  # what the files set for each edited value
     time: float = 0.0  # [s]
     playing: bool = True
     speed: float = 1.0
@@ -86,14 +86,7 @@ class Memory:
             if self.path.stat().st_size > _LARGEST:
                 raise ValueError(f"it is larger than {_LARGEST // 2**20} MiB")
             return _read(read_json(self.path.read_text(encoding="utf-8"))), ""
-        except (
-            OSError,
-            ValueError,
-            TypeError,
-            KeyError,
-            AttributeError,
-            ArithmeticError,
-        ) as error:
+        except (OSError, ValueError, TypeError, KeyError, AttributeError, ArithmeticError) as error:
             aside = self.path.with_suffix(".unread.json")
             with contextlib.suppress(OSError):
                 self.path.replace(aside)
@@ -112,7 +105,7 @@ class Memory:
             file.write(text.encode("utf-8", "surrogatepass"))
 
     def claim(self) -> bool:
-        """Say whether this process may write; another that may, keeps its right until it ends."""
+        """Say whether this process may write; one that may keeps that right until it ends."""
         if self._lock is not None:
             return True
         try:
@@ -151,47 +144,22 @@ def _locked(file: IO[bytes]) -> bool:
 
 
 def _written(remembered: Remembered, sketch: str) -> dict[str, Any]:
-    edits, known = remembered.edits, dict(remembered.in_file)
-    table = _edits_written(edits)
-    for path, said in known.items():
+    table = asdict(remembered) | _written_edits(remembered.edits)
+    for path, in_file in remembered.in_file:
         if path in table["values"]:
-            table["values"][path] |= {"file": said.value, "own": said.own}
-    stood = remembered.camera_in_file
-    return {
-        "format": FORMAT,
-        "sketch": sketch,
-        **table,
-        "camera_in_file": asdict(stood) if stood else None,
-        "time": remembered.time,
-        "playing": remembered.playing,
-        "speed": remembered.speed,
-        "loop": list(remembered.loop) if remembered.loop else None,
-        "map": remembered.map,
-        "map_values": dict(remembered.map_values),
-        "steps": dict(remembered.steps),
-        "compared": _compared_written(remembered.compared) if remembered.compared else None,
-        "window": list(remembered.window),
-        "at": list(remembered.at) if remembered.at else None,
-    }
+            table["values"][path] |= {"file": in_file.value, "own": in_file.own}
+    del table["edits"], table["in_file"]
+    table |= {"map_values": dict(remembered.map_values), "steps": dict(remembered.steps)}
+    compared = remembered.compared
+    if compared is not None:
+        table["compared"] |= _written_edits(compared.edits) | {"steps": dict(compared.steps)}
+        del table["compared"]["edits"]
+    return {"format": FORMAT, "sketch": sketch, **table}
 
 
-def _edits_written(edits: Edits) -> dict[str, Any]:
-    return {
-        "values": {path: {"value": value} for path, value in edits.values},
-        "techniques": dict(edits.techniques),
-        "camera": asdict(edits.camera) if edits.camera else None,
-        **{name: list(getattr(edits, name)) for name in _lists()},
-    }
-
-
-def _compared_written(compared: Compared) -> dict[str, Any]:
-    how = {"mode": compared.mode, "split": compared.split, "gain": compared.gain}
-    return {**_edits_written(compared.edits), "steps": dict(compared.steps), **how}
-
-
-def _lists() -> list[str]:
-    """Return the fields of ``Edits`` that are lists of paths."""
-    return [f.name for f in fields(Edits) if f.name not in ("values", "techniques", "camera")]
+def _written_edits(edits: Edits) -> dict[str, Any]:
+    values = {path: {"value": value} for path, value in edits.values}
+    return asdict(edits) | {"values": values, "techniques": dict(edits.techniques)}
 
 
 def _read(table: Any) -> Remembered:
@@ -202,21 +170,21 @@ def _read(table: Any) -> Remembered:
         (str(path), _file_value(entry)) for path, entry in table["values"].items() if "file" in entry
     )
     width, height = (int(side) for side in table["window"])
-    stood, loop, compared, at = (table.get(name) for name in ("camera_in_file", "loop", "compared", "at"))
+    at, loop = table.get("at"), table.get("loop")
     return Remembered(
-        _edits(table),
-        in_file,
-        max(_number(table["time"]), 0.0),
-        bool(table["playing"]),
-        _number(table["speed"]),
-        str(table["map"]),
-        tuple((str(name), _value(value)) for name, value in table["map_values"].items()),
-        _steps(table),
-        (width, height) if 0 < min(width, height) and max(width, height) <= 16384 else (0, 0),
-        (int(at[0]), int(at[1])) if at is not None else None,
-        _camera(stood) if stood is not None else None,
-        (_number(loop[0]), _number(loop[1])) if loop is not None else None,
-        _compared(compared) if compared is not None else None,
+        edits=_edits(table),
+        in_file=in_file,
+        time=max(_number(table["time"]), 0.0),
+        playing=bool(table["playing"]),
+        speed=_number(table["speed"]),
+        map=str(table["map"]),
+        map_values=tuple((str(name), _value(value)) for name, value in table["map_values"].items()),
+        steps=_steps(table),
+        window=(width, height) if 0 < min(width, height) and max(width, height) <= 16384 else (0, 0),
+        at=(int(at[0]), int(at[1])) if at is not None else None,
+        camera_in_file=_camera(table.get("camera_in_file")),
+        loop=(_number(loop[0]), _number(loop[1])) if loop is not None else None,
+        compared=_compared(table.get("compared")),
     )
 
 
@@ -225,30 +193,32 @@ def _file_value(entry: Any) -> FileValue:
 
 
 def _edits(table: Any) -> Edits:
-    camera = table["camera"]
     return Edits(
         tuple((str(path), _value(entry["value"])) for path, entry in table["values"].items()),
         tuple((str(name), str(use)) for name, use in table["techniques"].items()),
-        _camera(camera) if camera is not None else None,
-        **{name: tuple(str(path) for path in table.get(name, ())) for name in _lists()},
+        _camera(table["camera"]),
+        tuple(str(path) for path in table.get("locked", ())),
     )
 
 
 def _steps(table: Any) -> tuple[tuple[str, int], ...]:
-    return tuple((str(path), int(turn)) for path, turn in table["steps"].items())
+    return tuple((str(path), int(step)) for path, step in table["steps"].items())
 
 
-def _compared(table: Any) -> Compared:
+def _compared(table: Any) -> Compared | None:
+    if table is None:
+        return None
     split = min(max(_number(table["split"]), 0.0), 1.0)
     return Compared(_edits(table), _steps(table), str(table["mode"]), split, _number(table["gain"]))
 
 
-def _camera(table: Any) -> Camera:
-    target = table["target"]
+def _camera(table: Any) -> Camera | None:
+    if table is None:
+        return None
     place = None
-    if target is not None:
-        east, north, up = (_number(number) for number in target)
-        place = (east, north, up)
+    if table["target"] is not None:
+        east, north, up = (_number(number) for number in table["target"])
+        place = east, north, up
     numbers = {name: _number(table[name]) for name in ("azimuth", "elevation", "distance", "field_of_view")}
     return Camera(**numbers, target=place)
 

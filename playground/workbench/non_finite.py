@@ -61,7 +61,7 @@ class FiniteWatch:
             return
         try:
             self._look(session, to_the_end=moving)
-        except PlaygroundError:  # whoever draws the sketch says so
+        except PlaygroundError:  # it is reported where the sketch is drawn
             self._going, self._done = None, True
 
     def _look(self, session: Session, *, to_the_end: bool) -> None:

@@ -22,7 +22,7 @@ class Notice:
 
 @dataclass
 class Notices:
-    """What is said at the moment."""
+    """The notices on the screen."""
 
     now: Callable[[], float] = time.perf_counter
     items: list[Notice] = field(default_factory=list)

@@ -27,7 +27,7 @@ class OpenFiles:
     opener: Opener = field(default_factory=Opener)  # starts the user's editor
     editing: list[Editing] = field(default_factory=list)
     copy_of: Callable[[Path], Editing | None] = lambda path: None  # what is drawn in place of a file
-    leaving: bool = False  # the window is to close, and something is not saved: the user is asked what to do
+    leaving: bool = False  # the window is to close, and something is not saved: the user decides what to do
 
     def open(self, path: Path, line: int = 0, column: int = 0, *, here: bool = False) -> None:
         """Open a file at a line and a column, both from 1, 0 where unknown.

@@ -9,6 +9,7 @@ from __future__ import annotations
 import secrets
 from collections import deque
 from dataclasses import dataclass
+from functools import reduce
 from pathlib import Path
 
 import numpy as np
@@ -94,11 +95,7 @@ class Canvas:
             return slice(0, 0), slice(0, 0)
         if self.version - version > len(self._changes):
             return self._whole()
-        parts = [part for at, part in self._changes if at > version]
-        found = parts[0]
-        for part in parts[1:]:
-            found = _around(found, part)
-        return found
+        return reduce(_around, (part for at, part in self._changes if at > version))
 
     def begin(self) -> None:
         """Begin a stroke, which one undo will take back; what was taken back before is gone."""

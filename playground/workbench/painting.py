@@ -21,6 +21,7 @@ from playground.engine.view_inputs import view_height
 from playground.errors import DataError, PlaygroundError
 from playground.sketch.assign import Shown, resolve, shown_parameters, value_of, values_of
 from playground.sketch.model import Sketch
+from playground.terrain.camera import Eye
 from playground.terrain.pick import ground_under, seen_from
 from playground.terrain.sources import source_kind
 from playground.workbench.brush import Brush
@@ -64,7 +65,7 @@ class Painting:
 
     @property
     def files(self) -> frozenset[Path]:
-        """The masks that were begun: whoever watches files need not hear of these."""
+        """The masks that were begun: they need not be watched."""
         return frozenset(canvas.path for canvas in self._canvases.values())
 
     @property
@@ -93,29 +94,26 @@ class Painting:
 
     def ground(self, place: tuple[float, float]) -> tuple[float, float] | None:
         """Return where on the terrain a place of the picture lies, both in shares; None in the sky."""
-        plan, heights = self.session.plan, self._land()
-        if plan is None or heights is None or plan.terrain.extent is None or plan.terrain.relief is None:
-            return None
-        return ground_under(plan.eye, place, heights, plan.terrain.extent, plan.terrain.relief)
+        surface = self._surface()
+        return ground_under(surface[0], place, *surface[1:]) if surface is not None else None
 
     def outline(self, place: tuple[float, float], corners: int) -> list[tuple[float, float]]:
         """Return the brush's circle as it lies on the terrain, in shares of the picture; [] in the sky."""
-        plan, heights, middle = self.session.plan, self._land(), self.ground(place)
-        if middle is None or heights is None or plan is None:
+        surface, middle = self._surface(), self.ground(place)
+        if surface is None or middle is None:
             return []
-        if plan.terrain.extent is None or plan.terrain.relief is None:
-            return []
-        turns = np.linspace(0, 2 * np.pi, corners, endpoint=False)
-        around = np.stack([np.cos(turns), np.sin(turns)], axis=1) * self.brush.radius
-        shares = np.clip(np.array(middle) + around / plan.terrain.extent, 0.0, 1.0)
-        return seen_from(plan.eye, shares, heights, plan.terrain.extent, plan.terrain.relief)
+        eye, heights, extent, relief = surface
+        angles = np.linspace(0, 2 * np.pi, corners, endpoint=False)
+        around = np.stack([np.cos(angles), np.sin(angles)], axis=1) * self.brush.radius
+        shares = np.clip(np.array(middle) + around / extent, 0.0, 1.0)
+        return seen_from(eye, shares, heights, extent, relief)
 
     def press(self, place: tuple[float, float]) -> None:
         """Begin a stroke at a place of the picture, in shares from its lower left."""
         if self.canvas is not None and not self.canvas.holds():
-            # Somebody has taken the file away, or painted on it.
+            # Another program has removed the file, or painted on it.
             self._saved(self.canvas.take_in if self.canvas.path.exists() else self.canvas.save)
-        if self._land() is None:
+        if self._height() is None:
             self.session.notes.append("the view shows no height, so there is no ground to paint on")
         self._last = self.ground(place)
         canvas = self._begun() if self._last is not None else None
@@ -148,27 +146,25 @@ class Painting:
 
     def undo(self) -> None:
         """Undo the last stroke."""
-        if self.canvas is not None and not self._was_changed(self.canvas):
-            self._saved(self.canvas.undo)
+        self._edit(self.canvas, Canvas.undo)
 
     def redo(self) -> None:
         """Redo the stroke that was undone last."""
-        if self.canvas is not None and not self._was_changed(self.canvas):
-            self._saved(self.canvas.redo)
+        self._edit(self.canvas, Canvas.redo)
 
     def clear(self) -> None:
         """Take all paint away."""
-        canvas = self._begun()
-        if canvas is not None and not self._was_changed(canvas):
-            self._saved(canvas.clear)
+        self._edit(self._begun(), Canvas.clear)
 
-    def _was_changed(self, canvas: Canvas) -> bool:
-        """Say whether another program has painted on the file since; then it is taken in as it is."""
+    def _edit(self, canvas: Canvas | None, act: Callable[[Canvas], None]) -> None:
+        """Change a mask and save it; what another program has painted on it since is read instead."""
+        if canvas is None:
+            return
         if canvas.holds() or not canvas.path.exists():
-            return False
+            self._saved(lambda: act(canvas))
+            return
         self._saved(canvas.take_in)
         self.session.notes.append(f"{canvas.path.name} was changed by another program: it stays as it is now")
-        return True
 
     def _saved(self, act: Callable[[], None]) -> None:
         try:
@@ -223,7 +219,14 @@ class Painting:
         self.session.notes.append(f"painting on {canvas.path.name} in {canvas.path.parent}")
         return canvas
 
-    def _land(self) -> NDArray[np.float32] | None:
+    def _surface(self) -> tuple[Eye, NDArray[np.float32], tuple[float, float], float] | None:
+        """Return the eye, the heights, the extent [m] and the relief [m] of the picture's terrain."""
+        plan, heights = self.session.plan, self._height()
+        if plan is None or heights is None or plan.terrain.extent is None or plan.terrain.relief is None:
+            return None
+        return plan.eye, heights, plan.terrain.extent, plan.terrain.relief
+
+    def _height(self) -> NDArray[np.float32] | None:
         """Return the heights that the picture shows, read once for each picture; a stroke moves none."""
         session = self.session
         if self._last is None and self._heights[0] != session.draws:

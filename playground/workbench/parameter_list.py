@@ -1,18 +1,18 @@
 """What the panel lists: a sketch's parameters by pass and group, their values, and which are changed.
 
-What a sketch's techniques say is read once for each graph, the values once for each
+What a sketch's techniques say is read once for each sketch, the values once for each
 draft: a panel is drawn many times a second.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from itertools import groupby
 
 from playground.sketch.assign import Shown, resolve, shown_parameters, values_of
-from playground.sketch.model import Graph, Parameter, Sketch, Value
+from playground.sketch.identity import Identity
+from playground.sketch.model import Parameter, Sketch, Value
 from playground.sketch.values import write
 from playground.workbench.edits import Draft
 
@@ -79,55 +79,46 @@ class Values:
     locked: frozenset[str]
 
 
-@dataclass
 class Listing:
-    """The sections of the sketch of the moment, and its values; each worked out when it is needed."""
-
-    _graph: Graph | None = None
-    _sections: tuple[Section, ...] = ()
-    _main: tuple[tuple[str, ...], tuple[Item, ...]] = ((), ())  # paths, and what they stand for
-    _draft: Draft | None = None
-    _base: Sketch | None = None
-    _in_file: dict[str, Value] = field(default_factory=dict)
-    _values: Values = field(default_factory=lambda: Values({}, {}, frozenset(), frozenset()))
-    _found: tuple[object, dict[str, Section]] = (None, {})
+    """The sections of a draft's sketch, and its values; each computed once."""
 
     def sections(self, draft: Draft) -> tuple[Section, ...]:
         """Return the passes of a draft, in their order."""
-        if self._graph is not draft.base.graph:
-            self._graph, self._sections = draft.base.graph, tuple(_sections(draft.base))
-            self._main = (), ()
-        return self._sections
+        return _sections(Identity(draft.base))
 
     def main(self, draft: Draft) -> tuple[Item, ...]:
         """Return the parameters that a draft's sketch is about, in its order: see ``Sketch.main``."""
-        sections = self.sections(draft)
-        if self._main[0] != draft.base.main:
-            self._main = draft.base.main, tuple(_main(draft.base, sections))
-        return self._main[1]
+        return _main(Identity(draft.base))
 
     def values(self, draft: Draft) -> Values:
         """Return what its parameters are set to."""
-        if self._draft is not draft:
-            items = [item for section in self.sections(draft) for item in section.items]
-            if self._base is not draft.base:
-                file = values_of(draft.base)
-                self._base, self._in_file = draft.base, {item.path: file[item.leaf] for item in items}
-            now, in_file = values_of(draft.sketch), self._in_file
-            of = {item.path: now[item.leaf] for item in items}
-            changed = frozenset(path for path, value in of.items() if value != in_file[path])
-            self._values = Values(of, in_file, changed, frozenset(draft.edits.locked))
-            self._draft = draft
-        return self._values
+        return _values(Identity(draft))
 
     def filtered(self, draft: Draft, wanted: Filter) -> dict[str, Section]:
         """Return the passes with what a filter lets through, by name; none that keeps nothing."""
-        changed = self.values(draft).changed
-        key = (id(self.sections(draft)), wanted, changed)
-        if self._found[0] != key:
-            left = {s.name: _thinned(s, wanted, changed) for s in self.sections(draft)}
-            self._found = key, {name: section for name, section in left.items() if section.items}
-        return self._found[1]
+        return _filtered(Identity(draft.base), wanted, self.values(draft).changed)
+
+
+@lru_cache(maxsize=8)
+def _values(key: Identity[Draft]) -> Values:
+    draft = key.object
+    items = [item for section in _sections(Identity(draft.base)) for item in section.items]
+    now, in_file = values_of(draft.sketch), _values_in_file(Identity(draft.base))
+    of = {item.path: now[item.leaf] for item in items}
+    changed = frozenset(path for path, value in of.items() if value != in_file[path])
+    return Values(of, in_file, changed, frozenset(draft.edits.locked))
+
+
+@lru_cache(maxsize=8)
+def _values_in_file(key: Identity[Sketch]) -> dict[str, Value]:
+    file = values_of(key.object)
+    return {item.path: file[item.leaf] for section in _sections(key) for item in section.items}
+
+
+@lru_cache(maxsize=8)
+def _filtered(key: Identity[Sketch], wanted: Filter, changed: frozenset[str]) -> dict[str, Section]:
+    left = {section.name: _thinned(section, wanted, changed) for section in _sections(key)}
+    return {name: section for name, section in left.items() if section.items}
 
 
 def set_words(draft: Draft, values: Values) -> str:
@@ -136,7 +127,7 @@ def set_words(draft: Draft, values: Values) -> str:
     for path, value in draft.applied.items():
         targets = resolve(draft.base.graph, path) if path not in values.of and "." in path else ()
         parameter = targets[0].parameter if targets else _parameter(draft.base, path)
-        text = write(parameter, value) if parameter is not None else _land(value)
+        text = write(parameter, value) if parameter is not None else _terrain_text(value)
         found.append(f"--set {_quoted(f'{path}={text}')}")
     return " ".join(found)
 
@@ -145,7 +136,7 @@ def _parameter(sketch: Sketch, path: str) -> Parameter | None:
     return resolve(sketch.graph, path)[0].parameter if "." in path else None
 
 
-def _land(value: Value) -> str:
+def _terrain_text(value: Value) -> str:
     return "x".join(f"{n:g}" for n in value) if isinstance(value, tuple) else f"{value:g}"
 
 
@@ -155,20 +146,20 @@ def _quoted(word: str) -> str:
     return word if plain else f'"{word}"'
 
 
-def _sections(sketch: Sketch) -> Iterator[Section]:
+@lru_cache(maxsize=8)
+def _sections(key: Identity[Sketch]) -> tuple[Section, ...]:
+    sketch, found = key.object, []
     by_pass = {
-        name: list(found)
-        for name, found in groupby(shown_parameters(sketch), lambda s: s.path.partition(".")[0])
+        name: list(mine)
+        for name, mine in groupby(shown_parameters(sketch), lambda s: s.path.partition(".")[0])
     }
     for spec in sketch.graph.passes:
         items = [_item(sketch, shown) for shown in by_pass.get(spec.name, [])]
         outer = [item for item in items if item.exported]
         inner = groupby((i for i in items if not i.exported), lambda i: i.path.rpartition(".")[0])
-        yield Section(
-            spec.name,
-            _groups(outer),
-            tuple((path.partition(".")[2] or path, _groups(list(found))) for path, found in inner),
-        )
+        inside = tuple((path.partition(".")[2] or path, _groups(list(mine))) for path, mine in inner)
+        found.append(Section(spec.name, _groups(outer), inside))
+    return tuple(found)
 
 
 def _item(sketch: Sketch, shown: Shown) -> Item:
@@ -178,9 +169,11 @@ def _item(sketch: Sketch, shown: Shown) -> Item:
     return Item(shown.path, p, leaf, shown.exported, words, f"##{shown.path}", p.title)
 
 
-def _main(sketch: Sketch, sections: tuple[Section, ...]) -> Iterator[Item]:
-    """Yield the main parameters, group or pass named where a title alone would not say what is meant."""
-    items = [item for section in sections for item in section.items]
+@lru_cache(maxsize=8)
+def _main(key: Identity[Sketch]) -> tuple[Item, ...]:
+    """Return the main parameters, group or pass named where a title alone would not say what is meant."""
+    sketch, made = key.object, []
+    items = [item for section in _sections(key) for item in section.items]
     named = {item.path: item for item in items}
     by_leaf = {item.leaf: item for item in items}  # an inner path may stand in the list of an outer one
     found = [named.get(path) or by_leaf[resolve(sketch.graph, path)[0].path] for path in sketch.main]
@@ -188,7 +181,8 @@ def _main(sketch: Sketch, sections: tuple[Section, ...]) -> Iterator[Item]:
     for item, title in zip(found, titles, strict=True):
         if titles.count(title) > 1:
             title = _under(in_words(item.path.partition(".")[0]), title)
-        yield replace(item, label=f"##main {item.path}", title=title)
+        made.append(replace(item, label=f"##main {item.path}", title=title))
+    return tuple(made)
 
 
 def _with_group(parameter: Parameter) -> str:

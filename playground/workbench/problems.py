@@ -16,7 +16,7 @@ from playground.paths import GLSL
 from playground.sketch.allowed_files import root_of
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import Techniques
-from playground.sketch.warnings import warnings_of_kernel
+from playground.sketch.warnings import former_names_used, warnings_of_kernel
 from playground.workbench.dependencies import path_named
 
 AROUND = 2
@@ -34,7 +34,7 @@ class Problems:
     heights: dict[tuple[int, float], float] = field(default_factory=dict)  # of each as drawn, by width
     moved: bool = False  # it was moved to another, which must come into view
     _error: PlaygroundError | None = None
-    _also: tuple[Diagnostic, ...] = ()  # mistakes in files that were not come to
+    _also: tuple[Diagnostic, ...] = ()  # mistakes in files after the first wrong one
     _texts: dict[Path, tuple[object, list[str]]] = field(default_factory=dict)
 
     @property
@@ -48,7 +48,7 @@ class Problems:
         warnings: Iterable[Diagnostic] = (),
         sketch: Sketch | None = None,
     ) -> None:
-        """Take in what is wrong now. A new error opens the list; mended, an open list closes.
+        """Take in what is wrong now. A new error opens the list; once fixed, an open list closes.
 
         ``sketch`` is the one that is shown: what else of its files cannot be read is reported as well.
         """
@@ -172,7 +172,8 @@ class Warnings:
             self.waiting = [text for text in self._kernels if text not in self._found]
         if self._plan is not plan:
             self._plan, self._of_sources = plan, source_warnings(plan) if plan is not None else ()
-        return [*(d for text in self._kernels for d in self._found.get(text, ())), *self._of_sources]
+        of_kernels = (d for text in self._kernels for d in self._found.get(text, ()))
+        return [*former_names_used(sketch), *of_kernels, *self._of_sources]
 
     def look(self) -> None:
         """Look at one kernel that has not been looked at yet."""
@@ -184,7 +185,7 @@ class Warnings:
 def unreadable(sketch: Sketch | None) -> tuple[Diagnostic, ...]:
     """Return what is wrong with the headers of a sketch's own kernels, as their files are now.
 
-    Whoever loads a sketch stops at the first.
+    Loading a sketch stops at the first.
     """
     found: dict[Diagnostic, None] = {}
     paths = {k.path for _, k in kernels_of(sketch.graph)} if sketch is not None else set()

@@ -36,7 +36,7 @@ def mutated(
     """Return a value near the one of now for each parameter, by path.
 
     ``strength`` (0..1) is the standard deviation of the way it goes, in shares of its range,
-    and the chance that a menu or a checkbox changes at all.
+    and the probability that a menu or a checkbox changes at all.
     """
     found = {
         path: _near(parameter, values[path], Random(f"{seed} {path}"), strength)
@@ -45,39 +45,39 @@ def mutated(
     return {path: value for path, value in found.items() if value is not None}
 
 
-def _anywhere(parameter: Parameter, chance: Random) -> Value | None:
+def _anywhere(parameter: Parameter, randoms: Random) -> Value | None:
     kind, (low, high) = parameter.widget.kind, (parameter.widget.low, parameter.widget.high)
     if kind == "menu":
-        return chance.randrange(len(parameter.widget.choices))
+        return randoms.randrange(len(parameter.widget.choices))
     if kind == "checkbox":
-        return chance.random() < 0.5
+        return randoms.random() < 0.5
     if kind == "direction":
-        return round(chance.uniform(0, 360), 1), round(chance.uniform(*HEIGHTS), 1)
+        return round(randoms.uniform(0, 360), 1), round(randoms.uniform(*HEIGHTS), 1)
     if kind == "colour":
-        return _colour(parameter, [chance.random() for _ in range(3)])
+        return _colour(parameter, [randoms.random() for _ in range(3)])
     if low is None or high is None:
         return None
-    return _number(parameter, [_on(parameter, chance.random()) for _ in range(_count(parameter))])
+    return _number(parameter, [_on(parameter, randoms.random()) for _ in range(_count(parameter))])
 
 
-def _near(parameter: Parameter, value: Value, chance: Random, strength: float) -> Value | None:
+def _near(parameter: Parameter, value: Value, randoms: Random, strength: float) -> Value | None:
     kind, (low, high) = parameter.widget.kind, (parameter.widget.low, parameter.widget.high)
     if kind in ("menu", "checkbox"):
-        return _anywhere(parameter, chance) if chance.random() < strength else value
+        return _anywhere(parameter, randoms) if randoms.random() < strength else value
     if isinstance(value, str):
         return None
     numbers = [float(n) for n in value] if isinstance(value, tuple) else [float(value)]
     if kind == "direction":
-        azimuth = (numbers[0] + 360 * chance.gauss(0, strength)) % 360
-        elevation = numbers[1] + 90 * chance.gauss(0, strength)
+        azimuth = (numbers[0] + 360 * randoms.gauss(0, strength)) % 360
+        elevation = numbers[1] + 90 * randoms.gauss(0, strength)
         return round(azimuth, 1), round(min(max(elevation, HEIGHTS[0]), HEIGHTS[1]), 1)
     if kind == "colour":
         seen = linear_to_srgb([min(max(n, 0.0), 1.0) for n in numbers[:3]]).tolist()
-        return _colour(parameter, [c + chance.gauss(0, strength) for c in seen], numbers[3:])
+        return _colour(parameter, [c + randoms.gauss(0, strength) for c in seen], numbers[3:])
     if low is None or high is None:
-        return _number(parameter, [n * math.exp(chance.gauss(0, strength)) for n in numbers])
+        return _number(parameter, [n * math.exp(randoms.gauss(0, strength)) for n in numbers])
     return _number(
-        parameter, [_on(parameter, _share(parameter, n) + chance.gauss(0, strength)) for n in numbers]
+        parameter, [_on(parameter, _share(parameter, n) + randoms.gauss(0, strength)) for n in numbers]
     )
 
 

@@ -15,7 +15,7 @@ class Follower:
     def __init__(self, session: Session, watcher: Watcher) -> None:
         self.session = session
         self.watcher = watcher
-        self._stands_on: tuple[object, ...] = ()
+        self._followed: tuple[object, ...] = ()  # what decided which files are watched
 
     def take(self, own: Iterable[Path] = ()) -> bool:
         """Have the session read its files again if any was saved by others; say whether it did.
@@ -32,8 +32,8 @@ class Follower:
         """Watch the files that the session depends on now."""
         session = self.session
         now = (session.shown, session.drafts.coming, session.error, session.drafts.places)
-        before = self._stands_on
+        before = self._followed
         if len(before) == len(now) and all(a is b for a, b in zip(now, before, strict=True)):
             return
-        self._stands_on = now
+        self._followed = now
         self.watcher.follow(session.drafts.files, read_at=session.drafts.read_at, read=session.drafts.places)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Protocol
 
 from playground.engine.sandbox import SandboxReport, TrySketch
-from playground.errors import PlaygroundError, SketchError
+from playground.errors import ContextError, PlaygroundError, SketchError
 from playground.paths import shown
 
 log = logging.getLogger("playground.live")
@@ -57,6 +57,16 @@ def explained(error: Exception, sketch: Path) -> PlaygroundError:
     file = shown(sketch)
     placed = [d if d.file else replace(d, file=file) for d in error.diagnostics]
     return type(error)(diagnostics=placed)
+
+
+def refusal(report: SandboxReport) -> PlaygroundError | None:
+    """Return why a sketch must not be drawn, by the sandbox's answer; None where it may be.
+
+    Without a context the sandbox can check nothing; this process may well have what it takes.
+    """
+    if report.ok or isinstance(report.error, ContextError):
+        return None
+    return report.error or PlaygroundError("the sandbox failed without saying why")
 
 
 def missing_file_error(sketch: Path) -> SketchError | None:

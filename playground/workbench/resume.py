@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from playground.errors import PlaygroundError
+from playground.sketch.assign import current_path
 from playground.sketch.model import Camera, Sketch, Value
 from playground.workbench.edit_merge import FileValue, file_values, newer_value, notice
 from playground.workbench.edits import Draft, Edits, with_camera_of
@@ -13,14 +14,14 @@ from playground.workbench.edits import Draft, Edits, with_camera_of
 
 @dataclass(frozen=True)
 class StoredEdits:
-    """User edits, and what the files said when they were made."""
+    """User edits, and what the files set when they were made."""
 
     edits: Edits = field(default_factory=Edits)
     in_file: Mapping[str, FileValue] = field(default_factory=dict)  # of each edited value, where it is known
     camera_in_file: Camera | None = None  # of the camera, where another is set and it is known
 
     def with_values(self, values: Mapping[str, Value]) -> StoredEdits:
-        """Return them with values set over them, whatever the files said."""
+        """Return them with values set over them, whatever the files set."""
         edits = self.edits
         for name, value in values.items():
             edits = edits.with_value(name, value)
@@ -29,8 +30,8 @@ class StoredEdits:
 
 def stored(draft: Draft) -> StoredEdits:
     """Return a draft's edits with what its files say now."""
-    said = file_values(draft.base, [path for path, _ in draft.edits.values])
-    return StoredEdits(draft.edits, said, draft.file.camera if draft.edits.camera is not None else None)
+    in_file = file_values(draft.base, [path for path, _ in draft.edits.values])
+    return StoredEdits(draft.edits, in_file, draft.file.camera if draft.edits.camera is not None else None)
 
 
 def first_draft(loaded: Sketch, start: StoredEdits) -> tuple[Draft, list[str]]:
@@ -48,7 +49,7 @@ def first_draft(loaded: Sketch, start: StoredEdits) -> tuple[Draft, list[str]]:
     for path, value in edits.values:
         newer = newer_value(path, start.in_file, now, edits.locked)
         if newer is None:
-            values.append((path, value))
+            values.append((current_path(draft.base.graph, path), value))
         else:
             notes += filter(None, [notice(draft.base, path, value, newer)])
     return draft.with_edits(replace(draft.edits, values=tuple(values))), notes

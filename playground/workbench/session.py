@@ -1,6 +1,6 @@
 """A live session: the drafts of a sketch, what is drawn of it, its time, and the picture.
 
-No window and no keys: ``frame(size)`` gives a texture to whoever has a screen.
+No window and no keys: ``frame(size)`` returns the texture to show.
 
     drafts   what the files say, and the user's edits
     view     a map instead of the sketch's own view, repeats stopped early
@@ -21,6 +21,7 @@ from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan
 from playground.errors import ContextError, PlaygroundError
+from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Sketch, Value
 from playground.workbench.clock import Clock
@@ -34,7 +35,7 @@ from playground.workbench.preview import as_preview
 from playground.workbench.reload_stages import Reload, ReloadStage, Sandbox
 from playground.workbench.resume import StoredEdits
 from playground.workbench.sun_arc import sun_off_arc
-from playground.workbench.traits import is_animated, traits_of
+from playground.workbench.traits import has_moving_counts, is_animated, traits_of
 from playground.workbench.view import View, steps_of_repeats
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ class Session:
         self._lost_over: object = None  # what was shown when a context was lost last
         self._painter = Painter(engine.ctx)
         self._picture = Picture(self._painter)
-        self._repeats: tuple[Sketch | None, dict[str, int]] = (None, {})
+        self._repeats: tuple[Sketch | None, float, dict[str, int]] = (None, 0.0, {})
         self._drawn: object = None  # what the picture shows
         self._drawn_at = 0.0
         self._size: tuple[int, int] | None = None  # of the latest frame
@@ -136,9 +137,10 @@ class Session:
         """How many steps every repeated kernel and loop of what is shown takes, by path."""
         if self.sketch is None:
             return {}
-        if self._repeats[0] is not self.sketch:
-            self._repeats = self.sketch, steps_of_repeats(self.sketch, self.clock.time)
-        return self._repeats[1]
+        time = self.clock.time if has_moving_counts(self.sketch) else 0.0
+        if self._repeats[0] is not self.sketch or self._repeats[1] != time:
+            self._repeats = self.sketch, time, steps_of_repeats(self.sketch, time)
+        return self._repeats[2]
 
     @property
     def awaits_data(self) -> bool:
@@ -162,11 +164,12 @@ class Session:
     def open(
         self, path: Path, *, start: StoredEdits | None = None, texts: Mapping[str, str] | None = None
     ) -> None:
-        """Open another sketch; see ``Drafts.open``."""
-        self.view.reset()
+        """Open another sketch; see ``Drafts.open``. Its own view is shown once it is drawn."""
+        path = find(path)
         self.clock.rewind()
         self._reported.clear()
         self.drafts.open(path, start=start, texts=texts)
+        self.view.restore({}, None, later=True)
 
     def reset_values(self) -> None:
         """Reset all that is not locked, and every pass, to what the file says; stop no repeat early."""
@@ -311,7 +314,7 @@ class Session:
         Other values do: they say how often a loop runs.
         """
         texture, now = self._picture.texture, self.clock.time
-        if self.shown is None or texture is None or self.reads_new_data(sketch):
+        if self.shown is None or texture is None or self.drafts.opening or self.reads_new_data(sketch):
             return True
         chosen = as_preview(sketch) if self.is_preview else sketch
         if traits_of(sketch).camera:
@@ -337,16 +340,16 @@ class Session:
         drafts = self.drafts
         assert drafts.coming is not None
         sketch = drafts.coming.sketch
-        self.view.take_next()
         self._data_of = None  # the same sketch may read new data
         try:
-            self._draw(sketch, size)
+            self._draw(sketch, size, coming=True)
             self.engine.ctx.finish()
             if self._is_lost():
                 raise ContextError("this made the graphics driver reset itself, so it is not drawn again")
         except Exception as error:
             drafts.failed(error)
             return
+        self.view.take_next()
         self.last_reload = Reload(self._now() - drafts.started, drafts.sandbox_seconds)
         drafts.drawn_well()
         self._drawn = None if self.view.map is not None else self._wanted(size)
@@ -366,7 +369,9 @@ class Session:
         except Exception as error:
             self.drafts.report(error)
 
-    def _draw(self, sketch: Sketch, size: tuple[int, int], *, in_full: bool = False) -> None:
+    def _draw(
+        self, sketch: Sketch, size: tuple[int, int], *, in_full: bool = False, coming: bool = False
+    ) -> None:
         """Draw; on a software renderer a preview first: see ``workbench.preview``."""
         engine, now, view, traits = self.engine, self.clock.time, self.view, traits_of(sketch)
         chosen = as_preview(sketch) if engine.info.software and traits.draws and not in_full else sketch
@@ -375,7 +380,7 @@ class Session:
             framed(chosen, now, view.framed_for, size) if traits.camera else chosen,
             size=size,
             time=now,
-            steps=view.stops(sketch, now) if view.steps else {},
+            steps=view.stops(sketch, now, coming=coming),
             interpolated=view.interpolated,
         )
         self._picture.copy(texture)

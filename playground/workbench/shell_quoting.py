@@ -54,7 +54,7 @@ def _is_script(words: Sequence[str], index: int, stem: Callable[[str], str]) -> 
 
 
 def _parts(script: str) -> Iterator[tuple[str, str]]:
-    """Yield the marks and the characters of a script, each with the quotes that it stands in."""
+    """Yield the marks and the characters of a script, each with the quotes around it."""
     inside, at = [_BARE], 0  # quotes and parentheses that are open; those in $( ) begin anew
     while at < len(script):
         state = inside[-1]
@@ -76,12 +76,12 @@ def _parts(script: str) -> Iterator[tuple[str, str]]:
 
 
 def _named(number: str, state: str) -> str:
-    """Return what stands for an argument of a script."""
+    """Return how a script refers to an argument."""
     return {_BARE: f'"{number}"', _DOUBLE: number, _SINGLE: f"'\"{number}\"'"}[state]
 
 
 def _quoted(file: str, state: str) -> str:
-    """Return a name as a shell reads it where it stands."""
+    """Return a name as a shell reads it between such quotes."""
     if sys.platform == "win32":  # no name there holds a quote
         return file if state == _DOUBLE else f'"{file}"'
     if state == _BARE:

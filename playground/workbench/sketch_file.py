@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from playground.errors import PlaygroundError
+from playground.paths import shown
 from playground.sketch.model import Keyframe
 from playground.sketch.save import ReadOnlySketch
 from playground.sketch.save_keyframes import save_keyframes
@@ -37,5 +38,8 @@ class SketchFile:
 
     def write_keyframes(self, keyframes: Sequence[Keyframe]) -> bool:
         """Write keyframes into the file; return whether that worked."""
-        draft = self.session.shown
+        draft, drafts = self.session.shown, self.session.drafts
+        if drafts.opening:
+            self.notices.say(f"no keyframe is written while {shown(drafts.path)} is being opened")
+            return False
         return draft is not None and self.write(lambda: save_keyframes(draft.file, keyframes))

@@ -1,4 +1,4 @@
-"""Move the sun of a sketch with the mouse: every direction that its passes show turns alike."""
+"""Move the sun of a sketch with the mouse: every direction that its passes show moves alike."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ def suns_of(sketch: Sketch) -> dict[str, tuple[float, float]]:
             value = value_of(sketch, shown.path, leaves)
             if isinstance(value, tuple):
                 found[shown.path] = (float(value[0]), float(value[1]))
-    of_land = {path: value for path, value in found.items() if not path.startswith("view.")}
-    return of_land or found
+    of_terrain = {path: value for path, value in found.items() if not path.startswith("view.")}
+    return of_terrain or found
 
 
 def turned(sun: tuple[float, float], across: float, up: float) -> tuple[float, float]:

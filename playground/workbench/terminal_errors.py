@@ -1,4 +1,4 @@
-"""Tell the terminal that a window was started from what is wrong, each error once while it lasts."""
+"""Print what is wrong on the terminal that a window was started from, each error once while it lasts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from playground.errors import Diagnostic
 
 to_log = logging.getLogger("playground.live").error
-"""For who has no command line: Python's log ends on standard error."""
+"""Without a command line: Python's log ends on standard error."""
 
 
 class TerminalErrors:
@@ -20,9 +20,9 @@ class TerminalErrors:
         self._reported: frozenset[Diagnostic] = frozenset()
 
     def take(self, errors: Iterable[Diagnostic]) -> None:
-        """Tell of the errors that were not there the last time; one that was fixed may come again.
+        """Print the errors that were not there the last time; one that was fixed may come again.
 
-        Where the terminal is gone, nobody is told; the window shows them all the same.
+        Where the terminal is gone, nothing is printed; the window shows them all the same.
         """
         now = dict.fromkeys(errors)
         with contextlib.suppress(OSError, ValueError):

@@ -7,12 +7,13 @@ import itertools
 import os
 import shutil
 from collections.abc import Iterable
-from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
 from playground.errors import DataError
+from playground.images.files import reason
+from playground.partial import partial_file
 from playground.paths import shown
 
 MOST = 8 * 2**20
@@ -40,7 +41,7 @@ class OpenText:
         return True
 
     def saved(self) -> str:
-        """Return what is said when it was saved."""
+        """Return the notice after a save."""
         return f"saved {self.title}"
 
     @classmethod
@@ -82,20 +83,16 @@ class OpenText:
         target = self.path.resolve()  # a link stays a link
         if target.exists() and not os.access(target, os.W_OK):
             raise DataError("is read-only, so it was not saved", file=shown(self.path))
-        beside = target.with_name(f".{target.name}.{os.getpid()}.part")
         try:
-            with beside.open("wb") as file:
-                file.write(data)
-                file.flush()
-                os.fsync(file.fileno())
-            if target.exists():
-                shutil.copymode(target, beside)
-            beside.replace(target)
+            with partial_file(target) as partial:
+                partial.handle.write(data)
+                partial.handle.flush()
+                os.fsync(partial.handle.fileno())
+                if target.exists():
+                    shutil.copymode(target, partial.path)
+                partial.rename(target)
         except OSError as error:
-            with suppress(OSError):
-                beside.unlink()
-            reason = error.strerror or str(error)
-            raise DataError(f"could not be saved: {reason}", file=shown(self.path)) from None
+            raise DataError(f"could not be saved: {reason(error)}", file=shown(self.path)) from None
         self.base, self._bytes = text, data
         return True
 
@@ -120,11 +117,11 @@ class OpenText:
         except FileNotFoundError:
             raise DataError("there is no such file", file=shown(self.path)) from None
         except OSError as error:
-            raise DataError(error.strerror or str(error), file=shown(self.path)) from None
+            raise DataError(reason(error), file=shown(self.path)) from None
 
 
 class TextView(Protocol):
-    """Whatever shows an open file and takes what is typed."""
+    """What shows an open file and takes what is typed."""
 
     @property
     def changed(self) -> bool:

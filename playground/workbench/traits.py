@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
+from playground.sketch.expressions import names_in
 from playground.sketch.identity import Identity
-from playground.sketch.model import Graph, Kernel, Parameter, Sketch, kernels_of
+from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, kernels_of
 
 _MOVING = frozenset({"time", "frame", "frame_of_time", "delta", "date"})
 _MOUSE = frozenset({"mouse", "hover", "hover_share", "drag"})
@@ -18,6 +20,7 @@ class Traits:
     """What a graph reads."""
 
     moves: bool  # by time, keyframes apart
+    counts: bool  # a size or a number of steps names time
     camera: bool  # the camera moves something in the picture
     mouse: bool  # a plain shader reads the mouse
     files: tuple[tuple[str, Parameter], ...]  # parameters that name files, by the paths of the leaves
@@ -35,15 +38,22 @@ def is_animated(sketch: Sketch) -> bool:
     return bool(sketch.keyframes) or traits_of(sketch).moves
 
 
+def has_moving_counts(sketch: Sketch) -> bool:
+    """Say whether sizes and numbers of steps may differ from moment to moment."""
+    return bool(sketch.keyframes) or traits_of(sketch).counts
+
+
 @lru_cache(maxsize=64)
 def _traits(key: Identity[Graph]) -> Traits:
     kernels = list(kernels_of(key.object))
     plain = {id(kernel) for _, kernel in kernels if kernel.kind.startswith("plain")}
     files = [(f"{at}.{p.name}", p) for at, k in kernels for p in k.parameters if p.widget.kind == "file"]
+    counts = any("time" in text and "time" in names_in(text) for text in _counts_of(key.object))
     return Traits(
-        moves=_repeats_by_time(key.object)
-        or any("time" in k.repeat or (id(k) not in plain and k.reads("time")) for _, k in kernels)
+        moves=counts
+        or any(k.reads("time") for _, k in kernels if id(k) not in plain)
         or any(meaning in _MOVING for _, k in kernels for _, meaning in k.usual),
+        counts=counts,
         camera=any(kernel.reads(name) for _, kernel in kernels for name in _CAMERA),
         mouse=any(meaning in _MOUSE for _, k in kernels for _, meaning in k.usual),
         files=tuple(files),
@@ -52,8 +62,11 @@ def _traits(key: Identity[Graph]) -> Traits:
     )
 
 
-def _repeats_by_time(graph: Graph) -> bool:
-    return any(
-        "time" in spec.repeat or (isinstance(spec.technique, Graph) and _repeats_by_time(spec.technique))
-        for spec in graph.passes
-    )
+def _counts_of(technique: Technique) -> Iterator[str]:
+    """Yield the expressions of a technique's sizes and numbers of steps."""
+    if isinstance(technique, Kernel):
+        yield from (technique.repeat, technique.stride, technique.count)
+        return
+    for spec in technique.passes:
+        yield from (spec.repeat, *(spec.size or ()))
+        yield from _counts_of(spec.technique)

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from pathlib import Path
 
-from playground.workbench.edits import Edits
 from playground.workbench.history import KEYFRAMES, History, State, applied, edits_of, state_of, steps_of
 from playground.workbench.inspect.time_range import stepped, toggle_loop
 from playground.workbench.notices import Notices
@@ -18,100 +18,118 @@ from playground.workbench.sketch_file import SketchFile
 
 @dataclass
 class Undo:
-    """The history of one session."""
+    """The history of one session: one for each sketch that is opened in it."""
 
     session: Session
     notices: Notices
     painting: Painting
     file: SketchFile
-    history: History = field(default_factory=History)
+    _history: History = field(default_factory=History)
+    _next: tuple[Path, History] | None = None  # of a sketch that is being opened
     held: bool = False  # a mouse button is down: what changes is one step
+
+    @property
+    def history(self) -> History:
+        """The steps of the sketch that is shown."""
+        if self._next is not None and not self.session.drafts.opening:
+            path, history = self._next
+            self._next = None
+            if path == self.session.path:  # else another was opened in its place
+                self._history = history
+        return self._history
+
+    @property
+    def opened(self) -> History:
+        """The steps of the sketch that is open; it may not be shown yet."""
+        history = self.history
+        return self._next[1] if self._next is not None else history
+
+    def begin(self, history: History) -> None:
+        """Go on with the history of the sketch that was opened last, as soon as that is shown."""
+        self._next = self.session.path, history
 
     def record(self, *, held: bool = False) -> None:
         """Record what has changed since the last call; ``held``: a mouse button is down."""
         session, self.held = self.session, held
         if session.shown is not None:
-            draft, now = session.shown, self.notices.now()
-            self.history.look(draft.edits, session.view.steps, draft.file, held=held, now=now)
+            edits, drafts, now = session.shown.edits, session.drafts, self.notices.now()
+            steps, read = session.view.steps, drafts.read_edits
+            rests = drafts.stage in (ReloadStage.NONE, ReloadStage.FAILED)
+            self.history.look(edits, steps, drafts.reads, held=held, now=now, read=read, rests=rests)
 
     @contextmanager
     def step(self, name: str) -> Iterator[None]:
         """Record what the block changes as one step with a name; none where it changes nothing."""
         self.record()
         self.history.call(name)
-        yield
-        self.record()
-        self.history.call("")
+        try:
+            yield
+        finally:
+            self.record()
+            self.history.call("")
 
     def undo(self) -> None:
         """Undo the last step; while painting, the last stroke."""
-        if self.painting.on:
-            canvas = self.painting.canvas
-            if canvas is None or not canvas.can_undo:
-                self.notices.say("no stroke to take back; put the brush down (B) to undo values")
-            else:
-                self.painting.undo()
-                self.notices.say("took the last stroke back; put the brush down (B) to undo values")
-            return
-        self.record()
-        if self.history.can_undo:
-            self._apply(self.history.undo())
-        else:
+        canvas = self.painting.canvas
+        if self.painting.on and (canvas is None or not canvas.can_undo):
+            self.notices.say("no stroke to take back; put the brush down (B) to undo values")
+        elif self.painting.on:
+            self.painting.undo()
+            self.notices.say("took the last stroke back; put the brush down (B) to undo values")
+        elif not self._go(-1):
             self.notices.say("there is nothing to undo")
 
     def redo(self) -> None:
         """Redo the step that was undone last; while painting, the stroke."""
-        if self.painting.on:
-            canvas = self.painting.canvas
-            if canvas is None or not canvas.can_redo:
-                self.notices.say("no stroke to paint again; put the brush down (B) to redo values")
-            else:
-                self.painting.redo()
-                self.notices.say("painted the stroke again; put the brush down (B) to redo values")
-            return
-        self.record()
-        if self.history.can_redo:
-            self._apply(self.history.redo())
-        else:
+        canvas = self.painting.canvas
+        if self.painting.on and (canvas is None or not canvas.can_redo):
+            self.notices.say("no stroke to paint again; put the brush down (B) to redo values")
+        elif self.painting.on:
+            self.painting.redo()
+            self.notices.say("painted the stroke again; put the brush down (B) to redo values")
+        elif not self._go(1):
             self.notices.say("there is nothing to do again")
 
-    def go_to(self, done: int) -> None:
-        """Undo or redo until so many steps are done."""
+    def _go(self, by: int) -> bool:
+        """Undo (-1) or redo (1) a step; return False where there is none."""
         self.record()
-        done = min(max(done, 0), len(self.history.steps))
-        while self.history.done > done:
-            self._apply(self.history.undo())
-        while self.history.done < done:
-            self._apply(self.history.redo())
+        history = self.history
+        if not (history.can_redo if by > 0 else history.can_undo):
+            return False
+        self.go_to(history.done + by)
+        return True
+
+    def go_to(self, done: int) -> None:
+        """Undo or redo until so many steps are done, or one of them is refused."""
+        self.record()
+        history = self.history
+        while history.done != done and history.go(1 if done > history.done else -1, self._apply):
+            self.settle()
 
     def settle(self) -> None:
         """Take the state of the session for granted: it is no step."""
         if self.session.shown is not None:
             self.history.settle(self.session.shown.edits, self.session.view.steps)
 
-    def _apply(self, changes: State) -> None:
+    def _apply(self, changes: State) -> bool:
+        """Set what a step changed; return False, with a notice, where that is refused."""
         session = self.session
-        if session.shown is None:
-            return
-        wanted = applied(state_of(self._latest(), session.view.steps), changes)
+        latest = session.drafts.latest
+        if latest is None:
+            return False
+        wanted = applied(state_of(latest.edits, session.view.steps), changes)
         keyframes = wanted.pop((KEYFRAMES, ""), None)
-        if isinstance(keyframes, tuple):
-            self.file.write_keyframes(keyframes)
+        if isinstance(keyframes, tuple) and not self.file.write_keyframes(keyframes):
+            return False
+        if not session.drafts.restore(edits_of(wanted)):
+            return False
         time = wanted.pop(("time", ""), None)
         if isinstance(time, float):
             session.clock.time = time
         stops = steps_of(wanted)
         for path in {*session.view.steps, *stops}:
             session.stop_at(path, stops.get(path, -1))
-        session.drafts.restore(edits_of(wanted))
-        self.settle()
-
-    def _latest(self) -> Edits:
-        """Return the present edits, or those that an undo has set and that are still checked."""
-        session = self.session
-        assert session.shown is not None
-        coming = session.drafts.coming if session.drafts.stage is not ReloadStage.FAILED else None
-        return coming.edits if coming is not None else session.shown.edits
+        return True
 
     # ── time ─────────────────────────────────────────────────────────────────
 

@@ -22,12 +22,6 @@ class View:
         self.revision = 0
         self._next: tuple[dict[str, int], Map | None] | None = None  # for a sketch that is being opened
 
-    def reset(self) -> None:
-        """Go back to the sketch's own view, every repeat run to its end."""
-        self.map = self._next = None
-        self.steps.clear()
-        self.revision += 1
-
     def restore(self, steps: Mapping[str, int], shown: Map | None, *, later: bool = False) -> None:
         """Stop repeats after so many steps, and show a map or, with None, the sketch's own view.
 
@@ -44,8 +38,8 @@ class View:
     def take_next(self) -> None:
         """Show what was restored for the sketch that is drawn now for the first time."""
         if self._next is not None:
-            (steps, self.map), self._next = self._next, None
-            self.steps.update(steps)
+            (steps, shown), self._next = self._next, None
+            self.restore(steps, shown)
 
     @property
     def state(self) -> tuple[dict[str, int], Map | None]:
@@ -74,12 +68,14 @@ class View:
         self.revision += 1
         self.interpolated = on
 
-    def stops(self, sketch: Sketch, time: float) -> dict[str, int]:
-        """Return where to stop: a repeat that is gone, or has fewer steps by now, is not stopped."""
-        if not self.steps:
-            return {}
-        repeats = steps_of_repeats(sketch, time)
-        return {path: step for path, step in self.steps.items() if step < repeats.get(path, 0)}
+    def stops(self, sketch: Sketch, time: float, *, coming: bool = False) -> dict[str, int]:
+        """Return where to stop: a repeat that is gone, or has fewer steps by now, is not stopped.
+
+        ``coming``: in a sketch that is being opened, where there is one.
+        """
+        steps = self._next[0] if coming and self._next is not None else self.steps
+        repeats = steps_of_repeats(sketch, time) if steps else {}
+        return {path: step for path, step in steps.items() if step < repeats.get(path, 0)}
 
 
 def steps_of_repeats(sketch: Sketch, time: float) -> dict[str, int]:

@@ -3,7 +3,7 @@
 Folders are watched, not files, because a file that is renamed over or created anew is
 another file; a change counts only if the contents differ. Twice a second the thread
 also looks for itself, so that a folder that vanished and came back is found again, and
-a file system that tells nobody anything is followed all the same.
+a file system that reports no changes is followed all the same.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from watchfiles import watch
 
 from playground.sketch.allowed_files import Signature, signature
 
-STEP, DEBOUNCE = 5, 50  # [ms] quiet after which a batch is notify; longest batch
+STEP, DEBOUNCE = 5, 50  # [ms] quiet after which a batch is reported; longest batch
 LOOK_EVERY = 500  # [ms]
 _GRACE = 0.08  # [s] a deleted file may take to come back: editors delete and create
 _JUST = 0.05  # [s] how far a file's time of change may lag behind the clock
@@ -29,8 +29,8 @@ class Watcher:
     """Watches a set of files in a thread of its own, once started.
 
     ``wake`` is called from that thread whenever there is something to ``take``.
-    ``also`` are endings of files that are reported although nobody follows them, where
-    they lie beside one that is followed.
+    ``also`` are endings of files that are reported although they are not followed, where
+    they lie next to one that is followed.
     """
 
     def __init__(self, wake: Callable[[], None] = lambda: None, also: Iterable[str] = ()) -> None:
@@ -132,7 +132,7 @@ class Watcher:
                 self._watch(folders, identities)
 
     def _watch(self, folders: frozenset[Path], identities: dict[Path, int]) -> None:
-        """Tell of changes until the folders to watch are no longer the same."""
+        """Report changes until the folders to watch are no longer the same."""
         batches = watch(
             *identities,
             step=STEP,
@@ -146,10 +146,7 @@ class Watcher:
             watch_filter=None,
         )
         for batch in batches:
-            if batch:
-                self._look({Path(path) for _, path in batch})
-            else:
-                self._look()
+            self._look({Path(path) for _, path in batch} or None)
             if self._stop.is_set() or _identities(folders) != identities:
                 return
 
@@ -198,16 +195,12 @@ def _identities(folders: Iterable[Path]) -> dict[Path, int]:
 
 def _hash(path: Path) -> bytes:
     """Return a hash of a file's contents; empty when it cannot be read."""
-    digest = hashlib.blake2b(digest_size=16)
     for _ in range(3):
         try:
             with path.open("rb") as handle:
-                while block := handle.read(1 << 20):
-                    digest.update(block)
-            return digest.digest()
+                return hashlib.file_digest(handle, "blake2b").digest()
         except FileNotFoundError:
             return b""
         except OSError:  # another program holds it just now (Windows)
             time.sleep(0.02)
-            digest = hashlib.blake2b(digest_size=16)
     return b""

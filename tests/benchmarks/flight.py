@@ -1,7 +1,7 @@
-"""Fly over the shipped land for a while and print what it costs: ``python tests/benchmarks/flight.py``.
+"""Fly over the shipped terrain for a while and print what it costs: ``python tests/benchmarks/flight.py``.
 
 A picture is 640 x 360 (``--size W H``) at one sample, as in a window that the processor draws. Parts are made
-in stages beside the pictures, as there.
+in stages between the pictures, as there.
 """
 
 from __future__ import annotations
@@ -55,13 +55,13 @@ def main() -> int:
             for number in range(PICTURES):
                 hands = HANDS[number * len(HANDS) // PICTURES]
 
-                def turn(hands: Controls = hands) -> None:
+                def step(hands: Controls = hands) -> None:
                     for _ in range(4):
                         flight.step(hands, 0)
                     stages.append(flight.parts.tend_for(0.005))
                     flight.draw(size)
 
-                frames.append(milliseconds(turn, engine))
+                frames.append(milliseconds(step, engine))
                 drawn.append(flight.scene.drawn)
             ordered = sorted(frames)
             middle, late = statistics.median(frames), ordered[int(0.99 * len(ordered))]
@@ -73,7 +73,7 @@ def main() -> int:
             triangles = flight.scene.triangles
             print(f"parts in view: {statistics.mean(drawn):.0f}; triangles of the last picture: {triangles}")
             mine, cached = flight.parts.bytes / 2**20, engine.cache.bytes / 2**20
-            print(f"kept: {len(flight.parts)} parts, {mine:.0f} MiB, and {cached:.0f} MiB in the engine")
+            print(f"cached: {len(flight.parts)} parts, {mine:.0f} MiB, and {cached:.0f} MiB in the engine")
     return 0
 
 

@@ -1,9 +1,9 @@
-"""Time the techniques that make land beside what one would take instead, in one run.
+"""Time the techniques that make terrain against their alternatives, in one run.
 
     pip install ".[bench]"
     python tests/benchmarks/generation.py [--size 1025 4097] [--rounds 7] [--processor] [NAME…]
 
-Each figure is the median of several runs, with a new seed each, ours and theirs in turn,
+Each figure is the median of several runs, with a new seed each, ours and theirs alternately,
 so that a busy machine slows both; techniques with a fast variant are timed in their plain form
 as well. Nothing compiled is timed. Figures wander with the
 machine; ratios less so. The thesis's own methods are compiled from thesis.c with cc -O2.
@@ -25,7 +25,7 @@ from playground.sketch.variants import any_variants
 
 
 class Generation(Bench):
-    """The shared bench, with lands of ours and of the thesis."""
+    """The shared bench, with terrains of ours and of the thesis."""
 
     source = "thesis.c"
 
@@ -50,8 +50,8 @@ class Generation(Bench):
 
         def run(form: str) -> None:
             engine = self.engines["auto" if form == "plain" else form]
-            asked = sketch.with_values({f"a.{seed}": next(SEEDS) % 9999})
-            engine.texture(asked.plainly() if form == "plain" else asked, wanted)
+            seeded = sketch.with_values({f"a.{seed}": next(SEEDS) % 9999})
+            engine.texture(seeded.plainly() if form == "plain" else seeded, wanted)
             engine.ctx.finish()
 
         there = [f for f in forms.split() if f != "plain" or any_variants(sketch.graph.passes[0].technique)]
@@ -123,9 +123,9 @@ def scipy_fourier(size: int, roughness: float) -> dict[str, Run]:
         squared = fy * fy + fx * fx
         squared[0, 0] = 1.0
         spectrum *= squared ** np.float32(-roughness / 2)
-        land = scipy.fft.irfft2(spectrum, s=grid.shape, workers=os.cpu_count())
-        low, high = land.min(), land.max()
-        return (land - low) / (high - low)
+        terrain = scipy.fft.irfft2(spectrum, s=grid.shape, workers=os.cpu_count())
+        low, high = terrain.min(), terrain.max()
+        return (terrain - low) / (high - low)
 
     return {"scipy.fft": run}
 
@@ -135,42 +135,44 @@ def numpy_diamond_square(size: int, smoothing: float) -> dict[str, Run]:
 
     def run() -> object:
         random = np.random.default_rng(next(SEEDS))
-        land = np.zeros((size, size), np.float32)
-        land[:: size - 1, :: size - 1] = 0.5
+        terrain = np.zeros((size, size), np.float32)
+        terrain[:: size - 1, :: size - 1] = 0.5
         spacing = size - 1
         while spacing > 1:
             half, scale = spacing // 2, np.float32(2 * smoothing * spacing / (size - 1))
-            corners = land[::spacing, ::spacing]
+            corners = terrain[::spacing, ::spacing]
             mean = (corners[:-1, :-1] + corners[1:, :-1] + corners[:-1, 1:] + corners[1:, 1:]) * np.float32(
                 0.25
             )
-            land[half::spacing, half::spacing] = mean + (random.random(mean.shape, np.float32) - 0.5) * scale
-            ring = np.pad(land[::half, ::half], 1)
+            terrain[half::spacing, half::spacing] = (
+                mean + (random.random(mean.shape, np.float32) - 0.5) * scale
+            )
+            ring = np.pad(terrain[::half, ::half], 1)
             there = np.pad(np.ones((ring.shape[0] - 2, ring.shape[1] - 2), np.float32), 1)
             total = ring[:-2, 1:-1] + ring[2:, 1:-1] + ring[1:-1, :-2] + ring[1:-1, 2:]
             count = there[:-2, 1:-1] + there[2:, 1:-1] + there[1:-1, :-2] + there[1:-1, 2:]
             edges = total / count + (random.random(total.shape, np.float32) - 0.5) * scale
-            land[::spacing, half::spacing] = edges[::2, 1::2]
-            land[half::spacing, ::spacing] = edges[1::2, ::2]
+            terrain[::spacing, half::spacing] = edges[::2, 1::2]
+            terrain[half::spacing, ::spacing] = edges[1::2, ::2]
             spacing = half
-        low, high = land.min(), land.max()
-        return (land - low) / (high - low)
+        low, high = terrain.min(), terrain.max()
+        return (terrain - low) / (high - low)
 
     return {"NumPy": run}
 
 
 def numpy_faults(size: int, faults: int) -> dict[str, Run]:
-    """Return a run of fault formation in NumPy: a comparison over the land for each fault."""
+    """Return a run of fault formation in NumPy: a comparison over the terrain for each fault."""
 
     def run() -> object:
         random = np.random.default_rng(next(SEEDS))
         along = np.linspace(0, 1, size, dtype=np.float32)
-        land = np.zeros((size, size), np.float32)
+        terrain = np.zeros((size, size), np.float32)
         for k in range(faults):
             (x0, y0), (x1, y1) = random.random((2, 2), np.float32)
             side = (x1 - x0) * (along[:, None] - y0) > (y1 - y0) * (along[None, :] - x0)
-            land += np.where(side, 1 - k / faults, k / faults - 1).astype(np.float32)
-        return land
+            terrain += np.where(side, 1 - k / faults, k / faults - 1).astype(np.float32)
+        return terrain
 
     return {"NumPy": run}
 
@@ -207,7 +209,7 @@ def gradient_noise(bench: Generation, size: int) -> Iterator[Comparison]:
 
 
 def fourier(bench: Generation, size: int) -> Iterator[Comparison]:
-    """Compare the spectral land with scipy.fft, at the power of two below."""
+    """Compare the spectral terrain with scipy.fft, at the power of two below."""
     even = size - size % 2
     yield Comparison(
         f"fourier at {even}", bench.ours("generation/fourier", "", even), scipy_fourier(even, 2.0), "≥ 1 auto"

@@ -1,9 +1,9 @@
-"""Measure the land's meshes: the full grid, tiles at levels of detail, tiles that morph.
+"""Measure the terrain's meshes: the full grid, tiles at levels of detail, tiles that morph.
 
     python tests/benchmarks/geometry.py [--sizes 1025 4097] [--samples 1 4] [--rounds 7]
 
 A frame is what a turned camera runs again. Its time is the median of the rounds, in each
-of which every mesh has its turn, so that a busy machine is so to all of them. The error
+in which every mesh is drawn once, so that a busy machine is so to all of them. The error
 is how far the mesh lies from the full grid in the picture: the most over the picture, and
 what 99 in 100 places stay below.
 """
@@ -83,7 +83,7 @@ def main() -> None:
 
 
 def table_of(engine: Engine, name: str, sketch: Sketch, samples: list[int], rounds: int) -> Table:
-    """Return what the meshes of one land cost, and how far from it they lie."""
+    """Return what the meshes of one terrain cost, and how far from it they lie."""
     size = engine.plan_for(sketch, SIZE).terrain.size
     assert size is not None
     meshes = {"full grid, texel by texel": {"detail": "full grid", "grid": max(size)}}
@@ -114,7 +114,7 @@ def table_of(engine: Engine, name: str, sketch: Sketch, samples: list[int], roun
             f"{np.percentile(error, 99):.2f}",
             *(f"{times[n][mesh]:.1f}" for n in samples),
         )
-    table.caption = f"errors of tiles, once for each land: {errors_time(engine, sketch):.1f} ms"
+    table.caption = f"errors of tiles, once for each terrain: {errors_time(engine, sketch):.1f} ms"
     return table
 
 
@@ -134,33 +134,33 @@ def frame_times(
 ) -> dict[str, float]:
     """Return the milliseconds of a frame after the camera has turned, by mesh."""
     found: dict[str, list[float]] = {mesh: [] for mesh in meshes}
-    for turn in range(rounds + 1):
+    for number in range(rounds + 1):
         for mesh, given in meshes.items():
-            camera = replace(sketch.camera, azimuth=sketch.camera.azimuth + turn)
+            camera = replace(sketch.camera, azimuth=sketch.camera.azimuth + number)
             seen = sketch.with_camera(camera).with_values({f"view.{k}": v for k, v in given.items()})
             engine.ctx.finish()
             start = time.perf_counter()
             engine.draw(seen, size=SIZE)
             engine.ctx.finish()
-            if turn:
+            if number:
                 found[mesh].append((time.perf_counter() - start) * 1e3)
     return {mesh: statistics.median(times) for mesh, times in found.items()}
 
 
 def heights(engine: Engine, sketch: Sketch, given: dict[str, object]) -> np.ndarray:
-    """Return the heights [m] of a mesh over the land, as the sketch's camera is shown it."""
+    """Return the heights [m] of a mesh over the terrain, as the sketch's camera is shown it."""
     seen = sketch.with_values({f"above.{key}": value for key, value in given.items()})
     return engine.read(seen, "above", size=SIZE)[..., 0].astype(np.float64)
 
 
 def pixels(sketch: Sketch, truth: np.ndarray) -> np.ndarray:
-    """Return how many pixels a metre upwards is long over each place of the land, 0 outside the picture."""
+    """Return the length in pixels of a metre upwards at each place of the terrain, 0 outside the picture."""
     with playground.headless() as engine:
-        land = engine.plan_for(sketch, SIZE).terrain
-    eye = look(sketch.camera, land.extent, land.relief, SIZE)
+        terrain = engine.plan_for(sketch, SIZE).terrain
+    eye = look(sketch.camera, terrain.extent, terrain.relief, SIZE)
     matrix = eye.clip_from_world.astype(np.float64).T
     shares = ((np.arange(n) + 0.5) / n for n in SIZE)
-    east, north = np.meshgrid(*(s * e for s, e in zip(shares, land.extent, strict=True)))
+    east, north = np.meshgrid(*(s * e for s, e in zip(shares, terrain.extent, strict=True)))
     low, high = (np.stack([east, north, truth + up, np.ones_like(truth)], -1) @ matrix for up in (0.0, 0.01))
     inside = (np.abs(low[..., :3]) <= low[..., 3:]).all(axis=-1)
     low, high = (clip[..., :2] / np.where(inside, clip[..., 3], 1.0)[..., None] for clip in (low, high))
@@ -168,7 +168,7 @@ def pixels(sketch: Sketch, truth: np.ndarray) -> np.ndarray:
 
 
 def errors_time(engine: Engine, sketch: Sketch) -> float:
-    """Return the milliseconds that the tiles' errors take, as for land that is new."""
+    """Return the milliseconds that the tiles' errors take, as for terrain that is new."""
     times = []
     for _ in range(5):
         engine.texture(sketch, "height")

@@ -1,7 +1,7 @@
 """What works out horizons and the sky over them elsewhere: a sweep along lines in Numba, and topocalc.
 
 Both give the sky-view factor, cosine-weighted, from horizons in evenly spaced directions over
-the full extent of the land. They are timed, and tell nothing about what is right.
+the full extent of the terrain. They are timed, and tell nothing about what is right.
 """
 
 from __future__ import annotations

@@ -1,18 +1,18 @@
-"""Time the methods of light beside what one would take instead, in one run.
+"""Time the methods of light against their alternatives, in one run.
 
     pip install ".[bench]"
     python tests/benchmarks/lighting.py [--size 1025 4097] [--rounds 7] [--processor] [NAME…]
 
 Each figure is the median of several runs, each under another sun (horizons: in slightly other
-directions; edits: on another land), ours and theirs in turn, so that a busy machine slows both.
-Nothing compiled is timed, nor is land made, but where the table says so. Figures wander with the
+directions; edits: on another terrain), ours and theirs alternately, so that a busy machine slows both.
+Nothing compiled is timed, nor is terrain made, but where the table says so. Figures wander with the
 machine; ratios less so. The thesis's own methods are compiled from thesis_light.c with cc -O2.
 topocalc is not in the extra, for it must be built without isolation; it is left out where it is
 not installed:
 
     pip install cython setuptools_scm numpy && pip install --no-build-isolation topocalc
 
-Land: the thesis's layered noise (4, 2, 0.2), for horizons its mixed model, which is rougher; a
+Terrain: the thesis's layered noise (4, 2, 0.2), for horizons its mixed model, which is rougher; a
 texel is as long as the height of one of 255 grey levels.
 """
 
@@ -38,16 +38,16 @@ DELTA_R = 0.01
 
 def azimuths() -> Iterator[float]:
     """Yield azimuths all around, the same for whoever asks: by the golden angle."""
-    return (20.0 + 137.508 * turn % 360.0 for turn in itertools.count())
+    return (20.0 + 137.508 * number % 360.0 for number in itertools.count())
 
 
 class Lighting(Bench):
-    """The shared bench, with lit lands of ours and of the thesis."""
+    """The shared bench, with lit terrains of ours and of the thesis."""
 
     source = "thesis_light.c"
 
-    def land(self, size: int, use: str = "layered_noise", rest: str = "") -> Sketch:
-        """Return a sketch of a land of so many texels a side, and what else is to be on it."""
+    def terrain(self, size: int, use: str = "layered_noise", rest: str = "") -> Sketch:
+        """Return a sketch of a terrain of so many texels a side, and what else is to be on it."""
         side = (size - 1) * TEXEL
         return self.sketch(
             f"size = {size}\nextent = {side}\nrelief = {255 * TEXEL}\n"
@@ -59,7 +59,7 @@ class Lighting(Bench):
     ) -> dict[str, Run]:
         """Return runs of a method, under a new sun each, up to one of its textures."""
         rest = f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n'
-        sketch = self.land(size, rest=rest).with_values({f"light.{k}": v for k, v in values.items()})
+        sketch = self.terrain(size, rest=rest).with_values({f"light.{k}": v for k, v in values.items()})
         own = elevation + next(SEEDS) * 1e-5  # else the engine would know a part of it from another row
 
         def runs(engine: Engine) -> Run:
@@ -74,8 +74,8 @@ class Lighting(Bench):
         return {driver: runs(self.engines[driver]) for driver in drivers.split()}
 
     def heights(self, size: int, use: str = "layered_noise") -> np.ndarray:
-        """Return the heights of a land [m], rows from the south."""
-        return self.engines["auto"].read(self.land(size, use), "height") * np.float32(255 * TEXEL)
+        """Return the heights of a terrain [m], rows from the south."""
+        return self.engines["auto"].read(self.terrain(size, use), "height") * np.float32(255 * TEXEL)
 
     def c(self, function: str, size: int, elevation: float, *more: float) -> dict[str, Run]:
         """Return runs of one of the thesis's methods in C; none where there is no compiler."""
@@ -113,7 +113,7 @@ ALONE = frozenset({"the thesis's C", "topocalc"})
 def horizons(bench: Lighting, size: int) -> Iterator[Comparison]:
     """Compare horizons in 16 directions and the sky over them with a sweep in Numba, and topocalc."""
     rest = f'[[pass]]\nname = "light"\nuse = "lighting/horizons"\nset = {{ directions = {DIRECTIONS} }}\n'
-    sketch = bench.land(size, "mixed", rest)
+    sketch = bench.terrain(size, "mixed", rest)
     engine = bench.engines["auto"]
     firsts = itertools.count(1)
 
@@ -197,18 +197,18 @@ METHODS = [
 
 
 def edited(bench: Lighting, size: int) -> Iterator[Comparison]:
-    """Time what follows an edit of the land, up to its light: all passes of both."""
+    """Time what follows an edit of the terrain, up to its light: all passes of both."""
     engine = bench.engines["auto"]
     for name, form in METHODS:
         chosen = f'set = {{ form = "{form}" }}\n' if form else ""
         rest = f'[[pass]]\nname = "light"\nuse = "lighting/{name}"\n{chosen}'
-        sketch = bench.land(size, rest=rest)
+        sketch = bench.terrain(size, rest=rest)
 
         def run(sketch: Sketch = sketch) -> None:
             engine.texture(sketch.with_values({"height.seed": next(SEEDS) % 9999}), "light")
             engine.ctx.finish()
 
-        yield Comparison(f"edit → lit land: {name}{form and ', ' + form}", {"auto": run})
+        yield Comparison(f"edit → lit terrain: {name}{form and ', ' + form}", {"auto": run})
 
 
 COMPARISONS: dict[str, Callable[[Lighting, int], Iterator[Comparison]]] = {

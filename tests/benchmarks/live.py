@@ -1,8 +1,8 @@
 """Measure what a save costs in a live session, and that none is missed: ``python tests/benchmarks/live.py``.
 
-Save to new picture, by a watcher, a trial child and an engine as in the window, at 1025²:
+Save to new picture, by a watcher, a sandbox process and an engine as in the window, at 1025²:
 for a texturing kernel, an included library file and a value in the sketch. Each text is
-new to the driver. Beside the seconds on the wall stands the processor's time of both
+new to the driver. Next to the elapsed seconds is the CPU time of both
 processes, which a busy machine stretches less.
 """
 
@@ -41,9 +41,9 @@ class Bench:
     """A sketch in a folder, and a session that follows it as the window's does."""
 
     def __init__(
-        self, folder: Path, engine: Engine, trial: Sandbox, side: int, picture: tuple[int, int]
+        self, folder: Path, engine: Engine, sandbox: Sandbox, side: int, picture: tuple[int, int]
     ) -> None:
-        self.engine, self.trial, self.picture = engine, trial, picture
+        self.engine, self.sandbox, self.picture = engine, sandbox, picture
         text = (GLSL / f"{KERNEL}.glsl").read_text(encoding="utf-8")
         edited = text.replace(
             "vec4 kernel(", '#include "own.glsl"\nconst float EDIT = @;\nvec4 kernel(', 1
@@ -64,7 +64,7 @@ class Bench:
         for file in self.texts:
             self.save(file)
         self.woken = threading.Event()
-        self.session = Session(engine, folder, sandbox=trial)
+        self.session = Session(engine, folder, sandbox=sandbox)
         self.watcher = Watcher(self.woken.set, (".glsl", ".toml"))
         self.follower = Follower(self.session, self.watcher)
         self.until(lambda: self.session.draws > 0 and not self.session.is_preview)
@@ -107,8 +107,8 @@ class Bench:
         return self.until(is_shown)
 
     def processor(self) -> float:
-        """Return the seconds that processors have spent on this process and on the trial's."""
-        child = self.trial._workers.worker
+        """Return the seconds that processors have spent on this process and on the sandbox's."""
+        child = self.sandbox._workers.worker
         return sum(spent(pid) for pid in (os.getpid(), child.pid if child else 0) if pid)
 
 
@@ -137,10 +137,10 @@ def objects() -> int:
 
 @contextmanager
 def opened(side: int, picture: tuple[int, int]) -> Iterator[Bench]:
-    with tempfile.TemporaryDirectory() as folder, Sandbox() as trial:
-        trial.start()
+    with tempfile.TemporaryDirectory() as folder, Sandbox() as sandbox:
+        sandbox.start()
         with Engine(open_context(), owns_context=True) as engine:
-            bench = Bench(Path(folder), engine, trial, side, picture)
+            bench = Bench(Path(folder), engine, sandbox, side, picture)
             with bench.watcher:
                 bench.follower.follow()
                 time.sleep(0.3)
@@ -161,7 +161,7 @@ def main() -> None:
     options = parser.parse_args()
     if options.saves > 0:
         with opened(1025, SIZE) as bench:
-            print(f"A live session on {bench.engine.info.renderer}, {os.cpu_count()} processors, trial on")
+            print(f"A live session on {bench.engine.info.renderer}, {os.cpu_count()} processors, sandbox on")
             report_times(bench, options.saves)
     if options.many > 0 or options.reloads > 1:
         with opened(65, SMALL) as bench:

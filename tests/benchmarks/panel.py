@@ -1,4 +1,4 @@
-"""Measure what the panel costs a frame, and print it beside its limit.
+"""Measure what the panel costs a frame, and print it with its limit.
 
     python tests/benchmarks/panel.py [--frames 300] [--profile]
 
@@ -114,9 +114,9 @@ def _measure(bare: Bare, frames: int, before: Callable[[int], None]) -> list[flo
 def _sketch(folder: Path) -> Path:
     """Write a sketch with that many parameters into a folder."""
     lines = [WIDGETS[n % len(WIDGETS)].format(f"p{n}") for n in range(COUNT)]
-    head = '// land.glsl -- level land\n#pragma kernel(output = "height:r32f")\n'
-    land = head + "\n".join(lines) + "\nfloat kernel(ivec2 texel) { return p0; }\n"
-    for name, text in {"land.glsl": land, "plain.glsl": PLAIN, "sketch.toml": SKETCH}.items():
+    head = '// land.glsl -- level terrain\n#pragma kernel(output = "height:r32f")\n'
+    terrain = head + "\n".join(lines) + "\nfloat kernel(ivec2 texel) { return p0; }\n"
+    for name, text in {"land.glsl": terrain, "plain.glsl": PLAIN, "sketch.toml": SKETCH}.items():
         (folder / name).write_text(text, encoding="utf-8")
     return folder
 

@@ -1,7 +1,7 @@
-"""Time things of ours beside what one would take instead, in one run, and print them as tables.
+"""Time our methods against their alternatives, in one run, and print them as tables.
 
 What the benchmarks of generation and of lighting share. A figure is the median of several
-runs, ours and theirs in turn, so that a busy machine slows both. Nothing compiled is timed.
+runs, ours and theirs alternately, so that a busy machine slows both. Nothing compiled is timed.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ Run = Callable[[], object]
 
 @dataclass
 class Comparison:
-    """Something of ours, and what stands beside it."""
+    """One of our methods, and its alternative."""
 
     what: str
     ours: dict[str, Run]  # by form, see FORMS
@@ -56,18 +56,18 @@ class Clock:
     processor: bool  # processor time over processors; else the wall's
 
     def times(self, comparison: Comparison) -> dict[str, float]:
-        """Return the milliseconds of each; they take turns, after one unmeasured turn."""
+        """Return the milliseconds of each; they alternate, after one unmeasured round."""
         runs = comparison.ours | comparison.theirs
         found: dict[str, list[float]] = {name: [] for name in runs}
-        for turn in range(self.rounds + 1):
+        for number in range(self.rounds + 1):
             for name, run in runs.items():
-                if name in comparison.once and turn != 1:
+                if name in comparison.once and number != 1:
                     continue
                 start = time.process_time() if self.processor else time.perf_counter()
                 run()
                 end = time.process_time() if self.processor else time.perf_counter()
                 shared = CORES if self.processor and name not in comparison.alone else 1
-                if turn:
+                if number:
                     found[name].append((end - start) * 1e3 / shared)
         return {name: statistics.median(times) for name, times in found.items()}
 
@@ -102,8 +102,8 @@ def run_all(
         costs: dict[tuple[str, int], float] = {}
         for size in options.size:
             table = Table(title=f"{size} x {size}, {clock}")
-            for heading in ("what", *FORMS, "beside it", "ms", "ratio", "wanted"):
-                table.add_column(heading, justify="left" if heading in ("what", "beside it") else "right")
+            for heading in ("what", *FORMS, "alternative", "ms", "ratio", "wanted"):
+                table.add_column(heading, justify="left" if heading in ("what", "alternative") else "right")
             for name, make in comparisons.items():
                 if options.names and name not in options.names:
                     continue
@@ -142,7 +142,7 @@ def _growth(console: Console, costs: dict[tuple[str, int], float], sizes: list[i
 class Bench:
     """Engines of both drivers, a folder for sketches, and methods of the thesis in C."""
 
-    source = ""  # the C file beside this one
+    source = ""  # the C file next to this one
 
     def __init__(self) -> None:
         self.ctx = open_context()

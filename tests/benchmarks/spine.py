@@ -1,4 +1,4 @@
-"""Measure what the spine promises, and print it beside its limit.
+"""Measure what the spine promises, and print it with its limit.
 
     python tests/benchmarks/spine.py [--saves 25]
 
@@ -51,10 +51,10 @@ def main() -> None:
     table.add_row(
         f"moving the sun re-runs {', '.join(ran)}", f"{milliseconds:.0f} ms", "light and view only", "warm"
     )
-    for name, trial in [(name, trial) for name in KERNELS for trial in (False, True)]:
-        times = sorted(save_to_picture(name, options.saves, trial=trial))
+    for name, sandboxed in [(name, sandboxed) for name in KERNELS for sandboxed in (False, True)]:
+        times = sorted(save_to_picture(name, options.saves, sandboxed=sandboxed))
         median, worst = statistics.median(times), times[int(0.95 * (len(times) - 1))]
-        label = "with a trial child" if trial else "drawn at once"
+        label = "with a sandbox process" if sandboxed else "drawn at once"
         row = f"save to picture, {name} at 1025², {label}"
         table.add_row(row, f"{median:.0f} ms (95th {worst:.0f})", "150 ms", "each text new to it")
     table.add_row("memory of jacksboro at 4097²", f"{memory(4097):.2f} GiB", "2 GiB", "warm")
@@ -105,13 +105,13 @@ def sun() -> tuple[list[str], float]:
         return sorted({path.split(".")[0] for path in engine.ran}), statistics.median(times)
 
 
-def save_to_picture(name: str, saves: int, *, trial: bool) -> list[float]:
+def save_to_picture(name: str, saves: int, *, sandboxed: bool) -> list[float]:
     """Return the milliseconds from each save of a texturing kernel to the finished picture."""
     with tempfile.TemporaryDirectory() as folder:
         sketch, kernel = _texturing_sketch(Path(folder), name)
         text = kernel.read_text()
         with playground.headless() as engine:
-            child = Sandbox() if trial else None
+            child = Sandbox() if sandboxed else None
             if child is not None:
                 child.start()
             woken = threading.Event()

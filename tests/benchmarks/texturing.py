@@ -1,11 +1,11 @@
-"""Measure what texturing costs a frame, and print it beside its limit.
+"""Measure what texturing costs a frame, and print it with its limit.
 
     python tests/benchmarks/texturing.py [--land 1025] [--frames 9]
 
 Every figure is the median of frames of 1280 x 720 with the camera moved between them, one
-sample a pixel, each after the driver has finished. The rows are measured in turns, one frame
+sample a pixel, each after the driver has finished. The rows are measured alternately, one frame
 of each, so that a load on the machine falls on all of them alike: compare within one run. Where
-the processor draws, the times of all its cores are summed beside that, and the ratios are of
+the processor draws, the times of all its cores are summed as well, and the ratios are of
 those: they depend less on what else the machine does.
 """
 
@@ -29,7 +29,7 @@ from playground.sketch.model import Camera, Sketch
 
 SIZE = (1280, 720)
 
-LAND = """format = 1
+TERRAIN = """format = 1
 size = {size}
 extent = 2560.0
 relief = 470.0
@@ -83,7 +83,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--land", type=int, default=1025, help="texels a side of the land (default 1025)")
+    parser.add_argument("--land", type=int, default=1025, help="texels a side of the terrain (default 1025)")
     parser.add_argument("--frames", type=int, default=9, help="frames to time (default 9)")
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, playground.headless() as engine:
@@ -93,7 +93,7 @@ def main() -> None:
         software = engine.info.software
     kind = 1 if software else 0
     full = times["full"][kind]
-    table = Table(title=f"Texturing on {renderer}, {os.cpu_count()} processors, land of {options.land}²")
+    table = Table(title=f"Texturing on {renderer}, {os.cpu_count()} processors, terrain of {options.land}²")
     for heading in ("a frame of 1280 x 720", "median", "of all cores", "over the first", "limit"):
         table.add_column(heading)
     for name, (what, limit) in WHAT.items():
@@ -105,23 +105,23 @@ def main() -> None:
 
 WHAT = {
     "full": ("one pass over the screen, six textures a pixel", ""),
-    "splat land": ("view/splat, its draw of the land, mesh of 257²", ""),
-    "coarse land": ("the same, mesh of 65²: larger triangles", ""),
-    "tiled land": ("the same by geomipmap at 1 pixel, vertices of 1025²", ""),
-    "multipass land": ("view/splat_multipass, its four draws, mesh of 257²", "beside splat"),
-    "baked land": ("view/terrain, its draw, the same layers baked to 1025²", ""),
+    "splat terrain": ("view/splat, its draw of the terrain, mesh of 257²", ""),
+    "coarse terrain": ("the same, mesh of 65²: larger triangles", ""),
+    "tiled terrain": ("the same by geomipmap at 1 pixel, vertices of 1025²", ""),
+    "multipass terrain": ("view/splat_multipass, its four draws, mesh of 257²", "next to splat"),
+    "baked terrain": ("view/terrain, its draw, the same layers baked to 1025²", ""),
     "splat": ("view/splat, whole frame", ""),
     "tiled": ("view/splat, whole frame by geomipmap at 1 pixel", "2 x"),
-    "multipass": ("view/splat_multipass, whole frame", "beside splat"),
+    "multipass": ("view/splat_multipass, whole frame", "next to splat"),
     "baked": ("view/terrain, whole frame", "40 ms"),
 }
-"""What each row is, and what is asked of it."""
+"""What each row is, and its limit."""
 
 
 def sketches(folder: Path, size: int) -> dict[str, tuple[Sketch, str]]:
     """Write and load the sketch of every row, and say which of its passes is timed ("" for the frame)."""
     (folder / "screen.glsl").write_text(FULL)
-    head = LAND.format(size=size) + TILES
+    head = TERRAIN.format(size=size) + TILES
 
     def made(name: str, text: str) -> Sketch:
         path = folder / f"{name}.toml"
@@ -135,11 +135,11 @@ def sketches(folder: Path, size: int) -> dict[str, tuple[Sketch, str]]:
     baked = made("baked", head + BAKED + VIEW.format("view/terrain", 257))
     return {
         "full": (made("full", head + FULL_PASS), "screen"),
-        "splat land": (splat, "view.land"),
-        "coarse land": (coarse, "view.land"),
-        "tiled land": (tiled, "view.land"),
-        "multipass land": (many, "view.fourth"),
-        "baked land": (baked, "view.land"),
+        "splat terrain": (splat, "view.land"),
+        "coarse terrain": (coarse, "view.land"),
+        "tiled terrain": (tiled, "view.land"),
+        "multipass terrain": (many, "view.fourth"),
+        "baked terrain": (baked, "view.land"),
         "splat": (splat, ""),
         "tiled": (tiled, ""),
         "multipass": (many, ""),
@@ -153,7 +153,7 @@ def measure(
     """Return the median milliseconds of a frame, or of a pass, of each row: on the clock, of all cores."""
     times: dict[str, list[tuple[float, float]]] = {name: [] for name in rows}
     azimuth = 70.0
-    for turn in range(frames + 2):
+    for number in range(frames + 2):
         for name, (sketch, path) in rows.items():
             azimuth += 0.1
             look = Camera(azimuth=azimuth, elevation=22.0, distance=2100.0, target=(1280.0, 1280.0, 150.0))
@@ -167,7 +167,7 @@ def measure(
             else:
                 engine.draw(moved, size=SIZE)
             engine.ctx.finish()
-            if turn >= 2:  # the first runs make the land and compile
+            if number >= 2:  # the first runs make the terrain and compile
                 spent = time.perf_counter() - start, time.process_time() - busy
                 times[name].append((spent[0] * 1e3, spent[1] * 1e3))
     return {

@@ -1,4 +1,4 @@
-"""A small land of which every number is known: its north-western corner is its highest."""
+"""A small terrain of which every number is known: its north-western corner is its highest."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import playground
 
 from ..sketch_texts import passes
 
-HEIGHT = """// lop.glsl -- land that is like itself in no mirror.
+HEIGHT = """// lop.glsl -- terrain that is like itself in no mirror.
 #pragma kernel(output = "height:r32f")
 uniform float gap = 0.0;  //! slider(0, 1) step(1) Whether a texel in the middle is no number
 float kernel(ivec2 texel) {
@@ -64,7 +64,7 @@ def lop(folder: Path) -> playground.Sketch:
 
 
 def metres(size: tuple[int, int] = (9, 5)) -> np.ndarray:
-    """Return the land's heights, north row first, worked out texel by texel in float64."""
+    """Return the terrain's heights, north row first, worked out texel by texel in float64."""
     nx, ny = size
     found = np.empty((ny, nx))
     for row in range(ny):
@@ -76,5 +76,5 @@ def metres(size: tuple[int, int] = (9, 5)) -> np.ndarray:
 
 
 @pytest.fixture(scope="session")
-def land() -> np.ndarray:
+def heightmap() -> np.ndarray:
     return metres()

@@ -28,7 +28,7 @@ def test_every_number_comes_back(dtype: type, shape: tuple[int, ...], tmp_path: 
         np.testing.assert_array_equal(pixels[name], expected)
 
 
-def test_smooth_land_is_packed_and_noise_is_not_blown_up():
+def test_smooth_terrain_is_packed_and_noise_is_not_blown_up():
     smooth = np.add.outer(np.arange(256.0), np.arange(256.0)).astype(np.float32)
     assert len(encode_exr(smooth)) < smooth.nbytes / 4
     noise = np.random.default_rng(1).integers(0, 2**31 - 2**24, (64, 64), dtype=np.uint32).view(np.float32)

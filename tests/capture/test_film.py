@@ -114,19 +114,19 @@ def test_how_long_a_film_is(clock, keyed):
 def test_a_thousand_pictures_leave_as_many_objects_as_ten(any_engine: Engine, keyed, alive: Counter[str]):
     film = Film(sketch=keyed, count=10, fps=Fraction(25), size=(32, 18))
     list(frames(any_engine, film))
-    before, kept = Counter(alive), any_engine.cache.bytes
+    before, cached = Counter(alive), any_engine.cache.bytes
     for number, _ in enumerate(
         frames(any_engine, Film(sketch=keyed, count=1000, fps=Fraction(2500), size=(32, 18)))
     ):
         assert number % 100 or alive == before
-    assert alive == before and any_engine.cache.bytes == kept
+    assert alive == before and any_engine.cache.bytes == cached
 
 
 def test_pictures_leave_no_objects(any_engine: Engine, keyed, alive: Counter[str]):
     list(frames(any_engine, Film(sketch=keyed, count=5, fps=Fraction(25), size=(32, 18))))
-    before, kept = Counter(alive), any_engine.cache.bytes
+    before, cached = Counter(alive), any_engine.cache.bytes
     list(frames(any_engine, Film(sketch=keyed, count=60, fps=Fraction(150), size=(32, 18))))
-    assert alive == before and any_engine.cache.bytes == kept
+    assert alive == before and any_engine.cache.bytes == cached
 
 
 # ── what is in the file ──────────────────────────────────────────────────────
@@ -235,7 +235,7 @@ def test_nothing_is_left_of_a_video_that_fails(tmp_path: Path):
     assert not list(tmp_path.iterdir())
 
 
-def test_a_video_of_too_few_pictures_is_kept_under_a_name_that_says_so(tmp_path: Path):
+def test_a_video_of_too_few_pictures_gets_a_name_that_says_so(tmp_path: Path):
     (tmp_path / "a.mp4").write_bytes(b"what was there")
     with (
         pytest.raises(DataError, match=r"wrote 1 pictures .* kept in a-first-1\.mp4"),
@@ -250,22 +250,22 @@ def test_a_video_of_too_few_pictures_is_kept_under_a_name_that_says_so(tmp_path:
 @pytest.mark.parametrize(
     "error", [AttributeError("no such thing"), ReferenceError("closed"), OSError(5, "bad")]
 )
-def test_a_film_that_cannot_be_read_back_is_kept(
+def test_a_film_that_cannot_be_read_back_is_not_lost(
     any_engine: Engine, keyed, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception
 ):
     def fails(path: Path) -> tuple[int, Fraction]:
         raise error
 
     monkeypatch.setattr(video_module, "count_pictures", fails)
-    said: list[str] = []
+    message: list[str] = []
     path = write_film(
         any_engine,
         Film(sketch=keyed, count=3, fps=Fraction(10), size=(64, 36)),
         tmp_path / "film.mp4",
-        notice=said.append,
+        notice=message.append,
     )
     assert decoded(path).shape == (3, 36, 64, 3)
-    assert len(said) == 1 and "was written, but could not be checked" in said[0]
+    assert len(message) == 1 and "was written, but could not be checked" in message[0]
     assert [path.name for path in tmp_path.glob("*film*")] == ["film.mp4"]
     # Interrupted as well: then by the number of pictures that were handed over.
     with pytest.raises(Stopped) as caught, Video(tmp_path / "b.mp4", (64, 36), Fraction(10), 5) as video:
@@ -285,7 +285,7 @@ def test_ctrl_c_while_a_film_is_read_back_does_not_lose_it(tmp_path: Path, monke
 
 
 @pytest.mark.parametrize(
-    ("name", "size", "fps", "quality", "said"),
+    ("name", "size", "fps", "quality", "message"),
     [
         ("a.avi", (64, 36), 30, "high", "ending in .mp4 (H.264), .webm (VP9), .gif"),
         ("a.mp4", (65, 36), 30, "high", "both must be even, as 66x36"),
@@ -295,10 +295,10 @@ def test_ctrl_c_while_a_film_is_read_back_does_not_lose_it(tmp_path: Path, monke
         ("a.mp4", (32770, 36), 30, "high", "at most 16384 a side"),
     ],
 )
-def test_what_cannot_be_written_is_a_sentence(tmp_path: Path, name, size, fps, quality, said):
+def test_what_cannot_be_written_is_a_sentence(tmp_path: Path, name, size, fps, quality, message):
     with pytest.raises((DataError, ParameterError)) as caught:
         Video(tmp_path / name, size, Fraction(fps), 1, quality=quality)
-    assert said in str(caught.value)
+    assert message in str(caught.value)
     assert not list(tmp_path.iterdir())
 
 
@@ -360,7 +360,7 @@ def test_a_name_without_a_number_is_refused(any_engine: Engine, keyed, tmp_path:
         )
 
 
-def test_a_fingerprint_stands_for_the_picture(any_engine: Engine, keyed):
+def test_a_fingerprint_identifies_the_picture(any_engine: Engine, keyed):
     def of(sketch=keyed, **more):
         return any_engine.fingerprint(sketch, **{"size": (64, 36), "time": 0.1, **more})
 

@@ -145,9 +145,9 @@ def test_tiles_cover_a_picture_once():
 
 
 def test_what_is_large(any_engine: Engine, tmp_path: Path):
-    land = load("l_dot_n")
-    assert not is_large(any_engine, land, (3840, 2160))
-    assert is_large(any_engine, land, (7680, 4320)) and is_large(any_engine, land, (20000, 2))
+    sketch = load("l_dot_n")
+    assert not is_large(any_engine, sketch, (3840, 2160))
+    assert is_large(any_engine, sketch, (7680, 4320)) and is_large(any_engine, sketch, (20000, 2))
     blurred = two_passes(tmp_path, "return texelFetch(shown, texel + 1, 0);")
     assert not is_large(any_engine, blurred, (7680, 4320)), "its textures still hold that"
     assert is_large(any_engine, blurred, (20000, 2)), "to be refused in a sentence"
@@ -197,7 +197,7 @@ def test_live_objects_do_not_grow_with_the_tiles(any_engine: Engine, alive: Coun
 
 
 @pytest.mark.parametrize(
-    ("body", "above", "said"),
+    ("body", "above", "message"),
     [
         ("return texelFetch(shown, texel + 1, 0);", "", "it reads 'shown' elsewhere than at its own texel"),
         ("return textureLod(shown, vec2(0.5), 0.0);", "", "it reads 'shown' elsewhere"),
@@ -205,11 +205,11 @@ def test_live_objects_do_not_grow_with_the_tiles(any_engine: Engine, alive: Coun
         ("return of(texel);", "vec4 of(ivec2 texel) { return texelFetch(shown, texel, 0); }", "elsewhere"),
     ],
 )
-def test_what_reads_its_neighbours_is_refused(any_engine: Engine, tmp_path: Path, body, above, said):
+def test_what_reads_its_neighbours_is_refused(any_engine: Engine, tmp_path: Path, body, above, message):
     sketch = two_passes(tmp_path, body, above)
     with pytest.raises(SketchError, match=r"pass 'view.last' cannot be drawn in parts") as caught:
         together(any_engine, sketch, (64, 64), (32, 32))
-    assert said in str(caught.value) and caught.value.diagnostics[0].file.endswith("both.toml")
+    assert message in str(caught.value) and caught.value.diagnostics[0].file.endswith("both.toml")
 
 
 def test_a_picture_drawn_in_parts_is_no_jpeg(any_engine: Engine, tmp_path: Path):

@@ -1,4 +1,4 @@
-"""The land as a mesh, opened by trimesh: where its vertices stand, which way it faces, what lies on it."""
+"""The terrain as a mesh, opened by trimesh: where its vertices are, which way it faces, its texture."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import trimesh
 import playground
 from playground import Sketch
 from playground.capture.gltf import encode_glb
-from playground.capture.mesh import grid_of, land_mesh, sampled
+from playground.capture.mesh import grid_of, sampled, terrain_mesh
 from playground.capture.obj import encode_obj
 from playground.engine.engine import Engine
 
@@ -45,10 +45,10 @@ def document(path: Path) -> dict:
 
 
 @pytest.mark.parametrize("ending", ENDINGS)
-def test_vertices_stand_where_the_land_is(
-    ending: str, any_engine: Engine, lop: Sketch, land: np.ndarray, tmp_path: Path
+def test_vertices_stand_where_the_terrain_is(
+    ending: str, any_engine: Engine, lop: Sketch, heightmap: np.ndarray, tmp_path: Path
 ):
-    done = playground.export(lop, tmp_path / f"land.{ending}", engine=any_engine)
+    done = playground.export(lop, tmp_path / f"terrain.{ending}", engine=any_engine)
     mesh = opened(done.path)
     assert mesh.vertices.shape == (45, 3) and mesh.faces.shape == (64, 3)
     np.testing.assert_allclose(mesh.bounds, [[-400, 175, -150], [400, 925, 150]], rtol=1e-6)
@@ -56,7 +56,7 @@ def test_vertices_stand_where_the_land_is(
     np.testing.assert_allclose(mesh.vertices[mesh.vertices[:, 1].argmax()], [-400, 925, -150], rtol=1e-6)
     for x, y, z in mesh.vertices:
         col, row = round((x + 400) / 100), round((z + 150) / 75)
-        assert abs(y - land[row, col]) < 1e-3
+        assert abs(y - heightmap[row, col]) < 1e-3
     assert "9 x 5 vertices, 64 triangles; 800 x 300 m, 175 to 925 m high; texture 17 x 13" in done.summary
 
 
@@ -64,7 +64,7 @@ def test_vertices_stand_where_the_land_is(
 def test_every_face_looks_up_and_none_is_missing(
     ending: str, any_engine: Engine, lop: Sketch, tmp_path: Path
 ):
-    mesh = opened(playground.export(lop, tmp_path / f"land.{ending}", engine=any_engine).path)
+    mesh = opened(playground.export(lop, tmp_path / f"terrain.{ending}", engine=any_engine).path)
     assert (mesh.face_normals[:, 1] > 0).all()
     a, b, c = (mesh.triangles[:, k][:, [0, 2]] for k in range(3))
     across = np.cross(np.c_[b - a, np.zeros(64)], np.c_[c - a, np.zeros(64)])[:, 2]
@@ -75,10 +75,10 @@ def test_every_face_looks_up_and_none_is_missing(
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_normals_are_those_of_the_slope(ending: str, any_engine: Engine, lop: Sketch, tmp_path: Path):
     fine = lop.with_values({"size": "65x33"})
-    mesh = opened(playground.export(fine, tmp_path / f"land.{ending}", engine=any_engine).path)
+    mesh = opened(playground.export(fine, tmp_path / f"terrain.{ending}", engine=any_engine).path)
     normals = mesh.vertex_normals  # from the file
     assert np.abs(np.linalg.norm(normals, axis=1) - 1.0).max() < 1e-5
-    # The land's own derivatives; a finite difference of a parabola is off at the edges only.
+    # The terrain's own derivatives; a finite difference of a parabola is off at the edges only.
     for (x, _, z), normal in zip(mesh.vertices[::7], normals[::7], strict=True):
         east, north = (x + 400) / 800, (150 - z) / 300
         to_east = 1000.0 * (-0.75 * north + 0.125 * east) / 800.0
@@ -91,11 +91,11 @@ def test_normals_are_those_of_the_slope(ending: str, any_engine: Engine, lop: Sk
 @pytest.mark.parametrize("ending", ENDINGS)
 def test_the_texel_under_a_vertex_is_its_own(ending: str, any_engine: Engine, lop: Sketch, tmp_path: Path):
     """The colours are of 17 x 13 texels: those under the 9 x 5 vertices stand at every second and third."""
-    mesh = opened(playground.export(lop, tmp_path / f"land.{ending}", engine=any_engine).path)
+    mesh = opened(playground.export(lop, tmp_path / f"terrain.{ending}", engine=any_engine).path)
     picture, uv = picture_of(mesh), mesh.visual.uv
     assert picture.shape == (13, 17, 3)
     for (x, _, z), (u, v) in zip(mesh.vertices, uv, strict=True):
-        # trimesh's v begins at the picture's foot, whatever the format's does.
+        # trimesh's v begins at the picture's foot, unlike the format's.
         col, row = u * 17 - 0.5, (1.0 - v) * 13 - 0.5
         assert abs(col - round(col)) < 1e-3 and abs(row - round(row)) < 1e-3, "in a texel's middle"
         east, north = (x + 400) / 800, (150 - z) / 300
@@ -106,74 +106,76 @@ def test_the_texel_under_a_vertex_is_its_own(ending: str, any_engine: Engine, lo
 
 
 def test_a_glb_says_what_its_specification_asks(any_engine: Engine, lop: Sketch, tmp_path: Path):
-    path = playground.export(lop, tmp_path / "land.glb", engine=any_engine).path
-    data, told = path.read_bytes(), document(path)
+    path = playground.export(lop, tmp_path / "terrain.glb", engine=any_engine).path
+    data, gltf = path.read_bytes(), document(path)
     assert struct.unpack("<4sII", data[:12]) == (b"glTF", 2, len(data)) and len(data) % 4 == 0
-    assert told["asset"]["version"] == "2.0"
-    places = told["accessors"][told["meshes"][0]["primitives"][0]["attributes"]["POSITION"]]
+    assert gltf["asset"]["version"] == "2.0"
+    places = gltf["accessors"][gltf["meshes"][0]["primitives"][0]["attributes"]["POSITION"]]
     assert places["min"] == [-400.0, 175.0, -150.0] and places["max"] == [400.0, 925.0, 150.0]
-    assert told["accessors"][3]["componentType"] == 5123
-    assert all(view["byteOffset"] % 4 == 0 for view in told["bufferViews"])
-    look = told["materials"][0]["pbrMetallicRoughness"]
+    assert gltf["accessors"][3]["componentType"] == 5123
+    assert all(view["byteOffset"] % 4 == 0 for view in gltf["bufferViews"])
+    look = gltf["materials"][0]["pbrMetallicRoughness"]
     assert (look["metallicFactor"], look["roughnessFactor"]) == (0.0, 1.0)
-    assert "extensions" not in told["materials"][0]
+    assert "extensions" not in gltf["materials"][0]
 
 
 def test_light_is_baked_in_and_asks_for_no_other(any_engine: Engine, lop: Sketch, tmp_path: Path):
-    done = playground.export(lop, tmp_path / "land.glb", light=True, engine=any_engine)
-    told = document(done.path)
-    assert told["materials"][0]["extensions"] == {"KHR_materials_unlit": {}} and told["extensionsUsed"]
+    done = playground.export(lop, tmp_path / "terrain.glb", light=True, engine=any_engine)
+    gltf = document(done.path)
+    assert gltf["materials"][0]["extensions"] == {"KHR_materials_unlit": {}} and gltf["extensionsUsed"]
     picture = picture_of(opened(done.path))
     # Blue is 0.25 everywhere; light grows from 0.5 in the south to 1.25 in the north.
     for row in range(13):
         linear = 0.25 * (1.25 - 0.75 * row / 12)
         assert abs(picture[row, 8, 2] - 255 * (1.055 * linear ** (1 / 2.4) - 0.055)) <= 0.51
     assert "outside 0 to 1" in done.warnings[0]
-    playground.export(lop, tmp_path / "land.obj", light=True, engine=any_engine)
-    assert "illum 0" in (tmp_path / "land.mtl").read_text()
-    with PIL.Image.open(tmp_path / "land-texture.png") as beside:
-        np.testing.assert_array_equal(np.asarray(beside), picture)
+    playground.export(lop, tmp_path / "terrain.obj", light=True, engine=any_engine)
+    assert "illum 0" in (tmp_path / "terrain.mtl").read_text()
+    with PIL.Image.open(tmp_path / "terrain-texture.png") as texture:
+        np.testing.assert_array_equal(np.asarray(texture), picture)
 
 
 def test_another_texture_may_be_draped(any_engine: Engine, lop: Sketch, tmp_path: Path):
-    done = playground.export(lop, tmp_path / "land.glb", texture="mix:weights", engine=any_engine)
+    done = playground.export(lop, tmp_path / "terrain.glb", texture="mix:weights", engine=any_engine)
     picture = picture_of(opened(done.path))
     assert picture.shape == (5, 9, 3)
     np.testing.assert_array_equal(picture[0, :, 0], np.rint(255 * np.arange(9) / 8))
-    playground.export(lop, tmp_path / "land.glb", texture="height", engine=any_engine)
-    grey = picture_of(opened(tmp_path / "land.glb"))
+    playground.export(lop, tmp_path / "terrain.glb", texture="height", engine=any_engine)
+    grey = picture_of(opened(tmp_path / "terrain.glb"))
     np.testing.assert_array_equal(grey[0, 0], [223, 223, 223])  # 0.875
     with pytest.raises(playground.SketchError, match="no pass 'mixx'"):
-        playground.export(lop, tmp_path / "land.glb", texture="mixx", engine=any_engine)
+        playground.export(lop, tmp_path / "terrain.glb", texture="mixx", engine=any_engine)
 
 
-def test_land_without_colour_has_no_texture(any_engine: Engine, folder: Path, tmp_path: Path):
+def test_terrain_without_colour_has_no_texture(any_engine: Engine, folder: Path, tmp_path: Path):
     text = (folder / "sketch.toml").read_text()
     start, end = text.index('[[pass]]\nname = "colour"'), text.index("[view]")
     (folder / "bare.toml").write_text(text[:start] + text[end:])
     bare = playground.load(folder / "bare.toml")
     for ending in ENDINGS:
-        done = playground.export(bare, tmp_path / f"land.{ending}", engine=any_engine)
+        done = playground.export(bare, tmp_path / f"terrain.{ending}", engine=any_engine)
         assert "no texture: the view shows no colour" in done.summary
         assert opened(done.path).faces.shape == (64, 3)
-    assert [path.name for path in done.sidecars] == ["land.mtl"]
-    assert "map_Kd" not in (tmp_path / "land.mtl").read_text()
+    assert [path.name for path in done.sidecars] == ["terrain.mtl"]
+    assert "map_Kd" not in (tmp_path / "terrain.mtl").read_text()
     with pytest.raises(playground.SketchError, match="has no light to bake in"):
-        playground.export(bare, tmp_path / "land.glb", light=True, engine=any_engine)
+        playground.export(bare, tmp_path / "terrain.glb", light=True, engine=any_engine)
 
 
-def test_a_coarser_grid_stands_on_the_land(any_engine: Engine, lop: Sketch, land: np.ndarray, tmp_path: Path):
-    mesh = opened(playground.export(lop, tmp_path / "land.glb", grid=5, engine=any_engine).path)
+def test_a_coarser_grid_lies_on_the_terrain(
+    any_engine: Engine, lop: Sketch, heightmap: np.ndarray, tmp_path: Path
+):
+    mesh = opened(playground.export(lop, tmp_path / "terrain.glb", grid=5, engine=any_engine).path)
     assert len(mesh.vertices) == 15
-    np.testing.assert_allclose(mesh.vertices[:, 1].reshape(3, 5), land[::2, ::2], rtol=1e-6)
-    done = playground.export(lop, tmp_path / "land.glb", grid=33, engine=any_engine)
+    np.testing.assert_allclose(mesh.vertices[:, 1].reshape(3, 5), heightmap[::2, ::2], rtol=1e-6)
+    done = playground.export(lop, tmp_path / "terrain.glb", grid=33, engine=any_engine)
     assert len(opened(done.path).vertices) == 45
-    assert "the land has 9 texels on its longer side" in done.warnings[0]
+    assert "the terrain has 9 texels on its longer side" in done.warnings[0]
 
 
-def test_the_usual_grid_is_the_land_s_up_to_513(any_engine: Engine, lop: Sketch, tmp_path: Path):
+def test_the_usual_grid_is_the_terrain_s_up_to_513(any_engine: Engine, lop: Sketch, tmp_path: Path):
     large = lop.with_values({"size": "1025x257"})
-    done = playground.export(large, tmp_path / "land.glb", engine=any_engine)
+    done = playground.export(large, tmp_path / "terrain.glb", engine=any_engine)
     assert "513 x 129 vertices" in done.summary
     mesh = opened(done.path)
     np.testing.assert_allclose(mesh.vertices[:, 1].reshape(129, 513), metres((513, 129)), rtol=1e-6)
@@ -185,7 +187,7 @@ def test_the_usual_grid_is_the_land_s_up_to_513(any_engine: Engine, lop: Sketch,
 def test_indices_grow_where_sixteen_bits_end(cols: int, rows: int, kind: int, tmp_path: Path):
     """65535 vertices have indices up to 65534; 65535 itself is the mark of a new strip."""
     path = tmp_path / "flat.glb"
-    path.write_bytes(encode_glb(land_mesh(np.zeros((rows, cols), np.float32), (9.0, 9.0)), "flat"))
+    path.write_bytes(encode_glb(terrain_mesh(np.zeros((rows, cols), np.float32), (9.0, 9.0)), "flat"))
     assert document(path)["accessors"][3]["componentType"] == kind
     mesh = opened(path)
     assert mesh.faces.max() == cols * rows - 1
@@ -193,21 +195,21 @@ def test_indices_grow_where_sixteen_bits_end(cols: int, rows: int, kind: int, tm
 
 
 def test_an_obj_s_files_find_each_other(any_engine: Engine, lop: Sketch, tmp_path: Path):
-    done = playground.export(lop, tmp_path / "my own land.obj", engine=any_engine)
-    assert [path.name for path in done.sidecars] == ["my_own_land.mtl", "my_own_land-texture.png"]
+    done = playground.export(lop, tmp_path / "my own terrain.obj", engine=any_engine)
+    assert [path.name for path in done.sidecars] == ["my_own_terrain.mtl", "my_own_terrain-texture.png"]
     assert picture_of(opened(done.path)).shape == (13, 17, 3)
 
 
 def test_an_obj_has_every_bit_of_its_floats():
-    land = np.random.default_rng(2).uniform(0.0, 3000.0, (7, 6)).astype(np.float32)
-    mesh = land_mesh(land, (29978.41, 31718.92), (50, 70))
+    heightmap = np.random.default_rng(2).uniform(0.0, 3000.0, (7, 6)).astype(np.float32)
+    mesh = terrain_mesh(heightmap, (29978.41, 31718.92), (50, 70))
     lines = encode_obj(mesh, "a b", library="c.mtl").decode().splitlines()
     places = np.array([line.split()[1:] for line in lines if line.startswith("v ")], dtype=np.float32)
     np.testing.assert_array_equal(places, mesh.positions)
     assert "o a_b" in lines
 
 
-def test_grids_keep_the_land_s_shape():
+def test_grids_keep_the_terrain_s_shape():
     assert grid_of((403, 344), 513) == (403, 344)
     assert grid_of((1025, 513), 257) == (257, 129)
     assert grid_of((4097, 2), 513) == (513, 2)
@@ -227,5 +229,5 @@ def test_sampling_is_exact_where_texels_meet_and_linear_between():
 
 
 def test_a_single_row_of_texels_has_no_mesh():
-    with pytest.raises(playground.DataError, match="land of 5 x 1 texels has no mesh"):
-        land_mesh(np.zeros((1, 5), np.float32), (1.0, 1.0))
+    with pytest.raises(playground.DataError, match="terrain of 5 x 1 texels has no mesh"):
+        terrain_mesh(np.zeros((1, 5), np.float32), (1.0, 1.0))

@@ -23,12 +23,12 @@ from playground.sketch.load import load
 from playground.sketch.model import VARIANTS
 from playground.sketch.unpack import unpacked, unpacked_beside
 from playground.sketch.variant_record import NAME
-from playground.sketch.variants import left_out, standing
+from playground.sketch.variants import active_variant, left_out
 
 from ..sketch_texts import passes
 from ..variants import trust
 
-LAND = """// land.glsl -- a picture, tilted
+TERRAIN = """// terrain.glsl -- a picture, tilted
 #include "inc/tilt.glsl"
 #pragma kernel(output = "height:r32f")
 uniform sampler2D shape; //! file
@@ -37,7 +37,7 @@ float kernel(ivec2 texel) { return tilt(texel, size) * texelFetch(shape, texel, 
 TILT = "float tilt(ivec2 texel, ivec2 size) { return float(texel.x) / float(size.x); }\n"
 SKETCH = (
     'format = 1  # ours\ntitle = "Hills"\nsize = 17\n'
-    + passes(height=("./parts/land", 'set = { shape = "images/one.png" }'), light="lighting/l_dot_n")
+    + passes(height=("./parts/terrain", 'set = { shape = "images/one.png" }'), light="lighting/l_dot_n")
     + """[view]
 use = "view/terrain"
 set = { grid = 9 }
@@ -59,7 +59,7 @@ def folder(tmp_path: Path) -> Path:
     made = tmp_path / "hills"
     for name in ("parts/inc", "images", "screenshots/hills/llvmpipe"):
         (made / name).mkdir(parents=True)
-    (made / "parts/land.glsl").write_text(LAND)
+    (made / "parts/terrain.glsl").write_text(TERRAIN)
     (made / "parts/inc/tilt.glsl").write_text(TILT)
     (made / "parts/unused.glsl").write_text(TILT)
     (made / "sketch.toml").write_text(SKETCH)
@@ -75,7 +75,7 @@ def zipped(path: Path, files: dict[str, bytes], **attributes: int) -> Path:
     with zipfile.ZipFile(path, "w") as archive:
         for name, data in files.items():
             entry = zipfile.ZipInfo(name)
-            entry.filename = name  # as a stranger writes it, whatever Python makes of it
+            entry.filename = name  # as another program writes it, unchanged by Python
             for key, value in attributes.items():
                 setattr(entry, key, value)
             archive.writestr(entry, data, zipfile.ZIP_DEFLATED)
@@ -98,7 +98,7 @@ def test_a_pack_opens_elsewhere_with_the_same_picture(
 
 def test_what_is_in_it_and_nothing_else(folder: Path) -> None:
     files, main, shipped = contents(load(folder))
-    names = "README.md images/one.png images/two.png parts/inc/tilt.glsl parts/land.glsl sketch.toml"
+    names = "README.md images/one.png images/two.png parts/inc/tilt.glsl parts/terrain.glsl sketch.toml"
     assert sorted(files) == [f"hills/{name}" for name in names.split()]
     assert main == "hills/sketch.toml"
     assert "lighting/l_dot_n.glsl" in shipped and all((GLSL / name).is_file() for name in shipped)
@@ -145,13 +145,13 @@ def test_the_images_of_a_plain_shader_go_with_it(any_engine: Engine, tmp_path: P
 
 def test_what_was_changed_in_the_cache_is_made_anew(folder: Path, tmp_path: Path) -> None:
     path = pack(load(folder), tmp_path / "lesson.zip")
-    land = unpacked(path).parent / "parts/land.glsl"
-    assert land.read_text() == LAND
-    land.write_text("broken")
-    assert unpacked(path).parent / "parts/land.glsl" == land and land.read_text() == LAND
+    terrain = unpacked(path).parent / "parts/terrain.glsl"
+    assert terrain.read_text() == TERRAIN
+    terrain.write_text("broken")
+    assert unpacked(path).parent / "parts/terrain.glsl" == terrain and terrain.read_text() == TERRAIN
 
 
-def test_a_window_opens_a_copy_beside_it_and_keeps_what_is_edited(folder: Path, tmp_path: Path) -> None:
+def test_a_window_opens_a_copy_next_to_it_and_leaves_edits_alone(folder: Path, tmp_path: Path) -> None:
     handed = tmp_path / "handed"
     handed.mkdir()
     path = pack(load(folder), handed / "lesson.zip")
@@ -162,23 +162,23 @@ def test_a_window_opens_a_copy_beside_it_and_keeps_what_is_edited(folder: Path, 
     again, sentence = unpacked_beside(path)
     assert again == file and "edits stay" in sentence and "33" in file.read_text()
     assert path.read_bytes() == before
-    (folder / "README.md").write_text("Lesson 3, mended\n")
+    (folder / "README.md").write_text("Lesson 3, corrected\n")
     newer, _ = unpacked_beside(pack(load(folder), path))
     assert newer == handed / "hills-2/sketch.toml" and "33" in file.read_text()
     assert [p.name for p in handed.iterdir() if p.name.endswith(".part")] == []
 
 
 def test_a_zip_dropped_on_the_window_opens(folder: Path, tmp_path: Path) -> None:
-    said: list[str] = []
+    message: list[str] = []
     opened: list[Path] = []
-    commands = SimpleNamespace(notices=SimpleNamespace(say=said.append), open=opened.append)
+    commands = SimpleNamespace(notices=SimpleNamespace(say=message.append), open=opened.append)
     drops = Drops(commands)  # type: ignore[arg-type]
     path = pack(load(folder), tmp_path / "lesson.zip")
     drops.take([path])
-    assert opened == [tmp_path / "hills-2/sketch.toml"] and "edits go there" in said[0]
+    assert opened == [tmp_path / "hills-2/sketch.toml"] and "edits go there" in message[0]
     path.write_bytes(b"no zip")
     drops.take([path])
-    assert len(opened) == 1 and "is no zip that can be read" in said[1]
+    assert len(opened) == 1 and "is no zip that can be read" in message[1]
 
 
 def test_a_folder_of_somebody_else_s_is_left_alone(folder: Path, tmp_path: Path) -> None:
@@ -189,8 +189,8 @@ def test_a_folder_of_somebody_else_s_is_left_alone(folder: Path, tmp_path: Path)
 
 def test_a_zip_made_by_hand_opens_if_it_holds_one_sketch(tmp_path: Path) -> None:
     sketch = b'format = 1\n[[pass]]\nname = "height"\nuse = "generation/white_noise"\n'
-    for name in ("sketch.toml", "land/sketch.toml"):
-        path = zipped(tmp_path / "hand.zip", {name: sketch, "__MACOSX/land/x": b"", "a/.DS_Store": b""})
+    for name in ("sketch.toml", "terrain/sketch.toml"):
+        path = zipped(tmp_path / "hand.zip", {name: sketch, "__MACOSX/terrain/x": b"", "a/.DS_Store": b""})
         assert load(path).graph.find("height") is not None
         file, _ = unpacked_beside(path)
         assert file.name == "sketch.toml"
@@ -262,7 +262,7 @@ def test_overlapping_files_are_refused(tmp_path: Path) -> None:
 def test_a_file_cut_short_leaves_nothing(folder: Path, tmp_path: Path) -> None:
     path = pack(load(folder), tmp_path / "lesson.zip")
     data = bytearray(path.read_bytes())
-    place = data.index(b"hills/parts/land.glsl") + 40
+    place = data.index(b"hills/parts/terrain.glsl") + 40
     data[place : place + 4] = b"\xff\xff\xff\xff"
     path.write_bytes(data)
     with pytest.raises(DataError, match="cannot be unpacked"):
@@ -296,25 +296,25 @@ def test_files_from_outside_are_refused_in_a_sentence(folder: Path, tmp_path: Pa
 def test_the_cache_keeps_the_latest_and_check_finds_a_pack_s_files(
     folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(unpack, "_MOST_KEPT", 2)
+    monkeypatch.setattr(unpack, "_MOST_PACKS", 2)
     for number in range(4):
         (folder / "README.md").write_text(f"{number}")
         latest = unpacked(pack(load(folder), tmp_path / f"{number}.zip"))
     assert len(list((tmp_path / "cache/packs").iterdir())) == 2 and latest.is_file()
     found = [path.name for path, _ in find_files([tmp_path / "3.zip"])]
-    assert found == ["tilt.glsl", "land.glsl", "sketch.toml"]
+    assert found == ["tilt.glsl", "terrain.glsl", "sketch.toml"]
 
 
 def test_a_fast_variant_and_the_record_of_it_go_along_and_run(folder: Path, tmp_path: Path) -> None:
-    (folder / "parts/same.glsl").write_text(LAND)
+    (folder / "parts/same.glsl").write_text(TERRAIN)
     passes = (
         'agrees = "exact"\n[[pass]]\nname = "height"\nuse = "./same"\nset = { shape = "images/one.png" }\n'
     )
-    (folder / "parts/land.fast.toml").write_text(passes)
+    (folder / "parts/terrain.fast.toml").write_text(passes)
     trust(folder / "parts")
     packed = pack(load(folder), tmp_path / "hills.zip")
     with zipfile.ZipFile(packed) as archive:
-        assert {"hills/parts/land.fast.toml", f"hills/parts/{NAME}"} <= set(archive.namelist())
+        assert {"hills/parts/terrain.fast.toml", f"hills/parts/{NAME}"} <= set(archive.namelist())
     found = load(unpacked(packed))
     assert left_out(found) == ()
-    assert standing(found.graph.passes[0].technique, VARIANTS) is not None
+    assert active_variant(found.graph.passes[0].technique, VARIANTS) is not None

@@ -1,4 +1,4 @@
-"""Sweeps: what is asked for is what is drawn and written below; mistakes in one sentence."""
+"""Sweeps: the given values are drawn, and written below; mistakes in one sentence."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def test_columns(count, columns):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("light.gain", "expected PATH=FROM..TO"),
         ("=1..2", "expected PATH=FROM..TO"),
@@ -83,10 +83,10 @@ def test_columns(count, columns):
         ("light.gain=one", "expected a number"),
     ],
 )
-def test_a_mistake_is_one_sentence(sketch, text, said):
+def test_a_mistake_is_one_sentence(sketch, text, message):
     with pytest.raises(ParameterError) as caught:
         swept(sketch, [read_sweep(sketch, text)])
-    assert said in str(caught.value) and "\n" not in str(caught.value)
+    assert message in str(caught.value) and "\n" not in str(caught.value)
 
 
 def test_too_many(sketch):
@@ -123,7 +123,7 @@ def test_small_pictures_have_legible_words(sketch):
     assert (found[8 + 54 : 8 + 54 + 14] > 150).any()
 
 
-def test_pictures_come_in_order_and_the_land_is_made_once(any_engine: Engine, sketch):
+def test_pictures_come_in_order_and_the_terrain_is_made_once(any_engine: Engine, sketch):
     rows = swept(sketch, [read_sweep(sketch, "light.gain=1..4,4")])
     found = list(pictures(any_engine, rows, (32, 18)))
     means = [picture[..., :3].mean() for picture in found]

@@ -1,4 +1,4 @@
-"""Files that belong together: all or none, and nobody else's is replaced."""
+"""Files that belong together: all or none, and no other program's is replaced."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from playground.errors import DataError
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
 try:
-    write_together({Path("land.mtl"): b"small", Path("land.obj"): bytes(200_000)})
+    write_together({Path("terrain.mtl"): b"small", Path("terrain.obj"): bytes(200_000)})
 except DataError as error:
     print(error)
 """
@@ -47,7 +47,7 @@ def test_a_disk_that_fills_up_leaves_nothing_half_written(tmp_path: Path):
         [sys.executable, "-c", FULL],
         cwd=tmp_path, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=180,
     )  # fmt: skip
-    assert done.stdout == "land.obj: cannot be written: File too large\n", done.stderr
+    assert done.stdout == "terrain.obj: cannot be written: File too large\n", done.stderr
     assert not list(tmp_path.iterdir())
 
 
@@ -59,15 +59,15 @@ def test_a_folder_that_may_not_be_written_to_is_a_sentence(
 
     real = Path.open
     monkeypatch.setattr(Path, "open", lambda p, m="r", **k: refused(p) if "x" in m else real(p, m, **k))
-    with pytest.raises(DataError, match=r"land\.glb: cannot be written: Permission denied"):
-        playground.export(lop, tmp_path / "land.glb", engine=any_engine)
+    with pytest.raises(DataError, match=r"terrain\.glb: cannot be written: Permission denied"):
+        playground.export(lop, tmp_path / "terrain.glb", engine=any_engine)
 
 
-def test_what_goes_beside_replaces_only_what_an_export_wrote(any_engine: Engine, lop: Sketch, tmp_path: Path):
-    for name, beside in (("a.obj", "a-texture.png"), ("b.obj", "b.mtl"), ("a.r16", "a.r16.json")):
-        mine = tmp_path / beside
+def test_a_sidecar_replaces_only_what_an_export_wrote(any_engine: Engine, lop: Sketch, tmp_path: Path):
+    for name, sidecar in (("a.obj", "a-texture.png"), ("b.obj", "b.mtl"), ("a.r16", "a.r16.json")):
+        mine = tmp_path / sidecar
         mine.write_bytes(b"my own work")
-        with pytest.raises(DataError, match=rf"{name}: {beside} is there already, and no export wrote it"):
+        with pytest.raises(DataError, match=rf"{name}: {sidecar} is there already, and no export wrote it"):
             playground.export(lop, tmp_path / name, engine=any_engine)
         assert mine.read_bytes() == b"my own work" and not (tmp_path / name).exists()
         mine.unlink()

@@ -1,4 +1,4 @@
-"""Heights and textures as files: read back by the libraries of others, and as land by the playground."""
+"""Heights and textures as files: read back by the libraries of others, and as terrain by the playground."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ import tifffile
 import playground
 from playground import Sketch
 from playground.capture.export import Exported
-from playground.capture.lossy_images import encode_picture
+from playground.capture.values import encode_picture
 from playground.engine.engine import Engine
 from playground.images.files import read_samples
 from playground.terrain.elevation import read_elevation
@@ -32,7 +32,9 @@ def exr(path: Path) -> dict[str, np.ndarray]:
 # ── heights ──────────────────────────────────────────────────────────────────
 
 
-def test_floats_are_metres_from_the_north(any_engine: Engine, lop: Sketch, land: np.ndarray, tmp_path: Path):
+def test_floats_are_metres_from_the_north(
+    any_engine: Engine, lop: Sketch, heightmap: np.ndarray, tmp_path: Path
+):
     read = {
         "npy": np.load,
         "tif": tifffile.imread,
@@ -40,19 +42,19 @@ def test_floats_are_metres_from_the_north(any_engine: Engine, lop: Sketch, land:
         "r32": lambda path: np.fromfile(path, "<f4").reshape(5, 9),
     }
     for ending, reader in read.items():
-        done = playground.export(lop, tmp_path / f"land.{ending}", engine=any_engine)
+        done = playground.export(lop, tmp_path / f"terrain.{ending}", engine=any_engine)
         found = reader(done.path)
         assert found.dtype == np.float32
-        np.testing.assert_allclose(found, land, rtol=1e-6)
+        np.testing.assert_allclose(found, heightmap, rtol=1e-6)
         assert found.argmax() == 0, "the north-western corner is the highest"
         assert "metres above sea level" in done.summary
 
 
 @pytest.mark.parametrize("ending", ["png", "r16", "raw", "tif"])
 def test_sixteen_bits_say_what_they_stand_for(
-    ending: str, any_engine: Engine, lop: Sketch, land: np.ndarray, tmp_path: Path
+    ending: str, any_engine: Engine, lop: Sketch, heightmap: np.ndarray, tmp_path: Path
 ):
-    path = tmp_path / f"land.{ending}"
+    path = tmp_path / f"terrain.{ending}"
     done = playground.export(lop, path, bits=16, engine=any_engine)
     assert "0 is 175 m and 65535 is 925 m" in done.summary
     if ending == "png":
@@ -67,21 +69,21 @@ def test_sixteen_bits_say_what_they_stand_for(
         scale, offset = (float(items.split(f'role="{r}">')[1].split("<")[0]) for r in ("scale", "offset"))
     else:
         stored = np.fromfile(path, "<u2").reshape(5, 9)
-        assert done.sidecars == (tmp_path / f"land.{ending}.json",)
-        told = json.loads(done.sidecars[0].read_text())
-        assert (told["width"], told["height"], told["bits"]) == (9, 5, 16)
-        assert (told["byte_order"], told["first_row"], told["spacing_m"]) == (
+        assert done.sidecars == (tmp_path / f"terrain.{ending}.json",)
+        described = json.loads(done.sidecars[0].read_text())
+        assert (described["width"], described["height"], described["bits"]) == (9, 5, 16)
+        assert (described["byte_order"], described["first_row"], described["spacing_m"]) == (
             "little",
             "north",
             [100.0, 75.0],
         )
-        scale, offset = told["scale"], told["offset"]
+        scale, offset = described["scale"], described["offset"]
     assert stored.dtype == np.uint16
     assert (stored.min(), stored.max()) == (0, 65535)
-    np.testing.assert_allclose(offset + scale * stored.astype(np.float64), land, atol=0.51 * STEP + 1e-4)
+    np.testing.assert_allclose(offset + scale * stored.astype(np.float64), heightmap, atol=0.51 * STEP + 1e-4)
 
 
-def test_a_range_is_kept_and_what_lies_outside_is_said(any_engine: Engine, lop: Sketch, tmp_path: Path):
+def test_a_range_is_used_and_values_outside_are_reported(any_engine: Engine, lop: Sketch, tmp_path: Path):
     done = playground.export(lop, tmp_path / "a.r16", span=(0.0, 6553.5), engine=any_engine)
     stored = np.fromfile(done.path, "<u2").reshape(5, 9)
     assert stored[0, 0] == 9250 and stored[-1, 0] == 1750 and not done.warnings
@@ -91,14 +93,14 @@ def test_a_range_is_kept_and_what_lies_outside_is_said(any_engine: Engine, lop: 
     assert "outside 200 to 900 m (from 175 to 925) and were clamped" in done.warnings[0]
 
 
-def test_flat_land_has_a_scale(any_engine: Engine, lop: Sketch, tmp_path: Path):
+def test_flat_terrain_has_a_scale(any_engine: Engine, lop: Sketch, tmp_path: Path):
     done = playground.export(lop.with_values({"relief": 0}), tmp_path / "a.r16", engine=any_engine)
     assert not np.fromfile(done.path, "<u2").any()
     assert "0 is 50 m and 65535 is 51 m" in done.summary
 
 
-def test_the_land_comes_back_by_the_playground_s_own_reader(
-    any_engine: Engine, lop: Sketch, land: np.ndarray, tmp_path: Path
+def test_the_terrain_comes_back_by_the_playground_s_own_reader(
+    any_engine: Engine, lop: Sketch, heightmap: np.ndarray, tmp_path: Path
 ):
     for name, bits, spacing in (
         ("a.tif", 32, True),
@@ -108,16 +110,18 @@ def test_the_land_comes_back_by_the_playground_s_own_reader(
     ):
         playground.export(lop, tmp_path / name, bits=bits, engine=any_engine)
         found = read_elevation(tmp_path / name)
-        np.testing.assert_allclose(found.heights[::-1], land, atol=1e-4 if bits == 32 else 0.51 * STEP + 1e-4)
+        np.testing.assert_allclose(
+            found.heights[::-1], heightmap, atol=1e-4 if bits == 32 else 0.51 * STEP + 1e-4
+        )
         assert (found.spacing == (100.0, 75.0)) if spacing else found.spacing is None
 
 
 @pytest.mark.parametrize("ending", ["tif", "png", "r16", "npy"])
-def test_an_exported_land_renders_like_the_one_it_came_from(
+def test_an_exported_terrain_renders_like_the_one_it_came_from(
     ending: str, any_engine: Engine, lop: Sketch, tmp_path: Path
 ):
     """By `generation/heightmap`; what a format does not know is set as the README says."""
-    path = tmp_path / f"land.{ending}"
+    path = tmp_path / f"terrain.{ending}"
     playground.export(lop, path, engine=any_engine)
     values: dict[str, object] = {"height.elevation": str(path)}
     if ending not in ("tif", "png"):
@@ -135,11 +139,9 @@ def test_an_exported_land_renders_like_the_one_it_came_from(
     np.testing.assert_allclose(back, original, atol=0.51 * STEP + 1e-3)
 
 
-def test_metres_that_are_asked_for_win_over_those_that_a_file_tells(
-    any_engine: Engine, lop: Sketch, tmp_path: Path
-):
-    """Black and white of the file are 0 and 2000 m; if they are 1000 and 2000 m, land is half as high."""
-    path = tmp_path / "land.png"
+def test_given_metres_win_over_those_of_the_file(any_engine: Engine, lop: Sketch, tmp_path: Path):
+    """Black and white of the file are 0 and 2000 m; if they are 1000 and 2000 m, terrain is half as high."""
+    path = tmp_path / "terrain.png"
     playground.export(lop, path, span=(0.0, 2000.0), engine=any_engine)
     values = {"height.elevation": str(path), "height.metres": (1000.0, 2000.0)}
     plan = any_engine.plan_for(playground.load("generation/heightmap").with_values(values), (64, 36))
@@ -147,7 +149,7 @@ def test_metres_that_are_asked_for_win_over_those_that_a_file_tells(
     assert plan.terrain.base_elevation == pytest.approx(1000.0 + LOW / 2, abs=0.05)
 
 
-def test_geotiff_tells_metres_and_points(any_engine: Engine, lop: Sketch, tmp_path: Path):
+def test_geotiff_has_metres_and_points(any_engine: Engine, lop: Sketch, tmp_path: Path):
     done = playground.export(lop, tmp_path / "a.tif", engine=any_engine)
     with tifffile.TiffFile(done.path) as tif:
         tags = tif.geotiff_metadata

@@ -1,4 +1,4 @@
-"""``playground cache``: what is kept on disk of expensive land, shown and removed; the doctor tells of it."""
+"""``playground cache``: terrain that is cached on disk is shown and removed; the doctor reports it."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from playground.commands.cache import in_bytes
 from playground.engine.disk_cache import CachedTextures, DiskCache, place
 
 pytestmark = pytest.mark.skipif(
-    not sys.platform.startswith("linux"), reason="the folder is told by XDG_CACHE_HOME"
+    not sys.platform.startswith("linux"), reason="the folder is set by XDG_CACHE_HOME"
 )
 
 
 @pytest.fixture
-def land(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Make a cache in which two lands are kept, one of them damaged, and something else."""
+def cached(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Make a cache with the textures of two passes, a damaged file, and something else."""
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.delenv("PLAYGROUND_CACHE", raising=False)
     store = DiskCache(place())
     data = memoryview(bytes(256 * 256 * 4))
-    store.keep("one", CachedTextures((256, 256), (("height", "r32f"),), 1234.5, "alps: height", (data,)))
-    store.keep("two", CachedTextures((256, 256), (("light", "rgba8"),), 80.25, "alps: light", (data,)))
+    store.write("one", CachedTextures((256, 256), (("height", "r32f"),), 1234.5, "alps: height", (data,)))
+    store.write("two", CachedTextures((256, 256), (("light", "rgba8"),), 80.25, "alps: light", (data,)))
     store.close()
     os.utime(store._path("two"), (1e9, 1e9))
     (place() / "broken.land").write_bytes(b"x")
@@ -35,7 +35,7 @@ def land(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_show_names_every_pass_used_last_first(land: Path, capsys: pytest.CaptureFixture[str]):
+def test_show_names_every_pass_used_last_first(cached: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["cache", "show"]) == 0
     first, one, two, broken = capsys.readouterr().out.splitlines()
     assert first == f"3 files, 512 KiB of at most 1.0 GiB, in {place()}"
@@ -44,7 +44,7 @@ def test_show_names_every_pass_used_last_first(land: Path, capsys: pytest.Captur
     assert broken.startswith("(damaged)\t\t1 byte\t\t")
 
 
-def test_show_as_json(land: Path, capsys: pytest.CaptureFixture[str]):
+def test_show_as_json(cached: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["cache", "show", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["folder"] == str(place()) and found["most_bytes"] == 2**30
@@ -59,7 +59,7 @@ def test_show_as_json(land: Path, capsys: pytest.CaptureFixture[str]):
     assert two["used"] == 1e9 and broken["made_for"] is None
 
 
-def test_clear_removes_land_and_nothing_else(land: Path, capsys: pytest.CaptureFixture[str]):
+def test_clear_removes_terrain_and_nothing_else(cached: Path, capsys: pytest.CaptureFixture[str]):
     (place() / "notes.txt").write_text("mine")
     assert cli.main(["cache", "clear"]) == 0
     assert capsys.readouterr().out == "3 files removed, 512 KiB\n"
@@ -72,7 +72,7 @@ def test_clear_removes_land_and_nothing_else(land: Path, capsys: pytest.CaptureF
 
 
 def test_the_bound_is_the_environments(
-    land: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    cached: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ):
     monkeypatch.setenv("PLAYGROUND_CACHE", "250M")
     assert cli.main(["cache", "show"]) == 0
@@ -84,13 +84,12 @@ def test_the_bound_is_the_environments(
     for command in (["cache", "show"], ["live"]):
         monkeypatch.setenv("DISPLAY", ":0")
         assert cli.main(command) == 2
-        told = capsys.readouterr().err
-        assert told == (
-            "error: PLAYGROUND_CACHE=plenty: expected a size, as 500M or 2G, or 0 to keep nothing\n"
+        assert capsys.readouterr().err == (
+            "error: PLAYGROUND_CACHE=plenty: expected a size, as 500M or 2G, or 0 to cache nothing\n"
         )
 
 
-def test_the_doctor_says_size_and_place(land: Path, capsys: pytest.CaptureFixture[str]):
+def test_the_doctor_says_size_and_place(cached: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["doctor", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["cache"]
     assert found == {"folder": str(place()), "files": 3, "bytes": found["bytes"], "most_bytes": 2**30}
@@ -99,21 +98,23 @@ def test_the_doctor_says_size_and_place(land: Path, capsys: pytest.CaptureFixtur
     assert f"3 files, 512 KiB of at most 1.0 GiB, in {place()}" in capsys.readouterr().out
 
 
-def test_a_mistake_is_one_sentence(land: Path, capsys: pytest.CaptureFixture[str]):
+def test_a_mistake_is_one_sentence(cached: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["cache", "shwo"]) == 2
     assert "no command 'shwo' in playground cache; did you mean 'show'?" in capsys.readouterr().err
     assert cli.main(["cache"]) == 0
     assert "playground cache clear" in capsys.readouterr().out
 
 
-def test_sizes_are_told_in_words():
-    told = {0: "0 bytes", 999: "999 bytes", 1000: "1.0 KiB", 2**20: "1.0 MiB", 250 * 2**20: "250 MiB"}
-    told |= {2**30: "1.0 GiB", 3 * 2**29: "1.5 GiB", 5 * 2**40: "5.0 TiB"}
-    assert {size: in_bytes(size) for size in told} == told
+def test_sizes_are_formatted():
+    texts = {0: "0 bytes", 999: "999 bytes", 1000: "1.0 KiB", 2**20: "1.0 MiB", 250 * 2**20: "250 MiB"}
+    texts |= {2**30: "1.0 GiB", 3 * 2**29: "1.5 GiB", 5 * 2**40: "5.0 TiB"}
+    assert {size: in_bytes(size) for size in texts} == texts
 
 
 def test_a_picture_for_a_file_keeps_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
     monkeypatch.chdir(tmp_path)
-    assert cli.main(["render", "contours_map", "-o", "land.png", "--size", "64x36", "--set", "size=65"]) == 0
-    assert (tmp_path / "land.png").is_file() and not place().exists()
+    assert (
+        cli.main(["render", "contours_map", "-o", "terrain.png", "--size", "64x36", "--set", "size=65"]) == 0
+    )
+    assert (tmp_path / "terrain.png").is_file() and not place().exists()

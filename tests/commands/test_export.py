@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +13,6 @@ from playground.capture.extensions import ENDINGS
 from playground.commands.export import HELP
 
 from ..sketch_texts import map_of, passes
-
-ROOT = Path(__file__).resolve().parents[2]
 
 HEIGHT = """// rise.glsl -- a slope that rises to the north.
 #pragma kernel(output = "height:r32f")
@@ -66,19 +61,19 @@ def names(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.iterdir() if path.name != "rise")
 
 
-def said(capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
+def printed(capsys: pytest.CaptureFixture[str]) -> tuple[str, str]:
     out, error = capsys.readouterr()
     return out, error
 
 
-def test_paths_go_to_standard_output_and_what_they_hold_to_standard_error(folder: Path):
-    done = subprocess.run(
-        [sys.executable, "-m", "playground", "export", "rise", "--to", "a.r16", "--to", "a.glb"],
-        cwd=folder, env=os.environ | {"PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=180,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    assert done.stdout == "a.r16\na.r16.json\na.glb\n"
-    assert done.stderr.splitlines() == [
+def test_paths_go_to_standard_output_and_what_they_hold_to_standard_error(
+    folder: Path, capfd: pytest.CaptureFixture[str]
+):
+    status = cli.main(["export", "rise", "--to", "a.r16", "--to", "a.glb"])
+    out, error = capfd.readouterr()
+    assert status == 0, error
+    assert out == "a.r16\na.r16.json\na.glb\n"
+    assert error.splitlines() == [
         "a.r16: 17 x 17; 16 bits; 0 is 0 m and 65535 is 100 m; 20 x 20 m a texel",
         "a.glb: 17 x 17 vertices, 512 triangles; 320 x 320 m, 0 to 100 m high; texture 17 x 17",
     ]
@@ -87,11 +82,11 @@ def test_paths_go_to_standard_output_and_what_they_hold_to_standard_error(folder
 
 def test_without_a_name_a_new_one_is_taken(folder: Path, capsys: pytest.CaptureFixture[str]):
     assert [cli.main(["export", "rise"]) for _ in range(2)] == [0, 0]
-    assert said(capsys)[0] == "rise.glb\nrise-2.glb\n"
+    assert printed(capsys)[0] == "rise.glb\nrise-2.glb\n"
     assert (folder / "rise.glb").read_bytes() == (folder / "rise-2.glb").read_bytes()
 
 
-def test_the_land_is_that_of_the_settings_the_preset_the_shot(folder: Path):
+def test_the_terrain_is_that_of_the_settings_the_preset_the_shot(folder: Path):
     for options, highest in (
         ([], 100.0),
         (["--set", "height.rise=2"], 200.0),
@@ -108,23 +103,23 @@ def test_the_land_is_that_of_the_settings_the_preset_the_shot(folder: Path):
 def test_bits_range_grid_and_driver_are_heard(folder: Path, capsys: pytest.CaptureFixture[str]):
     command = ["export", "rise", "--driver", "fragment", "--bits", "16", "--range", "-50,605.35"]
     assert cli.main([*command, "--to", "a.tif"]) == 0
-    assert "0 is -50 m and 65535 is 605.35 m" in said(capsys)[1]
+    assert "0 is -50 m and 65535 is 605.35 m" in printed(capsys)[1]
     assert cli.main(["export", "rise", "--grid", "5", "-o", "a.obj"]) == 0
-    assert "5 x 5 vertices, 32 triangles" in said(capsys)[1]
+    assert "5 x 5 vertices, 32 triangles" in printed(capsys)[1]
     assert cli.main(["export", "rise", "--range", "10,20", "-o", "a.png"]) == 0
     assert re.search(
-        r"^warning: a\.png: \d+ of 289 values lay outside 10 to 20 m", said(capsys)[1], re.MULTILINE
+        r"^warning: a\.png: \d+ of 289 values are outside 10 to 20 m", printed(capsys)[1], re.MULTILINE
     )
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--to", "land.gltf"], "land.gltf: nothing is exported as '.gltf'; did you mean '.glb'?"),
-        (["--to", "land.tif16"], "land.tif16: nothing is exported as '.tif16'; did you mean '.tif'?"),
-        (["--to", "land.blend"], f"nothing is exported as '.blend'; expected one of {', '.join(ENDINGS)}"),
-        (["--to", "land"], "land: the name has no ending; expected one of .png"),
-        (["--to", "no/land.png"], "no/land.png: there is no folder 'no' to write into"),
+        (["--to", "terrain.gltf"], "terrain.gltf: nothing is exported as '.gltf'; did you mean '.glb'?"),
+        (["--to", "terrain.tif16"], "terrain.tif16: nothing is exported as '.tif16'; did you mean '.tif'?"),
+        (["--to", "terrain.blend"], f"nothing is exported as '.blend'; expected one of {', '.join(ENDINGS)}"),
+        (["--to", "terrain"], "terrain: the name has no ending; expected one of .png"),
+        (["--to", "no/terrain.png"], "no/terrain.png: there is no folder 'no' to write into"),
         (["--to", "rise"], "rise: is a folder; expected the name of a file to write"),
         (["--to", "a.png", "--to", "no/b.png"], "no/b.png: there is no folder 'no' to write into"),
         (["--to", "a.png", "--to", "a.png"], "--to a.png: a.png would be written twice"),
@@ -161,7 +156,7 @@ def test_a_mistake_is_one_sentence_and_status_2(
     arguments: list[str], words: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ):
     assert cli.main(["export", "rise", *arguments]) == 2
-    out, error = said(capsys)
+    out, error = printed(capsys)
     assert out == ""
     assert error.startswith("error: ") and words in error and len(error.splitlines()) == 1
     assert names(folder) == []
@@ -170,7 +165,7 @@ def test_a_mistake_is_one_sentence_and_status_2(
 @pytest.mark.parametrize("ending", ["glb", "png", "obj"])
 def test_a_sketch_without_height_says_so(ending: str, folder: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["export", "rise/flat.toml", "--to", f"a.{ending}"]) == 2
-    assert said(capsys)[1] == "error: sketch flat has no height to export; its textures are colour\n"
+    assert printed(capsys)[1] == "error: sketch flat has no height to export; its textures are colour\n"
     assert names(folder) == []
     assert cli.main(["export", "rise/flat.toml", "--texture", "colour", "--to", "a.png"]) == 0
 
@@ -189,8 +184,8 @@ def test_every_example_of_the_help_runs(folder: Path, capsys: pytest.CaptureFixt
     assert len(examples) > 4
     for line in examples:
         line = re.sub("jacksboro|diamond_square", "rise/lit.toml", line).replace("size=1025", "size=33")
-        assert cli.main(line.split()) == 0, said(capsys)[1]
-    written = set(said(capsys)[0].split())
+        assert cli.main(line.split()) == 0, printed(capsys)[1]
+    written = set(printed(capsys)[0].split())
     assert written == set(names(folder)) == {
         "lit.glb", "terrain.png", "terrain.tif", "terrain.r16", "terrain.r16.json", "ground.webp",
         "terrain.glb", "terrain.obj", "terrain.mtl", "terrain-texture.png",
@@ -201,12 +196,12 @@ def test_every_example_of_the_help_runs(folder: Path, capsys: pytest.CaptureFixt
 def test_a_view_that_mixes_at_every_pixel_has_no_texture_to_give(
     name: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ):
-    """None of its layers is the land's texture."""
+    """None of its layers is the terrain's texture."""
     assert cli.main(["export", name, "--grid", "9", "--to", "a.obj"]) == 0
-    assert "no texture: the view shows no colour; name one with --texture" in said(capsys)[1]
+    assert "no texture: the view shows no colour; name one with --texture" in printed(capsys)[1]
     assert names(folder) == ["a.mtl", "a.obj"]
 
 
 def test_one_file_by_two_names_is_one(folder: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["export", "rise", "--to", "a.png", "--to", str(folder / "a.png")]) == 2
-    assert "would be written twice" in said(capsys)[1] and not list(folder.glob("a.png"))
+    assert "would be written twice" in printed(capsys)[1] and not list(folder.glob("a.png"))

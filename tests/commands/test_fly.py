@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +16,7 @@ from playground.sketch.model import Sketch
 from ..sketch_texts import passes
 
 SKETCH = """format = 1
-title = "A small land without end"
+title = "A small endless terrain"
 size = 25
 extent = 1440.0
 relief = 700.0
@@ -29,7 +27,7 @@ relief = 700.0
 HEADER = {
     "format": "playground flight",
     "version": 1,
-    "sketch": "land.toml",
+    "sketch": "terrain.toml",
     "size": [64, 36],
     "step": 1 / 60,
     "radius": 1.5,
@@ -40,7 +38,7 @@ HEADER = {
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    (tmp_path / "land.toml").write_text(SKETCH, encoding="utf-8")
+    (tmp_path / "terrain.toml").write_text(SKETCH, encoding="utf-8")
     rows = [json.dumps(HEADER), "[20, 50, 10, -30, 0]"]
     (tmp_path / "a.jsonl").write_text("\n".join(rows), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
@@ -49,14 +47,14 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_a_record_becomes_pictures_whose_paths_are_printed(folder: Path) -> None:
-    command = [sys.executable, "-m", "playground", "fly", "--replay", "a.jsonl", "--frames", "new/pictures"]
-    done = subprocess.run(
-        [*command, "--every", "10"], cwd=folder, capture_output=True, text=True, check=False
-    )
-    assert done.returncode == 0, done.stderr
+def test_a_record_becomes_pictures_whose_paths_are_printed(
+    folder: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    status = cli.main(["fly", "--replay", "a.jsonl", "--frames", "new/pictures", "--every", "10"])
+    out, err = capfd.readouterr()
+    assert status == 0, err
     names = [f"frame-{n:06d}.png" for n in (0, 10, 20)]
-    assert [Path(line).name for line in done.stdout.splitlines()] == names
+    assert [Path(line).name for line in out.splitlines()] == names
     there = sorted(path.name for path in (folder / "new" / "pictures").iterdir())
     assert there == names, "nothing half written is left"
     pictures = [read_png(folder / "new" / "pictures" / name)[0] for name in names]
@@ -84,7 +82,7 @@ def test_plain_flies_over_the_plain_form_of_every_technique(
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["--record", "b.jsonl", "--replay", "a.jsonl"], "either flown or flown again"),
         (["--frames", "new"], "--frames needs --replay FILE"),
@@ -95,8 +93,8 @@ def test_plain_flies_over_the_plain_form_of_every_technique(
         (["--radius", "40"], "--radius 40: expected a number of parts, 1.5 to 16"),
         (["--radius", "3", "--replay", "a.jsonl"], "cannot change a recorded flight"),
         (["--replay", "none.jsonl"], "none.jsonl: cannot be read"),
-        (["--replay", "land.toml"], "is no flight"),
-        (["--replay", "a.jsonl", "--frames", "land.toml"], "is a file; expected a folder"),
+        (["--replay", "terrain.toml"], "is no flight"),
+        (["--replay", "a.jsonl", "--frames", "terrain.toml"], "is a file; expected a folder"),
         (["--record", "no/such/b.jsonl"], "there is no folder 'no/such'"),
         (["nowhere"], "nowhere"),
         (["--set", "height.sed=3"], "did you mean"),
@@ -105,11 +103,11 @@ def test_plain_flies_over_the_plain_form_of_every_technique(
     ],
 )
 def test_a_mistake_is_one_sentence(
-    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
 ) -> None:
     status = cli.main(["fly", *words])
     out, err = capsys.readouterr()
-    assert status == 2 and out == "" and said in err
+    assert status == 2 and out == "" and message in err
     assert err.startswith("error: ") and "Traceback" not in err
     assert not (folder / "new").exists() or not any((folder / "new").iterdir())
 

@@ -15,7 +15,7 @@ import pytest
 from playground import cli
 from playground.images.files import read_png
 
-from ..sketch_texts import LIT_NOISE, SMALL_VIEW
+from ..sketch_texts import LIT_NOISE, SMALL_VIEW, map_of_height
 
 ROOT = Path(__file__).resolve().parents[2]
 SKETCH = (
@@ -38,13 +38,13 @@ size = [48, 28]
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    (tmp_path / "land.toml").write_text(SKETCH, encoding="utf-8")
+    (tmp_path / "terrain.toml").write_text(SKETCH, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 
 
 def run(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
-    status = cli.main(["render", "land.toml", *words])
+    status = cli.main(["render", "terrain.toml", *words])
     out, err = capsys.readouterr()
     assert status == 0, err
     return out.splitlines()
@@ -68,18 +68,20 @@ def test_numbered_pictures_and_resume(folder: Path, capsys: pytest.CaptureFixtur
     assert [path.as_posix() for path in paths] == ["new/f003.png", "new/f004.png", "new/f005.png"]
     (folder / "new" / "f004.png").unlink()
     before = paths[0].stat().st_mtime_ns
-    assert cli.main(["render", "land.toml", *words, "--resume"]) == 0
+    assert cli.main(["render", "terrain.toml", *words, "--resume"]) == 0
     out, err = capsys.readouterr()
     assert out.count("\n") == 3 and "2 pictures kept, 1 drawn" in err
     assert paths[0].stat().st_mtime_ns == before and paths[1].is_file()
-    assert [Path(p).name for p in run(capsys, "--frames", "0", "-o", "new")] == ["00000.png"]
+    assert [Path(p).name for p in run(capsys, "--frames", "0", "-o", "new", "--size", "64x36")] == [
+        "00000.png"
+    ]
 
 
 def test_a_sheet(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(capsys, "--sweep", "light.sun.elevation=5..60", "-n", "4", "--size", "64x36") == [
-        "land-sweep.png"
+        "terrain-sweep.png"
     ]
-    assert read_png(folder / "land-sweep.png")[0].shape[1] == 2 * 72 + 8
+    assert read_png(folder / "terrain-sweep.png")[0].shape[1] == 2 * 72 + 8
     run(capsys, "--sweep", "light.gain=1,2", "--sweep", "view.haze=0,1,2", "--size", "64x36", "-o", "b.png")
     assert read_png(folder / "b.png")[0].shape[0] > 3 * 36
 
@@ -91,7 +93,7 @@ def test_a_picture_larger_than_any_texture(folder: Path, capsys: pytest.CaptureF
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         (["--seconds", "3"], "--seconds needs --video FILE"),
         (["--quality", "low"], "--quality needs --video FILE"),
@@ -120,13 +122,13 @@ def test_a_picture_larger_than_any_texture(folder: Path, capsys: pytest.CaptureF
     ],
 )
 def test_a_mistake_is_one_sentence(
-    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], said: str
+    folder: Path, capsys: pytest.CaptureFixture[str], words: list[str], message: str
 ) -> None:
-    status = cli.main(["render", "land.toml", *words])
+    status = cli.main(["render", "terrain.toml", *words])
     out, err = capsys.readouterr()
-    assert status == 2 and out == "" and said in err
+    assert status == 2 and out == "" and message in err
     assert err.startswith("error: ") and "Traceback" not in err
-    assert [path.name for path in folder.iterdir()] == ["land.toml"]
+    assert [path.name for path in folder.iterdir()] == ["terrain.toml"]
 
 
 def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
@@ -137,7 +139,7 @@ def test_help_has_examples(capsys: pytest.CaptureFixture[str]) -> None:
 
 @pytest.fixture
 def film(folder: Path) -> Iterator[subprocess.Popen[str]]:
-    command = [sys.executable, "-m", "playground", "render", "land.toml", "--video", "long.mp4"]
+    command = [sys.executable, "-m", "playground", "render", "terrain.toml", "--video", "long.mp4"]
     process = subprocess.Popen(
         [*command, "--seconds", "9000", "--size", "64x36"],
         cwd=folder,
@@ -169,13 +171,13 @@ def test_ctrl_c_leaves_a_shorter_video(folder: Path, film: subprocess.Popen[str]
         if any(part.stat().st_size > 0 for part in folder.glob(".long.mp4.*")):
             break
         time.sleep(0.05)
-    time.sleep(1.0)
+    time.sleep(0.1)
     film.send_signal(signal.SIGINT)
     out, err = film.communicate(timeout=120)
     assert (film.returncode, out) == (130, "") and "Traceback" not in err, err
     left = sorted(path.name for path in folder.iterdir())
     if "before the first" in err:  # on a machine so slow that no picture was drawn in time
-        assert left == ["land.toml"]
+        assert left == ["terrain.toml"]
         return
     assert err.startswith("stopped; the first ")
     (path,) = folder.glob("long-first-*.mp4")
@@ -219,8 +221,8 @@ def test_a_picture_with_nan_in_it_says_which_pass(tmp_path: Path, capfd: pytest.
     kernel = '// k\n#pragma kernel(output = "height:r32f")\nuniform float root = -1.0; //! slider(-1, 1)\n'
     kernel += "float kernel(ivec2 texel) { return texel == ivec2(3, 5) ? sqrt(root) : 0.5; }\n"
     (tmp_path / "k.glsl").write_text(kernel)
-    out = str(tmp_path / "x.png")
-    words = ["render", str(tmp_path / "k.glsl"), "-o", out, "--size", "16x16", "--set", "size=65"]
+    (tmp_path / "sketch.toml").write_text("format = 1\nsize = 65\n" + map_of_height("./k"))
+    words = ["render", str(tmp_path), "-o", str(tmp_path / "x.png"), "--size", "16x16"]
     assert cli.main(words) == 0
     assert "pass 'height', output 'height': NaN at texel (3, 5) from the south-west" in capfd.readouterr().err
     assert cli.main([*words, "--set", "height.root=1"]) == 0

@@ -1,9 +1,9 @@
 """Every command that the documentation and the lessons quote runs.
 
-What is quoted is found in the texts: the lines of shell blocks, and what stands between backticks
+What is quoted is found in the texts: the lines of shell blocks, and what is between backticks
 and begins with a program's name. Each is run in a folder of its own that holds the files it speaks
 of, at a small size. A command that opens a window is run twice: without a display, where its
-arguments are read and the missing display is told, and, in the slow tests, in a window under Xvfb.
+arguments are read and the missing display is reported, and, in the slow tests, in a window under Xvfb.
 What is not run is in NOT_RUN, with its reason; a whole block says it in a comment (see pages.py).
 """
 
@@ -137,14 +137,21 @@ def test_there_are_commands_and_each_reason_is_still_needed():
     assert not unused
 
 
+@pytest.fixture(scope="module")
+def mesa_cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give a folder for Mesa's compiled shaders, which would else be in each test's own cache."""
+    return tmp_path_factory.mktemp("mesa")
+
+
 @pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, mesa_cache: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Give a folder that is the present one, with caches and memories of its own."""
     here = tmp_path / "here"
     here.mkdir()
     monkeypatch.chdir(here)
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    monkeypatch.setenv("MESA_SHADER_CACHE_DIR", str(mesa_cache))
     monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.delenv("PLAYGROUND_CACHE", raising=False)
     return here
@@ -187,9 +194,9 @@ def furnish(folder: Path, command: str) -> None:
     if "lesson.zip" in words and words[0] != "pack":
         make_sketch(folder / "my-land")
         assert cli.main(["pack", "my-land", "-o", "lesson.zip"]) == 0
-    for land in ("land.png", "land.r16"):
-        if f"height.elevation={land}" in words:
-            assert cli.main(["export", "jacksboro", "--to", land]) == 0
+    for heightmap in ("land.png", "land.r16"):
+        if f"height.elevation={heightmap}" in words:
+            assert cli.main(["export", "jacksboro", "--to", heightmap]) == 0
     if "--replay" in words:
         (folder / "evening.jsonl").write_text(
             "\n".join([json.dumps(FLIGHT), "[20, 50, 10, -30, 0]"]), "utf-8"
@@ -242,13 +249,13 @@ def test_it_runs(command: str, folder: Path, capsys: pytest.CaptureFixture[str])
 def test_without_a_display_only_the_display_is_missing(
     command: str, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
-    """Its arguments are read before the display is asked for."""
+    """Its arguments are read before the display is needed."""
     for variable in ("DISPLAY", "WAYLAND_DISPLAY", "XDG_SESSION_TYPE"):
         monkeypatch.delenv(variable, raising=False)
     furnish(folder, command)
     status = cli.main(arguments(command))
-    said = capsys.readouterr().err
-    assert "screen to open a window" in said or "no display" in said
+    message = capsys.readouterr().err
+    assert "screen to open a window" in message or "no display" in message
     assert status == (0 if command in ("./play", "playground") else 2)
 
 
@@ -298,11 +305,11 @@ def test_every_option_that_is_named_exists():
     assert named and not named - known - {"--no-install-recommends"}
 
 
-# Programs beside the playground
+# Programs other than the playground
 
 
 def run(folder: Path, words: list[str], *, timeout: float = 500) -> subprocess.CompletedProcess[str]:
-    """Run a program of this Python's; return what it said."""
+    """Run a program of this Python's; return its output."""
     words = [sys.executable if word == "python" else word for word in words]
     if words[0] == "pytest":
         words[:1] = [sys.executable, "-m", "pytest"]

@@ -13,6 +13,8 @@ from typer.main import get_command
 
 import playground
 from playground.cli import app
+from playground.lessons.glossary import alphabetical, terms
+from playground.lessons.library import LANGUAGES
 from playground.live.keys import KEYS
 from playground.paths import GLSL
 from playground.sketch.catalogue import techniques as listed
@@ -48,19 +50,19 @@ def test_every_technique_has_a_page_with_its_parameters_and_what_it_says_of_itse
 
 
 def test_methods_name_their_source_and_their_checks():
-    told = [techniques.page(e) for names in techniques.entries().values() for e in names]
-    assert sum("| Source of the method |" in text for text in told) > 0.9 * len(told)
-    plain = " ".join(told).replace("\\_", "_").replace("&#95;", "_")
+    texts = [techniques.page(e) for names in techniques.entries().values() for e in names]
+    assert sum("| Source of the method |" in text for text in texts) > 0.9 * len(texts)
+    plain = " ".join(texts).replace("\\_", "_").replace("&#95;", "_")
     checks = set(re.findall(r"\btests/\w+/\w+\.py", plain))
     missing = [path for path in checks if not (ROOT / path).exists()]
     assert checks and not missing
 
 
 def test_every_fast_variant_is_on_a_page():
-    told = "".join(techniques.page(e) for names in techniques.entries().values() for e in names)
+    texts = "".join(techniques.page(e) for names in techniques.entries().values() for e in names)
     files = [path for ending in ("comp", "fast.toml") for path in GLSL.rglob(f"*.{ending}")]
     names = {path.relative_to(GLSL).as_posix().replace("_", "&#95;") for path in files}
-    assert names and not {name for name in names if name not in told}
+    assert names and not {name for name in names if name not in texts}
 
 
 def test_a_technique_that_says_nothing_of_itself_is_refused(tmp_path: Path):
@@ -99,9 +101,9 @@ def test_every_key_is_in_the_table():
 
 
 def test_the_glossary_has_each_term_in_both_languages():
-    terms = glossary.terms()
+    terms = alphabetical("en")
     assert len(terms) > 70
-    for language in glossary.LANGUAGES:
+    for language in LANGUAGES:
         names = [term.names[language][0] for term in terms]
         assert len(set(names)) == len(names)
         text = glossary.page(language)
@@ -114,14 +116,14 @@ def test_the_glossary_has_each_term_in_both_languages():
 
 def test_sections_of_the_thesis_have_a_page():
     form = re.compile(r"(?:(?:\d(?:\.\d)+|introduction), p\. \d+)?")
-    assert not [term.key for term in glossary.terms() if not form.fullmatch(term.thesis)]
+    assert not [term.key for term in terms().values() if not form.fullmatch(term.thesis)]
 
 
 def test_a_term_without_its_french_is_refused(tmp_path: Path):
     file = tmp_path / "glossary.toml"
     file.write_text('[texel]\nen = ["texel"]\nmeans = "One element."\n')
     with pytest.raises(ValueError, match=r"texel.*missing.*fr"):
-        glossary.terms(file)
+        terms(file)
 
 
 def test_links_of_a_text_from_elsewhere_lead_into_the_site():

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.engine.planner import make_plan
+from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
@@ -60,7 +60,7 @@ def joined(raw: NDArray[np.float32], stride: int, form: str) -> NDArray[np.float
 
 
 @pytest.mark.parametrize(
-    ("name", "turns", "stride", "form"),
+    ("name", "iterations", "stride", "form"),
     [
         ("diamond_square", 1, 16, "squares"),
         ("diamond_square", 2, 8, "centres"),
@@ -74,9 +74,9 @@ def joined(raw: NDArray[np.float32], stride: int, form: str) -> NDArray[np.float
     ],
 )
 def test_a_stopped_run_is_joined_up_between_what_is_known(
-    engine: Engine, tmp_path: Path, name: str, turns: int, stride: int, form: str
+    engine: Engine, tmp_path: Path, name: str, iterations: int, stride: int, form: str
 ) -> None:
-    sketch, steps = sketch_of(tmp_path, name), {"height.raw": turns}
+    sketch, steps = sketch_of(tmp_path, name), {"height.raw": iterations}
     raw = engine.read(sketch, "height.raw", steps=steps)
     shown = engine.read(sketch, "height.raw", steps=steps, interpolated=True)
     np.testing.assert_allclose(shown, joined(raw, stride, form), atol=2e-6)
@@ -105,19 +105,19 @@ def test_a_run_goes_on_from_what_it_knows_and_ends_the_same(
 ) -> None:
     sketch = sketch_of(tmp_path, name)
     whole = engine.read(sketch, "height.raw")
-    for turns in range(1, 4):
-        engine.render(sketch, size=(9, 9), steps={"height.raw": turns})
+    for iterations in range(1, 4):
+        engine.render(sketch, size=(9, 9), steps={"height.raw": iterations})
         np.testing.assert_array_equal(
-            engine.read(sketch, "height.raw", steps={"height.raw": turns + 1}),
-            dict(engine.steps(sketch, "height.raw"))[turns + 1],
+            engine.read(sketch, "height.raw", steps={"height.raw": iterations + 1}),
+            dict(engine.steps(sketch, "height.raw"))[iterations + 1],
         )
     np.testing.assert_array_equal(engine.read(sketch, "height.raw"), whole)
 
 
-def test_all_turns_none_and_no_stop_at_all_are_left_as_they_are(tmp_path: Path) -> None:
+def test_all_iterations_none_and_no_stop_at_all_are_left_as_they_are(tmp_path: Path) -> None:
     sketch = sketch_of(tmp_path, "diamond_square")
     for steps in ({}, {"height.raw": 0}, {"height.raw": 9}):
-        step = make_plan(sketch, frame_size=(9, 9), steps=steps).step("height.raw")
+        step = Planner().plan(sketch, frame_size=(9, 9), steps=steps).step("height.raw")
         assert step is not None and step.between is None
 
 

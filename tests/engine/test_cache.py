@@ -8,18 +8,18 @@ from playground.sketch.load import load
 
 
 def held(engine: Engine) -> int:
-    return sum(kept.bytes for kept in engine.cache._kept.values())
+    return sum(cached.bytes for cached in engine.cache._cached.values())
 
 
-def test_bytes_are_those_of_what_is_kept(ctx):
+def test_bytes_are_those_of_what_is_cached(ctx):
     sketch = load("jacksboro").with_values({"size": 65, "view.grid": 33})
     with Engine(ctx, cache_bytes=3 * 2**20) as engine:
         for hour in range(3):
             moved = sketch.with_values({"light.sun": (100.0 + hour, 20.0)})
             engine.render(moved, size=(160, 90))  # mipmaps are made after a texture is put away
             assert engine.cache.bytes == held(engine)
-            for turn in (3, 5, 2):
-                engine.read("diamond_square", "height", steps={"height": turn})
+            for iteration in (3, 5, 2):
+                engine.read("diamond_square", "height", steps={"height": iteration})
                 assert engine.cache.bytes == held(engine)
         assert 0 < engine.cache.bytes <= engine.cache.limit
         engine.cache.clear()

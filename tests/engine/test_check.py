@@ -39,7 +39,7 @@ HEADERS = {
 
 
 @pytest.mark.parametrize("what", HEADERS)
-def test_a_header_that_is_wrong_is_told_at_its_line(folder, sandbox, what):
+def test_a_header_that_is_wrong_is_reported_at_its_line(folder, sandbox, what):
     before, option, body = HEADERS[what]
     path = folder.write(
         "hills.glsl", f'// hills\n{before}\n#pragma kernel(output = "a:r32f"{option})\n{body}\n'
@@ -50,7 +50,7 @@ def test_a_header_that_is_wrong_is_told_at_its_line(folder, sandbox, what):
     assert found.excerpt.startswith("#pragma kernel")
 
 
-def test_a_compute_variant_s_groups_are_told_at_its_own_line(folder, sandbox):
+def test_a_compute_variant_s_groups_are_reported_at_its_own_line(folder, sandbox):
     if trial_has_no_compute(folder, sandbox):
         pytest.skip("this context has no compute shaders")
     folder.write(
@@ -68,7 +68,7 @@ def trial_has_no_compute(folder, sandbox: Sandbox) -> bool:
     return bool(check_file(path, sandbox).skipped)
 
 
-def test_a_sketch_s_own_kernel_is_told_at_its_header_too(any_engine, folder):
+def test_a_sketch_s_own_kernel_is_reported_at_its_header_too(any_engine, folder):
     sketch = folder.one(
         '// one\n#pragma kernel(output = "a:r32f", repeat = "2 - size.x")\n'
         "float kernel(ivec2 texel) { return 1.0; }\n"
@@ -94,7 +94,7 @@ def test_a_part_of_a_sketch_is_checked_and_opened_by_one_rule(folder, sandbox):
     load(part)
 
 
-def test_a_shader_with_nothing_to_run_is_told_alike_by_check_and_by_opening_it(folder, sandbox):
+def test_a_shader_with_nothing_to_run_is_reported_alike_by_check_and_by_opening_it(folder, sandbox):
     bare = folder.write("bare.frag", "float x;\n")
     said = wrong(bare, sandbox).message
     assert said == "nothing to run: no main, mainImage or #pragma kernel"
@@ -136,16 +136,16 @@ def test_a_file_that_the_child_does_not_survive_is_not_read_here(
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("read by the parent")
 
-    with (tmp_path / "land.npy").open("wb") as file:
+    with (tmp_path / "heights.npy").open("wb") as file:
         head = {"descr": "<f8", "fortran_order": False, "shape": (16384, 16384)}
         np.lib.format.write_array_header_1_0(file, head)
         file.truncate(file.tell() + 8 * 16384**2)
     (tmp_path / "sketch.toml").write_text(
         'format = 1\n[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
-        'set = { elevation = "land.npy" }\n[view]\nuse = "view/map"\ninputs = { shown = "height" }\n',
+        'set = { elevation = "heights.npy" }\n[view]\nuse = "view/map"\ninputs = { shown = "height" }\n',
         encoding="utf-8",
     )
     monkeypatch.setattr(sources, "read_elevation", refuse)
     with Sandbox(memory_bytes=2**30) as small:
         found = wrong(tmp_path / "sketch.toml", small)
-    assert "not enough memory to read it" in found.message and "land.npy" in found.message
+    assert "not enough memory to read it" in found.message and "heights.npy" in found.message

@@ -44,7 +44,7 @@ float kernel(ivec2 texel) {
 """
 
 
-def test_an_error_below_a_macro_call_that_spans_lines_is_told_at_its_line(folder, any_engine):
+def test_an_error_below_a_macro_call_that_spans_lines_is_reported_at_its_line(folder, any_engine):
     sketch = folder.one(KERNEL + CALLS)
     with pytest.raises(ShaderError) as caught:
         any_engine.read(sketch, "a")
@@ -53,7 +53,7 @@ def test_an_error_below_a_macro_call_that_spans_lines_is_told_at_its_line(folder
     assert (any_engine.read(good, "a") == 6.0).all()
 
 
-def test_one_inside_such_a_call_is_told_where_the_call_begins(folder, any_engine):
+def test_one_inside_such_a_call_is_reported_where_the_call_begins(folder, any_engine):
     sketch = folder.one(KERNEL + CALLS.replace("3.0)", "wrong)").replace("sum + wrong", "sum"))
     with pytest.raises(ShaderError) as caught:
         any_engine.read(sketch, "a")
@@ -80,7 +80,7 @@ def test_a_line_directive_moves_no_error_and_is_a_warning(folder, sandbox, any_e
 # Places that a message lacks
 
 
-def test_a_function_that_calls_itself_is_told_where_it_is_defined(folder, any_engine):
+def test_a_function_that_calls_itself_is_reported_where_it_is_defined(folder, any_engine):
     text = (
         "int f(ivec2 n) { return n.x; }\n"
         "int f(int n);\nint g(int n) { return f(n - 1); }\n"

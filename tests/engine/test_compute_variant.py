@@ -87,7 +87,7 @@ def test_it_runs_where_there_is_compute_and_agrees(ctx, sums, ran, driver):
         assert engine.runs["sums"] == 2
 
 
-def test_its_turns_are_shown_by_the_kernel(any_engine, sums, ran):
+def test_its_iterations_are_shown_by_the_kernel(any_engine, sums, ran):
     found = any_engine.read(sums, "sums", steps={"sums": 1})
     west = np.pad(truth()[:, :-1], ((0, 0), (1, 0)))
     values = truth() - west
@@ -205,7 +205,7 @@ float kernel(ivec2 texel) { return 1.0 + 0.0 * again; }
 """
 
 
-def test_a_kept_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engine, folder):
+def test_a_spare_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engine, folder):
     """The buffer of the run before is used again, so a variant that adds to it shows what it began with."""
     for option, second in (("", 1.0), (', overwrites = "work"', 2.0)):
         folder.write("fill.glsl", PLAIN_FILL)
@@ -247,7 +247,7 @@ void main() {
 
 @pytest.mark.parametrize("size", [16, 17, [5, 3]])
 def test_a_buffer_of_an_outputs_name_is_that_output(any_engine, folder, sums, size):
-    """Its rows are filled up to 8 bytes, so those of an odd land have a float more."""
+    """Its rows are filled up to 8 bytes, so those of an odd terrain have a float more."""
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
     folder.write("sums.glsl", SUMS.replace("log2(size.x)", "5"))
@@ -281,7 +281,7 @@ void main() {
 )
 
 
-def test_stages_say_what_each_turn_does(any_engine, folder):
+def test_stages_say_what_each_iteration_does(any_engine, folder):
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
     folder.write("fill.glsl", PLAIN_FILL)

@@ -368,7 +368,7 @@ def test_a_draw_goes_on_from_one_with_other_samples(any_engine, plates, first, s
     np.testing.assert_array_equal(found[:, 8:12], any_engine.read(sketch, "back")[:, 8:12])
 
 
-def test_a_mesh_as_large_as_it_gets_is_not_kept_for_ever(any_engine, folder):
+def test_a_mesh_as_large_as_it_gets_is_not_cached_for_ever(any_engine, folder):
     folder.write(
         "g.glsl",
         PLATE.replace("{more}", "").replace('"sheet"', '"grid"')

@@ -75,7 +75,7 @@ def hill(folder, kind):
 
 
 @pytest.fixture
-def told(ctx):
+def drawing(ctx):
     """An engine, and the sentences that it says."""
     sentences: list[str] = []
     with Engine(ctx, notice=sentences.append) as engine:
@@ -90,8 +90,8 @@ def ran_fast(engine: Engine) -> bool:
     return any(step.kernel.kind == "compute" or ".fast." in step.path for step in engine.plan.walk())
 
 
-def test_a_verified_variant_runs_and_says_nothing(told, hill):
-    engine, sentences = told
+def test_a_verified_variant_runs_and_says_nothing(drawing, hill):
+    engine, sentences = drawing
     for scale in (1.0, 3.0):
         sketch = hill.sketch(BODY).with_values({"h.scale": scale})
         np.testing.assert_allclose(engine.read(sketch, "h"), slopes(scale), atol=1e-5)
@@ -99,8 +99,8 @@ def test_a_verified_variant_runs_and_says_nothing(told, hill):
     assert sentences == []
 
 
-def test_a_renamed_parameter_of_the_plain_text_leaves_the_variant_out(told, hill):
-    engine, sentences = told
+def test_a_renamed_parameter_of_the_plain_text_leaves_the_variant_out(drawing, hill):
+    engine, sentences = drawing
     hill.write("hill.glsl", HILL.replace("scale", "steepness"))
     np.testing.assert_array_equal(engine.read(hill.sketch(BODY), "h"), slopes())
     assert not ran_fast(engine) and len(sentences) == 1
@@ -110,8 +110,8 @@ def test_a_renamed_parameter_of_the_plain_text_leaves_the_variant_out(told, hill
     assert not verdict.ok and "'scale' is not among the parameters and inputs of hill" in verdict.words
 
 
-def test_an_edit_of_the_plain_text_shows_and_one_sentence_says_why(told, hill):
-    engine, sentences = told
+def test_an_edit_of_the_plain_text_shows_and_one_sentence_says_why(drawing, hill):
+    engine, sentences = drawing
     engine.read(hill.sketch(BODY), "h")
     hill.write("hill.glsl", HILL.replace("+ scale", "+ 0.5 * scale"))
     for _ in range(2):
@@ -123,9 +123,9 @@ def test_an_edit_of_the_plain_text_shows_and_one_sentence_says_why(told, hill):
 
 
 @pytest.mark.parametrize("accepts", ["n up to 17, m up to 16", "2**n + 1, 2**m"])
-def test_a_size_that_a_variant_does_not_take_has_the_plain_form_run(told, hill, kind, accepts):
+def test_a_size_that_a_variant_does_not_take_has_the_plain_form_run(drawing, hill, kind, accepts):
     """It says so once, and is not refused; at its own sizes the variant runs."""
-    engine, sentences = told
+    engine, sentences = drawing
     if kind == "compute":
         hill.write("hill.comp", COMPUTE.replace("agrees", f'accepts = "{accepts}", agrees'))
     else:
@@ -144,8 +144,8 @@ def test_a_size_that_a_variant_does_not_take_has_the_plain_form_run(told, hill, 
     ]
 
 
-def test_comments_and_white_space_change_nothing(told, hill):
-    engine, sentences = told
+def test_comments_and_white_space_change_nothing(drawing, hill):
+    engine, sentences = drawing
     text = HILL.replace("float kernel", "// mine\nfloat   kernel").replace("How high", "A tooltip")
     hill.write("hill.glsl", text.replace("{ return", "{\n\n    return"))
     hill.write("rise.glsl", "/* more\nwords */\n" + RISE)
@@ -162,8 +162,8 @@ EDITS = {
 
 
 @pytest.mark.parametrize("what", EDITS)
-def test_whatever_the_plain_text_is_made_of_counts(told, hill, what):
-    engine, sentences = told
+def test_whatever_the_plain_text_is_made_of_counts(drawing, hill, what):
+    engine, sentences = drawing
     name, before, after = EDITS[what]
     text = (hill.path / name).read_text()
     assert before in text
@@ -174,8 +174,8 @@ def test_whatever_the_plain_text_is_made_of_counts(told, hill, what):
     np.testing.assert_array_equal(found, engine.read(sketch.plainly(), "h"))
 
 
-def test_an_edited_variant_does_not_run_before_it_is_verified(told, hill, kind):
-    engine, sentences = told
+def test_an_edited_variant_does_not_run_before_it_is_verified(drawing, hill, kind):
+    engine, sentences = drawing
     if kind == "compute":
         hill.write("hill.comp", COMPUTE.replace("scale * float", "2.0 * scale * float"))
     else:
@@ -186,8 +186,8 @@ def test_an_edited_variant_does_not_run_before_it_is_verified(told, hill, kind):
     assert "it has changed since it was verified" in sentence and "playground variants renew" in sentence
 
 
-def test_one_that_was_never_verified_does_not_run(told, hill):
-    engine, sentences = told
+def test_one_that_was_never_verified_does_not_run(drawing, hill):
+    engine, sentences = drawing
     (hill.path / NAME).unlink()
     np.testing.assert_allclose(engine.read(hill.sketch(BODY), "h"), slopes())
     assert not ran_fast(engine)
@@ -195,8 +195,8 @@ def test_one_that_was_never_verified_does_not_run(told, hill):
     assert not (hill.path / NAME).exists(), "nothing is written unasked"
 
 
-def test_an_edit_inside_a_technique_around_it_shows_too(told, hill):
-    engine, sentences = told
+def test_an_edit_inside_a_technique_around_it_shows_too(drawing, hill):
+    engine, sentences = drawing
     hill.write("around.toml", AROUND)
     engine.read(hill.sketch(NESTED), "h")
     assert ran_fast(engine)
@@ -205,8 +205,8 @@ def test_an_edit_inside_a_technique_around_it_shows_too(told, hill):
     assert len(sentences) == 1
 
 
-def test_an_inner_pass_counts_for_a_technique_s_variant(told, hill, kind):
-    engine, sentences = told
+def test_an_inner_pass_counts_for_a_technique_s_variant(drawing, hill, kind):
+    engine, sentences = drawing
     hill.write("around.toml", AROUND + '[parameters]\nscale = "hill.scale"\n')
     hill.write(
         "around.comp" if kind == "compute" else "around.fast.toml", COMPUTE if kind == "compute" else PASSES
@@ -219,8 +219,8 @@ def test_an_inner_pass_counts_for_a_technique_s_variant(told, hill, kind):
     assert len(sentences) == 2, "neither the technique's nor its pass's runs"
 
 
-def test_plain_forces_the_plain_form(told, hill):
-    engine, sentences = told
+def test_plain_forces_the_plain_form(drawing, hill):
+    engine, sentences = drawing
     sketch = hill.sketch(BODY)
     for plain in (False, True, False):
         engine.read(sketch.plainly(plain), "h")
@@ -230,16 +230,16 @@ def test_plain_forces_the_plain_form(told, hill):
     assert sentences == [], "who asks for the plain form need not be told of it"
 
 
-def test_steps_are_those_of_the_plain_form(told, hill):
-    engine, _ = told
+def test_steps_are_those_of_the_plain_form(drawing, hill):
+    engine, _ = drawing
     sketch = hill.sketch(BODY)
     found = [values[0, 4] for _, values in engine.steps(sketch, "h")]
     assert found == [0, 1, 2, 3, 4]
     assert not ran_fast(engine)
 
 
-def test_which_form_ran_is_in_keys_and_hashes(told, hill):
-    engine, _ = told
+def test_which_form_ran_is_in_keys_and_hashes(drawing, hill):
+    engine, _ = drawing
     sketch = hill.sketch(BODY)
     forms = [sketch, sketch.plainly()]
     assert len({engine.fingerprint(one) for one in forms}) == 2
@@ -251,7 +251,7 @@ def test_which_form_ran_is_in_keys_and_hashes(told, hill):
     assert not any(path.startswith("h") for path in engine.ran), "both stay in memory"
 
 
-def test_only_what_cannot_run_here_is_told(ctx, hill, kind):
+def test_only_what_cannot_run_here_is_reported(ctx, hill, kind):
     (hill.path / NAME).unlink()
     sentences: list[str] = []
     with Engine(ctx, driver="fragment", notice=sentences.append) as engine:
@@ -265,8 +265,8 @@ def test_an_engine_of_one_s_own_warns(hill):
         engine.render(hill.sketch(BODY), size=(16, 16))
 
 
-def test_the_passes_of_a_variant_are_no_paths_of_the_sketch(told, hill, kind):
-    engine, _ = told
+def test_the_passes_of_a_variant_are_no_paths_of_the_sketch(drawing, hill, kind):
+    engine, _ = drawing
     sketch = hill.sketch(BODY)
     engine.read(sketch, "h")
     assert engine.plan.flat.outputs.keys() == {"h", "view"}
@@ -304,8 +304,8 @@ def verdicts(ctx, what, folder):
 
 
 @pytest.mark.parametrize("of", ["the sketch", "the variant"])
-def test_renewing_draws_both_and_records_what_agrees(ctx, told, hill, kind, tmp_path, of):
-    engine, sentences = told
+def test_renewing_draws_both_and_records_what_agrees(ctx, drawing, hill, kind, tmp_path, of):
+    engine, sentences = drawing
     (hill.path / NAME).unlink()
     sketch = hill.sketch(BODY)
     own = next(hill.path.glob("hill.comp" if kind == "compute" else "hill.fast.toml"))
@@ -361,7 +361,7 @@ def test_one_without_a_bound_is_refused_in_a_sentence(ctx, folder, tmp_path):
         ("nearly", "'nearly' states no bound"),
         ("0", "'0' states no bound"),
         ("hight: exact", "no output 'hight'; did you mean 'height'"),
-        ("exact; 1e-5", "all other outputs stands twice"),
+        ("exact; 1e-5", "all other outputs appears twice"),
     ],
 )
 def test_a_bound_that_is_none_is_a_sentence(folder, agrees, words):

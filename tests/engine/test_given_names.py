@@ -55,10 +55,10 @@ def truth(azimuth, elevation):
 
 @pytest.mark.parametrize("sun", [(30, 60), (-250, -20), (0, 90), (450, 0), (180, -90), (720, 3)], ids=str)
 def test_the_vector_towards_a_direction(any_engine, asked, sun):
-    told = any_engine.read(asked.with_values({"asked.sun": sun}), "asked")[3, 5]
-    np.testing.assert_allclose(told[:3], truth(*sun), atol=1e-7)
+    given = any_engine.read(asked.with_values({"asked.sun": sun}), "asked")[3, 5]
+    np.testing.assert_allclose(given[:3], truth(*sun), atol=1e-7)
     if sun[0] % 90 == 0 and sun[1] % 90 == 0:
-        assert sorted(np.abs(told[:3])) == [0, 0, 1]
+        assert sorted(np.abs(given[:3])) == [0, 0, 1]
 
 
 def test_moving_the_direction_is_seen_though_only_its_vector_is_read(any_engine, asked):
@@ -75,7 +75,7 @@ def test_whether_an_input_is_wired(any_engine, asked, folder):
 
 @pytest.mark.usefixtures("trusted_variants")
 @pytest.mark.parametrize("form", ["kernel", "draw", "variant"])
-def test_kernels_draws_and_compute_variants_are_told(each_engine, folder, form):
+def test_kernels_draws_and_compute_variants_get_them(each_engine, folder, form):
     if form == "variant" and not each_engine.info.compute:
         pytest.skip("this context has no compute shaders")
     folder.write("asks.glsl", DRAWN if form == "draw" else ASKS)
@@ -88,9 +88,9 @@ def test_kernels_draws_and_compute_variants_are_told(each_engine, folder, form):
         (folder.sketch('[[pass]]\nname = "wind"\nuse = "./blows"\n' + PASS), 1),
     ):
         for sun in ((30, 60), (200, 5)):
-            told = each_engine.read(sketch.with_values({"asked.sun": sun}), "asked")
-            np.testing.assert_allclose(told[..., :3], np.broadcast_to(truth(*sun), (17, 17, 3)), atol=1e-7)
-            assert (told[..., 3] == wired).all()
+            given = each_engine.read(sketch.with_values({"asked.sun": sun}), "asked")
+            np.testing.assert_allclose(given[..., :3], np.broadcast_to(truth(*sun), (17, 17, 3)), atol=1e-7)
+            assert (given[..., 3] == wired).all()
 
 
 SIZES = """#pragma kernel(output = "told:rg32f")
@@ -102,9 +102,9 @@ vec2 kernel(ivec2 texel) { return vec2(matches_wind ? 1.0 : 0.0, wired_wind ? 1.
 def test_whether_an_input_has_the_size_of_the_pass(each_engine, folder):
     folder.write("asks.glsl", SIZES)
     folder.write("blows.glsl", WIND)
-    for size, told in (("", (1, 1)), ("size = 9\n", (0, 1)), ("size = [17, 9]\n", (0, 1))):
+    for size, given in (("", (1, 1)), ("size = 9\n", (0, 1)), ("size = [17, 9]\n", (0, 1))):
         sketch = folder.sketch(f'[[pass]]\nname = "wind"\nuse = "./blows"\n{size}{PASS}')
-        assert tuple(each_engine.read(sketch, "asked")[3, 2]) == told
+        assert tuple(each_engine.read(sketch, "asked")[3, 2]) == given
     assert tuple(each_engine.read(folder.sketch(PASS), "asked")[0, 0]) == (0, 0)
 
 

@@ -153,14 +153,14 @@ def test_render_says_it_once(sketch, tmp_path, monkeypatch, capsys, ways, writte
     )
     (tmp_path / "sketch.toml").write_text(text)
     assert cli.main(["render", "sketch.toml", "--size", "64x36", *ways]) == 0
-    said = capsys.readouterr().err
-    assert said.count("the eye stood under the terrain") == 1
+    message = capsys.readouterr().err
+    assert message.count("the eye stood under the terrain") == 1
     assert (tmp_path / written).exists()
 
 
 def test_a_program_is_warned_once_of_all_frames(sketch):
     with playground.headless() as engine:
-        with pytest.warns(playground.PlaygroundWarning, match="the eye stood under the terrain") as told:
+        with pytest.warns(playground.PlaygroundWarning, match="the eye stood under the terrain") as reports:
             for seconds in range(3):
                 engine.render(sketch.with_camera(UNDER), size=(64, 36), time=seconds)
-        assert len(told) == 1
+        assert len(reports) == 1

@@ -21,7 +21,7 @@ from playground.images.files import write_png
 from ..sketch_texts import passes
 
 ROOT = Path(__file__).resolve().parents[2]
-LAND = """#pragma kernel(output = "height:r32f", repeat = "3")
+TERRAIN = """#pragma kernel(output = "height:r32f", repeat = "3")
 uniform float bumps = 3.0; //! slider(0, 1000)
 uniform sampler2D image;   //! file("p.png")
 float kernel(ivec2 texel) { return previous(texel) + sin(float(texel.x) * bumps)
@@ -38,7 +38,7 @@ vec4 fragment(vec2 place) { return vec4(texture(height, place).rrr, 1.0); }
 """
 BODY = (
     "\n"
-    + passes(height="./land", turned=("./loop", "repeat = 3"))
+    + passes(height="./terrain", turned=("./loop", "repeat = 3"))
     + """feedback = { height = "height" }
 [view]
 use = "./draw"
@@ -75,7 +75,7 @@ def resident() -> int:
 @pytest.fixture
 def sketch(folder, tmp_path):
     write_png(tmp_path / "p.png", np.full((4, 4, 4), 255, np.uint8))
-    for name, text in {"land": LAND, "draw": DRAW, "add": ADD}.items():
+    for name, text in {"terrain": TERRAIN, "draw": DRAW, "add": ADD}.items():
         folder.write(f"{name}.glsl", text)
     folder.write("loop.toml", LOOP)
     return folder.sketch(BODY, size="size = 64")
@@ -107,7 +107,7 @@ def test_a_hundred_changed_programs_are_bounded(ctx, folder, sketch, alive):
     with small_engine(ctx, "fragment") as engine:
         seen = []
         for i in range(100):
-            folder.write("land.glsl", LAND.replace("sin", f"{i}.5 + sin"))
+            folder.write("terrain.glsl", TERRAIN.replace("sin", f"{i}.5 + sin"))
             engine.render(folder.sketch(BODY, size="size = 64"), size=(64, 36))
             if i in (75, 99):
                 seen.append(total(alive))

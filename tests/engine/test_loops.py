@@ -76,28 +76,30 @@ def rain(folder):
     return sketch
 
 
-def expected(turns: int, level: float = 1.0, grain: float = 0.5) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def expected(
+    iterations: int, level: float = 1.0, grain: float = 0.5
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     y, x = np.mgrid[0:17, 0:17]
     water = level * ((x * 5 + y * 3) % 7).astype(np.float64)
     silt, flow = np.zeros((17, 17)), np.zeros((17, 17))
-    for _ in range(turns):
+    for _ in range(iterations):
         flow = water * 0.5
         water = water - flow + grain * (x % 3)
         silt = silt + flow
     return water, silt, flow
 
 
-@pytest.mark.parametrize("turns", [1, 2, 4, 7])
-def test_feedback_is_the_turn_before(engine, rain, turns):
-    sketch = rain(str(turns))
-    water, silt, flow = expected(turns)
+@pytest.mark.parametrize("iterations", [1, 2, 4, 7])
+def test_feedback_is_the_iteration_before(engine, rain, iterations):
+    sketch = rain(str(iterations))
+    water, silt, flow = expected(iterations)
     np.testing.assert_allclose(engine.read(sketch, "rain:water"), water, rtol=1e-6)
     np.testing.assert_allclose(engine.read(sketch, "rain:silt"), silt, rtol=1e-6)
     np.testing.assert_allclose(engine.read(sketch, "rain.flow"), flow, rtol=1e-6)
     np.testing.assert_allclose(engine.read(sketch, "after"), water * 0.5, rtol=1e-6)
 
 
-def test_no_turn_gives_what_the_first_would_read(engine, rain):
+def test_no_iteration_gives_what_the_first_would_read(engine, rain):
     sketch = rain("0")
     np.testing.assert_allclose(engine.read(sketch, "rain:water"), expected(0)[0])
     assert not engine.read(sketch, "rain:silt").any()
@@ -109,7 +111,7 @@ def test_what_does_not_change_with_the_loop_runs_once(engine, rain):
     assert engine.runs == {"start": 1, "rain.rough": 1, "rain.flow": 6, "rain.move": 6, "after": 1}
 
 
-def test_a_kept_loop_runs_nothing(engine, rain):
+def test_a_cached_loop_runs_nothing(engine, rain):
     sketch = rain("6")
     engine.texture(sketch, "after")
     for ref in ("rain:water", "rain:silt", "rain.flow", "rain.rough", "after"):
@@ -117,7 +119,7 @@ def test_a_kept_loop_runs_nothing(engine, rain):
         assert engine.ran == []
 
 
-def test_more_turns_go_on_from_those_that_are_kept(engine, rain):
+def test_more_iterations_go_on_from_those_that_are_cached(engine, rain):
     engine.texture(rain("3"), "rain:water")
     assert engine.runs["rain.move"] == 3
     found = engine.read(rain("5"), "rain:water")
@@ -136,7 +138,7 @@ def test_a_changed_value_begins_again(engine, rain, path):
     assert engine.runs["rain.move"] == 6
 
 
-def test_what_reads_a_loop_is_stale_when_its_turns_are(engine, rain):
+def test_what_reads_a_loop_is_stale_when_its_iterations_are(engine, rain):
     engine.texture(rain("3"), "after")
     engine.texture(rain("4"), "after")
     assert engine.runs["after"] == 2
@@ -161,14 +163,14 @@ def test_going_on_gives_the_same_bits_as_beginning_anew(ctx, engine, rain):
         assert fresh.runs["rain.move"] == 9
 
 
-def test_steps_of_a_loop_run_each_turn_once(engine, rain):
+def test_steps_of_a_loop_run_each_iteration_once(engine, rain):
     sketch = rain("5")
-    for turn, values in engine.steps(sketch, "rain"):
-        np.testing.assert_allclose(values, expected(turn)[0], rtol=1e-6)
+    for iteration, values in engine.steps(sketch, "rain"):
+        np.testing.assert_allclose(values, expected(iteration)[0], rtol=1e-6)
     assert engine.runs["rain.move"] == 5
 
 
-def test_the_turn_is_known_inside(engine, folder):
+def test_the_iteration_is_known_inside(engine, folder):
     folder.write(
         "add.glsl",
         '#pragma kernel(output = "sum:r32f")\nuniform sampler2D sum_before; //! input("black")\n'
@@ -186,7 +188,7 @@ def test_the_turn_is_known_inside(engine, folder):
     np.testing.assert_allclose(stopped, sum(range(3)) + 3 * 0.05, rtol=1e-5)
 
 
-def test_what_reads_the_turn_runs_in_every_turn_though_nothing_is_fed_to_it(engine, folder):
+def test_what_reads_the_iteration_runs_in_every_iteration_though_nothing_is_fed_to_it(engine, folder):
     folder.write(
         "turn.glsl",
         '#pragma kernel(output = "now:r32f")\n'
@@ -279,18 +281,18 @@ def test_nested_loops(engine, folder):
         for _ in range(int(time)):
             slow = fed + x
             v = np.zeros((17, 17))
-            for turn in range(3):
-                v = v * 0.5 + slow + y * 0.125 + turn
+            for iteration in range(3):
+                v = v * 0.5 + slow + y * 0.125 + iteration
             fed = v
         np.testing.assert_allclose(engine.read(sketch, "o:v", time=time), v, rtol=1e-6)
         np.testing.assert_allclose(engine.read(sketch, "o:slow", time=time), slow, rtol=1e-6)
         np.testing.assert_allclose(engine.read(sketch, "o.round.still", time=time), y * 0.125, rtol=1e-6)
         np.testing.assert_allclose(engine.read(sketch, "o", time=time), v, rtol=1e-6)
-    turns = 5 + 1  # 2, then 3 more, then 1 anew
+    iterations = 5 + 1  # 2, then 3 more, then 1 anew
     assert engine.runs == {
         "o.round.still": 1,  # nothing changes it
-        "o.round.slow": turns,  # once in a turn of the outer loop
-        "o.round.go": 3 * turns,
+        "o.round.slow": iterations,  # once in a turn of the outer loop
+        "o.round.go": 3 * iterations,
     }
 
 
@@ -312,8 +314,8 @@ def test_a_loop_that_no_loop_around_it_changes_runs_once(engine, folder):
     sketch = folder.sketch('[[pass]]\nname="o"\nuse="./outer"\nrepeat=4\nfeedback={ last = "sum" }\n')
     y, x = np.mgrid[0:17, 0:17]
     v = np.zeros((17, 17))
-    for turn in range(3):
-        v = v * 0.5 + x + y * 0.125 + turn
+    for iteration in range(3):
+        v = v * 0.5 + x + y * 0.125 + iteration
     np.testing.assert_allclose(engine.read(sketch, "o"), 4 * v, rtol=1e-6)
     assert engine.runs == {"o.round.still": 1, "o.round.slow": 1, "o.round.go": 3, "o.sum": 4}
 
@@ -360,19 +362,19 @@ def test_what_changes_with_an_outer_loop_by_way_of_what_is_fed_back(engine, fold
 # ── what it costs ────────────────────────────────────────────────────────────
 
 
-def test_five_hundred_turns_need_no_more_memory_than_five(any_engine, rain):
+def test_five_hundred_iterations_need_no_more_memory_than_five(any_engine, rain):
     sketch = rain("floor(time)")
     any_engine.texture(sketch, "rain:water", time=5.0)
-    made, kept = any_engine.pool.made, any_engine.cache.bytes
+    made, cached = any_engine.pool.made, any_engine.cache.bytes
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     any_engine.texture(sketch, "rain:water", time=500.0)
     assert any_engine.runs["rain.move"] == 500
     assert any_engine.pool.made == made, "every turn finds its textures in the pool"
-    assert any_engine.cache.bytes == kept
+    assert any_engine.cache.bytes == cached
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 8 * 1024  # [KiB]
 
 
-def test_a_turn_that_fails_leaves_the_last_good_one(any_engine, rain, monkeypatch):
+def test_an_iteration_that_fails_leaves_the_last_good_one(any_engine, rain, monkeypatch):
     sketch = rain("floor(time)")
     any_engine.texture(sketch, "rain:water", time=2.0)
     run, calls = any_engine.runner.run, []

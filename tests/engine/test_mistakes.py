@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.engine.all_errors import all_mistakes
+from playground.engine.all_errors import all_errors
 from playground.engine.engine import Engine
 from playground.engine.sandbox import Sandbox, TrySketch
 from playground.errors import PlaygroundError, ShaderError, SketchError
@@ -45,7 +45,7 @@ def drawn(engine: Engine, path: Path) -> PlaygroundError:
     sketch = load(path)
     with pytest.raises(ShaderError) as caught:
         engine.draw(sketch, size=(32, 18))
-    return all_mistakes(caught.value, engine, sketch, size=(32, 18))
+    return all_errors(caught.value, engine, sketch, size=(32, 18))
 
 
 def files(error: PlaygroundError) -> list[str]:
@@ -57,14 +57,14 @@ def test_two_passes_that_fail_are_both_told_in_order(engine: Engine, tmp_path: P
     assert found[0] == "first.glsl" and set(found) == {"first.glsl", "second.glsl"}
 
 
-def test_a_pass_that_the_picture_does_not_need_is_told_too(engine: Engine, tmp_path: Path) -> None:
+def test_a_pass_that_the_picture_does_not_need_is_reported_too(engine: Engine, tmp_path: Path) -> None:
     sketch = load(sketch_in(tmp_path, "missing", "missing"))
     error = ShaderError("of another pass", file="elsewhere.glsl")
-    told = all_mistakes(error, engine, sketch, size=(32, 18))
-    assert files(told)[0] == "elsewhere.glsl" and set(files(told)[1:]) == {"first.glsl", "second.glsl"}
+    reports = all_errors(error, engine, sketch, size=(32, 18))
+    assert files(reports)[0] == "elsewhere.glsl" and set(files(reports)[1:]) == {"first.glsl", "second.glsl"}
 
 
-def test_a_mistake_in_a_file_that_all_include_is_told_once(engine: Engine, tmp_path: Path) -> None:
+def test_a_mistake_in_a_file_that_all_include_is_reported_once(engine: Engine, tmp_path: Path) -> None:
     found = drawn(engine, sketch_in(tmp_path, "both()", "both()", "missing_name")).diagnostics
     assert len({(d.file, d.line, d.column, d.message) for d in found}) == len(found)
     assert {Path(d.file).name for d in found} == {"both.glsl"}
@@ -73,10 +73,10 @@ def test_a_mistake_in_a_file_that_all_include_is_told_once(engine: Engine, tmp_p
 def test_an_error_of_another_kind_comes_back_as_it_is(any_engine: Engine, tmp_path: Path) -> None:
     sketch = load(sketch_in(tmp_path, "0.0", "0.0"))
     error = SketchError("not a shader's")
-    assert all_mistakes(error, any_engine, sketch, size=(32, 18)) is error
+    assert all_errors(error, any_engine, sketch, size=(32, 18)) is error
 
 
-def test_the_trial_tells_of_all(tmp_path: Path) -> None:
+def test_the_sandbox_tells_of_all(tmp_path: Path) -> None:
     sketch = load(sketch_in(tmp_path, "first_name", "second_name"))
     with Sandbox(limit_seconds=60.0) as sandbox:
         report = sandbox.run(TrySketch(sketch))

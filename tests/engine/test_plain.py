@@ -69,7 +69,7 @@ def test_the_frame_number_fits_its_type(any_engine, folder, kind):
     assert any_engine.render(load(path), size=(8, 8)).array[0, 0, 2] == 255
 
 
-def test_the_mouse_is_told_and_a_still_one_makes_nothing_stale(any_engine, toy):
+def test_the_mouse_is_passed_on_and_a_still_one_makes_nothing_stale(any_engine, toy):
     any_engine.render(toy, size=(8, 8), time=1.0)
     any_engine.render(toy, size=(8, 8), time=1.0)
     assert any_engine.ran == []

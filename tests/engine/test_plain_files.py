@@ -144,7 +144,7 @@ def test_every_version_that_the_driver_takes_is_drawn(any_engine, folder, versio
     np.testing.assert_allclose(frame.array[:, 0, 1], [191, 64], atol=1)
 
 
-def test_a_mistake_in_an_old_version_is_told_at_its_own_line(any_engine, folder):
+def test_a_mistake_in_an_old_version_is_reported_at_its_own_line(any_engine, folder):
     text = OLD.format("120", "").replace("0.0, 1.0)", "blue, 1.0)")
     with pytest.raises(ShaderError) as caught:
         any_engine.render(load(folder.write("t.frag", text)), size=(4, 2))

@@ -36,10 +36,10 @@ TURNED = "turned.tif: its grid is turned against north, so no spacing"
 @pytest.fixture
 def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A sketch of an elevation file that lies aslant, and a kernel with an idle parameter."""
-    land = np.arange(72, dtype=np.float32).reshape(8, 9)
+    terrain = np.arange(72, dtype=np.float32).reshape(8, 9)
     slant = (1.0, 0.5, 0, 0, -0.5, 1.0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1.0)
     tags = [(34264, "d", 16, slant), (34735, "H", 8, (1, 1, 0, 1, 1024, 0, 1, 1))]
-    tifffile.imwrite(folder.path / "turned.tif", land, extratags=tags)
+    tifffile.imwrite(folder.path / "turned.tif", terrain, extratags=tags)
     folder.write("mine.glsl", KERNEL)
     path = folder.write("sketch.toml", SKETCH)
     monkeypatch.chdir(folder.path)
@@ -48,16 +48,16 @@ def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_an_engine_tells_each_once_whatever_is_drawn_after(any_engine, sketch):
-    told: list[tuple[str, str]] = []
-    any_engine.warnings.tell = lambda found: told.append((found.place, found.message))
+    reports: list[tuple[str, str]] = []
+    any_engine.warnings.report = lambda found: reports.append((found.place, found.message))
     for size in ((8, 8), (9, 9)):
         any_engine.render(load(sketch), size=size)
-    place = next(place for place, message in told if message == TURNED)
-    assert len(told) == 2 and place.endswith("sketch.toml:3")
-    assert sum("#line is left out" in message for _, message in told) == 1
+    place = next(place for place, message in reports if message == TURNED)
+    assert len(reports) == 2 and place.endswith("sketch.toml:3")
+    assert sum("#line is left out" in message for _, message in reports) == 1
 
 
-def test_a_program_is_told_by_python_s_own_warnings(sketch):
+def test_a_program_is_reported_by_python_s_own_warnings(sketch):
     with playground.headless() as engine, pytest.warns(playground.PlaygroundWarning) as caught:
         engine.render(sketch, size=(8, 8))
         engine.render(sketch, size=(9, 9))
@@ -85,6 +85,19 @@ def test_check_shows_them_and_fails_for_none(sketch, capsys):
     assert report["ok"] and TURNED in [w["message"] for w in report["warnings"]]
 
 
+def test_a_former_name_of_a_parameter_is_told_once(folder, monkeypatch, capsys):
+    renamed = KERNEL.replace("slider(0, 2)", 'slider(0, 2) was("lazy")').replace("return 1.0", "return idle")
+    loaded = folder.one(renamed.replace("#line 7\n", ""), more="set = { lazy = 2.0 }")
+    monkeypatch.chdir(folder.path)
+    of_file = "warning: sketch.toml:6: pass 'a': 'lazy' is called 'idle' now; the former name is still read"
+    of_set = "warning: 'a.lazy' is called 'a.idle' now; the former name is still read"
+    assert cli.main(["render", ".", "--size", "16x9", "-o", "a.png", "--set", "a.lazy=0.5"]) == 0
+    assert sorted(capsys.readouterr().err.splitlines()) == sorted([of_file, of_set])
+    assert cli.main(["check", "sketch.toml"]) == 0
+    assert capsys.readouterr().out.count(of_file) == 1
+    assert [w.message for w in Warnings(lambda kernel: ()).of(loaded)] == [of_file.split(": ", 2)[2]]
+
+
 def test_the_window_lists_them(any_engine, sketch):
     known = Warnings(lambda kernel: ())
     loaded = load(sketch)
@@ -102,7 +115,7 @@ def test_a_file_that_goes_while_its_picture_is_shown_is_no_mistake_of_the_list(a
     assert Warnings(lambda kernel: ()).of(loaded, any_engine.plan) == []
 
 
-def test_a_hidden_default_is_told_by_render_and_check(folder, monkeypatch, capsys):
+def test_a_hidden_default_is_reported_by_render_and_check(folder, monkeypatch, capsys):
     folder.one(
         KERNEL.replace("return 1.0", "return idle").replace("#line 7\n", ""), more="set = { idle = 2.0 }"
     )

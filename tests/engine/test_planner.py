@@ -12,7 +12,7 @@ from playground.engine import planner as planner_module
 from playground.engine.cache import Cache
 from playground.engine.engine import Engine
 from playground.engine.plan import Plan, every_node
-from playground.engine.planner import Planner, make_plan
+from playground.engine.planner import Planner
 from playground.errors import DataError
 from playground.images.files import write_values
 from playground.sketch.assign import resolve, shown_parameters
@@ -31,7 +31,7 @@ SKETCHES = (
 )
 
 
-def said(plan: Plan) -> list[object]:
+def described(plan: Plan) -> list[object]:
     """Return all that a plan says; matrices by their numbers."""
     eye = plan.eye.clip_from_world.tolist(), plan.eye.position, plan.eye.target
     return [
@@ -71,8 +71,8 @@ def test_a_renewed_plan_is_the_one_made_from_nothing(name):
     for number, (path, value) in enumerate(other_values(sketch)[:40]):
         changed = sketch.with_values({path: value})
         time = 0.5 * (number % 3)
-        assert said(planner.plan(changed, frame_size=SIZE, time=time)) == said(
-            make_plan(changed, frame_size=SIZE, time=time)
+        assert described(planner.plan(changed, frame_size=SIZE, time=time)) == described(
+            Planner().plan(changed, frame_size=SIZE, time=time)
         ), path
     assert planner.made_whole < 41, "some were renewed"
 
@@ -109,7 +109,7 @@ def test_a_value_that_a_count_names_plans_anew():
     for path in counts:
         more = sketch.with_values({path: 7})
         plan = planner.plan(more, frame_size=SIZE)
-        assert said(plan) == said(make_plan(more, frame_size=SIZE)) != said(first)
+        assert described(plan) == described(Planner().plan(more, frame_size=SIZE)) != described(first)
     assert planner.made_whole == 1 + len(counts)
 
 

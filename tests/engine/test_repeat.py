@@ -37,22 +37,24 @@ def numbers(ny: int = 17, nx: int = 17) -> np.ndarray:
     return ((x * 7 + y * 13) % 11).astype(np.float64)
 
 
-def counted(turns: int, whole: int | None = None) -> float:
+def counted(iterations: int, whole: int | None = None) -> float:
     value = 0.0
-    for turn in range(turns):
-        value = value * 2.0 + turn + 0.25 * (turns if whole is None else whole)
+    for iteration in range(iterations):
+        value = value * 2.0 + iteration + 0.25 * (iterations if whole is None else whole)
     return value
 
 
-@pytest.mark.parametrize("turns", [1, 2, 5, 6])
-def test_previous_is_the_turn_before_and_zero_on_the_first(engine, folder, turns):
-    sketch = folder.one(COUNT).with_values({"a.turns": turns})
-    np.testing.assert_array_equal(engine.read(sketch, "a"), np.full((17, 17), counted(turns), np.float32))
-    assert engine.texels == 17 * 17 * turns
+@pytest.mark.parametrize("iterations", [1, 2, 5, 6])
+def test_previous_is_the_iteration_before_and_zero_on_the_first(engine, folder, iterations):
+    sketch = folder.one(COUNT).with_values({"a.turns": iterations})
+    np.testing.assert_array_equal(
+        engine.read(sketch, "a"), np.full((17, 17), counted(iterations), np.float32)
+    )
+    assert engine.texels == 17 * 17 * iterations
     assert engine.runs["a"] == 1
 
 
-def test_no_turn_at_all_gives_zeros(engine, folder):
+def test_no_iteration_at_all_gives_zeros(engine, folder):
     sketch = folder.one(COUNT).with_values({"a.turns": 0})
     assert not engine.read(sketch, "a").any()
 
@@ -60,16 +62,16 @@ def test_no_turn_at_all_gives_zeros(engine, folder):
 def test_stopping_early_gives_the_state_on_the_way(engine, folder):
     """``iterations`` stays the count of all turns: a picture on the way is one of the way."""
     sketch = folder.one(COUNT)
-    for turn in (0, 1, 3, 5, 2):
-        found = engine.read(sketch, "a", steps={"a": turn})
-        assert found[3, 4] == counted(turn, whole=5)
+    for iteration in (0, 1, 3, 5, 2):
+        found = engine.read(sketch, "a", steps={"a": iteration})
+        assert found[3, 4] == counted(iteration, whole=5)
 
 
-def test_steps_go_on_from_turn_to_turn(engine, folder):
+def test_steps_go_on_from_iteration_to_iteration(engine, folder):
     sketch = folder.one(COUNT)
     texels = []
-    for turn, values in engine.steps(sketch, "a"):
-        assert values[0, 0] == counted(turn, whole=5)
+    for iteration, values in engine.steps(sketch, "a"):
+        assert values[0, 0] == counted(iteration, whole=5)
         texels.append(engine.texels // (17 * 17))
     assert texels == [1, 1, 1, 1, 1, 1], "each turn is run once; the first is the empty texture"
 
@@ -92,7 +94,7 @@ def test_neighbours_are_clamped_at_the_border(engine, folder, shape):
     np.testing.assert_allclose(engine.read(sketch, "a"), state, rtol=1e-6)
 
 
-def test_initial_is_what_the_first_turn_reads(engine, folder):
+def test_initial_is_what_the_first_iteration_reads(engine, folder):
     folder.write("numbers.glsl", NUMBERS)
     folder.write("one.glsl", COUNT)
     sketch = folder.sketch(WITH_START).with_values({"a.turns": 2})
@@ -154,12 +156,12 @@ void kernel(ivec2 texel, out float a, out vec4 b) {
 def test_visits_give_the_same_in_place_and_by_every_texel(engine, folder):
     sketch = folder.one(VISITS)
     a, b = np.zeros((17, 17)), np.zeros((17, 17, 4))
-    for turn in range(3):
+    for iteration in range(3):
         before = a.copy()
         for x in range(17):
-            for y in (turn, 4 + turn):
-                if x - 1 - turn >= 0 and x - 1 - turn != 3:
-                    a[y, x] = before[max(y - 1, 0), x] + turn + 1
+            for y in (iteration, 4 + iteration):
+                if x - 1 - iteration >= 0 and x - 1 - iteration != 3:
+                    a[y, x] = before[max(y - 1, 0), x] + iteration + 1
                     b[y, x] += (1.0, 0.5, x, 1.0)
     np.testing.assert_array_equal(engine.read(sketch, "a:a"), a)
     np.testing.assert_array_equal(engine.read(sketch, "a:b"), b)
@@ -181,8 +183,8 @@ def test_a_repeat_that_reads_time_goes_on_and_starts_again(engine, folder):
     for time in (0.0, 3.0, 3.5, 7.0, 2.0):
         value = engine.read(sketch, "a", time=time)[0, 0]
         fresh = 0.0
-        for turn in range(int(time)):
-            fresh = fresh * 2.0 + turn + 0.25
+        for iteration in range(int(time)):
+            fresh = fresh * 2.0 + iteration + 0.25
         assert value == fresh
         texels.append(engine.texels // 17**2)
     assert texels == [1, 3, 0, 4, 2]
@@ -209,17 +211,17 @@ float kernel(ivec2 texel) {
 
 @pytest.mark.parametrize("most", [0, 1, 2, 4, 11, 50])
 @pytest.mark.parametrize("stopped", [0, 1, 5, 11])
-def test_turns_taken_at_once_give_what_they_give_one_by_one(engine, folder, most, stopped):
+def test_iterations_taken_at_once_give_what_they_give_one_by_one(engine, folder, most, stopped):
     sketch = folder.one(TURNS_AT_ONCE).with_values({"a.most": most})
     value = np.float32(0)
-    for turn in range(stopped):
-        value = value * np.float32(1.5) + np.float32(turn) + np.float32(0.25 * 11)
+    for iteration in range(stopped):
+        value = value * np.float32(1.5) + np.float32(iteration) + np.float32(0.25 * 11)
     found = engine.read(sketch, "a", steps={"a": stopped})
     np.testing.assert_array_equal(found, np.full((17, 17), value, np.float32))
 
 
 @pytest.mark.parametrize(("most", "runs"), [(1, 11), (4, 3), (50, 1)])
-def test_turns_at_once_take_so_many_runs(engine, folder, monkeypatch, most, runs):
+def test_iterations_at_once_take_so_many_runs(engine, folder, monkeypatch, most, runs):
     started = []
     for name in ("fill", "run"):
         usual = getattr(Program, name)
@@ -233,10 +235,10 @@ def test_turns_at_once_take_so_many_runs(engine, folder, monkeypatch, most, runs
     assert sum(started) == runs
 
 
-def test_each_step_of_turns_at_once_goes_on_from_the_one_before(engine, folder):
+def test_each_step_of_iterations_at_once_goes_on_from_the_one_before(engine, folder):
     sketch = folder.one(TURNS_AT_ONCE).with_values({"a.most": 50})
-    steps = [(turn, values.copy()) for turn, values in engine.steps(sketch, "a")]
-    assert [turn for turn, _ in steps] == list(range(12))
+    steps = [(iteration, values.copy()) for iteration, values in engine.steps(sketch, "a")]
+    assert [iteration for iteration, _ in steps] == list(range(12))
     np.testing.assert_array_equal(steps[-1][1], engine.read(sketch, "a"))
 
 
@@ -251,7 +253,7 @@ def test_each_step_of_turns_at_once_goes_on_from_the_one_before(engine, folder):
         ('repeat = "3", visits = "1, 1", stride = "wide"', "stride"),
     ],
 )
-def test_a_header_that_says_how_turns_run_is_checked(folder, header, complaint):
+def test_a_header_that_says_how_iterations_run_is_checked(folder, header, complaint):
     body = "float kernel(ivec2 texel) { return previous(texel); }"
     text = f'#pragma kernel(output = "a:r32f", {header})\n{body}\n'
     with pytest.raises(PlaygroundError, match=complaint) as raised:
@@ -286,12 +288,15 @@ def test_a_lattice_that_closes_gives_the_same_bits_with_and_without_its_stride(c
         text = LATTICE.replace("STRIDE", stride)
         with Engine(ctx, driver=driver) as engine:
             sketch = folder.one(text, size=f"size = {size}")
-            turns = [values.copy() for _, values in engine.steps(sketch, "a")]
+            iterations = [values.copy() for _, values in engine.steps(sketch, "a")]
         with Engine(ctx, driver=driver) as engine:
-            turns += [engine.read(sketch, "a", steps={"a": turn}).copy() for turn in (len(turns) - 1, 1)]
+            iterations += [
+                engine.read(sketch, "a", steps={"a": iteration}).copy()
+                for iteration in (len(iterations) - 1, 1)
+            ]
         with Engine(ctx, driver=driver) as engine:
-            turns.append(engine.read(sketch, "a").copy())
-            found.append(turns)
+            iterations.append(engine.read(sketch, "a").copy())
+            found.append(iterations)
     assert len(found[0]) == len(found[1]) > 2
     for plain, strided in zip(*found, strict=True):
         np.testing.assert_array_equal(plain, strided)
@@ -307,7 +312,7 @@ def test_a_stride_that_is_no_power_of_two_is_refused(ctx, folder):
 
 
 @pytest.mark.parametrize("left", [1e9, 0.7, -3e38])
-def test_a_turn_is_not_touched_by_what_an_earlier_one_left_in_its_texture(engine, folder, left):
+def test_an_iteration_is_not_touched_by_what_an_earlier_one_left_in_its_texture(engine, folder, left):
     text = """#pragma kernel(output = "a:r32f", repeat = "4")
     float kernel(ivec2 texel) { return iteration < 2 ? LEFT : 0.123 + 0.0 * previous(texel); }
     """.replace("LEFT", f"{left:.1e}").replace("\n    ", "\n")

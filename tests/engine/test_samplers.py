@@ -20,6 +20,6 @@ from playground.sketch.model import Sampling
 def test_anisotropy_is_for_mipmaps_on_a_graphics_card(ctx, software, sampling, wanted):
     binder = Binder(ctx, software=software)
     try:
-        assert binder._sampler(sampling).anisotropy == min(wanted, ctx.max_anisotropy)
+        assert binder._new_sampler(sampling).anisotropy == min(wanted, ctx.max_anisotropy)
     finally:
         binder.release()

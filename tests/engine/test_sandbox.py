@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
 import textwrap
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -102,6 +104,13 @@ def test_it_tries_the_smallest_terrain_that_is_accepted(sandbox, folder):
     assert report.ok, report.error
 
 
+def test_what_cannot_be_sent_is_a_sentence_and_the_next_request_works(sandbox, folder):
+    report = sandbox.run(replace(TrySketch(folder.one(GOOD)), drivers=lambda: None))
+    assert not report.ok
+    assert re.fullmatch(r"the sandbox failed: \w+: .*(pickle|local object).*", str(report.error))
+    assert sandbox.run(TrySketch(folder.one(GOOD))).ok
+
+
 def test_a_library_file_is_compiled_alone(sandbox, folder):
     good = folder.write("lib.glsl", "float twice(float x) { return 2.0 * x; }\n")
     bad = folder.write("bad.glsl", "float twice(float x) {\n return 2.0 * y; }\n")
@@ -130,19 +139,19 @@ def at_work(sandbox: Sandbox) -> int:
 
 
 @pytest.mark.parametrize(
-    ("number", "said"),
+    ("number", "message"),
     [
         ("SIGSEGV", "pass 'a' crashed the driver or its compiler in the sandbox (SIGSEGV)"),
         ("SIGKILL", "pass 'a' was killed by the system in the sandbox (SIGKILL); did memory run out?"),
     ],
 )
-def test_a_crash_says_how_and_where(sandbox, folder, number, said):
+def test_a_crash_says_how_and_where(sandbox, folder, number, message):
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
     sandbox.submit(TrySketch(folder.one(SLOW)))
     os.kill(at_work(sandbox), signal.Signals[number])
     report = wait(sandbox)
     assert isinstance(report.error, SandboxCrash)
-    assert report.error.diagnostics[0].message == said
+    assert report.error.diagnostics[0].message == message
     assert report.error.diagnostics[0].file == str(folder.path / "one.glsl")
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 

@@ -12,7 +12,7 @@ from playground.sketch.load import load
 
 from ..sketch_texts import map_of, passes
 
-LAND = """#pragma kernel(output = "height:r32f")
+TERRAIN = """#pragma kernel(output = "height:r32f")
 float kernel(ivec2 texel) { return float(texel.x + 100 * texel.y); }
 """
 ROWS = """#pragma kernel(output = "rows:r32f")
@@ -50,7 +50,8 @@ void main() {
 SKETCH = (
     "format = 1\nsize = [17, 9]\n"
     + passes(
-        land=("./land", 'size = ["size.x // 2", "size.y + 3"]'), sum=("./sum", 'inputs = { height = "land" }')
+        terrain=("./terrain", 'size = ["size.x // 2", "size.y + 3"]'),
+        sum=("./sum", 'inputs = { height = "terrain" }'),
     )
     + map_of("sum")
 )
@@ -58,16 +59,16 @@ SKETCH = (
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    for name, text in {"land.glsl": LAND, "rows.glsl": ROWS, "all.glsl": ALL, "sum.toml": SUM}.items():
+    for name, text in {"terrain.glsl": TERRAIN, "rows.glsl": ROWS, "all.glsl": ALL, "sum.toml": SUM}.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     return tmp_path
 
 
 def total(engine: Engine, folder: Path) -> float:
-    land = engine.read(load(folder), "land")
-    assert land.shape == (12, 8)
-    return float(land.astype(np.float64).sum())
+    terrain = engine.read(load(folder), "terrain")
+    assert terrain.shape == (12, 8)
+    return float(terrain.astype(np.float64).sum())
 
 
 def test_an_expression_names_the_size_of_what_feeds_an_input(engine: Engine, folder: Path):
@@ -105,10 +106,12 @@ def test_a_size_may_ask_for_compute_shaders(ctx, tmp_path: Path):
         encoding="utf-8",
     )
     for driver in ("fragment", "auto"):
-        said: list[str] = []
-        with Engine(ctx, driver=driver, notice=said.append) as engine:
+        notices: list[str] = []
+        with Engine(ctx, driver=driver, notice=notices.append) as engine:
             has = engine.info.compute and driver != "fragment"
             for _ in range(2):
                 assert engine.read(load(tmp_path), "height").shape == ((17, 17) if has else (9, 9))
-        assert len(said) == (0 if has else 1)
-        assert has or said[0].startswith("the sketch does without compute shaders, which are not here: see ")
+        assert len(notices) == (0 if has else 1)
+        assert has or notices[0].startswith(
+            "the sketch does without compute shaders, which are not here: see "
+        )

@@ -14,7 +14,7 @@ from playground.sketch.model import Camera
 
 from ..sketch_texts import passes
 
-LAND = """#pragma kernel(output = "height:r32f")
+TERRAIN = """#pragma kernel(output = "height:r32f")
 uniform float bumps = 3.0;   //! slider(0, 10) How many
 uniform float unused = 1.0;  //! slider(0, 10) Read by nobody
 float kernel(ivec2 texel) { return fract(float(texel.x * texel.y) * bumps * 0.01); }
@@ -35,7 +35,7 @@ CLOCK = """#pragma kernel(output = "clock:r32f")
 float kernel(ivec2 texel) { return time; }
 """
 FOUR = "\nextent = 1000.0\nrelief = 100.0\n" + passes(
-    height="./land",
+    height="./terrain",
     slope="./slope",
     span="./span",
     clock="./clock",
@@ -46,7 +46,13 @@ EVERYTHING = ("height", "slope", "span", "clock", "light")
 
 @pytest.fixture
 def four(folder):
-    for name, text in {"land": LAND, "light": LIGHT, "slope": SLOPE, "span": SPAN, "clock": CLOCK}.items():
+    for name, text in {
+        "terrain": TERRAIN,
+        "light": LIGHT,
+        "slope": SLOPE,
+        "span": SPAN,
+        "clock": CLOCK,
+    }.items():
         folder.write(f"{name}.glsl", text)
     return folder.sketch(FOUR)
 
@@ -73,7 +79,7 @@ def test_moving_the_light_runs_light_and_view_only(engine, four):
     assert ran_after(engine, four) == set(), "both are kept"
 
 
-def test_a_changed_land_runs_what_reads_it(engine, four):
+def test_a_changed_terrain_runs_what_reads_it(engine, four):
     ran_after(engine, four)
     assert ran_after(engine, four.with_values({"height.bumps": 4.0})) == {"height", "slope", "light", "view"}
 
@@ -92,7 +98,7 @@ def test_a_value_that_the_text_never_uses_makes_nothing_stale(engine, four):
 def test_a_comment_makes_nothing_stale(engine, folder, four):
     ran_after(engine, four)
     folder.write(
-        "land.glsl", "// a new first line\n" + LAND.replace("How many", "How many bumps /* or not */")
+        "terrain.glsl", "// a new first line\n" + TERRAIN.replace("How many", "How many bumps /* or not */")
     )
     folder.write("light.glsl", LIGHT.replace("\nfloat", "\n\n// a remark\n   float"))
     assert ran_after(engine, folder.sketch(FOUR)) == set()
@@ -100,7 +106,7 @@ def test_a_comment_makes_nothing_stale(engine, folder, four):
 
 def test_a_changed_text_runs_it_and_what_reads_it(engine, folder, four):
     ran_after(engine, four)
-    folder.write("land.glsl", LAND.replace("0.01", "0.02"))
+    folder.write("terrain.glsl", TERRAIN.replace("0.01", "0.02"))
     assert ran_after(engine, folder.sketch(FOUR)) == {"height", "slope", "light", "view"}
 
 
@@ -131,8 +137,10 @@ def test_the_camera_matters_to_what_names_it(engine, folder):
     folder.write(
         "eye.glsl", '#pragma kernel(output = "e:r32f")\nfloat kernel(ivec2 texel) { return eye.x; }\n'
     )
-    folder.write("land.glsl", LAND)
-    sketch = folder.sketch('[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "e"\nuse = "./eye"\n')
+    folder.write("terrain.glsl", TERRAIN)
+    sketch = folder.sketch(
+        '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "e"\nuse = "./eye"\n'
+    )
     engine.texture(sketch, "e")
     engine.texture(sketch, "height")
     turned = replace(sketch, camera=replace(sketch.camera, azimuth=10.0))
@@ -175,18 +183,18 @@ def test_the_driver_and_the_form_enter_the_key(ctx, four):
     with Engine(ctx, driver="fragment") as one, Engine(ctx, driver="auto") as two:
         one.texture(four, "height")
         two.texture(four, "height")
-        assert set(one.cache._kept) == set(two.cache._kept), "auto draws a plain kernel by fragment"
+        assert set(one.cache._cached) == set(two.cache._cached), "auto draws a plain kernel by fragment"
     if ctx.version_code >= 430:
         with Engine(ctx, driver="compute") as three:
             three.texture(four, "height")
-            assert set(three.cache._kept) != set(one.cache._kept)
+            assert set(three.cache._cached) != set(one.cache._cached)
 
 
 # ── the bound ────────────────────────────────────────────────────────────────
 
 
 def test_the_cache_keeps_its_bound_and_drops_the_oldest(ctx, folder):
-    sketch = folder.one(LAND, size="size = 64")  # 16 KiB
+    sketch = folder.one(TERRAIN, size="size = 64")  # 16 KiB
     each = 64 * 64 * 4
     with Engine(ctx, cache_bytes=4 * each) as engine:
         for bumps in range(10):
@@ -198,7 +206,7 @@ def test_the_cache_keeps_its_bound_and_drops_the_oldest(ctx, folder):
             assert len(engine.ran) == runs, f"bumps {bumps}"
 
 
-def test_what_a_frame_uses_is_kept_even_over_the_bound(ctx, four):
+def test_what_a_frame_uses_is_cached_even_over_the_bound(ctx, four):
     with Engine(ctx, cache_bytes=1000) as engine:
         values = engine.read(four, "light", size=(32, 18))
         assert engine.cache.bytes == 2 * 17 * 17 * 4 > 1000
@@ -217,7 +225,7 @@ def test_mipmaps_count(ctx, folder):
     folder.write(
         "far.glsl", LIGHT.replace("//! input", '//! input("linear", "mipmap")').replace("height", "a")
     )
-    folder.write("one.glsl", LAND)
+    folder.write("one.glsl", TERRAIN)
     sketch = folder.sketch(
         '[[pass]]\nname="a"\nuse="./one"\n[[pass]]\nname="b"\nuse="./far"\n', size="size = 64"
     )

@@ -49,7 +49,7 @@ TYPE kernel(ivec2 texel) {
     return CAST;
 }
 """
-LAND = """#pragma kernel(output = "height:r32f, water:rg16f", repeat = "3")
+TERRAIN = """#pragma kernel(output = "height:r32f, water:rg16f", repeat = "3")
 uniform float bumps = 3.0; //! slider(0, 10)
 uniform sampler2D image;   //! file("p.png")
 void kernel(ivec2 texel, out float height, out vec2 water) {
@@ -96,14 +96,14 @@ height = "add:height"
 BODY = """extent = 1000.0
 relief = 100.0
 [[pass]]
-name = "land"
-use = "./land"
+name = "terrain"
+use = "./terrain"
 [[pass]]
 name = "worn"
 use = "./loop"
 repeat = 3
 feedback = { height = "height" }
-inputs = { height = "land:height" }
+inputs = { height = "terrain:height" }
 [[pass]]
 name = "light"
 use = "./light"
@@ -112,13 +112,13 @@ inputs = { height = "worn:height" }
 use = "./draw"
 inputs = { height = "worn:height", light = "light" }
 """
-LANDS = ("land", "worn.add", "light")
+TERRAIN_PASSES = ("terrain", "worn.add", "light")
 
 
 @pytest.fixture
 def worn(folder):
-    """Give a land that a loop wears, lit, and drawn from the camera."""
-    for name, text in (("land", LAND), ("smooth", SMOOTH), ("light", LIGHT), ("draw", DRAW)):
+    """Give a terrain that a loop wears, lit, and drawn from the camera."""
+    for name, text in (("terrain", TERRAIN), ("smooth", SMOOTH), ("light", LIGHT), ("draw", DRAW)):
         folder.write(f"{name}.glsl", text)
     folder.write("loop.toml", LOOP)
     write_png(folder.path / "p.png", np.full((1, 1, 4), 255, np.uint8))
@@ -158,7 +158,7 @@ def shelf(request, ctx, tmp_path) -> Iterator[Shelf]:
     """Give a store for engines of each driver."""
     if request.param == "compute" and ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
-    made = Shelf(ctx, tmp_path / "land", request.param)
+    made = Shelf(ctx, tmp_path / "terrain", request.param)
     yield made
     made.close()
 
@@ -166,7 +166,7 @@ def shelf(request, ctx, tmp_path) -> Iterator[Shelf]:
 @pytest.fixture
 def any_shelf(ctx, tmp_path) -> Iterator[Shelf]:
     """Give a store for engines that choose their drivers themselves."""
-    made = Shelf(ctx, tmp_path / "land")
+    made = Shelf(ctx, tmp_path / "terrain")
     yield made
     made.close()
 
@@ -235,16 +235,16 @@ def test_bits_are_the_same_where_there_is_no_compute():
 
 
 def test_a_reopened_sketch_shows_the_same_and_runs_only_what_the_camera_changes(shelf, worn):
-    """Loops, several outputs, mipmaps and a mesh over them; the land itself is not even read."""
+    """Loops, several outputs, mipmaps and a mesh over them; the terrain itself is not even read."""
     first = shelf.engine()
     seen = picture(first, worn)
-    assert set(first.runs) == {*LANDS, "view"}
+    assert set(first.runs) == {*TERRAIN_PASSES, "view"}
     shelf.keep(first)
     second = shelf.engine()
     assert picture(second, worn) == seen
     assert dict(second.runs) == {"view": 1}
     assert second.disk_caching.reads == 2 and set(second.results) == {"worn.add", "light", "view"}
-    assert second.disk_caching.skipped == {"land"}
+    assert second.disk_caching.skipped == {"terrain"}
     turned = replace(worn, camera=replace(worn.camera, azimuth=worn.camera.azimuth + 40.0))
     with Engine(shelf.ctx, driver=shelf.driver) as plain:
         assert picture(second, turned) == picture(plain, turned)
@@ -259,28 +259,28 @@ def test_what_was_skipped_runs_where_it_is_wanted(any_shelf, worn):
     seen = picture(second, worn)
     second.disk_caching.skips = False
     assert picture(second, worn) == seen
-    assert {"land", "worn.add", "light", "view"} == set(second.results) and not second.disk_caching.skipped
-    assert second.runs["land"] == 1 and second.runs["light"] == 0
+    assert {"terrain", "worn.add", "light", "view"} == set(second.results) and not second.disk_caching.skipped
+    assert second.runs["terrain"] == 1 and second.runs["light"] == 0
     with Engine(any_shelf.ctx) as plain:
-        for path in ("land:water", "worn", "light"):
+        for path in ("terrain:water", "worn", "light"):
             np.testing.assert_array_equal(second.read(worn, path), plain.read(worn, path))
 
 
 @pytest.mark.parametrize("memory", [20_000, 2**24])
 def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_shows(any_shelf, worn, memory):
-    """Values back and forth, loops stopped, sessions that end; also in memory too small for two lands."""
-    chance = random.Random(memory)
+    """Values back and forth, loops stopped, sessions that end; also in memory too small for two terrains."""
+    rng = random.Random(memory)
     sketch, reads, steps = worn, 0, {}
     engine = any_shelf.engine(cache_bytes=memory)
     with Engine(any_shelf.ctx) as plain:
         for _ in range(50):
-            match chance.randrange(7):
+            match rng.randrange(7):
                 case 0:
-                    sketch = sketch.with_values({"land.bumps": chance.choice((1.0, 2.0, 3.0))})
+                    sketch = sketch.with_values({"terrain.bumps": rng.choice((1.0, 2.0, 3.0))})
                 case 1:
-                    sketch = sketch.with_values({"light.sun": (chance.choice((10.0, 200.0)), 30.0)})
+                    sketch = sketch.with_values({"light.sun": (rng.choice((10.0, 200.0)), 30.0)})
                 case 2:
-                    sketch = sketch.with_values({"worn.add.share": chance.choice((0.25, 0.5))})
+                    sketch = sketch.with_values({"worn.add.share": rng.choice((0.25, 0.5))})
                 case 3:
                     engine.disk_caching.skips = not engine.disk_caching.skips
                 case 4 if engine.plan is not None:
@@ -288,23 +288,23 @@ def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_sh
                     reads += engine.disk_caching.reads
                     engine = any_shelf.engine(cache_bytes=memory)
                 case 5:
-                    steps = chance.choice(({}, {"worn": 1}, {"worn": 2}, {"land": 2}))
+                    steps = rng.choice(({}, {"worn": 1}, {"worn": 2}, {"terrain": 2}))
                 case 6 if engine.plan is not None:
                     any_shelf.keep(engine)
             expected = set(engine.stale(sketch, size=(64, 36), steps=steps))
             assert picture(engine, sketch, steps) == picture(plain, sketch, steps)
             # What is read may take the place of what was still there when stale() looked.
             assert set(engine.ran) == expected or memory < 2**20, "stale() tells what runs"
-        path = chance.choice(("land", "worn", "light"))
+        path = rng.choice(("terrain", "worn", "light"))
         np.testing.assert_array_equal(engine.read(sketch, path), plain.read(sketch, path))
-    assert reads + engine.disk_caching.reads > 0, "the store was used"
+    assert reads + engine.disk_caching.reads > 0, "the disk cache was used"
 
 
-# ── what is another land ─────────────────────────────────────────────────────
+# ── what is another terrain ─────────────────────────────────────────────────────
 
 
 def reopened(shelf: Shelf, sketch) -> set[str]:
-    """Return the passes of the land that a new session runs, and see that it shows the truth."""
+    """Return the passes of the terrain that a new session runs, and see that it shows the truth."""
     engine = shelf.engine()
     with Engine(shelf.ctx, driver=shelf.driver) as plain:
         assert picture(engine, sketch) == picture(plain, sketch)
@@ -312,8 +312,8 @@ def reopened(shelf: Shelf, sketch) -> set[str]:
 
 
 @pytest.fixture
-def kept(any_shelf, worn) -> Shelf:
-    """Give a store that has the worn land."""
+def cached(any_shelf, worn) -> Shelf:
+    """Give a store that has the worn terrain."""
     engine = any_shelf.engine()
     picture(engine, worn)
     any_shelf.keep(engine)
@@ -321,51 +321,53 @@ def kept(any_shelf, worn) -> Shelf:
     return any_shelf
 
 
-def test_another_text_is_another_land_and_another_comment_is_none(kept, folder, worn):
-    folder.write("land.glsl", "// a remark\n" + LAND.replace("    water", "    // more\n  water"))
-    assert reopened(kept, folder.sketch(BODY, size="size = 33")) == set()
-    folder.write("land.glsl", LAND.replace("64.0", "32.0"))
-    assert reopened(kept, folder.sketch(BODY, size="size = 33")) == set(LANDS)
-    folder.write("land.glsl", LAND)
+def test_another_text_is_another_terrain_and_another_comment_is_none(cached, folder, worn):
+    folder.write("terrain.glsl", "// a remark\n" + TERRAIN.replace("    water", "    // more\n  water"))
+    assert reopened(cached, folder.sketch(BODY, size="size = 33")) == set()
+    folder.write("terrain.glsl", TERRAIN.replace("64.0", "32.0"))
+    assert reopened(cached, folder.sketch(BODY, size="size = 33")) == set(TERRAIN_PASSES)
+    folder.write("terrain.glsl", TERRAIN)
     folder.write("light.glsl", LIGHT.replace('"linear", "mipmap"', '"nearest", "mipmap"'))
-    assert reopened(kept, folder.sketch(BODY, size="size = 33")) == {"light"}
+    assert reopened(cached, folder.sketch(BODY, size="size = 33")) == {"light"}
 
 
-def test_another_value_is_another_land(kept, worn):
-    assert reopened(kept, worn.with_values({"land.bumps": 3.0000001})) == set(LANDS)
-    assert reopened(kept, worn.with_values({"light.sun": (135.0, 31.0)})) == {"light"}
-    assert reopened(kept, worn.with_values({"size": 32})) == set(LANDS)
+def test_another_value_is_another_terrain(cached, worn):
+    assert reopened(cached, worn.with_values({"terrain.bumps": 3.0000001})) == set(TERRAIN_PASSES)
+    assert reopened(cached, worn.with_values({"light.sun": (135.0, 31.0)})) == {"light"}
+    assert reopened(cached, worn.with_values({"size": 32})) == set(TERRAIN_PASSES)
 
 
-def test_another_content_of_a_file_is_another_land(kept, folder, worn):
+def test_another_content_of_a_file_is_another_terrain(cached, folder, worn):
     path = folder.path / "p.png"
     before = path.stat()
     write_png(path, np.full((1, 1, 4), 254, np.uint8))
     os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns + 1))
-    assert reopened(kept, worn) == set(LANDS)
+    assert reopened(cached, worn) == set(TERRAIN_PASSES)
 
 
-def test_what_made_it_is_part_of_the_key(kept, worn, monkeypatch):
+def test_what_made_it_is_part_of_the_key(cached, worn, monkeypatch):
     """Another driver, processor or version of the playground would perhaps compute other bits."""
-    ours = kept.engine().info
+    ours = cached.engine().info
     monkeypatch.setattr(store_module, "tool", lambda: "another version")
-    assert reopened(kept, worn) == set(LANDS)
+    assert reopened(cached, worn) == set(TERRAIN_PASSES)
     monkeypatch.undo()
     for other in (
         replace(ours, version=f"{ours.version}.1"),
         replace(ours, renderer="llvmpipe (LLVM 99)"),
         replace(ours, version_code=410),
     ):
-        assert names(disk_cache_for(other, 1, kept.folder)) != names(disk_cache_for(ours, 1, kept.folder))
+        assert names(disk_cache_for(other, 1, cached.folder)) != names(disk_cache_for(ours, 1, cached.folder))
     monkeypatch.setattr("playground.gpu.build.processor", lambda: ("Other", "avx"))
     software = ContextInfo(450, "llvmpipe", "Mesa", "4.5", 4)
-    one = names(disk_cache_for(software, 1, kept.folder))
+    one = names(disk_cache_for(software, 1, cached.folder))
     monkeypatch.setattr("playground.gpu.build.processor", lambda: ("Other", "avx fma"))
-    assert names(disk_cache_for(software, 1, kept.folder)) != one
+    assert names(disk_cache_for(software, 1, cached.folder)) != one
     card = replace(software, renderer="NVIDIA H200")
-    one = names(disk_cache_for(card, 1, kept.folder))
+    one = names(disk_cache_for(card, 1, cached.folder))
     monkeypatch.undo()
-    assert names(disk_cache_for(card, 1, kept.folder)) == one, "a card's bits do not depend on the processor"
+    assert names(disk_cache_for(card, 1, cached.folder)) == one, (
+        "a card's bits do not depend on the processor"
+    )
 
 
 def names(store: DiskCache) -> str:
@@ -389,7 +391,7 @@ def test_each_form_of_a_pass_has_its_own(ctx, folder, tmp_path):
         pytest.skip("this context has no compute shaders")
     sketch = folder.one('#pragma kernel(output = "v:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n')
     for driver in ("fragment", "compute"):
-        shelf = Shelf(ctx, tmp_path / "land", driver)
+        shelf = Shelf(ctx, tmp_path / "terrain", driver)
         engine = shelf.engine()
         picture(engine, sketch)
         shelf.keep(engine)
@@ -405,14 +407,14 @@ float kernel(ivec2 texel) { return texelFetch(before, texel, 0).r + BODY; }
 """
 
 
-def kept_of(shelf: Shelf, sketch, **options) -> set[str]:
+def cached_of(shelf: Shelf, sketch, **options) -> set[str]:
     engine = shelf.engine()
     engine.render(sketch, size=(64, 36), **options)
     shelf.keep(engine)
-    return {each.kept.made_for.partition(": ")[2] for each in listed(shelf.folder)}
+    return {each.textures.made_for.partition(": ")[2] for each in listed(shelf.folder)}
 
 
-def test_what_reads_the_time_or_the_camera_is_not_kept_nor_what_reads_it(any_shelf, folder):
+def test_what_reads_the_time_or_the_camera_is_not_cached_nor_what_reads_it(any_shelf, folder):
     passes = ""
     for name, reads, body in (
         ("still", "", "0.5"),
@@ -433,19 +435,19 @@ def test_what_reads_the_time_or_the_camera_is_not_kept_nor_what_reads_it(any_she
         " + texelFetch(c, texel, 0).r; }\n",
     )
     passes += '[[pass]]\nname = "both"\nuse = "./both"\ninputs = { a = "after", b = "sees", c = "grows" }\n'
-    assert kept_of(any_shelf, folder.sketch(passes)) == {"still"}
+    assert cached_of(any_shelf, folder.sketch(passes)) == {"still"}
 
 
-def test_what_has_a_texel_for_each_pixel_is_not_kept(any_shelf, folder):
+def test_what_has_a_texel_for_each_pixel_is_not_cached(any_shelf, folder):
     sketch = folder.one(TIMES.replace("REPEAT", "").replace("BODY", "0.5"), size="size = [64, 36]")
-    assert kept_of(any_shelf, sketch) == set()
-    assert kept_of(any_shelf, sketch.with_values({"size": (64, 37)})) == {"a"}
+    assert cached_of(any_shelf, sketch) == set()
+    assert cached_of(any_shelf, sketch.with_values({"size": (64, 37)})) == {"a"}
 
 
-def test_what_stops_before_its_last_turn_is_not_kept(any_shelf, folder, worn):
-    assert kept_of(any_shelf, worn, steps={"land": 2}) == set()
-    assert kept_of(any_shelf, worn, steps={"worn": 2}) == {"land"}
-    assert kept_of(any_shelf, worn) == {"land", "worn.add", "light"}
+def test_what_stops_before_its_last_iteration_is_not_cached(any_shelf, folder, worn):
+    assert cached_of(any_shelf, worn, steps={"terrain": 2}) == set()
+    assert cached_of(any_shelf, worn, steps={"worn": 2}) == {"terrain"}
+    assert cached_of(any_shelf, worn) == {"terrain", "worn.add", "light"}
 
 
 class Strokes:
@@ -462,17 +464,17 @@ class Strokes:
         return slice(0, 1), slice(0, 1)
 
 
-def test_what_reads_a_painted_file_is_not_kept(any_shelf, folder, worn):
+def test_what_reads_a_painted_file_is_not_cached(any_shelf, folder, worn):
     """No other process knows it by that version: the cache would fill with what is never read again."""
     engine = any_shelf.engine()
     engine.painted[folder.path / "p.png"] = Strokes()
     engine.render(worn, size=(64, 36))
     any_shelf.keep(engine)
     assert not listed(any_shelf.folder)
-    assert kept_of(any_shelf, worn) == {"worn.add", "light"}, "without the strokes"
+    assert cached_of(any_shelf, worn) == {"worn.add", "light"}, "without the strokes"
 
 
-def test_a_draw_that_another_goes_on_from_keeps_its_samples_and_is_not_kept(any_shelf, folder):
+def test_a_draw_that_another_goes_on_from_keeps_its_samples_and_is_not_cached(any_shelf, folder):
     draw = '#pragma draw(mesh = "triangles", count = "1", output = "v:rgba16f", depth = "none")\n'
     draw += "INITIALvec4 vertex(int corner) { return vec4(corner == 1, corner == 2, 0, 1); }\n"
     draw += "vec4 fragment() { return vec4(0.5); }\n"
@@ -480,15 +482,15 @@ def test_a_draw_that_another_goes_on_from_keeps_its_samples_and_is_not_kept(any_
     folder.write("over.glsl", draw.replace("INITIAL", "uniform sampler2D initial; //! input\n"))
     passes = '[[pass]]\nname = "first"\nuse = "./first"\n[[pass]]\nname = "over"\nuse = "./over"\n'
     sketch = folder.sketch(passes + 'inputs = { initial = "first" }\n')
-    assert kept_of(any_shelf, sketch) == set()
+    assert cached_of(any_shelf, sketch) == set()
     alone = folder.sketch('[[pass]]\nname = "first"\nuse = "./first"\n')
-    assert kept_of(any_shelf, alone) == {"first"}
+    assert cached_of(any_shelf, alone) == {"first"}
 
 
-def test_nothing_is_kept_unless_somebody_asks(any_engine, worn, monkeypatch, tmp_path):
+def test_nothing_is_cached_unless_somebody_asks(any_engine, worn, monkeypatch, tmp_path):
     """A picture for a test must not come from a store."""
-    monkeypatch.setattr(DiskCache, "read", lambda *_: pytest.fail("the store was read"))
-    monkeypatch.setattr(DiskCache, "keep", lambda *_: pytest.fail("the store was written"))
+    monkeypatch.setattr(DiskCache, "read", lambda *_: pytest.fail("the disk cache was read"))
+    monkeypatch.setattr(DiskCache, "write", lambda *_: pytest.fail("the disk cache was written"))
     assert any_engine.disk_caching is None
     picture(any_engine, worn)
     using = {
@@ -531,7 +533,7 @@ DAMAGE = {
 @pytest.mark.parametrize("damage", DAMAGE)
 def test_a_damaged_file_is_dropped(tmp_path, damage):
     store = DiskCache(tmp_path)
-    store.keep("one", some(1))
+    store.write("one", some(1))
     store.close()
     path = store._path("one")
     whole = path.read_bytes()
@@ -542,41 +544,41 @@ def test_a_damaged_file_is_dropped(tmp_path, damage):
     assert store.read("one") is not None
 
 
-def test_where_files_are_damaged_the_land_is_computed(kept, worn):
-    for each in listed(kept.folder):
+def test_where_files_are_damaged_the_terrain_is_computed(cached, worn):
+    for each in listed(cached.folder):
         each.path.write_bytes(each.path.read_bytes()[:-1])
-    assert reopened(kept, worn) == set(LANDS)
-    assert listed(kept.folder) == []
+    assert reopened(cached, worn) == set(TERRAIN_PASSES)
+    assert listed(cached.folder) == []
 
 
-def test_a_file_under_anothers_name_is_dropped(kept, worn):
-    one, other = (each.path for each in listed(kept.folder))
+def test_a_file_under_anothers_name_is_dropped(cached, worn):
+    one, other = (each.path for each in listed(cached.folder))
     one.write_bytes(other.read_bytes())
-    assert reopened(kept, worn) in ({"light"}, {"land", "worn.add"})
+    assert reopened(cached, worn) in ({"light"}, {"terrain", "worn.add"})
     assert not one.exists()
 
 
-def test_a_texture_of_another_size_is_not_taken(kept, folder):
+def test_a_texture_of_another_size_is_not_taken(cached, folder):
     """Not even where the key agrees, as with a technique whose fast variant has other outputs."""
-    engine = kept.engine()
+    engine = cached.engine()
     store = engine.disk_caching.store
     sketch = folder.one('#pragma kernel(output = "v:r8")\nfloat kernel(ivec2 texel) { return 0.5; }\n')
     picture(engine, sketch)
     key = engine.keys_of(engine.plan).steps["a"]
-    store.keep(key, CachedTextures((16, 17), (("v", "r8"),), 1.0, "", (memoryview(bytes(16 * 17)),)))
+    store.write(key, CachedTextures((16, 17), (("v", "r8"),), 1.0, "", (memoryview(bytes(16 * 17)),)))
     store.close()
     assert key in store
-    assert reopened(kept, sketch) == {"a"}
+    assert reopened(cached, sketch) == {"a"}
 
 
 # ── what is worth it ─────────────────────────────────────────────────────────
 
 
-def test_only_what_costs_more_than_to_read_it_is_kept(any_shelf, worn, monkeypatch):
-    costs = {"land": 500.0, "worn": 1.0, "light": 100.0}
-    monkeypatch.setattr("playground.engine.disk_caching.reading", lambda size: 4.0)
+def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeypatch):
+    costs = {"terrain": 500.0, "worn": 1.0, "light": 100.0}
+    monkeypatch.setattr("playground.engine.disk_caching.read_time", lambda size: 4.0)
 
-    def kept_with(floor: float, **more: float) -> set[str]:
+    def cached_with(floor: float, **more: float) -> set[str]:
         clear(any_shelf.folder)
         engine = any_shelf.engine(floor)
         picture(engine, worn)
@@ -585,30 +587,30 @@ def test_only_what_costs_more_than_to_read_it_is_kept(any_shelf, worn, monkeypat
         for name, cost in (costs | more).items():
             engine.disk_caching._costs[keys.loops.get(name) or keys.steps[name]] = cost
         any_shelf.keep(engine)
-        return {each.kept.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
+        return {each.textures.made_for.partition(": ")[2] for each in listed(any_shelf.folder)}
 
-    # The view reads worn and light. Wearing is cheap: the land is kept, and worn anew.
-    assert kept_with(20.0) == {"land", "light"}
-    assert kept_with(20.0, worn=30.0) == {"worn.add", "light"}
-    assert kept_with(20.0, worn=30.0, light=19.0) == {"worn.add"}, "what it reads is read anyway"
-    assert kept_with(600.0) == set()
-    assert kept_with(20.0, land=1.0, light=1.0) == set()
-    assert kept_with(0.0, land=1.0, light=1.0) == set(), "to read takes longer"
+    # The view reads worn and light. Wearing is cheap: the terrain is kept, and worn anew.
+    assert cached_with(20.0) == {"terrain", "light"}
+    assert cached_with(20.0, worn=30.0) == {"worn.add", "light"}
+    assert cached_with(20.0, worn=30.0, light=19.0) == {"worn.add"}, "what it reads is read anyway"
+    assert cached_with(600.0) == set()
+    assert cached_with(20.0, terrain=1.0, light=1.0) == set()
+    assert cached_with(0.0, terrain=1.0, light=1.0) == set(), "to read takes longer"
 
 
-def test_costs_are_measured_where_land_is_made_and_a_loop_counts_as_one(any_shelf, worn):
+def test_costs_are_measured_where_terrain_is_made_and_a_loop_counts_as_one(any_shelf, worn):
     engine = any_shelf.engine()
     picture(engine, worn)
     keys = engine.keys_of(engine.plan)
-    expected = {keys.steps["land"], keys.loops["worn"], keys.steps["light"]}
+    expected = {keys.steps["terrain"], keys.loops["worn"], keys.steps["light"]}
     assert set(engine.disk_caching._costs) == expected
     assert all(cost > 0.0 for cost in engine.disk_caching._costs.values())
     any_shelf.keep(engine)
-    (light,) = (each.kept for each in listed(any_shelf.folder) if "light" in each.kept.made_for)
+    (light,) = (each.textures for each in listed(any_shelf.folder) if "light" in each.textures.made_for)
     assert light.cost == pytest.approx(sum(engine.disk_caching._costs.values()), abs=0.01)
 
 
-def test_it_waits_until_the_land_rests_and_reads_a_piece_a_turn(any_shelf, worn, monkeypatch):
+def test_it_waits_until_the_terrain_rests_and_reads_a_piece_a_call(any_shelf, worn, monkeypatch):
     monkeypatch.setattr("playground.engine.disk_caching.PIECE", 33 * 4 * 10)  # rows of 33 floats, ten at once
     now = 100.0
     engine = any_shelf.engine()
@@ -619,32 +621,32 @@ def test_it_waits_until_the_land_rests_and_reads_a_piece_a_turn(any_shelf, worn,
     picture(engine, worn)
     assert keeping.look(engine, engine.plan) == pytest.approx(1.0)
     now += 0.75
-    picture(engine, worn.with_values({"land.bumps": 4.0}))  # a slider that moves
+    picture(engine, worn.with_values({"terrain.bumps": 4.0}))  # a slider that moves
     assert keeping.look(engine, engine.plan) == pytest.approx(1.0)
     now += 1.5
-    turns = 0
+    iterations = 0
     while keeping.look(engine, engine.plan) is not None:
-        turns += 1
-        picture(engine, worn.with_values({"land.bumps": 4.0}))
-    assert turns > 4 + 4, "both textures, each in four pieces"
+        iterations += 1
+        picture(engine, worn.with_values({"terrain.bumps": 4.0}))
+    assert iterations > 4 + 4, "both textures, each in four pieces"
     keeping.close()
     assert len(listed(any_shelf.folder)) == 2
     assert keeping.look(engine, engine.plan) is None
-    assert reopened(any_shelf, worn.with_values({"land.bumps": 4.0})) == set()
+    assert reopened(any_shelf, worn.with_values({"terrain.bumps": 4.0})) == set()
 
 
-def test_a_land_that_goes_while_it_is_read_back_is_not_kept(any_shelf, worn, monkeypatch):
+def test_a_terrain_that_goes_while_it_is_read_back_is_not_cached(any_shelf, worn, monkeypatch):
     monkeypatch.setattr("playground.engine.disk_caching.PIECE", 33 * 4 * 10)
     engine = any_shelf.engine(cache_bytes=20_000)
     engine.disk_caching.rest = 0.0
     picture(engine, worn)
     engine.disk_caching.look(engine, engine.plan)
     engine.disk_caching.look(engine, engine.plan)
-    other = worn.with_values({"land.bumps": 9.0})
+    other = worn.with_values({"terrain.bumps": 9.0})
     picture(engine, other)
     any_shelf.keep(engine)
     assert reopened(any_shelf, other) == set()
-    assert reopened(any_shelf, worn) == set(LANDS)
+    assert reopened(any_shelf, worn) == set(TERRAIN_PASSES)
 
 
 # ── the files ────────────────────────────────────────────────────────────────
@@ -652,17 +654,19 @@ def test_a_land_that_goes_while_it_is_read_back_is_not_kept(any_shelf, worn, mon
 
 def some(number: int, size: int = 64) -> CachedTextures:
     data = np.random.default_rng(number).bytes(size * size * 4)
-    return CachedTextures((size, size), (("height", "r32f"),), 12.5, f"land: {number}", (memoryview(data),))
+    return CachedTextures(
+        (size, size), (("height", "r32f"),), 12.5, f"terrain: {number}", (memoryview(data),)
+    )
 
 
 def test_a_store_gives_back_what_it_was_given(tmp_path):
-    store = DiskCache(tmp_path / "deep" / "land")
-    store.keep("one", some(1))
+    store = DiskCache(tmp_path / "deep" / "terrain")
+    store.write("one", some(1))
     store.close()
     found = store.read("one")
     assert found == replace(some(1), data=found.data) and bytes(found.data[0]) == bytes(some(1).data[0])
     assert "one" in store and "two" not in store and store.read("two") is None
-    assert [(each.kept, each.bytes) for each in listed(store.folder)] == [
+    assert [(each.textures, each.bytes) for each in listed(store.folder)] == [
         (replace(some(1), data=()), bytes_in(store.folder)[1])
     ]
     assert bytes_in(tmp_path / "nowhere") == (0, 0) and clear(tmp_path / "nowhere") == (0, 0)
@@ -671,7 +675,7 @@ def test_a_store_gives_back_what_it_was_given(tmp_path):
 def test_what_was_used_least_recently_goes_first(tmp_path):
     store = DiskCache(tmp_path, limit=2**30)
     for number in range(5):
-        store.keep(str(number), some(number))
+        store.write(str(number), some(number))
     store.close()
     for number in range(5):
         os.utime(store._path(str(number)), (1000.0 + number, 1000.0 + number))
@@ -686,7 +690,7 @@ def test_what_was_used_least_recently_goes_first(tmp_path):
 def test_the_bound_holds_while_it_is_written(tmp_path):
     store = DiskCache(tmp_path, limit=5 * 64 * 64 * 4)
     for number in range(20):
-        store.keep(str(number), some(number))
+        store.write(str(number), some(number))
     store.close()
     number, size = bytes_in(tmp_path)
     assert 3 <= number <= 4 and size <= store.limit
@@ -723,10 +727,10 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
     for thread in readers:
         thread.start()
     writers = [DiskCache(tmp_path, limit=3 * 64 * 64 * 4) for _ in range(2)]
-    for turn in range(40):
+    for iteration in range(40):
         for store in writers:
-            store.keep(str(turn % 4), some(turn % 4))
-        if turn % 10 == 0:
+            store.write(str(iteration % 4), some(iteration % 4))
+        if iteration % 10 == 0:
             clear(tmp_path)
     for store in writers:
         store.close()
@@ -737,36 +741,36 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
     assert not list(tmp_path.glob("*.part"))
 
 
-def test_where_nothing_can_be_written_one_is_told_and_nothing_more_is_tried(tmp_path):
-    (tmp_path / "land").write_text("a file where the folder should be")
-    store = DiskCache(tmp_path / "land")
-    store.keep("one", some(1))
+def test_where_nothing_can_be_written_one_is_reported_and_nothing_more_is_tried(tmp_path):
+    (tmp_path / "terrain").write_text("a file where the folder should be")
+    store = DiskCache(tmp_path / "terrain")
+    store.write("one", some(1))
     store.close()
-    assert store.trouble.startswith("land cannot be kept on disk: ") and not store.fits(1)
+    assert store.trouble.startswith("terrain cannot be cached on disk: ") and not store.fits(1)
     assert store.read("one") is None and listed(store.folder) == []
 
 
 def test_a_name_that_another_session_holds_open_is_no_trouble(tmp_path, monkeypatch):
     """On Windows nobody may rename over a file that is being read."""
     store = DiskCache(tmp_path)
-    store.keep("one", some(1))
+    store.write("one", some(1))
     store.close()
 
     def refuses(*_: object) -> None:
         raise PermissionError(13, "The process cannot access the file")
 
     monkeypatch.setattr(Path, "replace", refuses)
-    store.keep("one", some(1))
+    store.write("one", some(1))
     store.close()
     assert store.trouble == "" and store.read("one") is not None
-    store.keep("two", some(2))
+    store.write("two", some(2))
     store.close()
     assert "cannot access" in store.trouble
 
 
 def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
     store = DiskCache(tmp_path)
-    store.keep("one", some(1))
+    store.write("one", some(1))
     store.close()
     store._path("one").write_bytes(b"damaged")
 
@@ -780,7 +784,7 @@ def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("said", "size"),
+    ("message", "size"),
     [
         ("", 2**30),
         ("0", 0),
@@ -791,21 +795,21 @@ def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
         ("64kb", 2**16),
     ],
 )
-def test_the_environment_says_how_much(said, size):
-    assert limit_in({"PLAYGROUND_CACHE": said}) == size
+def test_the_environment_says_how_much(message, size):
+    assert limit_in({"PLAYGROUND_CACHE": message}) == size
 
 
-@pytest.mark.parametrize("said", ["much", "-1", "nan", "inf", "1e40", "1X", "M"])
-def test_what_is_no_size_is_refused_in_a_sentence(said):
-    with pytest.raises(ParameterError, match=f"PLAYGROUND_CACHE={said}: expected a size, as 500M"):
-        limit_in({"PLAYGROUND_CACHE": said})
+@pytest.mark.parametrize("message", ["much", "-1", "nan", "inf", "1e40", "1X", "M"])
+def test_what_is_no_size_is_refused_in_a_sentence(message):
+    with pytest.raises(ParameterError, match=f"PLAYGROUND_CACHE={message}: expected a size, as 500M"):
+        limit_in({"PLAYGROUND_CACHE": message})
 
 
 def test_a_writer_that_hangs_does_not_keep_a_session_from_ending(tmp_path, monkeypatch):
     goes_on = threading.Event()
     monkeypatch.setattr(store_module, "trim", lambda *_: goes_on.wait(60))
     store = DiskCache(tmp_path)
-    store.keep("one", some(1))
+    store.write("one", some(1))
     start = time.monotonic()
     store.close(patience=0.01)
     assert time.monotonic() - start < 30

@@ -1,4 +1,4 @@
-"""What the tests of a flight share: a small land without end, and a context with an engine."""
+"""What the tests of a flight share: a small terrain without end, and a context with an engine."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from playground.sketch.model import Sketch
 
 from ..sketch_texts import passes
 
-LAND = (
+TERRAIN = (
     """format = 1
-title = "A small land without end"
+title = "A small terrain without end"
 size = {size}
 extent = {extent}
 relief = 900.0
@@ -46,14 +46,14 @@ def small_engine(ctx: moderngl.Context) -> Iterator[Engine]:
 
 
 @pytest.fixture
-def land_of(tmp_path: Path) -> Callable[..., Sketch]:
+def terrain_of(tmp_path: Path) -> Callable[..., Sketch]:
     """Give ``land_of(intervals, apron, spacing)``: a sketch whose parts are that small."""
 
     def make(
         intervals: int = 16, apron: int = 8, spacing: float = 60.0, daylight: bool = False, **values: object
     ) -> Sketch:
         side = intervals + 2 * apron + 1
-        text = LAND.format(size=side, extent=spacing * (side - 1), apron=apron)
+        text = TERRAIN.format(size=side, extent=spacing * (side - 1), apron=apron)
         if daylight:
             text = text.replace('[[pass]]\nname = "light"', f'{DAYLIGHT}[[pass]]\nname = "light"')
         path = tmp_path / f"small_{intervals}_{apron}_{daylight}.toml"

@@ -26,7 +26,7 @@ use = "./land"
 [view]
 use = "view/terrain"
 """
-LAND = """// land.glsl -- a plain
+TERRAIN = """// land.glsl -- a plain
 #pragma kernel(output = "height:r32f")
 uniform ivec2 part = ivec2(0); //! parts("east", "north") Which
 uniform float level = 0.25; //! slider(0, 4) How high
@@ -34,8 +34,8 @@ float kernel(ivec2 texel) { return level + 0.0 * float(part.x); }
 """
 
 
-def sketch_of(folder: Path, land: str = LAND) -> Sketch:
-    (folder / "land.glsl").write_text(land, encoding="utf-8")
+def sketch_of(folder: Path, terrain: str = TERRAIN) -> Sketch:
+    (folder / "land.glsl").write_text(terrain, encoding="utf-8")
     (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     return load(folder)
 
@@ -49,13 +49,13 @@ def test_it_goes_on_from_the_same_place_once_all_that_is_near_is_made(
             flight.step()
         flight.make_all()
         craft, before = flight.craft, flight.picture(SIZE).array
-        flight.change(sketch_of(tmp_path, LAND.replace("0.25", "0.5")))
+        flight.change(sketch_of(tmp_path, TERRAIN.replace("0.25", "0.5")))
         assert flight.changing
         np.testing.assert_array_equal(flight.picture(SIZE).array, before, "it stays until all is ready")
-        turns = 0
+        calls = 0
         while not flight.tend_change(0.0):
-            turns += 1
-        assert turns > 1 and not flight.changing and flight.parts.missing == 0
+            calls += 1
+        assert calls > 1 and not flight.changing and flight.parts.missing == 0
         assert (flight.craft.east, flight.craft.north, flight.craft.heading) == (
             craft.east,
             craft.north,
@@ -69,28 +69,28 @@ def test_new_ground_lifts_the_craft_over_it(any_engine: Engine, tmp_path: Path) 
     with Flight(any_engine, sketch_of(tmp_path), radius=1.5, samples=1) as flight:
         flight.make_all()
         up = flight.craft.up
-        flight.change(sketch_of(tmp_path, LAND.replace("0.25", "3.0")))
+        flight.change(sketch_of(tmp_path, TERRAIN.replace("0.25", "3.0")))
         while not flight.tend_change(1.0):
             pass
         assert flight.craft.up == pytest.approx(1500.0 + CLEARANCE) and flight.craft.up > up
 
 
 @pytest.mark.parametrize(
-    "land",
+    "terrain",
     [
-        LAND.replace("uniform ivec2 part", "uniform ivec2 apart").replace("part.x", "apart.x"),
-        LAND.replace("return level", "return levl"),
+        TERRAIN.replace("uniform ivec2 part", "uniform ivec2 apart").replace("part.x", "apart.x"),
+        TERRAIN.replace("return level", "return levl"),
     ],
     ids=["it cannot be cut into parts", "it does not compile"],
 )
 def test_what_cannot_be_flown_over_leaves_the_flight_as_it_is(
-    any_engine: Engine, tmp_path: Path, land: str
+    any_engine: Engine, tmp_path: Path, terrain: str
 ) -> None:
     with Flight(any_engine, sketch_of(tmp_path), radius=1.5, samples=1) as flight:
         flight.make_all()
         before = flight.picture(SIZE).array
         with pytest.raises(PlaygroundError):
-            flight.change(sketch_of(tmp_path, land))
+            flight.change(sketch_of(tmp_path, terrain))
             while not flight.tend_change(1.0):
                 pass
         assert not flight.changing
@@ -121,14 +121,14 @@ def test_the_time_of_day_stays_unless_the_sketch_says_another(any_engine: Engine
 
 
 def test_nothing_is_left_on_the_graphics_card(ctx: Any, alive: Any, tmp_path: Path) -> None:
-    sketches = [sketch_of(tmp_path, LAND.replace("0.25", number)) for number in ("0.25", "0.5")]
+    sketches = [sketch_of(tmp_path, TERRAIN.replace("0.25", number)) for number in ("0.25", "0.5")]
     held = []
     with Engine(ctx) as engine, Flight(engine, sketches[0], radius=1.5, samples=1) as flight:
         flight.make_all()
-        for turn in range(4):
-            flight.change(sketches[1 - turn % 2])
+        for count in range(4):
+            flight.change(sketches[1 - count % 2])
             flight.tend_change(0.0)
-            flight.change(sketches[1 - turn % 2])  # saved again before the first was ready
+            flight.change(sketches[1 - count % 2])  # saved again before the first was ready
             while not flight.tend_change(1.0):
                 pass
             held.append((flight.parts.bytes, len(flight.parts)))

@@ -85,7 +85,7 @@ GOOD = Header("flight").line()
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("", "is no flight: its first line"),
         ("hello\n", "is no flight"),
@@ -106,10 +106,10 @@ GOOD = Header("flight").line()
         (GOOD.replace('"values": {}', '"values": {"a": ' + "[" * 90 + "]" * 90 + "}"), "is no flight"),
     ],
 )
-def test_a_record_that_is_wrong_says_where_in_one_sentence(tmp_path, text, said):
+def test_a_record_that_is_wrong_says_where_in_one_sentence(tmp_path, text, message):
     path = tmp_path / "bad.jsonl"
     path.write_text(text, encoding="utf-8")
-    with pytest.raises(DataError, match=said) as caught:
+    with pytest.raises(DataError, match=message) as caught:
         read_record(path)
     assert str(caught.value).count("\n") == 0 and "bad.jsonl" in str(caught.value)
 
@@ -128,9 +128,9 @@ def test_a_record_that_is_not_there_or_is_no_text_says_so(tmp_path):
 
 
 def test_a_replay_gives_the_same_bits_from_cold_and_from_warm_and_however_often_one_looks(
-    ctx, land_of, tmp_path
+    ctx, terrain_of, tmp_path
 ):
-    record, sketch = weave(4.0, 15.0, 1.2), land_of(daylight=True)
+    record, sketch = weave(4.0, 15.0, 1.2), terrain_of(daylight=True)
     seen = []
     with Engine(ctx, cache_bytes=2 * 2**20) as warm:
         for _ in range(2):  # the second time, parts are in the engine's memory
@@ -145,9 +145,9 @@ def test_a_replay_gives_the_same_bits_from_cold_and_from_warm_and_however_often_
     assert picture.shape == (90, 160, 4) and len({p for p in seen[0]}) == 4
 
 
-def test_what_was_flown_and_written_down_flies_the_same_way_again(small_engine, land_of, tmp_path):
+def test_what_was_flown_and_written_down_flies_the_same_way_again(small_engine, terrain_of, tmp_path):
     """Live, parts come by time and not by number: the way flown does not know of it."""
-    sketch, record = land_of(), weave(6.0)
+    sketch, record = terrain_of(), weave(6.0)
     with (
         Flight(small_engine, sketch, radius=2.0) as flight,
         Recorder(tmp_path / "a.jsonl", Header("small", SIZE, {}, 2.0)) as recorder,
@@ -162,8 +162,8 @@ def test_what_was_flown_and_written_down_flies_the_same_way_again(small_engine, 
     assert len(ends) == 2 and ends[-1] == flown and flown.steps == 360
 
 
-def test_reset_goes_back_to_the_start(small_engine, land_of):
-    with Flight(small_engine, land_of(daylight=True), radius=1.5) as flight:
+def test_reset_goes_back_to_the_start(small_engine, terrain_of):
+    with Flight(small_engine, terrain_of(daylight=True), radius=1.5) as flight:
         first = flight.craft
         for _ in range(30):
             flight.step(Moment(Controls(50, 50, 50, 50), hour=20.0), 0)
@@ -174,9 +174,9 @@ def test_reset_goes_back_to_the_start(small_engine, land_of):
 
 
 @pytest.mark.slow
-def test_a_flight_of_ten_minutes_at_full_speed_keeps_its_memory(small_engine, land_of):
-    """190 km over parts of 2.4 km: more than 100 of them pass, and no more than 30 are kept."""
-    sketch = land_of(intervals=8, apron=2, spacing=300.0)
+def test_a_flight_of_ten_minutes_at_full_speed_keeps_its_memory(small_engine, terrain_of):
+    """190 km over parts of 2.4 km: more than 100 of them pass, and no more than 30 are cached."""
+    sketch = terrain_of(intervals=8, apron=2, spacing=300.0)
     steps = 600 * 60
     hands = [(steps // 3, Moment(Controls(100))), (steps // 3, Moment(Controls(100, 0, 4)))]
     record = Record(Header("small", SIZE, {}, 1.0), (*hands, (steps // 3, Moment(Controls(100, 2)))))
@@ -197,8 +197,8 @@ def test_a_flight_of_ten_minutes_at_full_speed_keeps_its_memory(small_engine, la
 
 
 @pytest.fixture
-def flight(small_engine, land_of):
-    with Flight(small_engine, land_of(), radius=3.0) as made:
+def flight(small_engine, terrain_of):
+    with Flight(small_engine, terrain_of(), radius=3.0) as made:
         made.make_all()
         yield made
 
@@ -247,26 +247,26 @@ def test_the_hole_finder_finds_a_hole(flight):
 
 @pytest.mark.parametrize("skirt", [None, 0.0])
 def test_no_crack_shows_between_levels_and_without_skirts_some_would(
-    small_engine, land_of, monkeypatch, skirt
+    small_engine, terrain_of, monkeypatch, skirt
 ):
-    """Rough land, seen from low over many borders of two levels; heights 0 to 900 m over 60 m of spacing."""
+    """Rough terrain, seen from low over borders of two levels; heights 0 to 900 m over 60 m of spacing."""
     if skirt is not None:
         monkeypatch.setattr("playground.flight.scene.SKIRT", skirt)
     rough = {"height.rough": 1.0, "height.valleys": 1.0, "height.gain": 0.9}
     cracks = 0
-    with Flight(small_engine, land_of(**rough), radius=3.0) as flight:
+    with Flight(small_engine, terrain_of(**rough), radius=3.0) as flight:
         flight.make_all()
-        for turn in range(6):
-            up = flight.floor(flight.craft.east, flight.craft.north) + 100.0 + 150.0 * (turn % 3)
-            flight.craft = replace(flight.craft, up=up, heading=turn * 1.05, pitch=-0.25)
+        for view in range(6):
+            up = flight.floor(flight.craft.east, flight.craft.north) + 100.0 + 150.0 * (view % 3)
+            flight.craft = replace(flight.craft, up=up, heading=view * 1.05, pitch=-0.25)
             picture = read_picture(flight.draw((640, 360), bare=True)).astype(int)
             magenta = (picture[..., 0] > 250) & (picture[..., 1] < 5) & (picture[..., 2] > 250)
             cracks += np.count_nonzero(magenta & (rows_below_horizon(flight, (640, 360)) < 2.0 * 960.0))
     assert cracks == 0 if skirt is None else cracks > 10
 
 
-def test_what_is_not_made_yet_is_neither_black_nor_magenta(small_engine, land_of):
-    with Flight(small_engine, land_of(), radius=3.0) as flight:
+def test_what_is_not_made_yet_is_neither_black_nor_magenta(small_engine, terrain_of):
+    with Flight(small_engine, terrain_of(), radius=3.0) as flight:
         assert len(flight.parts) <= 1
         picture = read_picture(flight.draw(SIZE)).astype(int)
         lowest = picture[60:, :, :3]
@@ -274,7 +274,7 @@ def test_what_is_not_made_yet_is_neither_black_nor_magenta(small_engine, land_of
         assert not ((picture[..., 0] > 200) & (picture[..., 1] < 60)).any()
 
 
-def test_where_the_land_ends_nothing_is_seen_of_it(flight):
+def test_where_the_terrain_ends_nothing_is_seen_of_it(flight):
     """Parts wholly beyond what one sees may shine as they like; any part nearer would be noticed."""
     flight.craft = replace(flight.craft, up=1100.0, pitch=-0.35, heading=0.4)
     width, here = flight.plot.width, np.array([flight.craft.east, flight.craft.north])
@@ -295,7 +295,7 @@ def test_where_the_land_ends_nothing_is_seen_of_it(flight):
     assert len(beyond) >= 4 and changes[0] <= 1 and changes[1] > 50
 
 
-def test_nearer_land_has_more_triangles_and_none_behind_is_drawn(flight):
+def test_nearer_terrain_has_more_triangles_and_none_behind_is_drawn(flight):
     flight.draw(SIZE)
     whole = len(flight.parts.wanted) * 2 * flight.plot.intervals**2
     assert 0 < flight.scene.triangles < whole / 2
@@ -305,7 +305,7 @@ def test_nearer_land_has_more_triangles_and_none_behind_is_drawn(flight):
 OWN = """// mine.glsl -- waves without end, and a hole where nothing is a number.
 #include "terrain/parts.glsl"
 #pragma kernel(output = "height:r32f")
-uniform ivec2 part = ivec2(0);  //! Which part of the land
+uniform ivec2 part = ivec2(0);  //! Which part of the terrain
 float kernel(ivec2 texel) {
     ivec2 node = node_of(texel, part, 0, size);
     if (node == ivec2(21, 40)) return uintBitsToFloat(0x7fc00000u);
@@ -314,7 +314,7 @@ float kernel(ivec2 texel) {
 """
 
 
-def test_one_s_own_land_can_be_flown_over_and_a_hole_in_it_brings_nobody_down(small_engine, tmp_path):
+def test_one_s_own_terrain_can_be_flown_over_and_a_hole_in_it_brings_nobody_down(small_engine, tmp_path):
     (tmp_path / "mine.glsl").write_text(OWN, encoding="utf-8")
     text = (
         'format = 1\nsize = 17\nextent = 640.0\nrelief = 200.0\n[[pass]]\nname = "height"\nuse = "./mine"\n'

@@ -11,10 +11,10 @@ from playground.flight.record import Moment
 
 
 @pytest.mark.parametrize("samples", [1, 4])
-def test_after_a_flight_nothing_of_it_is_left(ctx, land_of, alive, samples):
+def test_after_a_flight_nothing_of_it_is_left(ctx, terrain_of, alive, samples):
     with Engine(ctx, cache_bytes=2**20) as engine:
-        engine.texture(land_of(daylight=True), "light")
-        with Flight(engine, land_of(daylight=True), radius=1.5, samples=samples) as flight:
+        engine.texture(terrain_of(daylight=True), "light")
+        with Flight(engine, terrain_of(daylight=True), radius=1.5, samples=samples) as flight:
             before = dict(alive)
             for number in range(40):
                 flight.step(

@@ -17,8 +17,8 @@ from playground.sketch.load import load
 
 
 @pytest.fixture
-def parts(small_engine, land_of):
-    made = Parts(small_engine, plot_of(land_of(), small_engine), 3.0)
+def parts(small_engine, terrain_of):
+    made = Parts(small_engine, plot_of(terrain_of(), small_engine), 3.0)
     yield made
     made.release()
 
@@ -31,12 +31,12 @@ def contents(slot):
     return read_texture(slot.heights), read_texture(slot.ground)
 
 
-def test_a_plot_is_the_sketch_less_its_apron(small_engine, land_of):
-    plot = plot_of(land_of(intervals=24, apron=5, spacing=40.0), small_engine)
+def test_a_plot_is_the_sketch_less_its_apron(small_engine, terrain_of):
+    plot = plot_of(terrain_of(intervals=24, apron=5, spacing=40.0), small_engine)
     assert (plot.intervals, plot.apron, plot.ground, plot.width) == (24, 5, 25, 960.0)
     assert plot.spacing == pytest.approx(40.0) and plot.part_paths == ("height.part", "colour.part")
     assert plot.at((3, -4)).overrides == (("height.part", (3, -4)), ("colour.part", (3, -4)))
-    assert plot.hour == "" and plot_of(land_of(daylight=True), small_engine).hour == "daylight.hour"
+    assert plot.hour == "" and plot_of(terrain_of(daylight=True), small_engine).hour == "daylight.hour"
 
 
 def test_a_part_is_cut_out_of_what_the_sketch_makes(parts):
@@ -53,9 +53,9 @@ def test_a_part_is_cut_out_of_what_the_sketch_makes(parts):
     np.testing.assert_allclose(slot.mean[:3], lit.mean(axis=(0, 1)), rtol=0.15)
 
 
-def test_colour_finer_than_the_height_is_cut_where_it_stands(small_engine, land_of, tmp_path):
+def test_colour_finer_than_the_height_is_cut_where_it_stands(small_engine, terrain_of, tmp_path):
     text = tmp_path / "fine.toml"
-    sketch = land_of()
+    sketch = terrain_of()
     source = Path(sketch.file).read_text("utf-8")
     text.write_text(
         source.replace('use = "texturing/endless_ground"\n', 'use = "texturing/endless_ground"\nsize = 65\n')
@@ -88,9 +88,9 @@ def test_the_nearest_are_made_first_and_those_in_view_before_those_behind(parts)
     assert max(far) <= 3.0 and len(parts.wanted) == 29
 
 
-def test_a_part_that_comes_again_has_the_same_bits_and_was_dropped_between(small_engine, land_of):
+def test_a_part_that_comes_again_has_the_same_bits_and_was_dropped_between(small_engine, terrain_of):
     with Engine(small_engine.ctx, cache_bytes=2**20) as forgetful:
-        parts = Parts(forgetful, plot_of(land_of(), forgetful), 2.0)
+        parts = Parts(forgetful, plot_of(terrain_of(), forgetful), 2.0)
         first = contents(parts.make((0, 0)))
         for step in range(2, 14, 3):
             parts.look(*middle(parts.plot, (step, step // 2)), 1.0)
@@ -113,9 +113,9 @@ def test_memory_is_bounded_and_the_farthest_go_first(parts):
     assert min(p[0] for p in parts.slots) > 6
 
 
-def test_work_for_some_time_ends_where_whole_parts_would(small_engine, land_of):
+def test_work_for_some_time_ends_where_whole_parts_would(small_engine, terrain_of):
     """In stages, with no time left for more than one a picture, the same parts come with the same bits."""
-    plot = plot_of(land_of(), small_engine)
+    plot = plot_of(terrain_of(), small_engine)
     whole, staged = Parts(small_engine, plot, 1.5), Parts(small_engine, plot, 1.5)
     for parts in (whole, staged):
         parts.look(*middle(plot, (4, 4)), 0.3)
@@ -132,8 +132,8 @@ def test_work_for_some_time_ends_where_whole_parts_would(small_engine, land_of):
     staged.release()
 
 
-def test_at_another_hour_all_are_lit_anew_nearest_first_and_the_land_is_kept(small_engine, land_of):
-    plot = plot_of(land_of(daylight=True), small_engine)
+def test_at_another_hour_all_are_lit_anew_nearest_first_and_the_terrain_is_kept(small_engine, terrain_of):
+    plot = plot_of(terrain_of(daylight=True), small_engine)
     parts = Parts(small_engine, plot, 1.0)
     parts.look(*middle(plot, (0, 0)), 0.0)
     parts.tend(100)
@@ -165,7 +165,7 @@ def test_the_ground_at_a_place_is_the_highest_node_around_it(parts):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         (('name = "height"', 'name = "land"'), "no pass named 'height'"),
         (("generation/endless", "generation/white_noise"), "has no parameter 'part'"),
@@ -177,8 +177,8 @@ def test_the_ground_at_a_place_is_the_highest_node_around_it(parts):
         ),
     ],
 )
-def test_a_sketch_that_cannot_be_flown_over_says_why(small_engine, land_of, tmp_path, change, said):
-    text = Path(land_of().file).read_text("utf-8")
+def test_a_sketch_that_cannot_be_flown_over_says_why(small_engine, terrain_of, tmp_path, change, message):
+    text = Path(terrain_of().file).read_text("utf-8")
     path = tmp_path / "other.toml"
     text = text.replace(*change)
     if "white_noise" in change[1]:
@@ -186,24 +186,24 @@ def test_a_sketch_that_cannot_be_flown_over_says_why(small_engine, land_of, tmp_
     path.write_text(text, encoding="utf-8")
     with pytest.raises(SketchError, match="cannot be flown over: ") as caught:
         plot_of(load(path), small_engine)
-    assert said in str(caught.value) and "\n" not in str(caught.value)
+    assert message in str(caught.value) and "\n" not in str(caught.value)
 
 
-def test_every_pass_is_told_the_height_s_apron(small_engine, land_of):
+def test_every_pass_is_told_the_height_s_apron(small_engine, terrain_of):
     """A colour made with another would not meet its neighbour's."""
-    sketch = land_of(intervals=16, apron=8).with_values({"colour.apron": 3})
+    sketch = terrain_of(intervals=16, apron=8).with_values({"colour.apron": 3})
     plot = plot_of(sketch, small_engine)
     assert dict(plot.at((0, 0)).overrides)["colour.apron"] == 8
 
 
-def test_shadows_that_reach_beyond_the_apron_are_refused(small_engine, land_of):
-    sketch = land_of(intervals=16, apron=8).with_values({"light.reach": 9})
-    with pytest.raises(SketchError, match=r"shadows reach 9 texels .* only 8 .* set light.reach=8"):
+def test_shadows_that_reach_beyond_the_apron_are_refused(small_engine, terrain_of):
+    sketch = terrain_of(intervals=16, apron=8).with_values({"light.max_distance": 9})
+    with pytest.raises(SketchError, match=r"shadows reach 9 texels .* only 8 .* set light.max_distance=8"):
         plot_of(sketch, small_engine)
-    assert plot_of(sketch.with_values({"light.reach": 8}), small_engine).apron == 8
+    assert plot_of(sketch.with_values({"light.max_distance": 8}), small_engine).apron == 8
 
 
-def test_parts_that_would_fill_the_memory_are_refused_before_any_is_made(small_engine, land_of):
-    plot = replace(plot_of(land_of(), small_engine), intervals=1024, ground=2049)
+def test_parts_that_would_fill_the_memory_are_refused_before_any_is_made(small_engine, terrain_of):
+    plot = replace(plot_of(terrain_of(), small_engine), intervals=1024, ground=2049)
     with pytest.raises(SketchError, match=r"are more than 2 GiB; --radius 2 would fit"):
         Parts(small_engine, plot, 16.0)

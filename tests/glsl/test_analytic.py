@@ -1,4 +1,4 @@
-"""The sun by horizon angles, and sun, sky and land together: eqs 3.3 to 3.8 against float64.
+"""The sun by horizon angles, and sun, sky and terrain together: eqs 3.3 to 3.8 against float64.
 
 ``light`` is rgba16f and angles have 16 bits: comparisons allow for what they cut off.
 """
@@ -8,7 +8,7 @@ import pytest
 
 from ..truth.land import Land, cone, real, towards
 from ..truth.sun import sunlight
-from .lands import lit_by
+from .terrains import lit_by
 
 HALF = 2.0**-10
 ARC = "lighting/horizon_sun/arc.glsl"
@@ -17,20 +17,20 @@ SHARE = 90 / 65535  # [degrees] of a 16-bit share of a quarter circle
 
 @pytest.fixture
 def sketch(ctx, tmp_path):
-    """Give ``sketch(land, use, **values)``: one technique of lighting/ on a land, as the pass ``light``."""
+    """Give ``sketch(terrain, use, **values)``: a technique of lighting/ as the pass ``light``."""
 
-    def make(land, use, **more):
-        return lit_by(tmp_path, land, "light", use, **more)
+    def make(terrain, use, **more):
+        return lit_by(tmp_path, terrain, "light", use, **more)
 
     return make
 
 
 @pytest.fixture
 def read(kept, sketch):
-    """Give ``read(land, use, *outputs, **values)``: a technique's outputs, float64."""
+    """Give ``read(terrain, use, *outputs, **values)``: a technique's outputs, float64."""
 
-    def make(land, use, *outputs, **values):
-        made = sketch(land, use, **values)
+    def make(terrain, use, *outputs, **values):
+        made = sketch(terrain, use, **values)
         found = [kept.read(made, f"light:{output}").astype(np.float64) for output in outputs]
         assert all(np.isfinite(f).all() for f in found)
         return found[0] if len(found) == 1 else found
@@ -42,9 +42,9 @@ def steep(n=49):
     return Land(real(n).heights * 2, (74.0, 93.0), "steep")
 
 
-def horizons(ahead, behind, land, arc=0.0):
+def horizons(ahead, behind, terrain, arc=0.0):
     """Return effective horizons [degrees] in eight directions from tangents: over the slope, over level."""
-    east, north = land.slopes()
+    east, north = terrain.slopes()
     tangents = np.concatenate([ahead, behind], axis=-1)
     way = np.radians(arc - 45.0 * np.arange(8))
     own = east[..., None] * np.sin(way) + north[..., None] * np.cos(way)
@@ -125,12 +125,12 @@ def test_between_eight_horizons(on_gpu, arc):
 
 
 def test_angles_are_shares_of_a_quarter_circle_over_the_slope(kept, sketch):
-    land = steep()
-    made = sketch(land, "horizon_sun", arc=20.0)
+    terrain = steep()
+    made = sketch(terrain, "horizon_sun", arc=20.0)
     parts = [kept.read(made, f"light.angles:{which}") for which in ("upright", "slanting")]
     maps = [kept.read(made, f"light:{side}").astype(np.float64) for side in ("ahead", "behind")]
     found = 90 * np.concatenate(parts, axis=-1)[..., [0, 4, 2, 6, 1, 5, 3, 7]].astype(np.float64)
-    np.testing.assert_allclose(found, horizons(*maps, land, 20.0), atol=SHARE + 2e-3)
+    np.testing.assert_allclose(found, horizons(*maps, terrain, 20.0), atol=SHARE + 2e-3)
     assert found.min() == 0 and found.max() > 25
 
 
@@ -151,14 +151,16 @@ def test_the_table_holds_every_normal(kept, sketch):
 
 @pytest.mark.parametrize("sun", [(135, 12), (315, 12), (135, 40), (315, 2), (135, 90)], ids=str)
 def test_the_sun_on_its_arc(read, sun):
-    land = steep()
+    terrain = steep()
     values = {"sun": sun, "arc": 135.0, "gain": 1.0, "sun_term": "each texel"}
-    light, seen, ahead, behind = read(land, "horizon_sun", "light", "visibility", "ahead", "behind", **values)
+    light, seen, ahead, behind = read(
+        terrain, "horizon_sun", "light", "visibility", "ahead", "behind", **values
+    )
     channel = 0 if sun[0] == 135 else 4
-    horizon = horizons(ahead, behind, land, 135.0)[..., channel]
+    horizon = horizons(ahead, behind, terrain, 135.0)[..., channel]
     # What 16 bits of an angle and a half float of a tangent leave open, over the sun's width.
     np.testing.assert_allclose(seen, visible(sun[1], horizon), atol=0.02)
-    received = np.maximum(land.normals() @ towards(*sun), 0)
+    received = np.maximum(terrain.normals() @ towards(*sun), 0)
     np.testing.assert_allclose(light[..., 0], seen * received, rtol=2 * HALF, atol=2e-3)
     np.testing.assert_allclose(light[..., 3], np.where(light[..., 0] > 0, seen, 0), atol=2e-3)
 
@@ -166,18 +168,18 @@ def test_the_sun_on_its_arc(read, sun):
 @pytest.mark.parametrize("sun", [(250, 8), (250, 20), (45, 15)], ids=str)
 def test_it_is_dark_where_a_cast_ray_is_dark(read, sun):
     """But for what the sun's width and a texel of the shadow's edge make."""
-    land = steep(65)
-    light = read(land, "horizon_sun", "light", sun=sun, arc=float(sun[0]), gain=1.0)
-    ray = read(land, "ray_cast", "light", sun=sun, gain=1.0)
+    terrain = steep(65)
+    light = read(terrain, "horizon_sun", "light", sun=sun, arc=float(sun[0]), gain=1.0)
+    ray = read(terrain, "ray_cast", "light", sun=sun, gain=1.0)
     hidden, lit = ray[..., 3] == 0, light[..., 3] > 0.5
     assert (hidden & lit).mean() < 0.01 and (~hidden & ~lit & (ray[..., 0] > 0.01)).mean() < 0.02
 
 
 def test_a_table_of_normals_is_close(read):
-    land = steep()
+    terrain = steep()
     values = {"sun": (135, 30), "gain": 1.0}
     table, each = (
-        read(land, "horizon_sun", "light", sun_term=way, **values) for way in ("table", "each texel")
+        read(terrain, "horizon_sun", "light", sun_term=way, **values) for way in ("table", "each texel")
     )
     np.testing.assert_allclose(table[..., :3], each[..., :3], atol=0.008)
     # Alpha is 0 where a surface is turned away: which of two normals of the table that is, is
@@ -191,26 +193,31 @@ def test_a_table_of_normals_is_close(read):
 
 
 def test_eight_directions_at_one_of_them_are_the_arc(read):
-    land = steep()
+    terrain = steep()
     for azimuth in (0.0, 45.0, 225.0, 270.0):
         ways = [
             read(
-                land, "horizon_sun", "visibility", sun=(azimuth, 14.0), arc=0.0, measured="eight directions"
+                terrain,
+                "horizon_sun",
+                "visibility",
+                sun=(azimuth, 14.0),
+                arc=0.0,
+                measured="eight directions",
             ),
-            read(land, "horizon_sun", "visibility", sun=(azimuth, 14.0), arc=azimuth),
+            read(terrain, "horizon_sun", "visibility", sun=(azimuth, 14.0), arc=azimuth),
         ]
         # Measured from elsewhere, a direction is another pair's, whose lines lie a little beside.
         assert (np.abs(ways[0] - ways[1]) > 0.1).mean() < 0.01
 
 
 def test_two_directions_are_enough_for_the_arc(read):
-    land = steep()
-    two, eight = (read(land, "horizon_sun", "light", sun=(135, 15), directions=n) for n in (2, 8))
+    terrain = steep()
+    two, eight = (read(terrain, "horizon_sun", "light", sun=(135, 15), directions=n) for n in (2, 8))
     np.testing.assert_allclose(two, eight, atol=2e-3)
 
 
 @pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
-def test_moving_the_sun_looks_at_no_land(kept, sketch, use):
+def test_moving_the_sun_looks_at_no_terrain(kept, sketch, use):
     made = sketch(steep(33), use, **({"arc": 135.0} if use == "horizon_sun" else {}))
     kept.read(made, "light")
     for sun in ((140, 20), (140, 60)):
@@ -223,12 +230,12 @@ def test_moving_the_sun_looks_at_no_land(kept, sketch, use):
 @pytest.mark.parametrize("azimuth", [30.0, 225.0, 300.0])
 def test_unless_set_the_arc_is_under_the_sun(read, azimuth):
     """The light of a sun of any azimuth is what the truth says, and not that of a sun in the zenith."""
-    land = steep(33)
-    light = read(land, "horizon_sun", "light", sun=(azimuth, 18.0), gain=1.0)
+    terrain = steep(33)
+    light = read(terrain, "horizon_sun", "light", sun=(azimuth, 18.0), gain=1.0)
     np.testing.assert_array_equal(
-        light, read(land, "horizon_sun", "light", sun=(azimuth, 18.0), arc=azimuth, gain=1.0)
+        light, read(terrain, "horizon_sun", "light", sun=(azimuth, 18.0), arc=azimuth, gain=1.0)
     )
-    _, truth = sunlight(land, azimuth, 18.0)
+    _, truth = sunlight(terrain, azimuth, 18.0)
     assert light[..., 0].mean() == pytest.approx(truth.mean(), abs=0.02)
     assert np.abs(light[..., 0] - truth).mean() < 0.03
 
@@ -251,9 +258,9 @@ def test_a_daylights_sun_keeps_to_no_arc(kept, sketch):
     passes = (
         '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = { hour = 16.0, latitude = 40.0 }\n'
     )
-    land = steep(33)
+    terrain = steep(33)
     arc, eight = (
-        kept.read(sketch(land, "horizon_sun", passes=passes, arc=0.0, measured=way), "light")
+        kept.read(sketch(terrain, "horizon_sun", passes=passes, arc=0.0, measured=way), "light")
         for way in ("on its arc", "eight directions")
     )
     np.testing.assert_array_equal(arc, eight)
@@ -263,8 +270,8 @@ def test_a_daylights_sun_keeps_to_no_arc(kept, sketch):
 @pytest.mark.parametrize("measured", ["on its arc", "eight directions"])
 @pytest.mark.parametrize("sun", [(0, 90), (90, 0), (135, -5), (135, -90), (359.999, 1), (45, 0.0)], ids=str)
 def test_suns_at_the_ends(read, use, measured, sun):
-    for land in (steep(17), Land(np.zeros((8, 5)), (3.0, 4.0))):
-        light, seen = read(land, use, "light", "visibility", sun=sun, measured=measured, ambient=0.0)
+    for terrain in (steep(17), Land(np.zeros((8, 5)), (3.0, 4.0))):
+        light, seen = read(terrain, use, "light", "visibility", sun=sun, measured=measured, ambient=0.0)
         assert light.min() >= 0 and seen.min() >= 0 and seen.max() <= 1
         if sun[1] < -1:
             assert (light == 0).all() and (seen == 0).all()
@@ -274,76 +281,79 @@ def test_suns_at_the_ends(read, use, measured, sun):
 
 @pytest.mark.parametrize("shape", [(2, 2), (2, 7), (7, 2)], ids=str)
 @pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
-def test_tiny_lands(read, use, shape):
-    land = Land(np.random.default_rng(4).random(shape) * 30, (10.0, 10.0))
-    assert read(land, use, "light").min() >= 0
+def test_tiny_terrains(read, use, shape):
+    terrain = Land(np.random.default_rng(4).random(shape) * 30, (10.0, 10.0))
+    assert read(terrain, use, "light").min() >= 0
 
 
 def test_needles_and_walls(read):
     heights = np.zeros((25, 25))
     heights[:, 12] = 1e5
     heights[4, 4] = 1e6
-    land = Land(heights, (1.0, 1.0))
-    light, seen = read(land, "analytic", "light", "visibility", sun=(90, 30), gain=1.0)
+    terrain = Land(heights, (1.0, 1.0))
+    light, seen = read(terrain, "analytic", "light", "visibility", sun=(90, 30), gain=1.0)
     assert seen[20, 5] == 0 and seen[20, 20] == 1 and light.min() >= 0
 
 
 @pytest.mark.parametrize("use", ["horizon_sun", "analytic"])
-def test_mirrored_land_under_a_mirrored_sun(read, use):
-    land = steep()
-    mirrored = Land(land.heights[:, ::-1].copy(), land.spacing)
-    straight = read(land, use, "light", sun=(135, 20), arc=135.0)
+def test_mirrored_terrain_under_a_mirrored_sun(read, use):
+    terrain = steep()
+    mirrored = Land(terrain.heights[:, ::-1].copy(), terrain.spacing)
+    straight = read(terrain, use, "light", sun=(135, 20), arc=135.0)
     across = read(mirrored, use, "light", sun=(-135, 20), arc=-135.0)[:, ::-1]
     # The table of normals has no middle between two of them.
     assert (np.abs(across - straight) > 0.02).mean() < 0.002
 
 
-# Sun, sky and land together
+# Sun, sky and terrain together
 
 
 def test_analytic_is_the_sum_of_its_parts(read):
-    land = steep()
+    terrain = steep()
     sun = {"sun": (100, 25), "sun_colour": (1.0, 0.9, 0.7), "gain": 1.4}
     sky = {"sky_colour": (0.4, 0.6, 1.0), "ambient": 0.5}
     ground = {"ground": (0.3, 0.2, 0.1)}
-    whole, factor = read(land, "analytic", "light", "factor", arc=0.0, **sun, **sky, **ground)
-    alone = read(land, "horizon_sun", "light", arc=0.0, measured="eight directions", **sun)
-    of_sky = read(land, "horizon_sky", "light", **sky, **ground)
+    whole, factor = read(terrain, "analytic", "light", "factor", arc=0.0, **sun, **sky, **ground)
+    alone = read(terrain, "horizon_sun", "light", arc=0.0, measured="eight directions", **sun)
+    of_sky = read(terrain, "horizon_sky", "light", **sky, **ground)
     np.testing.assert_allclose(whole[..., :3], alone[..., :3] + of_sky[..., :3], atol=4e-3)
     np.testing.assert_allclose(of_sky[..., :3], 0.5 * factor[..., :3] * [0.4, 0.6, 1.0], atol=2e-3)
     np.testing.assert_array_equal(whole[..., 3], alone[..., 3])
 
 
 def test_clouds_dim_the_sun_and_leave_the_sky(read):
-    land = steep(33)
-    lights = [read(land, "analytic", "light", clouds=c)[..., :3] for c in (0.0, 0.5, 1.0)]
+    terrain = steep(33)
+    lights = [read(terrain, "analytic", "light", clouds=c)[..., :3] for c in (0.0, 0.5, 1.0)]
     np.testing.assert_allclose(lights[1], (lights[0] + lights[2]) / 2, atol=2e-3)
-    sky = read(land, "analytic", "light", gain=0.0)[..., :3]
+    sky = read(terrain, "analytic", "light", gain=0.0)[..., :3]
     np.testing.assert_allclose(lights[2], sky, atol=1e-3)
-    each = read(land, "analytic", "light", clouds=0.5, sun_term="each texel")[..., :3]
+    each = read(terrain, "analytic", "light", clouds=0.5, sun_term="each texel")[..., :3]
     np.testing.assert_allclose(each, lights[1], atol=0.012)
 
 
-def test_flat_land_is_lit_evenly(read):
-    land = Land(np.full((9, 12), 7.0), (10.0, 25.0))
-    light = read(land, "analytic", "light", sun=(77, 30), gain=1.0, ambient=0.25)
+def test_flat_terrain_is_lit_evenly(read):
+    terrain = Land(np.full((9, 12), 7.0), (10.0, 25.0))
+    light = read(terrain, "analytic", "light", sun=(77, 30), gain=1.0, ambient=0.25)
     np.testing.assert_allclose(light[..., :3], 0.75, rtol=2 * HALF)
 
 
-def test_lifting_the_land_changes_nothing(read):
-    land = cone(33)
-    low = land.heights.copy()
+def test_lifting_the_terrain_changes_nothing(read):
+    terrain = cone(33)
+    low = terrain.heights.copy()
     low[0, 0] -= 500  # all else stands higher over height 0
-    plain, lifted = (read(one, "analytic", "light", sun=(250, 15)) for one in (land, Land(low, land.spacing)))
+    plain, lifted = (
+        read(one, "analytic", "light", sun=(250, 15)) for one in (terrain, Land(low, terrain.spacing))
+    )
     assert (np.abs(plain - lifted)[8:, 8:] > 0.01).mean() < 0.01
 
 
 def test_daylight_takes_the_place_of_sun_and_sky(kept, sketch):
     """A daylight that is wired says where the sun is, whatever the sun's own parameters."""
     passes = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = { hour = 9.0, latitude = 40.0 }\n'
-    land = steep(33)
+    terrain = steep(33)
     first, second = (
-        kept.read(sketch(land, "analytic", passes=passes, sun=sun), "light") for sun in ((10, 5), (200, 70))
+        kept.read(sketch(terrain, "analytic", passes=passes, sun=sun), "light")
+        for sun in ((10, 5), (200, 70))
     )
     np.testing.assert_array_equal(first, second)
     assert first[..., 3].max() == 1

@@ -23,7 +23,7 @@ SHAPES = [
 def sketch_of(make_sketch):
     def make(size=(33, 33), extent=(1000.0, 1000.0), before="", inputs="", **values):
         given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
-        use = '[[pass]]\nname = "land"\nuse = "generation/circles"\n'
+        use = '[[pass]]\nname = "terrain"\nuse = "generation/circles"\n'
         text = f"{before}{use}{inputs}[pass.set]\n{given}"
         return make_sketch(text, size=list(size), extent=list(extent))
 
@@ -65,10 +65,10 @@ def dome(far, sphere=False):
 
 
 def summed(size, extent, drawn, sphere=False):
-    land = np.zeros(size[::-1])
+    terrain = np.zeros(size[::-1])
     for disc in zip(*drawn, strict=True):
-        land += disc[3] * dome(far_from(disc, size, extent), sphere)
-    return land
+        terrain += disc[3] * dome(far_from(disc, size, extent), sphere)
+    return terrain
 
 
 @pytest.mark.parametrize(("size", "extent"), SHAPES, ids=str)
@@ -76,16 +76,16 @@ def summed(size, extent, drawn, sphere=False):
     "values", [{}, {"iterations": 97, "rises": "alike"}, {"smallest": 0.4, "largest": 0.1}]
 )
 def test_it_is_the_sum_of_its_domes(engine, sketch_of, discs, size, extent, values):
-    found = engine.read(sketch_of(size, extent, **values), "land.raw")
+    found = engine.read(sketch_of(size, extent, **values), "terrain.raw")
     truth = summed(size, extent, discs(extent, **values))
-    # Places are counted in the shorter side: on a long land they are large numbers, and rounded.
+    # Places are counted in the shorter side: on a long terrain they are large numbers, and rounded.
     long = max(extent) / min(extent)
     np.testing.assert_allclose(found, truth, atol=2e-6 * long * max(1, truth.max()))
 
 
 def test_half_spheres(engine, sketch_of, discs):
     size, extent = (130, 100), (1300.0, 1000.0)
-    found = engine.read(sketch_of(size, extent, dome="half a sphere"), "land.raw")
+    found = engine.read(sketch_of(size, extent, dome="half a sphere"), "terrain.raw")
     # At its rim a half sphere is upright: there a rounded place has a height of its own.
     truth = summed(size, extent, discs(extent), sphere=True)
     near = np.min([abs(far_from(d, size, extent) - 1) for d in zip(*discs(extent), strict=True)], axis=0)
@@ -96,7 +96,7 @@ def test_half_spheres(engine, sketch_of, discs):
 
 def test_it_is_the_sum_of_its_domes_at_513(engine, sketch_of, discs):
     values = {"iterations": 1000, "smallest": 0.0, "largest": 0.05}
-    found = engine.read(sketch_of((513, 513), **values), "land.raw")
+    found = engine.read(sketch_of((513, 513), **values), "terrain.raw")
     rows = [0, 77, 256, 512]
     truth = np.zeros((4, 513))
     x, y = np.linspace(0, 1000, 513), np.linspace(0, 1000, 513)[rows]
@@ -106,19 +106,19 @@ def test_it_is_the_sum_of_its_domes_at_513(engine, sketch_of, discs):
 
 
 @pytest.mark.parametrize("dome", ["half a cosine", "half a sphere"])
-def test_outside_every_disc_the_land_keeps_its_height(engine, sketch_of, discs, dome):
+def test_outside_every_disc_the_terrain_keeps_its_height(engine, sketch_of, discs, dome):
     """To the last bit; inside any, it is higher."""
     before = '[[pass]]\nname = "start"\nuse = "generation/layered_noise"\n'
     values = {"iterations": 30, "seed": 5, "smallest": 0.05, "largest": 0.1}
     size, extent = (100, 70), (1000.0, 700.0)
     sketch = sketch_of(size, extent, before, 'inputs = { initial = "start" }\n', dome=dome, **values)
-    start, land = engine.read(sketch, "start"), engine.read(sketch, "land.raw")
+    start, terrain = engine.read(sketch, "start"), engine.read(sketch, "terrain.raw")
     far = np.min([far_from(d, size, extent) for d in zip(*discs(extent, **values), strict=True)], axis=0)
     outside, inside = far > 1 + 1e-5, far < 0.98
     assert outside.sum() > 1000 and inside.sum() > 1000
-    np.testing.assert_array_equal(land[outside], start[outside])
-    assert (land[inside] > start[inside]).all()
-    alone = engine.read(sketch_of(size, extent, dome=dome, **values), "land.raw")
+    np.testing.assert_array_equal(terrain[outside], start[outside])
+    assert (terrain[inside] > start[inside]).all()
+    alone = engine.read(sketch_of(size, extent, dome=dome, **values), "terrain.raw")
     assert not alone[outside].any()
 
 
@@ -130,8 +130,8 @@ def test_discs_are_round_in_metres(engine, sketch_of, discs, extent):
         if radius < x < extent[0] - radius and radius < y < extent[1] - radius:
             break
     sketch = sketch_of(size, extent, iterations=1, seed=seed, smallest=0.2, largest=0.2)
-    land = engine.read(sketch, "land.raw")
-    wide, high = (np.flatnonzero((land > 0).any(axis=a)) for a in (0, 1))
+    terrain = engine.read(sketch, "terrain.raw")
+    wide, high = (np.flatnonzero((terrain > 0).any(axis=a)) for a in (0, 1))
     step = np.array(extent) / (np.array(size) - 1)
     np.testing.assert_allclose(np.ptp(wide) * step[0], 2 * radius, atol=2.1 * step[0])
     np.testing.assert_allclose(np.ptp(high) * step[1], 2 * radius, atol=2.1 * step[1])
@@ -152,35 +152,35 @@ def test_turns_are_discs(engine, sketch_of):
     """However they are grouped: one by one, or many in one run; a stop in a block is the sum so far."""
     values = {"seed": 6, "rises": "alike"}
     sketch = sketch_of((70, 50), iterations=120, **values)
-    turns = dict(engine.steps(sketch, "land"))
+    turns = dict(engine.steps(sketch, "terrain"))
     assert len(turns) == 121 and not turns[0].any()
     for turn in (1, 24, 50, 96, 97, 119, 120):
         with Engine(engine.ctx, driver=engine.driver) as fresh:
-            found = fresh.read(sketch, "land.raw", steps={"land.raw": turn})
+            found = fresh.read(sketch, "terrain.raw", steps={"terrain.raw": turn})
         np.testing.assert_array_equal(found, turns[turn])
-        fewer = engine.read(sketch_of((70, 50), iterations=turn, **values), "land.raw")
+        fewer = engine.read(sketch_of((70, 50), iterations=turn, **values), "terrain.raw")
         np.testing.assert_array_equal(found, fewer)
 
 
-def test_nothing_to_add_is_flat_land(engine, sketch_of):
+def test_nothing_to_add_is_flat_terrain(engine, sketch_of):
     for values in ({"iterations": 0}, {"smallest": 0.0, "largest": 0.0}):
         for normalise in ("none", "max", "minmax"):
-            land = engine.read(sketch_of(normalise=normalise, **values), "land")
-            np.testing.assert_array_equal(land, 0)
+            terrain = engine.read(sketch_of(normalise=normalise, **values), "terrain")
+            np.testing.assert_array_equal(terrain, 0)
 
 
-def test_discs_as_wide_as_the_land(engine, sketch_of):
-    land = engine.read(sketch_of(iterations=1000, smallest=1.0, largest=1.0), "land.raw")
-    assert np.isfinite(land).all() and land.min() > 0
+def test_discs_as_wide_as_the_terrain(engine, sketch_of):
+    terrain = engine.read(sketch_of(iterations=1000, smallest=1.0, largest=1.0), "terrain.raw")
+    assert np.isfinite(terrain).all() and terrain.min() > 0
 
 
 def test_normalise_and_seeds(engine, sketch_of):
-    raw = engine.read(sketch_of(), "land.raw").astype(np.float64)
-    lands = {n: engine.read(sketch_of(normalise=n), "land") for n in ("none", "max", "minmax")}
-    np.testing.assert_array_equal(lands["none"], raw)
-    np.testing.assert_allclose(lands["max"], raw / raw.max(), atol=1e-6)
-    np.testing.assert_allclose(lands["minmax"], (raw - raw.min()) / np.ptp(raw), atol=1e-6)
-    one, other, again = (engine.read(sketch_of(seed=s), "land") for s in (1, 2, 1))
+    raw = engine.read(sketch_of(), "terrain.raw").astype(np.float64)
+    terrains = {n: engine.read(sketch_of(normalise=n), "terrain") for n in ("none", "max", "minmax")}
+    np.testing.assert_array_equal(terrains["none"], raw)
+    np.testing.assert_allclose(terrains["max"], raw / raw.max(), atol=1e-6)
+    np.testing.assert_allclose(terrains["minmax"], (raw - raw.min()) / np.ptp(raw), atol=1e-6)
+    one, other, again = (engine.read(sketch_of(seed=s), "terrain") for s in (1, 2, 1))
     np.testing.assert_array_equal(one, again)
     assert np.abs(one - other).max() > 0.1
 
@@ -188,4 +188,4 @@ def test_normalise_and_seeds(engine, sketch_of):
 def test_both_drivers_agree_to_the_last_bit(ctx, sketch_of):
     sketch = sketch_of((130, 70), (1300.0, 700.0), dome="half a sphere")
     with Engine(ctx, driver="fragment") as one, Engine(ctx, driver="compute") as other:
-        np.testing.assert_array_equal(one.read(sketch, "land.raw"), other.read(sketch, "land.raw"))
+        np.testing.assert_array_equal(one.read(sketch, "terrain.raw"), other.read(sketch, "terrain.raw"))

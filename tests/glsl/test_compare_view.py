@@ -1,4 +1,4 @@
-"""Two lights on one land: each side of the line is the picture of that light alone."""
+"""Two lights on one terrain: each side of the line is the picture of that light alone."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from playground.engine.engine import Engine
 from ..sketch_texts import passes
 
 SIZE = (96, 64)
-LAND = "\n" + passes(
+TERRAIN = "\n" + passes(
     height="generation/layered_noise",
     one="lighting/l_dot_n",
     two=("lighting/l_dot_n", "set = { gain = 0.5 }"),
@@ -20,10 +20,10 @@ LAND = "\n" + passes(
 @pytest.fixture
 def pictures(make_sketch, any_engine: Engine):
     both = make_sketch(
-        f'{LAND}[view]\nuse = "view/compare"\ninputs = {{ light_left = "one", light_right = "two" }}\n'
+        f'{TERRAIN}[view]\nuse = "view/compare"\ninputs = {{ light_left = "one", light_right = "two" }}\n'
     )
     alone = [
-        make_sketch(f'{LAND}[view]\nuse = "view/terrain"\ninputs = {{ light = "{name}" }}\n')
+        make_sketch(f'{TERRAIN}[view]\nuse = "view/terrain"\ninputs = {{ light = "{name}" }}\n')
         for name in ("one", "two")
     ]
     return both, [any_engine.render(sketch, size=SIZE).array.astype(int) for sketch in alone]

@@ -324,16 +324,16 @@ def takers():
 @pytest.mark.parametrize("elevation", [35.0, 6.0])
 def test_a_light_technique_takes_the_sun_and_the_sky_from_it(any_engine, make_sketch, name, elevation):
     light = f'[[pass]]\nname = "light"\nuse = "{name}"\nset = {{ ambient = 1.0 }}\n'
-    land = '[[pass]]\nname = "height"\nuse = "./hills"\n'
+    terrain = '[[pass]]\nname = "height"\nuse = "./hills"\n'
     given = f'set = {{ position = "free", sun = [250.0, {elevation}] }}\n'
     day = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\n{given}'
-    wired = make_sketch(land + day + light, relief=200.0, hills=HILLS)
+    wired = make_sketch(terrain + day + light, relief=200.0, hills=HILLS)
     row = row_of(any_engine, wired)
     found = any_engine.read(wired, "light")
     values = {"sun": [250.0, elevation], "sun_colour": list(row[1, :3]), "sky_colour": list(row[2, :3])}
     if name == "lighting/horizon_sun":  # no arc is under a daylight's sun: it takes eight directions
         values |= {"measured": "eight directions", "arc": 135.0}
-    plain = make_sketch(land + light, relief=200.0, hills=HILLS)
+    plain = make_sketch(terrain + light, relief=200.0, hills=HILLS)
     wanted = any_engine.read(plain.with_values({f"light.{k}": v for k, v in values.items()}), "light")
     assert np.ptp(found[..., 0]) > 0.05
     same = np.abs(found - wanted) <= 2e-3 * np.abs(wanted) + 1e-4
@@ -349,10 +349,10 @@ def test_turbidity_is_said_once():
     assert having == ["air"]
 
 
-# ── seen behind the land ─────────────────────────────────────────────────────
+# ── seen behind the terrain ─────────────────────────────────────────────────────
 
 FLAT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
-LAND = '[[pass]]\nname = "height"\nuse = "./flat"\n'
+TERRAIN = '[[pass]]\nname = "height"\nuse = "./flat"\n'
 SEEN = (160, 120)
 
 
@@ -363,7 +363,7 @@ def outdoors(make_sketch):
         light = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {given} }}\n'
         shown = f'[view]\nuse = "view/terrain"\nsamples = 1\nset = {{ {view} }}\n' if view else ""
         shown = shown or '[view]\nuse = "view/terrain"\nsamples = 1\n'
-        return make_sketch(LAND + (light if daylight else "") + shown, flat=FLAT)
+        return make_sketch(TERRAIN + (light if daylight else "") + shown, flat=FLAT)
 
     return make
 
@@ -412,7 +412,7 @@ def test_the_sun_s_disc_is_where_the_sun_is_and_half_a_degree_wide(any_engine, o
     assert disc.sum() > 20 and found[disc].min() > 1.5 * found[around].max()
 
 
-def test_the_sky_behind_the_land_is_daylight_s(any_engine, outdoors):
+def test_the_sky_behind_the_terrain_is_daylight_s(any_engine, outdoors):
     sketch = looking(outdoors((180.0, 8.0)), 90.0, field=40.0)
     found = any_engine.read(sketch, "view.sky", size=SEEN).astype(np.float64)[..., :3]
     dome = any_engine.read(sketch, "daylight", size=SEEN).astype(np.float64)[..., :3]

@@ -1,4 +1,4 @@
-"""The land of triangles against SciPy's linear interpolation; the pictures of it by their own pixels."""
+"""The terrain of triangles against SciPy's linear interpolation; the pictures of it by their own pixels."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ SIZES = [(2, 2), (3, 3), (5, 5), (33, 33), (513, 513), (37, 22), (2, 300), (130,
 
 
 @pytest.fixture
-def land(make_sketch):
-    """Give a function that makes a sketch of the land: its size and its parameters."""
+def terrain(make_sketch):
+    """Give a function that makes a sketch of the terrain: its size and its parameters."""
 
     def make(size=(33, 33), **values):
-        sketch = make_sketch('[[pass]]\nname = "land"\nuse = "generation/delaunay"\n', size=list(size))
-        return sketch.with_values({f"land.{name}": value for name, value in values.items()})
+        sketch = make_sketch('[[pass]]\nname = "terrain"\nuse = "generation/delaunay"\n', size=list(size))
+        return sketch.with_values({f"terrain.{name}": value for name, value in values.items()})
 
     return make
 
@@ -58,16 +58,16 @@ def truth(made: Triangulation, size) -> np.ndarray:
     return LinearNDInterpolator(made.places.astype(np.float64), made.heights)(*np.meshgrid(x, y))
 
 
-# ── the land ─────────────────────────────────────────────────────────────────
+# ── the terrain ─────────────────────────────────────────────────────────────────
 
 
 @pytest.mark.parametrize("points", [1, 2, 60, pytest.param(1000, marks=pytest.mark.slow)])
-def test_heights_are_scipy_s(any_engine, land, points):
-    """Every texel, those on the land's border too: one that no triangle covered would be 0."""
+def test_heights_are_scipy_s(any_engine, terrain, points):
+    """Every texel, those on the terrain's border too: one that no triangle covered would be 0."""
     values = {"points": points, "weights": "random", "corners": (0.9, 0.7, 0.6, 0.8)}
     made = triangulate(rules_of(**values))
     for size in SIZES:
-        found = any_engine.read(land(size, **values), "land.tin")
+        found = any_engine.read(terrain(size, **values), "terrain.tin")
         np.testing.assert_allclose(found, truth(made, size), atol=5e-7, err_msg=str(size))
         assert found[0, 0] == np.float32(0.9) and found[-1, -1] == np.float32(0.8)
 
@@ -79,74 +79,74 @@ def test_heights_are_scipy_s(any_engine, land, points):
         (1000, "equal", 1.0, (1000, 1000)),
     ],
 )
-def test_slivers(any_engine, land, points, weights, proportion, size):
+def test_slivers(any_engine, terrain, points, weights, proportion, size):
     """Along the border triangles are thousands of times longer than high."""
     values = {"points": points, "weights": weights, "proportion": proportion}
-    found = any_engine.read(land(size, **values), "land.tin")
+    found = any_engine.read(terrain(size, **values), "terrain.tin")
     whole = truth(triangulate(rules_of(**values)), size)
     np.testing.assert_allclose(found, whole, atol=4e-7)
     assert whole.std() > 0.1
 
 
-def test_two_triangles(engine, land):
+def test_two_triangles(engine, terrain):
     """The first step: an edge from south-east to north-west, a plane on either side."""
     sw, se, nw, ne = 0.1, 0.6, 0.9, 0.4
     for size in SIZES:
         x, y = np.meshgrid(*(np.linspace(0, 1, n) for n in size))
         below = sw + (se - sw) * x + (nw - sw) * y
         above = ne + (nw - ne) * (1 - x) + (se - ne) * (1 - y)
-        found = engine.read(land(size, points=0, corners=(sw, se, nw, ne)), "land.tin")
+        found = engine.read(terrain(size, points=0, corners=(sw, se, nw, ne)), "terrain.tin")
         np.testing.assert_allclose(found, np.where(x + y < 1, below, above), atol=2e-7, err_msg=str(size))
 
 
-def test_each_step_is_scipy_s(any_engine, land):
+def test_each_step_is_scipy_s(any_engine, terrain):
     for points in range(1, 12):
-        found = any_engine.read(land((65, 65), points=points), "land.tin")
+        found = any_engine.read(terrain((65, 65), points=points), "terrain.tin")
         np.testing.assert_allclose(found, truth(triangulate(Rules(points=points)), (65, 65)), atol=5e-7)
 
 
-def test_no_texel_is_missed_at_any_size(any_engine, land):
+def test_no_texel_is_missed_at_any_size(any_engine, terrain):
     """Heights near 1 everywhere: displaced by next to nothing."""
     values = {"heights": "displaced", "roughness": 3.0, "corners": (1.0,) * 4}
     for points in (0, 1, 300):
         least = triangulate(rules_of(points=points, **values)).heights.min()
         assert least > 0.5
         for size in [(1, 1), (1, 9), (9, 1), *SIZES]:
-            found = any_engine.read(land(size, points=points, **values), "land.tin")
+            found = any_engine.read(terrain(size, points=points, **values), "terrain.tin")
             assert found.shape == size[::-1] and np.isfinite(found).all()
             assert found.min() >= least - 1e-6, size
 
 
-def test_flat_land_is_exactly_flat(engine, land):
+def test_flat_terrain_is_exactly_flat(engine, terrain):
     for corners in ((0.3,) * 4, (1.0,) * 4):
-        found = engine.read(land((65, 33), points=0, corners=corners), "land.tin")
+        found = engine.read(terrain((65, 33), points=0, corners=corners), "terrain.tin")
         assert (found == np.float32(corners[0])).all()
 
 
-def test_both_drivers_and_both_methods_give_the_same_bits(ctx, land):
+def test_both_drivers_and_both_methods_give_the_same_bits(ctx, terrain):
     found = []
     for driver in ("fragment", "compute") if ctx.version_code >= 430 else ("fragment",):
         for method in ("destruction and construction", "flips"):
             with Engine(ctx, driver=driver) as engine:
-                sketch = land((65, 40), points=200, weights="random", method=method)
-                found.append([engine.read(sketch, ref) for ref in ("land", "land.tin")])
+                sketch = terrain((65, 40), points=200, weights="random", method=method)
+                found.append([engine.read(sketch, ref) for ref in ("terrain", "terrain.tin")])
     for one in found[1:]:
         for mine, first in zip(one, found[0], strict=True):
             np.testing.assert_array_equal(mine, first)
 
 
-def test_heights_are_the_hash_s_numbers(any_engine, land, python_random):
+def test_heights_are_the_hash_s_numbers(any_engine, terrain, python_random):
     """noise/hash.glsl's random(ivec2(point, 0), seed + salt), for points numbered after the four corners."""
     made = triangulate(Rules(points=50, seed=123))
     np.testing.assert_array_equal(
         made.heights[4:], python_random(np.arange(4, 54), 0, 123 + crc32(b"delaunay"))
     )
-    table = any_engine.read(land(points=50, seed=123), "land.triangulation:places").reshape(-1, 4)
+    table = any_engine.read(terrain(points=50, seed=123), "terrain.triangulation:places").reshape(-1, 4)
     np.testing.assert_array_equal(table[:54, 2], made.heights.astype(np.float32))
     np.testing.assert_array_equal(table[:54, :2], made.places)
 
 
-def test_every_parameter_reaches_the_triangulation(any_engine, land):
+def test_every_parameter_reaches_the_triangulation(any_engine, terrain):
     changes = {
         "points": 31,
         "weights": "random",
@@ -156,42 +156,42 @@ def test_every_parameter_reaches_the_triangulation(any_engine, land):
         "proportion": 0.4,
     }
     usual = {"points": 30, "proportion": 1.0}
-    first = any_engine.read(land(**usual), "land.tin")
+    first = any_engine.read(terrain(**usual), "terrain.tin")
     for name, value in changes.items():
         values = usual | {name: value}
-        found = any_engine.read(land(**values), "land.tin")
+        found = any_engine.read(terrain(**values), "terrain.tin")
         assert not np.array_equal(found, first), name
         np.testing.assert_allclose(
             found, truth(triangulate(rules_of(**values)), (33, 33)), atol=5e-7, err_msg=name
         )
     displaced = {"points": 30, "heights": "displaced"}
-    rough, smooth = (any_engine.read(land(**displaced, roughness=r), "land.tin") for r in (0.5, 1.5))
+    rough, smooth = (any_engine.read(terrain(**displaced, roughness=r), "terrain.tin") for r in (0.5, 1.5))
     assert smooth.std() < 0.7 * rough.std()
 
 
-def test_repeated_it_is_the_same(ctx, land):
-    sketch = land((65, 65), points=300)
+def test_repeated_it_is_the_same(ctx, terrain):
+    sketch = terrain((65, 65), points=300)
     found = []
     for _ in range(2):
         triangulate.cache_clear()
         with Engine(ctx) as engine:
-            found.append(engine.read(sketch, "land"))
+            found.append(engine.read(sketch, "terrain"))
     np.testing.assert_array_equal(*found)
 
 
-def test_it_is_normalised_unless_asked_not_to_be(any_engine, land):
-    found = any_engine.read(land(points=60), "land")
+def test_it_is_normalised_unless_asked_not_to_be(any_engine, terrain):
+    found = any_engine.read(terrain(points=60), "terrain")
     assert (found.min(), found.max()) == (0.0, 1.0)
-    sketch = land(points=60, normalise="none")
-    np.testing.assert_array_equal(any_engine.read(sketch, "land"), any_engine.read(sketch, "land.tin"))
-    np.testing.assert_array_equal(any_engine.read(land(points=0), "land"), 0.0)
+    sketch = terrain(points=60, normalise="none")
+    np.testing.assert_array_equal(any_engine.read(sketch, "terrain"), any_engine.read(sketch, "terrain.tin"))
+    np.testing.assert_array_equal(any_engine.read(terrain(points=0), "terrain"), 0.0)
 
 
-def test_samples_of_the_view_leave_heights_alone(any_engine, land):
-    sketch = land((33, 33), points=60)
-    first = any_engine.read(replace(sketch, samples=1), "land.tin")
-    np.testing.assert_array_equal(any_engine.read(replace(sketch, samples=8), "land.tin"), first)
-    assert any_engine.runs["land.tin"] == 1
+def test_samples_of_the_view_leave_heights_alone(any_engine, terrain):
+    sketch = terrain((33, 33), points=60)
+    first = any_engine.read(replace(sketch, samples=1), "terrain.tin")
+    np.testing.assert_array_equal(any_engine.read(replace(sketch, samples=8), "terrain.tin"), first)
+    assert any_engine.runs["terrain.tin"] == 1
 
 
 def test_more_triangles_than_there_are_add_nothing(any_engine, make_sketch):
@@ -210,12 +210,12 @@ def test_a_triangulation_that_does_not_fit_has_a_sentence(any_engine, make_sketc
     assert caught.value.diagnostics[0].line == 5
 
 
-def test_opengl_3_3_is_enough(any_engine, land, tmp_path):
+def test_opengl_3_3_is_enough(any_engine, terrain, tmp_path):
     kinds = {kernel.kind for _, kernel in kernels_of(read_technique("generation/delaunay", GLSL, GLSL))}
     assert kinds == {"source", "draw", "kernel"}
-    sketch = land((33, 33), points=40)
+    sketch = terrain((33, 33), points=40)
     out = tmp_path / "old.npy"
-    given = ["--texture", "land", "-o", str(out), "--set", "land.points=40"]
+    given = ["--texture", "terrain", "-o", str(out), "--set", "terrain.points=40"]
     done = subprocess.run(
         [sys.executable, "-m", "playground", "render", sketch.file, *given],
         env={**os.environ, "MESA_GL_VERSION_OVERRIDE": "3.3", "PYTHONPATH": str(GLSL.parent)},
@@ -224,7 +224,7 @@ def test_opengl_3_3_is_enough(any_engine, land, tmp_path):
         cwd=tmp_path,
     )
     assert done.returncode == 0, done.stderr
-    np.testing.assert_array_equal(np.load(out), any_engine.read(sketch, "land"))
+    np.testing.assert_array_equal(np.load(out), any_engine.read(sketch, "terrain"))
 
 
 # ── whole numbers in GLSL ────────────────────────────────────────────────────
@@ -302,7 +302,7 @@ def picture(any_engine, make_sketch):
 
 
 def pixels_of(made: Triangulation, places) -> np.ndarray:
-    """Return the pixels (x, y) of places: the land as large as fits but for a tenth, in the middle."""
+    """Return the pixels (x, y) of places: the terrain as large as fits but for a tenth, in the middle."""
     sides = np.array(made.sides, float)
     scale = min(WIDTH * (1 - 2 * MARGIN) / sides[0], HEIGHT * (1 - 2 * MARGIN) / sides[1])
     return np.array([WIDTH / 2, HEIGHT / 2]) + (np.asarray(places, float) - sides / 2) * scale

@@ -15,7 +15,7 @@ EXTENT = 3200.0
 COLUMNS = 65
 SPACING = EXTENT / (COLUMNS - 1)
 
-LAND = """
+TERRAIN = """
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")
 uniform float rough = 1.0;
@@ -39,20 +39,20 @@ float kernel(ivec2 texel) {
 
 @pytest.fixture
 def diagram(make_sketch):
-    """Give a sketch of a land and a diagram of it as large as the picture."""
+    """Give a sketch of a terrain and a diagram of it as large as the picture."""
 
     def make(use, *, size=(COLUMNS, 9), paper=SIZE, rough=1.0, step_up=0.0, extra="", **values):
         values = {"text": False, **values}
         setting = "".join(f"{k} = {_toml(v)}\n" for k, v in values.items())
         passes = (
-            '[[pass]]\nname = "height"\nuse = "./land"\n'
+            '[[pass]]\nname = "height"\nuse = "./terrain"\n'
             f"set = {{ rough = {rough}, step_up = {step_up} }}\n{extra}"
             f'[[pass]]\nname = "diagram"\nuse = "lighting/diagram/{use}"\nsize = {list(paper)}\n'
             f"inputs = {{ height = 'height' }}\n[pass.set]\n{setting}"
             '[view]\nuse = "view/map"\ninputs = { shown = "diagram" }\n'
         )
         extent = [EXTENT, EXTENT * (size[1] - 1) / (COLUMNS - 1) or 1.0]
-        return make_sketch(passes, size=list(size), extent=extent, relief=RELIEF, land=LAND)
+        return make_sketch(passes, size=list(size), extent=extent, relief=RELIEF, terrain=TERRAIN)
 
     return make
 
@@ -271,7 +271,7 @@ def test_a_sun_is_whole_hidden_or_in_part(engine, diagram, elevation):
     assert seen == pytest.approx(np.clip((elevation + 5 - wall) / 10, 0, 1), abs=1e-5)
 
 
-def test_land_is_below_its_heights_and_sky_above(any_engine, diagram):
+def test_terrain_is_below_its_heights_and_sky_above(any_engine, diagram):
     sketch = diagram("horizon", row=4, viewpoint=32, first=4, last=60)
     picture = any_engine.read(sketch, "diagram")[..., :3]
     heights = heights_of(any_engine, sketch)
@@ -292,7 +292,7 @@ def test_land_is_below_its_heights_and_sky_above(any_engine, diagram):
     assert checked > 8
 
 
-def test_the_horizon_s_line_touches_the_land_and_its_arc_is_as_long_as_its_angle(engine, diagram):
+def test_the_horizon_s_line_touches_the_terrain_and_its_arc_is_as_long_as_its_angle(engine, diagram):
     sketch = diagram("horizon", rough=0.0, step_up=0.4, viewpoint=16)
     picture = engine.read(sketch, "diagram")[..., :3]
     on_paper = paper_of(np.where(np.arange(COLUMNS) >= 40, 0.4, 0.0) * RELIEF)
@@ -312,7 +312,7 @@ def test_the_horizon_s_line_touches_the_land_and_its_arc_is_as_long_as_its_angle
 
 
 def test_the_plane_cuts_the_horizon_on_the_side_that_it_rises_to(any_engine, diagram):
-    """At the foot of a step the normal leans back; just before its top the land is lower than the plane."""
+    """At the foot of a step the normal leans back; just before its top the terrain is under the plane."""
     sketch = diagram(
         "horizon", shows="effective horizon", rough=0.0, step_up=0.2, viewpoint=40, first=24, last=56
     )
@@ -396,11 +396,11 @@ def walk(heights, column, beam, elevation, radius, delta_r, highest):
         middle = heights[column] + k * climb
         if middle - wide > highest:
             break
-        land = heights[other]
+        terrain = heights[other]
         if wide == 0:
-            part = 0.0 if land > middle else 1.0
+            part = 0.0 if terrain > middle else 1.0
         else:
-            part = min(max((middle + wide - land) / (2 * wide), 0), 1)
+            part = min(max((middle + wide - terrain) / (2 * wide), 0), 1)
         found.append((middle, wide, part))
         if part == 0:
             break
@@ -415,12 +415,12 @@ def test_tests_are_those_of_a_slow_walk(engine, diagram, beam):
             "beam", beam=beam, row=4, viewpoint=column, second=10, elevation=elevation,
             radius=20.0, delta_r=0.07, first=3, last=60,
         )  # fmt: skip
-        land = engine.read(sketch, "height").astype(np.float64) * RELIEF
+        terrain = engine.read(sketch, "height").astype(np.float64) * RELIEF
         found = engine.read(sketch, "diagram.tests").astype(np.float64)
         for row, viewpoint in ((0, column), (1, 10)):
-            wanted = walk(land[4], viewpoint, beam, elevation, 20.0, 0.07, land.max())
+            wanted = walk(terrain[4], viewpoint, beam, elevation, 20.0, 0.07, terrain.max())
             parts = [part for *_, part in wanted]
-            head = [min(parts), len(wanted), viewpoint * SPACING, land[4, viewpoint]]
+            head = [min(parts), len(wanted), viewpoint * SPACING, terrain[4, viewpoint]]
             np.testing.assert_allclose(found[row, 0], head, rtol=1e-5, atol=1e-3)
             least = found[row, 1, 0]
             assert (parts[int(least)] if least >= 0 else 1) == pytest.approx(min(parts), abs=1e-4)
@@ -428,7 +428,7 @@ def test_tests_are_those_of_a_slow_walk(engine, diagram, beam):
             np.testing.assert_allclose(given[: len(wanted), :3], wanted, rtol=1e-4, atol=2e-3)
             np.testing.assert_array_equal(given[:, 3], np.arange(COLUMNS) < len(wanted))
             seen |= {math.ceil(2 * part) for part in parts}
-        np.testing.assert_allclose(found[2, 0, :2], [land[4, 3:61].min(), land.max()], rtol=1e-6)
+        np.testing.assert_allclose(found[2, 0, :2], [terrain[4, 3:61].min(), terrain.max()], rtol=1e-6)
     assert seen == ({0, 2} if beam == "ray" else {0, 1, 2})
 
 
@@ -509,11 +509,11 @@ def test_two_rays_one_lit(any_engine, diagram, assert_written):
 @pytest.mark.parametrize("azimuth", [62.0, 180.0, 301.0])
 @pytest.mark.parametrize("place", [(20, 4), (64, 4), (0, 0)], ids=str)
 def test_the_share_that_is_written_is_the_method_s(any_engine, diagram, assert_written, azimuth, place):
-    setting = f"sun = [{azimuth}, 25.0], softness = 0.05, reach = 2.0"
+    setting = f"sun = [{azimuth}, 25.0], softness = 0.05, step_length = 2.0"
     extra = f'[[pass]]\nname = "light"\nuse = "lighting/height_difference"\nset = {{ {setting} }}\n'
     sketch = diagram(
-        "grid", extra=extra, column=place[0], row=place[1], sun=(azimuth, 25.0), softness=0.05, reach=2.0,
-        text=True, texels=11,
+        "grid", extra=extra, column=place[0], row=place[1], sun=(azimuth, 25.0), softness=0.05,
+        step_length=2.0, text=True, texels=11,
     )  # fmt: skip
     share = any_engine.read(sketch, "light")[place[1], place[0], 3]
     picture = any_engine.read(sketch, "diagram")[..., :3]
@@ -539,7 +539,7 @@ def test_texels_higher_than_the_middle_are_brown_and_lower_ones_blue(any_engine,
     np.testing.assert_allclose(colour_at(picture, (320 + pitch, 180)), paint("hidden"), atol=0.02)
 
 
-def test_beyond_the_land_there_is_no_height(any_engine, diagram, assert_written):
+def test_beyond_the_terrain_there_is_no_height(any_engine, diagram, assert_written):
     sketch = diagram("grid", column=64, row=4, sun=(90.0, 25.0), text=True, texels=11)
     picture = any_engine.read(sketch, "diagram")[..., :3]
     assert_written(picture, (12, 312), "towards the sun no land")
@@ -552,10 +552,13 @@ def test_beyond_the_land_there_is_no_height(any_engine, diagram, assert_written)
 
 @pytest.mark.parametrize("use", ["horizon", "beam", "grid"])
 @pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 9), (9, 1), (129, 3)], ids=str)
-def test_tiny_lands_and_wild_places_are_drawn(any_engine, diagram, use, size):
+def test_tiny_terrains_and_wild_places_are_drawn(any_engine, diagram, use, size):
     wild = [{"text": True}]
     if use == "grid":
-        wild += [{"column": 4096, "row": 4096, "reach": 0.0, "text": True}, {"texels": 40.0, "steps": 64}]
+        wild += [
+            {"column": 4096, "row": 4096, "step_length": 0.0, "text": True},
+            {"texels": 40.0, "steps": 64},
+        ]
     else:
         shows = {"shows": "visibility of the sun"} if use == "horizon" else {"beam": "cone", "second": 4096}
         wild += [{"row": 4096, "viewpoint": 4096, "first": 4096, "last": 1, **shows}]

@@ -12,7 +12,7 @@ CORNERS = (0.1, 0.7, 0.4, 0.9)  # south-west, south-east, north-west, north-east
 
 
 def by_the_thesis(size, smoothing, corners, number):
-    """Return the land as section 4.3.1's loops make it, points[i][j] with i up and j along.
+    """Return the terrain as section 4.3.1's loops make it, points[i][j] with i up and j along.
 
     ``number(i, j)`` is the random number; the spacing is taken over the side.
     """
@@ -39,28 +39,30 @@ def by_the_thesis(size, smoothing, corners, number):
 
 def by_slices(size, smoothing, corners, numbers):
     """Return the same, level by level with whole arrays: quick enough for 1025²."""
-    land = np.full((size, size), np.nan)
-    land[0, 0], land[0, -1], land[-1, 0], land[-1, -1] = corners
+    terrain = np.full((size, size), np.nan)
+    terrain[0, 0], terrain[0, -1], terrain[-1, 0], terrain[-1, -1] = corners
     spacing = size - 1
     while spacing > 1:
         h = spacing // 2
         share = spacing / (size - 1) * smoothing
-        known = land[::spacing, ::spacing]
-        land[h::spacing, h::spacing] = (known[:-1, :-1] + known[:-1, 1:] + known[1:, :-1] + known[1:, 1:]) / 4
-        land[h::spacing, h::spacing] += numbers[h::spacing, h::spacing] * share
-        rim = np.pad(land[::h, ::h], 1, constant_values=np.nan)
+        known = terrain[::spacing, ::spacing]
+        terrain[h::spacing, h::spacing] = (
+            known[:-1, :-1] + known[:-1, 1:] + known[1:, :-1] + known[1:, 1:]
+        ) / 4
+        terrain[h::spacing, h::spacing] += numbers[h::spacing, h::spacing] * share
+        rim = np.pad(terrain[::h, ::h], 1, constant_values=np.nan)
         around = np.stack([rim[:-2, 1:-1], rim[2:, 1:-1], rim[1:-1, :-2], rim[1:-1, 2:]])
         mean = np.nansum(around, axis=0) / np.maximum((~np.isnan(around)).sum(axis=0), 1)
         odd = np.add.outer(np.arange(mean.shape[0]), np.arange(mean.shape[1])) % 2 == 1
-        land[::h, ::h] = np.where(odd, mean + numbers[::h, ::h] * share, land[::h, ::h])
+        terrain[::h, ::h] = np.where(odd, mean + numbers[::h, ::h] * share, terrain[::h, ::h])
         spacing = h
-    return land
+    return terrain
 
 
 def sketch_of(make_sketch, size, **values):
     given = "".join(f"{k} = {v!r}\n".replace("(", "[").replace(")", "]") for k, v in values.items())
     return make_sketch(
-        f'[[pass]]\nname = "land"\nuse = "generation/diamond_square"\n[pass.set]\n{given}', size=size
+        f'[[pass]]\nname = "terrain"\nuse = "generation/diamond_square"\n[pass.set]\n{given}', size=size
     )
 
 
@@ -86,14 +88,14 @@ def test_it_is_the_thesis_loops(engine, make_sketch, numbers, size, random):
     sketch = sketch_of(make_sketch, size, smoothing=0.5, seed=11, corners=CORNERS, random=random)
     drawn = numbers(size, 11, random == "positive")
     truth = by_the_thesis(size, 0.5, CORNERS, lambda i, j: drawn[i, j])
-    np.testing.assert_allclose(engine.read(sketch, "land"), truth, atol=2e-6)
+    np.testing.assert_allclose(engine.read(sketch, "terrain"), truth, atol=2e-6)
 
 
 @pytest.mark.slow
-def test_it_is_the_thesis_land_at_1025(any_engine, make_sketch, numbers):
+def test_it_is_the_thesis_terrain_at_1025(any_engine, make_sketch, numbers):
     sketch = sketch_of(make_sketch, 1025, smoothing=0.9, seed=3, corners=CORNERS)
     truth = by_slices(1025, 0.9, CORNERS, numbers(1025, 3))
-    np.testing.assert_allclose(any_engine.read(sketch, "land"), truth, atol=3e-6)
+    np.testing.assert_allclose(any_engine.read(sketch, "terrain"), truth, atol=3e-6)
 
 
 FIGURES = {1: 4, 2: 5, 3: 9, 4: 13, 5: 25}  # points that are set after each turn, in figures 1.8 to 1.11
@@ -111,7 +113,7 @@ def test_the_turns_are_the_figures(engine, make_sketch, numbers):
     sketch = sketch_of(make_sketch, 5, corners=CORNERS, smoothing=0.5, seed=2)
     drawn = numbers(5, 2)
     truth = by_the_thesis(5, 0.5, CORNERS, lambda i, j: drawn[i, j])
-    states = [values.copy() for _, values in engine.steps(sketch, "land.raw")]
+    states = [values.copy() for _, values in engine.steps(sketch, "terrain.raw")]
     assert len(states) == 6 and not states[0].any()
     for turn, count in FIGURES.items():
         known = states[turn] != 0
@@ -135,11 +137,11 @@ def test_the_mask_tells_the_turn_that_sets_a_point(engine, make_sketch):
 
 
 @pytest.mark.parametrize("size", [2, 3, 33])
-def test_the_mask_marks_what_the_land_knows(engine, make_sketch, size):
-    land = sketch_of(make_sketch, size, corners=(1.0, 1.0, 1.0, 1.0), smoothing=0.1)
+def test_the_mask_marks_what_the_terrain_knows(engine, make_sketch, size):
+    terrain = sketch_of(make_sketch, size, corners=(1.0, 1.0, 1.0, 1.0), smoothing=0.1)
     phases = engine.steps(known_of(make_sketch, size), "known")
     masks = [phase.copy() for _, phase in phases]
-    for turn, values in engine.steps(land, "land.raw"):
+    for turn, values in engine.steps(terrain, "terrain.raw"):
         np.testing.assert_array_equal(masks[turn] > 0, values != 0)
     assert masks[-1].min() > 0
 
@@ -152,89 +154,93 @@ def test_both_drivers_give_the_same_bits(ctx, make_sketch, size, random):
         pytest.skip("this context has no compute shaders")
     sketch = sketch_of(make_sketch, size, smoothing=0.63, corners=CORNERS, seed=5, random=random)
     with Engine(ctx, driver="fragment") as engine:
-        fragment = engine.read(sketch, "land")
+        fragment = engine.read(sketch, "terrain")
     with Engine(ctx) as engine:
-        np.testing.assert_array_equal(engine.read(sketch, "land.raw"), fragment)
-        np.testing.assert_array_equal(engine.read(sketch, "land"), fragment)
+        np.testing.assert_array_equal(engine.read(sketch, "terrain.raw"), fragment)
+        np.testing.assert_array_equal(engine.read(sketch, "terrain"), fragment)
 
 
 @pytest.mark.parametrize("size", [3, 65, 129, 257])
 @pytest.mark.parametrize("normalise", ["max", "minmax"])
 def test_both_drivers_normalise_to_the_same_bits(ctx, make_sketch, size, normalise):
-    """Whichever way the range is found: lands whose ends lie on a border, on a corner, anywhere."""
+    """Whichever way the range is found: terrains whose ends lie on a border, on a corner, anywhere."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     with Engine(ctx, driver="fragment") as slow, Engine(ctx) as fast:
         for seed, smoothing in ((1, 0.63), (2, 1.0), (3, 0.1), (4, 0.63), (5, 0.63), (6, 0.0)):
             values = {"smoothing": smoothing, "corners": CORNERS, "normalise": normalise, "seed": seed}
             sketch = sketch_of(make_sketch, size, **values)
-            np.testing.assert_array_equal(slow.read(sketch, "land"), fast.read(sketch, "land"))
+            np.testing.assert_array_equal(slow.read(sketch, "terrain"), fast.read(sketch, "terrain"))
 
 
 @pytest.mark.parametrize(("height", "left"), [(0.4, 0.4), (0.0, 0.0), (1.0, 1.0)])
-def test_level_land_has_no_range_to_stretch(engine, make_sketch, height, left):
+def test_level_terrain_has_no_range_to_stretch(engine, make_sketch, height, left):
     for size in (5, 65):
         values = {"smoothing": 0.0, "corners": (height,) * 4}
-        level = engine.read(sketch_of(make_sketch, size, normalise="minmax", **values), "land")
+        level = engine.read(sketch_of(make_sketch, size, normalise="minmax", **values), "terrain")
         np.testing.assert_array_equal(level, 0)
-        level = engine.read(sketch_of(make_sketch, size, normalise="max", **values), "land")
+        level = engine.read(sketch_of(make_sketch, size, normalise="max", **values), "terrain")
         np.testing.assert_array_equal(level, 1.0 if height else 0.0)
-        level = engine.read(sketch_of(make_sketch, size, **values), "land")
+        level = engine.read(sketch_of(make_sketch, size, **values), "terrain")
         np.testing.assert_array_equal(level, np.float32(left))
 
 
 def test_corners_keep_their_heights(engine, make_sketch):
-    land = engine.read(sketch_of(make_sketch, 33, corners=CORNERS, smoothing=1.0), "land")
-    np.testing.assert_array_equal([land[0, 0], land[0, -1], land[-1, 0], land[-1, -1]], np.float32(CORNERS))
+    terrain = engine.read(sketch_of(make_sketch, 33, corners=CORNERS, smoothing=1.0), "terrain")
+    np.testing.assert_array_equal(
+        [terrain[0, 0], terrain[0, -1], terrain[-1, 0], terrain[-1, -1]], np.float32(CORNERS)
+    )
 
 
-def test_without_roughness_the_corners_alone_shape_the_land(engine, make_sketch):
-    level = engine.read(sketch_of(make_sketch, 33, smoothing=0.0, corners=(0.25,) * 4), "land")
+def test_without_roughness_the_corners_alone_shape_the_terrain(engine, make_sketch):
+    level = engine.read(sketch_of(make_sketch, 33, smoothing=0.0, corners=(0.25,) * 4), "terrain")
     np.testing.assert_array_equal(level, np.float32(0.25))
-    tilted = engine.read(sketch_of(make_sketch, 33, smoothing=0.0, corners=CORNERS), "land")
+    tilted = engine.read(sketch_of(make_sketch, 33, smoothing=0.0, corners=CORNERS), "terrain")
     assert tilted.min() == np.float32(0.1) and tilted.max() == np.float32(0.9)
 
 
-def test_positive_numbers_lift_the_land_and_centred_ones_do_not(any_engine, make_sketch):
+def test_positive_numbers_lift_the_terrain_and_centred_ones_do_not(any_engine, make_sketch):
     means = {}
     for random in ("centred", "positive"):
-        lands = [
-            any_engine.read(sketch_of(make_sketch, 129, smoothing=0.5, seed=s, random=random), "land").mean()
+        terrains = [
+            any_engine.read(
+                sketch_of(make_sketch, 129, smoothing=0.5, seed=s, random=random), "terrain"
+            ).mean()
             for s in range(12)
         ]
-        means[random] = np.mean(lands) - 0.5
+        means[random] = np.mean(terrains) - 0.5
     assert abs(means["centred"]) < 0.08 and means["positive"] > 0.3
 
 
 @pytest.mark.parametrize("mode", ["none", "max", "minmax"])
 def test_normalise(engine, make_sketch, numbers, mode):
     sketch = sketch_of(make_sketch, 65, smoothing=0.8, seed=5, corners=CORNERS, normalise=mode)
-    land = by_slices(65, 0.8, CORNERS, numbers(65, 5))
+    terrain = by_slices(65, 0.8, CORNERS, numbers(65, 5))
     truth = {
-        "none": land,
-        "max": land / land.max(),
-        "minmax": np.interp(land, [land.min(), land.max()], [0, 1]),
+        "none": terrain,
+        "max": terrain / terrain.max(),
+        "minmax": np.interp(terrain, [terrain.min(), terrain.max()], [0, 1]),
     }
-    np.testing.assert_allclose(engine.read(sketch, "land"), truth[mode], atol=3e-6)
+    np.testing.assert_allclose(engine.read(sketch, "terrain"), truth[mode], atol=3e-6)
 
 
 def test_by_default_nothing_is_normalised(engine, make_sketch):
     sketch = sketch_of(make_sketch, 65, smoothing=0.8)
-    np.testing.assert_array_equal(engine.read(sketch, "land"), engine.read(sketch, "land.raw"))
+    np.testing.assert_array_equal(engine.read(sketch, "terrain"), engine.read(sketch, "terrain.raw"))
 
 
-def test_seeds_are_lands(engine, make_sketch):
-    lands = [engine.read(sketch_of(make_sketch, 65, seed=s), "land") for s in (1, 2, 1)]
-    np.testing.assert_array_equal(lands[0], lands[2])
-    assert np.abs(lands[0] - lands[1]).max() > 0.01
+def test_seeds_are_terrains(engine, make_sketch):
+    terrains = [engine.read(sketch_of(make_sketch, 65, seed=s), "terrain") for s in (1, 2, 1)]
+    np.testing.assert_array_equal(terrains[0], terrains[2])
+    assert np.abs(terrains[0] - terrains[1]).max() > 0.01
 
 
 def test_a_size_it_cannot_halve_is_refused_with_the_nearest(any_engine, make_sketch):
     with pytest.raises(SketchError, match="65 x 65 or 129 x 129"):
-        any_engine.read(sketch_of(make_sketch, 100), "land")
+        any_engine.read(sketch_of(make_sketch, 100), "terrain")
 
 
-# ── the picture of a small land's points ─────────────────────────────────────
+# ── the picture of a small terrain's points ─────────────────────────────────────
 
 PICTURE = """
 [[pass]]

@@ -25,16 +25,16 @@ def slow(ctx):
 
 def sketch_of(make_sketch, size, **values):
     given = "".join(f"{k} = {v!r}\n".replace("(", "[").replace(")", "]") for k, v in values.items())
-    use = '[[pass]]\nname = "land"\nuse = "generation/diamond_square"\n'
+    use = '[[pass]]\nname = "terrain"\nuse = "generation/diamond_square"\n'
     return make_sketch(f"{use}[pass.set]\n{given}", size=size)
 
 
 def test_it_runs_and_by_fragment_the_passes_do(fast, slow, make_sketch):
     sketch = sketch_of(make_sketch, 129)
-    fast.texture(sketch, "land")
-    slow.texture(sketch, "land")
-    assert fast.ran == ["land"]
-    assert "land.raw" in slow.ran
+    fast.texture(sketch, "terrain")
+    slow.texture(sketch, "terrain")
+    assert fast.ran == ["terrain"]
+    assert "terrain.raw" in slow.ran
 
 
 @pytest.mark.parametrize("size", [2, 3, 5, 9, 17, 33, 65, 129, 257, 513])
@@ -44,7 +44,7 @@ def test_it_gives_the_bits_of_the_passes(fast, slow, make_sketch, size, normalis
     """Sizes of even and odd levels, of one group and of many."""
     values = {"smoothing": 0.63, "corners": CORNERS, "seed": 5, "random": random, "normalise": normalise}
     sketch = sketch_of(make_sketch, size, **values)
-    np.testing.assert_array_equal(fast.read(sketch, "land"), slow.read(sketch, "land"))
+    np.testing.assert_array_equal(fast.read(sketch, "terrain"), slow.read(sketch, "terrain"))
 
 
 # At 65 texels and seeds 172 and 291, at 129 and seed 61, the lowest or the highest stands in the
@@ -56,41 +56,41 @@ def test_no_height_is_missed_in_the_search_for_the_range(fast, make_sketch, size
     """Rows that cannot hold the lowest or the highest are skipped; those that can must not be."""
     for seed in (*range(8), 61, 172, 289, 291):
         values = {"smoothing": smoothing, "corners": CORNERS, "seed": seed}
-        raw = fast.read(sketch_of(make_sketch, size, **values), "land")
+        raw = fast.read(sketch_of(make_sketch, size, **values), "terrain")
         share = (raw - raw.min()) / (raw.max() - raw.min())
-        found = fast.read(sketch_of(make_sketch, size, normalise="minmax", **values), "land")
+        found = fast.read(sketch_of(make_sketch, size, normalise="minmax", **values), "terrain")
         np.testing.assert_array_equal(found, share)
-        found = fast.read(sketch_of(make_sketch, size, normalise="max", **values), "land")
+        found = fast.read(sketch_of(make_sketch, size, normalise="max", **values), "terrain")
         np.testing.assert_array_equal(found, raw / raw.max())
 
 
-def test_land_below_0_is_not_turned_over(fast, slow, make_sketch):
-    """By "max", a land whose heights are all below 0 stays as it is."""
+def test_terrain_below_0_is_not_turned_over(fast, slow, make_sketch):
+    """By "max", a terrain whose heights are all below 0 stays as it is."""
     values = {"smoothing": 0.01, "normalise": "max", "corners": (0.0, 0.0, 0.0, 0.0)}
     for seed in range(4):
         sketch = sketch_of(make_sketch, 65, seed=seed, **values)
-        np.testing.assert_array_equal(fast.read(sketch, "land"), slow.read(sketch, "land"))
+        np.testing.assert_array_equal(fast.read(sketch, "terrain"), slow.read(sketch, "terrain"))
 
 
-def test_level_land_is_level(fast, make_sketch):
+def test_level_terrain_is_level(fast, make_sketch):
     for size in (33, 129):
         for normalise, height in (("none", np.float32(0.4)), ("max", 1.0), ("minmax", 0.0)):
             sketch = sketch_of(make_sketch, size, smoothing=0.0, corners=(0.4,) * 4, normalise=normalise)
-            np.testing.assert_array_equal(fast.read(sketch, "land"), height)
+            np.testing.assert_array_equal(fast.read(sketch, "terrain"), height)
 
 
 def test_a_turn_on_the_way_is_the_kernel_s(fast, make_sketch):
     sketch = sketch_of(make_sketch, 65)
-    fast.read(sketch, "land", steps={"land.raw": 3})
-    assert "land.raw" in fast.ran
-    fast.read(sketch, "land")
-    assert fast.ran in ([], ["land"])
+    fast.read(sketch, "terrain", steps={"terrain.raw": 3})
+    assert "terrain.raw" in fast.ran
+    fast.read(sketch, "terrain")
+    assert fast.ran in ([], ["terrain"])
 
 
 def test_sizes_it_cannot_make_are_refused_as_the_kernel_refuses_them(fast, slow, make_sketch):
     for engine in (fast, slow):
         with pytest.raises(SketchError, match="65 x 65 or 129 x 129"):
-            engine.read(sketch_of(make_sketch, 100), "land")
+            engine.read(sketch_of(make_sketch, 100), "terrain")
 
 
 def test_keys_are_in_the_order_of_heights(on_gpu):

@@ -1,4 +1,4 @@
-"""An endless land, part by part: against a twin in float64, at its borders, and under its own shadows."""
+"""An endless terrain, part by part: against a twin in float64, at its borders, and under its own shadows."""
 
 from itertools import product
 
@@ -119,7 +119,7 @@ def height_twin(node, rough=0.45, valleys=0.15, peaks=0.7):
     return (1 - rough) * bent + rough * (valleys + (1 - valleys) * bent) * detail_twin(node)
 
 
-# ── the land ─────────────────────────────────────────────────────────────────
+# ── the terrain ─────────────────────────────────────────────────────────────────
 
 
 @pytest.mark.parametrize("part", [(0, 0), (5, -3), (-120_000, 70_001)])
@@ -173,7 +173,7 @@ def test_the_detail_is_made_once_for_all_parts(any_engine, part_of):
 
 
 def test_the_detail_fits_beside_its_copy(any_engine, part_of):
-    """Its step from the last texel to the first is like any other; and the land far away has the same one."""
+    """Its step from the last texel to the first is like any other; the terrain far away has the same one."""
     tile = any_engine.read(part_of((0, 0)), "height.detail").astype(float)
     for values in (tile, tile.T):
         inner = np.abs(np.diff(values, axis=0)).mean()
@@ -183,7 +183,7 @@ def test_the_detail_fits_beside_its_copy(any_engine, part_of):
     np.testing.assert_array_equal(there, here)  # 12 parts of 32 are the 384 texels of the tile
 
 
-def test_light_of_a_part_is_that_of_one_large_land_where_shadows_fit_the_apron(any_engine, part_of):
+def test_light_of_a_part_is_that_of_one_large_terrain_where_shadows_fit_the_apron(any_engine, part_of):
     """Sun 40 degrees up: a shadow of the apron's 40 texels, 960 m, needs 805 m of mountain."""
     sun = {"light.sun": (120.0, 40.0)}
     small = inside(any_engine.read(part_of((3, 1), 64, 40, **sun), "light"), 40)
@@ -203,21 +203,21 @@ def test_with_a_reach_of_the_apron_light_is_the_same_from_any_part_however_low_t
     any_engine, part_of, elevation
 ):
     """Every texel then sees as far, whichever part it is lit with: no border shows."""
-    given = {"light.sun": (120.0, elevation), "light.reach": 24}
+    given = {"light.sun": (120.0, elevation), "light.max_distance": 24}
     small = inside(any_engine.read(part_of((2, 5), 64, 24, **given), "light"), 24)
     large = inside(any_engine.read(part_of((2, 5), 64, 152, **given), "light"), 152)
     assert 0.02 < (large[..., 3] < 0.99).mean(), "there are shadows"
     np.testing.assert_allclose(small, large, atol=3e-3)
-    endless = any_engine.read(part_of((2, 5), 64, 152, **{**given, "light.reach": 0}), "light")
+    endless = any_engine.read(part_of((2, 5), 64, 152, **{**given, "light.max_distance": 0}), "light")
     assert (inside(endless, 152) <= large + 3e-3).all(), "a reach only takes shadows away"
 
 
 def test_heights_stay_within_0_and_1_and_use_most_of_it(any_engine, part_of):
-    land = any_engine.read(part_of((1, 0), 512, 0, **{"height.hills": 128}), "height")
-    assert 0.0 <= land.min() < 0.12 and 0.6 < land.max() <= 1.0
+    terrain = any_engine.read(part_of((1, 0), 512, 0, **{"height.hills": 128}), "height")
+    assert 0.0 <= terrain.min() < 0.12 and 0.6 < terrain.max() <= 1.0
     hardest = {"height.rough": 1.0, "height.valleys": 1.0, "height.gain": 1.0, "height.layers": 8}
-    land = any_engine.read(part_of((1, 0), 64, 0, **hardest), "height")
-    assert np.isfinite(land).all() and land.min() >= 0.0 and land.max() <= 1.0
+    terrain = any_engine.read(part_of((1, 0), 64, 0, **hardest), "height")
+    assert np.isfinite(terrain).all() and terrain.min() >= 0.0 and terrain.max() <= 1.0
 
 
 @pytest.mark.parametrize("size", [2, 3, 9])
@@ -228,9 +228,9 @@ def test_tiny_parts_are_numbers(any_engine, part_of, size):
     assert np.isfinite(any_engine.read(wide, "height")).all()
 
 
-def test_another_seed_is_another_land(any_engine, part_of):
-    lands = [any_engine.read(part_of((0, 0), **{"height.seed": s}), "height") for s in (7, 8)]
-    assert np.abs(lands[0] - lands[1]).mean() > 0.02
+def test_another_seed_is_another_terrain(any_engine, part_of):
+    terrains = [any_engine.read(part_of((0, 0), **{"height.seed": s}), "height") for s in (7, 8)]
+    assert np.abs(terrains[0] - terrains[1]).mean() > 0.02
 
 
 # ── the ground ───────────────────────────────────────────────────────────────

@@ -17,7 +17,7 @@ SIZES = [(33, 33), (64, 65), (130, 100), (40, 23), (2, 2), (1, 9), (300, 2)]  # 
 def sketch_of(make_sketch):
     def make(size=(33, 33), before="", inputs="", **values):
         given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
-        use = '[[pass]]\nname = "land"\nuse = "generation/fault_formation"\n'
+        use = '[[pass]]\nname = "terrain"\nuse = "generation/fault_formation"\n'
         return make_sketch(f"{before}{use}{inputs}[pass.set]\n{given}", size=list(size))
 
     return make
@@ -49,7 +49,7 @@ def standing(texels):
 def sides(first, second, size):
     """Return whether each texel is to the left of a line, from the exact sign of a float64 cross product.
 
-    The points stand in the middles of a 4096th of the land, texels where they stand, rounded to
+    The points stand in the middles of a 4096th of the terrain, texels where they stand, rounded to
     a 32768th. A texel on the line counts as if it stood a hair further north, or east.
     """
     shares = [standing(n) / 32768.0 for n in size]
@@ -63,10 +63,10 @@ def sides(first, second, size):
 
 
 def summed(size, points, heights):
-    land = np.zeros(size[::-1])
+    terrain = np.zeros(size[::-1])
     for first, second, height in zip(*points[:2], heights, strict=True):
-        land += np.where(sides(first, second, size), height, -height)
-    return land
+        terrain += np.where(sides(first, second, size), height, -height)
+    return terrain
 
 
 @pytest.fixture
@@ -74,7 +74,7 @@ def heights_of(any_engine):
     """Give the height of each fault; one test holds them against the rule, the others take them so."""
 
     def make(sketch, faults, amount=0.05):
-        lines = any_engine.read(sketch, "land.lines")[0].astype(np.float64)
+        lines = any_engine.read(sketch, "terrain.lines")[0].astype(np.float64)
         assert (lines == np.rint(lines)).all() and (lines[:, 3] >= 1).all()
         return lines[:faults, 3] * unit_of(faults, amount)
 
@@ -87,14 +87,14 @@ def test_it_is_the_sum_of_its_faults(engine, sketch_of, drawn, heights_of, size,
     """Exactly: by the plain kernel, by tiles, and by the compute variant."""
     sketch = sketch_of(size, iterations=faults, seed=3)
     truth = summed(size, drawn(faults, 3), heights_of(sketch, faults))
-    np.testing.assert_array_equal(engine.read(sketch, "land.sum"), truth)
-    np.testing.assert_array_equal(engine.read(sketch.plainly(), "land.sum"), truth)
+    np.testing.assert_array_equal(engine.read(sketch, "terrain.sum"), truth)
+    np.testing.assert_array_equal(engine.read(sketch.plainly(), "terrain.sum"), truth)
 
 
 @pytest.mark.slow
 def test_it_is_the_sum_of_its_faults_at_513(engine, sketch_of, drawn, heights_of):
     sketch = sketch_of((513, 513), iterations=1000, seed=9)
-    found = engine.read(sketch, "land.sum")
+    found = engine.read(sketch, "terrain.sum")
     rows = np.array([0, 1, 100, 256, 511, 512])
     heights, points = heights_of(sketch, 1000), drawn(1000, 9)
     truth = np.zeros((len(rows), 513))
@@ -107,8 +107,8 @@ def test_it_is_the_sum_of_its_faults_at_513(engine, sketch_of, drawn, heights_of
 def test_rows_longer_than_the_shared_memory(ctx, sketch_of, size):
     sketch = sketch_of(size, seed=4)
     with Engine(ctx) as engine:
-        quick = engine.read(sketch, "land.sum")
-        np.testing.assert_array_equal(quick, engine.read(sketch.plainly(), "land.sum"))
+        quick = engine.read(sketch, "terrain.sum")
+        np.testing.assert_array_equal(quick, engine.read(sketch.plainly(), "terrain.sum"))
 
 
 @pytest.mark.parametrize("fall", ["linear", "ratio"])
@@ -117,7 +117,7 @@ def test_rows_longer_than_the_shared_memory(ctx, sketch_of, size):
 def test_heights_fall(any_engine, sketch_of, drawn, fall, last, variation):
     faults, amount = 60, 0.3
     sketch = sketch_of(iterations=faults, seed=5, fall=fall, last=last, variation=variation, amount=amount)
-    found = any_engine.read(sketch, "land.lines")[0, :, 3] * unit_of(faults, amount)
+    found = any_engine.read(sketch, "terrain.lines")[0, :, 3] * unit_of(faults, amount)
     points = [0, faults]
     falling = np.interp(np.arange(faults), points, [1, last])
     if fall == "ratio":
@@ -130,12 +130,12 @@ def test_heights_fall(any_engine, sketch_of, drawn, fall, last, variation):
 
 @pytest.mark.parametrize("size", [(2, 2), (3, 2), (33, 33), (17, 64)], ids=str)
 def test_one_fault_gives_two_heights(engine, sketch_of, size):
-    """As far above 0 as below it, whatever the line: on the smallest land, too, it parts the corners."""
+    """As far above 0 as below it, whatever the line: on the smallest terrain, too, it parts the corners."""
     for seed in range(6):
         sketch = sketch_of(size, iterations=1, seed=seed, radius=0)
-        raw = np.unique(engine.read(sketch, "land.sum"))
+        raw = np.unique(engine.read(sketch, "terrain.sum"))
         assert len(raw) == 2 and raw[0] == -raw[1] and raw[1] > 0
-        np.testing.assert_array_equal(np.unique(engine.read(sketch, "land")), [0, 1])
+        np.testing.assert_array_equal(np.unique(engine.read(sketch, "terrain")), [0, 1])
 
 
 def test_a_line_parts_the_corners_even_through_one_point_twice(on_gpu):
@@ -197,59 +197,61 @@ def test_turns_are_faults(engine, sketch_of, drawn, heights_of):
     sketch = sketch_of((100, 70), iterations=120, seed=6)
     points, heights = drawn(120, 6), heights_of(sketch, 120)
     truth = np.zeros((70, 100))
-    for turn, found in engine.steps(sketch, "land"):
+    for turn, found in engine.steps(sketch, "terrain"):
         if turn > 0:
             up = sides(points[0][turn - 1], points[1][turn - 1], (100, 70))
             truth += np.where(up, heights[turn - 1], -heights[turn - 1])
         np.testing.assert_array_equal(found, truth)
     for turn in (1, 50, 96, 97, 119, 120):
         with Engine(engine.ctx, driver=engine.driver) as fresh:
-            found = fresh.read(sketch, "land.sum", steps={"land.sum": turn})
+            found = fresh.read(sketch, "terrain.sum", steps={"terrain.sum": turn})
         up = np.array([sides(points[0][i], points[1][i], (100, 70)) for i in range(turn)])
         wanted = (np.where(up, 1, -1) * heights[:turn, None, None]).sum(axis=0)
         np.testing.assert_array_equal(found, wanted)
 
 
-def test_a_land_to_begin_with_is_kept_and_the_grouping_still_free(engine, sketch_of):
+def test_a_terrain_to_begin_with_is_kept_and_the_grouping_still_free(engine, sketch_of):
     before = '[[pass]]\nname = "start"\nuse = "generation/layered_noise"\n'
     values = {"size": (33, 33), "iterations": 50, "seed": 6}
     sketch = sketch_of(before=before, inputs='inputs = { "sum.initial" = "start" }\n', **values)
     start = engine.read(sketch, "start").astype(np.float64)
-    faults = engine.read(sketch_of(**values), "land.sum").astype(np.float64)
-    whole = engine.read(sketch, "land.sum").copy()
+    faults = engine.read(sketch_of(**values), "terrain.sum").astype(np.float64)
+    whole = engine.read(sketch, "terrain.sum").copy()
     np.testing.assert_allclose(whole, start + faults, atol=unit_of(50, 0.05))
-    *_, (_, by_steps) = engine.steps(sketch, "land.sum")
+    *_, (_, by_steps) = engine.steps(sketch, "terrain.sum")
     np.testing.assert_array_equal(by_steps, whole)
 
 
-def test_another_size_is_the_same_land(any_engine, sketch_of):
-    """Lines do not depend on the land's texels: the coarse land is every fourth texel of the fine one."""
-    coarse, fine = (any_engine.read(sketch_of((n, n)), "land.sum") for n in (65, 257))
+def test_another_size_is_the_same_terrain(any_engine, sketch_of):
+    """Lines do not depend on the terrain's texels: the coarse one is every fourth texel of the fine one."""
+    coarse, fine = (any_engine.read(sketch_of((n, n)), "terrain.sum") for n in (65, 257))
     np.testing.assert_array_equal(fine[::4, ::4], coarse)
 
 
-def test_no_faults_are_flat_land(engine, sketch_of):
+def test_no_faults_are_flat_terrain(engine, sketch_of):
     for normalise in ("none", "max", "minmax"):
         sketch = sketch_of(iterations=0, normalise=normalise)
-        np.testing.assert_array_equal(engine.read(sketch, "land"), 0)
+        np.testing.assert_array_equal(engine.read(sketch, "terrain"), 0)
 
 
 def test_the_filter_makes_walls_slopes(engine, sketch_of):
     steps = {}
     for radius in (0, 3, 8):
         sketch = sketch_of((65, 65), iterations=1, radius=radius)
-        land = engine.read(sketch, "land")
-        steps[radius] = max(np.abs(np.diff(land, axis=a)).max() for a in (0, 1))
+        terrain = engine.read(sketch, "terrain")
+        steps[radius] = max(np.abs(np.diff(terrain, axis=a)).max() for a in (0, 1))
     # A mean over 2 radius + 1 texels spreads a wall over as many, along the axis that meets it best.
     assert steps[0] == 1 and 1 / 7 <= steps[3] <= 0.2 and 1 / 17 <= steps[8] <= 0.09
 
 
 def test_normalise_and_seeds(engine, sketch_of):
-    raw = engine.read(sketch_of(radius=0), "land.sum").astype(np.float64)
-    lands = {n: engine.read(sketch_of(radius=0, normalise=n), "land") for n in ("none", "max", "minmax")}
-    np.testing.assert_array_equal(lands["none"], raw)
-    np.testing.assert_allclose(lands["max"], raw / raw.max(), atol=1e-6)
-    np.testing.assert_allclose(lands["minmax"], (raw - raw.min()) / np.ptp(raw), atol=1e-6)
-    one, other, again = (engine.read(sketch_of(seed=s), "land") for s in (1, 2, 1))
+    raw = engine.read(sketch_of(radius=0), "terrain.sum").astype(np.float64)
+    terrains = {
+        n: engine.read(sketch_of(radius=0, normalise=n), "terrain") for n in ("none", "max", "minmax")
+    }
+    np.testing.assert_array_equal(terrains["none"], raw)
+    np.testing.assert_allclose(terrains["max"], raw / raw.max(), atol=1e-6)
+    np.testing.assert_allclose(terrains["minmax"], (raw - raw.min()) / np.ptp(raw), atol=1e-6)
+    one, other, again = (engine.read(sketch_of(seed=s), "terrain") for s in (1, 2, 1))
     np.testing.assert_array_equal(one, again)
     assert np.abs(one - other).max() > 0.1

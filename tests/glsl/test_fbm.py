@@ -15,7 +15,7 @@ def sketch_of(make_sketch):
     def make(size=(65, 65), use="generation/fbm", **values):
         given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
         return make_sketch(
-            f'[[pass]]\nname = "land"\nuse = "{use}"\n[pass.set]\n{given}',
+            f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{given}',
             size=list(size),
             extent=[1000.0, 1000.0 * max(size[1] - 1, 1) / max(size[0] - 1, 1)],
         )
@@ -30,7 +30,7 @@ def slope_of_bins(frequency, power, low, high):
     return np.polyfit(np.log(np.sqrt(edges[1:] * edges[:-1])), np.log(means), 1)[0]
 
 
-# ── the land ─────────────────────────────────────────────────────────────────
+# ── the terrain ─────────────────────────────────────────────────────────────────
 
 
 @pytest.mark.parametrize("hurst", [0.2, 0.4, 0.6, 0.8])
@@ -38,9 +38,9 @@ def slope_of_bins(frequency, power, low, high):
 def test_its_power_falls_as_fractional_brownian_motion_s(any_engine, sketch_of, hurst, seed):
     """Radial power spectrum f^-(2H + 2): 1024 texels a side, 8 octaves from frequency 4, a Hann window."""
     n = 1024
-    land = any_engine.read(sketch_of((n, n), hurst=hurst, seed=seed), "land").astype(float)
+    terrain = any_engine.read(sketch_of((n, n), hurst=hurst, seed=seed), "terrain").astype(float)
     window = np.hanning(n)
-    power = np.abs(np.fft.fft2((land - land.mean()) * np.outer(window, window))) ** 2
+    power = np.abs(np.fft.fft2((terrain - terrain.mean()) * np.outer(window, window))) ** 2
     along = np.fft.fftfreq(n, 1 / n)
     found = slope_of_bins(np.hypot(along[None], along[:, None]), power, 8, 256)
     assert abs(found + 2 * hurst + 2) < 0.2
@@ -48,13 +48,13 @@ def test_its_power_falls_as_fractional_brownian_motion_s(any_engine, sketch_of, 
 
 def test_each_octave_is_weaker_by_the_hurst_exponent(any_engine, sketch_of):
     def octaves(**values):
-        lands = [
-            any_engine.read(sketch_of((257, 257), octaves=k, normalise="none", **values), "land").astype(
+        terrains = [
+            any_engine.read(sketch_of((257, 257), octaves=k, normalise="none", **values), "terrain").astype(
                 float
             )
             for k in range(5)
         ]
-        return [after - before for before, after in pairwise(lands)]
+        return [after - before for before, after in pairwise(terrains)]
 
     for hurst, lacunarity in ((0.5, 2.0), (0.8, 3.0), (1.0, 2.0)):
         alike, falling = (octaves(hurst=h, lacunarity=lacunarity) for h in (0.0, hurst))
@@ -66,24 +66,26 @@ def test_each_octave_is_weaker_by_the_hurst_exponent(any_engine, sketch_of):
 def test_it_has_eight_octaves_from_four_on(any_engine, sketch_of):
     said = sketch_of((257, 257), octaves=8, frequency=4.0, lacunarity=2.0, hurst=0.8)
     np.testing.assert_array_equal(
-        any_engine.read(sketch_of((257, 257)), "land"), any_engine.read(said, "land")
+        any_engine.read(sketch_of((257, 257)), "terrain"), any_engine.read(said, "terrain")
     )
 
 
 def test_a_part_of_it_is_like_the_whole(any_engine, sketch_of):
-    """Self-affinity: heights t apart differ by t^H, over the land and over a part an eighth as wide."""
+    """Self-affinity: heights t apart differ by t^H, over the terrain and over a part an eighth as wide."""
     for hurst in (0.3, 0.7):
         differences = []
         for seed in range(6):
-            land = any_engine.read(sketch_of((513, 513), hurst=hurst, seed=seed, normalise="none"), "land")
-            differences.append([np.abs(land[t:] - land[:-t]).mean() for t in (4, 8, 16, 32)])
+            terrain = any_engine.read(
+                sketch_of((513, 513), hurst=hurst, seed=seed, normalise="none"), "terrain"
+            )
+            differences.append([np.abs(terrain[t:] - terrain[:-t]).mean() for t in (4, 8, 16, 32)])
         grown = np.polyfit(np.log([4, 8, 16, 32]), np.log(np.mean(differences, axis=0)), 1)[0]
         assert abs(grown - hurst) < 0.12
 
 
-def test_a_smaller_exponent_is_rougher_land(any_engine, sketch_of):
+def test_a_smaller_exponent_is_rougher_terrain(any_engine, sketch_of):
     rough = [
-        np.abs(np.diff(any_engine.read(sketch_of(hurst=h), "land"))).mean() for h in (0.9, 0.6, 0.3, 0.0)
+        np.abs(np.diff(any_engine.read(sketch_of(hurst=h), "terrain"))).mean() for h in (0.9, 0.6, 0.3, 0.0)
     ]
     assert rough == sorted(rough) and rough[-1] > 1.5 * rough[0]
 
@@ -91,9 +93,9 @@ def test_a_smaller_exponent_is_rougher_land(any_engine, sketch_of):
 def test_limits(engine, sketch_of):
     for values in ({"octaves": 0}, {"hurst": 0.0}, {"hurst": 1.0}, {"frequency": 1024.0}, {"octaves": 16}):
         for size in ((2, 2), (33, 20)):
-            land = engine.read(sketch_of(size, **values), "land")
-            assert np.isfinite(land).all()
-            assert (land.min(), land.max()) == (
+            terrain = engine.read(sketch_of(size, **values), "terrain")
+            assert np.isfinite(terrain).all()
+            assert (terrain.min(), terrain.max()) == (
                 (0, 0) if "octaves" in values and not values["octaves"] else (0, 1)
             )
 
@@ -138,14 +140,14 @@ def curve(n, line, hurst, octaves, frequency, seed):
 def test_curves_are_octaves_of_noise_along_a_line(engine, sketch_of, size):
     exponents = (0.9, 0.5, 0.4, 0.1)
     values = {"hurst": list(exponents), "hurst_last": 0.7, "octaves": 5, "frequency": 3.0, "seed": 9}
-    found = engine.read(sketch_of(size, CURVES, **values), "land")
+    found = engine.read(sketch_of(size, CURVES, **values), "terrain")
     truth = [curve(size[0], r, (*exponents, 0.7, 0.7)[r], 5, 3.0, 9) for r in range(size[1])]
     np.testing.assert_allclose(found, truth, atol=3e-5)
 
 
 def many_curves(any_engine, sketch_of, hurst):
     values = {"hurst": [hurst] * 4, "hurst_last": hurst, "octaves": 12}
-    return any_engine.read(sketch_of((4096, 48), CURVES, **values), "land").astype(float)
+    return any_engine.read(sketch_of((4096, 48), CURVES, **values), "terrain").astype(float)
 
 
 @pytest.mark.parametrize("hurst", [0.2, 0.4, 0.6, 0.8])
@@ -168,11 +170,11 @@ def test_curves_are_self_affine_and_of_one_deviation(any_engine, sketch_of):
 
 def test_curves_know_nothing_of_each_other(any_engine, sketch_of):
     values = {"hurst": [0.0] * 4, "hurst_last": 0.0, "frequency": 64.0, "octaves": 5}
-    rows = any_engine.read(sketch_of((2049, 12), CURVES, **values), "land").astype(float)
+    rows = any_engine.read(sketch_of((2049, 12), CURVES, **values), "terrain").astype(float)
     assert np.abs(np.corrcoef(rows)[np.triu_indices(12, 1)]).max() < 0.25
-    other = any_engine.read(sketch_of((2049, 12), CURVES, seed=8, **values), "land").astype(float)
+    other = any_engine.read(sketch_of((2049, 12), CURVES, seed=8, **values), "terrain").astype(float)
     assert abs(np.corrcoef(rows[0], other[0])[0, 1]) < 0.25
 
 
 def test_no_octaves_are_a_level_curve(engine, sketch_of):
-    np.testing.assert_array_equal(engine.read(sketch_of((33, 5), CURVES, octaves=0), "land"), 0)
+    np.testing.assert_array_equal(engine.read(sketch_of((33, 5), CURVES, octaves=0), "terrain"), 0)

@@ -1,4 +1,4 @@
-"""flight/scene.glsl: the air hides the land's end, water the ground, and grain is gone from afar."""
+"""flight/scene.glsl: the air hides the terrain's end, water the ground, and grain is gone from afar."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Fourier land against scipy.fft in float64 on the same random numbers, and against its own definition."""
+"""Fourier terrain against scipy.fft in float64 on the same random numbers, and against its own definition."""
 
 from itertools import product
 
@@ -61,7 +61,7 @@ def frequencies(nx, ny):
 
 
 def filtered(grid, roughness):
-    """Return the land of a grid of random numbers by the four steps of section 1.3.3."""
+    """Return the terrain of a grid of random numbers by the four steps of section 1.3.3."""
     spectrum = scipy.fft.fft2(grid.astype(np.float64))
     f = frequencies(*grid.shape[::-1])
     f[0, 0] = 1.0
@@ -81,8 +81,8 @@ def even(size):
     return tuple(side - side % 2 for side in size)
 
 
-def minmax(land):
-    return (land - land.min()) / (land.max() - land.min())
+def minmax(terrain):
+    return (terrain - terrain.min()) / (terrain.max() - terrain.min())
 
 
 @pytest.fixture
@@ -97,7 +97,7 @@ def transforms(make_sketch):
 def sketch_of(make_sketch):
     def make(size=(64, 64), **values):
         given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
-        use = f'[[pass]]\nname = "land"\nuse = "generation/fourier"\n[pass.set]\n{given}'
+        use = f'[[pass]]\nname = "terrain"\nuse = "generation/fourier"\n[pass.set]\n{given}'
         return make_sketch(use, size=list(size))
 
     return make
@@ -125,8 +125,8 @@ def waves_by_hash(nx, ny, seed, python_random):
 
 
 def truth_of(engine, sketch, size, roughness):
-    land = filtered(engine.read(sketch, "land.grid"), roughness)
-    return np.pad(land, [(0, side % 2) for side in size[::-1]], mode="wrap")
+    terrain = filtered(engine.read(sketch, "terrain.grid"), roughness)
+    return np.pad(terrain, [(0, side % 2) for side in size[::-1]], mode="wrap")
 
 
 # ── the transform, turn by turn ──────────────────────────────────────────────
@@ -227,24 +227,24 @@ def test_powers(on_gpu, y):
     assert found[0] == 1.0
 
 
-# ── the land ─────────────────────────────────────────────────────────────────
+# ── the terrain ─────────────────────────────────────────────────────────────────
 
 
 @pytest.mark.parametrize("size", [(2, 2), (65, 33), (4, 32), (33, 33)], ids=str)
 def test_waves_are_drawn_by_their_frequency(engine, sketch_of, python_random, size):
     sketch = sketch_of(size, seed=11)
     wanted = waves_by_hash(*even(size), 11, python_random)
-    assert apart(as_complex(engine.read(sketch, "land.waves")), wanted) < 1e-6
-    assert apart(engine.read(sketch, "land.grid"), scipy.fft.ifft2(wanted).real) < 2e-6
+    assert apart(as_complex(engine.read(sketch, "terrain.waves")), wanted) < 1e-6
+    assert apart(engine.read(sketch, "terrain.grid"), scipy.fft.ifft2(wanted).real) < 2e-6
     assert np.abs(scipy.fft.ifft2(wanted).imag).max() < 1e-12, "opposite waves are conjugates"
-    assert apart(as_complex(engine.read(sketch, "land.spectrum")), wanted) < 2e-6
+    assert apart(as_complex(engine.read(sketch, "terrain.spectrum")), wanted) < 2e-6
 
 
 @pytest.mark.parametrize("seed", [0, 7, 9999])
 def test_the_grid_is_white_noise(any_engine, sketch_of, seed):
     """Mean square 1/3, as that of numbers from -1 to 1; no texel knows of another, whatever lies between."""
     n = 512
-    grid = any_engine.read(sketch_of((n, n), seed=seed), "land.grid").astype(np.float64)
+    grid = any_engine.read(sketch_of((n, n), seed=seed), "terrain.grid").astype(np.float64)
     # Four standard errors of the mean and of the mean square of n² numbers in a bell curve.
     assert abs(grid.mean()) < 4 / np.sqrt(3) / n
     assert abs((grid**2).mean() - 1 / 3) < 4 * np.sqrt(2) / 3 / n
@@ -263,27 +263,27 @@ def test_the_grid_is_white_noise(any_engine, sketch_of, seed):
     [(size, 2.0) for size in LANDS] + [((64, 64), r) for r in (0.0, 1.7, 2.5, 4.0)],
     ids=str,
 )
-def test_the_land_is_scipys(engine, sketch_of, size, roughness):
+def test_the_terrain_is_scipys(engine, sketch_of, size, roughness):
     sketch = sketch_of(size, roughness=roughness, seed=3, normalise="none")
-    land = truth_of(engine, sketch, size, roughness)
-    assert apart(engine.read(sketch, "land"), land) < 2e-6
-    sketch = sketch.with_values({"land.normalise": "minmax"})
-    np.testing.assert_allclose(engine.read(sketch, "land"), minmax(land), atol=4e-6)
+    terrain = truth_of(engine, sketch, size, roughness)
+    assert apart(engine.read(sketch, "terrain"), terrain) < 2e-6
+    sketch = sketch.with_values({"terrain.normalise": "minmax"})
+    np.testing.assert_allclose(engine.read(sketch, "terrain"), minmax(terrain), atol=4e-6)
 
 
 @pytest.mark.parametrize("size", [(512, 512), (1025, 257), (1024, 1024), (4096, 16), (17, 4097)], ids=str)
-def test_larger_lands_are_scipys(any_engine, sketch_of, size):
+def test_larger_terrains_are_scipys(any_engine, sketch_of, size):
     sketch = sketch_of(size, seed=4)
-    land = minmax(truth_of(any_engine, sketch, size, 2.0))
-    np.testing.assert_allclose(any_engine.read(sketch, "land"), land, atol=5e-6)
+    terrain = minmax(truth_of(any_engine, sketch, size, 2.0))
+    np.testing.assert_allclose(any_engine.read(sketch, "terrain"), terrain, atol=5e-6)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("size", [(2048, 2048), (4097, 4097)], ids=str)
-def test_the_largest_lands_are_scipys(any_engine, sketch_of, size):
+def test_the_largest_terrains_are_scipys(any_engine, sketch_of, size):
     sketch = sketch_of(size, seed=4)
-    land = minmax(truth_of(any_engine, sketch, size, 2.0))
-    np.testing.assert_allclose(any_engine.read(sketch, "land"), land, atol=1e-5)
+    terrain = minmax(truth_of(any_engine, sketch, size, 2.0))
+    np.testing.assert_allclose(any_engine.read(sketch, "terrain"), terrain, atol=1e-5)
 
 
 def test_both_drivers_give_the_same_bits(ctx, sketch_of):
@@ -291,16 +291,16 @@ def test_both_drivers_give_the_same_bits(ctx, sketch_of):
         pytest.skip("this context has no compute shaders")
     with Engine(ctx, driver="fragment") as fragment, Engine(ctx, driver="compute") as compute:
         for inner in ("spectrum", "filtered", "repeated"):  # asked for by name, it is made by steps
-            values = [e.read(sketch_of((129, 64)), f"land.{inner}") for e in (fragment, compute)]
+            values = [e.read(sketch_of((129, 64)), f"terrain.{inner}") for e in (fragment, compute)]
             np.testing.assert_array_equal(*values)
 
 
 @pytest.mark.parametrize("mode", ["none", "max", "minmax"])
 def test_normalise(engine, sketch_of, mode):
     sketch = sketch_of((64, 32), seed=9, normalise=mode)
-    land = truth_of(engine, sketch, (64, 32), 2.0)
-    wanted = {"none": land, "max": land / land.max(), "minmax": minmax(land)}[mode]
-    found = engine.read(sketch, "land")
+    terrain = truth_of(engine, sketch, (64, 32), 2.0)
+    wanted = {"none": terrain, "max": terrain / terrain.max(), "minmax": minmax(terrain)}[mode]
+    found = engine.read(sketch, "terrain")
     assert apart(found, wanted) < 4e-6
     if mode != "none":
         assert found.max() == 1.0
@@ -308,62 +308,62 @@ def test_normalise(engine, sketch_of, mode):
         assert found.min() == 0.0
 
 
-def test_a_land_all_below_0_stays_by_max(engine, sketch_of):
+def test_a_terrain_all_below_0_stays_by_max(engine, sketch_of):
     sketch = sketch_of((2, 2), seed=11, roughness=4.0, normalise="max")
-    land = engine.read(sketch, "land")
-    assert land.max() < 0, "this seed's four numbers are below 0"
-    np.testing.assert_allclose(land, truth_of(engine, sketch, (2, 2), 4.0), atol=1e-6)
+    terrain = engine.read(sketch, "terrain")
+    assert terrain.max() < 0, "this seed's four numbers are below 0"
+    np.testing.assert_allclose(terrain, truth_of(engine, sketch, (2, 2), 4.0), atol=1e-6)
 
 
 @pytest.mark.parametrize("size", [(3, 3), (65, 65), (65, 64), (32, 33), (513, 129)], ids=str)
 def test_one_texel_more_than_a_period_begins_again(engine, sketch_of, size):
-    land = engine.read(sketch_of(size), "land")
-    assert land.shape == size[::-1]
+    terrain = engine.read(sketch_of(size), "terrain")
+    assert terrain.shape == size[::-1]
     period = even(size)
     if size[0] > period[0]:
-        np.testing.assert_array_equal(land[:, -1], land[:, 0])
+        np.testing.assert_array_equal(terrain[:, -1], terrain[:, 0])
     if size[1] > period[1]:
-        np.testing.assert_array_equal(land[-1], land[0])
+        np.testing.assert_array_equal(terrain[-1], terrain[0])
     np.testing.assert_allclose(
-        land[: period[1], : period[0]], engine.read(sketch_of(period), "land"), atol=1e-6
+        terrain[: period[1], : period[0]], engine.read(sketch_of(period), "terrain"), atol=1e-6
     )
 
 
 @pytest.mark.parametrize("roughness", [1.5, 2.0, 2.5])
-def test_the_land_goes_on_at_its_seam(any_engine, sketch_of, roughness):
+def test_the_terrain_goes_on_at_its_seam(any_engine, sketch_of, roughness):
     """Column n - 1 neighbours column 0: the step between them is a step like any other."""
     for axis in (0, 1):
-        land = any_engine.read(sketch_of((256, 256), roughness=roughness), "land").astype(np.float64)
-        steps = np.abs(np.roll(land, -1, axis) - land).mean(axis=1 - axis)
+        terrain = any_engine.read(sketch_of((256, 256), roughness=roughness), "terrain").astype(np.float64)
+        steps = np.abs(np.roll(terrain, -1, axis) - terrain).mean(axis=1 - axis)
         assert 0.8 * steps[:-1].min() < steps[-1] < 1.2 * steps[:-1].max()
 
 
-def test_a_land_that_does_not_repeat_would_show(any_engine, sketch_of):
+def test_a_terrain_that_does_not_repeat_would_show(any_engine, sketch_of):
     """The check above can fail: a tilt tears the seam."""
-    land = any_engine.read(sketch_of((256, 256)), "land") + np.linspace(0, 1, 256)
-    steps = np.abs(np.roll(land, -1, 1) - land).mean(axis=0)
+    terrain = any_engine.read(sketch_of((256, 256)), "terrain") + np.linspace(0, 1, 256)
+    steps = np.abs(np.roll(terrain, -1, 1) - terrain).mean(axis=0)
     assert steps[-1] > 3 * steps[:-1].max()
 
 
 @pytest.mark.parametrize("roughness", [0.0, 2.5, 4.0])
 def test_the_mean_is_left_alone(engine, sketch_of, roughness):
     sketch = sketch_of((64, 32), roughness=roughness, normalise="none")
-    spectrum, weighed = (engine.read(sketch, f"land.{name}") for name in ("spectrum", "filtered"))
+    spectrum, weighed = (engine.read(sketch, f"terrain.{name}") for name in ("spectrum", "filtered"))
     np.testing.assert_array_equal(weighed[0, 0], spectrum[0, 0])
-    mean = engine.read(sketch, "land.grid").mean(dtype=np.float64)
-    assert engine.read(sketch, "land").mean(dtype=np.float64) == pytest.approx(mean, abs=1e-7)
+    mean = engine.read(sketch, "terrain.grid").mean(dtype=np.float64)
+    assert engine.read(sketch, "terrain").mean(dtype=np.float64) == pytest.approx(mean, abs=1e-7)
 
 
 def test_without_roughness_nothing_changes(engine, sketch_of):
     sketch = sketch_of((65, 65), roughness=0.0, normalise="none")
-    grid = np.pad(engine.read(sketch, "land.grid"), (0, 1), mode="wrap")
-    np.testing.assert_allclose(engine.read(sketch, "land"), grid, atol=2e-6)
+    grid = np.pad(engine.read(sketch, "terrain.grid"), (0, 1), mode="wrap")
+    np.testing.assert_allclose(engine.read(sketch, "terrain"), grid, atol=2e-6)
 
 
 @pytest.mark.parametrize("roughness", [1.0, 2.0, 2.5, 3.0])
 def test_power_falls_as_the_frequency_to_minus_2_r(any_engine, sketch_of, roughness):
-    land = any_engine.read(sketch_of((512, 512), roughness=roughness), "land").astype(np.float64)
-    power = np.abs(scipy.fft.fft2(land)) ** 2
+    terrain = any_engine.read(sketch_of((512, 512), roughness=roughness), "terrain").astype(np.float64)
+    power = np.abs(scipy.fft.fft2(terrain)) ** 2
     f = frequencies(512, 512)
     rings = np.round(np.log2(np.where(f > 0, f, 1)) * 4)
     octaves = np.arange(8, 30)  # from 4 waves to 150
@@ -373,28 +373,30 @@ def test_power_falls_as_the_frequency_to_minus_2_r(any_engine, sketch_of, roughn
 
 
 def test_higher_r_is_smoother(any_engine, sketch_of):
-    lands = [any_engine.read(sketch_of((256, 256), roughness=r), "land") for r in (1.5, 2.0, 2.5, 3.0)]
-    rough = [np.abs(np.diff(land)).mean() for land in lands]
+    terrains = [any_engine.read(sketch_of((256, 256), roughness=r), "terrain") for r in (1.5, 2.0, 2.5, 3.0)]
+    rough = [np.abs(np.diff(terrain)).mean() for terrain in terrains]
     assert rough == sorted(rough, reverse=True) and rough[0] > 3 * rough[-1]
 
 
-def test_hills_are_as_long_as_wide_on_any_land(any_engine, sketch_of):
-    """On a land four times as long as wide, a step east is on average as high as a step north."""
+def test_hills_are_as_long_as_wide_on_any_terrain(any_engine, sketch_of):
+    """On a terrain four times as long as wide, a step east is on average as high as a step north."""
     for seed in range(4):
-        land = any_engine.read(sketch_of((512, 128), roughness=1.0, seed=seed), "land").astype(np.float64)
-        east, north = (np.abs(np.roll(land, -1, axis) - land).mean() for axis in (1, 0))
+        terrain = any_engine.read(sketch_of((512, 128), roughness=1.0, seed=seed), "terrain").astype(
+            np.float64
+        )
+        east, north = (np.abs(np.roll(terrain, -1, axis) - terrain).mean() for axis in (1, 0))
         assert 0.95 < east / north < 1.05
 
 
-def test_heights_of_a_large_land_keep_their_digits(any_engine, sketch_of):
-    land = any_engine.read(sketch_of((512, 512), normalise="none"), "land")
-    assert len(np.unique(land)) > 0.9 * land.size
+def test_heights_of_a_large_terrain_keep_their_digits(any_engine, sketch_of):
+    terrain = any_engine.read(sketch_of((512, 512), normalise="none"), "terrain")
+    assert len(np.unique(terrain)) > 0.9 * terrain.size
 
 
-def test_seeds_are_lands(engine, sketch_of):
-    lands = [engine.read(sketch_of(seed=s), "land").copy() for s in (1, 2, 1)]
-    np.testing.assert_array_equal(lands[0], lands[2])
-    assert np.abs(lands[0] - lands[1]).max() > 0.2
+def test_seeds_are_terrains(engine, sketch_of):
+    terrains = [engine.read(sketch_of(seed=s), "terrain").copy() for s in (1, 2, 1)]
+    np.testing.assert_array_equal(terrains[0], terrains[2])
+    assert np.abs(terrains[0] - terrains[1]).max() > 0.2
 
 
 @pytest.mark.parametrize(
@@ -410,14 +412,14 @@ def test_seeds_are_lands(engine, sketch_of):
 )
 def test_other_sizes_are_refused_with_those_nearest(engine, sketch_of, size, nearest):
     with pytest.raises(SketchError, match=f"not {size[0]} x {size[1]}; the nearest it takes: {nearest}$"):
-        engine.read(sketch_of(size), "land")
+        engine.read(sketch_of(size), "terrain")
 
 
-def test_the_steps_of_a_land_s_transform(any_engine, sketch_of):
+def test_the_steps_of_a_terrain_s_transform(any_engine, sketch_of):
     sketch = sketch_of((32, 16))
-    shown = [values for _, values in any_engine.steps(sketch, "land.spectrum")]
+    shown = [values for _, values in any_engine.steps(sketch, "terrain.spectrum")]
     assert len(shown) == 5 + 4 + 1
-    np.testing.assert_array_equal(shown[0][..., 0], any_engine.read(sketch, "land.grid"))
+    np.testing.assert_array_equal(shown[0][..., 0], any_engine.read(sketch, "terrain.grid"))
     assert apart(as_complex(shown[-1]), scipy.fft.fft2(as_complex(shown[0]))) < 5e-7
 
 
@@ -437,12 +439,12 @@ def test_the_magnitude_of_a_spectrum(engine, make_sketch):
 # ── the fast variant ────────────────────────────────────────────────────────────
 
 
-def test_the_fast_variant_makes_the_land_where_there_is_compute(any_engine, sketch_of):
+def test_the_fast_variant_makes_the_terrain_where_there_is_compute(any_engine, sketch_of):
     sketch = sketch_of((64, 64))
-    any_engine.read(sketch, "land")
-    assert (any_engine.ran == ["land"]) == any_engine.info.compute
-    any_engine.read(sketch, "land", steps={"land.spectrum": 3})
-    assert "land.spectrum" in any_engine.ran, "turns are not shown by the fast variant"
+    any_engine.read(sketch, "terrain")
+    assert (any_engine.ran == ["terrain"]) == any_engine.info.compute
+    any_engine.read(sketch, "terrain", steps={"terrain.spectrum": 3})
+    assert "terrain.spectrum" in any_engine.ran, "turns are not shown by the fast variant"
 
 
 @pytest.mark.parametrize("side", [2**n + more for n in range(1, 10) for more in (0, 1)])
@@ -454,7 +456,9 @@ def test_the_fast_variant_is_the_passes_at_every_size(ctx, sketch_of, side):
         for size in ((side, side), (side, 128), (32, side)):
             for roughness in (0.0, 2.0):
                 sketch = sketch_of(size, roughness=roughness, seed=side)
-                np.testing.assert_allclose(fast.read(sketch, "land"), slow.read(sketch, "land"), atol=3e-6)
+                np.testing.assert_allclose(
+                    fast.read(sketch, "terrain"), slow.read(sketch, "terrain"), atol=3e-6
+                )
 
 
 def test_sides_too_long_for_the_fast_variant_have_the_plain_form_run(ctx, sketch_of):
@@ -464,15 +468,15 @@ def test_sides_too_long_for_the_fast_variant_have_the_plain_form_run(ctx, sketch
     notices = []
     with Engine(ctx, notice=notices.append) as engine:
         wide = sketch_of((8192, 2))
-        found = engine.read(wide, "land")
-        np.testing.assert_array_equal(found, engine.read(wide.plainly(), "land"))
-        engine.read(wide.with_values({"land.seed": 8}), "land")
+        found = engine.read(wide, "terrain")
+        np.testing.assert_array_equal(found, engine.read(wide.plainly(), "terrain"))
+        engine.read(wide.with_values({"terrain.seed": 8}), "terrain")
         assert notices == [
-            "land: fourier.comp takes n up to 4097, m up to 4097 texels a side, not 8192 x 2; "
+            "terrain: fourier.comp takes n up to 4097, m up to 4097 texels a side, not 8192 x 2; "
             "the plain form runs"
         ]
-        engine.read(sketch_of((4097, 2)), "land")
-        assert engine.ran == ["land"] and len(notices) == 1, "by the fast variant"
+        engine.read(sketch_of((4097, 2)), "terrain")
+        assert engine.ran == ["terrain"] and len(notices) == 1, "by the fast variant"
 
 
 @pytest.fixture

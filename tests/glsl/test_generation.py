@@ -1,4 +1,4 @@
-"""What holds for every technique that makes land, whatever it is: found in the folder, not listed here."""
+"""What holds for every technique that makes terrain, whatever it is: found in the folder, not listed here."""
 
 from __future__ import annotations
 
@@ -140,7 +140,7 @@ def test_every_parameter_may_go_to_its_ends_with_all_others(any_engine, sketch_o
 
 
 @pytest.mark.parametrize("name", MADE)
-def test_a_seed_names_one_land(ctx, any_engine, sketch_of, name):
+def test_a_seed_names_one_terrain(ctx, any_engine, sketch_of, name):
     sketch = fitting(any_engine, sketch_of, name)
     first = taken(any_engine, sketch, name)
     with Engine(ctx) as another:

@@ -76,14 +76,14 @@ def simplex(x, y, seed):
 NOISE = {"Perlin": perlin, "simplex": simplex}
 
 
-def land(
+def terrain(
     x, y, *, basis="Perlin", shape="plain", octaves=6, lacunarity=2.0, gain=0.5, seed=7, warp=0.4, texels
 ):
     """Return the sum of octaves at places in cells of the first octave."""
     given = {"basis": basis, "lacunarity": lacunarity, "gain": gain, "octaves": octaves, "texels": texels}
     if shape == "warped":
-        east, north = (land(x, y, seed=seed + more, **given) for more in (0x51ED270B, 0xA3DA4E16))
-        return land(x + warp * east, y + warp * north, seed=seed, **given)
+        east, north = (terrain(x, y, seed=seed + more, **given) for more in (0x51ED270B, 0xA3DA4E16))
+        return terrain(x + warp * east, y + warp * north, seed=seed, **given)
     total, before = np.zeros(np.broadcast(x, y).shape), None
     for k in range(octaves):
         frequency = lacunarity**k
@@ -113,7 +113,7 @@ def sketch_of(make_sketch):
     def make(size=(33, 33), extent=1000.0, use="generation/gradient_noise/sum", **values):
         given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
         return make_sketch(
-            f'[[pass]]\nname = "land"\nuse = "{use}"\n[pass.set]\n{given}', size=list(size), extent=extent
+            f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{given}', size=list(size), extent=extent
         )
 
     return make
@@ -276,7 +276,7 @@ def test_no_direction_is_drawn(any_engine, sketch_of):
     along = {0.0: [], 45.0: [], 90.0: [], 135.0: []}
     for seed in range(12):
         sketch = sketch_of((129, 129), use="generation/gradient_noise/derivatives", seed=seed, octaves=3)
-        east, north = np.moveaxis(any_engine.read(sketch, "land").astype(float), -1, 0)
+        east, north = np.moveaxis(any_engine.read(sketch, "terrain").astype(float), -1, 0)
         for degrees, found in along.items():
             found.append(east * np.cos(np.radians(degrees)) + north * np.sin(np.radians(degrees)))
     for power, bound in ((2, 0.04), (4, 0.12)):
@@ -284,25 +284,25 @@ def test_no_direction_is_drawn(any_engine, sketch_of):
         assert np.abs(moments / moments.mean() - 1).max() < bound
 
 
-# ── the land ─────────────────────────────────────────────────────────────────
+# ── the terrain ─────────────────────────────────────────────────────────────────
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("basis", BASES)
 def test_it_is_the_sum_of_its_octaves(engine, sketch_of, basis, shape):
     values = {"basis": basis, "shape": shape, "octaves": 4, "lacunarity": 1.9, "gain": 0.6, "seed": 11}
-    found = engine.read(sketch_of((65, 40), [900.0, 500.0], frequency=3.0, **values), "land")
+    found = engine.read(sketch_of((65, 40), [900.0, 500.0], frequency=3.0, **values), "terrain")
     x, y, texels = places((65, 40), (900.0, 500.0), 3.0)
-    np.testing.assert_allclose(found, land(x, y, texels=texels, **values), atol=1e-4)
+    np.testing.assert_allclose(found, terrain(x, y, texels=texels, **values), atol=1e-4)
     assert found.std() > 0.1
 
 
 @pytest.mark.parametrize("frequency", [0.25, 1.0, 7.3, 32.0, 1024.0])
 @pytest.mark.parametrize("octaves", [1, 2, 3, 16])
 def test_every_frequency_even_above_the_size(engine, sketch_of, frequency, octaves):
-    found = engine.read(sketch_of(frequency=frequency, octaves=octaves, gain=0.9), "land")
+    found = engine.read(sketch_of(frequency=frequency, octaves=octaves, gain=0.9), "terrain")
     x, y, texels = places((33, 33), (1000.0, 1000.0), frequency)
-    np.testing.assert_allclose(found, land(x, y, texels=texels, octaves=octaves, gain=0.9), atol=3e-5)
+    np.testing.assert_allclose(found, terrain(x, y, texels=texels, octaves=octaves, gain=0.9), atol=3e-5)
     assert found.std() > 0.02
 
 
@@ -311,11 +311,11 @@ def test_every_frequency_even_above_the_size(engine, sketch_of, frequency, octav
 def test_derivatives_are_finite_differences(engine, sketch_of, basis, shape):
     values = {"basis": basis, "shape": shape, "octaves": 4, "gain": 0.5, "seed": 4}
     sketch = sketch_of((65, 40), [900.0, 500.0], use="generation/gradient_noise/derivatives", **values)
-    found = engine.read(sketch, "land")
+    found = engine.read(sketch, "terrain")
     x, y, texels = places((65, 40), (900.0, 500.0), 4.0)
     step, scale = 1e-6, 4.0 / 900.0
     for axis, (ex, ey) in enumerate(((step, 0.0), (0.0, step))):
-        high, low = (land(x + way * ex, y + way * ey, texels=texels, **values) for way in (1, -1))
+        high, low = (terrain(x + way * ex, y + way * ey, texels=texels, **values) for way in (1, -1))
         slope = (high - low) / (2 * step) * scale
         # A difference across a crease is not the slope on either side of it.
         assert (np.abs(found[..., axis] - slope) < 2e-3 * np.abs(slope).max()).mean() > 0.995
@@ -324,9 +324,9 @@ def test_derivatives_are_finite_differences(engine, sketch_of, basis, shape):
 
 def test_derivatives_are_what_texels_of_the_sum_differ_by(any_engine, sketch_of):
     size, metres = 1025, 1000.0 / 1024
-    heights = any_engine.read(sketch_of((size, size), octaves=3), "land").astype(float)
+    heights = any_engine.read(sketch_of((size, size), octaves=3), "terrain").astype(float)
     sketch = sketch_of((size, size), use="generation/gradient_noise/derivatives", octaves=3)
-    slopes = any_engine.read(sketch, "land").astype(float)
+    slopes = any_engine.read(sketch, "terrain").astype(float)
     north, east = np.gradient(heights, metres)
     inner = np.s_[1:-1, 1:-1]
     for found, truth in ((slopes[..., 0], east), (slopes[..., 1], north)):
@@ -336,7 +336,7 @@ def test_derivatives_are_what_texels_of_the_sum_differ_by(any_engine, sketch_of)
 @pytest.mark.parametrize(
     "size, extent", [((257, 130), 1000.0), ((70, 193), [300.0, 900.0]), ((130, 130), [900.0, 300.0])], ids=str
 )
-def test_walking_the_columns_gives_the_kernel_s_land(ctx, sketch_of, size, extent):
+def test_walking_the_columns_gives_the_kernel_s_terrain(ctx, sketch_of, size, extent):
     """Polynomials along columns, against the kernel that works out each texel by itself."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
@@ -344,20 +344,20 @@ def test_walking_the_columns_gives_the_kernel_s_land(ctx, sketch_of, size, exten
         for octaves, lacunarity, gain in product((0, 1, 2, 3, 16), (1.1, 2.0, 2.7), (0.5, 1.0)):
             values = {"octaves": octaves, "lacunarity": lacunarity, "gain": gain}
             sketch = sketch_of(size, extent, **values)
-            one, other = (e.read(sketch, "land") for e in (by_texels, by_columns))
+            one, other = (e.read(sketch, "terrain") for e in (by_texels, by_columns))
             assert octaves == 0 or (one != other).any(), "the same way was gone twice"
             np.testing.assert_allclose(other, one, atol=1e-4 if gain == 1.0 else 1e-5, err_msg=str(values))
 
 
-def test_the_same_land_at_another_size_looks_the_same(engine, sketch_of):
-    small, large = (engine.read(sketch_of((n, n), octaves=3), "land") for n in (65, 129))
+def test_the_same_terrain_at_another_size_looks_the_same(engine, sketch_of):
+    small, large = (engine.read(sketch_of((n, n), octaves=3), "terrain") for n in (65, 129))
     np.testing.assert_allclose(large[::2, ::2], small, atol=1e-5)
 
 
 def test_a_smaller_size_lacks_detail_and_gains_no_noise(any_engine, sketch_of):
-    """At 65 texels, five of eight octaves are seen: what is left is the large land smoothed, not sampled."""
-    large = any_engine.read(sketch_of((513, 513), octaves=8, gain=0.7), "land").astype(float)
-    small = any_engine.read(sketch_of((65, 65), octaves=8, gain=0.7), "land").astype(float)
+    """At 65 texels, five of eight octaves are visible: the others are smoothed away, not sampled."""
+    large = any_engine.read(sketch_of((513, 513), octaves=8, gain=0.7), "terrain").astype(float)
+    small = any_engine.read(sketch_of((65, 65), octaves=8, gain=0.7), "terrain").astype(float)
     sampled = large[::8, ::8]
     assert np.corrcoef(small.ravel(), sampled.ravel())[0, 1] > 0.97
 
@@ -370,64 +370,65 @@ def test_a_smaller_size_lacks_detail_and_gains_no_noise(any_engine, sketch_of):
 
 
 def test_octaves_too_fine_for_the_texels_add_nothing(engine, sketch_of):
-    lands = [engine.read(sketch_of((33, 33), octaves=n, gain=1.0), "land") for n in (3, 4, 16)]
-    np.testing.assert_array_equal(lands[0], lands[1])
-    np.testing.assert_array_equal(lands[0], lands[2])
+    terrains = [engine.read(sketch_of((33, 33), octaves=n, gain=1.0), "terrain") for n in (3, 4, 16)]
+    np.testing.assert_array_equal(terrains[0], terrains[1])
+    np.testing.assert_array_equal(terrains[0], terrains[2])
 
 
-def test_hills_stay_round_on_land_that_is_not_square(engine, sketch_of):
-    square = engine.read(sketch_of((65, 65), 1000.0), "land")
-    half = engine.read(sketch_of((65, 33), [1000.0, 500.0]), "land")
+def test_hills_stay_round_on_terrain_that_is_not_square(engine, sketch_of):
+    square = engine.read(sketch_of((65, 65), 1000.0), "terrain")
+    half = engine.read(sketch_of((65, 33), [1000.0, 500.0]), "terrain")
     np.testing.assert_allclose(half, square[:33], atol=2e-6)
     # Texels twice as far apart to the north show the same hills too.
-    coarse = engine.read(sketch_of((65, 33), [1000.0, 1000.0], octaves=2), "land")
-    fine = engine.read(sketch_of((65, 65), [1000.0, 1000.0], octaves=2), "land")
+    coarse = engine.read(sketch_of((65, 33), [1000.0, 1000.0], octaves=2), "terrain")
+    fine = engine.read(sketch_of((65, 65), [1000.0, 1000.0], octaves=2), "terrain")
     np.testing.assert_allclose(coarse, fine[::2], atol=2e-6)
 
 
-def test_no_octaves_are_flat_land(engine, sketch_of):
+def test_no_octaves_are_flat_terrain(engine, sketch_of):
     for basis, shape in product(BASES, SHAPES):
         sketch = sketch_of(octaves=0, basis=basis, shape=shape)
-        np.testing.assert_array_equal(engine.read(sketch, "land"), 0)
+        np.testing.assert_array_equal(engine.read(sketch, "terrain"), 0)
     sketch = sketch_of(octaves=0, use="generation/gradient_noise")
-    np.testing.assert_array_equal(engine.read(sketch, "land"), 0)
+    np.testing.assert_array_equal(engine.read(sketch, "terrain"), 0)
 
 
 @pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 9), (9, 1), (2, 300)], ids=str)
-def test_tiny_lands_are_numbers(engine, sketch_of, size):
+def test_tiny_terrains_are_numbers(engine, sketch_of, size):
     extent = (1000.0, 1000.0 * max(size[1] - 1, 1) / max(size[0] - 1, 1))
-    found = engine.read(sketch_of(size, list(extent)), "land")
+    found = engine.read(sketch_of(size, list(extent)), "terrain")
     x, y, texels = places(size, extent, 4.0)
-    np.testing.assert_allclose(found, land(x, y, texels=texels), atol=2e-4)
+    np.testing.assert_allclose(found, terrain(x, y, texels=texels), atol=2e-4)
 
 
 def test_it_is_normalised_by_default_and_not_when_asked(engine, sketch_of):
     use = "generation/gradient_noise"
-    heights = engine.read(sketch_of(use=use), "land")
+    heights = engine.read(sketch_of(use=use), "terrain")
     assert heights.min() == 0 and heights.max() == 1
     sketch = sketch_of(use=use, normalise="none")
-    np.testing.assert_array_equal(engine.read(sketch, "land"), engine.read(sketch, "land.sum"))
+    np.testing.assert_array_equal(engine.read(sketch, "terrain"), engine.read(sketch, "terrain.sum"))
 
 
-def test_seeds_are_lands_of_their_own(any_engine, sketch_of):
-    lands = np.stack(
+def test_seeds_are_terrains_of_their_own(any_engine, sketch_of):
+    terrains = np.stack(
         [
-            any_engine.read(sketch_of((257, 257), frequency=64.0, octaves=1, seed=s), "land").ravel()
+            any_engine.read(sketch_of((257, 257), frequency=64.0, octaves=1, seed=s), "terrain").ravel()
             for s in range(6)
         ]
     )
     np.testing.assert_array_equal(
-        lands[3], any_engine.read(sketch_of((257, 257), frequency=64.0, octaves=1, seed=3), "land").ravel()
+        terrains[3],
+        any_engine.read(sketch_of((257, 257), frequency=64.0, octaves=1, seed=3), "terrain").ravel(),
     )
-    correlations = np.corrcoef(lands.astype(float))[np.triu_indices(6, 1)]
+    correlations = np.corrcoef(terrains.astype(float))[np.triu_indices(6, 1)]
     assert np.abs(correlations).max() < 4 / 64
 
 
 def test_ridges_point_up_and_billows_down(any_engine, sketch_of):
-    """Creases are where the land bends most: at ridges downwards, between billows upwards."""
+    """Creases are where the terrain bends most: at ridges downwards, between billows upwards."""
 
     def bend(shape):
-        h = any_engine.read(sketch_of((257, 257), shape=shape, octaves=2), "land").astype(float)
+        h = any_engine.read(sketch_of((257, 257), shape=shape, octaves=2), "terrain").astype(float)
         laplacian = h[1:-1, 2:] + h[1:-1, :-2] + h[2:, 1:-1] + h[:-2, 1:-1] - 4 * h[1:-1, 1:-1]
         return ((laplacian - laplacian.mean()) ** 3).mean() / laplacian.std() ** 3
 
@@ -436,8 +437,8 @@ def test_ridges_point_up_and_billows_down(any_engine, sketch_of):
     assert abs(bend("plain")) < 0.5
 
 
-def test_warping_bends_the_plain_land(engine, sketch_of):
-    plain = engine.read(sketch_of(octaves=3), "land")
-    unbent = engine.read(sketch_of(octaves=3, shape="warped", warp=0.0), "land")
+def test_warping_bends_the_plain_terrain(engine, sketch_of):
+    plain = engine.read(sketch_of(octaves=3), "terrain")
+    unbent = engine.read(sketch_of(octaves=3, shape="warped", warp=0.0), "terrain")
     np.testing.assert_allclose(unbent, plain, atol=1e-6)
-    assert np.abs(engine.read(sketch_of(octaves=3, shape="warped", warp=1.0), "land") - plain).max() > 0.3
+    assert np.abs(engine.read(sketch_of(octaves=3, shape="warped", warp=1.0), "terrain") - plain).max() > 0.3

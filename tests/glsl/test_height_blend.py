@@ -113,7 +113,7 @@ def test_heights_that_are_no_numbers_leave_the_colour_a_number(engine, make_sket
 
 
 @pytest.mark.parametrize("repeats", [1, 4])
-def test_an_image_repeats_so_often_over_the_land(any_engine, make_sketch, repeats):
+def test_an_image_repeats_so_often_over_the_terrain(any_engine, make_sketch, repeats):
     files = {**IMAGES, "meadow": IMAGE.format("float(texel.x >= size.x / 2)")}
     text = PASSES.format(f"set = {{ repeats = {repeats}, variety = 0 }}\nsize = [257, 5]")
     sketch = make_sketch(text, size=[257, 5], extent=[1000.0, 1000.0], ramp=RAMP.format("0.0"), **files)
@@ -132,7 +132,7 @@ def test_far_more_repeats_than_texels_give_the_image_s_mean(any_engine, make_ske
 
 
 def test_texels_of_the_image_are_taken_modulo_its_size(any_engine, make_sketch):
-    """As section 2.3.3 has it, but that a texel of the land stands where four of the image meet."""
+    """As section 2.3.3 has it, but that a texel of the terrain stands where four of the image meet."""
     noise = '#include "noise/hash.glsl"\n' + IMAGE.format("random(texel, 3u), random(texel, 4u), 0.5, 1.0")
     text = PASSES.replace("size = 4", "size = 8").format("set = { repeats = 8, variety = 0 }")
     sketch = make_sketch(text, size=[65, 65], ramp=RAMP.format("0.0"), **{**IMAGES, "meadow": noise})

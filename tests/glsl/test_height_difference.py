@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 HALF = 2.0**-10
-LAND = """
+TERRAIN = """
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")
 uniform vec2 rise = vec2(0.0);
@@ -23,19 +23,22 @@ def lit(make_sketch):
             for k, v in ({"ambient": 0.0} | values).items()
         )
         passes = (
-            f'[[pass]]\nname = "height"\nuse = "./land"\nset = {{ rise = {list(rise)}, rough = {rough} }}\n'
+            '[[pass]]\nname = "height"\nuse = "./terrain"\n'
+            f"set = {{ rise = {list(rise)}, rough = {rough} }}\n"
             f'[[pass]]\nname = "light"\nuse = "lighting/height_difference"\n[pass.set]\n{setting}'
         )
-        return make_sketch(passes, size=list(size), extent=list(extent), land=LAND)
+        return make_sketch(passes, size=list(size), extent=list(extent), terrain=TERRAIN)
 
     return make
 
 
-def slow(heights: np.ndarray, azimuth: float, spacing: tuple[float, float], softness: float, reach: float):
+def slow(
+    heights: np.ndarray, azimuth: float, spacing: tuple[float, float], softness: float, step_length: float
+):
     """Go over the texels one by one, reading between the four around the place towards the sun."""
     ny, nx = heights.shape
     way = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))]) / spacing
-    way *= reach / np.abs(way).max()
+    way *= step_length / np.abs(way).max()
     share = np.ones((ny, nx))
     for y in range(ny):
         for x in range(nx):
@@ -52,11 +55,11 @@ def slow(heights: np.ndarray, azimuth: float, spacing: tuple[float, float], soft
 
 
 @pytest.mark.parametrize("azimuth", [0.0, 45.0, 123.0, 270.0, 301.0])
-@pytest.mark.parametrize("reach", [1.0, 2.5])
-def test_it_is_the_difference_of_two_heights_over_the_softness(engine, lit, azimuth, reach):
-    sketch = lit(rough=0.1, sun=(azimuth, 30.0), softness=0.08, reach=reach)
+@pytest.mark.parametrize("step_length", [1.0, 2.5])
+def test_it_is_the_difference_of_two_heights_over_the_softness(engine, lit, azimuth, step_length):
+    sketch = lit(rough=0.1, sun=(azimuth, 30.0), softness=0.08, step_length=step_length)
     heights = engine.read(sketch, "height").astype(np.float64)
-    wanted = slow(heights, azimuth, (1000.0 / 20, 800.0 / 16), 0.08, reach)
+    wanted = slow(heights, azimuth, (1000.0 / 20, 800.0 / 16), 0.08, step_length)
     assert 0.05 < (wanted < 1).mean() < 0.95
     found = engine.read(sketch, "light")
     np.testing.assert_allclose(found[..., 3], wanted, atol=HALF)
@@ -70,7 +73,7 @@ def test_a_plane_that_rises_to_the_sun_loses_light_in_step_with_its_slope(engine
         np.testing.assert_array_equal(light[:, -1, 3], 1.0)
 
 
-def test_the_fault_of_the_method_a_slope_away_from_the_sun_is_as_bright_as_level_land(engine, lit):
+def test_the_fault_of_the_method_a_slope_away_from_the_sun_is_as_bright_as_level_terrain(engine, lit):
     light = engine.read(lit(rise=(0.0, -0.5), sun=(0.0, 5.0)), "light")
     np.testing.assert_array_equal(light[..., 3], 1.0)
 
@@ -82,7 +85,7 @@ def test_a_sun_below_the_horizon_lights_nothing_but_the_sky_does(engine, lit):
 
 
 @pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 5)])
-def test_the_smallest_lands_are_bright_or_numbers_at_least(engine, lit, size):
+def test_the_smallest_terrains_are_bright_or_numbers_at_least(engine, lit, size):
     light = engine.read(lit(size=size, rough=1.0, sun=(77.0, 30.0)), "light")
     assert np.isfinite(light).all() and light.min() >= 0
 

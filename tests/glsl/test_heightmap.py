@@ -1,4 +1,4 @@
-"""Land from a file: the real DEM there and back, its metres, other sizes, painted greys."""
+"""Terrain from a file: the real DEM there and back, its metres, other sizes, painted greys."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ from playground.paths import GLSL
 from ..loading import load
 
 DEM = GLSL / "sketches" / "data" / "jacksboro_fault_dem.npz"
-PASS = '[[pass]]\nname = "land"\nuse = "generation/heightmap"\n'
+PASS = '[[pass]]\nname = "terrain"\nuse = "generation/heightmap"\n'
 
 
 @pytest.fixture
@@ -31,27 +31,27 @@ def metres():
         return archive["elevation"][::-1].astype(np.float64)
 
 
-def test_a_real_land_comes_back_in_metres(engine, sketch_of, metres):
+def test_a_real_terrain_comes_back_in_metres(engine, sketch_of, metres):
     sketch = sketch_of()
-    land = engine.plan_for(sketch, (64, 64)).terrain
-    found = engine.read(sketch, "land").astype(np.float64)
-    assert land.size == metres.shape[::-1] and found.shape == metres.shape
+    terrain = engine.plan_for(sketch, (64, 64)).terrain
+    found = engine.read(sketch, "terrain").astype(np.float64)
+    assert terrain.size == metres.shape[::-1] and found.shape == metres.shape
     assert (found.min(), found.max()) == (0.0, 1.0)
-    assert (land.base_elevation, land.relief) == (metres.min(), metres.max() - metres.min())
-    np.testing.assert_allclose(found * land.relief + land.base_elevation, metres, atol=1e-4)
-    np.testing.assert_array_equal(np.round(found * land.relief + land.base_elevation), metres)
+    assert (terrain.base_elevation, terrain.relief) == (metres.min(), metres.max() - metres.min())
+    np.testing.assert_allclose(found * terrain.relief + terrain.base_elevation, metres, atol=1e-4)
+    np.testing.assert_array_equal(np.round(found * terrain.relief + terrain.base_elevation), metres)
 
 
-def test_a_real_land_is_as_long_as_its_degrees(engine, sketch_of):
+def test_a_real_terrain_is_as_long_as_its_degrees(engine, sketch_of):
     """Three arc seconds at 36.6 degrees north: about 92.5 m north and 74.5 m east."""
-    land = engine.plan_for(sketch_of(), (64, 64)).terrain
-    spacing = land.extent[0] / (land.size[0] - 1), land.extent[1] / (land.size[1] - 1)
+    terrain = engine.plan_for(sketch_of(), (64, 64)).terrain
+    spacing = terrain.extent[0] / (terrain.size[0] - 1), terrain.extent[1] / (terrain.size[1] - 1)
     assert spacing == pytest.approx((74.5, 92.5), abs=0.3)
 
 
 @pytest.mark.parametrize("size", [(403, 344), (128, 128), (805, 687), (33, 65)], ids=str)
-def test_another_size_is_the_same_land(engine, sketch_of, metres, size):
-    found = engine.read(sketch_of(f"size = {list(size)}"), "land")
+def test_another_size_is_the_same_terrain(engine, sketch_of, metres, size):
+    found = engine.read(sketch_of(f"size = {list(size)}"), "terrain")
     heights = (metres - metres.min()) / (metres.max() - metres.min())
     assert found.shape == size[::-1]
     corners = np.ix_([0, -1], [0, -1])
@@ -64,15 +64,15 @@ def test_another_size_is_the_same_land(engine, sketch_of, metres, size):
 
 def test_twice_as_fine_a_grid_keeps_the_texels_of_the_file(engine, sketch_of, metres):
     nx, ny = metres.shape[::-1]
-    fine = engine.read(sketch_of(f"size = [{2 * nx - 1}, {2 * ny - 1}]"), "land")
-    np.testing.assert_allclose(fine[::2, ::2], engine.read(sketch_of(), "land"), atol=1e-6)
+    fine = engine.read(sketch_of(f"size = [{2 * nx - 1}, {2 * ny - 1}]"), "terrain")
+    np.testing.assert_allclose(fine[::2, ::2], engine.read(sketch_of(), "terrain"), atol=1e-6)
 
 
 def test_the_sketch_may_overrule_the_files_metres(engine, sketch_of):
-    land = engine.plan_for(
+    terrain = engine.plan_for(
         sketch_of("relief = 10.0\nextent = [5.0, 6.0]\nbase_elevation = -2.0"), (64, 64)
     ).terrain
-    assert (land.relief, land.extent, land.base_elevation) == (10.0, (5.0, 6.0), -2.0)
+    assert (terrain.relief, terrain.extent, terrain.base_elevation) == (10.0, (5.0, 6.0), -2.0)
 
 
 def test_greys_stand_between_two_heights(engine, sketch_of, tmp_path):
@@ -80,8 +80,8 @@ def test_greys_stand_between_two_heights(engine, sketch_of, tmp_path):
     greys = np.linspace(51, 204, 12).astype(np.uint8).reshape(3, 4)  # north first
     PillowImage.fromarray(greys).save(tmp_path / "grey.png")
     sketch = sketch_of(values='elevation = "grey.png"\nmetres = [100.0, 1120.0]')
-    land = engine.plan_for(sketch, (64, 64)).terrain
-    found = engine.read(sketch, "land") * land.relief + land.base_elevation
+    terrain = engine.plan_for(sketch, (64, 64)).terrain
+    found = engine.read(sketch, "terrain") * terrain.relief + terrain.base_elevation
     np.testing.assert_allclose(found, 100 + greys[::-1] / 255 * 1020, atol=1e-3)
 
 
@@ -89,33 +89,33 @@ def test_heights_packed_in_three_channels(engine, sketch_of, tmp_path):
     codes = np.array([[0, 300], [70000, 2**24 - 1]])
     colour = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=-1).astype(np.uint8)
     PillowImage.fromarray(colour).save(tmp_path / "packed.png")
-    found = engine.read(sketch_of(values='elevation = "packed.png"\npacking = "rgb"'), "land")
+    found = engine.read(sketch_of(values='elevation = "packed.png"\npacking = "rgb"'), "terrain")
     np.testing.assert_allclose(found, codes[::-1] / (2**24 - 1), atol=1e-7)
 
 
 def test_gaps_are_refused_or_filled(engine, sketch_of, tmp_path):
-    land = np.add.outer(np.arange(9.0), np.arange(9.0))
-    land[4, 4] = np.nan
-    np.save(tmp_path / "holed.npy", land)
+    terrain = np.add.outer(np.arange(9.0), np.arange(9.0))
+    terrain[4, 4] = np.nan
+    np.save(tmp_path / "holed.npy", terrain)
     with pytest.raises(DataError, match="no data"):
-        engine.read(sketch_of(values='elevation = "holed.npy"'), "land")
-    found = engine.read(sketch_of(values='elevation = "holed.npy"\nno_data = "fill"'), "land")
+        engine.read(sketch_of(values='elevation = "holed.npy"'), "terrain")
+    found = engine.read(sketch_of(values='elevation = "holed.npy"\nno_data = "fill"'), "terrain")
     assert found[4, 4] == pytest.approx(0.5, abs=1e-3)
 
 
 def test_raw_numbers_with_their_size(engine, sketch_of, tmp_path):
     codes = np.arange(6, dtype="<u2").reshape(2, 3)
     codes.tofile(tmp_path / "land.r16")
-    found = engine.read(sketch_of(values='elevation = "land.r16"\nraw_size = [3, 2]'), "land")
+    found = engine.read(sketch_of(values='elevation = "land.r16"\nraw_size = [3, 2]'), "terrain")
     np.testing.assert_allclose(found, codes[::-1] / 5, atol=1e-7)
 
 
-def test_a_flat_file_is_flat_land(engine, sketch_of, tmp_path):
+def test_a_flat_file_is_flat_terrain(engine, sketch_of, tmp_path):
     np.save(tmp_path / "flat.npy", np.full((5, 5), 7.0))
-    found = engine.read(sketch_of(values='elevation = "flat.npy"'), "land")
+    found = engine.read(sketch_of(values='elevation = "flat.npy"'), "terrain")
     np.testing.assert_array_equal(found, 0)
 
 
 def test_a_missing_file_names_the_nearest(engine, sketch_of):
     with pytest.raises(DataError, match="jacksboro_fault_dem"):
-        engine.read(sketch_of(values='elevation = "sketches/data/jacksboro_fault_den.npz"'), "land")
+        engine.read(sketch_of(values='elevation = "sketches/data/jacksboro_fault_den.npz"'), "terrain")

@@ -4,7 +4,7 @@ Horizons are compared as elevations in degrees. They are kept as tangents in hal
 is 0.03 degrees at most. The sweep finds the row on which each texel sees its horizon from lines that
 run beside it, and looks at that row from the texel itself: so it is never over the march, and
 under it only where the lines saw another row. How far is bounded here, by the sun's diameter,
-on lands from real to white noise, at the border as inside, whatever the texels' sides.
+on terrains from real to white noise, at the border as inside, whatever the texels' sides.
 """
 
 import numpy as np
@@ -51,10 +51,10 @@ def marcher(engines):
 
 @pytest.fixture
 def measured(tmp_path):
-    """Give ``measured(engine, land, **values)``: elevations [degrees] (ny, nx, 8), K, heights [m]."""
+    """Give ``measured(engine, terrain, **values)``: elevations [degrees] (ny, nx, 8), K, heights [m]."""
 
-    def measure(engine, land, *, size="", base=0.0, **values):
-        sketch = sketch_of(tmp_path, land, size=size, base=base, **values)
+    def measure(engine, terrain, *, size="", base=0.0, **values):
+        sketch = sketch_of(tmp_path, terrain, size=size, base=base, **values)
         maps = [engine.read(sketch, f"horizons:{name}") for name in ("ahead", "behind")]
         tangents = np.concatenate(maps, axis=-1).astype(np.float64)
         assert np.isfinite(tangents).all() and tangents.min() >= 0 and tangents.max() <= 60000
@@ -65,14 +65,14 @@ def measured(tmp_path):
     return measure
 
 
-def sketch_of(folder, land, *, size="", base=0.0, **values):
-    """Write a sketch of a land and its horizons; heights are 0..1 and ``base`` more."""
-    ny, nx = land.heights.shape
-    low, relief = land.heights.min(), float(np.ptp(land.heights)) or 1.0
-    kept = np.pad((land.heights - low) / relief, ((0, max(2 - ny, 0)), (0, max(2 - nx, 0))))
+def sketch_of(folder, terrain, *, size="", base=0.0, **values):
+    """Write a sketch of a terrain and its horizons; heights are 0..1 and ``base`` more."""
+    ny, nx = terrain.heights.shape
+    low, relief = terrain.heights.min(), float(np.ptp(terrain.heights)) or 1.0
+    kept = np.pad((terrain.heights - low) / relief, ((0, max(2 - ny, 0)), (0, max(2 - nx, 0))))
     np.save(folder / "land.npy", (kept + base).astype(np.float32))
     (folder / "crop.glsl").write_text(CROP)
-    extent = [max(n - 1, 1) * metres for n, metres in zip((nx, ny), land.spacing, strict=True)]
+    extent = [max(n - 1, 1) * metres for n, metres in zip((nx, ny), terrain.spacing, strict=True)]
     setting = "".join(
         f"{k} = {str(v).lower() if isinstance(v, bool) else repr(v)}\n" for k, v in values.items()
     )
@@ -87,33 +87,33 @@ def sketch_of(folder, land, *, size="", base=0.0, **values):
     return load(path)
 
 
-def brute(land, azimuth, rows=10**6):
+def brute(terrain, azimuth, rows=10**6):
     """Return the horizon's elevation [degrees], every row looked at, all texels at a time, float64.
 
-    Rays leave the land half a texel beyond its edge, where its heights go on as at the edge.
+    Rays leave the terrain half a texel beyond its edge, where its heights go on as at the edge.
     """
-    h = land.heights
+    h = terrain.heights
     ny, nx = h.shape
     y, x = np.mgrid[0:ny, 0:nx].astype(np.float64)
-    way = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))]) / land.spacing
+    way = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))]) / terrain.spacing
     way[np.abs(way) < 1e-9] = 0
     row = 1 / np.abs(way).max()  # [m]
     best = np.zeros((ny, nx))
     for k in range(1, min(max(nx, ny), rows + 1)):
         px, py = x + k * row * way[0], y + k * row * way[1]
         on = (px >= -0.5) & (py >= -0.5) & (px <= nx - 0.5) & (py <= ny - 0.5)
-        there = land.at(np.clip(px, 0, nx - 1), np.clip(py, 0, ny - 1))
+        there = terrain.at(np.clip(px, 0, nx - 1), np.clip(py, 0, ny - 1))
         best = np.where(on, np.maximum(best, (there - h) / (k * row)), best)
     return np.degrees(np.arctan(best))
 
 
 def ragged(nx=61, ny=45, seed=3):
-    """Rough land on oblong texels, steep, with walls and needles on it."""
+    """Rough terrain on oblong texels, steep, with walls and needles on it."""
     rng = np.random.default_rng(seed)
-    land = real(97).heights[:ny, :nx] * 2.0
-    land[:, nx // 2 :] += 200.0
-    land[ny // 3, nx // 4] += 900.0
-    return Land(land + rng.random((ny, nx)), (40.0, 75.0), "ragged")
+    terrain = real(97).heights[:ny, :nx] * 2.0
+    terrain[:, nx // 2 :] += 200.0
+    terrain[ny // 3, nx // 4] += 900.0
+    return Land(terrain + rng.random((ny, nx)), (40.0, 75.0), "ragged")
 
 
 def off(found, wanted):
@@ -121,18 +121,18 @@ def off(found, wanted):
 
 
 def rough(exponent, spacing, shape=(97, 97), seed=1):
-    """Land whose spectrum falls by that exponent: 0 is white noise, 1.8 mountains."""
+    """Terrain whose spectrum falls by that exponent: 0 is white noise, 1.8 mountains."""
     fy, fx = np.meshgrid(np.fft.fftfreq(shape[0]), np.fft.fftfreq(shape[1]), indexing="ij")
     far = np.hypot(fx, fy)
     far[0, 0] = 1
     grid = np.random.default_rng(seed).standard_normal(shape)
-    land = np.fft.ifft2(np.fft.fft2(grid) / far**exponent).real
-    land = (land - land.min()) / np.ptp(land)
-    return Land(land * (60 if exponent == 0 else 300), spacing, f"spectrum {exponent} on {spacing}")
+    terrain = np.fft.ifft2(np.fft.fft2(grid) / far**exponent).real
+    terrain = (terrain - terrain.min()) / np.ptp(terrain)
+    return Land(terrain * (60 if exponent == 0 else 300), spacing, f"spectrum {exponent} on {spacing}")
 
 
 def real_times(times):
-    """Return real land made steeper: half of its slopes are over 20, 35 and 55 degrees at 1, 3 and 6."""
+    """Return real terrain made steeper: half of its slopes are over 20, 35 and 55 degrees at 1, 3 and 6."""
     return Land(real(97).heights * times, real(97).spacing, f"real x {times}")
 
 
@@ -194,39 +194,39 @@ def test_pairs_are_all_directions_once(on_gpu, asked):
 # The march
 
 
-@pytest.mark.parametrize("land", [ragged(), cone(49), valley(49)], ids=lambda land: land.name)
-def test_the_march_is_brute_force(marcher, measured, land):
-    found, _, heights = measured(marcher, land)
-    low, relief = land.heights.min(), np.ptp(land.heights)
-    seen = Land(heights.astype(np.float64) * relief, land.spacing)
-    np.testing.assert_allclose(seen.heights, land.heights - low, atol=1e-6 * relief)
+@pytest.mark.parametrize("terrain", [ragged(), cone(49), valley(49)], ids=lambda terrain: terrain.name)
+def test_the_march_is_brute_force(marcher, measured, terrain):
+    found, _, heights = measured(marcher, terrain)
+    low, relief = terrain.heights.min(), np.ptp(terrain.heights)
+    seen = Land(heights.astype(np.float64) * relief, terrain.spacing)
+    np.testing.assert_allclose(seen.heights, terrain.heights - low, atol=1e-6 * relief)
     for channel, azimuth in enumerate(CHIEF):
         assert off(found[..., channel], brute(seen, azimuth)).max() < ROUNDING
 
 
 def test_the_march_is_never_over_the_exact_horizon(marcher, measured):
     """It looks at whole rows: what stands higher between them, or within the first, it misses."""
-    land = cone(65)
-    found, _, _ = measured(marcher, land)
+    terrain = cone(65)
+    found, _, _ = measured(marcher, terrain)
     for channel, azimuth in enumerate(CHIEF):
-        exact = np.degrees(np.arctan(np.maximum(horizon(land, float(azimuth)), 0)))
+        exact = np.degrees(np.arctan(np.maximum(horizon(terrain, float(azimuth)), 0)))
         over = (found[..., channel] - exact)[2:-2, 2:-2]
         assert over.max() < ROUNDING and rms(over) < 0.8
 
 
 def test_first_turns_the_directions(engines, measured):
-    land = ragged(33, 29)
+    terrain = ragged(33, 29)
     for engine in engines:
-        turned, _, _ = measured(engine, land, first=30.0)
-        assert rms(off(turned[..., 1], brute(land, -15.0))) < (0.03 if engine is engines[0] else 0.1)
+        turned, _, _ = measured(engine, terrain, first=30.0)
+        assert rms(off(turned[..., 1], brute(terrain, -15.0))) < (0.03 if engine is engines[0] else 0.1)
 
 
 # The sweep against the march
 
 
 def test_along_axes_and_diagonals_the_sweep_is_the_march(engines, measured):
-    for land in (real(49), ragged(41, 53)):
-        square = Land(land.heights, (50.0, 50.0), land.name)
+    for terrain in (real(49), ragged(41, 53)):
+        square = Land(terrain.heights, (50.0, 50.0), terrain.name)
         march, sweep = (measured(engine, square) for engine in engines)
         for channel in range(8):
             assert off(sweep[0][..., channel], march[0][..., channel]).max() < ROUNDING
@@ -245,12 +245,12 @@ LANDS = [
 ]
 
 
-@pytest.mark.parametrize("land", LANDS, ids=lambda land: land.name)
-def test_in_any_direction_the_sweep_is_close_to_the_march(engines, measured, land):
+@pytest.mark.parametrize("terrain", LANDS, ids=lambda terrain: terrain.name)
+def test_in_any_direction_the_sweep_is_close_to_the_march(engines, measured, terrain):
     """Never over it; at the border as inside; a tenth of the sun's diameter, and few by a whole one."""
     wrong = []
     for first in (0.0, 11.25, 17.0):
-        march, sweep = (measured(engine, land, first=first) for engine in engines)
+        march, sweep = (measured(engine, terrain, first=first) for engine in engines)
         assert (sweep[0] - march[0]).max() < ROUNDING
         np.testing.assert_allclose(sweep[1], march[1], atol=0.01)
         wrong.append(off(sweep[0], march[0]))
@@ -259,19 +259,21 @@ def test_in_any_direction_the_sweep_is_close_to_the_march(engines, measured, lan
     assert np.max(wrong) < 3.0
 
 
-@pytest.mark.parametrize("land", [real_times(3), rough(1.5, (20.0, 50.0))], ids=lambda land: land.name)
-def test_the_sweep_is_brute_force_as_nearly(engines, measured, land):
-    found, _, heights = measured(engines[1], land, first=17.0)
-    seen = Land(heights.astype(np.float64) * np.ptp(land.heights), land.spacing)
+@pytest.mark.parametrize(
+    "terrain", [real_times(3), rough(1.5, (20.0, 50.0))], ids=lambda terrain: terrain.name
+)
+def test_the_sweep_is_brute_force_as_nearly(engines, measured, terrain):
+    found, _, heights = measured(engines[1], terrain, first=17.0)
+    seen = Land(heights.astype(np.float64) * np.ptp(terrain.heights), terrain.spacing)
     exact = np.stack([brute(seen, 17.0 + azimuth) for azimuth in CHIEF], axis=-1)
     assert rms(found - exact) < SUN / 10 and off(found, exact).max() < 3.0
 
 
 def test_a_horizon_near_by_is_exact(engines, measured):
     """The sixteen rows next to a texel are looked at from the texel itself."""
-    land = ragged(97, 80)
-    found, _, heights = measured(engines[1], land, first=20.0)
-    seen = Land(heights.astype(np.float64) * np.ptp(land.heights), land.spacing)
+    terrain = ragged(97, 80)
+    found, _, heights = measured(engines[1], terrain, first=20.0)
+    seen = Land(heights.astype(np.float64) * np.ptp(terrain.heights), terrain.spacing)
     for channel, azimuth in enumerate(CHIEF):
         whole, near = brute(seen, 20.0 + azimuth), brute(seen, 20.0 + azimuth, rows=16)
         close = whole == near
@@ -289,8 +291,8 @@ def test_a_needle_between_two_lines_may_be_missed_but_by_few(engines, measured):
 
 @pytest.mark.parametrize("directions", [2, 16, 64])
 def test_k_of_more_directions(engines, measured, directions):
-    land = real(49)
-    march, sweep = (measured(engine, land, directions=directions) for engine in engines)
+    terrain = real(49)
+    march, sweep = (measured(engine, terrain, directions=directions) for engine in engines)
     assert rms(sweep[1] - march[1]) < 0.0015
     for maps in (march[0], sweep[0]):
         ahead, behind = maps[..., :4], maps[..., 4:]
@@ -300,29 +302,29 @@ def test_k_of_more_directions(engines, measured, directions):
 
 
 def test_numbers_between_count_as_the_next_multiple_of_eight_below(engines, measured):
-    land = real(33)
+    terrain = real(33)
     for engine in engines:
         for asked, taken in ((6, 2), (12, 8), (30, 24)):
-            one, other = (measured(engine, land, directions=n) for n in (asked, taken))
+            one, other = (measured(engine, terrain, directions=n) for n in (asked, taken))
             for found, wanted in zip(one, other, strict=True):
                 np.testing.assert_array_equal(found, wanted)
 
 
 def test_without_the_maps_k_is_the_same(engines, measured):
-    land = real(49)
+    terrain = real(49)
     for engine in engines:
-        both, alone = (measured(engine, land, directions=16, keep=keep) for keep in (True, False))
+        both, alone = (measured(engine, terrain, directions=16, keep=keep) for keep in (True, False))
         np.testing.assert_array_equal(alone[1], both[1])
         assert both[0].max() > 1 and (alone[0] == 0).all()
 
 
 @pytest.mark.parametrize("shape", [(9, 200), (200, 9), (3, 64), (37, 130)], ids=str)
-def test_long_lands(engines, measured, shape):
-    """A line leaves such a land after a few rows, and the room for lines is used again and again."""
+def test_long_terrains(engines, measured, shape):
+    """A line leaves such a terrain after a few rows, and the room for lines is used again and again."""
     rng = np.random.default_rng(1)
     heights = np.cumsum(rng.standard_normal(shape), axis=int(shape[1] > shape[0])) * 8
-    land = Land(heights, (30.0, 30.0))
-    march, sweep = (measured(engine, land) for engine in engines)
+    terrain = Land(heights, (30.0, 30.0))
+    march, sweep = (measured(engine, terrain) for engine in engines)
     for channel in range(8):
         assert off(sweep[0][..., channel], march[0][..., channel]).max() < ROUNDING
 
@@ -330,12 +332,12 @@ def test_long_lands(engines, measured, shape):
 @pytest.mark.parametrize(
     "shape", [(1, 1), (1, 2), (2, 1), (2, 2), (1, 30), (30, 1), (8, 8), (17, 16)], ids=str
 )
-def test_the_smallest_lands(engines, measured, shape):
-    land = Land(np.random.default_rng(2).random(shape) * 50, (20.0, 20.0))
-    march, sweep = (measured(engine, land, directions=16) for engine in engines)
+def test_the_smallest_terrains(engines, measured, shape):
+    terrain = Land(np.random.default_rng(2).random(shape) * 50, (20.0, 20.0))
+    march, sweep = (measured(engine, terrain, directions=16) for engine in engines)
     np.testing.assert_allclose(sweep[0], march[0], atol=ROUNDING)
     for channel, azimuth in enumerate(CHIEF):
-        assert off(march[0][..., channel], brute(land, azimuth)).max() < ROUNDING
+        assert off(march[0][..., channel], brute(terrain, azimuth)).max() < ROUNDING
 
 
 def test_a_wall_without_end_and_a_needle(engines, measured):
@@ -348,7 +350,7 @@ def test_a_wall_without_end_and_a_needle(engines, measured):
         assert k[20, 15] < 0.6 and k[5, 5] > 0
 
 
-def test_flat_land_has_no_horizon(engines, measured):
+def test_flat_terrain_has_no_horizon(engines, measured):
     for engine in engines:
         found, k, _ = measured(engine, Land(np.zeros((21, 34)), (5.0, 9.0)), directions=16)
         assert (found == 0).all() and (k == 1).all()
@@ -357,26 +359,26 @@ def test_flat_land_has_no_horizon(engines, measured):
 def test_a_dome_is_all_hull(engines, measured):
     """On it no point of a line is covered by another, and nobody sees more than the next."""
     y, x = np.mgrid[0:65, 0:65] - 32.0
-    land = Land(400 - (x**2 + y**2) / 8, (10.0, 10.0))
-    march, sweep = (measured(engine, land) for engine in engines)
+    terrain = Land(400 - (x**2 + y**2) / 8, (10.0, 10.0))
+    march, sweep = (measured(engine, terrain) for engine in engines)
     np.testing.assert_allclose(sweep[0], march[0], atol=ROUNDING)
-    bowl = Land(-land.heights, land.spacing)
+    bowl = Land(-terrain.heights, terrain.spacing)
     march, sweep = (measured(engine, bowl) for engine in engines)
     np.testing.assert_allclose(sweep[0], march[0], atol=ROUNDING)
 
 
-def test_lifting_the_land_changes_nothing(engines, measured):
-    land = real(49)
+def test_lifting_the_terrain_changes_nothing(engines, measured):
+    terrain = real(49)
     for engine in engines:
-        plain = measured(engine, land)
+        plain = measured(engine, terrain)
         for base in (3.0, -20.0):
-            lifted = measured(engine, land, base=base)
+            lifted = measured(engine, terrain, base=base)
             np.testing.assert_allclose(lifted[0], plain[0], atol=0.05)
             np.testing.assert_allclose(lifted[1], plain[1], atol=1e-3)
 
 
 @pytest.mark.parametrize("spacing", [(60.0, 60.0), (40.0, 75.0)], ids=str)
-def test_turned_and_mirrored_land(engines, measured, spacing):
+def test_turned_and_mirrored_terrain(engines, measured, spacing):
     heights = real(49).heights[:41] * 1.5
     straight = Land(heights, spacing)
     mirrored = Land(heights[:, ::-1].copy(), spacing)
@@ -384,7 +386,7 @@ def test_turned_and_mirrored_land(engines, measured, spacing):
         np.rot90(heights).copy(), spacing[::-1]
     )  # by a quarter, counterclockwise seen from above in an image
     for engine in engines:
-        plain, across, quarter = (measured(engine, land) for land in (straight, mirrored, turned))
+        plain, across, quarter = (measured(engine, terrain) for terrain in (straight, mirrored, turned))
         # Mirrored, NW is NE: channels count counterclockwise from north.
         np.testing.assert_allclose(across[0][:, ::-1], plain[0][..., [0, 7, 6, 5, 4, 3, 2, 1]], atol=0.1)
         np.testing.assert_allclose(across[1][:, ::-1], plain[1], atol=1e-3)
@@ -397,13 +399,13 @@ def test_turned_and_mirrored_land(engines, measured, spacing):
 
 
 def test_a_finer_pass_agrees_where_they_meet(engines, measured):
-    land = real(33)
+    terrain = real(33)
     for engine in engines:
-        same = measured(engine, land)
-        fine = measured(engine, land, size='size = ["2 * size.x - 1", "2 * size.y - 1"]')
+        same = measured(engine, terrain)
+        fine = measured(engine, terrain, size='size = ["2 * size.x - 1", "2 * size.y - 1"]')
         np.testing.assert_allclose(fine[2][::2, ::2], same[2], atol=1e-6)
         # Looked at twice as closely, horizons are higher, by little; but what rays see beyond the
-        # land's edge, half a texel of it, is less.
+        # terrain's edge, half a texel of it, is less.
         for channel in range(8):
             higher = (fine[0][::2, ::2, channel] - same[0][..., channel])[4:-4, 4:-4]
             assert rms(higher) < 1.0 and (higher < -0.5).mean() < 0.05

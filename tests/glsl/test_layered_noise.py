@@ -43,7 +43,7 @@ def read_at(place, size, frequency):
 def one_layer(size, frequencies, drawn, smooth):
     """Return a layer; ``drawn(x, y)`` are the numbers of the random layer."""
     nx, ny = size
-    land = np.zeros((ny, nx))
+    terrain = np.zeros((ny, nx))
     keys = [
         [read_at(i, n, frequency) for i in range(n)] for n, frequency in zip(size, frequencies, strict=True)
     ]
@@ -57,8 +57,8 @@ def one_layer(size, frequencies, drawn, smooth):
             west, east = keys[0][i]
             v1 = curve(numbers[west, low], numbers[west, high], y2 - y1, j - y1, smooth)
             v2 = curve(numbers[east, low], numbers[east, high], y2 - y1, j - y1, smooth)
-            land[j, i] = curve(v1, v2, x2 - x1, i - x1, smooth)
-    return land
+            terrain[j, i] = curve(v1, v2, x2 - x1, i - x1, smooth)
+    return terrain
 
 
 def frequencies_of(k, frequency, size):
@@ -104,7 +104,8 @@ def twin(python_random):
 def sketch_of(make_sketch):
     def make(size=(33, 33), **values):
         given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
-        use = f'[[pass]]\nname = "land"\nuse = "generation/layered_noise"\n[pass.set]\nseed = {SEED}\n{given}'
+        use = '[[pass]]\nname = "terrain"\nuse = "generation/layered_noise"\n'
+        use += f"[pass.set]\nseed = {SEED}\n{given}"
         return make_sketch(use, size=list(size))
 
     return make
@@ -112,14 +113,14 @@ def sketch_of(make_sketch):
 
 def raw(engine, sketch, apart=1e-6):
     """Return the sum by the plain kernel, which the fast variant must be within ``apart`` of."""
-    found = engine.read(sketch.plainly(), "land.sum")
-    np.testing.assert_allclose(engine.read(sketch, "land.sum"), found, atol=apart)
+    found = engine.read(sketch.plainly(), "terrain.sum")
+    np.testing.assert_allclose(engine.read(sketch, "terrain.sum"), found, atol=apart)
     return found
 
 
 @pytest.mark.parametrize("size", [(33, 33), (32, 32), (65, 65), (7, 7), (40, 23), (23, 40)], ids=str)
 @pytest.mark.parametrize("interpolation", ["linear", "smooth"])
-def test_it_is_the_thesis_land(engine, sketch_of, twin, size, interpolation):
+def test_it_is_the_thesis_terrain(engine, sketch_of, twin, size, interpolation):
     found = raw(engine, sketch_of(size, interpolation=interpolation))
     np.testing.assert_allclose(found, twin(size, smooth=interpolation == "smooth"), atol=1e-6)
 
@@ -134,12 +135,12 @@ def test_every_frequency_even_above_the_size(engine, sketch_of, twin, frequency,
 
 @pytest.mark.parametrize("size", [(9, 120), (120, 9), (3, 70), (40, 83)], ids=str)
 @pytest.mark.parametrize("frequency", [1, 4])
-def test_lands_that_are_not_square(engine, sketch_of, twin, size, frequency):
+def test_terrains_that_are_not_square(engine, sketch_of, twin, size, frequency):
     values = {"frequency": frequency, "octaves": 4, "persistence": 0.7}
     np.testing.assert_allclose(raw(engine, sketch_of(size, **values)), twin(size, **values), atol=2e-6)
 
 
-def test_a_large_land_at_places_of_its_own(any_engine, sketch_of, python_random):
+def test_a_large_terrain_at_places_of_its_own(any_engine, sketch_of, python_random):
     """All layers at 1025², each place by itself: bands are worked out, and laid, for the whole."""
     values = {"frequency": 4, "octaves": 5, "persistence": 0.6}
     found = raw(any_engine, sketch_of((1025, 1025), **values))
@@ -159,7 +160,7 @@ def test_a_large_land_at_places_of_its_own(any_engine, sketch_of, python_random)
 
 
 def test_there_is_room_for_every_band():
-    """The pass that holds the bands has as many rows as there are rows that begin one, or the land's own."""
+    """The pass with the bands has as many rows as there are rows that begin one, or the terrain's own."""
     (fast,) = read_technique("generation/layered_noise/sum", GLSL, GLSL).variants
     graph = fast.technique
     spec = next(p for p in graph.passes if p.name == "bands")
@@ -186,11 +187,11 @@ def test_there_is_room_for_every_band():
 
 def test_coarse_layers_left_out(engine, sketch_of):
     values = {"frequency": 3, "octaves": 3, "persistence": 0.5}
-    sketch = sketch_of((40, 40), **values).with_values({"land.sum.left_out": 1})
+    sketch = sketch_of((40, 40), **values).with_values({"terrain.sum.left_out": 1})
     layers = [raw(engine, sketch_of((40, 40), layer=k, **values)).astype(np.float64) for k in (2, 3)]
     truth = (0.25 * layers[0] + 0.125 * layers[1]) / 0.375
     np.testing.assert_allclose(raw(engine, sketch), truth, atol=1e-6)
-    nothing = sketch.with_values({"land.sum.left_out": 8})
+    nothing = sketch.with_values({"terrain.sum.left_out": 8})
     np.testing.assert_array_equal(raw(engine, nothing), 0)
 
 
@@ -237,51 +238,53 @@ def test_wrapping_tears_and_dividing_does_not(any_engine, sketch_of):
     assert steps["wrap"] > 0.8 and steps["divide"] < 0.2 and steps["clamp"] < 0.35
 
 
-def test_nothing_to_add_is_flat_land(engine, sketch_of):
+def test_nothing_to_add_is_flat_terrain(engine, sketch_of):
     for values in ({"octaves": 0}, {"persistence": 0.0}):
         for overflow in ("divide", "clamp", "wrap"):
             sketch = sketch_of(overflow=overflow, **values)
-            for ref in ("land.sum", "land"):
+            for ref in ("terrain.sum", "terrain"):
                 np.testing.assert_array_equal(engine.read(sketch, ref), 0)
 
 
 @pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 9), (9, 1), (2, 300)], ids=str)
-def test_tiny_lands_are_numbers(engine, sketch_of, twin, size):
+def test_tiny_terrains_are_numbers(engine, sketch_of, twin, size):
     np.testing.assert_allclose(raw(engine, sketch_of(size)), twin(size), atol=1e-6)
-    assert np.isfinite(engine.read(sketch_of(size), "land")).all()
+    assert np.isfinite(engine.read(sketch_of(size), "terrain")).all()
 
 
 def test_extremes_of_every_slider_are_numbers(engine, sketch_of):
     for frequency in (1, 1024):
         for octaves in (1, 8):
             for persistence in (0.01, 1.0):
-                land = engine.read(
-                    sketch_of(frequency=frequency, octaves=octaves, persistence=persistence), "land"
+                terrain = engine.read(
+                    sketch_of(frequency=frequency, octaves=octaves, persistence=persistence), "terrain"
                 )
-                assert np.isfinite(land).all() and land.min() == 0 and land.max() == 1
+                assert np.isfinite(terrain).all() and terrain.min() == 0 and terrain.max() == 1
 
 
 def test_the_smooth_curve_is_level_at_nodes(any_engine, sketch_of):
-    land = raw(any_engine, sketch_of((257, 257), octaves=1, interpolation="smooth")).astype(np.float64)
+    terrain = raw(any_engine, sketch_of((257, 257), octaves=1, interpolation="smooth")).astype(np.float64)
     creases = raw(any_engine, sketch_of((257, 257), octaves=1, interpolation="linear")).astype(np.float64)
     node = 257 // 4
-    assert np.abs(land[:, node + 1] - land[:, node]).max() < 0.1 * np.abs(np.diff(land, axis=1)).max()
+    assert (
+        np.abs(terrain[:, node + 1] - terrain[:, node]).max() < 0.1 * np.abs(np.diff(terrain, axis=1)).max()
+    )
     bend = np.abs(np.diff(creases, 2, axis=1)).max(axis=0)
     assert bend[node - 1] > 20 * bend[node // 2]
 
 
 def test_it_is_normalised_by_default_and_not_when_asked(engine, sketch_of):
-    land = engine.read(sketch_of(), "land")
-    assert land.min() == 0 and land.max() == 1
+    terrain = engine.read(sketch_of(), "terrain")
+    assert terrain.min() == 0 and terrain.max() == 1
     sketch = sketch_of(normalise="none")
-    np.testing.assert_array_equal(engine.read(sketch.plainly(), "land"), raw(engine, sketch))
+    np.testing.assert_array_equal(engine.read(sketch.plainly(), "terrain"), raw(engine, sketch))
     sketch = sketch_of(normalise="max")
-    assert engine.read(sketch, "land").max() == 1 and engine.read(sketch, "land").min() > 0
+    assert engine.read(sketch, "terrain").max() == 1 and engine.read(sketch, "terrain").min() > 0
 
 
-def test_smaller_weights_make_smoother_land(any_engine, sketch_of):
+def test_smaller_weights_make_smoother_terrain(any_engine, sketch_of):
     rough = [
-        np.abs(np.diff(any_engine.read(sketch_of((129, 129), persistence=p, octaves=3), "land"))).mean()
+        np.abs(np.diff(any_engine.read(sketch_of((129, 129), persistence=p, octaves=3), "terrain"))).mean()
         for p in (0.05, 0.2, 0.6)
     ]
     assert rough[0] < rough[1] < rough[2]

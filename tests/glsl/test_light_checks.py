@@ -1,8 +1,8 @@
 """What holds for every method of lighting, each with the exemptions that its nature asks for.
 
-Even light on flat land, the same light on lifted land, turned and mirrored light on turned
-and mirrored land, no light where the exact shadow is dark, and sense at the ends: a sun
-below the horizon, in the zenith or along an axis, spikes, walls, lands of a texel or two.
+Even light on flat terrain, the same light on lifted terrain, turned and mirrored light on turned
+and mirrored terrain, no light where the exact shadow is dark, and sense at the ends: a sun
+below the horizon, in the zenith or along an axis, spikes, walls, terrains of a texel or two.
 The methods are those of ``tests/truth/methods.py``; the exact shadow is ``tests/truth``'s.
 """
 
@@ -27,11 +27,11 @@ SHADOWING = pytest.mark.parametrize("method", [m for m in OF_THE_SUN if m.shadow
 
 @pytest.fixture
 def light(ctx, kept, tmp_path):
-    """Give ``light(method, land, sun)``: (ny, nx, components), with the visible part of the sun in alpha."""
+    """Give ``light(method, terrain, sun)``: (ny, nx, components), the visible part of the sun in alpha."""
 
-    def make(method, land, sun, **more):
-        found = lit(kept, tmp_path, method, land, sun, **more)
-        assert found.shape[:2] == land.heights.shape and np.isfinite(found).all()
+    def make(method, terrain, sun, **more):
+        found = lit(kept, tmp_path, method, terrain, sun, **more)
+        assert found.shape[:2] == terrain.heights.shape and np.isfinite(found).all()
         assert found.min() >= 0 and found[..., -1].max() <= 1
         return found
 
@@ -39,9 +39,9 @@ def light(ctx, kept, tmp_path):
 
 
 def rough():
-    """Real land, twice as high as it is, wider than deep."""
-    land = real(49)
-    return Land(land.heights[:37] * 2, land.spacing, "rough")
+    """Real terrain, twice as high as it is, wider than deep."""
+    terrain = real(49)
+    return Land(terrain.heights[:37] * 2, terrain.spacing, "rough")
 
 
 def flat(nx=17, ny=13):
@@ -69,16 +69,16 @@ def pit():
 
 @cache
 def exact(make, sun, diameter):
-    """Return a land and the visible share of the sun on it."""
-    land = make()
-    return land, sunlight(land, *sun, diameter=diameter, count=9)[0]
+    """Return a terrain and the visible share of the sun on it."""
+    terrain = make()
+    return terrain, sunlight(terrain, *sun, diameter=diameter, count=9)[0]
 
 
 @cache
 def exact_sky(make):
-    """Return a land and how much of the sky it sees."""
-    land = make()
-    return land, sky_visibility(land, count=32)
+    """Return a terrain and how much of the sky it sees."""
+    terrain = make()
+    return terrain, sky_visibility(terrain, count=32)
 
 
 def assert_alike(found, wanted):
@@ -88,7 +88,7 @@ def assert_alike(found, wanted):
 
 
 def inner(method, found):
-    """Leave out texels whose first step leaves the land, where the cone is wider than the sun is high."""
+    """Leave out texels whose first step leaves the terrain, where the cone is wider than the sun is high."""
     return found[1:-1, 1:-1] if method.use == "night" else found
 
 
@@ -96,14 +96,14 @@ def inner(method, found):
 
 
 @EACH
-def test_flat_land_is_lit_evenly(light, method):
+def test_flat_terrain_is_lit_evenly(light, method):
     for sun in ((250, 5), (0, 25), (135, 60), (77, 90)):
         found = inner(method, light(method, flat(), sun))
         np.testing.assert_array_equal(found, np.broadcast_to(found[0, 0], found.shape))
 
 
 @EACH
-def test_lifting_the_land_changes_nothing(light, method):
+def test_lifting_the_terrain_changes_nothing(light, method):
     here = light(method, rough(), (250, 20))
     for base in (2.0, -3.0):
         assert_alike(light(method, rough(), (250, 20), base=base), here)
@@ -115,26 +115,26 @@ def test_lifting_the_land_changes_nothing(light, method):
     [(250, 20), (90, 20), pytest.param((20, 12), marks=SLOW), pytest.param((225, 30), marks=SLOW)],
     ids=str,
 )
-def test_turned_and_mirrored_land_has_turned_and_mirrored_light(light, method, sun):
-    land = rough()
-    here = light(method, land, sun)
-    turned = Land(np.rot90(land.heights, -1), land.spacing[::-1])  # rows go north: to the left
+def test_turned_and_mirrored_terrain_has_turned_and_mirrored_light(light, method, sun):
+    terrain = rough()
+    here = light(method, terrain, sun)
+    turned = Land(np.rot90(terrain.heights, -1), terrain.spacing[::-1])  # rows go north: to the left
     assert_alike(light(method, turned, (sun[0] - 90, sun[1])), np.rot90(here, -1))
-    mirrored = Land(land.heights[:, ::-1], land.spacing)
+    mirrored = Land(terrain.heights[:, ::-1], terrain.spacing)
     assert_alike(light(method, mirrored, (-sun[0], sun[1])), here[:, ::-1])
 
 
 @pytest.mark.parametrize(
     ("use", "values"),
-    [("l_dot_n", {"normal": "one triangle"}), ("ray_cast", {"reading": "cut down"})],
+    [("l_dot_n", {"normal": "one triangle"}), ("ray_cast", {"sampling": "cut down"})],
     ids=["one triangle", "cut down"],
 )
 def test_the_thesis_own_ways_are_exempt_because_they_lean_to_one_side(light, use, values):
     method = Method("the thesis's", use, {"gain": 1.0, **values})
-    land = rough()
-    found = light(method, Land(land.heights[:, ::-1], land.spacing), (-20, 12))
+    terrain = rough()
+    found = light(method, Land(terrain.heights[:, ::-1], terrain.spacing), (-20, 12))
     with pytest.raises(AssertionError, match="differ"):
-        assert_alike(found, light(method, land, (20, 12))[:, ::-1])
+        assert_alike(found, light(method, terrain, (20, 12))[:, ::-1])
 
 
 # Shadows
@@ -145,10 +145,10 @@ def test_the_thesis_own_ways_are_exempt_because_they_lean_to_one_side(light, use
 def test_nothing_is_lit_that_the_exact_shadow_holds_dark(light, method, make):
     """Beyond one texel from its edge."""
     for sun in ((250, 5), (250, 20), (20, 12), (90, 10)):
-        land, share = exact(make, sun, method.diameter)
+        terrain, share = exact(make, sun, method.diameter)
         inside = minimum_filter(share == 0, 3)
         assert inside.mean() > 0.02
-        assert light(method, land, sun)[inside, 3].max() <= 1e-3, sun
+        assert light(method, terrain, sun)[inside, 3].max() <= 1e-3, sun
 
 
 @SHADOWING
@@ -164,10 +164,10 @@ def test_there_is_light_as_well_as_shadow(light, method):
     [(90, 12), (250, 20), *(pytest.param(s, marks=SLOW) for s in ((0, 30), (270, 30), (45, 20)))],
     ids=str,
 )
-def test_sharp_land(light, method, make, sun):
+def test_sharp_terrain(light, method, make, sun):
     """The light is a number; where the exact shadow is whole, or none, for a texel around, so is this."""
-    land, share = exact(make, sun, method.diameter)
-    found = light(method, land, sun)[..., 3]
+    terrain, share = exact(make, sun, method.diameter)
+    found = light(method, terrain, sun)[..., 3]
     # Horizons worked out beforehand are those of lines that pass up to half a texel beside the texel.
     around = 5 if method.use == "horizon_sun" else 3
     sure = (maximum_filter(share, around) == minimum_filter(share, around)) & ((share == 0) | (share == 1))
@@ -190,16 +190,16 @@ def test_a_sun_below_the_horizon_gives_no_light(light, method, elevation):
 @SHADOWING
 @pytest.mark.parametrize("make", [rough, spike, cliff])
 def test_under_the_zenith_nothing_is_hidden(light, method, make):
-    land = make()
-    found = light(method, land, (77, 90))
+    terrain = make()
+    found = light(method, terrain, (77, 90))
     np.testing.assert_allclose(found[..., 3], 1, atol=HALF)
     # A table of 256 x 256 normals rounds them.
     rounded = 0.012 if method.use == "horizon_sun" else 1e-4
-    np.testing.assert_allclose(found[..., 0], land.normals()[..., 2], rtol=3 * HALF, atol=rounded)
+    np.testing.assert_allclose(found[..., 0], terrain.normals()[..., 2], rtol=3 * HALF, atol=rounded)
 
 
 @SHADOWING
-def test_flat_land_sees_the_whole_sun(light, method):
+def test_flat_terrain_sees_the_whole_sun(light, method):
     for sun in ((250, 5), (0, 25), (135, 60)):
         found = light(method, flat(), sun)
         np.testing.assert_allclose(found[..., 3], 1, atol=1e-3)
@@ -227,7 +227,7 @@ def test_a_sun_on_the_horizon_lights_what_faces_it(light, method):
 
 @EACH
 @pytest.mark.parametrize("size", [(1, 1), (2, 2), (1, 20), (20, 2), (3, 3)], ids=str)
-def test_tiny_lands_are_numbers(light, method, size):
+def test_tiny_terrains_are_numbers(light, method, size):
     random = np.random.default_rng(3).uniform(0, 40, size[::-1])
     for sun in ((135, 25), (0, 10)):
         light(method, Land(random, (10.0, 15.0)), sun)
@@ -243,7 +243,7 @@ def test_tiny_lands_are_numbers(light, method, size):
 
 
 @pytest.mark.parametrize("elevation", [5.0, 40.0, 90.0])
-def test_on_flat_land_the_cylinder_is_half_of_the_light_everywhere(light, elevation):
+def test_on_flat_terrain_the_cylinder_is_half_of_the_light_everywhere(light, elevation):
     method = Method("cylinder", "soft_cylinder", {"gain": 1.0})
     found = light(method, flat(), (250, elevation))
     np.testing.assert_array_equal(found[..., 3], 0.5)
@@ -253,8 +253,10 @@ def test_on_flat_land_the_cylinder_is_half_of_the_light_everywhere(light, elevat
 @pytest.mark.parametrize("delta_r", [0.5, 1.5])
 @pytest.mark.parametrize("elevation", [5.0, 25.0, 60.0])
 @pytest.mark.parametrize("form", ["march", "sweep"])
-def test_on_flat_land_a_cone_wider_than_the_sun_is_high_is_cut_by_the_ground(light, form, elevation, delta_r):
-    """V = (1 + L_z / delta_r) / 2, but for texels whose first step leaves the land."""
+def test_on_flat_terrain_a_cone_wider_than_the_sun_is_high_is_cut_by_the_ground(
+    light, form, elevation, delta_r
+):
+    """V = (1 + L_z / delta_r) / 2, but for texels whose first step leaves the terrain."""
     method = Method("cone", "soft_cone", {"gain": 1.0, "delta_r": delta_r, "form": form})
     found = light(method, flat(), (250, elevation))[1:-1, 1:-1, 3]
     truth = min((1 + np.sin(np.radians(elevation)) / delta_r) / 2, 1)
@@ -279,10 +281,10 @@ def test_a_cone_tends_to_the_ray(light, sun):
 
 
 @OF_THE_SKY
-def test_flat_land_sees_the_whole_sky(light, method):
+def test_flat_terrain_sees_the_whole_sky(light, method):
     """Exactly, but for what a half float makes of a number just below 1."""
-    for land in (flat(), flat(1, 1), flat(2, 2), flat(1, 20), flat(20, 2)):
-        found = light(method, land, None)[..., 0]
+    for terrain in (flat(), flat(1, 1), flat(2, 2), flat(1, 20), flat(20, 2)):
+        found = light(method, terrain, None)[..., 0]
         np.testing.assert_allclose(found, 1, atol=1e-6 if method.output else HALF)
 
 
@@ -293,8 +295,8 @@ def test_an_inclined_plane_sees_its_share_of_the_sky(light, method, angle, way):
     """(1 + cos a) / 2, away from the border; eight sectors are off by 0.0065 at 45 degrees."""
     a, w = np.radians([angle, way])
     y, x = np.mgrid[0:31, 0:41]
-    land = Land((x * 20.0 * np.sin(w) + y * 30.0 * np.cos(w)) * np.tan(a), (20.0, 30.0))
-    away = light(method, land, None)[..., 0] - (1 + np.cos(a)) / 2
+    terrain = Land((x * 20.0 * np.sin(w) + y * 30.0 * np.cos(w)) * np.tan(a), (20.0, 30.0))
+    away = light(method, terrain, None)[..., 0] - (1 + np.cos(a)) / 2
     np.testing.assert_allclose(away[8:-8, 8:-8], 0, atol=0.009)
     np.testing.assert_allclose(away, 0, atol=0.03)
 
@@ -305,35 +307,35 @@ def test_a_valleys_walls_see_what_lies_between_the_rims(light, method, angle):
     """(1 + cos(a + e)) / 2 under a far rim at elevation e, which without an end is cos² a."""
     a = np.radians(angle)
     across = np.abs(np.arange(-20, 21)) * 10.0
-    land = Land(np.tile(across * np.tan(a), (9, 1)), (10.0, 5e4))
-    found = light(method, land, None)[4, 21:40, 0]
+    terrain = Land(np.tile(across * np.tan(a), (9, 1)), (10.0, 5e4))
+    found = light(method, terrain, None)[4, 21:40, 0]
     x = np.arange(1, 20) * 10.0
     rim = np.arctan((200 - x) * np.tan(a) / (200 + x))
     np.testing.assert_allclose(found, (1 + np.cos(a + rim)) / 2, atol=0.01)
 
 
 @OF_THE_SKY
-def test_lifting_turning_and_mirroring_the_land_under_the_sky(light, method):
-    land = rough()
+def test_lifting_turning_and_mirroring_the_terrain_under_the_sky(light, method):
+    terrain = rough()
 
-    def sky(land, **more):
-        return light(method, land, None, **more)[..., :1]
+    def sky(terrain, **more):
+        return light(method, terrain, None, **more)[..., :1]
 
-    here = sky(land)
-    assert_alike(sky(land, base=2.0), here)
-    assert_alike(sky(Land(land.heights[:, ::-1], land.spacing)), here[:, ::-1])
-    assert_alike(sky(Land(np.rot90(land.heights, -1), land.spacing[::-1])), np.rot90(here, -1))
+    here = sky(terrain)
+    assert_alike(sky(terrain, base=2.0), here)
+    assert_alike(sky(Land(terrain.heights[:, ::-1], terrain.spacing)), here[:, ::-1])
+    assert_alike(sky(Land(np.rot90(terrain.heights, -1), terrain.spacing[::-1])), np.rot90(here, -1))
 
 
 @OF_THE_SKY
 @pytest.mark.parametrize("size", [(2, 2), (1, 20), (20, 2), (3, 3)], ids=str)
-def test_the_sky_over_tiny_lands_is_numbers(light, method, size):
+def test_the_sky_over_tiny_terrains_is_numbers(light, method, size):
     random = np.random.default_rng(3).uniform(0, 40, size[::-1])
     light(method, Land(random, (10.0, 15.0)), None)
 
 
 @OF_THE_SKY
 @pytest.mark.parametrize("make", [spike, cliff, pit])
-def test_the_sky_over_sharp_lands(light, method, make):
-    land, seen = exact_sky(make)
-    assert np.abs(light(method, land, None)[..., 0] - seen).mean() < 0.01
+def test_the_sky_over_sharp_terrains(light, method, make):
+    terrain, seen = exact_sky(make)
+    assert np.abs(light(method, terrain, None)[..., 0] - seen).mean() < 0.01

@@ -1,4 +1,4 @@
-"""How far each method of lighting is from the truth, kept below bounds, on three lands under three suns.
+"""How far each method of lighting is from the truth, kept below bounds, on three terrains under three suns.
 
 ``python tests/truth`` prints the whole table, at a finer grid. The bounds are what was
 measured, and a little: what makes a method worse than it was is seen here.
@@ -52,9 +52,9 @@ BOUNDS = {
     ("sun disc", "cone"): (0.004, 0.003, 0.042, 0.002, 0.002),
     ("sun disc", "valley"): (0.004, 0.007, 0.271, 0.003, 0.006),
     ("sun disc", "real"): (0.014, 0.476, 0.122, 0.003, 0.026),
-    ("sun disc, stride 0.25", "cone"): (0.003, 0.003, 0.04, 0.002, 0.002),
-    ("sun disc, stride 0.25", "valley"): (0.003, 0.007, 0.271, 0.002, 0.006),
-    ("sun disc, stride 0.25", "real"): (0.006, 0.02, 0.098, 0.002, 0.003),
+    ("sun disc, step length 0.25", "cone"): (0.003, 0.003, 0.04, 0.002, 0.002),
+    ("sun disc, step length 0.25", "valley"): (0.003, 0.007, 0.271, 0.002, 0.006),
+    ("sun disc, step length 0.25", "real"): (0.006, 0.02, 0.098, 0.002, 0.003),
     ("sun disc, sweep", "cone"): (0.005, 0.004, 0.142, 0.002, 0.002),
     ("sun disc, sweep", "valley"): (0.004, 0.007, 0.424, 0.003, 0.006),
     ("sun disc, sweep", "real"): (0.02, 0.812, 0.278, 0.004, 0.07),
@@ -91,7 +91,7 @@ BOUNDS = {
 
 @pytest.fixture(scope="module")
 def truths(kept, tmp_path_factory):
-    """Give ``truths(land)``: what is true of a land, worked out once."""
+    """Give ``truths(terrain)``: what is true of a terrain, worked out once."""
     folder = tmp_path_factory.mktemp("truth")
     return cache(lambda name: truth_of(kept, folder, name, SIZE, strips=10, azimuths=32))
 
@@ -104,11 +104,11 @@ def worst(errors):
 
 
 @pytest.mark.parametrize(
-    "land", [name if name == "real" else pytest.param(name, marks=pytest.mark.slow) for name in LANDS]
+    "terrain", [name if name == "real" else pytest.param(name, marks=pytest.mark.slow) for name in LANDS]
 )
 @pytest.mark.parametrize("method", [m for m in METHODS if m.measured], ids=lambda m: m.name)
-def test_errors_stay_within_bounds(ctx, kept, truths, tmp_path, method, land):
-    found = worst(list(measure(kept, tmp_path, method, truths(land))))
-    bounds = BOUNDS[method.name, land]
+def test_errors_stay_within_bounds(ctx, kept, truths, tmp_path, method, terrain):
+    found = worst(list(measure(kept, tmp_path, method, truths(terrain))))
+    bounds = BOUNDS[method.name, terrain]
     assert len(found) == len(bounds)
     assert (np.array(found) <= bounds).all(), f"{[round(v, 4) for v in found]} against {bounds}"

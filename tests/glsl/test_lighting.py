@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
-from .lands import HILLS
+from .terrains import HILLS
 
 HALF = 2.0**-11
 BOTH = pytest.mark.parametrize("method", ["l_dot_n", "ray_cast"])
@@ -30,18 +30,20 @@ float kernel(ivec2 texel) { return texel.x == at.x || texel.y == at.y ? high : 0
 
 @pytest.fixture
 def lit(make_sketch):
-    """Give a sketch of a land and its light: sun in degrees, sizes in texels, metres."""
+    """Give a sketch of a terrain and its light: sun in degrees, sizes in texels, metres."""
 
-    def make(land, method, sun, *, size=65, extent=1000.0, relief=100.0, light_size="", given=None, **values):
+    def make(
+        terrain, method, sun, *, size=65, extent=1000.0, relief=100.0, light_size="", given=None, **values
+    ):
         values = {"sun": list(sun), "gain": 1.0, **values}
         setting = "".join(f"{k} = {_toml(v)}\n" for k, v in values.items())
-        land_setting = "".join(f"{k} = {_toml(v)}\n" for k, v in (given or {}).items())
+        terrain_setting = "".join(f"{k} = {_toml(v)}\n" for k, v in (given or {}).items())
         at = f"size = {light_size}\n" if light_size else ""
         passes = (
-            f'[[pass]]\nname = "height"\nuse = "./land"\n[pass.set]\n{land_setting}'
+            f'[[pass]]\nname = "height"\nuse = "./terrain"\n[pass.set]\n{terrain_setting}'
             f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n{at}[pass.set]\n{setting}'
         )
-        return make_sketch(passes, size=size, extent=extent, relief=relief, land=land)
+        return make_sketch(passes, size=size, extent=extent, relief=relief, terrain=terrain)
 
     return make
 
@@ -64,18 +66,18 @@ def shade(heights, sun, spacing):
     return np.maximum((normal @ sun) / np.linalg.norm(normal, axis=-1), 0)
 
 
-def clearance(heights, sun, spacing, stride=1.0):
-    """Return how far above the land each ray passes at its nearest step [m]: no early end, float64."""
+def clearance(heights, sun, spacing, step_length=1.0):
+    """Return how far above the terrain each ray passes at its nearest step [m]: no early end, float64."""
     ny, nx = heights.shape
     y, x = np.mgrid[0:ny, 0:nx].astype(np.float64)
     texels = sun[:2] / spacing  # a metre along the ray, in texels
-    length = stride / np.abs(texels).max()
+    length = step_length / np.abs(texels).max()
     least = np.full(heights.shape, np.inf)
-    for k in range(1, int((nx + ny) / stride) + 2):
+    for k in range(1, int((nx + ny) / step_length) + 2):
         px, py, ray = x + k * length * texels[0], y + k * length * texels[1], heights + k * length * sun[2]
         inside = (px >= -1e-6) & (px <= nx - 1 + 1e-6) & (py >= -1e-6) & (py <= ny - 1 + 1e-6)
-        land = map_coordinates(heights, [np.clip(py, 0, ny - 1), np.clip(px, 0, nx - 1)], order=1)
-        least = np.where(inside, np.minimum(least, ray - land), least)
+        terrain = map_coordinates(heights, [np.clip(py, 0, ny - 1), np.clip(px, 0, nx - 1)], order=1)
+        least = np.where(inside, np.minimum(least, ray - terrain), least)
     return least
 
 
@@ -125,7 +127,7 @@ def test_a_normal_stands_square_on_its_slope(on_gpu):
 @BOTH
 @pytest.mark.parametrize("elevation", [1.0, 25.0, 60.0, 90.0])
 @pytest.mark.parametrize("azimuth", [0.0, 90.0, 137.0])
-def test_flat_land_is_lit_evenly(engine, lit, method, azimuth, elevation):
+def test_flat_terrain_is_lit_evenly(engine, lit, method, azimuth, elevation):
     sketch = lit(PLANE, method, (azimuth, elevation), given={"base": 0.37})
     light = engine.read(sketch, "light")
     np.testing.assert_array_equal(light, np.broadcast_to(light[0, 0], light.shape))
@@ -154,7 +156,7 @@ def test_a_slope_turned_away_is_dark(engine, lit, method):
 
 @BOTH
 @pytest.mark.parametrize("sun", [(135, 25), (0, 30), (211, 8)], ids=str)
-def test_rough_land_is_shaded_by_its_own_normals(engine, lit, method, sun):
+def test_rough_terrain_is_shaded_by_its_own_normals(engine, lit, method, sun):
     sketch = lit(HILLS, method, sun, size=[65, 49], extent=[640, 960], relief=300.0)
     heights = engine.read(sketch, "height").astype(np.float64) * 300
     light = engine.read(sketch, "light").astype(np.float64)
@@ -165,7 +167,7 @@ def test_rough_land_is_shaded_by_its_own_normals(engine, lit, method, sun):
 
 
 @BOTH
-def test_lifting_the_land_changes_nothing(engine, lit, method):
+def test_lifting_the_terrain_changes_nothing(engine, lit, method):
     lights = [
         engine.read(lit(HILLS, method, (135, 25), relief=300.0, given={"base": base}), "light")
         for base in (0.0, 3.0, -2.0)
@@ -178,7 +180,7 @@ def test_lifting_the_land_changes_nothing(engine, lit, method):
 
 @BOTH
 @pytest.mark.parametrize("sun", [(135, 25), (20, 12), (90, 20), (45, 35)], ids=str)
-def test_turned_land_under_a_turned_sun_has_turned_light(engine, lit, method, sun):
+def test_turned_terrain_under_a_turned_sun_has_turned_light(engine, lit, method, sun):
     straight = engine.read(lit(HILLS, method, sun, relief=300.0), "light")
     turned = engine.read(
         lit(HILLS, method, (sun[0] - 90, sun[1]), relief=300.0, given={"turned": "quarter"}), "light"
@@ -189,7 +191,7 @@ def test_turned_land_under_a_turned_sun_has_turned_light(engine, lit, method, su
 
 @BOTH
 @pytest.mark.parametrize("sun", [(135, 25), (20, 12), (90, 20), (45, 35)], ids=str)
-def test_mirrored_land_under_a_mirrored_sun_has_mirrored_light(engine, lit, method, sun):
+def test_mirrored_terrain_under_a_mirrored_sun_has_mirrored_light(engine, lit, method, sun):
     straight = engine.read(lit(HILLS, method, sun, relief=300.0), "light")
     mirrored = engine.read(
         lit(HILLS, method, (-sun[0], sun[1]), relief=300.0, given={"turned": "mirrored"}), "light"
@@ -248,22 +250,22 @@ def test_colours_gain_and_ambient(engine, lit, method):
 @BOTH
 def test_gain_is_not_cut_at_1_and_is_2_by_default(engine, lit, method, make_sketch):
     passes = (
-        f'[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "light"\nuse = "lighting/{method}"\n'
+        f'[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "light"\nuse = "lighting/{method}"\n'
     )
-    sketch = make_sketch(passes, land=PLANE)
+    sketch = make_sketch(passes, terrain=PLANE)
     light = engine.read(sketch.with_values({"light.sun": (0, 90)}), "light")
     np.testing.assert_array_equal(light, [[[2, 2, 2, 1]] * 33] * 33)
 
 
 @BOTH
 @pytest.mark.parametrize("size", [[1, 1], [2, 2], [1, 20], [20, 1]], ids=str)
-def test_tiny_lands_are_numbers(engine, lit, method, size):
+def test_tiny_terrains_are_numbers(engine, lit, method, size):
     light = engine.read(lit(HILLS, method, (135, 25), size=size), "light")
     assert np.isfinite(light).all()
 
 
 @BOTH
-def test_a_land_without_relief_is_flat(engine, lit, method):
+def test_a_terrain_without_relief_is_flat(engine, lit, method):
     light = engine.read(lit(HILLS, method, (135, 30), relief=0.0), "light")
     np.testing.assert_allclose(light[..., 0], 0.5, rtol=HALF)
 
@@ -292,14 +294,16 @@ def test_a_light_map_of_any_size_sees_the_same_slopes(engine, lit, method):
 # The ray cast
 
 
-@pytest.mark.parametrize("stride", [1.0, 0.5, 2.0, 0.75])
+@pytest.mark.parametrize("step_length", [1.0, 0.5, 2.0, 0.75])
 @pytest.mark.parametrize("sun", [(135, 25), (90, 15), (0, 5), (317, 40), (45, 10), (222.5, 60)], ids=str)
-def test_shadows_are_those_of_a_slow_march(engine, lit, sun, stride):
-    sketch = lit(HILLS, "ray_cast", sun, size=[65, 49], extent=[640, 960], relief=300.0, stride=stride)
+def test_shadows_are_those_of_a_slow_march(engine, lit, sun, step_length):
+    sketch = lit(
+        HILLS, "ray_cast", sun, size=[65, 49], extent=[640, 960], relief=300.0, step_length=step_length
+    )
     heights = engine.read(sketch, "height").astype(np.float64) * 300
     visible = engine.read(sketch, "light")[..., 3]
     direction = sun_vector(*sun)
-    room = clearance(heights, direction, np.array([10.0, 20.0]), stride)
+    room = clearance(heights, direction, np.array([10.0, 20.0]), step_length)
     facing = shade(heights, direction, (10.0, 20.0))
     sure = (np.abs(room) > 0.01) & (np.abs(facing) > 1e-4)
     assert sure.mean() > 0.5
@@ -339,12 +343,12 @@ def test_a_wall_throws_its_shadow_in_metres_to_the_west_and_east(engine, lit, az
 def test_a_wall_throws_its_shadow_in_metres_to_the_north_and_south(engine, lit, azimuth):
     sun = (azimuth, 25.0)
     sketch = lit(
-        WALL, "ray_cast", sun, size=[129, 65], extent=[1280, 1280], given={"at": (-1, 32)}, stride=0.25
+        WALL, "ray_cast", sun, size=[129, 65], extent=[1280, 1280], given={"at": (-1, 32)}, step_length=0.25
     )
     column = engine.read(sketch, "light")[:, 64, 3]
     length = 100 / np.tan(np.radians(25)) * abs(np.cos(np.radians(azimuth)))
     away = (np.arange(65) - 32) * 20.0 * (-1 if np.cos(np.radians(azimuth)) > 0 else 1)
-    # A stride that is not whole may miss the crest itself, which is one texel sharp.
+    # A step_length that is not whole may miss the crest itself, which is one texel sharp.
     behind = (away > 20) & (np.abs(away - length) > 20)
     np.testing.assert_array_equal(column[behind] == 0, away[behind] < length)
     np.testing.assert_array_equal(column[away < -20], 1)
@@ -380,14 +384,14 @@ def test_a_lower_sun_never_takes_a_shadow_away(any_engine, lit):
 def test_cutting_places_down_moves_shadows_and_is_the_thesis_way(any_engine, lit):
     values = {"size": 65, "relief": 300.0, "extent": 640.0}
     ways = [
-        any_engine.read(lit(HILLS, "ray_cast", (30, 25), reading=r, **values), "light")
+        any_engine.read(lit(HILLS, "ray_cast", (30, 25), sampling=r, **values), "light")
         for r in ("interpolated", "cut down")
     ]
     assert 0 < (ways[0][..., 3] != ways[1][..., 3]).mean() < 0.2
 
 
 @pytest.mark.parametrize("form", ["march", "sweep"])
-def test_moving_the_sun_leaves_the_land_and_what_is_known_of_it_alone(any_engine, lit, form):
+def test_moving_the_sun_leaves_the_terrain_and_what_is_known_of_it_alone(any_engine, lit, form):
     sketch = lit(HILLS, "ray_cast", (135, 25), form=form)
     any_engine.read(sketch, "light")
     assert {"height", "light.block_maxima", "light.range.whole"} < set(any_engine.ran)
@@ -410,7 +414,7 @@ vec4 kernel(ivec2 texel) { return vec4(float(texel.x) * step_of, 1.0); }
     passes = """
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 set = { rise = [0.05, 0.02] }
 [[pass]]
 name = "visibility"
@@ -429,7 +433,7 @@ sun_colour = [1.0, 0.8, 0.6]
 sky_colour = [0.5, 0.6, 0.7]
 ambient = 0.3
 """
-    sketch = make_sketch(passes, size=9, extent=80.0, relief=50.0, land=PLANE, given=given)
+    sketch = make_sketch(passes, size=9, extent=80.0, relief=50.0, terrain=PLANE, given=given)
     light = engine.read(sketch, "light")
     x = np.broadcast_to(np.arange(9), (9, 9))
     normal = np.array([-0.05 * 50 / 10, -0.02 * 50 / 10, 1.0])
@@ -452,16 +456,16 @@ def test_light_of_another_size_reads_what_it_is_given_between_texels(engine, mak
 float kernel(ivec2 texel) { return float(texel.x + 2 * texel.y) / 64.0; }
 """
     passes = (
-        '[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "visibility"\nuse = "./given"\n'
+        '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "visibility"\nuse = "./given"\n'
         '[[pass]]\nname = "light"\nuse = "lighting/shade"\nsize = [25, 33]\nset = { sun = [0.0, 90.0] }\n'
     )
-    light = engine.read(make_sketch(passes, size=9, land=PLANE, given=given), "light")
+    light = engine.read(make_sketch(passes, size=9, terrain=PLANE, given=given), "light")
     y, x = np.mgrid[0:33, 0:25]
     np.testing.assert_allclose(light[..., 3], (x / 3 + 2 * (y / 4)) / 64, rtol=2 * HALF, atol=1e-4)
 
 
 def test_slopes_between_texels_are_the_texels_slopes_interpolated(engine, lit):
-    """Texels of the light on texels of the land stand beside others that do not."""
+    """Texels of the light on texels of the terrain stand beside others that do not."""
     sun = (135, 25)
     sketch = lit(HILLS, "l_dot_n", sun, light_size="[129, 97]", relief=300.0, extent=640.0)
     heights = engine.read(sketch, "height").astype(np.float64) * 300

@@ -53,7 +53,7 @@ def test_corners_stand_on_corners(on_gpu, small, large):
     np.testing.assert_array_equal(found, truth)
 
 
-def test_a_place_on_another_grid_is_the_same_share_of_the_land(on_gpu):
+def test_a_place_on_another_grid_is_the_same_share_of_the_terrain(on_gpu):
     texels = np.stack([np.arange(344), np.arange(344) % 403], axis=1)
     places = on_gpu(
         "maths/land.glsl", "place_on(to, texel, grid)", to=(1025, 77), texel=texels, grid=(344, 403)

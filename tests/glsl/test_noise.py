@@ -93,8 +93,8 @@ def test_neighbours_know_nothing_of_each_other(field, seed):
 
 
 def test_seeds_know_nothing_of_each_other(field):
-    lands = np.stack([field(s).ravel() for s in (0, 1, 2, 3, 1000)])
-    correlations = np.corrcoef(lands)[np.triu_indices(5, 1)]
+    terrains = np.stack([field(s).ravel() for s in (0, 1, 2, 3, 1000)])
+    correlations = np.corrcoef(terrains)[np.triu_indices(5, 1)]
     assert np.abs(correlations).max() < 4 / SIDE
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-LAND = """
+TERRAIN = """
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")
 uniform float scale = 1.0;
@@ -16,17 +16,17 @@ float kernel(ivec2 texel) {
 """
 PASSES = """
 [[pass]]
-name = "land"
-use = "./land"
+name = "terrain"
+use = "./terrain"
 set = {{ scale = {scale}, base = {base}, hole = {hole} }}
 [[pass]]
 name = "range"
 use = "terrain/range"
-inputs = {{ height = "land" }}
+inputs = {{ height = "terrain" }}
 [[pass]]
 name = "normal"
 use = "generation/normalise"
-inputs = {{ height = "land" }}
+inputs = {{ height = "terrain" }}
 set = {{ mode = "{mode}" }}
 """
 
@@ -35,7 +35,7 @@ set = {{ mode = "{mode}" }}
 def sketch_of(make_sketch):
     def make(size=33, scale=1.0, base=0.0, mode="minmax", hole=0):
         passes = PASSES.format(scale=scale, base=base, mode=mode, hole=hole)
-        return make_sketch(passes, size=size, land=LAND)
+        return make_sketch(passes, size=size, terrain=TERRAIN)
 
     return make
 
@@ -46,8 +46,8 @@ SIZES = [[1, 1], [2, 2], [1, 40], [31, 33], [32, 32], [100, 7], [257, 300], [102
 @pytest.mark.parametrize("size", SIZES, ids=str)
 def test_the_range_is_numpys(engine, sketch_of, size):
     sketch = sketch_of(size, scale=3.0, base=-0.7)
-    land = engine.read(sketch, "land")
-    np.testing.assert_array_equal(engine.read(sketch, "range"), [[[land.min(), land.max()]]])
+    terrain = engine.read(sketch, "terrain")
+    np.testing.assert_array_equal(engine.read(sketch, "range"), [[[terrain.min(), terrain.max()]]])
 
 
 def test_one_extreme_texel_is_found_wherever_it_stands(engine, make_sketch):
@@ -68,21 +68,21 @@ def test_one_extreme_texel_is_found_wherever_it_stands(engine, make_sketch):
 @pytest.mark.parametrize(("scale", "base"), [(0.01, 0.0), (300.0, 1000.0)])
 def test_minmax_spans_0_to_1(engine, sketch_of, size, scale, base):
     sketch = sketch_of(size, scale, base)
-    land = engine.read(sketch, "land").astype(np.float64)
+    terrain = engine.read(sketch, "terrain").astype(np.float64)
     found = engine.read(sketch, "normal")
     assert found.min() == 0.0 and found.max() == 1.0
-    np.testing.assert_allclose(found, np.interp(land, [land.min(), land.max()], [0, 1]), atol=1e-6)
+    np.testing.assert_allclose(found, np.interp(terrain, [terrain.min(), terrain.max()], [0, 1]), atol=1e-6)
 
 
 def test_max_puts_the_highest_at_1_and_leaves_0(engine, sketch_of):
     sketch = sketch_of(mode="max", scale=2.0)
-    land = engine.read(sketch, "land").astype(np.float64)
-    np.testing.assert_allclose(engine.read(sketch, "normal"), land / land.max(), rtol=1e-6, atol=1e-9)
+    terrain = engine.read(sketch, "terrain").astype(np.float64)
+    np.testing.assert_allclose(engine.read(sketch, "normal"), terrain / terrain.max(), rtol=1e-6, atol=1e-9)
 
 
 def test_none_changes_no_bit_and_looks_at_nothing(engine, sketch_of):
     sketch = sketch_of(mode="none", scale=2.0)
-    np.testing.assert_array_equal(engine.read(sketch, "normal"), engine.read(sketch, "land"))
+    np.testing.assert_array_equal(engine.read(sketch, "normal"), engine.read(sketch, "terrain"))
     np.testing.assert_array_equal(engine.read(sketch, "normal.range"), [[[0.0, 1.0]]])
 
 
@@ -97,41 +97,41 @@ def test_none_changes_no_bit_and_looks_at_nothing(engine, sketch_of):
         ("max", -5, -5),
     ],
 )
-def test_flat_land_is_a_number(engine, sketch_of, mode, base, expected):
+def test_flat_terrain_is_a_number(engine, sketch_of, mode, base, expected):
     found = engine.read(sketch_of(scale=0.0, base=float(base), mode=mode), "normal")
     np.testing.assert_array_equal(found, np.float32(expected))
 
 
 @pytest.mark.parametrize("base", [0.3, -700.0, 4e6])
-def test_flat_land_with_roundings_is_flat(engine, sketch_of, base):
-    """A step or two of a float is no land; 32 additions may leave sixteen."""
-    land = engine.read(sketch_of(scale=abs(base) * 3e-7, base=base), "land")
-    assert 0 < np.ptp(land) < 16 * np.finfo(np.float32).eps * abs(base)
+def test_flat_terrain_with_roundings_is_flat(engine, sketch_of, base):
+    """A step or two of a float is no terrain; 32 additions may leave sixteen."""
+    terrain = engine.read(sketch_of(scale=abs(base) * 3e-7, base=base), "terrain")
+    assert 0 < np.ptp(terrain) < 16 * np.finfo(np.float32).eps * abs(base)
     found = engine.read(sketch_of(scale=abs(base) * 3e-7, base=base), "normal")
     np.testing.assert_array_equal(found, 0)
 
 
 @pytest.mark.parametrize("base", [0.3, -700.0, 4e6])
-def test_land_over_its_roundings_is_stretched(engine, sketch_of, base):
+def test_terrain_over_its_roundings_is_stretched(engine, sketch_of, base):
     found = engine.read(sketch_of(scale=abs(base) * 1e-5, base=base), "normal")
     assert found.min() == 0.0 and found.max() == 1.0
 
 
-def test_land_below_0_is_not_turned_over_by_max(engine, sketch_of):
+def test_terrain_below_0_is_not_turned_over_by_max(engine, sketch_of):
     sketch = sketch_of(mode="max", base=-3.0)
-    np.testing.assert_array_equal(engine.read(sketch, "normal"), engine.read(sketch, "land"))
+    np.testing.assert_array_equal(engine.read(sketch, "normal"), engine.read(sketch, "terrain"))
 
 
 def test_a_texel_without_a_number_spoils_no_other(engine, sketch_of):
     sketch = sketch_of(hole=1)
-    land = engine.read(sketch, "land")
-    holes = np.isnan(land)
+    terrain = engine.read(sketch, "terrain")
+    holes = np.isnan(terrain)
     assert holes.any()
-    np.testing.assert_array_equal(engine.read(sketch, "range"), [[[np.nanmin(land), np.nanmax(land)]]])
+    np.testing.assert_array_equal(engine.read(sketch, "range"), [[[np.nanmin(terrain), np.nanmax(terrain)]]])
     assert not np.isnan(engine.read(sketch, "normal")[~holes]).any()
 
 
-def test_moving_a_land_and_stretching_it_changes_nothing(engine, sketch_of):
+def test_moving_a_terrain_and_stretching_it_changes_nothing(engine, sketch_of):
     first = engine.read(sketch_of(scale=1.0, base=0.0), "normal")
     second = engine.read(sketch_of(scale=8.0, base=5.0), "normal")
     np.testing.assert_allclose(first, second, atol=1e-6)

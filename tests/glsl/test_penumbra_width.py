@@ -64,7 +64,7 @@ def test_a_border_within_a_texel_is_two_wide_at_most(engine, ramp):
         np.testing.assert_allclose(metres[:, 20], 10 * texels[:, 20], rtol=1e-5)
 
 
-def test_where_nothing_changes_the_width_is_the_land_s(engine, ramp):
+def test_where_nothing_changes_the_width_is_the_terrain_s(engine, ramp):
     texels, metres = widths(engine, ramp(pace=(0.0, 0.0), start=0.5))
     np.testing.assert_allclose(texels, math.hypot(60, 40), rtol=1e-5)
     np.testing.assert_allclose(metres, math.hypot(590, 1170), rtol=1e-5)

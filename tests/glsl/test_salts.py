@@ -72,7 +72,7 @@ def test_whoever_draws_has_a_salt():
 
 
 @pytest.fixture
-def lands(any_engine, make_sketch):
+def terrains(any_engine, make_sketch):
     def make(size, seed):
         found = {}
         for name in TERRAINS:
@@ -85,17 +85,17 @@ def lands(any_engine, make_sketch):
     return make
 
 
-def bumps(land):
+def bumps(terrain):
     """Return how far each texel stands above the mean of the four around it."""
-    around = land[1:-1, :-2] + land[1:-1, 2:] + land[:-2, 1:-1] + land[2:, 1:-1]
-    return (land[1:-1, 1:-1] - around / 4).ravel()
+    around = terrain[1:-1, :-2] + terrain[1:-1, 2:] + terrain[:-2, 1:-1] + terrain[2:, 1:-1]
+    return (terrain[1:-1, 1:-1] - around / 4).ravel()
 
 
-def test_techniques_of_one_seed_know_nothing_of_each_other(lands):
+def test_techniques_of_one_seed_know_nothing_of_each_other(terrains):
     """White noise, the halved terrains and layers shared their numbers, texel by texel."""
     sums = {}
     for seed in (0, 7, 4242):
-        found = {name: bumps(land) for name, land in lands(65, seed).items()}
+        found = {name: bumps(terrain) for name, terrain in terrains(65, seed).items()}
         for one, other in combinations(TERRAINS, 2):
             r = np.corrcoef(found[one], found[other])[0, 1]
             sums.setdefault((one, other), []).append(r)

@@ -1,7 +1,7 @@
 """Shadows, hard and soft, marched and swept: slow marches in float64, quadrature, symmetries, limits.
 
 The marches here know nothing of early ends, of leaps or of lines: they look from a place along
-its way to the sun at every piece of land, and measure angles and lengths. That both drivers
+its way to the sun at every piece of terrain, and measure angles and lengths. That both drivers
 give the same bits is tested in test_drivers.py.
 """
 
@@ -13,8 +13,9 @@ import pytest
 from scipy.ndimage import binary_dilation, map_coordinates, maximum_filter
 
 from playground.engine.engine import Engine
+from playground.sketch.parameter import LARGEST_SIDE
 
-from .lands import HILLS
+from .terrains import HILLS
 
 DATA = Path(__file__).resolve().parents[2] / "glsl/sketches/data/jacksboro_fault_dem.npz"
 BOTH_FORMS = pytest.mark.parametrize("form", ["march", "sweep"])
@@ -49,17 +50,19 @@ float kernel(ivec2 texel) {
 
 @pytest.fixture
 def lit(make_sketch):
-    """Give a sketch of a land and its light: sun in degrees, sizes in texels, metres."""
+    """Give a sketch of a terrain and its light: sun in degrees, sizes in texels, metres."""
 
-    def make(land, method, sun, *, size=65, extent=1000.0, relief=100.0, light_size="", given=None, **values):
+    def make(
+        terrain, method, sun, *, size=65, extent=1000.0, relief=100.0, light_size="", given=None, **values
+    ):
         values = {"sun": list(sun), **{k: v for k, v in values.items() if v is not None}}
         settings = ["".join(f"{k} = {_toml(v)}\n" for k, v in each.items()) for each in (given or {}, values)]
         at = f"size = {light_size}\n" if light_size else ""
         passes = (
-            f'[[pass]]\nname = "height"\nuse = "./land"\n[pass.set]\n{settings[0]}'
+            f'[[pass]]\nname = "height"\nuse = "./terrain"\n[pass.set]\n{settings[0]}'
             f'[[pass]]\nname = "light"\nuse = "lighting/{method}"\n{at}[pass.set]\n{settings[1]}'
         )
-        return make_sketch(passes, size=size, extent=extent, relief=relief, land=land)
+        return make_sketch(passes, size=size, extent=extent, relief=relief, terrain=terrain)
 
     return make
 
@@ -101,35 +104,35 @@ def sun_vector(azimuth, elevation):
 
 
 class Views:
-    """Every place's way to the sun, step by step: how far off land is, and how high over the place [m]."""
+    """Every place's way to the sun, step by step: how far off terrain is, and how high over the place [m]."""
 
-    def __init__(self, heights, sun, spacing, stride=1.0, finer=1):
+    def __init__(self, heights, sun, spacing, step_length=1.0, finer=1):
         ny, nx = heights.shape
         places = np.mgrid[0 : (ny - 1) * finer + 1, 0 : (nx - 1) * finer + 1].astype(np.float64) / finer
         azimuth = np.radians(sun[0])
         ahead = np.array([np.cos(azimuth), np.sin(azimuth)])  # metres north and east
         texels = ahead / np.array(spacing)[::-1]
-        run = stride / np.abs(texels).max()  # metres on the level in a step
+        run = step_length / np.abs(texels).max()  # metres on the level in a step
         foot = map_coordinates(heights, places, order=1)
         self.foot, self.steps = foot, []
         last = np.array([ny - 1, nx - 1])[:, None, None]
-        for k in range(1, int(max(nx, ny) / stride) + 2):
+        for k in range(1, int(max(nx, ny) / step_length) + 2):
             at = places + (k * run * texels)[:, None, None]
             inside = ((at >= -1e-6) & (at <= last + 1e-6)).all(axis=0)
             if not inside.any():
                 break
-            land = map_coordinates(heights, np.clip(at, 0, last), order=1)
-            self.steps.append((k * run, np.where(inside, land - foot, -np.inf)))
+            terrain = map_coordinates(heights, np.clip(at, 0, last), order=1)
+            self.steps.append((k * run, np.where(inside, terrain - foot, -np.inf)))
 
     def horizon(self):
-        """Return the angle of the highest land on the way, in degrees; -90 where there is none."""
+        """Return the angle of the highest terrain on the way, in degrees; -90 where there is none."""
         found = np.full(self.foot.shape, -90.0)
         for far, over in self.steps:
             found = np.maximum(found, np.degrees(np.arctan2(np.where(np.isinf(over), -1e12, over), far)))
         return found
 
     def free_of_beam(self, elevation, radius_at, first=1.0):
-        """Return the least share of an upright stick, around the ray, that stands over the land."""
+        """Return the least share of an upright stick, around the ray, that stands over the terrain."""
         found = np.full(self.foot.shape, first)
         for far, over in self.steps:
             radius, middle = radius_at(far), far * np.tan(np.radians(elevation))
@@ -158,7 +161,7 @@ def test_block_maxima_are_the_highest_of_blocks_and_of_their_borders(any_engine,
     sketch = make_sketch(passes, size=list(size))
     heights = any_engine.read(sketch, "height")
     maxima = any_engine.read(sketch, "maxima")
-    # The filter's window begins at its own texel, and what lies beside the land is as low as can be.
+    # The filter's window begins at its own texel, and what lies beside the terrain is as low as can be.
     wanted = maximum_filter(heights, size=17, origin=-8, mode="constant", cval=-1.0)[::16, ::16]
     np.testing.assert_array_equal(maxima, wanted)
 
@@ -185,6 +188,26 @@ def test_leaps_pass_over_nothing(any_engine, make_sketch, method, sun):
     np.testing.assert_array_equal(found[0], found[1])
 
 
+FAR_WALL = """
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return texel.x == size.x - 1 ? 1.0 : 0.0; }
+"""
+
+
+@pytest.mark.parametrize("method", ["ray_cast", "sun_disc"])
+def test_a_shadow_crosses_the_widest_terrain_in_the_shortest_steps(any_engine, lit, method):
+    """A wall of 300 m hides all of a disc at 0.7 degrees as far as 17.8 km away: on 16384 texels of 1 m."""
+    values = {
+        "size": [LARGEST_SIDE, 2],
+        "extent": [LARGEST_SIDE - 1.0, 1.0],
+        "relief": 300.0,
+        "step_length": 0.25,
+    }
+    found = visible(any_engine, lit(FAR_WALL, method, (90, 0.7), **values))
+    assert found[:, :-1].max() < 1e-6
+    assert found[:, -1].min() == 1
+
+
 # Against the slow marches
 
 
@@ -198,10 +221,10 @@ def heights_of(engine, sketch, relief=300.0):
 
 
 @pytest.mark.parametrize("sun", SUNS, ids=str)
-@pytest.mark.parametrize(("delta_r", "stride"), [(0.01, 1.0), (0.1, 0.5), (0.3, 2.0), (1.5, 1.0)])
-def test_the_cone_is_that_of_a_slow_march(any_engine, lit, sun, delta_r, stride):
-    sketch = lit(HILLS, "soft_cone", sun, delta_r=delta_r, stride=stride, **GRID)
-    views = Views(heights_of(any_engine, sketch), sun, SPACING, stride)
+@pytest.mark.parametrize(("delta_r", "step_length"), [(0.01, 1.0), (0.1, 0.5), (0.3, 2.0), (1.5, 1.0)])
+def test_the_cone_is_that_of_a_slow_march(any_engine, lit, sun, delta_r, step_length):
+    sketch = lit(HILLS, "soft_cone", sun, delta_r=delta_r, step_length=step_length, **GRID)
+    views = Views(heights_of(any_engine, sketch), sun, SPACING, step_length)
     grows = delta_r / np.cos(np.radians(sun[1]))
     wanted = views.free_of_beam(sun[1], lambda far: far * grows)
     found = visible(any_engine, sketch)
@@ -212,7 +235,7 @@ def test_the_cone_is_that_of_a_slow_march(any_engine, lit, sun, delta_r, stride)
 
 @pytest.mark.parametrize("sun", SUNS[:3], ids=str)
 def test_the_thesis_counts_steps_so_that_half_the_step_doubles_its_cone(any_engine, lit, sun):
-    sketch = lit(HILLS, "soft_cone", sun, delta_r=0.05, stride=0.5, growth="per step", **GRID)
+    sketch = lit(HILLS, "soft_cone", sun, delta_r=0.05, step_length=0.5, growth="per step", **GRID)
     views = Views(heights_of(any_engine, sketch), sun, SPACING, 0.5)
     wanted = views.free_of_beam(sun[1], lambda far: far * 0.1 / np.cos(np.radians(sun[1])))
     np.testing.assert_allclose(visible(any_engine, sketch), wanted, atol=5e-4)
@@ -262,12 +285,12 @@ def test_a_line_is_off_by_less_than_the_thesis_ramp_is(on_gpu):
     assert np.abs(found - (0.5 - lines / 2)).max() == pytest.approx(0.058, abs=1e-3)
 
 
-# Flat land
+# Flat terrain
 
 
 @pytest.mark.parametrize("elevation", [3.0, 25.0, 60.0])
 @pytest.mark.parametrize("azimuth", [0.0, 90.0, 137.0])
-def test_on_flat_land_the_cylinder_is_half_of_l_dot_n(any_engine, lit, azimuth, elevation):
+def test_on_flat_terrain_the_cylinder_is_half_of_l_dot_n(any_engine, lit, azimuth, elevation):
     plain = any_engine.read(lit(FLAT, "l_dot_n", (azimuth, elevation)), "light")
     found = any_engine.read(lit(FLAT, "soft_cylinder", (azimuth, elevation)), "light")
     np.testing.assert_array_equal(found[..., :3], plain[..., :3] / 2)
@@ -276,15 +299,15 @@ def test_on_flat_land_the_cylinder_is_half_of_l_dot_n(any_engine, lit, azimuth, 
 @BOTH_FORMS
 @pytest.mark.parametrize("elevation", [0.0, 5.0, 30.0, 70.0, 89.9, 90.0])
 @pytest.mark.parametrize("azimuth", [270.0, 137.0])
-def test_on_flat_land_a_wide_cone_sees_the_known_part(any_engine, lit, form, azimuth, elevation):
+def test_on_flat_terrain_a_wide_cone_sees_the_known_part(any_engine, lit, form, azimuth, elevation):
     found = visible(any_engine, lit(FLAT, "soft_cone", (azimuth, elevation), delta_r=1.5, form=form))
-    # Texels whose first step leaves the land see all of the sun.
+    # Texels whose first step leaves the terrain see all of the sun.
     inner = found[1:-1, 1:-1]
     np.testing.assert_allclose(inner, (1 + np.sin(np.radians(elevation)) / 1.5) / 2, atol=1e-5)
 
 
 @BOTH_FORMS
-def test_on_flat_land_a_narrow_cone_and_the_disc_see_all(any_engine, lit, form):
+def test_on_flat_terrain_a_narrow_cone_and_the_disc_see_all(any_engine, lit, form):
     for method in ("ray_cast", "soft_cone", "sun_disc"):
         found = visible(any_engine, lit(FLAT, method, (77, 3), form=form))
         np.testing.assert_array_equal(found, 1)
@@ -292,7 +315,7 @@ def test_on_flat_land_a_narrow_cone_and_the_disc_see_all(any_engine, lit, form):
 
 @BOTH_FORMS
 @pytest.mark.parametrize("elevation", [0.2, 0.0, -0.1, -0.3])
-def test_on_flat_land_the_disc_sets(any_engine, lit, form, elevation):
+def test_on_flat_terrain_the_disc_sets(any_engine, lit, form, elevation):
     found = visible(any_engine, lit(FLAT, "sun_disc", (200, elevation), form=form))
     np.testing.assert_allclose(found, part_of_disc(-elevation / 0.265), atol=2e-3)
 
@@ -314,7 +337,7 @@ def test_a_thin_cone_is_a_ray_and_half_of_any_cone_is_what_a_ray_meets(any_engin
 
 
 @EVERY_METHOD
-def test_lifting_the_land_changes_nothing(any_engine, lit, method, form):
+def test_lifting_the_terrain_changes_nothing(any_engine, lit, method, form):
     values = {"form": form, "relief": 300.0, "extent": 640.0}
     low, high = (
         visible(any_engine, lit(HILLS, method, (135, 15), given={"base": b}, **values)) for b in (0.0, 5.0)
@@ -325,7 +348,7 @@ def test_lifting_the_land_changes_nothing(any_engine, lit, method, form):
 
 @EVERY_METHOD
 @pytest.mark.parametrize("sun", [(135, 25), (20, 12)], ids=str)
-def test_turned_and_mirrored_land_has_turned_and_mirrored_light(any_engine, lit, method, form, sun):
+def test_turned_and_mirrored_terrain_has_turned_and_mirrored_light(any_engine, lit, method, form, sun):
     values = {"form": form, "relief": 300.0, "extent": 640.0}
     straight = any_engine.read(lit(HILLS, method, sun, **values), "light")
     y, x = np.mgrid[0:65, 0:65]
@@ -348,7 +371,7 @@ DEGENERATE = [
 
 
 @EVERY_METHOD
-def test_there_is_no_land_and_no_sun_without_numbers(any_engine, lit, method, form):
+def test_there_is_no_terrain_and_no_sun_without_numbers(any_engine, lit, method, form):
     suns = [(0, 90), (90, 0), (33, 89.9999), (77, -0.1), (45, -90), (135, 20)]
     for values in DEGENERATE:
         sketch = lit(HILLS, method, (0, 0), form=form, **{"size": 17, **values})
@@ -382,7 +405,7 @@ def test_below_the_horizon_no_slope_sees_the_sun(any_engine, lit, method, form):
 
 
 def test_both_drivers_sweep_alike(ctx, lit):
-    """The fragment driver sweeps each texel's band anew, the compute variant each band once."""
+    """The plain form follows a texel's lines anew for each texel, the compute variant each line once."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     with Engine(ctx, driver="fragment") as plain, Engine(ctx) as swept:
@@ -396,7 +419,7 @@ def test_both_drivers_sweep_alike(ctx, lit):
 
 @pytest.mark.parametrize("method", ["ray_cast", "soft_cone", "sun_disc"])
 def test_without_compute_shaders_the_sweep_is_a_march_and_one_sentence_says_so(ctx, lit, method):
-    """A fragment has to sweep its texel's whole band: 36 s on 1537 texels a side, the march 2 s."""
+    """The plain form looks along a texel's whole line: half a minute on 1537 texels a side, the march 2 s."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     said = []
@@ -435,7 +458,7 @@ BOUNDS = {5.0: (0.006, 0.006, 0.06), 25.0: (0.0003, 0.0003, 0.01)}
 
 @pytest.mark.parametrize("elevation", [5.0, 25.0])
 @pytest.mark.parametrize("azimuth", [105.0, 200.0])
-def test_on_real_land_the_sweep_is_nearly_the_march(any_engine, jacksboro, azimuth, elevation):
+def test_on_real_terrain_the_sweep_is_nearly_the_march(any_engine, jacksboro, azimuth, elevation):
     sun = (azimuth, elevation)
     hard, mean, square = BOUNDS[elevation]
     march, sweep = (visible(any_engine, jacksboro("ray_cast", sun, form=f)) for f in ("march", "sweep"))
@@ -472,7 +495,7 @@ def test_the_sweep_finds_the_other_rim_of_a_valley(any_engine, lit, azimuth):
     lean = np.abs(np.cos(np.radians(azimuth)))  # of the way to the sun, that part leads south
     rim = np.where(y > 0, (100 - height) / np.maximum(y * 10, 1e-9), 0) * lean
     slope = (np.roll(height, 1) - height) / 10 * lean
-    # Ways that leave the land by its side see no rim.
+    # Ways that leave the terrain by its side see no rim.
     seen = (y >= 8) & (y * np.abs(np.tan(np.radians(azimuth))) < 27)
     for elevation in (3.0, 6.0, 9.0, 12.0, 15.0):
         found = any_engine.read(lit(SHAPES, "sun_disc", (azimuth, elevation), **values), "light.horizon")
@@ -497,14 +520,14 @@ def test_night_is_the_widest_cone_with_a_gain_of_1(any_engine, lit):
 LAMP = {
     "sun": (0, -10),
     "lamp_gain": 2.0,
-    "reach": 200.0,
+    "max_distance": 200.0,
     "lamp_height": 100.0,
     "lamp_colour": (1.0, 0.5, 0.25),
 }
 
 
 @pytest.mark.parametrize("falloff", ["inverse square", "soft"])
-def test_a_lamp_lights_flat_land_by_its_distance(any_engine, lit, falloff):
+def test_a_lamp_lights_flat_terrain_by_its_distance(any_engine, lit, falloff):
     values = {k: v for k, v in LAMP.items() if k != "sun"}
     sketch = lit(
         FLAT,
@@ -555,8 +578,8 @@ def test_the_lamp_s_shadows_are_those_of_a_slow_march(any_engine, lit):
     steps = np.maximum(np.abs(stand[0] - x), np.abs(stand[1] - y))
     for k in range(1, 65):
         share = np.minimum(k / np.maximum(steps, 1e-9), 1.0)
-        land = map_coordinates(heights, [y + share * (stand[1] - y), x + share * (stand[0] - x)], order=1)
-        over = heights + share * (stand[2] - heights) - land
+        terrain = map_coordinates(heights, [y + share * (stand[1] - y), x + share * (stand[0] - x)], order=1)
+        over = heights + share * (stand[2] - heights) - terrain
         clear = np.where(k < steps - 1e-6, np.minimum(clear, over), clear)
     north, east = np.gradient(heights, 10.0)
     way = np.stack([(stand[0] - x) * 10, (stand[1] - y) * 10, stand[2] - heights], axis=-1)
@@ -567,7 +590,7 @@ def test_the_lamp_s_shadows_are_those_of_a_slow_march(any_engine, lit):
     np.testing.assert_array_equal(light[sure] > 0, wanted[sure])
 
 
-def test_a_lamp_on_the_ground_and_one_on_a_land_of_one_texel_are_numbers(any_engine, lit):
+def test_a_lamp_on_the_ground_and_one_on_a_terrain_of_one_texel_are_numbers(any_engine, lit):
     for size in ([1, 1], [2, 2], [1, 20], [33, 33]):
         for height in (0.0, 40.0):
             values = {"lamp_gain": 8.0, "lamp": (0.5, 0.5), "lamp_height": height, "lamp_radius": 0.0}

@@ -21,15 +21,15 @@ ALIKE = {
 
 
 @pytest.fixture
-def land_of(any_engine, make_sketch):
-    def land(name, size, **values):
+def terrain_of(any_engine, make_sketch):
+    def terrain(name, size, **values):
         given = "".join(f"{k} = {v!r}\n" for k, v in values.items())
         sketch = make_sketch(
             f'[[pass]]\nname = "a"\nuse = "generation/{name}"\n[pass.set]\n{given}', size=size
         )
         return any_engine.read(sketch, "a").astype(np.float64)
 
-    return land
+    return terrain
 
 
 def likeness(small, large):
@@ -41,16 +41,16 @@ def likeness(small, large):
 @pytest.mark.parametrize("seed", [7, 1234])
 @pytest.mark.parametrize("sizes", [(65, 129), (129, 513), (257, 513)], ids=str)
 @pytest.mark.parametrize("name", ALIKE)
-def test_a_seed_is_one_terrain(land_of, name, sizes, seed):
+def test_a_seed_is_one_terrain(terrain_of, name, sizes, seed):
     """As it comes, normalised or not; a terrain of 33 texels or fewer has no room for its details."""
-    small, large = (land_of(name, size, seed=seed) for size in sizes)
+    small, large = (terrain_of(name, size, seed=seed) for size in sizes)
     assert likeness(small, large) >= ALIKE[name]
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ALIKE)
-def test_a_preview_shows_the_terrain_of_2049(land_of, name):
-    assert likeness(land_of(name, 257, seed=3), land_of(name, 2049, seed=3)) >= ALIKE[name]
+def test_a_preview_shows_the_terrain_of_2049(terrain_of, name):
+    assert likeness(terrain_of(name, 257, seed=3), terrain_of(name, 2049, seed=3)) >= ALIKE[name]
 
 
 @pytest.mark.parametrize(
@@ -65,31 +65,31 @@ def test_a_preview_shows_the_terrain_of_2049(land_of, name):
     ],
     ids=str,
 )
-def test_whatever_the_parameters(land_of, name, values):
-    assert likeness(land_of(name, 129, **values), land_of(name, 257, **values)) >= 0.95
+def test_whatever_the_parameters(terrain_of, name, values):
+    assert likeness(terrain_of(name, 129, **values), terrain_of(name, 257, **values)) >= 0.95
 
 
-def test_halved_terrains_agree_to_the_last_bits(land_of):
+def test_halved_terrains_agree_to_the_last_bits(terrain_of):
     """What a coarse level makes, a finer one does not touch: the same points, the same heights."""
     for name in ("diamond_square", "midpoint_displacement", "triangle_subdivision"):
-        small, large = (land_of(name, size, normalise="none") for size in (65, 257))
+        small, large = (terrain_of(name, size, normalise="none") for size in (65, 257))
         np.testing.assert_allclose(small, large[::4, ::4], atol=2e-6)
 
 
 @pytest.mark.parametrize("sizes", [(64, 128), (128, 512)], ids=str)
-def test_fourier_of_a_power_of_two(land_of, sizes):
-    small, large = (land_of("fourier", size) for size in sizes)
+def test_fourier_of_a_power_of_two(terrain_of, sizes):
+    small, large = (terrain_of("fourier", size) for size in sizes)
     step = sizes[1] // sizes[0]
     assert np.corrcoef(small.ravel(), large[::step, ::step].ravel())[0, 1] >= 0.99
 
 
 @pytest.mark.parametrize("name", ["layered_noise", "fourier"])
-def test_a_long_terrain(land_of, name):
-    small, large = (land_of(name, [257 * k - k + 1, 129 * k - k + 1]) for k in (1, 2))
+def test_a_long_terrain(terrain_of, name):
+    small, large = (terrain_of(name, [257 * k - k + 1, 129 * k - k + 1]) for k in (1, 2))
     assert np.corrcoef(small.ravel(), large[::2, ::2].ravel())[0, 1] >= 0.99
 
 
-def test_white_noise_is_texel_by_texel(land_of):
+def test_white_noise_is_texel_by_texel(terrain_of):
     """By its definition it has no shape that a larger size could keep."""
-    small, large = land_of("white_noise", 129), land_of("white_noise", 257)
+    small, large = terrain_of("white_noise", 129), terrain_of("white_noise", 257)
     assert abs(likeness(small, large)) < 4 / 129

@@ -10,7 +10,7 @@ from scipy.integrate import dblquad
 from ..loading import load
 from ..truth.land import Land, cone, real
 from ..truth.sky import sky_visibility
-from .lands import lit_by
+from .terrains import lit_by
 
 HALF = 2.0**-10
 OPEN_SKY = "lighting/horizons/open_sky.glsl"
@@ -18,10 +18,10 @@ OPEN_SKY = "lighting/horizons/open_sky.glsl"
 
 @pytest.fixture
 def read(ctx, kept, tmp_path):
-    """Give ``read(land, use, *outputs, **values)``: the outputs of a technique in lighting/, float64."""
+    """Give ``read(terrain, use, *outputs, **values)``: the outputs of a technique in lighting/, float64."""
 
-    def make(land, use, *outputs, passes="", size="", **values):
-        sketch = lit_by(tmp_path, land, "under_test", use, passes=passes, size=size, **values)
+    def make(terrain, use, *outputs, passes="", size="", **values):
+        sketch = lit_by(tmp_path, terrain, "under_test", use, passes=passes, size=size, **values)
         found = [kept.read(sketch, f"under_test:{output}").astype(np.float64) for output in outputs]
         assert all(np.isfinite(f).all() for f in found)
         return found[0] if len(found) == 1 else found
@@ -110,7 +110,7 @@ def test_the_table_is_the_sectors_integrals(ctx, kept, tmp_path, first):
 
 
 @pytest.mark.parametrize("summed", ["by the table", "by the formula", "over all directions"])
-def test_flat_land_sees_the_whole_sky(read, summed):
+def test_flat_terrain_sees_the_whole_sky(read, summed):
     k, factor = read(Land(np.zeros((17, 23)), (5.0, 8.0)), "horizon_sky", "k", "factor", summed=summed)
     np.testing.assert_array_equal(k, 1)
     np.testing.assert_array_equal(factor[..., :3], 1)
@@ -129,7 +129,7 @@ def test_a_plane_with_many_sectors(read, angle):
     k = read(plane(angle, 33.0), "horizon_sky", "k", summed="over all directions", directions=64)
     truth = (1 + np.cos(np.radians(angle))) / 2
     np.testing.assert_allclose(k, truth, atol=0.01)
-    # Where sight lines leave the land at its edge, nearby lines may see a little more.
+    # Where sight lines leave the terrain at its edge, nearby lines may see a little more.
     np.testing.assert_allclose(k[8:-8, 8:-8], truth, atol=3e-4)
 
 
@@ -139,8 +139,8 @@ def test_a_valley_without_end(read, angle, bound, spacing):
     """Slope a, the opposite rim at elevation e: (1 + cos(a + e)) / 2."""
     nx, ny = 41, 641
     x = np.abs(np.arange(nx) - 20.0) * spacing[0]
-    land = Land(np.tile(x * np.tan(np.radians(angle)), (ny, 1)), spacing)
-    k = read(land, "horizon_sky", "k", summed="over all directions", directions=64)[ny // 2]
+    terrain = Land(np.tile(x * np.tan(np.radians(angle)), (ny, 1)), spacing)
+    k = read(terrain, "horizon_sky", "k", summed="over all directions", directions=64)[ny // 2]
     rim = 20 * spacing[0]
     place = np.arange(nx)[3:17]  # on the western wall
     here = (20 - place) * spacing[0]
@@ -154,8 +154,8 @@ def test_between_walls_without_end(read, angle):
     """On the foot of a wall, of slope a, the other rises at a: cos² a."""
     ny, nx = 401, 161
     x = np.abs(np.arange(nx) - 80.0)
-    land = Land(np.tile(x * np.tan(np.radians(angle)), (ny, 1)), (1.0, 1.0))
-    k = read(land, "horizon_sky", "k", summed="over all directions", directions=64)
+    terrain = Land(np.tile(x * np.tan(np.radians(angle)), (ny, 1)), (1.0, 1.0))
+    k = read(terrain, "horizon_sky", "k", summed="over all directions", directions=64)
     assert k[ny // 2, 79] == pytest.approx(np.cos(np.radians(angle)) ** 2, abs=0.01)
 
 
@@ -164,22 +164,22 @@ def test_between_walls_without_end(read, angle):
 
 @pytest.mark.parametrize("make", [real, cone], ids=["real", "cone"])
 def test_k_is_close_to_the_exact_one(read, make):
-    land = make(49)
-    exact = sky_visibility(land, count=64)
+    terrain = make(49)
+    exact = sky_visibility(terrain, count=64)
     for values, mean in (
         ({"summed": "by the table"}, 0.005),
         ({"summed": "by the formula"}, 0.005),
         ({"summed": "over all directions", "directions": 16}, 0.0025),
         ({"summed": "over all directions", "directions": 64}, 0.0025),
     ):
-        error = read(land, "horizon_sky", "k", **values) - exact
+        error = read(terrain, "horizon_sky", "k", **values) - exact
         assert rms(error) < mean and abs(error.mean()) < 0.002, values
 
 
 def test_the_table_and_the_formula_agree(read):
-    land = Land(real(49).heights * 3, (74.0, 93.0))
+    terrain = Land(real(49).heights * 3, (74.0, 93.0))
     table, formula, measured = (
-        read(land, "horizon_sky", "k", summed=way)
+        read(terrain, "horizon_sky", "k", summed=way)
         for way in ("by the table", "by the formula", "over all directions")
     )
     np.testing.assert_allclose(table, formula, atol=2e-4)
@@ -187,23 +187,23 @@ def test_the_table_and_the_formula_agree(read):
     assert formula.min() < 0.8
 
 
-def test_mirrored_land_has_a_mirrored_sky(read):
+def test_mirrored_terrain_has_a_mirrored_sky(read):
     """Sectors that began at the measured directions would turn the sky by half a sector."""
-    land = Land(real(49).heights[:41] * 3, (74.0, 93.0))
-    mirrored = Land(land.heights[:, ::-1].copy(), land.spacing)
+    terrain = Land(real(49).heights[:41] * 3, (74.0, 93.0))
+    mirrored = Land(terrain.heights[:, ::-1].copy(), terrain.spacing)
     for way in ("by the table", "by the formula"):
-        straight, across = (read(one, "horizon_sky", "k", summed=way) for one in (land, mirrored))
+        straight, across = (read(one, "horizon_sky", "k", summed=way) for one in (terrain, mirrored))
         np.testing.assert_allclose(across[:, ::-1], straight, atol=1e-3)
 
 
-def test_lifting_the_land_leaves_the_sky(read):
-    land = real(33)
-    plain = read(land, "horizon_sky", "factor")
+def test_lifting_the_terrain_leaves_the_sky(read):
+    terrain = real(33)
+    plain = read(terrain, "horizon_sky", "factor")
     # A needle far below everything lifts all else over height 0.
-    low = land.heights.copy()
+    low = terrain.heights.copy()
     low[0, 0] -= 3000
     np.testing.assert_allclose(
-        read(Land(low, land.spacing), "horizon_sky", "factor")[8:, 8:], plain[8:, 8:], atol=3e-3
+        read(Land(low, terrain.spacing), "horizon_sky", "factor")[8:, 8:], plain[8:, 8:], atol=3e-3
     )
 
 
@@ -211,8 +211,8 @@ def test_lifting_the_land_leaves_the_sky(read):
 
 
 def test_f_is_k_with_the_ground_below(read):
-    land = Land(real(33).heights * 4, (74.0, 93.0))
-    k, factor = read(land, "horizon_sky", "k", "factor", ground=[0.2, 0.5, 1.0])
+    terrain = Land(real(33).heights * 4, (74.0, 93.0))
+    k, factor = read(terrain, "horizon_sky", "k", "factor", ground=[0.2, 0.5, 1.0])
     for channel, ground in enumerate((0.2, 0.5, 1.0)):
         np.testing.assert_allclose(factor[..., channel], k / (1 - ground * (1 - k)), rtol=2 * HALF)
     np.testing.assert_allclose(factor[..., 2], 1, rtol=2 * HALF)
@@ -223,25 +223,25 @@ def test_the_ground_is_the_mean_colour_under_a_texel(read, tmp_path):
     stripe = "(texel.x & 1) == 0 ? vec3(0.8, 0.2, 0.0) : vec3(0.0, 0.6, 0.0)"
     text = f"vec4 kernel(ivec2 texel) {{ return vec4({stripe}, 1.0); }}"
     passes = colour_pass(tmp_path, text) + 'size = ["8 * size.x", "8 * size.y"]\n'
-    land = Land(real(33).heights * 4, (74.0, 93.0))
-    k, factor = read(land, "horizon_sky", "k", "factor", passes=passes)
+    terrain = Land(real(33).heights * 4, (74.0, 93.0))
+    k, factor = read(terrain, "horizon_sky", "k", "factor", passes=passes)
     for channel, ground in enumerate((0.4, 0.4, 0.0)):
         np.testing.assert_allclose(factor[..., channel], k / (1 - ground * (1 - k)), rtol=0.004)
 
 
 def test_light_is_the_factor_in_the_skys_colour(read):
-    land = real(33)
-    light, factor = read(land, "horizon_sky", "light", "factor", sky_colour=[0.5, 1.0, 2.0], ambient=0.5)
+    terrain = real(33)
+    light, factor = read(terrain, "horizon_sky", "light", "factor", sky_colour=[0.5, 1.0, 2.0], ambient=0.5)
     np.testing.assert_allclose(light[..., :3], factor[..., :3] * [0.25, 0.5, 1.0], rtol=2 * HALF, atol=1e-3)
 
 
 # Patches
 
 
-def sampled(land, tangents, split, patch):
+def sampled(terrain, tangents, split, patch):
     """Return K of one patch by small cells of the sky, each texel's sky cut off sector by sector."""
-    east, north = land.slopes()
-    total = np.zeros(land.heights.shape)
+    east, north = terrain.slopes()
+    total = np.zeros(terrain.heights.shape)
     azimuths = np.radians(np.arange(0.25, 360, 0.5))
     for a in azimuths:
         azimuth = np.degrees(a)
@@ -267,35 +267,35 @@ def sampled(land, tangents, split, patch):
 
 
 def test_patches_are_the_parts_of_the_sky(read):
-    land = Land(real(33).heights * 2, (74.0, 93.0))
-    ahead, behind = read(land, "horizon_sky", "ahead", "behind")
-    low, high = read(land, "sky_patches", "low", "high", split=35.0)
+    terrain = Land(real(33).heights * 2, (74.0, 93.0))
+    ahead, behind = read(terrain, "horizon_sky", "ahead", "behind")
+    low, high = read(terrain, "sky_patches", "low", "high", split=35.0)
     tangents = np.concatenate([ahead, behind], axis=-1)
     for quarter in range(4):
-        np.testing.assert_allclose(low[..., quarter], sampled(land, tangents, 35.0, quarter), atol=1.5e-3)
-    np.testing.assert_allclose(high[..., 3], sampled(land, tangents, 35.0, "overhead"), atol=1.5e-3)
+        np.testing.assert_allclose(low[..., quarter], sampled(terrain, tangents, 35.0, quarter), atol=1.5e-3)
+    np.testing.assert_allclose(high[..., 3], sampled(terrain, tangents, 35.0, "overhead"), atol=1.5e-3)
 
 
 @pytest.mark.parametrize("split", [10.0, 45.0, 80.0])
 def test_patches_add_up_to_the_sky(read, split):
-    land = Land(real(33).heights * 2, (74.0, 93.0))
-    low, high = read(land, "sky_patches", "low", "high", split=split, ground=[0.5, 0.5, 0.5])
-    k, factor = read(land, "horizon_sky", "k", "factor", summed="by the formula", ground=[0.5, 0.5, 0.5])
+    terrain = Land(real(33).heights * 2, (74.0, 93.0))
+    low, high = read(terrain, "sky_patches", "low", "high", split=split, ground=[0.5, 0.5, 0.5])
+    k, factor = read(terrain, "horizon_sky", "k", "factor", summed="by the formula", ground=[0.5, 0.5, 0.5])
     np.testing.assert_allclose(low.sum(axis=-1) + high[..., 3], k, atol=2e-3)
     white = [1.0, 1.0, 1.0]
     colours = dict.fromkeys(("overhead", "north", "east", "south", "west"), white)
-    even = read(land, "sky_patches", "factor", split=split, ground=[0.5, 0.5, 0.5], **colours)
+    even = read(terrain, "sky_patches", "factor", split=split, ground=[0.5, 0.5, 0.5], **colours)
     np.testing.assert_allclose(even[..., :3], factor[..., :3], atol=3e-3)
 
 
 def test_slopes_see_the_patches_that_they_face(read):
     black = [0.0, 0.0, 0.0]
     for quarter, azimuth in (("north", 0.0), ("east", 90.0), ("south", 180.0), ("west", 270.0)):
-        land = plane(40.0, azimuth + 180.0)  # it falls towards the quarter
+        terrain = plane(40.0, azimuth + 180.0)  # it falls towards the quarter
         colours = dict.fromkeys(("overhead", "north", "east", "south", "west"), black) | {
             quarter: [1.0, 1.0, 1.0]
         }
-        seen = middle(read(land, "sky_patches", "factor", ground=black, **colours))[0]
+        seen = middle(read(terrain, "sky_patches", "factor", ground=black, **colours))[0]
         facing_away = middle(read(plane(40.0, azimuth), "sky_patches", "factor", ground=black, **colours))[0]
         assert seen > 0.25 and facing_away < 0.02
 
@@ -304,17 +304,17 @@ def test_slopes_see_the_patches_that_they_face(read):
 
 
 def test_shadows_of_a_local_method_are_not_black(read, tmp_path):
-    land = Land(real(49).heights * 2, (74.0, 93.0))
+    terrain = Land(real(49).heights * 2, (74.0, 93.0))
     passes = '[[pass]]\nname = "light"\nuse = "lighting/ray_cast"\nset = { sun = [250.0, 15.0] }\n'
     values = {"ambient": 0.4, "sky_colour": [0.5, 1.0, 1.0], "ground": [0.3, 0.3, 0.3]}
-    light, factor, k = read(land, "interreflection", "light", "factor", "k", passes=passes, **values)
-    direct = read(land, "ray_cast", "light", sun=[250.0, 15.0])
+    light, factor, k = read(terrain, "interreflection", "light", "factor", "k", passes=passes, **values)
+    direct = read(terrain, "ray_cast", "light", sun=[250.0, 15.0])
     shadow = direct[..., 0] == 0
     assert shadow.mean() > 0.1 and light[shadow][:, 1].min() > 0.2
     sky = factor[..., :3] * [0.2, 0.4, 0.4]
     np.testing.assert_allclose(light[..., :3], direct[..., :3] + sky, rtol=2 * HALF, atol=1e-3)
     np.testing.assert_array_equal(light[..., 3], direct[..., 3])
-    both = read(land, "interreflection", "light", passes=passes, both=True, **values)
+    both = read(terrain, "interreflection", "light", passes=passes, both=True, **values)
     grown = direct[..., :3] / (1 - 0.3 * (1 - k[..., None])) + sky
     np.testing.assert_allclose(both[..., :3], grown, rtol=4 * HALF, atol=1e-3)
 
@@ -329,10 +329,10 @@ def test_another_sun_sums_no_sky_anew(ctx, kept, tmp_path):
 
 @pytest.mark.parametrize("use", ["horizon_sky", "sky_patches", "interreflection"])
 @pytest.mark.parametrize("shape", [(2, 2), (2, 9), (9, 2)], ids=str)
-def test_tiny_lands(read, use, shape):
-    land = Land(np.random.default_rng(1).random(shape) * 40, (10.0, 10.0))
+def test_tiny_terrains(read, use, shape):
+    terrain = Land(np.random.default_rng(1).random(shape) * 40, (10.0, 10.0))
     passes = '[[pass]]\nname = "light"\nuse = "lighting/l_dot_n"\n' if use == "interreflection" else ""
-    light = read(land, use, "light", passes=passes)
+    light = read(terrain, use, "light", passes=passes)
     assert light.min() >= 0
 
 
@@ -340,8 +340,8 @@ def test_walls_and_needles_give_numbers(read):
     heights = np.zeros((25, 25))
     heights[:, 12] = 1e6
     heights[4, 4] = 1e7
-    land = Land(heights, (1.0, 1.0))
-    k, factor = read(land, "horizon_sky", "k", "factor", ground=[1.0, 1.0, 1.0])
+    terrain = Land(heights, (1.0, 1.0))
+    k, factor = read(terrain, "horizon_sky", "k", "factor", ground=[1.0, 1.0, 1.0])
     assert 0 <= k.min() and k.max() <= 1 and factor.max() <= 1.01
-    low, high = read(land, "sky_patches", "low", "high")
+    low, high = read(terrain, "sky_patches", "low", "high")
     assert low.min() >= 0 and high.min() >= 0

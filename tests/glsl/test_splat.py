@@ -53,7 +53,7 @@ def test_by_heights_what_stands_higher_comes_through(engine, make_sketch):
     np.testing.assert_allclose(found, (1 - share) * one + share * other, rtol=3e-3)
     even = engine.read(make_sketch(SPLAT.format(given.format("even")), **make), "colour")[..., 0]
     np.testing.assert_allclose(even, 0.5 * one + 0.5 * other, rtol=3e-3)
-    # Nearly every texel now shows one of the two materials, and each still has about half the land.
+    # Nearly every texel now shows one of the two materials, and each still has about half the terrain.
     assert np.mean(np.abs(share - 0.5) > 0.25) > 0.5
     assert 0.4 < share.mean() < 0.6
 

@@ -31,7 +31,7 @@ TILES = "".join(
 WIRES = ", ".join(f'{n} = "{n}"' for n in NAMES)
 EASTWARD = HEIGHT.format("float(texel.x) / float(size.x - 1)")
 MANY = (
-    '[[pass]]\nname = "height"\nuse = "./land"\n'
+    '[[pass]]\nname = "height"\nuse = "./terrain"\n'
     + TILES
     + '[[pass]]\nname = "colour"\nuse = "texturing/splat_many"\n'
 )
@@ -61,7 +61,7 @@ def claims(found, heights, fade):
 def test_the_four_largest_claims_count_less_the_fifth(engine, make_sketch, seed):
     found = bands(np.random.default_rng(seed))
     text = MANY.format(settings(found, chance=0, height_fade=0.3))
-    sketch = make_sketch(text, size=[129, 3], land=EASTWARD, **FLAT)
+    sketch = make_sketch(text, size=[129, 3], terrain=EASTWARD, **FLAT)
     chosen = np.round(engine.read(sketch, "colour.choose:chosen")[1] * 255).astype(int)
     weights = engine.read(sketch, "colour.choose:weights")[1].astype(float)
     assert (np.round(weights * 255).sum(axis=-1) == 255).all()
@@ -84,7 +84,7 @@ def test_no_material_appears_or_goes_with_a_jump(any_engine, make_sketch):
     """Every step along 1000 m changes every share by little, though the lists change often."""
     found = bands(np.random.default_rng(3))
     text = MANY.format(settings(found, chance=0.9, grain=400, height_fade=0.3))
-    sketch = make_sketch(text, size=[2049, 2], land=EASTWARD, **FLAT)
+    sketch = make_sketch(text, size=[2049, 2], terrain=EASTWARD, **FLAT)
     chosen = np.round(any_engine.read(sketch, "colour.choose:chosen")[0] * 255).astype(int)
     weights = any_engine.read(sketch, "colour.choose:weights")[0].astype(float)
     shown = np.zeros((2049, 16))
@@ -98,15 +98,15 @@ def test_no_material_appears_or_goes_with_a_jump(any_engine, make_sketch):
 
 def test_where_nothing_claims_the_first_lies_and_nan_harms_nothing(any_engine, make_sketch):
     none = np.tile([2.0, 3.0, 0.0, 90.0], (16, 1))
-    land = HEIGHT.format("texel.x > 8 ? uintBitsToFloat(0x7fc00000u) : 0.5")
-    sketch = make_sketch(MANY.format(settings(none, chance=0)), size=17, land=land, **FLAT)
+    terrain = HEIGHT.format("texel.x > 8 ? uintBitsToFloat(0x7fc00000u) : 0.5")
+    sketch = make_sketch(MANY.format(settings(none, chance=0)), size=17, terrain=terrain, **FLAT)
     found = any_engine.read(sketch, "colour")
     np.testing.assert_allclose(found[..., :3], np.broadcast_to(SHADES[0], (17, 17, 3)), atol=1e-3)
 
 
 def test_fewer_materials_leave_the_others_out(any_engine, make_sketch):
     text = MANY.format("set = { materials = 3 }\nsize = 33\n")
-    sketch = make_sketch(text, size=33, relief=900.0, land=EASTWARD, **FLAT)
+    sketch = make_sketch(text, size=33, relief=900.0, terrain=EASTWARD, **FLAT)
     chosen = any_engine.read(sketch, "colour.choose:chosen") * 255
     weights = any_engine.read(sketch, "colour.choose:weights")
     assert chosen[weights > 0].max() < 2.5
@@ -115,7 +115,7 @@ def test_fewer_materials_leave_the_others_out(any_engine, make_sketch):
 def test_chance_parts_materials_that_all_fit_into_patches(any_engine, make_sketch):
     open_ = np.tile([-1.0, 2.0, -90.0, 180.0], (16, 1))
     text = MANY.format(settings(open_, chance=1, grain=200))
-    sketch = make_sketch(text, size=65, land=HEIGHT.format("0.5"), **FLAT)
+    sketch = make_sketch(text, size=65, terrain=HEIGHT.format("0.5"), **FLAT)
     chosen = any_engine.read(sketch, "colour.choose:chosen")[..., 0] * 255
     assert len(np.unique(np.round(chosen))) > 10
     other = any_engine.read(sketch.with_values({"colour.seed": 5}), "colour.choose:chosen")[..., 0] * 255
@@ -124,7 +124,7 @@ def test_chance_parts_materials_that_all_fit_into_patches(any_engine, make_sketc
 
 def test_a_seventeenth_material_is_refused_in_one_sentence(make_sketch):
     with pytest.raises(PlaygroundError) as caught:
-        make_sketch(MANY.format("set = { materials = 17 }\n"), land=EASTWARD, **FLAT)
+        make_sketch(MANY.format("set = { materials = 17 }\n"), terrain=EASTWARD, **FLAT)
     assert "materials" in str(caught.value) and "1 to 16" in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -133,7 +133,7 @@ def test_a_seventeenth_material_is_refused_in_one_sentence(make_sketch):
 
 
 def test_the_atlas_holds_every_tile(engine, make_sketch):
-    sketch = make_sketch(MANY.format(""), size=33, land=EASTWARD, **NOISE).with_values({})
+    sketch = make_sketch(MANY.format(""), size=33, terrain=EASTWARD, **NOISE).with_values({})
     atlas = engine.read(sketch, "colour.atlas")
     assert atlas.shape == (1024, 1024, 4)
     for k, name in enumerate(NAMES):
@@ -166,7 +166,7 @@ def test_a_tile_repeats_and_meets_its_own_copy(any_engine, make_sketch, number, 
     )
     text = "\n".join(line for line in text.split("\n") if f"shade = {SHADES[number].tolist()}" not in line)
     files = {**FLAT, "wave": wave}
-    sketch = make_sketch(text, size=33, extent=[1000.0, 10.0], land=HEIGHT.format("0.5"), **files)
+    sketch = make_sketch(text, size=33, extent=[1000.0, 10.0], terrain=HEIGHT.format("0.5"), **files)
     row = any_engine.read(sketch, "colour")[2, :, 0].astype(float)
     expected = 0.5 + 0.4 * np.sin(2 * np.pi * np.linspace(0, repeats, 401))
     np.testing.assert_allclose(row, expected, atol=0.012 if repeats == 4 else 0.03)
@@ -176,7 +176,7 @@ def test_far_more_repeats_than_texels_give_the_mean_of_that_tile_alone(any_engin
     alone = np.tile([2.0, 3.0, 0.0, 90.0], (16, 1))
     alone[6] = [-1.0, 2.0, -90.0, 180.0]
     text = MANY.format(settings(alone, chance=0, repeats=512) + "size = 65\n")
-    sketch = make_sketch(text, size=33, land=HEIGHT.format("0.5"), **NOISE)
+    sketch = make_sketch(text, size=33, terrain=HEIGHT.format("0.5"), **NOISE)
     tile = any_engine.read(sketch, NAMES[6])[..., :3].mean(axis=(0, 1))
     found = any_engine.read(sketch, "colour")[..., :3]
     np.testing.assert_allclose(found, np.broadcast_to(tile, found.shape), atol=0.01)
@@ -187,7 +187,7 @@ def test_a_finer_colour_lies_between_the_lists(any_engine, make_sketch):
     found = bands(np.random.default_rng(7))
     given = settings(found, chance=0, height_fade=0.3)
     coarse, fine = (
-        make_sketch(MANY.format(given + f"size = {size}\n"), size=[33, 33], land=EASTWARD, **FLAT)
+        make_sketch(MANY.format(given + f"size = {size}\n"), size=[33, 33], terrain=EASTWARD, **FLAT)
         for size in ("[33, 33]", "[65, 65]")
     )
     nodes = any_engine.read(coarse, "colour").astype(float)

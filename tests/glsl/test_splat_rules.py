@@ -9,18 +9,18 @@ from playground.sketch.model import Camera
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 MASK = '#pragma kernel(output = "mask:rgba32f")\nvec4 kernel(ivec2 texel) {{ return {}; }}\n'
-LAND = '[[pass]]\nname = "height"\nuse = "./land"\n'
-RULE = LAND + '[[pass]]\nname = "cover"\nuse = "texturing/alpha_map/rule"\nset = {{ {} }}\n'
+TERRAIN = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
+RULE = TERRAIN + '[[pass]]\nname = "cover"\nuse = "texturing/alpha_map/rule"\nset = {{ {} }}\n'
 PATH = '[[pass]]\nname = "cover"\nuse = "texturing/alpha_map/path"\nset = {{ {} }}\n'
 
 
 @pytest.fixture
 def cover(any_engine, make_sketch):
-    """Give the covers of a rule on land of a formula, row 0 south."""
+    """Give the covers of a rule on terrain of a formula, row 0 south."""
 
-    def read(given, land="0.0", **more):
+    def read(given, terrain="0.0", **more):
         return any_engine.read(
-            make_sketch(RULE.format(given), land=HEIGHT.format(land), **more), "cover"
+            make_sketch(RULE.format(given), terrain=HEIGHT.format(terrain), **more), "cover"
         ).astype(float)
 
     return read
@@ -52,7 +52,7 @@ def test_by_default_a_rule_covers_everything(cover):
 
 @pytest.mark.parametrize("size", [[65, 65], [33, 129]])
 def test_slope_is_an_angle_in_metres_whatever_the_grid(cover, size):
-    # 30 degrees towards the north-east, on 1000 m by 400 m of land.
+    # 30 degrees towards the north-east, on 1000 m by 400 m of terrain.
     rise = np.tan(np.radians(30)) / np.sqrt(2)
     plane = f"dot(vec2(texel) / vec2(size - 1), vec2(1000.0, 400.0)) * {rise / 1000}"
     for edge, expected in ((30.0, 0.5), (27.0, 0.8), (33.0, 0.2), (36.0, 0.0)):
@@ -61,7 +61,7 @@ def test_slope_is_an_angle_in_metres_whatever_the_grid(cover, size):
         np.testing.assert_allclose(found, expected, atol=2e-3)
 
 
-def test_steep_land_can_be_left_out(cover):
+def test_steep_terrain_can_be_left_out(cover):
     steep = "float(texel.x) * 0.01"  # 1 m a metre: 45 degrees
     assert (cover("slope_to = 40, slope_fade = 2", steep, size=101, extent=100.0) == 0).all()
     assert (cover("slope_to = 50, slope_fade = 2", steep, size=101, extent=100.0) == 1).all()
@@ -72,11 +72,11 @@ def test_steep_land_can_be_left_out(cover):
 
 @pytest.mark.parametrize(("bend", "expected"), [(4.0, 1.0), (2.0, 0.5), (0.0, 0.0), (-4.0, 0.0)])
 def test_a_paraboloid_has_its_curvature_everywhere(cover, bend, expected):
-    # z = k r^2 / 2, k = bend per km, on 400 m of land with 10 m of relief; off its middle as well.
+    # z = k r^2 / 2, k = bend per km, on 400 m of terrain with 10 m of relief; off its middle as well.
     bowl = (
         f"dot(vec2(texel) - vec2(40.0, 52.0), vec2(texel) - vec2(40.0, 52.0)) * 25.0 * {bend / 1000 / 2 / 10}"
     )
-    given = "by_curvature = true, curvature_from = 2, curvature_fade = 2, reach = 40"
+    given = "by_curvature = true, curvature_from = 2, curvature_fade = 2, curvature_distance = 40"
     found = cover(given, bowl, size=81, extent=400.0, relief=10.0)
     # Where any of the four lines fits; in the corners, within the reach of two edges, none does.
     inside = np.ones((81, 81), bool)
@@ -87,15 +87,16 @@ def test_a_paraboloid_has_its_curvature_everywhere(cover, bend, expected):
 
 
 def test_a_saddle_and_a_plane_bend_neither_up_nor_down(cover):
-    given = "by_curvature = true, curvature_from = -0.5, curvature_to = 0.5, curvature_fade = 0.2, reach = 20"
+    given = "by_curvature = true, curvature_from = -0.5, curvature_to = 0.5"
+    given += ", curvature_fade = 0.2, curvature_distance = 20"
     saddle = "(float(texel.x) - 40.0) * (float(texel.y) - 40.0) * 0.0004"
     assert cover(given, saddle, size=81, extent=400.0)[6:-6, 6:-6].min() > 0.99
     assert cover(given, "float(texel.x) * 0.03 + float(texel.y) * 0.02", size=81, extent=400.0).min() > 0.99
 
 
-def test_hollows_and_crests_part_a_wavy_land(cover):
+def test_hollows_and_crests_part_a_wavy_terrain(cover):
     waves = "0.5 + 0.5 * sin(6.2831853 * float(texel.x) / 32.0)"
-    given = "by_curvature = true, curvature_fade = 0.5, reach = 20"
+    given = "by_curvature = true, curvature_fade = 0.5, curvature_distance = 20"
     more = {"size": [129, 9], "extent": [1280.0, 80.0], "relief": 50.0}
     hollows = cover(f"{given}, curvature_from = 1", waves, **more)[4]
     crests = cover(f"{given}, curvature_from = -20, curvature_to = -1", waves, **more)[4]
@@ -117,7 +118,7 @@ def test_chance_moves_edges_and_nothing_far_from_them(cover):
     assert np.abs(found - cover(f"{given}, seed = 2", EASTWARD, size=[129, 65])).max() > 0.1
 
 
-def test_land_that_is_no_number_has_no_cover(cover):
+def test_terrain_that_is_no_number_has_no_cover(cover):
     found = cover("height_from = 0.1", "texel.x > 3 ? uintBitsToFloat(0x7fc00000u) : 0.9", size=9)
     assert np.isfinite(found).all()
     assert (found[:, 5:] == 0).all()
@@ -207,7 +208,7 @@ def test_in_every_texel_the_weights_sum_to_one_exactly(engine, make_sketch):
         left *= 1 - covers[..., k]
 
 
-def test_the_whole_map_sums_to_one_on_land(any_engine, make_sketch):
+def test_the_whole_map_sums_to_one_on_terrain(any_engine, make_sketch):
     text = '[[pass]]\nname = "height"\nuse = "generation/diamond_square"\n'
     text += '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map"\n'
     found = bytes_of(any_engine, make_sketch(text, size=129, extent=2000.0, relief=900.0))
@@ -253,11 +254,11 @@ def test_a_mask_may_be_finer_or_coarser_than_the_map(any_engine, make_sketch):
 
 
 def test_another_layer_can_stand_in_by_name(any_engine, make_sketch):
-    text = LAND + '[[pass]]\nname = "marsh"\nuse = "./marsh"\n'
+    text = TERRAIN + '[[pass]]\nname = "marsh"\nuse = "./marsh"\n'
     text += '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map"\nset = { path = 0 }\n'
     text += 'inputs = { "weights.rock" = "marsh" }\n'
     sketch = make_sketch(
-        text, land=HEIGHT.format("0.2"), marsh=MASK.format("vec4(float(texel.y > 8))"), size=17
+        text, terrain=HEIGHT.format("0.2"), marsh=MASK.format("vec4(float(texel.y > 8))"), size=17
     )
     found = bytes_of(any_engine, sketch)
     assert (found[:9, :, 0] == 255).all() and (found[9:, :, 1] == 255).all()
@@ -268,8 +269,8 @@ def test_more_than_four_layers_are_refused_in_one_sentence(make_sketch):
 
     with pytest.raises(PlaygroundError) as caught:
         make_sketch(
-            LAND + '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map"\nset = { layers = 5 }\n',
-            land=HEIGHT.format("0.0"),
+            TERRAIN + '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map"\nset = { layers = 5 }\n',
+            terrain=HEIGHT.format("0.0"),
         )
     assert "layers" in str(caught.value) and "1" in str(caught.value) and "4" in str(caught.value)
     assert "\n" not in str(caught.value)
@@ -279,7 +280,7 @@ def test_more_than_four_layers_are_refused_in_one_sentence(make_sketch):
 
 
 def test_far_away_one_layer_gives_way_to_another(any_engine, make_sketch):
-    text = LAND + '[[pass]]\nname = "plain"\nuse = "./plain"\n'
+    text = TERRAIN + '[[pass]]\nname = "plain"\nuse = "./plain"\n'
     text += (
         '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map/distance"\ninputs = { weights = "plain" }\n'
     )
@@ -287,7 +288,7 @@ def test_far_away_one_layer_gives_way_to_another(any_engine, make_sketch):
     hill = "0.3 + 0.002 * float(texel.x)"
     sketch = make_sketch(
         text, size=[41, 21], extent=[1000.0, 500.0], relief=300.0,
-        land=HEIGHT.format(hill), plain=MASK.format("vec4(0.2, 0.6, 0.0, 0.2)"),
+        terrain=HEIGHT.format(hill), plain=MASK.format("vec4(0.2, 0.6, 0.0, 0.2)"),
     ).with_camera(Camera(azimuth=230, elevation=20, distance=900, target=(500, 250, 90)))  # fmt: skip
     found = bytes_of(any_engine, sketch)
     assert (found.sum(axis=-1) == 255).all()
@@ -302,11 +303,11 @@ def test_far_away_one_layer_gives_way_to_another(any_engine, make_sketch):
 
 
 def test_a_moved_camera_runs_the_distance_and_not_the_rules(any_engine, make_sketch):
-    text = LAND + '[[pass]]\nname = "rules"\nuse = "texturing/alpha_map"\n'
+    text = TERRAIN + '[[pass]]\nname = "rules"\nuse = "texturing/alpha_map"\n'
     text += (
         '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map/distance"\ninputs = { weights = "rules" }\n'
     )
-    sketch = make_sketch(text, land=HEIGHT.format("0.5"))
+    sketch = make_sketch(text, terrain=HEIGHT.format("0.5"))
     any_engine.read(sketch, "weights")
     any_engine.read(sketch.with_camera(Camera(azimuth=100)), "weights")
     assert any_engine.ran == ["weights"]

@@ -22,15 +22,17 @@ TILES = "".join(f'[[pass]]\nname = "{name}"\nuse = "./{name}"\nsize = 64\n' for 
 BILINEAR = "vec4(s.x * s.y, (1.0 - s.x) * s.y, s.x * (1.0 - s.y), (1.0 - s.x) * (1.0 - s.y))"
 SPREAD = WEIGHTS.format("vec2 s = vec2(texel) / vec2(size - 1)", BILINEAR)
 HILLS = HEIGHT.format("0.5 + 0.5 * sin(float(texel.x) * 0.4) * cos(float(texel.y) * 0.3)")
-LAND = '[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "weights"\nuse = "./weights"\n' + TILES
+TERRAIN = (
+    '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "weights"\nuse = "./weights"\n' + TILES
+)
 SUN = '[[pass]]\nname = "light"\nuse = "lighting/l_dot_n"\n'
 VIEW = '[view]\nuse = "{}"\nsamples = {}\nset = {{ grid = 65{} }}\n'
 LOOK = Camera(azimuth=200, elevation=35, distance=1500, target=(500, 500, 0))
 SIZE = (160, 100)
 
 
-def real_land(view, samples=1, more=""):
-    """Return the passes of a whole splatted land: its own weights, tiles and light."""
+def real_terrain(view, samples=1, more=""):
+    """Return the passes of a whole splatted terrain: its own weights, tiles and light."""
     text = '[[pass]]\nname = "height"\nuse = "generation/diamond_square"\n'
     text += '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map"\nset = { rock_slope = 20 }\n'
     for name, use in (("grass", "grass"), ("rock", "rock"), ("snow", "snow"), ("path", "rock")):
@@ -42,9 +44,9 @@ def above(sketch):
     return sketch.with_camera(Camera(azimuth=180, elevation=89.9, distance=2200, target=(500, 500, 0)))
 
 
-def test_each_pixel_of_level_land_has_its_layers_by_their_weights(any_engine, make_sketch):
+def test_each_pixel_of_level_terrain_has_its_layers_by_their_weights(any_engine, make_sketch):
     sketch = make_sketch(
-        LAND + VIEW.format("view/splat", 1, ""), land=HEIGHT.format("0.0"), weights=SPREAD, **FLAT
+        TERRAIN + VIEW.format("view/splat", 1, ""), terrain=HEIGHT.format("0.0"), weights=SPREAD, **FLAT
     )
     found = any_engine.read(above(sketch), "view.land", size=(128, 128))[..., :3].astype(float)
     rows, columns = np.indices((128, 128)) + 0.5
@@ -56,19 +58,19 @@ def test_each_pixel_of_level_land_has_its_layers_by_their_weights(any_engine, ma
     inside = (np.abs(x - 0.5) < 0.49) & (np.abs(y - 0.5) < 0.49)
     assert inside.sum() > 2000
     shares = np.stack([x * y, (1 - x) * y, x * (1 - y), (1 - x) * (1 - y)], axis=-1)
-    # A level of detail between two smooths the slopes of the weights a little at the land's corners.
+    # A level of detail between two smooths the slopes of the weights a little at the terrain's corners.
     np.testing.assert_allclose(found[inside], (shares @ LAYERS)[inside], atol=8e-3)
 
 
 @pytest.mark.parametrize("samples", [1, 4])
-def test_where_one_layer_lies_it_is_the_land_of_that_colour(any_engine, make_sketch, samples):
+def test_where_one_layer_lies_it_is_the_terrain_of_that_colour(any_engine, make_sketch, samples):
     """Mesh, cut, light, haze and sky are those of view/terrain."""
     haze = ', haze = 0.3, horizon = "#a07040"'
-    files = {"land": HILLS, "weights": WEIGHTS.format("", "vec4(0.0, 1.0, 0.0, 0.0)"), **FLAT}
+    files = {"terrain": HILLS, "weights": WEIGHTS.format("", "vec4(0.0, 1.0, 0.0, 0.0)"), **FLAT}
     plain = f'[[pass]]\nname = "colour"\nuse = "./rock"\n{SUN}{VIEW.format("view/terrain", samples, haze)}'
     splat = SUN + VIEW.format("view/splat", samples, haze)
     expected, found = (
-        any_engine.render(make_sketch(LAND + text, **files).with_camera(LOOK), size=SIZE).array.astype(int)
+        any_engine.render(make_sketch(TERRAIN + text, **files).with_camera(LOOK), size=SIZE).array.astype(int)
         for text in (plain, splat)
     )
     assert expected[..., :3].std() > 20
@@ -78,7 +80,7 @@ def test_where_one_layer_lies_it_is_the_land_of_that_colour(any_engine, make_ske
 @pytest.mark.parametrize("samples", [1, 4])
 def test_many_draws_blended_give_the_picture_of_one(any_engine, make_sketch, samples):
     one, many = (
-        make_sketch(real_land(view, samples, ", haze = 0.2, repeats = 9"), size=65, relief=400.0)
+        make_sketch(real_terrain(view, samples, ", haze = 0.2, repeats = 9"), size=65, relief=400.0)
         for view in ("view/splat", "view/splat_multipass")
     )
     for azimuth, elevation in ((200, 35), (20, 60), (110, 12)):
@@ -115,11 +117,11 @@ TIES = """
 name = "first"
 use = "view/splat_multipass/first"
 [[pass]]
-name = "land"
+name = "terrain"
 use = "./count"
 inputs = { initial = "first" }
 [inputs]
-height = ["first.height", "land.height"]
+height = ["first.height", "terrain.height"]
 grass = "first.colour"
 """
 
@@ -128,7 +130,7 @@ grass = "first.colour"
 def test_only_where_two_parts_tie_in_depth_the_many_draws_differ(any_engine, make_sketch, tmp_path, samples):
     """At crests, along which the slope beyond begins at the depth of the one in front: both are blended."""
     rough = (
-        real_land("view/splat", samples)
+        real_terrain("view/splat", samples)
         .replace("grid = 65", "")
         .replace(
             '"generation/diamond_square"',
@@ -141,8 +143,8 @@ def test_only_where_two_parts_tie_in_depth_the_many_draws_differ(any_engine, mak
         rough.replace("view/splat", "view/splat_multipass"),
         rough.replace("view/splat", "./ties"),
     )
-    land = {"size": 257, "extent": 2560.0, "relief": 470.0, "count": COUNT}
-    one, many, ties = (make_sketch(text, **land) for text in texts)
+    terrain = {"size": 257, "extent": 2560.0, "relief": 470.0, "count": COUNT}
+    one, many, ties = (make_sketch(text, **terrain) for text in texts)
     for azimuth, elevation in ((70, 22), (200, 12)):
         camera = Camera(azimuth=azimuth, elevation=elevation, distance=1800, target=(1280, 1280, 100))
         mixed, blended = (
@@ -153,7 +155,7 @@ def test_only_where_two_parts_tie_in_depth_the_many_draws_differ(any_engine, mak
         if samples == 1:
             frames = [
                 any_engine.read(ties.with_camera(camera), f"view.{name}", size=(480, 270))[::-1, :, 0]
-                for name in ("first", "land")
+                for name in ("first", "terrain")
             ]
             times = frames[1].astype(float) - frames[0]
             assert (times > 0.9).mean() > 0.3 and (times[differs] > 1.9).all()
@@ -163,7 +165,7 @@ def test_only_where_two_parts_tie_in_depth_the_many_draws_differ(any_engine, mak
 def test_tiles_of_the_mesh_give_the_picture_of_the_full_grid(any_engine, make_sketch, detail):
     """With a tolerance below a pixel, in one draw and in four; the four meet the one to 2 of 255 here too."""
     full, tiled, many = (
-        make_sketch(real_land(view, 4, more), size=65, relief=400.0).with_camera(LOOK)
+        make_sketch(real_terrain(view, 4, more), size=65, relief=400.0).with_camera(LOOK)
         for view, more in (
             ("view/splat", ""),
             ("view/splat", f', detail = "{detail}", tolerance = 0.1'),
@@ -179,7 +181,7 @@ def test_tiles_of_the_mesh_give_the_picture_of_the_full_grid(any_engine, make_sk
 
 
 def test_no_layer_of_the_many_draws_is_idle(any_engine, make_sketch):
-    sketch = make_sketch(real_land("view/splat_multipass"), size=65, relief=400.0).with_camera(LOOK)
+    sketch = make_sketch(real_terrain("view/splat_multipass"), size=65, relief=400.0).with_camera(LOOK)
     frames = [
         any_engine.read(sketch, f"view.{name}", size=SIZE)[..., :3].astype(float)
         for name in ("first", "second", "third", "fourth")
@@ -189,11 +191,11 @@ def test_no_layer_of_the_many_draws_is_idle(any_engine, make_sketch):
 
 
 def test_hidden_hills_stay_hidden_in_every_draw(any_engine, make_sketch):
-    """Behind a wall lies land of another layer; none of it is blended over the wall."""
+    """Behind a wall lies terrain of another layer; none of it is blended over the wall."""
     wall = HEIGHT.format("texel.y > 12 && texel.y < 18 ? 1.0 : 0.0")
     behind = WEIGHTS.format("", "texel.y < 24 ? vec4(1.0, 0.0, 0.0, 0.0) : vec4(0.0, 0.0, 0.5, 0.5)")
-    text = LAND + VIEW.format("view/splat_multipass", 1, "")
-    sketch = make_sketch(text, relief=400.0, land=wall, weights=behind, **FLAT)
+    text = TERRAIN + VIEW.format("view/splat_multipass", 1, "")
+    sketch = make_sketch(text, relief=400.0, terrain=wall, weights=behind, **FLAT)
     low = Camera(azimuth=180, elevation=4, distance=900, target=(500, 500, 100))
     found = any_engine.read(sketch.with_camera(low), "view.fourth", size=SIZE)[..., :3].astype(float)
     grass = np.abs(found - LAYERS[0]).max(axis=-1) < 2e-3
@@ -204,8 +206,8 @@ def test_weights_taken_for_alphas_favour_the_last_layers(any_engine, make_sketch
     """The formula to the letter: the first of two halves keeps a half, of three thirds 4/9."""
     third = WEIGHTS.format("", "vec4(85.0, 85.0, 85.0, 0.0) / 255.0")
     given = ', alphas = "as in the map"'
-    text = LAND + VIEW.format("view/splat_multipass", 1, given)
-    sketch = above(make_sketch(text, land=HEIGHT.format("0.0"), weights=third, **FLAT))
+    text = TERRAIN + VIEW.format("view/splat_multipass", 1, given)
+    sketch = above(make_sketch(text, terrain=HEIGHT.format("0.0"), weights=third, **FLAT))
     found = any_engine.read(sketch, "view.fourth", size=(64, 64))[32, 32, :3]
     np.testing.assert_allclose(found, np.array([4 / 9, 2 / 9, 1 / 3]) @ LAYERS[:3], atol=2e-3)
     sketch = sketch.with_values({"view.alphas": "shares"})
@@ -216,7 +218,7 @@ def test_weights_taken_for_alphas_favour_the_last_layers(any_engine, make_sketch
 @pytest.mark.parametrize("view", ["view/splat", "view/splat_multipass"])
 def test_a_hole_in_the_numbers_shows_and_harms_nothing_else(any_engine, make_sketch, view):
     hole = HEIGHT.format("all(lessThan(abs(texel - 16), ivec2(2))) ? uintBitsToFloat(0x7fc00000u) : 0.0")
-    sketch = make_sketch(LAND + VIEW.format(view, 1, ""), land=hole, weights=SPREAD, **FLAT)
+    sketch = make_sketch(TERRAIN + VIEW.format(view, 1, ""), terrain=hole, weights=SPREAD, **FLAT)
     picture = any_engine.render(above(sketch), size=(64, 64)).array
     magenta = (picture[..., :3] == (255, 0, 255)).all(axis=-1)
     assert magenta[32, 32]
@@ -226,8 +228,8 @@ def test_a_hole_in_the_numbers_shows_and_harms_nothing_else(any_engine, make_ske
 def test_tiles_repeat_so_often_each(any_engine, make_sketch):
     half = {**FLAT, "rock": COLOUR.format("vec4(vec3(float(texel.x >= size.x / 2)), 1.0)")}
     alone = WEIGHTS.format("", "vec4(0.0, 1.0, 0.0, 0.0)")
-    text = LAND + VIEW.format("view/splat", 1, ", rock_repeats = 5, grass_repeats = 11")
-    sketch = above(make_sketch(text, land=HEIGHT.format("0.0"), weights=alone, **half))
+    text = TERRAIN + VIEW.format("view/splat", 1, ", rock_repeats = 5, grass_repeats = 11")
+    sketch = above(make_sketch(text, terrain=HEIGHT.format("0.0"), weights=alone, **half))
     row = any_engine.read(sketch, "view.land", size=(200, 200))[100, :, 0].astype(float)
     clip = any_engine.plan.eye.clip_from_world.astype(float) @ np.array([[0, 500, 0, 1], [1000, 500, 0, 1]]).T
     left, right = ((clip[0] / clip[3] + 1) * 100).round().astype(int)
@@ -235,18 +237,18 @@ def test_tiles_repeat_so_often_each(any_engine, make_sketch):
     assert np.count_nonzero(~inside[:-1] & inside[1:]) == 5
 
 
-def test_by_heights_it_is_the_mixture_of_the_baked_land(any_engine, make_sketch):
+def test_by_heights_it_is_the_mixture_of_the_baked_terrain(any_engine, make_sketch):
     """Seen from above, texel for pixel, the draw and texturing/splat agree."""
     grainy = {
         name: COLOUR.format(f"vec4(vec3({0.2 + 0.2 * k} * (0.5 + random(texel / 8, {k}u))), 1.0)")
         for k, name in enumerate(NAMES)
     }
-    files = {"land": HEIGHT.format("0.0"), "weights": SPREAD, **grainy}
+    files = {"terrain": HEIGHT.format("0.0"), "weights": SPREAD, **grainy}
     set_ = ', blend = "by heights", contrast = 8.0, repeats = 1'
     baked = '[[pass]]\nname = "colour"\nuse = "texturing/splat"\nsize = 257\n'
     baked += f"set = {{ variety = 0{set_} }}\n"
     pictures = [
-        any_engine.render(above(make_sketch(LAND + text, **files)), size=(128, 128)).array.astype(int)
+        any_engine.render(above(make_sketch(TERRAIN + text, **files)), size=(128, 128)).array.astype(int)
         for text in (baked + VIEW.format("view/terrain", 4, ""), VIEW.format("view/splat", 4, set_))
     ]
     difference = np.abs(pictures[0] - pictures[1])[20:108, 20:108]
@@ -256,12 +258,12 @@ def test_by_heights_it_is_the_mixture_of_the_baked_land(any_engine, make_sketch)
 
 def test_the_parts_are_tiles_over_their_maps_and_the_result(any_engine, make_sketch):
     text = (
-        LAND
+        TERRAIN
         + '[[pass]]\nname = "colour"\nuse = "./path"\n[view]\nuse = "view/splat/parts"\nset = { gap = 4 }\n'
     )
     quarters = "vec4 w = vec4(0.0); w[2 * (texel.y / 16 % 2) + texel.x / 16 % 2] = 1.0"
     sketch = make_sketch(
-        text, size=32, land=HEIGHT.format("0.0"), weights=WEIGHTS.format(quarters, "w"), **FLAT
+        text, size=32, terrain=HEIGHT.format("0.0"), weights=WEIGHTS.format(quarters, "w"), **FLAT
     )
     # Six parts of 20 pixels, two rows, gaps of 4: 140 by 44, in the middle.
     picture = any_engine.render(sketch, size=(144, 52)).array[..., :3].astype(float)

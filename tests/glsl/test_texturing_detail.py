@@ -15,7 +15,7 @@ PLAIN = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ 
 PASSES = """
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [[pass]]
 name = "colour"
 use = "./cover"
@@ -39,7 +39,7 @@ def terrain(make_sketch):
     def make(given="", *, wired=True, height="0.0", cover=COVER, fine="fine"):
         common = "grid = 33" + given
         wires = 'inputs = { detail_image = "detail" }' if wired else ""
-        files = {"land": HEIGHT.format(height), "cover": PLAIN.format(cover), "fine": FINE}
+        files = {"terrain": HEIGHT.format(height), "cover": PLAIN.format(cover), "fine": FINE}
         files["flat"] = PLAIN.format("vec3(0.07)")
         return make_sketch(PASSES.format(fine, wires, common), size=33, **files).with_camera(CAMERA)
 
@@ -78,7 +78,9 @@ def nearness(distance, reach):
 
 def test_the_image_moves_the_cover_s_colour_by_its_ratio_to_its_mean_and_by_nearness(any_engine, terrain):
     reach, repeats, strength = 700.0, 4.0, 0.8
-    sketch = terrain(f", detail_reach = {reach}, detail_repeats = {repeats}, detail_strength = {strength}")
+    sketch = terrain(
+        f", detail_max_distance = {reach}, detail_repeats = {repeats}, detail_strength = {strength}"
+    )
     frame = linear_frame(any_engine, sketch)
     place, distance, inside = on_the_ground(any_engine, frame.shape[:2])
     texels = any_engine.read(sketch, "detail")[..., 0].astype(float)
@@ -96,7 +98,7 @@ def test_the_image_moves_the_cover_s_colour_by_its_ratio_to_its_mean_and_by_near
 
 def test_it_is_stronger_the_nearer_the_eye_and_gone_at_its_reach(any_engine, terrain):
     reach = 600.0
-    frame = linear_frame(any_engine, terrain(f", detail_reach = {reach}, detail_repeats = 6"))[..., 1]
+    frame = linear_frame(any_engine, terrain(f", detail_max_distance = {reach}, detail_repeats = 6"))[..., 1]
     _, distance, inside = on_the_ground(any_engine, frame.shape)
     edges = np.linspace(distance[inside].min(), reach, 6)
     spread = [frame[inside & (distance > low) & (distance < high)].std() for low, high in pairwise(edges)]
@@ -106,14 +108,14 @@ def test_it_is_stronger_the_nearer_the_eye_and_gone_at_its_reach(any_engine, ter
 
 
 def test_the_mean_is_the_cover_s(any_engine, terrain):
-    frame = linear_frame(any_engine, terrain(", detail_reach = 5000, detail_repeats = 40"))
+    frame = linear_frame(any_engine, terrain(", detail_max_distance = 5000, detail_repeats = 40"))
     _, _, inside = on_the_ground(any_engine, frame.shape[:2])
     np.testing.assert_allclose(frame[inside].mean(axis=0), [0.2, 0.4, 0.1], rtol=0.01)
 
 
 def test_too_fine_to_be_seen_it_does_not_flicker(any_engine, terrain):
     """Where a pixel holds whole images, it holds their mean."""
-    frame = linear_frame(any_engine, terrain(", detail_reach = 50000, detail_repeats = 2000"))[..., 1]
+    frame = linear_frame(any_engine, terrain(", detail_max_distance = 50000, detail_repeats = 2000"))[..., 1]
     _, _, inside = on_the_ground(any_engine, frame.shape)
     assert frame[inside].std() < 0.02 * 0.4
 
@@ -124,7 +126,9 @@ def test_under_small_moves_it_hardly_flickers(any_engine, terrain):
     Flicker is what changes from frame to frame in the difference of the two: measured, 1.7 times what
     the truth itself changes by; 4.2 times where levels of detail are not read.
     """
-    sketch = terrain(", detail_reach = 50000, detail_repeats = 60", height="0.1 * sin(float(texel.x) * 0.4)")
+    sketch = terrain(
+        ", detail_max_distance = 50000, detail_repeats = 60", height="0.1 * sin(float(texel.x) * 0.4)"
+    )
     differences, truths = [], []
     for turn in range(4):
         moved = sketch.with_camera(replace(CAMERA, azimuth=180.0 + 0.05 * turn, elevation=25.0 + 0.02 * turn))
@@ -152,7 +156,7 @@ def test_without_strength_or_with_an_even_image_it_is_the_plain_view(any_engine,
         np.testing.assert_allclose(found, wanted, atol=1)
 
 
-def test_land_that_is_not_a_number_shows(any_engine, terrain):
+def test_terrain_that_is_not_a_number_shows(any_engine, terrain):
     sketch = terrain(cover="vec3(uintBitsToFloat(0x7fc00000u))")
     frame = linear_frame(any_engine, sketch)
     _, _, inside = on_the_ground(any_engine, frame.shape[:2])

@@ -1,4 +1,4 @@
-"""texturing/image and texturing/drape: files decoded to linear light, laid as tiles or over the land."""
+"""texturing/image and texturing/drape: files decoded to linear light, laid as tiles or over the terrain."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def test_a_finer_image_is_averaged_in_linear_light(engine, make_sketch, picture,
     np.testing.assert_allclose(rgb(engine, sketch), 0.5, atol=0.01)
 
 
-def test_over_the_land_its_corners_stand_on_the_land_s_and_no_edge_takes_from_the_opposite(
+def test_over_the_terrain_its_corners_stand_on_the_terrain_s_and_no_edge_takes_from_the_opposite(
     engine, make_sketch, picture
 ):
     pixels = np.zeros((32, 32, 3))

@@ -59,7 +59,7 @@ def test_a_mixture_of_three_that_share_nothing_has_the_mean_and_the_variance_of_
 
 @pytest.fixture
 def laid(make_sketch):
-    """Give ``laid(technique, settings, image)``: an image over a land of 8 x 8 tiles of 64 texels."""
+    """Give ``laid(technique, settings, image)``: an image over a terrain of 8 x 8 tiles of 64 texels."""
 
     def make(technique, given, image="rock", size=SIZE):
         tile = f'[[pass]]\nname = "tile"\nuse = "texturing/{image}"\nsize = 256\n'

@@ -14,7 +14,7 @@ FILES = {"one": IMAGE.format(1, 2), "other": IMAGE.format(3, 4)}
 PASSES = """
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 size = 9
 [[pass]]
 name = "one"
@@ -42,7 +42,7 @@ def sketch_of(make_sketch, height="0.3", **given):
         f"{name} = {f'{chr(34)}{value}{chr(34)}' if isinstance(value, str) else value}"
         for name, value in {**GIVEN, **given}.items()
     )
-    return make_sketch(PASSES.format(values), size=SIZE, land=RAMP.format(height), **FILES)
+    return make_sketch(PASSES.format(values), size=SIZE, terrain=RAMP.format(height), **FILES)
 
 
 def rgb(engine, sketch, name):
@@ -88,7 +88,7 @@ def test_each_image_is_read_by_its_own_coordinates(engine, make_sketch, combine)
     np.testing.assert_allclose(rgb(engine, sketch, "colour"), wanted, atol=0.012)
 
 
-def test_the_share_is_one_for_all_the_land(any_engine, make_sketch):
+def test_the_share_is_one_for_all_the_terrain(any_engine, make_sketch):
     sketch = sketch_of(make_sketch)
     ends = [rgb(any_engine, sketch.with_values({"colour.share": s}), "colour") for s in (0.0, 1.0)]
     between = rgb(any_engine, sketch.with_values({"colour.share": 0.4}), "colour")

@@ -1,4 +1,4 @@
-"""texturing/triplanar: on inclined planes the image hardly stretches; on level land it is plain tiles."""
+"""texturing/triplanar: on inclined planes the image hardly stretches; on level terrain it is plain tiles."""
 
 from __future__ import annotations
 
@@ -26,11 +26,12 @@ def plane(make_sketch):
         east, north = -rise * np.sin(np.radians(azimuth)), -rise * np.cos(np.radians(azimuth))
         height = HEIGHT.format(f"0.5 + {east:.9f} * float(texel.x) + {north:.9f} * float(texel.y)")
         text = (
-            '[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "even"\nuse = "./even"\nsize = 256\n'
+            '[[pass]]\nname = "height"\nuse = "./terrain"\n'
+            '[[pass]]\nname = "even"\nuse = "./even"\nsize = 256\n'
             f'[[pass]]\nname = "c"\nuse = "texturing/{technique}"\ninputs = {{ colour = "even" }}\n'
         )
         more = f"set = {{ repeats = {repeats}{given} }}\n"
-        return make_sketch(text + more, size=SIZE, extent=METRES, relief=RELIEF, land=height, even=EVEN)
+        return make_sketch(text + more, size=SIZE, extent=METRES, relief=RELIEF, terrain=height, even=EVEN)
 
     return make
 
@@ -65,7 +66,7 @@ def test_on_a_cliff_the_image_hardly_stretches(any_engine, plane, angle, azimuth
     assert abs(np.log(found)) < 0.6 * np.log(from_above)
 
 
-def test_the_contrast_of_a_cliff_is_that_of_level_land(any_engine, plane):
+def test_the_contrast_of_a_cliff_is_that_of_level_terrain(any_engine, plane):
     level = grey_of(any_engine, plane("triplanar", 0))
     for azimuth in (90, 45):
         cliff = grey_of(any_engine, plane("triplanar", 60, azimuth))
@@ -73,7 +74,7 @@ def test_the_contrast_of_a_cliff_is_that_of_level_land(any_engine, plane):
         np.testing.assert_allclose(cliff.std(), level.std(), rtol=0.15)
 
 
-def test_level_land_and_land_less_steep_than_asked_are_plain_tiles_to_the_bit(engine, plane):
+def test_level_terrain_and_terrain_less_steep_than_asked_are_plain_tiles_to_the_bit(engine, plane):
     for angle in (0, 25):
         found = engine.read(plane("triplanar", angle), "c")
         np.testing.assert_array_equal(found, engine.read(plane("tiled", angle, given=", variety = 0.0"), "c"))

@@ -1,4 +1,4 @@
-"""Three lights on one land: each part of the picture is that light's own."""
+"""Three lights on one terrain: each part of the picture is that light's own."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from playground.engine.engine import Engine
 from ..sketch_texts import passes
 
 SIZE = (96, 64)
-LAND = "\n" + passes(
+TERRAIN = "\n" + passes(
     height="generation/layered_noise",
     one="lighting/l_dot_n",
     two=("lighting/l_dot_n", "set = { gain = 0.5 }"),
@@ -24,9 +24,9 @@ def pictures(make_sketch, any_engine: Engine):
     lights = ", ".join(
         f'light_{where} = "{name}"' for where, name in zip(("left", "middle", "right"), NAMES, strict=True)
     )
-    together = make_sketch(f'{LAND}[view]\nuse = "view/three"\ninputs = {{ {lights} }}\n')
+    together = make_sketch(f'{TERRAIN}[view]\nuse = "view/three"\ninputs = {{ {lights} }}\n')
     alone = [
-        make_sketch(f'{LAND}[view]\nuse = "view/terrain"\ninputs = {{ light = "{name}" }}\n')
+        make_sketch(f'{TERRAIN}[view]\nuse = "view/terrain"\ninputs = {{ light = "{name}" }}\n')
         for name in NAMES
     ]
     return together, [any_engine.render(sketch, size=SIZE).array for sketch in alone]

@@ -1,4 +1,4 @@
-"""One tile of details on every part of a land, its seams mended layer by layer, against NumPy.
+"""One tile of details on every part of a terrain, its seams removed layer by layer, against NumPy.
 
 The truth makes a tile that knows nothing of its neighbours, and mends it afterwards: the
 layer's last interval before a seam is drawn anew, from its first column to the neighbour's.
@@ -17,7 +17,7 @@ RANDOM_SIDE = 2**15  # numbers a side of the layer that all nodes read
 def sketch_of(make_sketch):
     def make(use, size, **values):
         given = "".join(f"{k} = {v!r}\n" for k, v in ({"seed": SEED} | values).items())
-        head = f'[[pass]]\nname = "land"\nuse = "generation/{use}"\n[pass.set]\n{given}'
+        head = f'[[pass]]\nname = "terrain"\nuse = "generation/{use}"\n[pass.set]\n{given}'
         return make_sketch(head, size=size if isinstance(size, int) else list(size))
 
     return make
@@ -45,14 +45,14 @@ def drawn_anew(layer, intervals):
     side = layer.shape[1]
     start = (intervals - 1) * side // intervals
     part = curve((np.arange(start, side) - start) / (side - 1 - start))
-    mended = layer.copy()
-    mended[:, start:] = layer[:, [start]] * (1 - part) + layer[:, [0]] * part
-    return mended
+    removed = layer.copy()
+    removed[:, start:] = layer[:, [start]] * (1 - part) + layer[:, [0]] * part
+    return removed
 
 
 @pytest.fixture
 def tile_of(python_random):
-    def make(size, tiles, frequency, octaves, persistence, mended=True, left_out=0):
+    def make(size, tiles, frequency, octaves, persistence, removed=True, left_out=0):
         """Return the sum of the layers on one part, divided by their weights."""
         width, height = (-(-(side - 1) // tiles) + 1 for side in size)
         total, weights = 0.0, 0.0
@@ -65,7 +65,7 @@ def tile_of(python_random):
             layer = (
                 up @ python_random(*np.meshgrid(xs, ys), SEED + salt("generation/layered_noise")) @ across.T
             )
-            if mended and tiles > 1:
+            if removed and tiles > 1:
                 layer = drawn_anew(drawn_anew(layer, x_intervals).T, y_intervals).T
             total = total + persistence ** (k + 1) * layer
             weights += persistence ** (k + 1)
@@ -76,16 +76,16 @@ def tile_of(python_random):
 
 def laid(tile, size, tiles):
     """Lay a tile on every part: later parts cover what they share with those before."""
-    land = np.full(size[::-1], np.nan)
+    terrain = np.full(size[::-1], np.nan)
     height, width = (side - 1 for side in tile.shape)
     for j in range(tiles):
         for i in range(tiles):
-            place = land[j * height : (j + 1) * height + 1, i * width : (i + 1) * width + 1]
+            place = terrain[j * height : (j + 1) * height + 1, i * width : (i + 1) * width + 1]
             place[:] = tile[: place.shape[0], : place.shape[1]]
-    return land
+    return terrain
 
 
-@pytest.mark.parametrize("seams", ["mended", "left"])
+@pytest.mark.parametrize("seams", ["removed", "left"])
 @pytest.mark.parametrize(
     ("size", "tiles", "frequency", "octaves"),
     [(65, 2, 16, 1), (129, 4, 8, 2), (129, 8, 32, 1), (65, 4, 4, 3), (33, 8, 8, 1), (65, 1, 8, 2)],
@@ -96,16 +96,16 @@ def test_the_mixed_model_is_shape_and_tile(
 ):
     values = {"tiles": tiles, "frequency": frequency, "octaves": octaves, "persistence": 0.3}
     sketch = sketch_of("mixed_tiled", size, seams=seams, **values)
-    tile = tile_of((size, size), tiles, frequency, octaves, 0.3, seams == "mended")
+    tile = tile_of((size, size), tiles, frequency, octaves, 0.3, seams == "removed")
     weights = sum(0.3 ** (k + 1) for k in range(octaves))
-    shape = engine.read(sketch, "land.shape").astype(np.float64)
+    shape = engine.read(sketch, "terrain.shape").astype(np.float64)
     truth = (laid(tile, (size, size), tiles) * weights + shape) / (weights + 1)
-    np.testing.assert_allclose(engine.read(sketch, "land.mix"), truth, atol=2e-6)
-    found = engine.read(sketch, "land")
+    np.testing.assert_allclose(engine.read(sketch, "terrain.mix"), truth, atol=2e-6)
+    found = engine.read(sketch, "terrain")
     assert found.min() == 0 and found.max() == 1
 
 
-@pytest.mark.parametrize("seams", ["mended", "left"])
+@pytest.mark.parametrize("seams", ["removed", "left"])
 @pytest.mark.parametrize(
     ("size", "tiles", "frequency", "octaves"),
     [
@@ -123,18 +123,18 @@ def test_layered_noise_is_its_first_layer_and_tile(
 ):
     values = {"tiles": tiles, "frequency": frequency, "octaves": octaves, "persistence": 0.4}
     sketch = sketch_of("layered_noise_tiled", size, seams=seams, **values)
-    tile = tile_of(size, tiles, frequency, octaves, 0.4, seams == "mended", left_out=1)
+    tile = tile_of(size, tiles, frequency, octaves, 0.4, seams == "removed", left_out=1)
     weights = [0.4 ** (k + 1) for k in range(octaves)]
     shape = tile_of(size, 1, frequency, 1, 0.4)
     truth = (laid(tile, size, tiles) * sum(weights[1:]) + shape * weights[0]) / sum(weights)
-    np.testing.assert_allclose(engine.read(sketch, "land.mix"), truth, atol=2e-6)
+    np.testing.assert_allclose(engine.read(sketch, "terrain.mix"), truth, atol=2e-6)
 
 
-def test_one_tile_is_the_land_without_tiles(engine, sketch_of):
-    tiled = engine.read(sketch_of("mixed_tiled", 65, tiles=1), "land")
-    np.testing.assert_array_equal(tiled, engine.read(sketch_of("mixed", 65), "land"))
-    tiled = engine.read(sketch_of("layered_noise_tiled", 80, tiles=1, octaves=3), "land.mix")
-    whole = engine.read(sketch_of("layered_noise", 80, octaves=3), "land.sum")
+def test_one_tile_is_the_terrain_without_tiles(engine, sketch_of):
+    tiled = engine.read(sketch_of("mixed_tiled", 65, tiles=1), "terrain")
+    np.testing.assert_array_equal(tiled, engine.read(sketch_of("mixed", 65), "terrain"))
+    tiled = engine.read(sketch_of("layered_noise_tiled", 80, tiles=1, octaves=3), "terrain.mix")
+    whole = engine.read(sketch_of("layered_noise", 80, octaves=3), "terrain.sum")
     np.testing.assert_allclose(tiled, whole, atol=5e-7)
 
 
@@ -142,21 +142,21 @@ def test_one_tile_is_the_land_without_tiles(engine, sketch_of):
 def test_more_tiles_than_texels_and_no_layers_are_numbers(engine, sketch_of, use):
     for values in ({"tiles": 64}, {"octaves": 0}, {"persistence": 0.0}, {"tiles": 64, "octaves": 8}):
         for size in (3, 5, 33):
-            assert np.isfinite(engine.read(sketch_of(use, size, **values), "land")).all()
+            assert np.isfinite(engine.read(sketch_of(use, size, **values), "terrain")).all()
 
 
-def test_a_land_that_is_no_whole_number_of_parts_cuts_the_last(any_engine, sketch_of):
-    found = any_engine.read(sketch_of("layered_noise_tiled", 100, tiles=4, normalise="none"), "land.tile")
+def test_a_terrain_that_is_no_whole_number_of_parts_cuts_the_last(any_engine, sketch_of):
+    found = any_engine.read(sketch_of("layered_noise_tiled", 100, tiles=4, normalise="none"), "terrain.tile")
     assert found.shape == (26, 26)  # four parts of 25 texels are 100 wide: one more than there are gaps
 
 
 # ── seams ────────────────────────────────────────────────────────────────────
 
 
-def breaks(land, columns):
-    """Return how far land jumps to the given columns, and how much its slope changes there."""
-    jump = np.abs(land[:, columns] - land[:, columns - 1])
-    bend = np.abs(land[:, columns + 1] - 2 * land[:, columns] + land[:, columns - 1])
+def breaks(terrain, columns):
+    """Return how far terrain jumps to the given columns, and how much its slope changes there."""
+    jump = np.abs(terrain[:, columns] - terrain[:, columns - 1])
+    bend = np.abs(terrain[:, columns + 1] - 2 * terrain[:, columns] + terrain[:, columns - 1])
     return np.array([jump.mean(), bend.mean()])
 
 
@@ -168,7 +168,7 @@ def seam_breaks(engine, sketch_of, size, tiles, seams, **values):
         each = []
         for seed in range(16):
             sketch = sketch_of("mixed_tiled", size, tiles=count, seams=seams, seed=seed, **values)
-            tile = engine.read(sketch, "land.tile").astype(np.float64)
+            tile = engine.read(sketch, "terrain.tile").astype(np.float64)
             detail = laid(tile, (size, size), count)
             each += [breaks(detail, columns), breaks(detail.T, columns)]
         found[count] = np.mean(each, axis=0)
@@ -176,13 +176,13 @@ def seam_breaks(engine, sketch_of, size, tiles, seams, **values):
 
 
 @pytest.mark.parametrize(("tiles", "frequency", "octaves"), [(2, 32, 1), (4, 32, 1), (8, 32, 1), (4, 8, 2)])
-def test_a_mended_seam_is_like_any_other_row_of_nodes(any_engine, sketch_of, tiles, frequency, octaves):
+def test_a_removed_seam_is_like_any_other_row_of_nodes(any_engine, sketch_of, tiles, frequency, octaves):
     values = {"frequency": frequency, "octaves": octaves, "persistence": 0.2}
-    ratios = seam_breaks(any_engine, sketch_of, 257, tiles, "mended", **values)
+    ratios = seam_breaks(any_engine, sketch_of, 257, tiles, "removed", **values)
     assert (ratios <= 1.1).all(), ratios
 
 
-def test_without_the_mend_land_tears(any_engine, sketch_of):
+def test_without_the_mend_terrain_tears(any_engine, sketch_of):
     jump, _ = seam_breaks(any_engine, sketch_of, 257, 4, "left", frequency=32, octaves=1)
     assert 20 < jump < 200, jump
 
@@ -196,18 +196,18 @@ def test_a_tile_has_a_share_of_the_interpolations(any_engine, sketch_of, use):
     texels = {}
     for tiles in (1, 2, 4, 8, 16):
         plan = any_engine.plan_for(sketch_of(use, 1025, tiles=tiles), (64, 64))
-        width, height = plan.node("land.tile.fast.along").size
+        width, height = plan.node("terrain.tile.fast.along").size
         texels[tiles] = width * height
     for tiles, count in texels.items():
         # The row of texels that a part shares with its neighbour is counted as well.
         assert texels[1] <= count * tiles**2 < texels[1] * (1 + tiles / 1024) ** 2
 
 
-def bands(land):
+def bands(terrain):
     """Return the mean power in octaves of frequency, from 1 to 2 cycles a side up."""
-    n = len(land)
+    n = len(terrain)
     window = np.hanning(n)
-    spectrum = np.abs(np.fft.fft2((land - land.mean()) * np.outer(window, window))) ** 2
+    spectrum = np.abs(np.fft.fft2((terrain - terrain.mean()) * np.outer(window, window))) ** 2
     radius = np.hypot(*np.meshgrid(np.fft.fftfreq(n, 1 / n), np.fft.fftfreq(n, 1 / n)))
     return np.array([spectrum[(radius >= 2**k) & (radius < 2 ** (k + 1))].mean() for k in range(8)])
 
@@ -220,18 +220,18 @@ def test_the_spectrum_from_16_cycles_up_is_that_without_tiles(any_engine, sketch
         sketches = [
             sketch_of("layered_noise_tiled", 513, tiles=count, octaves=3, seed=seed) for seed in range(8)
         ]
-        powers[count] = np.mean([bands(any_engine.read(s, "land.mix")) for s in sketches], axis=0)
+        powers[count] = np.mean([bands(any_engine.read(s, "terrain.mix")) for s in sketches], axis=0)
     apart = 10 * np.log10(powers[tiles] / powers[1])
     assert np.abs(apart[4:]).max() <= most, apart
 
 
 def test_the_tile_shows_in_the_curvature(any_engine, sketch_of):
-    """What a tile cannot hide: the land's curvature repeats a part further on."""
+    """What a tile cannot hide: the terrain's curvature repeats a part further on."""
 
     def repeats(tiles):
         sketch = sketch_of("layered_noise_tiled", 257, tiles=tiles, octaves=3)
-        land = any_engine.read(sketch, "land.mix").astype(np.float64)
-        curvature = np.diff(land, 2, axis=0)[:, 1:-1] + np.diff(land, 2, axis=1)[1:-1]
+        terrain = any_engine.read(sketch, "terrain.mix").astype(np.float64)
+        curvature = np.diff(terrain, 2, axis=0)[:, 1:-1] + np.diff(terrain, 2, axis=1)[1:-1]
         return np.corrcoef(curvature[:, :-64].ravel(), curvature[:, 64:].ravel())[0, 1]
 
     assert repeats(4) > 0.9

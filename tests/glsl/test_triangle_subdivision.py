@@ -11,7 +11,7 @@ CORNERS = (0.1, -0.7, 0.4, 0.9)  # south-west, south-east, north-west, north-eas
 
 
 def by_triangles(size, r, corners, number):
-    """Return the land of two triangles, each divided in four until its edges are one texel long.
+    """Return the terrain of two triangles, each divided in four until its edges are one texel long.
 
     ``corners`` are given, or None: drawn like every other number. ``number(x, y)`` is the
     random number in [-1, 1) of a place; an edge of length k displaces its middle by k^r of it.
@@ -35,15 +35,15 @@ def by_triangles(size, r, corners, number):
             ab, bc, ca = middle(a, b), middle(b, c), middle(c, a)
             divided += [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)]
         triangles = divided
-    land = np.full((size, size), np.nan)
+    terrain = np.full((size, size), np.nan)
     for (x, y), height in heights.items():
-        land[y, x] = height
-    return land
+        terrain[y, x] = height
+    return terrain
 
 
 def sketch_of(make_sketch, size, use="generation/triangle_subdivision", **values):
     given = "".join(f"{k} = {v!r}\n".replace("(", "[").replace(")", "]") for k, v in values.items())
-    return make_sketch(f'[[pass]]\nname = "land"\nuse = "{use}"\n[pass.set]\n{given}', size=size)
+    return make_sketch(f'[[pass]]\nname = "terrain"\nuse = "{use}"\n[pass.set]\n{given}', size=size)
 
 
 @pytest.fixture
@@ -60,26 +60,26 @@ def number(python_random):
 def test_it_is_triangles_divided_in_four(engine, make_sketch, number, size, r):
     sketch = sketch_of(make_sketch, size, r=r, seed=11)
     truth = by_triangles(size, r, None, number(11, size))
-    np.testing.assert_allclose(engine.read(sketch, "land.raw"), truth, atol=2e-6)
+    np.testing.assert_allclose(engine.read(sketch, "terrain.raw"), truth, atol=2e-6)
 
 
 @pytest.mark.parametrize("r", [0.0, 0.35, 3.0])
 def test_any_exponent_and_given_corners(engine, make_sketch, number, r):
     sketch = sketch_of(make_sketch, 33, r=r, seed=4, corners_are="given", corners=CORNERS)
     truth = by_triangles(33, r, CORNERS, number(4, 33))
-    np.testing.assert_allclose(engine.read(sketch, "land.raw"), truth, atol=3e-6)
+    np.testing.assert_allclose(engine.read(sketch, "terrain.raw"), truth, atol=3e-6)
 
 
 @pytest.mark.parametrize("size", [2, 5, 129, 1025])
 def test_both_drivers_give_the_same_bits(same_by_both_drivers, make_sketch, size):
     sketch = sketch_of(make_sketch, size, r=1.5, seed=2)
-    same_by_both_drivers(lambda engine: engine.read(sketch, "land.raw"))
+    same_by_both_drivers(lambda engine: engine.read(sketch, "terrain.raw"))
 
 
 def test_each_turn_halves_the_edges(engine, make_sketch, number):
     sketch = sketch_of(make_sketch, 17, seed=5)
     truth = by_triangles(17, 1.0, None, number(5, 17))
-    for turn, values in engine.steps(sketch, "land.raw"):
+    for turn, values in engine.steps(sketch, "terrain.raw"):
         known = np.zeros((17, 17), bool)
         if turn:
             step = 16 >> (turn - 1)
@@ -90,17 +90,17 @@ def test_each_turn_halves_the_edges(engine, make_sketch, number):
 
 def test_corners_are_as_given_or_drawn_from_the_seed(engine, make_sketch, number):
     def corners(**values):
-        land = engine.read(sketch_of(make_sketch, 33, **values), "land.raw")
-        return [land[0, 0], land[0, -1], land[-1, 0], land[-1, -1]]
+        terrain = engine.read(sketch_of(make_sketch, 33, **values), "terrain.raw")
+        return [terrain[0, 0], terrain[0, -1], terrain[-1, 0], terrain[-1, -1]]
 
     np.testing.assert_array_equal(corners(corners_are="given", corners=CORNERS), np.float32(CORNERS))
     drawn = [number(3, 33)(x, y) for x, y in ((0, 0), (32, 0), (0, 32), (32, 32))]
     np.testing.assert_array_equal(corners(seed=3), np.float32(drawn))
 
 
-def crease(land):
-    """How much the land bends across its main diagonal, over how much across those beside it."""
-    bend = np.abs(land[2:, :-2] - 2.0 * land[1:-1, 1:-1] + land[:-2, 2:])
+def crease(terrain):
+    """How much the terrain bends across its main diagonal, over how much across those beside it."""
+    bend = np.abs(terrain[2:, :-2] - 2.0 * terrain[1:-1, 1:-1] + terrain[:-2, 2:])
     near = [np.diagonal(bend, k).mean() for k in range(-40, 41) if k]
     return np.diagonal(bend).mean() / np.mean(near)
 
@@ -113,25 +113,25 @@ def test_the_main_diagonal_is_a_crease_as_the_thesis_says(any_engine, make_sketc
     triangles, squares = [], []
     for seed in range(8):
         smooth = sketch_of(make_sketch, 513, r=1.5, seed=seed)
-        triangles.append(crease(any_engine.read(smooth, "land").astype(float)))
+        triangles.append(crease(any_engine.read(smooth, "terrain").astype(float)))
         other = sketch_of(make_sketch, 513, "generation/diamond_square", smoothing=0.5, seed=seed)
-        squares.append(crease(any_engine.read(other, "land").astype(float)))
+        squares.append(crease(any_engine.read(other, "terrain").astype(float)))
     assert min(triangles) >= 3.0
     assert max(squares) <= 1.5
 
 
 def test_a_larger_r_is_smoother(any_engine, make_sketch):
     rough = [
-        np.abs(np.diff(any_engine.read(sketch_of(make_sketch, 129, r=r), "land"))).mean()
+        np.abs(np.diff(any_engine.read(sketch_of(make_sketch, 129, r=r), "terrain"))).mean()
         for r in (0.5, 1.0, 1.5)
     ]
     assert rough[0] > 2 * rough[1] and rough[1] > 1.4 * rough[2]
 
 
-def test_a_land_is_alike_at_every_size(any_engine, make_sketch):
+def test_a_terrain_is_alike_at_every_size(any_engine, make_sketch):
     """Lengths are in sides, so the heights spread as much at 65 as at 513."""
     spread = [
-        np.mean([any_engine.read(sketch_of(make_sketch, n, seed=s), "land.raw").std() for s in range(12)])
+        np.mean([any_engine.read(sketch_of(make_sketch, n, seed=s), "terrain.raw").std() for s in range(12)])
         for n in (65, 513)
     ]
     assert 0.7 < spread[0] / spread[1] < 1.4
@@ -139,18 +139,18 @@ def test_a_land_is_alike_at_every_size(any_engine, make_sketch):
 
 @pytest.mark.parametrize("size", [2, 3, 65])
 def test_it_is_normalised_by_default(engine, make_sketch, size):
-    land = engine.read(sketch_of(make_sketch, size), "land")
-    assert land.min() == 0 and land.max() == 1
+    terrain = engine.read(sketch_of(make_sketch, size), "terrain")
+    assert terrain.min() == 0 and terrain.max() == 1
     plain = sketch_of(make_sketch, size, normalise="none")
-    np.testing.assert_array_equal(engine.read(plain, "land"), engine.read(plain, "land.raw"))
+    np.testing.assert_array_equal(engine.read(plain, "terrain"), engine.read(plain, "terrain.raw"))
 
 
-def test_seeds_are_lands(engine, make_sketch):
-    lands = [engine.read(sketch_of(make_sketch, 65, seed=s), "land") for s in (1, 2, 1)]
-    np.testing.assert_array_equal(lands[0], lands[2])
-    assert np.abs(lands[0] - lands[1]).max() > 0.01
+def test_seeds_are_terrains(engine, make_sketch):
+    terrains = [engine.read(sketch_of(make_sketch, 65, seed=s), "terrain") for s in (1, 2, 1)]
+    np.testing.assert_array_equal(terrains[0], terrains[2])
+    assert np.abs(terrains[0] - terrains[1]).max() > 0.01
 
 
 def test_a_size_it_cannot_halve_is_refused_with_the_nearest(any_engine, make_sketch):
     with pytest.raises(SketchError, match="65 x 65 or 129 x 129"):
-        any_engine.read(sketch_of(make_sketch, 100), "land")
+        any_engine.read(sketch_of(make_sketch, 100), "terrain")

@@ -12,7 +12,7 @@ from playground.sketch.model import Camera
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 COLOUR = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ return {}; }}\n'
 WHITE = COLOUR.format("vec4(1.0)")
-PASSES = '[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "colour"\nuse = "./cover"\n'
+PASSES = '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "colour"\nuse = "./cover"\n'
 NAN = "uintBitsToFloat(0x7fc00000u)"
 MAGENTA = (255, 0, 255)
 
@@ -21,7 +21,7 @@ MAGENTA = (255, 0, 255)
 def terrain(make_sketch):
     def make(height="0.0", colour="vec4(1.0)", size=33, given="", **more):
         view = f'[view]\nuse = "view/terrain"\nsamples = 1\nset = {{ {given or "grid = 33"} }}\n'
-        files = {"land": HEIGHT.format(height), "cover": COLOUR.format(colour)}
+        files = {"terrain": HEIGHT.format(height), "cover": COLOUR.format(colour)}
         return make_sketch(PASSES + view, size=size, **files, **more)
 
     return make
@@ -32,7 +32,7 @@ def above(sketch, azimuth=180.0, elevation=60.0, **more):
 
 
 def pixels_of(engine, points):
-    """Where points of the land stand in the last picture: column and row from the top left."""
+    """Where points of the terrain stand in the last picture: column and row from the top left."""
     plan = engine.plan
     clip = np.c_[points, np.ones(len(points))] @ plan.eye.clip_from_world.astype(float).T
     place = clip[:, :2] / clip[:, 3:]
@@ -40,7 +40,7 @@ def pixels_of(engine, points):
     return np.stack([(place[:, 0] + 1) / 2 * width, (1 - place[:, 1]) / 2 * height], axis=1)
 
 
-# ── the land ─────────────────────────────────────────────────────────────────
+# ── the terrain ─────────────────────────────────────────────────────────────────
 
 CORNERS = {"south-west": (0, 0), "south-east": (1, 0), "north-west": (0, 1), "north-east": (1, 1)}
 # From each side: which corner is to the upper left, upper right, lower left, lower right.
@@ -66,7 +66,7 @@ def test_a_marked_corner_stands_where_someone_on_that_side_sees_it(any_engine, t
     assert SEEN[azimuth][(not left) + 2 * (not upper)] == corner
 
 
-def test_a_summit_rises_above_the_flat_land_in_the_picture(any_engine, terrain):
+def test_a_summit_rises_above_the_flat_terrain_in_the_picture(any_engine, terrain):
     red = "texel == ivec2(16) ? vec4(1.0, 0.0, 0.0, 1.0) : vec4(0.0, 0.0, 1.0, 1.0)"
     rows = []
     for height in ("0.0", "texel == ivec2(16) ? 1.0 : 0.0"):
@@ -88,7 +88,7 @@ def test_vertices_stand_where_the_camera_s_matrix_says(any_engine, terrain):
     np.testing.assert_allclose(middle, expected, atol=1.0)
 
 
-def test_colour_and_light_of_other_sizes_share_the_land_s_corners(on_gpu):
+def test_colour_and_light_of_other_sizes_share_the_terrain_s_corners(on_gpu):
     for texels in (2, 33, 1025):
         ends = on_gpu("maths/drape.glsl", f"drape_uv(s, ivec2({texels}))", s=np.array([[0.0] * 2, [1.0] * 2]))
         np.testing.assert_allclose(ends * texels - 0.5, [[0, 0], [texels - 1, texels - 1]], atol=1e-4)
@@ -99,7 +99,7 @@ def test_the_sun_lights_the_slopes_that_face_it(any_engine, make_sketch, azimuth
     cone = HEIGHT.format("1.0 - length(vec2(texel) - 16.0) / 23.0")
     sun = f'[[pass]]\nname = "light"\nuse = "lighting/l_dot_n"\nset = {{ sun = [{azimuth}, 30.0] }}\n'
     view = '[view]\nuse = "view/terrain"\nsamples = 1\nset = { grid = 33 }\n'
-    sketch = make_sketch(PASSES + sun + view, relief=400.0, land=cone, cover=WHITE)
+    sketch = make_sketch(PASSES + sun + view, relief=400.0, terrain=cone, cover=WHITE)
     any_engine.render(above(sketch, elevation=88.0), size=(100, 100))
     frame = any_engine.read(above(sketch, elevation=88.0), "view.land", size=(100, 100))[..., 0]
     towards = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth)), 0.0])
@@ -109,9 +109,9 @@ def test_the_sun_lights_the_slopes_that_face_it(any_engine, make_sketch, azimuth
         assert (frame[99 - row, column] > 1.0) == lit
 
 
-def test_no_colour_and_no_light_is_white_land(any_engine, make_sketch):
-    text = '[[pass]]\nname = "height"\nuse = "./land"\n[view]\nuse = "view/terrain"\nsamples = 1\n'
-    picture = any_engine.render(above(make_sketch(text, land=HEIGHT.format("0.0"))), size=(64, 64)).array
+def test_no_colour_and_no_light_is_white_terrain(any_engine, make_sketch):
+    text = '[[pass]]\nname = "height"\nuse = "./terrain"\n[view]\nuse = "view/terrain"\nsamples = 1\n'
+    picture = any_engine.render(above(make_sketch(text, terrain=HEIGHT.format("0.0"))), size=(64, 64)).array
     assert (picture[32, 32] == 255).all()
 
 
@@ -134,7 +134,7 @@ def test_heights_of_any_size_leave_the_picture_opaque(any_engine, terrain):
     assert (picture[..., 3] == 255).all()
 
 
-def test_the_cut_is_earth_and_the_land_is_not(any_engine, terrain):
+def test_the_cut_is_earth_and_the_terrain_is_not(any_engine, terrain):
     given = 'grid = 33, earth = "#804020", skirt = 0.2'
     sketch = above(terrain(height="0.5", given=given), elevation=10.0, azimuth=180.0)
     any_engine.render(sketch, size=(200, 150))
@@ -149,17 +149,17 @@ def test_the_cut_is_earth_and_the_land_is_not(any_engine, terrain):
 # ── wires ────────────────────────────────────────────────────────────────────
 
 
-def test_wires_change_pixels_of_the_land_alone(any_engine, terrain):
+def test_wires_change_pixels_of_the_terrain_alone(any_engine, terrain):
     hills = "0.5 + 0.4 * sin(float(texel.x) * 0.6) * sin(float(texel.y) * 0.5)"
     green = "vec4(0.2, 0.3, 0.1, 1.0)"
     sketch = above(terrain(height=hills, colour=green, given="grid = 17"), elevation=30.0)
     wired = sketch.with_values({"view.wireframe": True})
     plain, lines = (any_engine.render(s, size=(240, 160)).array.astype(int) for s in (sketch, wired))
-    sky, land = (any_engine.read(sketch, f"view.{p}", size=(240, 160))[::-1] for p in ("sky", "land"))
-    on_land = (np.abs(sky - land) > 1e-3).any(axis=-1)
+    sky, terrain = (any_engine.read(sketch, f"view.{p}", size=(240, 160))[::-1] for p in ("sky", "land"))
+    on_terrain = (np.abs(sky - terrain) > 1e-3).any(axis=-1)
     changed = (plain != lines).any(axis=-1)
     assert changed.sum() > 1000
-    assert not (changed & ~on_land).any()
+    assert not (changed & ~on_terrain).any()
 
 
 def test_wires_run_along_the_mesh_s_edges(any_engine, terrain):
@@ -187,12 +187,12 @@ def test_wires_closer_than_pixels_become_their_mean_grey(any_engine, terrain):
 # ── sky ──────────────────────────────────────────────────────────────────────
 
 
-def test_where_there_is_no_land_there_is_sky(any_engine, terrain):
+def test_where_there_is_no_terrain_there_is_sky(any_engine, terrain):
     sketch = above(terrain(), elevation=40.0)
-    sky, land = (any_engine.read(sketch, f"view.{p}", size=(96, 64)) for p in ("sky", "land"))
+    sky, terrain = (any_engine.read(sketch, f"view.{p}", size=(96, 64)) for p in ("sky", "land"))
     corners = np.ix_([0, -1], [0, -1])
-    np.testing.assert_array_equal(sky[corners], land[corners])
-    assert (sky != land).any()
+    np.testing.assert_array_equal(sky[corners], terrain[corners])
+    assert (sky != terrain).any()
 
 
 def test_the_horizon_s_colour_is_level_with_the_eye(engine, terrain):
@@ -209,7 +209,7 @@ def test_the_horizon_s_colour_is_level_with_the_eye(engine, terrain):
 
 
 @pytest.mark.parametrize(("level", "base"), [(25.0, 0.0), (70.0, 0.0), (170.0, 100.0)])
-def test_the_sea_drowns_the_land_below_its_level_and_no_other(any_engine, terrain, level, base):
+def test_the_sea_drowns_the_terrain_below_its_level_and_no_other(any_engine, terrain, level, base):
     ramp = "float(texel.x) / float(size.x - 1)"
     given = f'grid = 33, sea = true, sea_level = {level}, water = "#0000ff", horizon = "#0000ff"'
     sketch = above(terrain(height=ramp, given=given), elevation=89.0).with_values({"base_elevation": base})
@@ -287,8 +287,8 @@ def test_a_tone_curve_keeps_order_and_brings_bright_light_in(engine, presented, 
 def shown(make_sketch):
     def make(height, size, given='channel = "red"'):
         view = f'[view]\nuse = "view/map"\ninputs = {{ shown = "height" }}\nset = {{ {given} }}\n'
-        passes = '[[pass]]\nname = "height"\nuse = "./land"\n'
-        return make_sketch(passes + view, size=size, land=HEIGHT.format(height))
+        passes = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
+        return make_sketch(passes + view, size=size, terrain=HEIGHT.format(height))
 
     return make
 

@@ -7,7 +7,7 @@ import pytest
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 COLOUR = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ return {}; }}\n'
-PASSES = '[[pass]]\nname = "height"\nuse = "./land"\n{}[[pass]]\nname = "lines"\nuse = "view/contours"\n'
+PASSES = '[[pass]]\nname = "height"\nuse = "./terrain"\n{}[[pass]]\nname = "lines"\nuse = "view/contours"\n'
 PASSES += 'set = {{ line = "#000000", strength = 1.0, {} }}\n{}'
 GROUND = '[[pass]]\nname = "colour"\nuse = "./ground"\n'
 EASTWARD = "float(texel.x) / float(size.x - 1)"
@@ -17,8 +17,8 @@ EASTWARD = "float(texel.x) / float(size.x - 1)"
 def cover(make_sketch):
     """Give how much of each texel lines cover, row 0 south."""
 
-    def read(engine, land, given, more="", **sketch):
-        files = {"land": HEIGHT.format(land)}
+    def read(engine, terrain, given, more="", **sketch):
+        files = {"terrain": HEIGHT.format(terrain)}
         found = engine.read(make_sketch(PASSES.format("", given, more), **files, **sketch), "lines")
         return 1.0 - found[..., 0].astype(float)
 
@@ -41,7 +41,7 @@ def test_on_a_plane_lines_stand_where_the_elevation_is_theirs(engine, cover, wid
 
 @pytest.mark.parametrize("size", [[101, 101], [257, 257], [301, 151]])
 def test_on_a_cone_they_are_circles_of_one_width_at_any_resolution(any_engine, cover, size):
-    """1000 m of cone, 5 lines; the land has 513 texels a side, the lines a size of their own."""
+    """1000 m of cone, 5 lines; the terrain has 513 texels a side, the lines a size of their own."""
     cone = "1.0 - length(vec2(texel) / float(size.x - 1) - 0.5) * 2.0"
     given = "interval = 200, every = 0, width = 2"
     found = cover(any_engine, cone, given, f"size = {size}\n", size=513, extent=1000.0, relief=1000.0)
@@ -58,7 +58,7 @@ def test_on_a_cone_they_are_circles_of_one_width_at_any_resolution(any_engine, c
 
 
 def test_their_widths_do_not_depend_on_the_slope(any_engine, cover):
-    """Summed across a line its cover is its width, on gentle land and on steep."""
+    """Summed across a line its cover is its width, on gentle terrain and on steep."""
     for relief in (50.0, 100.0, 200.0):
         found = cover(
             any_engine, EASTWARD, "interval = 25, every = 0, width = 3", size=[401, 3], relief=relief
@@ -72,7 +72,7 @@ def test_every_so_manieth_line_is_thick_counted_from_sea_level(any_engine, make_
     given = "interval = 10, every = 5, width = 1, thick = 4"
     text = "base_elevation = 230.0\n" + PASSES.format("", given, "")
     sketch = make_sketch(
-        text, size=[401, 3], extent=[4000.0, 20.0], relief=100.0, land=HEIGHT.format(EASTWARD)
+        text, size=[401, 3], extent=[4000.0, 20.0], relief=100.0, terrain=HEIGHT.format(EASTWARD)
     )
     found = 1 - any_engine.read(sketch, "lines")[1, :, 0].astype(float)
     for elevation in range(240, 330, 10):
@@ -85,9 +85,9 @@ def test_where_they_crowd_their_mean_stands_and_nothing_flickers(any_engine, cov
     np.testing.assert_allclose(found, min(0.8 * 50 / 100 / 0.5, 1.0), atol=2e-3)
 
 
-def test_level_land_has_no_lines_even_at_the_elevation_of_one(any_engine, cover):
-    for land in ("0.0", "0.5", "0.51"):
-        assert (cover(any_engine, land, "interval = 10", size=9) == 0).all()
+def test_level_terrain_has_no_lines_even_at_the_elevation_of_one(any_engine, cover):
+    for terrain in ("0.0", "0.5", "0.51"):
+        assert (cover(any_engine, terrain, "interval = 10", size=9) == 0).all()
 
 
 def test_below_the_sea_lines_go_on(any_engine, cover):
@@ -100,7 +100,7 @@ def test_the_ground_is_seen_between_them_at_its_own_resolution(any_engine, make_
     text = PASSES.format(GROUND, "interval = 40", "size = 65\n")
     ground = COLOUR.format("vec4(vec2(texel) / vec2(size - 1), 0.25, 1.0)")
     sketch = make_sketch(
-        text, size=33, relief=10.0, land=HEIGHT.format(f"0.3 + 0.1 * {EASTWARD}"), ground=ground
+        text, size=33, relief=10.0, terrain=HEIGHT.format(f"0.3 + 0.1 * {EASTWARD}"), ground=ground
     )
     found = any_engine.read(sketch, "lines").astype(float)
     x, y = np.meshgrid(np.linspace(0, 1, 65), np.linspace(0, 1, 65))

@@ -22,16 +22,16 @@ ROUGH = (
     " + 0.1 * pow(float(texel.x) / float(size.x), 4.0) * random(texel, 5u)"
 )
 HOLE = "texel == ivec2(20, 3) ? uintBitsToFloat(0x7fc00000u) : float(texel.x & 7) * 0.1"
-LAND = '[[pass]]\nname = "height"\nuse = "./land"\n'
+TERRAIN = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
 TILES = '[[pass]]\nname = "tiles"\nuse = "view/geomipmap/errors"\n'
 TILES += 'size = ["(height.size.x + 14) // 16", "(height.size.y + 14) // 16"]\n'
 GREEN = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) { return vec4(0, 1, 0, 1); }\n'
 SKY = 'zenith = "#ff00ff", horizon = "#ff00ff", nadir = "#ff00ff"'
-VIEW = LAND + '[[pass]]\nname = "colour"\nuse = "./green"\n[view]\nuse = "view/terrain"\nsamples = 1\n'
+VIEW = TERRAIN + '[[pass]]\nname = "colour"\nuse = "./green"\n[view]\nuse = "view/terrain"\nsamples = 1\n'
 SIZE = (320, 180)
 
 
-def land(text: str) -> str:
+def terrain(text: str) -> str:
     include = '#include "noise/hash.glsl"\n' if "random(" in text else ""
     return include + HEIGHT.format(text)
 
@@ -39,7 +39,7 @@ def land(text: str) -> str:
 @pytest.fixture
 def errors_of(make_sketch):
     def make(engine: Engine, text: str, size):
-        sketch = make_sketch(LAND + TILES, size=size, land=land(text))
+        sketch = make_sketch(TERRAIN + TILES, size=size, terrain=terrain(text))
         spans, errors = (engine.read(sketch, f"tiles:{name}") for name in ("spans", "errors"))
         return engine.read(sketch, "height"), spans, errors
 
@@ -57,7 +57,7 @@ def shown(make_sketch):
     def make(text=ROUGH, size=129, relief=250.0, detail="geomipmap", given=SKY):
         given = f'detail = "{detail}", earth = "#00ff00", {given}'
         view = VIEW + f"set = {{ {given} }}\n"
-        return make_sketch(view, size=size, relief=relief, land=land(text), green=GREEN)
+        return make_sketch(view, size=size, relief=relief, terrain=terrain(text), green=GREEN)
 
     return make
 
@@ -128,7 +128,7 @@ def true_errors(tiles: np.ndarray, level: int) -> np.ndarray:
         ("random(texel, 2u)", [2, 5]),
     ],
 )
-def test_an_error_is_the_largest_height_between_a_level_s_triangles_and_the_land(
+def test_an_error_is_the_largest_height_between_a_level_s_triangles_and_the_terrain(
     any_engine, errors_of, text, size
 ):
     heights, spans, errors = errors_of(any_engine, text, size)
@@ -159,7 +159,7 @@ def test_a_tile_with_a_hole_stays_whole_and_its_span_is_of_numbers(any_engine, e
 
 
 def flight(count: int):
-    """Cameras on a way low over the land, turning."""
+    """Cameras on a way low over the terrain, turning."""
     for k in range(count):
         t = k / count
         yield Camera(
@@ -172,7 +172,7 @@ def flight(count: int):
 
 
 def holes(picture: np.ndarray) -> int:
-    """Count the pixels of background that land closes in on every side."""
+    """Count the pixels of background that terrain closes in on every side."""
     sky = (picture[..., 0] > 128) & (picture[..., 2] > 128)
     return int((ndimage.binary_fill_holes(~sky, np.ones((3, 3))) & sky).sum())
 
@@ -235,7 +235,7 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
         drawn = engine.runner.draws.triangles
         culled = engine.read(seen, "view.land", size=SIZE)
         with monkeypatch.context() as patch:
-            patch.setattr(sight.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
+            patch.setattr(sight.Boxes, "visible", lambda self, view: np.ones(self.up.shape[1:], bool))
             other = seen.with_values({"view.tolerance": 1.0000001})  # or it would not be drawn again
             whole = engine.read(other, "view.land", size=SIZE)
         left_out += engine.runner.draws.triangles - drawn
@@ -281,7 +281,7 @@ def test_a_change_of_level_moves_no_place_by_more_than_the_tolerance(engine, sho
         boxes = sight.boxes_of(tables["spans"], view)
         levels = lod.levels_of(tables["errors"], boxes, view, tolerance)
         now = surfaces(levels, lod.coarser_of(levels), tiles)
-        # In both pictures a place is as far from the land as is allowed, whatever the level.
+        # In both pictures a place is as far from the terrain as is allowed, whatever the level.
         away = np.linalg.norm(in_picture(now, view) - in_picture(tiles, view), axis=-1)
         assert np.nanmax(away) <= tolerance * 1.0001
         if before is not None:
@@ -296,7 +296,7 @@ def test_a_change_of_level_moves_no_place_by_more_than_the_tolerance(engine, sho
     assert worst > tolerance * 0.2, "and the bound is not far off"
 
 
-def test_land_s_outline_moves_by_no_more_than_the_tolerance(engine, shown, monkeypatch):
+def test_terrain_s_outline_moves_by_no_more_than_the_tolerance(engine, shown, monkeypatch):
     """Two frames a change of level apart, seen by one camera: each outline lies within the other, widened."""
     sketch = shown(size=257).with_values({"view.tolerance": 3.0})
     cameras = list(flight(60))[10:30:4]
@@ -331,7 +331,7 @@ def test_land_s_outline_moves_by_no_more_than_the_tolerance(engine, shown, monke
 
 
 def test_no_tolerance_at_all_is_the_full_grid(engine, shown):
-    """On land whose every cell is flat, whichever way it is cut."""
+    """On terrain whose every cell is flat, whichever way it is cut."""
     camera = list(flight(8))[5]
     text = "float((texel.x * 7) & 15) * 0.06 + float((texel.y * 5) & 15) * 0.03"
     pictures = []
@@ -352,7 +352,7 @@ def test_fewer_triangles_the_more_is_allowed_and_no_errors_for_a_full_grid(engin
     assert engine.texture(full, "view.tiles:errors", size=SIZE).size == (1, 1)
 
 
-def test_the_errors_are_read_back_once_for_each_land(engine, shown, monkeypatch):
+def test_the_errors_are_read_back_once_for_each_terrain(engine, shown, monkeypatch):
     from playground.engine import draws
 
     times = []
@@ -368,7 +368,7 @@ def test_the_errors_are_read_back_once_for_each_land(engine, shown, monkeypatch)
 
 def test_tiles_without_their_errors_have_a_sentence(engine, make_sketch):
     alone = make_sketch(
-        LAND + '[view]\nuse = "view/land"\nset = { detail = "geomipmap" }\n', land=land("0.0")
+        TERRAIN + '[view]\nuse = "view/land"\nset = { detail = "geomipmap" }\n', terrain=terrain("0.0")
     )
     with pytest.raises(SketchError, match="at this detail needs the input 'spans' wired"):
         engine.render(alone, size=SIZE)
@@ -377,7 +377,7 @@ def test_tiles_without_their_errors_have_a_sentence(engine, make_sketch):
 def test_a_draw_that_does_not_read_the_camera_has_a_sentence(engine, make_sketch):
     text = '#pragma draw(mesh = "land")\nuniform int detail = 0;\nuniform int grid = 3;\n'
     text += "vec4 vertex(vec3 corner) { return vec4(corner, 1.0); }\nvec4 fragment() { return vec4(1.0); }\n"
-    blind = make_sketch(LAND + '[view]\nuse = "./blind"\n', land=land("0.0"), blind=text)
+    blind = make_sketch(TERRAIN + '[view]\nuse = "./blind"\n', terrain=terrain("0.0"), blind=text)
     with pytest.raises(PlaygroundError, match="needs a draw that reads clip_from_world, eye, extent"):
         engine.render(blind, size=SIZE)
 
@@ -395,5 +395,5 @@ def test_levels_have_colours(engine, shown):
 
 
 @pytest.mark.parametrize("detail", ["geomipmap", "morph", "full grid"])
-def test_land_of_one_texel_is_drawn(engine, shown, detail):
+def test_terrain_of_one_texel_is_drawn(engine, shown, detail):
     assert engine.render(shown(size=1, detail=detail), size=(64, 36)).array.shape == (36, 64, 4)

@@ -15,7 +15,7 @@ from playground.terrain import morph, tiles
 from playground.terrain import visibility as sight
 from playground.terrain.camera import look
 
-LAND = """#include "noise/hash.glsl"
+TERRAIN = """#include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")
 float kernel(ivec2 texel) {
     vec2 at = vec2(texel);
@@ -42,7 +42,7 @@ vec4 vertex(vec3 corner, vec4 tile, out float up, out float level) {
 }
 vec4 fragment(float up, float level) { return vec4(up, level, 1.0, 1.0); }
 """
-PASSES = '[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "colour"\nuse = "./green"\n'
+PASSES = '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "colour"\nuse = "./green"\n'
 TILES = """[[pass]]
 name = "tiles"
 use = "view/geomipmap/errors"
@@ -71,7 +71,7 @@ def engine(any_engine):
 @pytest.fixture
 def shown(make_sketch):
     def make(size=257, tolerance=1.0, detail="morph"):
-        files = {"land": LAND, "green": GREEN, "above": ABOVE}
+        files = {"terrain": TERRAIN, "green": GREEN, "above": ABOVE}
         sketch = make_sketch(PASSES + TILES + VIEW, size=size, relief=RELIEF, **files)
         given = {"tolerance": tolerance, "detail": detail}
         return sketch.with_values({f"{p}.{k}": v for p in ("view", "above") for k, v in given.items()})
@@ -80,7 +80,7 @@ def shown(make_sketch):
 
 
 def flight(count: int):
-    """Cameras on a way over the land, near and far, turning."""
+    """Cameras on a way over the terrain, near and far, turning."""
     for k in range(count):
         t = k / count
         target = (200.0 + 600.0 * t, 700.0 - 500.0 * t, 130.0)
@@ -100,14 +100,14 @@ def tables_of(engine, sketch):
 
 @pytest.fixture
 def all_seen(monkeypatch):
-    monkeypatch.setattr(sight.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
+    monkeypatch.setattr(sight.Boxes, "visible", lambda self, view: np.ones(self.up.shape[1:], bool))
 
 
 # ── the choice ───────────────────────────────────────────────────────────────
 
 
 def level_map(chosen: tiles.Chosen, cells: tuple[int, int]) -> np.ndarray:
-    """Return the level drawn in each tile of a land of so many cells; each is drawn once."""
+    """Return the level drawn in each tile of a terrain of so many cells; each is drawn once."""
     times = np.zeros((cells[1] // 16, cells[0] // 16), int)
     levels = np.zeros_like(times)
     done = 0
@@ -142,7 +142,7 @@ def test_levels_meet_where_one_has_morphed_and_the_other_not_begun(engine, shown
         for tolerance in (0.5, 4.0):
             view = view_of(camera)
             squares = morph.pyramid(tables["spans"])
-            reach = morph.reaches(tables, squares, view, tolerance)
+            reach = morph.level_distances(tables, squares, view, tolerance)
             levels = level_map(morph.morph({"tolerance": tolerance}, tables, view), tuple(cells))
             seen |= set(levels.ravel().tolist())
             boxes = sight.boxes_of(tables["spans"], view)
@@ -162,7 +162,7 @@ def test_levels_meet_where_one_has_morphed_and_the_other_not_begun(engine, shown
 
 
 def edge_of(boxes: sight.Boxes, before: np.ndarray, after: np.ndarray, axis: int) -> np.ndarray:
-    """Return points between tiles, one north (axis 0) or east (1) of the other, up to where land may be."""
+    """Return points between tiles, one north (axis 0) or east (1) of the other, as far as terrain may be."""
     (j, i), share = before, np.linspace(0, 1, 9)
     up = [fold(boxes.up[k][tuple(t)] for t in (before, after)) for k, fold in ((0, max), (1, min))]
     east = boxes.east[1, i : i + 1] if axis else boxes.east[0, i] + share * np.diff(boxes.east[:, i])
@@ -199,7 +199,7 @@ def test_a_box_s_distances_are_those_of_its_nearest_and_its_furthest_point():
 
 
 def holes(picture: np.ndarray) -> int:
-    """Count the pixels of background that land closes in on every side."""
+    """Count the pixels of background that terrain closes in on every side."""
     sky = (picture[..., 0] > 128) & (picture[..., 2] > 128)
     return int((ndimage.binary_fill_holes(~sky, np.ones((3, 3))) & sky).sum())
 
@@ -214,9 +214,11 @@ def test_no_background_shows_through_on_a_flight(engine, shown, tolerance, size)
 
 
 def test_the_background_would_show_if_levels_met_too_early(engine, shown, monkeypatch):
-    right = morph.reaches
+    right = morph.level_distances
     monkeypatch.setattr(
-        morph, "reaches", lambda *given: right(*given) * (1.0, 0.4, 1.0, 0.4, 1.0)[: len(right(*given))]
+        morph,
+        "level_distances",
+        lambda *given: right(*given) * (1.0, 0.4, 1.0, 0.4, 1.0)[: len(right(*given))],
     )
     sketch = shown(tolerance=8.0)
     assert sum(holes(engine.render(sketch.with_camera(c), size=SIZE).array) for c in flight(12)) > 10
@@ -229,7 +231,7 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
         culled = engine.read(seen, "view.land", size=SIZE)
         drawn = engine.runner.draws.triangles
         with monkeypatch.context() as patch:
-            patch.setattr(sight.Boxes, "seen", lambda self, view: np.ones(self.up.shape[1:], bool))
+            patch.setattr(sight.Boxes, "visible", lambda self, view: np.ones(self.up.shape[1:], bool))
             other = seen.with_values({"view.land.tolerance": 1.0000001})  # or it would not be drawn again
             whole = engine.read(other, "view.land", size=SIZE)
         left_out += engine.runner.draws.triangles - drawn
@@ -237,7 +239,7 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
     assert left_out > 1000
 
 
-# ── how far from the land, and how still ─────────────────────────────────────
+# ── how far from the terrain, and how still ─────────────────────────────────────
 
 
 def heights(engine, sketch, camera) -> np.ndarray:
@@ -248,7 +250,7 @@ def heights(engine, sketch, camera) -> np.ndarray:
 
 
 def pixels(view: sight.View, truth: np.ndarray) -> np.ndarray:
-    """Return how many pixels a metre upwards is long over each place of the land, 0 outside the picture."""
+    """Return how many pixels a metre upwards takes over each place of the terrain, 0 outside the picture."""
     east, north = np.meshgrid(*((np.arange(n) + 0.5) / n * e for n, e in zip(SIZE, EXTENT, strict=True)))
     place = np.stack([east, north, truth, np.ones_like(truth)], axis=-1)
     low, high = (
@@ -262,7 +264,7 @@ def pixels(view: sight.View, truth: np.ndarray) -> np.ndarray:
 
 @pytest.mark.parametrize("tolerance", [1.0, 2.0, 8.0])
 @pytest.mark.parametrize("detail", ["morph", "geomipmap"])
-def test_no_place_is_drawn_further_from_the_land_than_the_tolerance(
+def test_no_place_is_drawn_further_from_the_terrain_than_the_tolerance(
     engine, shown, all_seen, tolerance, detail
 ):
     sketch = shown(tolerance=tolerance, detail=detail)
@@ -292,7 +294,7 @@ def jumps(engine, sketch, detail: str, step: float) -> float:
     return most
 
 
-def test_the_less_the_eye_moves_the_less_the_land_does(engine, shown, all_seen):
+def test_the_less_the_eye_moves_the_less_the_terrain_does(engine, shown, all_seen):
     sketch = shown(tolerance=4.0)
     large, small = (jumps(engine, sketch, "morph", step) for step in (0.008, 0.0005))
     assert 0 < small < 0.03

@@ -8,7 +8,7 @@ import pytest
 from playground.sketch.model import Sketch
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
-PASSES = '[[pass]]\nname = "height"\nuse = "./land"\n{}[view]\nuse = "view/profile"\nset = {{ {} }}\n'
+PASSES = '[[pass]]\nname = "height"\nuse = "./terrain"\n{}[view]\nuse = "view/profile"\nset = {{ {} }}\n'
 EASTWARD = "float(texel.x) / float(size.x - 1)"
 NUMBERS = "view/profile/digits.glsl"
 SIZE = (640, 360)
@@ -138,8 +138,8 @@ class Section:
 
 @pytest.fixture
 def section(make_sketch):
-    def read(engine, land, given="start = [0.0, 0.5], finish = [1.0, 0.5]", **more) -> Section:
-        sketch: Sketch = make_sketch(PASSES.format("", given), land=HEIGHT.format(land), **more)
+    def read(engine, terrain, given="start = [0.0, 0.5], finish = [1.0, 0.5]", **more) -> Section:
+        sketch: Sketch = make_sketch(PASSES.format("", given), terrain=HEIGHT.format(terrain), **more)
         return Section(engine.render(sketch, size=SIZE).array)
 
     return read
@@ -172,23 +172,23 @@ def test_ticks_stand_at_round_numbers(any_engine, section):
 
 def test_elevations_are_above_sea_level_and_a_long_line_is_in_kilometres(any_engine, make_sketch):
     text = "base_elevation = 1400.0\n" + PASSES.format("", "start = [0.0, 0.5], finish = [1.0, 0.5]")
-    sketch = make_sketch(text, size=65, extent=40000.0, relief=500.0, land=HEIGHT.format(EASTWARD))
+    sketch = make_sketch(text, size=65, extent=40000.0, relief=500.0, terrain=HEIGHT.format(EASTWARD))
     found = Section(any_engine.render(sketch, size=SIZE).array)
     assert min(found.up().values()) >= 1300 and max(found.up().values()) <= 2000
     assert max(found.along().values()) in (35, 40)
 
 
-def test_the_section_has_room_for_the_line_or_for_the_whole_land(any_engine, section):
+def test_the_section_has_room_for_the_line_or_for_the_whole_terrain(any_engine, section):
     given = 'start = [0.0, 0.5], finish = [0.3, 0.5], elevations = "{}"'
-    line, land = (
+    line, terrain = (
         section(any_engine, EASTWARD, given.format(what), size=65, relief=1000.0)
         for what in ("of the line", "of the land")
     )
     assert max(line.up().values()) <= 330
-    assert max(land.up().values()) >= 900
+    assert max(terrain.up().values()) >= 900
 
 
-def test_level_land_and_a_line_of_no_length_are_drawn_too(any_engine, section):
+def test_level_terrain_and_a_line_of_no_length_are_drawn_too(any_engine, section):
     flat = section(any_engine, "0.5", size=9)
     rows = np.array(list(flat.curve.values()))
     assert np.ptp(rows) < 1
@@ -196,12 +196,12 @@ def test_level_land_and_a_line_of_no_length_are_drawn_too(any_engine, section):
     assert np.ptp(np.array(list(point.curve.values()))) < 1
 
 
-def test_the_map_is_the_land_s_colour_with_the_line_on_it(any_engine, make_sketch):
+def test_the_map_is_the_terrain_s_colour_with_the_line_on_it(any_engine, make_sketch):
     blue = '[[pass]]\nname = "colour"\nuse = "./blue"\n'
     text = PASSES.format(blue, "start = [0.25, 0.25], finish = [0.75, 0.75]")
     kernel = HEIGHT.replace("height:r32f", "colour:rgba16f").replace("float kernel", "vec4 kernel")
     kernel = kernel.format("vec4(0.0, 0.0, 1.0, 1.0)")
-    sketch = make_sketch(text, size=9, extent=[1000.0, 500.0], land=HEIGHT.format("0.0"), blue=kernel)
+    sketch = make_sketch(text, size=9, extent=[1000.0, 500.0], terrain=HEIGHT.format("0.0"), blue=kernel)
     picture = any_engine.render(sketch, size=SIZE).array[..., :3].astype(int)
     rows, columns = np.nonzero((picture == (0, 0, 255)).all(axis=-1))
     width, height = np.ptp(columns) + 1, np.ptp(rows) + 1

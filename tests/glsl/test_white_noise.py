@@ -11,7 +11,7 @@ N = 512
 @pytest.fixture
 def sketch_of(make_sketch):
     def make(size=(N, N), seed=7):
-        use = f'[[pass]]\nname = "land"\nuse = "generation/white_noise"\nset = {{ seed = {seed} }}\n'
+        use = f'[[pass]]\nname = "terrain"\nuse = "generation/white_noise"\nset = {{ seed = {seed} }}\n'
         return make_sketch(use, size=list(size))
 
     return make
@@ -21,14 +21,14 @@ def sketch_of(make_sketch):
 def test_each_height_is_the_hash_of_its_place(engine, sketch_of, python_random, size):
     y, x = np.mgrid[0 : size[1], 0 : size[0]]
     wanted = python_random(x, y, 11 + salt("generation/white_noise"))
-    np.testing.assert_array_equal(engine.read(sketch_of(size, seed=11), "land"), wanted)
+    np.testing.assert_array_equal(engine.read(sketch_of(size, seed=11), "terrain"), wanted)
 
 
 @pytest.mark.parametrize("seed", [0, 7, 9999])
 def test_heights_know_nothing_of_each_other(any_engine, sketch_of, seed):
     """Autocorrelation over n² texels: nearest lags at most 4/n, any lag at most 6/n."""
-    land = any_engine.read(sketch_of(seed=seed), "land").astype(float)
-    power = np.abs(np.fft.fft2(land - land.mean())) ** 2
+    terrain = any_engine.read(sketch_of(seed=seed), "terrain").astype(float)
+    power = np.abs(np.fft.fft2(terrain - terrain.mean())) ** 2
     correlation = np.fft.ifft2(power).real / power.mean()
     correlation[0, 0] = 0
     nearest = [correlation[0, 1], correlation[1, 0], correlation[1, 1], correlation[1, -1]]
@@ -38,16 +38,16 @@ def test_heights_know_nothing_of_each_other(any_engine, sketch_of, seed):
 
 @pytest.mark.parametrize("seed", [0, 7, 9999])
 def test_heights_are_even_over_0_to_1(any_engine, sketch_of, seed):
-    land = any_engine.read(sketch_of(seed=seed), "land").astype(float)
+    terrain = any_engine.read(sketch_of(seed=seed), "terrain").astype(float)
     # Four standard errors of the mean and of the variance of N² even numbers.
-    assert abs(land.mean() - 1 / 2) < 4 / np.sqrt(12) / N
-    assert abs(land.var() - 1 / 12) < 4 / np.sqrt(180) / N
-    counts = np.histogram(land, 64, (0, 1))[0]
+    assert abs(terrain.mean() - 1 / 2) < 4 / np.sqrt(12) / N
+    assert abs(terrain.var() - 1 / 12) < 4 / np.sqrt(180) / N
+    counts = np.histogram(terrain, 64, (0, 1))[0]
     chi = ((counts - N * N / 64) ** 2 / (N * N / 64)).sum()
     assert 63 - 4 * np.sqrt(126) < chi < 63 + 5 * np.sqrt(126)
 
 
-def test_seeds_are_lands_of_their_own(any_engine, sketch_of):
-    lands = [any_engine.read(sketch_of(seed=s), "land").astype(float).ravel() for s in (7, 8, 7)]
-    np.testing.assert_array_equal(lands[0], lands[2])
-    assert abs(np.corrcoef(lands[0], lands[1])[0, 1]) < 4 / N
+def test_seeds_are_terrains_of_their_own(any_engine, sketch_of):
+    terrains = [any_engine.read(sketch_of(seed=s), "terrain").astype(float).ravel() for s in (7, 8, 7)]
+    np.testing.assert_array_equal(terrains[0], terrains[2])
+    assert abs(np.corrcoef(terrains[0], terrains[1])[0, 1]) < 4 / N

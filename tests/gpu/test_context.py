@@ -177,8 +177,8 @@ def test_a_renderer_s_folder_is_the_same_for_every_build(renderer, slug, softwar
     assert (info.slug, info.software) == (slug, software)
 
 
-@pytest.mark.parametrize(("count", "said"), [(2, "there are 2, from 0"), (1, "the only one is 0")])
-def test_a_device_that_is_not_there_is_told_by_its_number_and_theirs(monkeypatch, count, said):
+@pytest.mark.parametrize(("count", "message"), [(2, "there are 2, from 0"), (1, "the only one is 0")])
+def test_a_device_that_is_not_there_is_reported_by_its_number_and_theirs(monkeypatch, count, message):
     def refuse(**_: object) -> None:
         raise ValueError(f"requested device index 99, but found {count} devices")
 
@@ -186,7 +186,7 @@ def test_a_device_that_is_not_there_is_told_by_its_number_and_theirs(monkeypatch
     monkeypatch.setattr("moderngl.create_context", refuse)
     with pytest.raises(ContextError) as caught:
         open_context(device=99)
-    assert str(caught.value) == f"--device 99: there is no such EGL device; {said}"
+    assert str(caught.value) == f"--device 99: there is no such EGL device; {message}"
 
 
 def test_advice_for_software_does_not_speak_of_what_we_set_ourselves():

@@ -125,7 +125,7 @@ def test_the_answer_is_one_line_of_whole_sentences(message, platform):
 
 @each("platform", ["darwin", "win32"])
 @each(("name", "message"), MESSAGES)
-def test_no_other_platform_is_told_to_use_a_linux_package_manager(name, message, platform):
+def test_no_other_platform_is_advised_to_use_a_linux_package_manager(name, message, platform):
     answer = advice(message, platform, {"DISPLAY": ":0", "WSL_DISTRO_NAME": "Debian"})
     assert "apt" not in answer.split()
     assert "dnf" not in answer.split()

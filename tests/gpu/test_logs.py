@@ -366,7 +366,7 @@ def test_a_log_that_says_nothing_has_no_entries(text: str) -> None:
     assert parse_log(text) == ()
 
 
-def test_a_log_that_is_not_understood_is_kept_whole() -> None:
+def test_a_log_that_is_not_understood_is_returned_whole() -> None:
     assert parse_log("the compiler is tired\ncome back tomorrow\n") == (
         error(0, "the compiler is tired\n    come back tomorrow"),
     )

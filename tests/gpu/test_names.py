@@ -86,7 +86,7 @@ def test_mistakes_outside_a_function_are_explained(ctx: moderngl.Context, tmp_pa
     assert "end in `return`" in complaint(ctx, tmp_path, without)
 
 
-def test_a_function_of_the_library_is_told_with_its_file(ctx: moderngl.Context, tmp_path: Path) -> None:
+def test_a_function_of_the_library_is_reported_with_its_file(ctx: moderngl.Context, tmp_path: Path) -> None:
     name, files = next((name, files) for name, files in library().items() if len(files) == 1)
     text = complaint(ctx, tmp_path, BODY.format(f"return {name}();"))
     assert f'add `#include "{files[0]}"`' in text
@@ -143,7 +143,9 @@ def test_nothing_is_guessed_where_nothing_is_sure(tmp_path: Path, line: str, mes
     assert guess(message, kernel.source, place) == ""
 
 
-def test_what_a_driver_warns_of_is_told_in_the_kernel_s_lines(ctx: moderngl.Context, tmp_path: Path) -> None:
+def test_what_a_driver_warns_of_is_reported_in_the_kernel_s_lines(
+    ctx: moderngl.Context, tmp_path: Path
+) -> None:
     if "llvmpipe" not in ctx.info["GL_RENDERER"]:
         pytest.skip("each driver warns of other things")
     wrapped = wrap(read(tmp_path, BODY.format("float a; return a;")), FRAGMENT)

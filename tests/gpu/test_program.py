@@ -36,7 +36,7 @@ def kernel(tmp_path):
 @pytest.fixture
 def programs(ctx):
     made = Programs(ctx)
-    made.begin()
+    made.frame += 1
     yield made
     made.release()
 
@@ -63,8 +63,8 @@ def test_a_kernel_is_wrapped_once(programs, kernel, monkeypatch):
 
 def test_what_the_driver_dropped_is_not_set(programs, kernel):
     program = programs.get(kernel(), FRAGMENT)
-    assert "amount" in program
-    assert "idle" not in program
+    assert "amount" in program.uniforms
+    assert "idle" not in program.uniforms
     program.set("idle", 3.0)
     program.set("never_was", 3.0)
     program.set("amount", 0.25)
@@ -76,15 +76,15 @@ def test_what_the_driver_dropped_is_not_set(programs, kernel):
 
 
 def test_programs_of_this_frame_stay_however_many(programs, kernel):
-    kept = [programs.get(kernel(KERNEL.replace("0.0", f"{i}.0")), FRAGMENT) for i in range(80)]
+    used = [programs.get(kernel(KERNEL.replace("0.0", f"{i}.0")), FRAGMENT) for i in range(80)]
     assert len(programs) == 80
-    assert len({id(p) for p in kept}) == 80
-    programs.begin()
+    assert len({id(p) for p in used}) == 80
+    programs.frame += 1
     programs.get(kernel(KERNEL.replace("0.0", "1000.0")), FRAGMENT)
     assert len(programs) == 64
 
 
-def test_a_wrong_text_is_told_in_its_own_lines(ctx, kernel):
+def test_a_wrong_text_is_reported_in_its_own_lines(ctx, kernel):
     with pytest.raises(ShaderError) as caught:
         compile_wrapped(ctx, wrap(kernel(KERNEL.replace("amount +", "amont +")), FRAGMENT))
     assert caught.value.diagnostics[0].line == 7
@@ -110,7 +110,7 @@ def test_a_link_error_has_at_least_its_file(kernel):
     assert "varying x" in error.diagnostics[0].message
 
 
-def test_a_driver_that_gives_no_reason_is_told_so(kernel):
+def test_a_driver_that_gives_no_reason_is_reported_so(kernel):
     error = explain("GLSL Compiler failed\n\nfragment_shader\n===============\n", wrap(kernel(), FRAGMENT))
     assert "gave no reason" in str(error)
     assert error.diagnostics[0].file.endswith("k.glsl")

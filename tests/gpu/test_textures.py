@@ -66,10 +66,10 @@ def test_numbers_that_do_not_fit_are_clamped(ctx, form):
 
 
 def test_what_is_not_a_number_becomes_zero_where_there_is_no_such_thing(ctx):
-    for form, kept in (("r8", False), ("r16", False), ("r16f", True), ("r32f", True)):
+    for form, keeps_nan in (("r8", False), ("r16", False), ("r16f", True), ("r32f", True)):
         texture = make_texture(ctx, (1, 1), form)
         write_texture(texture, np.array([[np.nan]]))
-        assert np.isnan(read_texture(texture)[0, 0]) == kept
+        assert np.isnan(read_texture(texture)[0, 0]) == keeps_nan
         assert read_picture(texture)[0, 0].tolist() == [0, 0, 0, 255]
         texture.release()
 

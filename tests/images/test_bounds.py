@@ -80,7 +80,7 @@ def tiff(path: Path) -> None:
 
 
 def webp(path: Path) -> None:
-    """Write the head of a WebP of 16383 x 16383; whoever opens it takes memory for all of it."""
+    """Write the head of a WebP of 16383 x 16383; decoding it takes memory for all of it."""
     small = io.BytesIO()
     PIL.Image.fromarray(np.zeros((8, 8, 3), np.uint8)).save(small, "WEBP", lossless=True)
     data = bytearray(small.getvalue())

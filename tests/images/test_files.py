@@ -106,7 +106,7 @@ def test_every_kind_of_png_is_read_to_the_last_bit(tmp_path, channels, dtype):
     np.testing.assert_allclose(scaled[..., :3], colour, atol=0.01)
     alpha = array[..., -1] if channels in (2, 4) else np.full((11, 6), np.iinfo(dtype).max)
     np.testing.assert_allclose(scaled[..., 3], alpha, atol=0.01)
-    assert image.transparent == image.has_alpha == (channels in (2, 4))
+    assert image.has_alpha == (channels in (2, 4))
 
 
 @pytest.mark.parametrize("ending", ["jpg", "webp"])
@@ -115,7 +115,7 @@ def test_jpeg_and_webp_have_their_top_row_first(tmp_path, ending):
     array[:16] = (250, 20, 20)
     PillowImage.fromarray(array).save(tmp_path / f"a.{ending}", quality=95)
     image = read_image(tmp_path / f"a.{ending}")
-    assert image.pixels.shape == (32, 48, 4) and not image.transparent and not image.has_alpha
+    assert image.pixels.shape == (32, 48, 4) and not image.has_alpha
     assert abs(image.pixels[4, 20].astype(int) - (250, 20, 20, 255)).max() < 12
     assert image.pixels[28, 20, :3].max() < 12
 
@@ -126,7 +126,7 @@ def test_palettes_keep_their_transparency(tmp_path):
     picture.putpixel((0, 0), 0)
     picture.save(tmp_path / "p.png", transparency=0)
     image = read_image(tmp_path / "p.png")
-    assert image.transparent and image.has_alpha
+    assert image.has_alpha
     assert image.pixels[0, 0, 3] == 0 and image.pixels[2, 3].tolist() == [10, 200, 30, 255]
     assert read_samples(tmp_path / "p.png").shape == (3, 4, 4)
 
@@ -134,7 +134,7 @@ def test_palettes_keep_their_transparency(tmp_path):
 def test_a_full_alpha_channel_is_one_all_the_same(tmp_path):
     PillowImage.new("RGBA", (4, 3), (1, 2, 3, 255)).save(tmp_path / "full.png")
     image = read_image(tmp_path / "full.png")
-    assert image.has_alpha and not image.transparent
+    assert image.has_alpha
 
 
 def test_black_and_white_pictures_are_grey(tmp_path):
@@ -144,7 +144,7 @@ def test_black_and_white_pictures_are_grey(tmp_path):
 
 def test_the_camera_s_orientation_is_obeyed(tmp_path):
     exif = PillowImage.Exif()
-    exif[0x0112] = 6  # turn a quarter clockwise to show
+    exif[0x0112] = 6  # rotate a quarter clockwise to show
     PillowImage.new("RGB", (40, 24)).save(tmp_path / "o.jpg", exif=exif)
     assert read_image(tmp_path / "o.jpg").size == (24, 40)
 
@@ -360,10 +360,10 @@ def test_other_programs_read_the_tiff(tmp_path):
     np.testing.assert_array_equal(np.array(PillowImage.open(tmp_path / "a.tif")), values[::-1])
 
 
-def test_what_was_clamped_is_said(tmp_path):
+def test_what_was_clamped_is_reported(tmp_path):
     values = np.array([[0.0, -0.5], [1.0, 2.0], [0.5, 1e30]], np.float32)
-    said = write_values(tmp_path / "a.png", values)
-    assert said == "3 of 6 values lay outside 0..1 (from -0.5 to 1e+30); clamped."
+    message = write_values(tmp_path / "a.png", values)
+    assert message == "3 of 6 values are outside 0..1 (from -0.5 to 1e+30); clamped."
     assert read_samples(tmp_path / "a.png")[..., 0].tolist() == [[32768, 65535], [65535, 65535], [0, 0]]
 
 
@@ -403,15 +403,15 @@ def test_values_that_cannot_be_written_are_sentences(tmp_path, name, values, wor
 
 def test_a_new_name_is_one_that_nothing_has(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with new_name("land.png") as first, new_name("land.png") as second:
-        assert (first.name, second.name) == ("land.png", "land-2.png")
+    with new_name("terrain.png") as first, new_name("terrain.png") as second:
+        assert (first.name, second.name) == ("terrain.png", "terrain-2.png")
         assert first.exists() and second.exists(), "held from here on"
-    assert left_in(tmp_path) == ["land-2.png", "land.png"]
+    assert left_in(tmp_path) == ["terrain-2.png", "terrain.png"]
 
 
 def test_a_new_name_is_given_back_when_nothing_is_written(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(KeyboardInterrupt), new_name("land.png"):
+    with pytest.raises(KeyboardInterrupt), new_name("terrain.png"):
         raise KeyboardInterrupt
     assert left_in(tmp_path) == []
 

@@ -24,7 +24,7 @@ def picture(rows: int, cols: int, channels: int) -> np.ndarray:
 def test_pillow_reads_what_was_written(channels, heights):
     wanted = picture(7, 11, channels)
     stream = io.BytesIO()
-    writer = PngStrips(stream, (11, 7), channels, {"Title": "Terrain – land"})
+    writer = PngStrips(stream, (11, 7), channels, {"Title": "Terrain – hills"})
     done = 0
     for rows in heights:
         writer.write(wanted[done : done + rows])
@@ -33,7 +33,7 @@ def test_pillow_reads_what_was_written(channels, heights):
     stream.seek(0)
     found = PIL.Image.open(stream)
     np.testing.assert_array_equal(np.array(found), wanted)
-    assert found.mode == {3: "RGB", 4: "RGBA"}[channels] and found.text == {"Title": "Terrain – land"}
+    assert found.mode == {3: "RGB", 4: "RGBA"}[channels] and found.text == {"Title": "Terrain – hills"}
 
 
 def test_smooth_rows_pack_well():

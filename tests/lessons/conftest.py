@@ -38,7 +38,7 @@ sliders = ["height.smoothing"]
 
 ## One thing
 
-The spread is {{spread}}, see [the last](lesson:small).
+The spread is {{spread}}, see [the last](lesson:small). Each disc is a [texel](term:texel).
 
 ```step turns
 sketch  = "diamond_square_steps"
@@ -141,7 +141,7 @@ alt     = "Un treillis de disques."
 
 ## Une chose
 
-L’écart est de {{spread}}, voir [la dernière](lesson:small).
+L’écart est de {{spread}}, voir [la dernière](lesson:small). Chaque disque est un [texel](term:texel).
 
 ```step turns
 caption = "Tour par tour."

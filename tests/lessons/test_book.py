@@ -19,6 +19,7 @@ from playground.lessons.book.html import formula, line, plain, prose
 from playground.lessons.book.images import is_diagram, larger
 from playground.lessons.figure_renders import draw, pictures_of
 from playground.lessons.figures import thesis_figures
+from playground.lessons.glossary import terms
 from playground.lessons.library import interface_labels
 
 VOID = {"img", "input", "br", "meta", "link", "hr", "source"}
@@ -76,8 +77,8 @@ def test_its_files(book):
         p.relative_to(book).as_posix() for p in book.rglob("*") if p.is_file() and p.suffix != ".webp"
     )
     assert names == [
-        *("book.css", "book.js", "book.json", "en/index.html", "en/small.html"),
-        *("fr/index.html", "fr/small.html", "index.html"),
+        *("book.css", "book.js", "book.json", "en/glossary.html", "en/index.html"),
+        *("en/small.html", "fr/glossary.html", "fr/index.html", "fr/small.html", "index.html"),
     ]
 
 
@@ -97,6 +98,17 @@ def test_nothing_on_a_page_comes_from_a_network_and_every_link_leads_somewhere(b
     assert set(outside) == {"https://doi.org/10.1145/358523.358553"}  # a paper, to be followed by hand
     for name in ("book.css", "book.js"):
         assert "http" not in (book / name).read_text(encoding="utf-8")
+
+
+def test_a_term_shows_its_meaning_and_leads_to_the_glossary(book):
+    texel = terms()["texel"]
+    for language, title in (("en", "A small lesson"), ("fr", "Une petite leçon")):
+        (link,) = [a for a in Page(book / language / "small.html").all("a") if a.get("class") == "term"]
+        assert link["href"] == "glossary.html#texel" and link["title"] == texel.definition(language)
+        page = Page(book / language / "glossary.html")
+        assert set(page.ids) >= set(terms())
+        entry = page.text[page.text.index(texel.meaning[language]) :]
+        assert title in entry[: entry.index(".", len(texel.meaning[language]) + 1)]
 
 
 def test_pages_can_be_read_by_those_who_do_not_see(book):
@@ -130,7 +142,7 @@ def test_its_pictures_are_the_engine_s(book, lesson, engine):
             stored = np.asarray(image.convert("RGB")).astype(float)
         drawn = draw(engine, larger(picture.scene)).array[..., :3]
         assert stored.shape == drawn.shape
-        # Diagrams are stored as they are, lands nearly so.
+        # Diagrams are stored as they are, terrains nearly so.
         assert np.abs(stored - drawn).mean() < (0.01 if is_diagram(drawn) else 4.0), picture.name
 
 
@@ -273,8 +285,12 @@ def test_french_is_set_as_french_is():
 # ── the thesis's figures ─────────────────────────────────────────────────────
 
 
-def test_every_figure_of_the_thesis_has_its_pictures():
-    figures = thesis_figures()
+@pytest.fixture(scope="module")
+def figures():
+    return thesis_figures()
+
+
+def test_every_figure_of_the_thesis_has_its_pictures(figures):
     numbers = [figure.number for figure in figures]
     chapters = {"1": 36, "2": 9, "3": 11, "4": 8, "5": 15}
     assert numbers == [f"{c}.{n}" for c, most in chapters.items() for n in range(1, most + 1)]
@@ -283,8 +299,8 @@ def test_every_figure_of_the_thesis_has_its_pictures():
         assert figure.captions.keys() == {"en", "fr"}
 
 
-def test_a_figure_says_its_parameters_and_its_command():
-    figure = next(figure for figure in thesis_figures() if figure.number == "1.16")
+def test_a_figure_says_its_parameters_and_its_command(figures):
+    figure = next(figure for figure in figures if figure.number == "1.16")
     (drawn,) = figure.pictures
     assert drawn.command == "playground render diamond_square --shot figure-1-16"
     parameters = dict(drawn.parameters)

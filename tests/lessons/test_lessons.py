@@ -13,13 +13,13 @@ from playground.lessons.measuring import filled, numbers_of
 from playground.lessons.model import Break, Prose
 from playground.lessons.read import read_lesson, summaries
 from playground.lessons.rules import broken_rules, wrong_pictures
-from playground.lessons.scenes import Sketches
 from playground.lessons.status import status_of
 from playground.paths import GLSL
 from playground.sketch.source import read_text
 
+from .conftest import SKETCHES
+
 NAMES = [one.name for one in summaries()]
-SKETCHES = Sketches()
 NO_BREAK = "\u00a0\u202f"
 
 

@@ -50,7 +50,7 @@ def test_a_ramp_s_slope():
 
 
 @pytest.mark.parametrize("hurst", [0.2, 0.8])
-def test_the_spectrum_s_slope_of_a_land_made_of_it(hurst):
+def test_the_spectrum_s_slope_of_a_terrain_made_of_it(hurst):
     n = 512
     along = np.fft.fftfreq(n, 1 / n)
     frequency = np.hypot(along[None], along[:, None])
@@ -76,11 +76,11 @@ def test_a_crease_along_the_diagonal_only():
 
 
 def test_a_step_at_a_column():
-    land = np.cumsum(np.full((20, 40), 0.1), axis=1)
-    assert measures.step_across(land, GRID, 20) == pytest.approx(1.0)
-    land[:, 20:] += 0.4
-    assert measures.step_across(land, GRID, 20) == pytest.approx(5.0)
-    assert measures.step_across(land, GRID, 19) == pytest.approx(1.0)
+    terrain = np.cumsum(np.full((20, 40), 0.1), axis=1)
+    assert measures.step_across(terrain, GRID, 20) == pytest.approx(1.0)
+    terrain[:, 20:] += 0.4
+    assert measures.step_across(terrain, GRID, 20) == pytest.approx(5.0)
+    assert measures.step_across(terrain, GRID, 19) == pytest.approx(1.0)
 
 
 def test_correlation_with_itself_moved():
@@ -121,8 +121,8 @@ def test_how_a_number_is_written(value, digits, unit, text):
 
 def test_numbers_go_where_words_name_them(lesson, engine):
     numbers = numbers_of(engine, lesson)
-    land = engine.read(lesson.named["spread"].scene.sketch, "height")
-    assert numbers["spread"].value == pytest.approx(float(land.max() - land.min()))
+    terrain = engine.read(lesson.named["spread"].scene.sketch, "height")
+    assert numbers["spread"].value == pytest.approx(float(terrain.max() - terrain.min()))
     words = "It is {{spread}}; {{ spread }}, not {{other}}."
     assert named_in(words) == ["spread", "spread", "other"]
     text = numbers["spread"].text
@@ -130,7 +130,7 @@ def test_numbers_go_where_words_name_them(lesson, engine):
     assert filled("{{spread}}", numbers, comma=True) == text.replace(".", ",")
 
 
-def test_a_quotient_of_two_lands(make_lesson, engine):
+def test_a_quotient_of_two_terrains(make_lesson, engine):
     """Diamond-square is linear in its smoothing where its corners are level."""
     level = 'set = { "height.corners" = [0.5, 0.5, 0.5, 0.5], "height.smoothing" = 0.3 }\nwhat    = "spread"'
     over = f'{level}\nover = {{ set = {{ "height.smoothing" = 0.6 }} }}'
@@ -152,7 +152,7 @@ def test_numbers_of_the_engine_s_own(make_lesson, engine):
     assert number("milliseconds").value > 0
 
 
-def test_triangles_of_a_land_that_is_drawn(make_lesson, engine):
+def test_triangles_of_a_terrain_that_is_drawn(make_lesson, engine):
     change = (
         'sketch  = "diamond_square_steps"\nwhat    = "spread"',
         'sketch = "wireframe"\nset = { "view.grid" = 9 }\nwhat = "triangles"',

@@ -19,6 +19,7 @@ from PIL import Image
 from playground.errors import SketchError
 from playground.lessons.bugs import BugRegion
 from playground.lessons.figure_renders import broken, draw
+from playground.lessons.glossary import terms
 from playground.lessons.library import interface_labels, lesson_files
 from playground.lessons.measuring import numbers_of
 from playground.lessons.model import Figure, Prose
@@ -27,7 +28,8 @@ from playground.lessons.notebook.build import notebook_text
 from playground.lessons.notebook.controls import controls_of, scene_at
 from playground.lessons.notebook.lesson import NotebookLesson
 from playground.lessons.read import read_lesson
-from playground.lessons.scenes import Sketches
+
+from .conftest import SKETCHES
 
 NODE = shutil.which("node")
 WIDGET = Path(notebook_lesson.__file__).with_name("widget.js")
@@ -119,9 +121,8 @@ def test_the_sun_is_dragged_by_azimuth_and_elevation(opened):
 
 
 def test_every_slider_of_a_shipped_lesson_can_be_dragged():
-    sketches = Sketches()
     for name in lesson_files():
-        for block in read_lesson(name, "en", sketches).blocks:
+        for block in read_lesson(name, "en", SKETCHES).blocks:
             if isinstance(block, Figure):
                 keys = {c.key.partition(":")[0] for c in controls_of(block, "en", interface_labels("en"))}
                 assert keys == set(block.sliders), (name, block.name)
@@ -163,6 +164,12 @@ def test_the_cells_are_the_lesson(lesson, french, engine):
         assert 'lesson.show("turns")' in code and 'lesson.measure("spread")' in code
         assert "{{" not in text and "lesson:small" not in text
         assert text.count("<details>") == 7
+        definition, section = (
+            terms()["texel"].definition(one.language),
+            interface_labels(one.language)["glossary"],
+        )
+        assert f'[texel](#{section} "{definition}")' in text
+        assert text.endswith(f"## {section}\n\n- {definition}")
         assert len({cell["id"] for cell in cells}) == len(cells)
     assert "Pourquoi est-ce sombre" in text and 'language="fr"' in code[0]
 

@@ -20,9 +20,9 @@ def test_every_kind_of_block_is_read(lesson):
 
 
 def test_a_figure_that_is_a_shot_is_plain(lesson, make_lesson):
-    land = lesson.named["land"]
-    assert land.scene.plain and land.scene.pixels == (480, 480)
-    assert dict(land.scene.steps) == {"height.raw": 5, "phase": 5}
+    terrain = lesson.named["land"]
+    assert terrain.scene.plain and terrain.scene.pixels == (480, 480)
+    assert dict(terrain.scene.steps) == {"height.raw": 5, "phase": 5}
     more = make_lesson(('shot    = "figure-1-11"', 'shot = "figure-1-11"\nset = { size = 9 }')).named["land"]
     assert not more.scene.plain
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from playground.lessons import rules
@@ -37,6 +39,8 @@ def test_the_small_lesson_keeps_to_all(lesson):
         ("lesson:small", "lesson:smaller", "a link to lesson 'smaller'"),
         ("lesson:small", "http://example.org", "a link to 'http://example.org'"),
         ("lesson:small", "sketch:nothing", "a link to sketch 'nothing'"),
+        ("term:texel", "term:texl", "a link to term 'texl', which there is not; did you mean 'texel'?"),
+        ("Turn by turn.", "[Texels](term:texel).", "a second link to term 'texel'"),
         ("lesson:small", "thesis:one", "a link to section 'one'"),
         (
             'alt     = "A lattice of discs."',
@@ -62,6 +66,12 @@ def test_the_small_lesson_keeps_to_all(lesson):
 )
 def test_each_rule(make_lesson, before, after, words):
     assert any(words in sentence for sentence in sentences(make_lesson((before, after))))
+
+
+def test_a_wrong_link_is_named_by_its_line(make_lesson):
+    wrong = make_lesson(("term:texel", "term:tile"))
+    (found,) = [(line, sentence) for line, sentence in broken_rules(wrong) if "term 'tile'" in sentence]
+    assert Path(wrong.file).read_text(encoding="utf-8").split("\n")[found[0] - 1].startswith("The spread is")
 
 
 def test_a_bug_must_be_visible_and_a_claim_must_hold(make_lesson, engine):

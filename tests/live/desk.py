@@ -23,7 +23,7 @@ from playground.workbench.session import Session
 
 
 class Bare:
-    """A panel on a session, turn by turn, at 60 turns a second."""
+    """A panel on a session, frame by frame, at 60 frames a second."""
 
     def __init__(
         self, engine: Engine, path: Path, size: tuple[int, int] = (1280, 720), scale: float = 1.0
@@ -65,7 +65,7 @@ class Bare:
         self.clipboard = ""
         imgui.get_platform_io().platform_set_clipboard_text_fn = self._copied
         self.quits = False
-        self.turn(3)
+        self.run_frames(3)
 
     def _quit(self) -> None:
         self.quits = True
@@ -88,11 +88,16 @@ class Bare:
     def _copied(self, _: object, text: str) -> None:
         self.clipboard = text
 
-    def turn(self, count: int = 1, around: Callable[[Callable[[], object]], object] | None = None) -> None:
-        """Let turns pass; ``around`` is given the drawing of the panel, to measure it."""
+    def run_frames(
+        self,
+        count: int = 1,
+        around: Callable[[Callable[[], object]], object] | None = None,
+        step: float = 1 / 60,
+    ) -> None:
+        """Draw frames, one every ``step`` [s]; ``around`` receives what draws the panel, to measure it."""
         for _ in range(count):
-            self.time += 1 / 60
-            imgui.get_io().delta_time = 1 / 60
+            self.time += step
+            imgui.get_io().delta_time = step
             self.picture = self.session.frame((48, 32))
             imgui.new_frame()
             if around is None:
@@ -108,15 +113,15 @@ class Bare:
 
     def point(self, label: str, across: float = 0.5) -> None:
         """Move the mouse over what has a label, to a share of its width."""
-        self.turn()
+        self.run_frames()
         x, y, wide, high = self.places[label]
         imgui.get_io().add_mouse_pos_event(x + across * wide, y + high / 2)
-        self.turn()
+        self.run_frames()
 
     def press(self, down: bool, button: int = 0) -> None:
         """Press a button of the mouse, or let it go."""
         imgui.get_io().add_mouse_button_event(button, down)
-        self.turn()
+        self.run_frames()
 
     def click(self, label: str, across: float = 0.5, *, times: int = 1, button: int = 0) -> None:
         """Click on what has a label."""
@@ -125,7 +130,10 @@ class Bare:
             self.press(True, button)
             self.press(False, button)
         self.places.clear()
-        self.turn(2 if times > 1 else 25)  # the next click is no double one
+        if times > 1:
+            self.run_frames(2)
+        else:
+            self.run_frames(4, step=0.11)  # the next click is no double one
 
     def drag(self, label: str, start: float, end: float) -> None:
         """Drag from one share of a widget's width to another."""
@@ -135,25 +143,25 @@ class Bare:
             x, y, wide, high = self.places[label]
             share = start + (end - start) * n / 5
             imgui.get_io().add_mouse_pos_event(x + share * wide, y + high / 2)
-            self.turn()
+            self.run_frames()
         self.press(False)
-        self.turn(60)
+        self.run_frames(4, step=0.25)
 
     def key(self, *keys: imgui.Key) -> None:
         """Press keys together, and let them go."""
         for down in (True, False):
             for key in keys if down else reversed(keys):
                 imgui.get_io().add_key_event(key, down)
-            self.turn(2)
+            self.run_frames(2)
 
     def type(self, text: str) -> None:
         """Type a text over what is selected."""
         for letter in text:
             imgui.get_io().add_input_character(ord(letter))
-            self.turn()
+            self.run_frames()
 
     def draw(self) -> None:
-        """Draw the panel, and what stands over the window."""
+        """Draw the panel, and what is over the window."""
         self.bench.inspection.begin()
         left = self.panel.draw(self.bench, self.theme)
         room = imgui.get_io().display_size

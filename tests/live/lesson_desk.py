@@ -10,16 +10,24 @@ from imgui_bundle import imgui
 from playground.engine.engine import Engine
 from playground.lessons import library
 from playground.lessons.document import read_document
+from playground.lessons.scenes import Sketches
 from playground.lessons.translate import write_hashes
 from playground.live.code_window import draw_code
 from playground.live.inspect.timeline import height_of_timeline
 from playground.live.lesson.host import Lessons
-from playground.workbench.autosave import Rememberer, memory_of
-from playground.workbench.lesson.reader import Reading
+from playground.paths import GLSL
+from playground.workbench.autosave import Autosave, memory_of
+from playground.workbench.lesson.reader import Reader
 
+from ..sketch_texts import map_of_height
 from .desk import Bare
 
-RAW = "generation/diamond_square/raw.glsl"
+FILE = (GLSL / "generation/diamond_square/raw.glsl").resolve()
+"""The shader that the lesson quotes and breaks."""
+OWN = "format = 1\nsize = 17\n" + map_of_height("generation/white_noise")
+"""The reader's own sketch."""
+SHIPPED = Sketches()
+"""The shipped sketches that lessons show; no test changes them, so each is loaded once."""
 ENGLISH = r"""+++
 number  = 1
 title   = "Halving"
@@ -32,7 +40,7 @@ sketch  = "white_noise"
 
 Four corners, then means: $h = \frac{a+b+c+d}{4}$.
 
-```figure land
+```figure rubble
 sketch  = "white_noise"
 set     = { "height.seed" = 3 }
 caption = "Numbers without a neighbour."
@@ -40,11 +48,11 @@ alt     = "Rubble"
 sliders = ["height.seed"]
 ```
 
-## Turn by turn
+## Step by step
 
-Each turn halves. There are {{peaks}} tops.
+Each step halves. There are {{peaks}} peaks.
 
-```step turns
+```step halves
 sketch   = "diamond_square_steps"
 passes   = ["height.raw", "phase"]
 turns    = [0, 1, 2, 4]
@@ -57,7 +65,7 @@ captions = ["corners", "one centre", "edges", "all"]
 sketch = "white_noise"
 set    = { size = 33 }
 what   = "local_maxima"
-text   = "Of this land {{peaks}} texels are tops."
+text   = "Of this terrain {{peaks}} texels are peaks."
 ```
 
 ## One value
@@ -67,13 +75,13 @@ sketch    = "diamond_square_steps"
 parameter = "height.smoothing"
 values    = [0.0, 0.5, 1.0]
 caption   = "Roughness."
-alt       = "Lands that get rougher"
+alt       = "Terrains that get rougher"
 ```
 
 ```compare seeds
 sketch  = "white_noise"
-caption = "Two lands."
-alt     = "Two lands of rubble"
+caption = "Two terrains."
+alt     = "Two terrains of rubble"
 labels  = ["first", "second"]
 [[variant]]
 set = { "height.seed" = 1 }
@@ -81,7 +89,7 @@ set = { "height.seed" = 1 }
 set = { "height.seed" = 2 }
 ```
 
-## A fault
+## A bug
 
 ```code mean
 file   = "generation/diamond_square/raw.glsl"
@@ -150,7 +158,7 @@ goal  = "Savoir ce que donne une moyenne de *quatre*."
 
 Quatre coins, puis des moyennes : $h = \frac{a+b+c+d}{4}$.
 
-```figure land
+```figure rubble
 caption = "Des nombres sans voisin."
 alt     = "Des gravats"
 ```
@@ -159,7 +167,7 @@ alt     = "Des gravats"
 
 Chaque étape divise. Il y a {{peaks}} sommets.
 
-```step turns
+```step halves
 caption  = "Texels connus."
 alt      = "Une grille qui se remplit"
 captions = ["coins", "un centre", "arêtes", "tous"]
@@ -243,7 +251,7 @@ def shelved(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
 
 
 class Desk(Bare):
-    """A panel of lessons beside a sketch, turn by turn."""
+    """A panel of lessons next to a sketch, frame by frame."""
 
     lessons: Lessons | None = None
 
@@ -251,19 +259,20 @@ class Desk(Bare):
         super().__init__(engine, path, size)
         for name in ("small_button", "radio_button"):
             self._watch(imgui, name)
-        self.rememberer = Rememberer(self.session, memory_of(self.session.path))
-        self.lessons = Lessons(self.bench, self.rememberer, lambda: self.rememberer.look(size))
+        self.autosave = Autosave(self.session, memory_of(self.session.path))
+        self.lessons = Lessons(self.bench, self.autosave, lambda: self.autosave.look(size))
+        self.reader._catalogue._sketches = SHIPPED
         self.bench.interface.panel_shown = True
 
     @property
-    def reading(self) -> Reading:
+    def reader(self) -> Reader:
         assert self.lessons is not None
-        return self.lessons.reading
+        return self.lessons.reader
 
     def open(self, page: int = 0, **rest: object) -> None:
         """Open the lesson at a page, and wait until it shows."""
-        assert self.reading.open("halving", page=page, **rest)  # type: ignore[arg-type]
-        self.turn(4)
+        assert self.reader.open("halving", page=page, **rest)  # type: ignore[arg-type]
+        self.run_frames(4)
 
     def draw(self) -> None:
         if self.lessons is None:
@@ -284,5 +293,11 @@ class Desk(Bare):
     def close(self) -> None:
         if self.lessons is not None:
             self.lessons.release()
-        self.rememberer.close()
+        self.autosave.close()
         super().close()
+
+
+def value(desk: Desk, path: str) -> object:
+    """Return a parameter's value in the sketch that is shown."""
+    assert desk.session.shown is not None
+    return dict(desk.session.shown.applied)[path]

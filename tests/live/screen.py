@@ -60,7 +60,7 @@ class Screen:
         return rows[:, :width, 2::-1].copy()
 
     def do(self, *words: object) -> None:
-        """Move the mouse, press keys: what xdotool is told."""
+        """Move the mouse, press keys: words of xdotool."""
         environment = {**os.environ, "DISPLAY": self.display}
         subprocess.run([self.xdotool, *map(str, words)], env=environment, check=True, timeout=180)
 
@@ -71,7 +71,7 @@ class Screen:
 
 
 class Program:
-    """A program with a window, in a process of its own, which says of itself what it shows."""
+    """A program with a window, in a process of its own, which reports what it shows."""
 
     def __init__(self, screen: Screen, folder: Path, command: Sequence[str], cwd: Path) -> None:
         self.screen = screen
@@ -83,18 +83,18 @@ class Program:
         environment |= {"DISPLAY": screen.display, "PLAYGROUND_STATUS": str(self.status)}
         places = filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")])
         environment["PYTHONPATH"] = os.pathsep.join(places)
-        self.said = (folder / "stderr.txt").open("w+b")
-        self.process = subprocess.Popen(command, env=environment, cwd=cwd, stderr=self.said)
+        self.log = (folder / "stderr.txt").open("w+b")
+        self.process = subprocess.Popen(command, env=environment, cwd=cwd, stderr=self.log)
 
     def now(self) -> dict[str, Any]:
-        """Return what it said last; nothing before that."""
+        """Return the last line of its status; nothing before that."""
         text = self.status.read_text("utf-8") if self.status.exists() else ""
         lines = text[: text.rfind("\n") + 1].splitlines()  # the last may be half written
         found: dict[str, Any] = json.loads(lines[-1]) if lines else {}
         return found
 
     def wait(self, until: Callable[[dict[str, Any]], object]) -> dict[str, Any]:
-        """Wait until it says so."""
+        """Wait until its status fulfils a condition."""
         end = time.monotonic() + LIMIT
         while time.monotonic() < end:
             assert self.process.poll() is None, f"the window died: {self.complaint()}"
@@ -107,8 +107,8 @@ class Program:
 
     def complaint(self) -> str:
         """Return what it wrote to standard error."""
-        self.said.seek(0)
-        return self.said.read().decode("utf-8", "replace")
+        self.log.seek(0)
+        return self.log.read().decode("utf-8", "replace")
 
     def ended(self) -> int:
         """Wait for its end; return its exit status."""
@@ -119,4 +119,4 @@ class Program:
         if self.process.poll() is None:
             self.process.kill()
             self.process.wait(10)
-        self.said.close()
+        self.log.close()

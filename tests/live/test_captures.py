@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from playground.api import headless
-from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, CaptureJob, do
-from playground.capture.job_process import JobProcess
+from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, do
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
 from playground.images.files import read_png
@@ -26,7 +24,7 @@ from playground.workbench.session import Session
 from ..sketch_texts import map_of_height
 from .desk import Bare
 
-LAND = """// land.glsl -- a slope that goes up
+TERRAIN = """// terrain.glsl -- a slope that goes up
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1)
 uniform int kind = 0; //! menu("one", "two")
@@ -35,7 +33,7 @@ float kernel(ivec2 texel) { return level * float(texel.x + kind) / float(size.x)
 """
 SKETCH = (
     "format = 1\nsize = 33\n"
-    + map_of_height(channel="red")
+    + map_of_height("./terrain", channel="red")
     + """[[keyframe]]
 time = 0.0
 set = { "height.tint" = "#000000" }
@@ -50,7 +48,9 @@ SIZE = (40, 30)
 
 @pytest.fixture
 def bench(any_engine: Engine, tmp_path: Path) -> Iterator[Bench]:
-    (tmp_path / "land.glsl").write_text(LAND.replace("fract(time)", "fract(0.25 * time)"), encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(
+        TERRAIN.replace("fract(time)", "fract(0.25 * time)"), encoding="utf-8"
+    )
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     (tmp_path / "out").mkdir()
     session = Session(any_engine, tmp_path)
@@ -68,13 +68,8 @@ def wishing(bench: Bench, wish: Wish) -> Captures:
     return bench.captures
 
 
-def done(bench: Bench) -> None:
-    """Start what is wished for, and wait until it has ended; the window goes on meanwhile."""
-    bench.captures.start()
-    wait(bench)
-
-
 def wait(bench: Bench) -> None:
+    """Wait until the capture has ended; the window goes on meanwhile."""
     end = time.monotonic() + LIMIT
     while bench.captures.working is not None:
         assert time.monotonic() < end
@@ -83,7 +78,7 @@ def wait(bench: Bench) -> None:
         time.sleep(0.01)
 
 
-def said(bench: Bench) -> str:
+def notices_of(bench: Bench) -> str:
     return "\n".join(notice.text for notice in bench.notices.items)
 
 
@@ -93,16 +88,20 @@ def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: 
     bench.session.frame(SIZE)
     frame = bench.session.read()
     assert frame is not None
-    done(bench)
+    bench.captures.start()
+    working = bench.captures.working
+    wait(bench)
     made = bench.captures.made
-    assert made == bench.captures.folder / f"{made.name}" and bench.captures.saved == made, said(bench)
+    assert working is not None and working.progress == (1, 1)
+    assert made == bench.captures.folder / f"{made.name}" and bench.captures.saved == made, notices_of(bench)
     pixels, _ = read_png(made)
     assert np.array_equal(pixels, frame.array)
-    assert f"saved {made}, 40 x 30 pixels" in said(bench)
+    assert f"saved {made}, 40 x 30 pixels" in notices_of(bench)
+    here = bench.session.engine.render(bench.captures.job().sketch, size=SIZE, time=1.5)
+    assert np.array_equal(pixels, here.array), "its process gives the bytes of this one"
     bench.captures.wish.multiple = 4
-    done(bench)
-    assert bench.captures.made is not None and bench.captures.made != made
-    assert read_png(bench.captures.made)[0].shape == (120, 160, 4)
+    larger = do(bench.captures.job(), bench.session.engine, lambda *_: None, lambda _: None)
+    assert larger != made and read_png(larger)[0].shape == (120, 160, 4)
 
 
 def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(bench: Bench) -> None:
@@ -111,13 +110,13 @@ def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(bench: Ben
     assert bench.captures.working is not None
     bench.captures.working.stop()
     wait(bench)
-    assert "the capture was stopped" in said(bench) and list(bench.captures.folder.iterdir()) == []
+    assert "the capture was stopped" in notices_of(bench) and list(bench.captures.folder.iterdir()) == []
     bench.captures.start()
     bench.captures.close()
     assert bench.captures.working is None and list(bench.captures.folder.iterdir()) == []
 
 
-def test_a_process_that_dies_is_told(bench: Bench) -> None:
+def test_a_process_that_dies_is_reported(bench: Bench) -> None:
     bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
     bench.captures.start()
     assert bench.captures.working is not None
@@ -153,7 +152,7 @@ def test_numbered_pictures_a_film_and_a_sheet(bench: Bench) -> None:
     assert not list(bench.captures.folder.rglob("*.part"))
 
 
-def test_what_cannot_be_made_is_said_before_anything_begins(
+def test_an_invalid_capture_is_reported_before_anything_begins(
     bench: Bench, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for wish, sentence in (
@@ -167,7 +166,7 @@ def test_what_cannot_be_made_is_said_before_anything_begins(
         bench.captures.wish = wish
         bench.captures.start()
         assert bench.captures.working is None and bench.captures.failed
-        assert bench.captures.failed in said(bench)
+        assert bench.captures.failed in notices_of(bench)
 
 
 def test_without_pyav_one_sentence_with_the_command(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -230,21 +229,6 @@ def test_a_job_takes_a_new_name_every_time(bench: Bench) -> None:
     assert names == [f"{stem}.png", f"{stem}-2.png", f"{stem}-3.png"]
 
 
-def test_a_job_in_its_process_gives_the_bytes_of_this_one(bench: Bench) -> None:
-    sketch = wishing(bench, Wish()).job().sketch
-    job = CaptureJob(
-        kind=PICTURE, sketch=sketch, folder=bench.captures.folder, size=(64, 64), fps=Fraction(30)
-    )
-    working = JobProcess(job, software=bench.session.engine.info.software)
-    end = time.monotonic() + LIMIT
-    while (finished := working.poll()) is None and time.monotonic() < end:
-        time.sleep(0.01)
-    assert finished is not None and finished.path is not None, finished
-    here = bench.session.engine.render(job.sketch, size=(64, 64))
-    assert np.array_equal(read_png(finished.path)[0], here.array)
-    assert working.progress == (1, 1)
-
-
 def test_the_window_is_there_for_c_and_goes_with_esc(
     any_engine: Engine, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -252,7 +236,7 @@ def test_the_window_is_there_for_c_and_goes_with_esc(
 
     from playground.live.capture_window import draw_capture
 
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     bare = Bare(any_engine, tmp_path / "sketch.toml")
     started: list[Wish] = []
@@ -266,7 +250,7 @@ def test_the_window_is_there_for_c_and_goes_with_esc(
     monkeypatch.setattr(bare, "draw", both)
     try:
         bare.key(imgui.Key.c)
-        bare.turn(3)
+        bare.run_frames(3)
         assert bare.bench.captures.shown
         wish = bare.bench.captures.wish
         for name, kind in (("Film", FILM), ("Numbered pictures", PICTURES), ("Sheet of a sweep", SHEET)):

@@ -1,4 +1,4 @@
-"""A beside B: A stays what it was, follows the camera, is swapped; both are painted as they are."""
+"""A and B: A stays what it was, follows the camera, is swapped; both are painted as they are."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from playground.workbench.session import Session
 
 from .desk import Bare
 
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high
 uniform sampler2D mask; //! file("mask.png")
@@ -42,7 +42,7 @@ extent = [1000.0, 1000.0]
 relief = 300.0
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "view/terrain"
 """
@@ -51,7 +51,7 @@ SIZE = 60, 40
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     write_png(tmp_path / "mask.png", np.full((2, 2, 4), 255, np.uint8))
     return tmp_path
@@ -71,7 +71,7 @@ def compare(session: Session) -> Iterator[Compare]:
     made.release()
 
 
-def turn(session: Session, compare: Compare) -> NDArray[np.uint8]:
+def draw_frame(session: Session, compare: Compare) -> NDArray[np.uint8]:
     picture = session.frame(SIZE)
     assert picture is not None and session.error is None
     compare.follow(picture)
@@ -91,32 +91,32 @@ def drawn(engine: Engine, session: Session, level: float) -> NDArray[np.uint8]:
 
 
 def test_a_stays_while_b_changes(session: Session, compare: Compare) -> None:
-    before = turn(session, compare)
+    before = draw_frame(session, compare)
     assert compare.picture is None
     compare.keep()
-    turn(session, compare)
+    draw_frame(session, compare)
     np.testing.assert_array_equal(first(compare), before)
     session.drafts.set("height.level", 0.9)
-    after = turn(session, compare)
+    after = draw_frame(session, compare)
     assert (after != before).any() and compare.draws == 0
     np.testing.assert_array_equal(first(compare), before)
     compare.end()
-    turn(session, compare)
+    draw_frame(session, compare)
     assert compare.picture is None and not compare.on
 
 
 def test_a_follows_the_camera_and_the_size(session: Session, compare: Compare, any_engine: Engine) -> None:
-    turn(session, compare)
+    draw_frame(session, compare)
     compare.keep()
-    turn(session, compare)
+    draw_frame(session, compare)
     session.drafts.set("height.level", 0.9)
     assert session.sketch is not None
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=77.0))
-    second = turn(session, compare)
+    second = draw_frame(session, compare)
     assert compare.draws == 1 and (first(compare) != second).any()
     np.testing.assert_array_equal(first(compare), drawn(any_engine, session, 0.5))
-    turn(session, compare)
-    assert compare.draws == 1  # a turn in which nothing moved draws nothing
+    draw_frame(session, compare)
+    assert compare.draws == 1  # a frame in which nothing moved draws nothing
     picture = session.frame((31, 47))
     assert picture is not None
     compare.follow(picture)
@@ -126,19 +126,19 @@ def test_a_follows_the_camera_and_the_size(session: Session, compare: Compare, a
 def test_a_keeps_its_texts_when_the_files_change(
     session: Session, compare: Compare, folder: Path, any_engine: Engine
 ) -> None:
-    turn(session, compare)
+    draw_frame(session, compare)
     compare.keep()
-    turn(session, compare)
+    draw_frame(session, compare)
     assert session.sketch is not None
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=200.0))
-    turn(session, compare)
+    draw_frame(session, compare)
     old = drawn(any_engine, session, 0.5)
     session.drafts.set_camera(None)
-    (folder / "land.glsl").write_text(LAND.replace("0.15", "-0.3"), encoding="utf-8")
+    (folder / "terrain.glsl").write_text(TERRAIN.replace("0.15", "-0.3"), encoding="utf-8")
     session.drafts.reload()
-    turn(session, compare)
+    draw_frame(session, compare)
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=200.0))
-    second = turn(session, compare)
+    second = draw_frame(session, compare)
     np.testing.assert_array_equal(first(compare), old)
     assert (second != old).any()
 
@@ -146,17 +146,17 @@ def test_a_keeps_its_texts_when_the_files_change(
 def test_an_image_that_is_another_now_leaves_the_picture_as_it_was(
     session: Session, compare: Compare, folder: Path
 ) -> None:
-    before = turn(session, compare)
+    before = draw_frame(session, compare)
     compare.keep()
-    turn(session, compare)
+    draw_frame(session, compare)
     write_png(folder / "mask.png", np.full((3, 3, 4), 100, np.uint8))
     session.redraw()
-    turn(session, compare)
+    draw_frame(session, compare)
     assert session.sketch is not None
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=10.0))
-    turn(session, compare)
+    draw_frame(session, compare)
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=20.0))
-    turn(session, compare)
+    draw_frame(session, compare)
     np.testing.assert_array_equal(first(compare), before)
     assert [note for note in session.notes if "mask.png" in note] == [
         "A stays as it was drawn last: mask.png is another file now"
@@ -164,66 +164,72 @@ def test_an_image_that_is_another_now_leaves_the_picture_as_it_was(
 
 
 def test_swap_and_back(session: Session, compare: Compare) -> None:
-    one = turn(session, compare)
+    one = draw_frame(session, compare)
     compare.keep()
-    turn(session, compare)
+    draw_frame(session, compare)
     session.drafts.set("height.level", 0.9)
-    two = turn(session, compare)
+    two = draw_frame(session, compare)
     compare.swap()
-    np.testing.assert_array_equal(turn(session, compare), one)
+    np.testing.assert_array_equal(draw_frame(session, compare), one)
     np.testing.assert_array_equal(first(compare), two)
     compare.swap()
-    np.testing.assert_array_equal(turn(session, compare), two)
+    np.testing.assert_array_equal(draw_frame(session, compare), two)
     np.testing.assert_array_equal(first(compare), one)
     compare.back()
-    np.testing.assert_array_equal(turn(session, compare), one)
+    np.testing.assert_array_equal(draw_frame(session, compare), one)
     np.testing.assert_array_equal(first(compare), one)
     assert compare.on and not session.notes
 
 
 def test_to_draw_a_leaves_the_engine_s_account_of_b(session: Session, compare: Compare) -> None:
-    turn(session, compare)
+    draw_frame(session, compare)
     compare.keep()
-    turn(session, compare)
+    draw_frame(session, compare)
     session.drafts.set("height.level", 0.9)
     assert session.sketch is not None
     session.drafts.set_camera(replace(session.sketch.camera, azimuth=50.0, elevation=60.0))
     picture = session.frame(SIZE)
     assert picture is not None
     engine = session.engine
-    told = list(engine.ran), engine.texels, dict(engine.runs), engine.triangles, dict(engine.times)
+    counters = list(engine.ran), engine.texels, dict(engine.runs), engine.triangles, dict(engine.times)
     inspector = Inspector(session)
     under = inspector.at((30, 20), picture)
     compare.follow(picture)
     assert compare.draws == 1
-    assert told == (list(engine.ran), engine.texels, dict(engine.runs), engine.triangles, dict(engine.times))
+    assert counters == (
+        list(engine.ran),
+        engine.texels,
+        dict(engine.runs),
+        engine.triangles,
+        dict(engine.times),
+    )
     again = Inspector(session)
-    assert again.at((30, 20), picture) == under and under is not None and under.spot is not None
+    assert again.at((30, 20), picture) == under and under is not None and under.ground is not None
     inspector.release()
     again.release()
 
 
 def test_it_shows_the_same_texture_of_both(session: Session, compare: Compare) -> None:
-    turn(session, compare)
+    draw_frame(session, compare)
     compare.keep()
-    turn(session, compare)
+    draw_frame(session, compare)
     session.drafts.set("height.level", 1.0)
-    turn(session, compare)
+    draw_frame(session, compare)
     session.show("height:height")
     for name, value in (("lowest", 0.0), ("highest", 1.0)):
         session.view.set_map(name, value)
-    second = turn(session, compare).astype(int)
+    second = draw_frame(session, compare).astype(int)
     np.testing.assert_allclose(first(compare).astype(int)[..., :3] * 2, second[..., :3], atol=2)
 
 
 def test_another_sketch_ends_it(
     session: Session, compare: Compare, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    turn(session, compare)
+    draw_frame(session, compare)
     compare.keep()
-    turn(session, compare)
+    draw_frame(session, compare)
     other = tmp_path_factory.mktemp("other")
-    (other / "land.glsl").write_text(LAND.replace('file("mask.png")', 'file("")'), encoding="utf-8")
+    (other / "terrain.glsl").write_text(TERRAIN.replace('file("mask.png")', 'file("")'), encoding="utf-8")
     (other / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     session.open(other)
     picture = session.frame(SIZE)
@@ -296,11 +302,11 @@ def test_the_line_follows_the_mouse(folder: Path, any_engine: Engine) -> None:
         ):
             mouse(x, down)
         assert held[4:] == [False, True, True, True, True, False, False] and compare.split == 0.2
-        bare.turn(3)
+        bare.run_frames(3)
         bare.click("##how")
         bare.click("difference")
         assert compare.mode is Mode.DIFFERENCE
-        bare.turn(2)
+        bare.run_frames(2)
         assert "##gain" in bare.places
         bare.click("A/B")
         assert not compare.on
@@ -313,11 +319,11 @@ def test_a_swap_can_be_undone(folder: Path, any_engine: Engine) -> None:
     try:
         bare.key(imgui.Key.a)
         bare.session.drafts.set("height.level", 0.9)
-        bare.turn(3)
+        bare.run_frames(3)
         bare.click("Back to A")
         assert bare.session.shown is not None and not bare.session.shown.edits.values
         bare.key(imgui.Key.mod_ctrl, imgui.Key.z)
-        bare.turn(3)
+        bare.run_frames(3)
         assert bare.session.shown.edits.values == (("height.level", 0.9),)
     finally:
         bare.close()

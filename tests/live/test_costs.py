@@ -1,4 +1,4 @@
-"""What the pictures cost: what is kept of them, and that nothing is timed while nobody looks."""
+"""What the pictures cost: what is recorded of them, and that nothing is timed while they are hidden."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ import pytest
 from imgui_bundle import implot
 
 from playground.engine.engine import Engine
-from playground.workbench.inspect.frame_costs import Record, Ring
+from playground.workbench.inspect.frame_costs import Record
 
 from ..variants import trust
 from .desk import Bare
 
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level; }
@@ -31,7 +31,7 @@ SKETCH = """format = 1
 size = [33, 17]
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "./mesh"
 """
@@ -39,36 +39,37 @@ use = "./mesh"
 
 @pytest.fixture
 def bare(tmp_path: Path, any_engine: Engine) -> Iterator[Bare]:
-    for name, text in {"land.glsl": LAND, "mesh.glsl": MESH, "sketch.toml": SKETCH}.items():
+    for name, text in {"terrain.glsl": TERRAIN, "mesh.glsl": MESH, "sketch.toml": SKETCH}.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     made = Bare(any_engine, tmp_path, (1280, 1400))
     yield made
     made.close()
 
 
-def test_a_ring_keeps_the_last_numbers_in_order() -> None:
-    ring = Ring(4)
+def test_a_record_keeps_the_last_numbers_in_order() -> None:
+    record = Record(4)
     for n in range(11):
-        ring.add(n)
-        assert ring.values.tolist() == list(range(max(0, n - 3), n + 1))
+        record.add({"a": n}, n, n)
+        for numbers in (record.passes["a"], record.whole, record.texels, record.triangles):
+            assert list(numbers) == list(range(max(0, n - 3), n + 1))
 
 
 def test_a_record_keeps_its_rows_in_step() -> None:
     record = Record(3)
     record.add({"a": 1.0}, 10, 2)
     record.add({"a": 2.0, "b": 5.0}, 20, 0)
-    assert record.passes["b"].values.tolist() == [0.0, 5.0]
-    assert record.whole.values.tolist() == [1.0, 7.0]
-    assert record.dearest(1) == ["b"]
+    assert list(record.passes["b"]) == [0.0, 5.0]
+    assert list(record.whole) == [1.0, 7.0]
+    assert record.most_expensive(1) == ["b"]
     for _ in range(3):
         record.add({"b": 1.0}, 0, 0)
     assert list(record.passes) == ["b"]  # what cost nothing for so long is gone
-    assert record.texels.values.tolist() == [0.0, 0.0, 0.0]
+    assert list(record.texels) == [0.0, 0.0, 0.0]
 
 
 def test_nothing_is_timed_before_it_is_looked_at(bare: Bare) -> None:
     bare.session.drafts.set("height.level", 0.25)
-    bare.turn(3)
+    bare.run_frames(3)
     assert (
         not bare.session.engine.profiling
         and not bare.session.times
@@ -76,26 +77,26 @@ def test_nothing_is_timed_before_it_is_looked_at(bare: Bare) -> None:
     )
 
 
-def test_each_picture_is_kept_while_it_is_looked_at(bare: Bare) -> None:
+def test_each_frame_is_recorded_while_the_costs_are_shown(bare: Bare) -> None:
     engine, record = bare.session.engine, bare.bench.inspection.record
     bare.click("Cost###costs")
     assert engine.profiling
     before = record.pictures
     for n in range(5):
         bare.session.drafts.set("height.level", 0.1 * n)
-        bare.turn()
-    bare.turn(4)
-    assert record.pictures == before + 5  # a turn without a picture is none
-    assert record.texels.values[-1] == 33 * 17 + 48 * 32
-    assert record.triangles.values[-1] == engine.triangles == _triangles(engine, 5)
-    assert set(record.passes) == {"height", "view"} and record.whole.values[-1] > 0
-    assert np.isclose(record.whole.values, sum(ring.values for ring in record.passes.values())).all()
+        bare.run_frames()
+    bare.run_frames(4)
+    assert record.pictures == before + 5  # a frame without a picture is none
+    assert record.texels[-1] == 33 * 17 + 48 * 32
+    assert record.triangles[-1] == engine.triangles == _triangles(engine, 5)
+    assert set(record.passes) == {"height", "view"} and record.whole[-1] > 0
+    assert np.isclose(record.whole, np.sum(list(record.passes.values()), axis=0)).all()
     assert implot.get_current_context() is not None
     bare.session.drafts.set("view.grid", 9)
-    bare.turn(2)
-    assert record.texels.values[-1] == 48 * 32  # the land was not computed anew
-    assert record.triangles.values[-1] == _triangles(engine, 9)
-    assert record.passes["height"].values[-1] == 0
+    bare.run_frames(2)
+    assert record.texels[-1] == 48 * 32  # the terrain was not computed again
+    assert record.triangles[-1] == _triangles(engine, 9)
+    assert record.passes["height"][-1] == 0
     bare.click("Cost###costs")
     assert not engine.profiling and record.pictures == 0 and not bare.session.times
 
@@ -103,16 +104,16 @@ def test_each_picture_is_kept_while_it_is_looked_at(bare: Bare) -> None:
 def test_it_is_not_timed_while_the_panel_is_away(bare: Bare) -> None:
     bare.click("Cost###costs")
     assert bare.session.engine.profiling
-    bare.bench.inspection.begin()  # a turn in which no panel is drawn
+    bare.bench.inspection.begin()  # a frame in which no panel is drawn
     bare.bench.inspection.update()
     assert not bare.session.engine.profiling
 
 
 def test_programs_are_listed_with_what_they_took(bare: Bare) -> None:
     times = bare.session.engine.runner.compile_times
-    assert {Path(path).name for path in times} == {"land.glsl", "mesh.glsl"} and min(times.values()) > 0
+    assert {Path(path).name for path in times} == {"terrain.glsl", "mesh.glsl"} and min(times.values()) > 0
     bare.click("Cost###costs")
-    bare.turn(2)
+    bare.run_frames(2)
     assert any(label.endswith("###compiling") for label in bare.places)
 
 
@@ -130,16 +131,16 @@ def test_the_switch_runs_the_plain_form_and_is_there_only_where_there_is_another
     bare: Bare, tmp_path: Path
 ) -> None:
     bare.click("Cost###costs")
-    bare.turn(2)
+    bare.run_frames(2)
     assert "Plain form" not in bare.places
-    (tmp_path / "twin.glsl").write_text(LAND, encoding="utf-8")
-    (tmp_path / "land.fast.toml").write_text(FAST, encoding="utf-8")
+    (tmp_path / "twin.glsl").write_text(TERRAIN, encoding="utf-8")
+    (tmp_path / "terrain.fast.toml").write_text(FAST, encoding="utf-8")
     trust(tmp_path)
     bare.session.drafts.reload()
-    bare.turn(4)
+    bare.run_frames(4)
     for plain in (True, False):
         bare.click("Plain form")
-        bare.turn(3)
+        bare.run_frames(3)
         assert bare.session.drafts.plain == plain and bare.session.plan is not None
         assert (bare.session.plan.step("height") is not None) == plain
         assert (bare.session.plan.step("height.fast.height") is None) == plain

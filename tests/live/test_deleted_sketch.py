@@ -16,9 +16,12 @@ from playground.errors import PlaygroundError
 from playground.workbench.problems import Problems
 from playground.workbench.session import Session
 
-from ..workbench.test_session import KERNEL, SKETCH, TILT, FakeTrial
+from ..workbench import test_session
+from ..workbench.test_session import KERNEL, TILT, FakeSandbox
 from .desk import Bare, errors_of
 from .screen import ROOT
+
+SKETCH = test_session.SKETCH.replace("./land", "./terrain")
 
 
 def family(kind: type[PlaygroundError] = PlaygroundError) -> list[type[PlaygroundError]]:
@@ -28,9 +31,9 @@ def family(kind: type[PlaygroundError] = PlaygroundError) -> list[type[Playgroun
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    home = tmp_path / "my-land"
+    home = tmp_path / "my-terrain"
     (home / "inc").mkdir(parents=True)
-    for name, text in {"land.glsl": KERNEL, "inc/tilt.glsl": TILT, "sketch.toml": SKETCH}.items():
+    for name, text in {"terrain.glsl": KERNEL, "inc/tilt.glsl": TILT, "sketch.toml": SKETCH}.items():
         (home / name).write_text(text, encoding="utf-8")
     return home
 
@@ -43,42 +46,42 @@ def test_there_are_many_kinds_of_errors() -> None:
 def test_every_kind_of_error_without_a_file_is_drawn_with_the_sketch_s(
     bare: Bare, kind: type[Exception], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    session, fault = bare.session, kind("this went wrong")
+    session, raised = bare.session, kind("this went wrong")
 
     def refuse(*_: object, **__: object) -> None:
-        raise fault
+        raise raised
 
     monkeypatch.setattr(session, "_draw", refuse)
     session.redraw()
-    bare.turn()
+    bare.run_frames()
     error = session.error
     assert error is not None and "this went wrong" in str(error)
-    if isinstance(fault, PlaygroundError):
+    if isinstance(raised, PlaygroundError):
         assert type(error) is kind
     bare.bench.problems.take(error)
     area = 330.0, 0.0, 900.0, 720.0
     for _ in range(2):
-        bare.turn(around=lambda draw: (draw(), errors_of(bare.bench).draw(bare.theme, area)))
+        bare.run_frames(around=lambda draw: (draw(), errors_of(bare.bench).draw(bare.theme, area)))
     assert {d.file for d in bare.bench.problems.all} == {str(session.path)}
     assert any("sketch.toml" in label for label in bare.places), "the file heads the list"
 
 
 def test_a_list_that_holds_no_file_is_drawn_all_the_same(bare: Bare) -> None:
-    bare.bench.problems.take(PlaygroundError("nobody knows where"))
+    bare.bench.problems.take(PlaygroundError("without a place"))
     area = 330.0, 0.0, 900.0, 720.0
-    bare.turn(2, around=lambda draw: (draw(), errors_of(bare.bench).draw(bare.theme, area)))
+    bare.run_frames(2, around=lambda draw: (draw(), errors_of(bare.bench).draw(bare.theme, area)))
     assert any("no file" in label for label in bare.places)
 
 
 @pytest.mark.parametrize("kind", family(), ids=lambda kind: kind.__name__)
-def test_a_refusal_of_the_trial_s_names_the_sketch(
+def test_a_refusal_of_the_sandbox_names_the_sketch(
     folder: Path, any_engine: Engine, kind: type[PlaygroundError]
 ) -> None:
-    trial = FakeTrial()
-    trial.answer = SandboxReport(False, kind("refused"))
-    session = Session(any_engine, folder, sandbox=trial)
+    sandbox = FakeSandbox()
+    sandbox.answer = SandboxReport(False, kind("refused"))
+    session = Session(any_engine, folder, sandbox=sandbox)
     session.frame((32, 32))
-    if not issubclass(kind, errors.ContextError):  # then the window's own context is asked
+    if not issubclass(kind, errors.ContextError):  # then the window's own context decides
         assert session.error is not None and session.error.diagnostics[0].file == str(folder / "sketch.toml")
     session.release()
 
@@ -90,9 +93,9 @@ def test_a_sketch_that_is_gone_says_so_and_goes_on_when_it_is_back(folder: Path,
     path.rename(folder / "aside")
     session.drafts.reload()
     assert session.frame((32, 32)) is not None, "the last good picture stays"
-    said = str(session.error)
-    assert "the file is gone" in said and str(path) in said and "put it back" in said
-    assert "jacksboro" not in said
+    message = str(session.error)
+    assert "the file is gone" in message and str(path) in message and "put it back" in message
+    assert "jacksboro" not in message
     (folder / "aside").rename(path)
     session.drafts.reload()
     session.frame((32, 32))
@@ -107,8 +110,8 @@ def test_a_folder_that_was_moved_away_says_so(folder: Path, any_engine: Engine) 
     session.frame((32, 32))
     folder.rename(folder.with_name("elsewhere"))
     session.drafts.reload()
-    said = str(session.error)
-    assert "the file is gone with its folder" in said and str(folder) in said
+    message = str(session.error)
+    assert "the file is gone with its folder" in message and str(folder) in message
     session.release()
 
 
@@ -132,7 +135,7 @@ with Engine(open_context()) as engine:
 """
     home = tmp_path / "here"
     home.mkdir()
-    (home / "sketch.toml").write_text(SKETCH.replace("./land", "generation/white_noise"), encoding="utf-8")
+    (home / "sketch.toml").write_text(SKETCH.replace("./terrain", "generation/white_noise"), encoding="utf-8")
     done = subprocess.run(
         [sys.executable, "-c", script, "sketch.toml"],
         cwd=home,
@@ -147,5 +150,5 @@ with Engine(open_context()) as engine:
 
 def test_problems_of_no_file_have_a_heading() -> None:
     problems = Problems()
-    problems.take(PlaygroundError("nobody knows where"))
+    problems.take(PlaygroundError("without a place"))
     assert [file for file, _ in problems.by_file()] == [""]

@@ -1,4 +1,4 @@
-"""Expensive land that a session keeps on disk for the next: at rest, and only if it is sound."""
+"""Expensive terrain that a session caches on disk for the next: at rest, and only if it is sound."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ class Desk:
         self.watch = FiniteWatch(lambda: self.time)
         self.storing = SessionCaching(self.session, 2**26)
 
-    def turn(self, seconds: float = 0.0) -> None:
+    def run_frames(self, seconds: float = 0.0) -> None:
         assert self.session is not None
         self.time += seconds
         self.session.frame((40, 30))
@@ -85,10 +85,10 @@ class Desk:
 
     def rest(self) -> None:
         """Let things rest until nothing is left to do."""
-        self.turn()
-        self.turn(2 * REST)
+        self.run_frames()
+        self.run_frames(2 * REST)
         for _ in range(20):
-            self.turn(LAND_RESTS)
+            self.run_frames(LAND_RESTS)
 
     def close(self) -> None:
         """End the session."""
@@ -113,88 +113,88 @@ def desk(ctx: moderngl.Context, tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("playground.engine.disk_cache.place", lambda: tmp_path / "land")
     made = Desk(ctx, folder)
 
-    def keeping(store: object) -> DiskCaching:  # all land is worth it, by the test's clock
+    def caching(store: object) -> DiskCaching:  # all terrain is worth it, by the test's clock
         return DiskCaching(store, floor=float("-inf"), now=lambda: made.time)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(module, "DiskCaching", keeping)
+    monkeypatch.setattr(module, "DiskCaching", caching)
     made.open()
     yield made
     made.close()
 
 
-def kept(tmp_path: Path) -> set[str]:
-    return {each.kept.made_for for each in listed(tmp_path / "land") if each.kept}
+def cached(tmp_path: Path) -> set[str]:
+    return {each.textures.made_for for each in listed(tmp_path / "land") if each.textures}
 
 
-def test_a_session_reopens_without_running_the_land(desk: Desk, tmp_path: Path) -> None:
-    desk.turn()
+def test_a_session_reopens_without_running_the_terrain(desk: Desk, tmp_path: Path) -> None:
+    desk.run_frames()
     assert desk.session is not None
     seen = desk.session.read()
-    assert seen is not None and not kept(tmp_path)
+    assert seen is not None and not cached(tmp_path)
     desk.rest()
     assert desk.storing.patience is None, "nothing more is waited for"
     desk.open()
-    assert kept(tmp_path) == {"sketch: height"}
-    desk.turn()
+    assert cached(tmp_path) == {"sketch: height"}
+    desk.run_frames()
     again = desk.session.read()
     assert again is not None and again.array.tobytes() == seen.array.tobytes()
     assert desk.runs == {"view": 1}
 
 
 def test_it_waits_for_the_picture_to_rest_and_says_for_how_long(desk: Desk, tmp_path: Path) -> None:
-    desk.turn()
+    desk.run_frames()
     assert desk.storing.patience is None, "numbers that are not finite are looked for first"
-    desk.turn(2 * REST)
+    desk.run_frames(2 * REST)
     for _ in range(5):
-        desk.turn()
+        desk.run_frames()
     assert desk.watch.patience is None
     assert desk.storing.patience == pytest.approx(LAND_RESTS - 2 * REST)
-    desk.turn(LAND_RESTS)
+    desk.run_frames(LAND_RESTS)
     assert desk.storing.patience == 0.0
     desk.rest()
     desk.close()
-    assert kept(tmp_path) == {"sketch: height"}
+    assert cached(tmp_path) == {"sketch: height"}
 
 
-def test_nothing_is_kept_of_land_in_which_a_number_is_not_finite(desk: Desk, tmp_path: Path) -> None:
+def test_nothing_is_cached_of_terrain_in_which_a_number_is_not_finite(desk: Desk, tmp_path: Path) -> None:
     """The next session must name the pass that made it, and so must run it."""
     assert desk.session is not None
-    desk.turn()
+    desk.run_frames()
     desk.session.drafts.set("low.level", -0.5)
     desk.rest()
     assert [found.path for found in desk.watch.found] == ["low"]
     assert desk.storing.patience is None
     desk.storing.close()
-    assert kept(tmp_path) == set()
+    assert cached(tmp_path) == set()
     desk.session.drafts.set("low.level", 0.75)
     desk.rest()
     desk.open()
-    assert kept(tmp_path) == {"sketch: height"}
+    assert cached(tmp_path) == {"sketch: height"}
 
 
 @pytest.mark.parametrize("tool", ["graph", "inspector"])
 def test_who_looks_at_every_pass_sees_every_pass(desk: Desk, tool: str) -> None:
     desk.rest()
     desk.open()
-    desk.turn()
+    desk.run_frames()
     assert desk.session is not None
     engine = desk.session.engine
     assert "low" not in engine.results
     getattr(desk.bench.inspection, tool).on = True
-    desk.turn()
-    desk.turn()
+    desk.run_frames()
+    desk.run_frames()
     assert set(engine.results) == {"low", "height", "view"}
     assert desk.runs["low"] == 1 and desk.runs.get("height", 0) == 0
     draws = desk.session.draws
     for _ in range(5):
-        desk.turn()
-    assert desk.session.draws == draws, "it was asked for once"
+        desk.run_frames()
+    assert desk.session.draws == draws, "it was requested once"
 
 
-def test_passes_that_fail_are_asked_for_once(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_passes_that_fail_are_requested_once(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     desk.rest()
     desk.open()
-    desk.turn()
+    desk.run_frames()
     assert desk.session is not None
     tries = []
 
@@ -205,26 +205,26 @@ def test_passes_that_fail_are_asked_for_once(desk: Desk, monkeypatch: pytest.Mon
     monkeypatch.setattr(desk.session.engine, "draw", fails)
     desk.bench.inspection.graph.on = True
     for _ in range(5):
-        desk.turn()
+        desk.run_frames()
     assert len(tries) == 1
 
 
-def test_an_edited_kernel_is_another_land(desk: Desk) -> None:
+def test_an_edited_kernel_is_another_terrain(desk: Desk) -> None:
     desk.rest()
     (desk.folder / "height.glsl").write_text(HEIGHT.replace("66.0", "67.0"), encoding="utf-8")
     desk.open()
-    desk.turn()
+    desk.run_frames()
     assert desk.runs == {"low": 1, "height": 1, "view": 1}
 
 
-def test_a_folder_that_cannot_be_written_is_told_once(desk: Desk, tmp_path: Path) -> None:
+def test_a_folder_that_cannot_be_written_is_reported_once(desk: Desk, tmp_path: Path) -> None:
     (tmp_path / "land").write_text("a file")
     desk.rest()
     assert desk.session is not None
     desk.storing.close()
-    desk.turn()
-    desk.turn()
-    notes = [note for note in desk.session.notes if note.startswith("land cannot be kept on disk")]
+    desk.run_frames()
+    desk.run_frames()
+    notes = [note for note in desk.session.notes if note.startswith("terrain cannot be cached on disk")]
     assert len(notes) == 1
 
 
@@ -248,8 +248,8 @@ class TestWindow:
         folder = tmp_path / "sketch"
         folder.mkdir()
         text = SKETCH.replace("size = 33", "size = 513").replace("./height", "./slow")
-        for name, said in (("slow.glsl", SLOW), ("raised.glsl", RAISED), ("sketch.toml", text)):
-            (folder / name).write_text(said, encoding="utf-8")
+        for name, source in (("slow.glsl", SLOW), ("raised.glsl", RAISED), ("sketch.toml", text)):
+            (folder / name).write_text(source, encoding="utf-8")
         screens = tmp_path / "screen"
         screens.mkdir()
         screen = Screen(screens, 600, 500)
@@ -277,9 +277,9 @@ class TestWindow:
             screen.close()
 
 
-def test_land_that_was_read_is_recognised_by_itself_and_not_by_its_texture(desk: Desk) -> None:
-    """What is read does not run, and its texture may be one that held other land before."""
-    desk.turn()
+def test_terrain_that_was_read_is_recognised_by_itself_and_not_by_its_texture(desk: Desk) -> None:
+    """What is read does not run, and its texture may be one that held another terrain before."""
+    desk.run_frames()
     session = desk.session
     assert session is not None
     engine, name = session.engine, "height:height"

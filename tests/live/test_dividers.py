@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.live.dividers import REACH, divider_at, dividers_of, moved
+from playground.live.dividers import GRAB_DISTANCE, divider_at, dividers_of, moved
 from playground.paths import GLSL
 from playground.sketch.load import load
 
@@ -24,13 +24,13 @@ def test_the_lines_are_those_of_the_view() -> None:
     ("across", "path"),
     [
         (333.3, "view.first"),
-        (333.3 - REACH + 0.1, "view.first"),
-        (666.7 + REACH - 0.1, "view.second"),
-        (333.3 + REACH + 0.2, ""),
+        (333.3 - GRAB_DISTANCE + 0.1, "view.first"),
+        (666.7 + GRAB_DISTANCE - 0.1, "view.second"),
+        (333.3 + GRAB_DISTANCE + 0.2, ""),
         (0.0, ""),
     ],
 )
-def test_the_nearest_in_reach_is_taken(across: float, path: str) -> None:
+def test_the_nearest_within_grab_distance_is_taken(across: float, path: str) -> None:
     assert divider_at(load(METHODS), across, 1000.0) == path
 
 
@@ -46,7 +46,7 @@ def test_its_value_is_a_share(tmp_path: Path) -> None:
     kernel = tmp_path / "parted.glsl"
     kernel.write_text(
         '#pragma kernel(output = "frame:rgba8")\n'
-        "uniform float line = 0.5;  //! divider Where it stands\n"
+        "uniform float line = 0.5;  //! divider Where it is\n"
         "vec4 kernel(ivec2 texel) { return vec4(line); }\n"
     )
     sketch = load(kernel)

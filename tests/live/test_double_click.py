@@ -1,4 +1,4 @@
-"""Double clicks are judged by when the button went down, however long the turns between take."""
+"""Double clicks are judged by when the button went down, however long the frames between take."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import pytest
 from playground.live.double_click import APART, Clicks
 
 SLOW = 0.4
-"""[s] that a turn takes where a picture is drawn slowly."""
+"""[s] that a frame takes where a picture is drawn slowly."""
 
 
 class PictureMouse:
@@ -19,24 +19,24 @@ class PictureMouse:
         self.doubles: list[bool] = []
         left = sorted(presses)
         while left:
-            self.clicks.asks()
+            self.clicks.before_poll()
             if sleeps and left[0] > self.time:  # an event wakes it
                 self.time = min(left[0], self.time + 1.0)
             while left and left[0] <= self.time:
                 left.pop(0)
                 self.clicks.press()
-            self.clicks.asked()
+            self.clicks.after_poll()
             self.draw()
             self.time += picture
         for _ in presses:
             self.draw()
 
     def draw(self) -> None:
-        """Have imgui come to one press, if there is one: as it does, one a turn."""
-        longest = self.clicks.longest()
+        """Have imgui come to one press, if there is one: as it does, one a frame."""
+        longest = self.clicks.double_click_time()
         if longest != APART:
             self.doubles.append(longest > 1.0)
-            self.clicks.taken()
+            self.clicks.handled()
 
 
 @pytest.mark.parametrize("picture", [1 / 60, 0.1, SLOW, 1.5])
@@ -60,4 +60,4 @@ def test_while_the_window_sleeps_the_moment_is_known(apart: float, double: bool)
 
 
 def test_without_a_press_imgui_keeps_its_own_time() -> None:
-    assert Clicks().longest() == APART
+    assert Clicks().double_click_time() == APART

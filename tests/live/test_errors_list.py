@@ -21,7 +21,7 @@ from playground.workbench.text_file import unsaved
 
 from .desk import Bare, errors_of
 
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #include "wave.glsl"
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high
@@ -33,7 +33,7 @@ SKETCH = """format = 1
 size = 17
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "view/map"
 [view.inputs]
@@ -43,7 +43,7 @@ shown = "height"
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    for name, text in {"land.glsl": LAND, "wave.glsl": WAVE, "sketch.toml": SKETCH}.items():
+    for name, text in {"terrain.glsl": TERRAIN, "wave.glsl": WAVE, "sketch.toml": SKETCH}.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     for variable in ("PLAYGROUND_EDITOR", "VISUAL", "EDITOR"):
@@ -61,7 +61,7 @@ def diagnostic(file: str, line: int, message: str, severity: str = "error") -> D
 
 def test_files_with_errors_come_first_and_the_words_are_the_terminal_s(folder: Path) -> None:
     wrong = diagnostic("wave.glsl", 3, "this is wrong")
-    odd = diagnostic("land.glsl", 5, "this is odd", "warning")
+    odd = diagnostic("terrain.glsl", 5, "this is odd", "warning")
     problems, error = Problems(), ShaderError(diagnostics=[wrong])
     problems.take(error, [odd, odd])
     assert problems.all == (wrong, odd)
@@ -70,9 +70,9 @@ def test_files_with_errors_come_first_and_the_words_are_the_terminal_s(folder: P
     assert problems.open
 
 
-def test_warnings_alone_do_not_open_it_and_it_closes_when_all_is_mended(folder: Path) -> None:
+def test_warnings_alone_do_not_open_it_and_it_closes_when_all_is_fixed(folder: Path) -> None:
     problems = Problems()
-    odd = diagnostic("land.glsl", 5, "this is odd", "warning")
+    odd = diagnostic("terrain.glsl", 5, "this is odd", "warning")
     problems.take(None, [odd])
     assert not problems.open and problems.warnings == (odd,)
     error = ShaderError(diagnostics=[diagnostic("wave.glsl", 3, "wrong")])
@@ -105,45 +105,47 @@ def test_stepping_goes_round(folder: Path) -> None:
 
 def test_the_lines_around_are_those_of_the_file(folder: Path) -> None:
     problems = Problems()
-    wrong = diagnostic("land.glsl", 4, "wrong")
-    lines = LAND.splitlines()
+    wrong = diagnostic("terrain.glsl", 4, "wrong")
+    lines = TERRAIN.splitlines()
     assert problems.lines_around(wrong) == [(n, lines[n - 1]) for n in range(2, 7)]
-    assert problems.lines_around(diagnostic("land.glsl", 1, "wrong")) == [
+    assert problems.lines_around(diagnostic("terrain.glsl", 1, "wrong")) == [
         (n, lines[n - 1]) for n in (1, 2, 3)
     ]
-    (folder / "land.glsl").write_text("// nothing of it is left\n", encoding="utf-8")
+    (folder / "terrain.glsl").write_text("// nothing of it is left\n", encoding="utf-8")
     assert problems.lines_around(wrong) == [(4, lines[3])], "the line as it was, and no others"
     assert problems.lines_around(Diagnostic("no place")) == []
 
 
-def test_headers_that_cannot_be_read_are_told_beside_the_first(folder: Path) -> None:
+def test_headers_that_cannot_be_read_are_listed_with_the_first(folder: Path) -> None:
     sketch = load(folder / "sketch.toml")
-    (folder / "land.glsl").write_text(LAND.replace("slider(0, 1) How", "slyder(0, 1) How"), encoding="utf-8")
+    (folder / "terrain.glsl").write_text(
+        TERRAIN.replace("slider(0, 1) How", "slyder(0, 1) How"), encoding="utf-8"
+    )
     problems, error = Problems(), SketchError("another file is wrong", file="sketch.toml", line=2)
     problems.take(error, (), sketch)
-    assert [(d.file, d.line) for d in problems.all] == [("sketch.toml", 2), ("land.glsl", 4)]
+    assert [(d.file, d.line) for d in problems.all] == [("sketch.toml", 2), ("terrain.glsl", 4)]
     with pytest.raises(PlaygroundError) as caught:
         load(folder / "sketch.toml")
     problems.take(caught.value, (), sketch)
-    assert [(d.file, d.line) for d in problems.all] == [("land.glsl", 4)], "once"
+    assert [(d.file, d.line) for d in problems.all] == [("terrain.glsl", 4)], "once"
 
 
 def test_a_warning_moves_with_its_line_and_goes_with_it(folder: Path) -> None:
-    odd = diagnostic("land.glsl", 5, "odd", "warning")
+    odd = diagnostic("terrain.glsl", 5, "odd", "warning")
     problems = Problems()
-    (folder / "land.glsl").write_text("// one more\n" + LAND, encoding="utf-8")
+    (folder / "terrain.glsl").write_text("// one more\n" + TERRAIN, encoding="utf-8")
     problems.take(None, [odd])
     assert problems.warnings == (replace(odd, line=6),)
-    (folder / "land.glsl").write_text(LAND.replace("spare", "other"), encoding="utf-8")
+    (folder / "terrain.glsl").write_text(TERRAIN.replace("spare", "other"), encoding="utf-8")
     problems.take(None, [odd])
     assert problems.warnings == ()
 
 
 def test_the_sketch_s_own_kernels_are_looked_at_once(folder: Path) -> None:
-    asked: list[str] = []
+    reviewed: list[str] = []
 
     def review(kernel: object) -> tuple[Diagnostic, ...]:
-        asked.append(Path(kernel.path).name)  # type: ignore[attr-defined]
+        reviewed.append(Path(kernel.path).name)  # type: ignore[attr-defined]
         return ()
 
     warnings, sketch = Warnings(review), load(folder / "sketch.toml")
@@ -151,7 +153,7 @@ def test_the_sketch_s_own_kernels_are_looked_at_once(folder: Path) -> None:
     for _ in range(3):
         warnings.look()
     (found,) = warnings.of(sketch)
-    assert asked == ["land.glsl"], "once, and the library's view not at all"
+    assert reviewed == ["terrain.glsl"], "once, and the library's view not at all"
     assert (found.line, found.severity) == (5, "warning") and "nothing reads 'spare'" in found.message
     assert warnings.of(sketch.with_values({"height.level": 0.2})) == [found]
     assert not warnings.waiting
@@ -184,16 +186,16 @@ def desk(any_engine: Engine, folder: Path) -> Iterator[Desk]:
 def broken(desk: Desk, folder: Path) -> PlaygroundError:
     (folder / "wave.glsl").write_text(WAVE.replace("sin", "sine"), encoding="utf-8")
     desk.session.drafts.reload()
-    desk.turn(4)
+    desk.run_frames(4)
     assert desk.session.error is not None
     return desk.session.error
 
 
-def test_an_error_is_listed_copied_folded_and_gone_when_mended(desk: Desk, folder: Path) -> None:
+def test_an_error_is_listed_copied_folded_and_gone_once_fixed(desk: Desk, folder: Path) -> None:
     assert not any("##place" in label for label in desk.places)
     error = broken(desk, folder)
     assert "wave.glsl:3:" in next(label for label in desk.places if label.endswith("##place"))
-    assert any(label.startswith("land.glsl:2##chain") for label in desk.places)
+    assert any(label.startswith("terrain.glsl:2##chain") for label in desk.places)
     desk.click("Copy##errors")
     assert desk.clipboard == str(error)
     desk.click("Fold##errors")
@@ -202,9 +204,9 @@ def test_an_error_is_listed_copied_folded_and_gone_when_mended(desk: Desk, folde
     assert desk.bench.problems.open
     (folder / "wave.glsl").write_text(WAVE, encoding="utf-8")
     desk.session.drafts.reload()
-    desk.turn(2)
+    desk.run_frames(2)
     desk.places.clear()
-    desk.turn(2)
+    desk.run_frames(2)
     assert not any("##" in label and ("badge" in label or "place" in label) for label in desk.places)
 
 
@@ -232,22 +234,22 @@ def test_f8_steps_through_them(desk: Desk, folder: Path) -> None:
 def test_a_click_on_the_place_starts_the_editor(
     desk: Desk, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    told: list[tuple[str, Path, int, int]] = []
+    opened: list[tuple[str, Path, int, int]] = []
     monkeypatch.setattr(sources, "find_editor", lambda: (Editor(("code",)), ""))
 
     def start(editor: Editor, file: Path, line: int, column: int) -> bool:
-        told.append((editor.name, file, line, column))
+        opened.append((editor.name, file, line, column))
         return True
 
     monkeypatch.setattr(desk.bench.files.opener, "open", start)
     broken(desk, folder)
     first = desk.bench.problems.all[0]
     desk.click(f"{first.place}##place")
-    assert told == [("code", folder / "wave.glsl", 3, first.column)]
+    assert opened == [("code", folder / "wave.glsl", 3, first.column)]
     assert not desk.bench.files.editing
-    desk.turn()
+    desk.run_frames()
     desk.click(next(label for label in desk.places if "##chain" in label))
-    assert told[-1] == ("code", folder / "land.glsl", 2, 0)
+    assert opened[-1] == ("code", folder / "terrain.glsl", 2, 0)
 
 
 def test_without_an_editor_it_opens_here_is_edited_and_saved(
@@ -269,20 +271,20 @@ def test_without_an_editor_it_opens_here_is_edited_and_saved(
     assert (folder / "wave.glsl").read_text(encoding="utf-8") == wanted != WAVE
     assert not unsaved(desk.bench.files.editing)
     view.editor.undo()
-    desk.turn(2)
+    desk.run_frames(2)
     assert unsaved(desk.bench.files.editing), "what was saved is no longer what is seen"
 
 
-def test_what_others_saved_meanwhile_is_asked_about(desk: Desk, folder: Path) -> None:
+def test_a_file_that_others_saved_meanwhile_needs_an_answer(desk: Desk, folder: Path) -> None:
     wave = folder / "wave.glsl"
     desk.bench.files.open(wave, 4, 1, here=True)
-    desk.turn(3)
+    desk.run_frames(3)
     desk.type("// mine ")
     theirs = "// wave.glsl -- theirs" + WAVE[WAVE.index("\n") :]
     wave.write_text(theirs, encoding="utf-8")
     desk.key(imgui.Key.mod_ctrl, imgui.Key.s)
     assert wave.read_text(encoding="utf-8") == theirs, "not overwritten"
-    desk.turn(3)
+    desk.run_frames(3)
     desk.click("Merge both")
     assert wave.read_text(encoding="utf-8") == theirs.replace("}", "// mine }")
     assert not unsaved(desk.bench.files.editing)
@@ -293,10 +295,10 @@ def test_what_others_saved_meanwhile_is_asked_about(desk: Desk, folder: Path) ->
 )
 def test_closing_asks(desk: Desk, folder: Path, button: str, mine: bool, open_after: int) -> None:
     desk.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
-    desk.turn(3)
+    desk.run_frames(3)
     desk.type("// mine ")
     code_window._view_of(desk.bench.files.editing[0]).closing = True
-    desk.turn(3)
+    desk.run_frames(3)
     desk.click(button)
     assert ("mine" in (folder / "wave.glsl").read_text(encoding="utf-8")) == mine
     assert len(desk.bench.files.editing) == open_after
@@ -305,10 +307,10 @@ def test_closing_asks(desk: Desk, folder: Path, button: str, mine: bool, open_af
 @pytest.mark.parametrize(("button", "quits"), [("Save and quit", True), ("Quit", True), ("Stay", False)])
 def test_quitting_asks(desk: Desk, folder: Path, button: str, quits: bool) -> None:
     desk.bench.files.open(folder / "wave.glsl", 4, 1, here=True)
-    desk.turn(3)
+    desk.run_frames(3)
     desk.type("// mine ")
     desk.bench.files.leaving = True
-    desk.turn(3)
+    desk.run_frames(3)
     desk.click(button)
     assert desk.quits == quits
     assert ("mine" in (folder / "wave.glsl").read_text(encoding="utf-8")) == (button == "Save and quit")
@@ -321,6 +323,6 @@ def test_a_file_that_is_gone_is_a_sentence(desk: Desk, folder: Path) -> None:
 
 
 def test_nothing_wrong_draws_nothing(desk: Desk) -> None:
-    desk.turn(2)
+    desk.run_frames(2)
     assert desk.bench.problems.all == () and errors_list.MOST > 0
     assert not any("badge" in label for label in desk.places)

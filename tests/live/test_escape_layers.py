@@ -15,7 +15,7 @@ from playground.live.escape_layers import open_layers
 from ..sketch_texts import map_of_height
 from .desk import Bare
 
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high the hills are
 uniform sampler2D mask; //! file() paint
@@ -23,14 +23,14 @@ float kernel(ivec2 texel) { return level; }
 """
 SKETCH = (
     "format = 1\nsize = 17\n"
-    + map_of_height()
+    + map_of_height("./terrain")
     + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0 }\n'
 )
 
 
 @pytest.fixture
 def bare(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Bare]:
-    (tmp_path / "land.glsl").write_text(LAND.replace("uniform sampler2D mask; //! file() paint\n", ""))
+    (tmp_path / "terrain.glsl").write_text(TERRAIN.replace("uniform sampler2D mask; //! file() paint\n", ""))
     (tmp_path / "sketch.toml").write_text(SKETCH)
     made = Bare(any_engine, tmp_path)
     draw = made.draw
@@ -47,7 +47,7 @@ def bare(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) ->
 
 def escape(bare: Bare) -> None:
     bare.key(imgui.Key.escape)
-    bare.turn(2)
+    bare.run_frames(2)
     assert not bare.quits
 
 
@@ -61,10 +61,10 @@ def test_one_layer_at_a_time_and_then_none(bare: Bare, tmp_path: Path) -> None:
     bench.inspection.compare.keep()
     bench.inspection.inspector.toggle()
     bench.inspection.graph.toggle()
-    bench.files.open(tmp_path / "land.glsl", here=True)
+    bench.files.open(tmp_path / "terrain.glsl", here=True)
     bench.captures.shown = bench.interface.keymap_shown = True
-    bare.turn(3)
-    names = ["keys", "capture", "editor land.glsl", "graph", "inspector", "A/B", "full screen", "lesson"]
+    bare.run_frames(3)
+    names = ["keys", "capture", "editor terrain.glsl", "graph", "inspector", "A/B", "full screen", "lesson"]
     for n in range(len(names)):
         assert open_layers(bench) == names[n:]
         escape(bare)
@@ -99,39 +99,39 @@ def test_a_field_in_a_popup_is_left_before_the_popup(bare: Bare) -> None:
 
 
 def test_an_editor_with_changes_asks_and_esc_answers_that_by_staying(bare: Bare, tmp_path: Path) -> None:
-    bare.bench.files.open(tmp_path / "land.glsl", here=True)
-    bare.turn(3)
+    bare.bench.files.open(tmp_path / "terrain.glsl", here=True)
+    bare.run_frames(3)
     bare.type("// more")
-    bare.turn(3)
+    bare.run_frames(3)
     escape(bare)
-    assert open_layers(bare.bench) == ["popup", "editor land.glsl"], "it asks whether to save"
+    assert open_layers(bare.bench) == ["popup", "editor terrain.glsl"], "it asks whether to save"
     escape(bare)
-    assert open_layers(bare.bench) == ["editor land.glsl"], "and stays"
-    assert "// more" not in (tmp_path / "land.glsl").read_text()
+    assert open_layers(bare.bench) == ["editor terrain.glsl"], "and stays"
+    assert "// more" not in (tmp_path / "terrain.glsl").read_text()
 
 
 def test_the_question_on_quitting_is_answered_by_esc_too(bare: Bare, tmp_path: Path) -> None:
-    bare.bench.files.open(tmp_path / "land.glsl", here=True)
-    bare.turn(3)
+    bare.bench.files.open(tmp_path / "terrain.glsl", here=True)
+    bare.run_frames(3)
     bare.type("// more")
-    bare.turn(3)
+    bare.run_frames(3)
     bare.bench.files.leaving = True
-    bare.turn(3)
+    bare.run_frames(3)
     assert open_layers(bare.bench)[0] == "popup"
     escape(bare)
-    assert not bare.bench.files.leaving and open_layers(bare.bench) == ["editor land.glsl"]
+    assert not bare.bench.files.leaving and open_layers(bare.bench) == ["editor terrain.glsl"]
 
 
 def test_ctrl_q_quits_also_out_of_a_field(bare: Bare) -> None:
     bare.type("/")
-    bare.turn(4)
+    bare.run_frames(4)
     bare.type("lev")
     bare.key(imgui.Key.mod_ctrl, imgui.Key.q)
     assert bare.quits
 
 
 def test_what_is_typed_before_a_field_has_the_keys_is_the_field_s(bare: Bare) -> None:
-    """On a slow renderer some turns pass between a double click and the field that it opens."""
+    """On a slow renderer some frames pass between a double click and the field that it opens."""
     session, io = bare.session, imgui.get_io()
     bare.point("##height.level", 0.2)
     for down in (True, False, True):
@@ -142,9 +142,9 @@ def test_what_is_typed_before_a_field_has_the_keys_is_the_field_s(bare: Bare) ->
             io.add_key_event(key, down)
             if down:
                 io.add_input_character(ord(letter))
-            bare.turn()
+            bare.run_frames()
     bare.press(False)
-    bare.turn(3)
+    bare.run_frames(3)
     bare.key(imgui.Key.enter)
     assert dict(session.shown.edits.values)["height.level"] == 0.25  # type: ignore[union-attr]
 
@@ -155,9 +155,9 @@ def test_letters_typed_right_behind_the_search_are_no_shortcuts(bare: Bare) -> N
     for letter, key in (("/", imgui.Key.slash), ("m", imgui.Key.m), ("s", imgui.Key.s), ("a", imgui.Key.a)):
         io.add_key_event(key, True)
         io.add_input_character(ord(letter))
-        bare.turn()
+        bare.run_frames()
         io.add_key_event(key, False)
-    bare.turn(4)
+    bare.run_frames(4)
     assert bare.session.view.map is shown and bare.bench.captures.saved is saved
     assert not bare.bench.inspection.compare.on
     assert bare.panel.memory.filter.search == "msa"

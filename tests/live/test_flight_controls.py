@@ -9,7 +9,6 @@ from playground.live.flight_controls import (
     FULL,
     NOTCH,
     REST,
-    Keys,
     Wheel,
     by_gamepad,
     by_keys,
@@ -20,9 +19,9 @@ from playground.live.instruments import HELP, clock
 
 
 def test_keys_ask_for_all_or_nothing_and_opposite_ones_for_nothing():
-    assert by_keys(Keys()) == Controls()
-    assert by_keys(Keys(up=True, right=True)) == Controls(0, 100, 100, 0)
-    assert by_keys(Keys(up=True, down=True, yaw_left=True, faster=True)) == Controls(100, 0, 0, -100)
+    assert by_keys(()) == Controls()
+    assert by_keys({"up", "right"}) == Controls(0, 100, 100, 0)
+    assert by_keys({"up", "down", "yaw_left", "faster"}) == Controls(100, 0, 0, -100)
 
 
 def test_the_mouse_is_a_stick_around_where_its_button_went_down():
@@ -35,11 +34,11 @@ def test_the_mouse_is_a_stick_around_where_its_button_went_down():
 
 def test_a_notch_of_the_wheel_is_some_steps_of_throttle_and_the_other_way_ends_it():
     wheel = Wheel()
-    wheel.turn(1.0)
+    wheel.scroll(1.0)
     found = [wheel.next().throttle for _ in range(NOTCH + 2)]
     assert found == [100] * NOTCH + [0, 0]
-    wheel.turn(3.0)
-    wheel.turn(-1.0)
+    wheel.scroll(3.0)
+    wheel.scroll(-1.0)
     assert [wheel.next().throttle for _ in range(NOTCH + 1)] == [-100] * NOTCH + [0]
 
 

@@ -21,7 +21,7 @@ from .screen import ON_LINUX, Program, Screen
 WIDTH, HEIGHT = 640, 360
 SKETCH = (
     """format = 1
-title = "A small land without end"
+title = "A small endless terrain"
 size = 33
 extent = 1920.0
 relief = 900.0
@@ -103,7 +103,7 @@ def test_keys_fly_and_the_flight_is_written_down(open_app: Callable[..., App], t
     assert app.now()["steps"] == still, "nothing moves while it is paused"
     sky, plate = shown[20:40, 20:100].reshape(-1, 3), shown[HEIGHT // 2, 200:440].reshape(-1, 3)
     assert sky[:, 2].mean() > sky[:, 0].mean() + 20, "the sky is blue"
-    assert np.median(plate) < 60, "the help stands on a dark plate"
+    assert np.median(plate) < 60, "the help is on a dark plate"
     if os.environ.get("FLY_PICTURE"):
         from PIL import Image
 
@@ -142,7 +142,7 @@ def test_a_replay_flies_by_itself_and_stops_at_its_end(open_app: Callable[..., A
 
 
 @pytest.mark.slow
-def test_a_save_is_flown_over_from_the_same_place_and_a_wrong_one_is_said(
+def test_a_save_is_flown_over_from_the_same_place_and_a_wrong_one_is_reported(
     open_app: Callable[..., App], tmp_path: Path
 ) -> None:
     app = open_app("sketch.toml", "--radius", "1.5")
@@ -154,7 +154,7 @@ def test_a_save_is_flown_over_from_the_same_place_and_a_wrong_one_is_said(
     file.write_text(SKETCH.replace("generation/endless", "generation/endles"), encoding="utf-8")
     wrong = app.wait(lambda now: now["error"])
     assert "endles" in wrong["error"] and "sketch.toml" in wrong["error"]
-    assert (app.screen.pixels() != seen).any(), "it is said over the picture"
+    assert (app.screen.pixels() != seen).any(), "it is shown over the picture"
     file.write_text(SKETCH.replace("relief = 900.0", "relief = 300.0"), encoding="utf-8")
     after = app.wait(lambda now: now["changes"] == 1 and not now["missing"])
     assert not after["error"] and after["heading"] == before["heading"]

@@ -1,4 +1,4 @@
-"""The passes as a graph: who reads whom, where each stands; thumbnails that are drawn only when stale."""
+"""The passes as a graph: what reads what, where each is; thumbnails that are drawn only when stale."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from playground.workbench.session import Session
 from ..sketch_texts import passes
 from .desk import Bare
 
-LAND = """// land.glsl -- a slope from west to east
+TERRAIN = """// terrain.glsl -- a slope from west to east
 #pragma kernel(output = "height:r32f")
 uniform float level = 1.0; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x - 1); }
@@ -38,19 +38,21 @@ vec4 kernel(ivec2 texel) {
 }
 """
 SKETCH = (
-    "format = 1\nsize = [128, 32]\n" + passes(height="./land", colour="./tint") + '[view]\nuse = "./both"\n'
+    "format = 1\nsize = [128, 32]\n"
+    + passes(height="./terrain", colour="./tint")
+    + '[view]\nuse = "./both"\n'
 )
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    texts = {"land.glsl": LAND, "tint.glsl": TINT, "both.glsl": BOTH, "sketch.toml": SKETCH}
+    texts = {"terrain.glsl": TERRAIN, "tint.glsl": TINT, "both.glsl": BOTH, "sketch.toml": SKETCH}
     for name, text in texts.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     return tmp_path
 
 
-def test_a_pass_stands_right_of_all_that_it_reads() -> None:
+def test_a_pass_is_right_of_all_that_it_reads() -> None:
     random = np.random.default_rng(5)
     for _ in range(30):
         nodes = [f"n{k}" for k in range(int(random.integers(1, 14)))]
@@ -127,7 +129,7 @@ def test_only_what_is_stale_is_drawn_and_one_at_a_time(folder: Path, any_engine:
     assert not thumbnails.is_current("height:height") and thumbnails.is_current("colour:colour")
     thumbnails.refresh(names, 10.0)
     assert thumbnails.made == 3 and thumbnails.is_current("height:height")
-    session.show("colour:colour")  # the land is not in this picture: its thumbnail stays
+    session.show("colour:colour")  # the terrain is not in this picture: its thumbnail stays
     session.frame((16, 16))
     thumbnails.refresh(names, 11.0)
     assert thumbnails.get("height:height") is not None and not thumbnails.is_current("height:height")
@@ -154,28 +156,28 @@ def test_numbers_that_are_none_are_magenta() -> None:
 
 def test_a_click_shows_a_texture_and_another_the_view(bare: Bare) -> None:
     graph = bare.bench.inspection.graph
-    bare.turn(5)
+    bare.run_frames(5)
     assert graph.thumbnails.made == 0 and "node colour" not in bare.places
     bare.key(imgui.Key.g)
-    bare.turn(40)
+    bare.run_frames(40)
     assert graph.thumbnails.made == 3 and bare.bench.inspection.patience(0.0) > 1e6
     bare.click("node colour")
     assert bare.session.view.map is not None and bare.session.view.map.ref == "colour:colour"
     bare.click("node view")
     assert bare.session.view.map is None
     bare.key(imgui.Key.g)
-    bare.turn(3)
+    bare.run_frames(3)
     assert graph.thumbnails.get("height:height") is None  # all of them are given back
 
 
-def test_passes_are_timed_only_where_that_is_asked_for(bare: Bare) -> None:
+def test_passes_are_timed_only_on_request(bare: Bare) -> None:
     bare.key(imgui.Key.g)
-    bare.turn(3)
+    bare.run_frames(3)
     assert not bare.session.engine.profiling
     bare.click("Time each pass")
     assert bare.session.engine.profiling
     bare.key(imgui.Key.g)
-    bare.turn(3)
+    bare.run_frames(3)
     assert not bare.session.engine.profiling
 
 
@@ -185,7 +187,7 @@ def test_the_panel_s_head_has_a_button_for_it_and_room_for_all(
 ) -> None:
     bare = Bare(any_engine, folder, (1920, 1080), scale)
     try:
-        bare.turn()
+        bare.run_frames()
         margin = imgui.get_style().window_padding.x
         for label in "Undo Redo History Random A/B Reset Copy Save PNG Capture Graph".split():
             x, _, width, _ = bare.places[label]

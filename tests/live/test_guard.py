@@ -55,7 +55,7 @@ def ended_twice() -> None:
     imgui.end()
 
 
-FAULTS = (ended_too_soon, empty_id, table, popup, font, ended_twice)
+BUGS = (ended_too_soon, empty_id, table, popup, font, ended_twice)
 
 
 @pytest.fixture
@@ -69,8 +69,8 @@ def interface() -> Iterator[None]:
     imgui.destroy_context(context)
 
 
-def turn(draw: Callable[[], None]) -> tuple[float, int]:
-    """Draw one turn; return where a button after it lies, and how wide it is."""
+def draw_frame(draw: Callable[[], None]) -> tuple[float, int]:
+    """Draw one frame; return where a button after it is, and how wide it is."""
     imgui.get_io().delta_time = 1 / 60
     imgui.new_frame()
     draw()
@@ -85,27 +85,27 @@ def turn(draw: Callable[[], None]) -> tuple[float, int]:
     return found
 
 
-@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.__name__)
-def test_a_fault_becomes_a_notice_and_the_next_part_is_drawn_as_always(
-    interface: None, fault: Callable[[], None], caplog: pytest.LogCaptureFixture
+@pytest.mark.parametrize("bug", BUGS, ids=lambda bug: bug.__name__)
+def test_a_bug_becomes_a_notice_and_the_next_part_is_drawn_as_always(
+    interface: None, bug: Callable[[], None], caplog: pytest.LogCaptureFixture
 ) -> None:
     notices: list[str] = []
     guard = Guard(notices.append)
-    turn(lambda: None)
-    usual = turn(lambda: None)
+    draw_frame(lambda: None)
+    usual = draw_frame(lambda: None)
     with caplog.at_level(logging.ERROR):
         for _ in range(3):
-            assert turn(lambda: guard.draw("the part", fault, None)) == usual
+            assert draw_frame(lambda: guard.draw("the part", bug, None)) == usual
     assert len(notices) == 3 and all("the part failed" in notice for notice in notices)
-    assert len(caplog.records) == 1, "the terminal is told once"
+    assert len(caplog.records) == 1, "reported once in the terminal"
     assert caplog.records[0].exc_info is not None
 
 
-def test_what_is_left_open_without_a_fault_is_ended(interface: None) -> None:
+def test_what_is_left_open_without_a_bug_is_ended(interface: None) -> None:
     notices: list[str] = []
     guard = Guard(notices.append)
-    turn(lambda: None)
-    usual = turn(lambda: None)
+    draw_frame(lambda: None)
+    usual = draw_frame(lambda: None)
 
     def draw() -> int:
         imgui.begin("left open")
@@ -113,11 +113,11 @@ def test_what_is_left_open_without_a_fault_is_ended(interface: None) -> None:
         return 7
 
     found: list[int] = []
-    assert turn(lambda: found.append(guard.draw("the part", draw, 0))) == usual
+    assert draw_frame(lambda: found.append(guard.draw("the part", draw, 0))) == usual
     assert found == [7]
 
 
-def test_interrupting_is_no_fault(interface: None) -> None:
+def test_interrupting_is_no_bug(interface: None) -> None:
     def stop() -> None:
         raise KeyboardInterrupt
 
@@ -125,7 +125,7 @@ def test_interrupting_is_no_fault(interface: None) -> None:
         Guard(print).run("the part", stop, None)
 
 
-def test_a_part_that_draws_nothing_gives_what_stands_for_it(tmp_path: Path) -> None:
+def test_a_part_that_draws_nothing_returns_its_default(tmp_path: Path) -> None:
     notices: list[str] = []
     assert Guard(notices.append).run("reading", lambda: len((tmp_path / "gone").read_bytes()), -1) == -1
     assert notices and "reading failed" in notices[0]

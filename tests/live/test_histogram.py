@@ -20,12 +20,12 @@ from playground.workbench.session import Session
 from ..sketch_texts import map_of_height
 from .desk import Bare
 
-LAND = """// land.glsl -- a slope from west to east
+TERRAIN = """// terrain.glsl -- a slope from west to east
 #pragma kernel(output = "height:r32f")
 uniform float level = 1.0; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x - 1); }
 """
-SKETCH = "format = 1\nsize = [64, 8]\nrelief = 250.0\n" + map_of_height()
+SKETCH = "format = 1\nsize = [64, 8]\nrelief = 250.0\n" + map_of_height("./terrain")
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def ctx(ctx: moderngl.Context) -> moderngl.Context:
     return ctx
 
 
-FILES = {"land.glsl": LAND, "sketch.toml": SKETCH}
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": SKETCH}
 
 
 def counted(texture: moderngl.Texture, **limits: int) -> tuple[Histogram, int]:
@@ -129,11 +129,11 @@ def test_it_follows_the_map_and_begins_anew(folder: Path, any_engine: Engine) ->
     counter = Counter(session, piece=64)
 
     def settle() -> int:
-        for turns in range(1, 100):
+        for frames in range(1, 100):
             session.frame((32, 32))
             counter.go_on()
             if not counter.waits:
-                return turns
+                return frames
         raise AssertionError("it never ends")
 
     session.frame((32, 32))
@@ -225,10 +225,10 @@ def test_ticks_are_round_and_few(low: float, high: float, marks: tuple[float, ..
 def test_the_panel_counts_only_while_it_shows_it(bare: Bare) -> None:
     see = bare.bench.inspection
     bare.bench.session.show("height:height")
-    bare.turn(5)
+    bare.run_frames(5)
     assert see.counter.latest is None and see.patience(0.0) > 1e6
     bare.click("Histogram###histogram")
-    bare.turn(5)
+    bare.run_frames(5)
     assert see.counter.latest is not None and see.counter.latest.high == 1.0
     bare.click("All but outliers")
     shown = bare.session.view.map
@@ -241,6 +241,6 @@ def test_the_panel_counts_only_while_it_shows_it(bare: Bare) -> None:
     assert bare.session.view.map.value("middle") == pytest.approx(0.5)
     bare.click("Logarithmic")
     assert see.logarithmic
-    bare.turn(3)
+    bare.run_frames(3)
     bare.click("Histogram###histogram")
     assert see.counter.latest is None

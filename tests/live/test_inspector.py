@@ -1,4 +1,4 @@
-"""The pixel inspector, against whole readings of the same textures and a walk on the processor."""
+"""The pixel inspector, against whole textures and a ray march on the CPU."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from playground.workbench.session import Session
 from ..sketch_texts import passes
 from .desk import Bare
 
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f, other:rg16")
 void kernel(ivec2 texel, out float height, out vec2 other) {
     vec2 share = vec2(texel) / vec2(size - 1);
@@ -40,7 +40,7 @@ extent = [1600.0, 1200.0]
 relief = 300.0
 base_elevation = 120.0
 """
-    + passes(height="./land", light=("./half", 'size = ["size.x // 2", "size.y // 2"]'))
+    + passes(height="./terrain", light=("./half", 'size = ["size.x // 2", "size.y // 2"]'))
     + """[view]
 use = "view/terrain"
 [view.camera]
@@ -53,7 +53,7 @@ SIZE = 96, 64
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    for name, text in {"land.glsl": LAND, "half.glsl": HALF, "sketch.toml": SKETCH}.items():
+    for name, text in {"terrain.glsl": TERRAIN, "half.glsl": HALF, "sketch.toml": SKETCH}.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     return tmp_path
 
@@ -88,7 +88,9 @@ def test_a_texel_is_the_one_of_a_whole_reading(any_engine: Engine, form: str) ->
     texture.release()
 
 
-def test_every_pass_is_read_exactly_where_the_land_is_met(session: Session, inspector: Inspector) -> None:
+def test_every_pass_is_read_exactly_where_the_ray_meets_the_terrain(
+    session: Session, inspector: Inspector
+) -> None:
     picture = session.frame(SIZE)
     assert not session.error, str(session.error)
     assert picture is not None and session.plan is not None
@@ -111,26 +113,28 @@ def test_every_pass_is_read_exactly_where_the_land_is_met(session: Session, insp
             assert found is not None and found.picture == tuple(colours[SIZE[1] - 1 - y, x, :3])
             place = (x + 0.5) / SIZE[0], (y + 0.5) / SIZE[1]
             truth = ground_under(session.plan.eye, place, heights, (1600.0, 1200.0), 300.0)
-            assert (truth is None) == (found.spot is None)
-            if truth is None or found.spot is None:
+            assert (truth is None) == (found.ground is None)
+            if truth is None or found.ground is None:
                 continue
             met += 1
-            assert math.dist((found.spot.east, found.spot.north), (truth[0] * 1600, truth[1] * 1200)) < 0.5
-            for reading in found.readings:
-                values = whole[reading.name]
+            assert (
+                math.dist((found.ground.east, found.ground.north), (truth[0] * 1600, truth[1] * 1200)) < 0.5
+            )
+            for sample in found.samples:
+                values = whole[sample.name]
                 if values is None:
                     continue
-                share = found.spot.east / 1600, found.spot.north / 1200
-                assert reading.texel == (round(share[0] * 64), round(share[1] * 48))
-                assert list(reading.values) == np.atleast_1d(values[reading.texel[::-1]]).tolist()
-            i, j = found.readings[0].texel
+                share = found.ground.east / 1600, found.ground.north / 1200
+                assert sample.texel == (round(share[0] * 64), round(share[1] * 48))
+                assert list(sample.values) == np.atleast_1d(values[sample.texel[::-1]]).tolist()
+            i, j = found.samples[0].texel
             rise_y, rise_x = np.gradient(heights.astype(np.float64) * 300.0, 25.0)
             steep = math.hypot(rise_x[j, i], rise_y[j, i])
-            assert found.spot.slope == pytest.approx(math.degrees(math.atan(steep)), abs=1e-9)
+            assert found.ground.slope == pytest.approx(math.degrees(math.atan(steep)), abs=1e-9)
             normal = np.array([-rise_x[j, i], -rise_y[j, i], 1.0])
-            np.testing.assert_allclose(found.spot.normal, normal / np.linalg.norm(normal), atol=1e-12)
-            assert found.spot.above_sea == found.spot.height + 120.0
-            assert found.readings[0].metres == found.readings[0].values[0] * 300.0
+            np.testing.assert_allclose(found.ground.normal, normal / np.linalg.norm(normal), atol=1e-12)
+            assert found.ground.above_sea == found.ground.height + 120.0
+            assert found.samples[0].metres == found.samples[0].values[0] * 300.0
     assert met > 40
     assert dict(engine.runs) == runs and session.draws == draws  # nothing was drawn for it
 
@@ -147,8 +151,8 @@ def test_in_a_map_it_is_the_texel_that_the_pixel_shows(session: Session, inspect
         whole = session.read_values("height:other")
         assert whole is not None
         inside = 0
-        for x in range(size[0]):
-            for y in range(0, size[1], 3):
+        for y in range(size[1]):
+            for x in range(y % 4, size[0], 4):  # every row and every column
                 found = inspector.at((x, y), picture)
                 assert found is not None
                 if found.shown is None:
@@ -167,10 +171,10 @@ def test_the_light_of_another_size_is_read_at_its_own_node(session: Session, ins
     picture = session.frame((32, 24))
     assert picture is not None
     found = inspector.at((8, 12), picture)
-    assert found is not None and found.shown is not None and found.spot is not None
+    assert found is not None and found.shown is not None and found.ground is not None
     assert found.shown.texel == (8, 12)
-    assert found.spot.east == pytest.approx(1600 * 8 / 31)
-    high = next(r for r in found.readings if r.name == "height:height")
+    assert found.ground.east == pytest.approx(1600 * 8 / 31)
+    high = next(r for r in found.samples if r.name == "height:height")
     assert high.texel == (round(64 * 8 / 31), round(48 * 12 / 23))
 
 
@@ -189,11 +193,11 @@ def test_it_asks_once_for_a_pixel_of_a_picture(session: Session, inspector: Insp
     assert inspector.at((-1, 10), again) is None and inspector.at((0, SIZE[1]), again) is None
 
 
-def test_numbers_that_are_none_are_said(folder: Path, session: Session, inspector: Inspector) -> None:
-    text = LAND.replace(
+def test_numbers_that_are_not_finite_are_named(folder: Path, session: Session, inspector: Inspector) -> None:
+    text = TERRAIN.replace(
         "other = share;", "other = share; if (texel.x == 30) height = uintBitsToFloat(0x7fc00000u);"
     )
-    (folder / "land.glsl").write_text(text, encoding="utf-8")
+    (folder / "terrain.glsl").write_text(text, encoding="utf-8")
     session.drafts.reload()
     session.frame((65, 49))
     session.show("height:height")
@@ -208,17 +212,17 @@ def test_a_key_brings_the_box_and_takes_it_away(folder: Path, any_engine: Engine
     bare = Bare(any_engine, folder)
     try:
         imgui.get_io().add_mouse_pos_event(800, 600)
-        bare.turn(2)
+        bare.run_frames(2)
         assert bare.bench.inspection.inspector.reads == 0
         bare.key(imgui.Key.i)
-        bare.turn(2)
+        bare.run_frames(2)
         assert bare.bench.inspection.inspector.reads == 1 and not bare.bench.inspection.inspector.inner
         imgui.get_io().add_mouse_pos_event(100, 300)  # over the panel
-        bare.turn(3)
+        bare.run_frames(3)
         assert bare.bench.inspection.inspector.reads == 1
         bare.key(imgui.Key.i)
         imgui.get_io().add_mouse_pos_event(800, 500)
-        bare.turn(3)
+        bare.run_frames(3)
         assert bare.bench.inspection.inspector.reads == 1
     finally:
         bare.close()

@@ -12,10 +12,10 @@ from ..cases import each
 from ..sketch_texts import map_of_height
 from .desk import Bare
 
-LAND = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'
+TERRAIN = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'
 
 
-FILES = {"land.glsl": LAND, "sketch.toml": "format = 1\nsize = 17\n" + map_of_height()}
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": "format = 1\nsize = 17\n" + map_of_height("./terrain")}
 
 
 @each(

@@ -42,12 +42,12 @@ def path(tmp_path: Path) -> Path:
 def bench(any_engine: Engine, path: Path) -> Iterator[Bench]:
     session = Session(any_engine, path)
     made = Bench(session, WindowControls(lambda: None), folder=path.parent)
-    turn(made)
+    draw_frame(made)
     yield made
     session.release()
 
 
-def turn(bench: Bench) -> np.ndarray:
+def draw_frame(bench: Bench) -> np.ndarray:
     for _ in range(2):
         bench.session.frame(SIZE)
         bench.undo.record()
@@ -62,9 +62,9 @@ def add(bench: Bench, time: float, camera: Camera, gain: float) -> np.ndarray:
     bench.session.clock.time = time
     bench.session.drafts.set_camera(camera)
     bench.session.drafts.set("light.gain", gain)
-    before = turn(bench)
+    before = draw_frame(bench)
     assert bench.keyframes.add_here(bench.keyframes.changed_paths)
-    after = turn(bench)
+    after = draw_frame(bench)
     assert np.array_equal(before, after), "the keyframe shows what was seen when it was added"
     return after
 
@@ -78,11 +78,11 @@ def test_what_is_seen_is_keyed_and_is_no_longer_set_by_hand(bench: Bench, path: 
     assert [k.time for k in found.keyframes] == [0.0, 2.0]
     assert path.read_text(encoding="utf-8").startswith(SKETCH)
     bench.session.clock.time = 0.0
-    assert np.array_equal(turn(bench), first)
+    assert np.array_equal(draw_frame(bench), first)
     bench.session.clock.time = 1.0
     between = found.at(1.0)
     assert 900.0 < between.camera.distance < 1500.0
-    assert not np.array_equal(turn(bench), first) and not np.array_equal(turn(bench), second)
+    assert not np.array_equal(draw_frame(bench), first) and not np.array_equal(draw_frame(bench), second)
 
 
 def test_each_step_is_undone_and_done_again_in_the_file_too(bench: Bench, path: Path) -> None:
@@ -90,7 +90,7 @@ def test_each_step_is_undone_and_done_again_in_the_file_too(bench: Bench, path: 
 
     def step(done: bool) -> None:
         assert done
-        turn(bench)
+        draw_frame(bench)
         texts.append(path.read_text(encoding="utf-8"))
 
     add(bench, 0.0, Camera(200.0, 30.0, 1500.0), 1.0)
@@ -108,23 +108,23 @@ def test_each_step_is_undone_and_done_again_in_the_file_too(bench: Bench, path: 
         "Keyframe: linear",
         "Delete the keyframe at 3 s",
     ]
-    said = [load(path).keyframes]
+    written = [load(path).keyframes]
     while bench.undo.history.can_undo:
         bench.undo.undo()
-        turn(bench)
-        said.append(load(path).keyframes)
+        draw_frame(bench)
+        written.append(load(path).keyframes)
     assert path.read_text(encoding="utf-8") == texts[0]
-    assert [len(frames) for frames in dict.fromkeys(said)] == [1, 2, 2, 2, 1, 0]
+    assert [len(frames) for frames in dict.fromkeys(written)] == [1, 2, 2, 2, 1, 0]
     while bench.undo.history.can_redo:
         bench.undo.redo()
-        turn(bench)
+        draw_frame(bench)
     assert [(k.time, k.ease) for k in load(path).keyframes] == [(0.0, "linear")]
 
 
 def test_undoing_a_keyframe_gives_back_what_was_set_by_hand(bench: Bench) -> None:
     picture = add(bench, 1.0, Camera(200.0, 30.0, 1500.0), 2.0)
     bench.undo.undo()
-    assert np.array_equal(turn(bench), picture)
+    assert np.array_equal(draw_frame(bench), picture)
     draft = bench.session.shown
     assert draft is not None and draft.edits.camera == Camera(200.0, 30.0, 1500.0)
     assert dict(draft.edits.values) == {"light.gain": 2.0} and draft.file.keyframes == ()
@@ -133,7 +133,7 @@ def test_undoing_a_keyframe_gives_back_what_was_set_by_hand(bench: Bench) -> Non
 def test_a_second_at_the_same_time_goes_into_the_first(bench: Bench, path: Path) -> None:
     add(bench, 1.0, Camera(200.0, 30.0, 1500.0), 2.0)
     bench.session.drafts.set("light.ambient", 0.25)
-    turn(bench)
+    draw_frame(bench)
     assert bench.keyframes.add_here(["light.ambient"], camera=False)
     (found,) = load(path).keyframes
     assert (
@@ -142,7 +142,7 @@ def test_a_second_at_the_same_time_goes_into_the_first(bench: Bench, path: Path)
     )
 
 
-def test_what_cannot_be_is_said_and_nothing_is_written(bench: Bench, path: Path) -> None:
+def test_an_invalid_edit_is_reported_and_nothing_is_written(bench: Bench, path: Path) -> None:
     assert not bench.keyframes.add_here([], camera=False)
     assert "choose what the keyframe sets" in bench.notices.items[-1].text
     assert not bench.keyframes.add_here(["size"], camera=False)
@@ -156,9 +156,9 @@ def test_what_cannot_be_is_said_and_nothing_is_written(bench: Bench, path: Path)
         bench.keyframes.set_ease(0, "bouncy")
 
 
-def test_the_whole_land_is_said_in_metres(bench: Bench, path: Path) -> None:
+def test_the_whole_terrain_is_given_in_metres(bench: Bench, path: Path) -> None:
     assert bench.keyframes.add_here([])
-    turn(bench)
+    draw_frame(bench)
     (found,) = load(path).keyframes
     plan = bench.session.plan
     assert plan is not None and dict(found.camera)["distance"] == pytest.approx(plan.eye.distance, abs=0.01)
@@ -167,7 +167,7 @@ def test_the_whole_land_is_said_in_metres(bench: Bench, path: Path) -> None:
 def test_a_sketch_that_ships_offers_a_copy(any_engine: Engine, tmp_path: Path) -> None:
     session = Session(any_engine, "l_dot_n", values={"size": 33})
     bench = Bench(session, WindowControls(lambda: None), folder=tmp_path)
-    turn(bench)
+    draw_frame(bench)
     assert not bench.keyframes.add_here([])
     assert bench.file.asks and "belongs to the playground" in bench.file.offer
     session.release()
@@ -181,7 +181,7 @@ def test_the_panel_s_list(any_engine: Engine, path: Path) -> None:
         for time in (0.0, 2.0):
             bare.session.clock.time = time
             bare.session.drafts.set("light.gain", 1.0 + time)
-            bare.turn(2)
+            bare.run_frames(2)
             bare.click("Add keyframe here")
         assert [k.time for k in load(path).keyframes] == [0.0, 2.0]
         assert dict(load(path).keyframes[1].values) == {"light.gain": 3.0}

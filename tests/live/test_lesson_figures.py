@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
-from playground.engine.engine import Engine
 from playground.lessons import library
 from playground.lessons.figure_renders import broken, draw
 from playground.lessons.model import Break, Compare, Exercise, Figure, Scene, Slider, Steps
 from playground.lessons.read import read_lesson
-from playground.paths import GLSL
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.workbench.edits import Draft, Edits
@@ -26,31 +22,12 @@ from playground.workbench.lesson.links import play_on
 from playground.workbench.lesson.reader import BOTH
 from playground.workbench.resume import StoredEdits
 
-from ..sketch_texts import map_of_height
-from .lesson_desk import RAW, Desk, shelved
-
-OWN = "format = 1\nsize = 17\n" + map_of_height("generation/white_noise")
-FILE = (GLSL / RAW).resolve()
-
-
-@pytest.fixture
-def desk(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
-    shelved(monkeypatch, tmp_path)
-    own = tmp_path / "own"
-    own.mkdir()
-    (own / "sketch.toml").write_text(OWN, encoding="utf-8")
-    made = Desk(any_engine, own)
-    yield made
-    made.close()
+from .lesson_desk import FILE, OWN, Desk, shelved, value
 
 
 def block(desk: Desk, name: str):
-    assert desk.reading.lesson is not None
-    return desk.reading.lesson.named[name]
-
-
-def value(desk: Desk, path: str):
-    return dict(desk.session.shown.applied)[path]
+    assert desk.reader.lesson is not None
+    return desk.reader.lesson.named[name]
 
 
 def text_window(desk: Desk):
@@ -67,7 +44,7 @@ def as_seen(desk: Desk) -> np.ndarray:
 
 
 def of_lesson(desk: Desk, scene: Scene) -> np.ndarray:
-    """Return a picture as a book has it, at the size of the view, its sides kept."""
+    """Return a picture as a book has it, at the size of the view, its aspect ratio unchanged."""
     seen = framed(scene.sketch, scene.time, scene.pixels, (48, 32))
     return draw(desk.session.engine, replace(scene, sketch=seen, pixels=(48, 32))).array
 
@@ -98,61 +75,61 @@ def test_what_is_set_for_a_picture_makes_the_very_sketch_of_the_lesson(tmp_path,
 def test_a_lesson_s_picture_keeps_its_sides_and_the_reader_s_own_those_of_any_picture(desk):
     desk.open(show=False)
     session = desk.bench.session
-    scene = read_lesson("halving").named["land"].scene
-    desk.reading.figure.show(replace(scene, pixels=(300, 300)), ("land", 0))
+    scene = read_lesson("halving").named["rubble"].scene
+    desk.reader.figure.show(replace(scene, pixels=(300, 300)), ("rubble", 0))
     assert session.view.framed_for == (300, 300)
-    desk.reading.figure.go_back()
+    desk.reader.figure.go_back()
     assert session.view.framed_for == (1280, 720)
 
 
 def test_every_picture_in_the_view_is_that_of_the_lesson(desk):
     desk.open(show=False)
     for page in range(5):
-        desk.reading.go(page)
-        for each in desk.reading.section.blocks:
+        desk.reader.go(page)
+        for each in desk.reader.section.blocks:
             if not isinstance(each, Figure | Steps | Slider | Exercise) or not hasattr(each, "scene"):
                 continue
             if each.scene is None:
                 continue
-            desk.reading.show(each)
-            desk.turn(3)
+            desk.reader.show(each)
+            desk.run_frames(3)
             assert desk.session.error is None
             np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, each.scene), err_msg=each.name)
 
 
-def test_the_first_picture_waits_until_it_is_asked_for_and_next_brings_the_one_after(desk):
+def test_the_first_picture_waits_for_a_click_and_next_brings_the_one_after(desk):
     own = desk.session.path
     desk.open(show=False)
-    assert desk.session.path == own and desk.reading.figure.own is None
-    desk.reading.turn_page(1)
-    desk.turn(4)
+    assert desk.session.path == own and desk.reader.figure.before_lesson is None
+    desk.reader.turn_page(1)
+    desk.run_frames(4)
     assert desk.session.path == find("diamond_square_steps")
     assert desk.session.view.steps == {"height.raw": 0, "phase": 0}
 
 
 def test_a_page_without_a_picture_shows_the_last_one_before_it_where_nothing_is_shown_yet(desk):
     desk.open(3)
-    assert desk.reading.figure.key == ("seeds", 1) and value(desk, "height.seed") == 2
-    desk.reading.show(block(desk, "land"))
-    desk.turn(2)
-    desk.reading.go(4)
-    desk.turn(2)
-    assert desk.reading.figure.key == ("land", 0), "what is shown stays"
+    assert desk.reader.figure.key == ("seeds", 1) and value(desk, "height.seed") == 2
+    desk.reader.show(block(desk, "rubble"))
+    desk.run_frames(2)
+    desk.reader.go(4)
+    desk.run_frames(2)
+    assert desk.reader.figure.key == ("rubble", 0), "what is shown stays"
 
 
 def test_what_was_open_comes_back_with_its_values_and_its_undo(desk):
     own = desk.session.path
     desk.session.drafts.set("height.seed", 5)
-    desk.turn(2)
+    desk.run_frames(2)
     seen = as_seen(desk)
     desk.open(show=False)
-    desk.reading.show(block(desk, "land"))
-    desk.turn(3)
+    desk.reader.show(block(desk, "rubble"))
+    desk.run_frames(3)
     assert desk.session.path == find("white_noise") and value(desk, "height.seed") == 3
-    desk.reading.go(1)
-    desk.turn(3)
-    desk.reading.go_back()
-    desk.turn(3)
+    desk.reader.go(1)
+    desk.run_frames(3)
+    desk.reader.go_back()
+    desk.run_frames(3)
     assert desk.session.path == own and value(desk, "height.seed") == 5
     np.testing.assert_array_equal(as_seen(desk), seen)
     desk.bench.undo.undo()
@@ -162,69 +139,69 @@ def test_what_was_open_comes_back_with_its_values_and_its_undo(desk):
 def test_a_turned_page_does_not_take_a_sketch_that_has_been_changed_but_show_does(desk):
     own = desk.session.path
     desk.session.drafts.set("height.seed", 5)
-    desk.turn(2)
+    desk.run_frames(2)
     desk.open(show=False)
-    desk.reading.turn_page(1)
-    desk.turn(2)
+    desk.reader.turn_page(1)
+    desk.run_frames(2)
     assert desk.session.path == own
     assert any("stays in view" in notice.text for notice in desk.bench.notices.items)
-    desk.reading.show(block(desk, "turns"))
-    desk.turn(2)
+    desk.reader.show(block(desk, "halves"))
+    desk.run_frames(2)
     assert desk.session.path != own
 
 
 def test_what_a_reader_sets_in_a_picture_comes_back_by_undo_after_another_one(desk):
     desk.open()
     desk.session.drafts.set("height.seed", 77)
-    desk.turn(60)
-    desk.reading.go(1)  # another sketch
-    desk.turn(4)
-    desk.reading.show(block(desk, "land"))
-    desk.turn(4)
+    desk.run_frames(60)
+    desk.reader.go(1)  # another sketch
+    desk.run_frames(4)
+    desk.reader.show(block(desk, "rubble"))
+    desk.run_frames(4)
     assert value(desk, "height.seed") == 3
     desk.bench.undo.undo()
-    desk.turn(2)
+    desk.run_frames(2)
     assert value(desk, "height.seed") == 77
-    desk.reading.reset(block(desk, "land"))  # the same sketch
-    desk.turn(60)
+    desk.reader.reset(block(desk, "rubble"))  # the same sketch
+    desk.run_frames(60)
     assert value(desk, "height.seed") == 3
     desk.bench.undo.undo()
-    desk.turn(2)
+    desk.run_frames(2)
     assert value(desk, "height.seed") == 77
 
 
 def test_what_is_compared_with_comes_back_with_what_was_open(desk):
     compare = desk.bench.inspection.compare
     desk.session.drafts.set("height.seed", 5)
-    desk.turn(2)
+    desk.run_frames(2)
     compare.keep()
     desk.session.drafts.set("height.seed", 6)
-    desk.turn(2)
+    desk.run_frames(2)
     desk.open(show=False)
-    desk.reading.show(block(desk, "seeds"))
-    desk.turn(4)
-    desk.reading.go_back()
-    desk.turn(4)
+    desk.reader.show(block(desk, "seeds"))
+    desk.run_frames(4)
+    desk.reader.go_back()
+    desk.run_frames(4)
     assert value(desk, "height.seed") == 6
     assert compare.on, "A is there again"
     assert dict(compare.remembered().edits.values) == {"height.seed": 5}
 
 
-def test_what_was_set_in_a_sketch_with_a_mistake_comes_back_once_it_is_mended(desk):
+def test_what_was_set_in_a_sketch_with_a_mistake_comes_back_once_it_is_fixed(desk):
     own = desk.session.path
     own.write_text(OWN.replace("white_noise", "white_noyse"), encoding="utf-8")
     desk.session.open(own, start=StoredEdits(Edits((("height.seed", 5),))))
-    desk.turn(2)
+    desk.run_frames(2)
     assert desk.session.error is not None and desk.session.drafts.opening
     desk.open(show=False)
-    desk.reading.show(block(desk, "land"))
-    desk.turn(3)
+    desk.reader.show(block(desk, "rubble"))
+    desk.run_frames(3)
     assert value(desk, "height.seed") == 3
-    desk.reading.go_back()
-    desk.turn(3)
+    desk.reader.go_back()
+    desk.run_frames(3)
     own.write_text(OWN, encoding="utf-8")
     desk.session.drafts.reload()
-    desk.turn(3)
+    desk.run_frames(3)
     assert desk.session.error is None and value(desk, "height.seed") == 5
 
 
@@ -232,94 +209,94 @@ def test_what_the_files_came_to_say_during_a_lesson_goes_before_what_was_set_by_
     own = desk.session.path
     own.write_text(OWN.replace("[view]", "set = { seed = 2 }\n[view]"), encoding="utf-8")
     desk.session.drafts.reload()
-    desk.turn(2)
+    desk.run_frames(2)
     desk.session.drafts.set("height.seed", 5)
-    desk.turn(2)
+    desk.run_frames(2)
     desk.open(show=False)
-    desk.reading.show(block(desk, "land"))
-    desk.turn(3)
+    desk.reader.show(block(desk, "rubble"))
+    desk.run_frames(3)
     own.write_text(OWN.replace("[view]", "set = { seed = 9 }\n[view]"), encoding="utf-8")
-    desk.reading.go_back()
-    desk.turn(3)
+    desk.reader.go_back()
+    desk.run_frames(3)
     assert desk.session.path == own and "height.seed" not in dict(desk.session.shown.edits.values)
 
 
-def test_going_back_to_a_sketch_that_is_gone_says_so_and_can_be_asked_again(desk):
+def test_going_back_to_a_sketch_that_is_gone_says_so_and_can_be_requested_again(desk):
     own = desk.session.path
     desk.open(show=False)
-    desk.reading.show(block(desk, "land"))
-    desk.turn(3)
+    desk.reader.show(block(desk, "rubble"))
+    desk.run_frames(3)
     own.rename(own.with_name("away.toml"))
-    desk.reading.go_back()
-    desk.turn(3)
+    desk.reader.go_back()
+    desk.run_frames(3)
     assert any("sketch.toml" in notice.text for notice in desk.bench.notices.items)
     assert desk.session.path == find("white_noise") and desk.session.error is None
     own.with_name("away.toml").rename(own)
-    desk.reading.go_back()
-    desk.turn(3)
-    assert desk.session.path == own and desk.reading.figure.own is None
+    desk.reader.go_back()
+    desk.run_frames(3)
+    assert desk.session.path == own and desk.reader.figure.before_lesson is None
 
 
 def test_a_copy_that_is_opened_leaves_the_readers_sketch_the_readers(desk):
     own = desk.session.path
     desk.open(3, show=False)
-    desk.reading.bugs.edit(block(desk, "mean"))
-    desk.turn(3)
-    assert desk.session.drafts.texts and desk.reading.figure.own is None
+    desk.reader.bugs.edit(block(desk, "mean"))
+    desk.run_frames(3)
+    assert desk.session.drafts.texts and desk.reader.figure.before_lesson is None
     desk.session.drafts.set("height.seed", 7)
-    desk.turn(3)
-    assert dict(desk.rememberer._seen.edits.values) == {"height.seed": 7}, "it is remembered"
-    desk.reading.show(block(desk, "seeds"))
-    desk.turn(4)
-    desk.reading.go_back()
-    desk.turn(3)
+    desk.run_frames(3)
+    assert dict(desk.autosave._latest.edits.values) == {"height.seed": 7}, "it is remembered"
+    desk.reader.show(block(desk, "seeds"))
+    desk.run_frames(4)
+    desk.reader.go_back()
+    desk.run_frames(3)
     assert desk.session.path == own and value(desk, "height.seed") == 7
 
 
 def test_nothing_of_a_lesson_is_remembered_of_its_sketches(desk, tmp_path):
     desk.session.drafts.set("height.seed", 5)
-    desk.turn(2)
+    desk.run_frames(2)
     desk.open(show=False)
-    desk.reading.show(block(desk, "land"))
-    desk.turn(60)
+    desk.reader.show(block(desk, "rubble"))
+    desk.run_frames(60)
     desk.session.drafts.set("height.seed", 8)
-    desk.turn(60)
-    desk.rememberer.close()
-    kept = [json.loads(file.read_text()) for file in (tmp_path / "state").rglob("sessions/*.json")]
-    assert [(Path(one["sketch"]).parent.name, one["values"]["height.seed"]["value"]) for one in kept] == [
+    desk.run_frames(60)
+    desk.autosave.close()
+    memories = [json.loads(file.read_text()) for file in (tmp_path / "state").rglob("sessions/*.json")]
+    assert [(Path(one["sketch"]).parent.name, one["values"]["height.seed"]["value"]) for one in memories] == [
         ("own", 5)
     ]
 
 
 def test_playing_on_opens_the_sketch_as_the_readers_own_with_what_was_set_there(desk):
     desk.session.open(find("white_noise"))
-    desk.turn(2)
+    desk.run_frames(2)
     desk.session.drafts.set("height.seed", 41)
-    desk.turn(2)
-    desk.rememberer.look((800, 600))
-    desk.rememberer.write()
+    desk.run_frames(2)
+    desk.autosave.look((800, 600))
+    desk.autosave.write()
     desk.open(show=False)
-    desk.reading.show(block(desk, "land"))
-    desk.turn(2)
+    desk.reader.show(block(desk, "rubble"))
+    desk.run_frames(2)
     assert value(desk, "height.seed") == 3
-    play_on(desk.reading)
-    desk.turn(3)
+    play_on(desk.reader)
+    desk.run_frames(3)
     assert desk.session.path == find("white_noise") and value(desk, "height.seed") == 41
-    assert desk.reading.figure.own is None and desk.bench.interface.panel_shown
+    assert desk.reader.figure.before_lesson is None and desk.bench.interface.panel_shown
 
 
 def test_turns_are_stopped_at_and_played_to_the_last(desk):
     desk.open(1)
-    turns = block(desk, "turns")
-    desk.reading.move(turns, 2)
-    desk.turn(2)
+    repeated = block(desk, "halves")
+    desk.reader.move(repeated, 2)
+    desk.run_frames(2)
     assert desk.session.view.steps == {"height.raw": 2, "phase": 2}
-    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, turns.scenes[2]))
-    desk.reading.play_or_pause(turns)
-    assert desk.reading.playing == "turns" and 0 < desk.reading.patience(desk.bench.notices.now()) <= 0.8
-    desk.turn(60)
-    assert not desk.reading.playing and desk.reading.at["turns"] == 3
-    assert steps_of(turns.scenes[3]) == {"height.raw": 4, "phase": 4}
+    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, repeated.scenes[2]))
+    desk.reader.play_or_pause(repeated)
+    assert desk.reader.playing == "halves" and 0 < desk.reader.patience(desk.bench.notices.now()) <= 0.8
+    desk.run_frames(60)
+    assert not desk.reader.playing and desk.reader.at["halves"] == 3
+    assert steps_of(repeated.scenes[3]) == {"height.raw": 4, "phase": 4}
     assert desk.session.view.steps == {"height.raw": 4, "phase": 4}
 
 
@@ -327,198 +304,198 @@ def test_a_sweep_plays_from_the_first_value_to_the_last(desk):
     desk.open(2)
     rough = block(desk, "rough")
     assert value(desk, "height.smoothing") == 0.0
-    desk.reading.play_or_pause(rough)
+    desk.reader.play_or_pause(rough)
     seen = []
     for _ in range(90):
-        desk.turn()
+        desk.run_frames()
         seen.append(value(desk, "height.smoothing"))
-    assert list(dict.fromkeys(seen)) == [0.0, 0.5, 1.0] and not desk.reading.playing
-    desk.reading.play_or_pause(rough)
-    desk.turn(2)
+    assert list(dict.fromkeys(seen)) == [0.0, 0.5, 1.0] and not desk.reader.playing
+    desk.reader.play_or_pause(rough)
+    desk.run_frames(2)
     assert value(desk, "height.smoothing") == 0.0, "from the beginning again"
 
 
 def test_two_variants_are_parted_by_the_line_of_the_view(desk):
     desk.open(2)
     seeds = block(desk, "seeds")
-    desk.reading.choose(seeds, BOTH)
-    desk.turn(4)
+    desk.reader.choose(seeds, BOTH)
+    desk.run_frames(4)
     compare = desk.bench.inspection.compare
     assert compare.on and value(desk, "height.seed") == 2
     second = as_seen(desk)  # in full, and the first with it
-    desk.turn()
+    desk.run_frames()
     rows = np.frombuffer(compare.picture.read(alignment=1), np.uint8).reshape(32, 48, 4)[::-1]
     np.testing.assert_array_equal(rows, of_lesson(desk, seeds.scenes[0]))
     np.testing.assert_array_equal(second, of_lesson(desk, seeds.scenes[1]))
-    desk.reading.choose(seeds, 0)
-    desk.turn(3)
+    desk.reader.choose(seeds, 0)
+    desk.run_frames(3)
     assert not compare.on and value(desk, "height.seed") == 1
 
 
-def test_a_fault_is_drawn_and_mended_and_the_file_stays_as_it_is(desk):
+def test_a_bug_is_drawn_and_fixed_and_the_file_stays_as_it_is(desk):
     before = FILE.read_bytes()
     desk.open(3)
-    fault = block(desk, "quarter")
-    desk.reading.show(fault)
-    desk.reading.bugs.break_it(fault)
-    desk.turn(4)
-    assert desk.reading.bugs.state["quarter"] == BROKEN
-    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, broken(fault)))
+    bug = block(desk, "quarter")
+    desk.reader.show(bug)
+    desk.reader.bugs.break_it(bug)
+    desk.run_frames(4)
+    assert desk.reader.bugs.state["quarter"] == BROKEN
+    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, broken(bug)))
     assert [editing.text.path for editing in desk.bench.files.editing] == [FILE]
     text = desk.bench.files.editing[0].text
     assert ": 9.0)" in text.base
     text.save(text.base.replace(": 9.0)", ": 2.0)"))
-    desk.turn(6)
-    assert desk.reading.bugs.state["quarter"] == BROKEN, "another picture, but not the whole one"
+    desk.run_frames(6)
+    assert desk.reader.bugs.state["quarter"] == BROKEN, "another picture, but not the whole one"
     text.save(text.base.replace(": 2.0)", ": float(3))"))
-    desk.turn(6)
-    assert desk.reading.bugs.state["quarter"] == FIXED
+    desk.run_frames(6)
+    assert desk.reader.bugs.state["quarter"] == FIXED
     assert any("Fixed" in notice.text for notice in desk.bench.notices.items)
-    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, fault.scene))
-    desk.reading.bugs.break_it(fault)
-    desk.turn(4)
-    desk.reading.bugs.fix_it(fault)
-    desk.turn(4)
-    assert desk.reading.bugs.state["quarter"] == SHOWN and not desk.bench.files.editing
+    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, bug.scene))
+    desk.reader.bugs.break_it(bug)
+    desk.run_frames(4)
+    desk.reader.bugs.fix_it(bug)
+    desk.run_frames(4)
+    assert desk.reader.bugs.state["quarter"] == SHOWN and not desk.bench.files.editing
     assert not desk.session.drafts.texts
-    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, fault.scene))
+    np.testing.assert_array_equal(as_seen(desk), of_lesson(desk, bug.scene))
     assert FILE.read_bytes() == before
 
 
-def test_a_fault_that_does_not_compile_says_so_and_leaves_the_stage_with_its_page(desk):
+def test_a_bug_that_does_not_compile_says_so_and_leaves_the_stage_with_its_page(desk):
     desk.open(3)
-    fault = block(desk, "quarter")
-    desk.reading.bugs.break_it(fault)
-    desk.turn(4)
+    bug = block(desk, "quarter")
+    desk.reader.bugs.break_it(bug)
+    desk.run_frames(4)
     text = desk.bench.files.editing[0].text
     text.save(text.base.replace("total /", "totals /"))
-    desk.turn(4)
+    desk.run_frames(4)
     assert desk.session.error is not None and "raw.glsl" in str(desk.session.error)
-    assert desk.reading.bugs.state["quarter"] == BROKEN
-    desk.reading.turn_page(1)
-    desk.turn(4)
+    assert desk.reader.bugs.state["quarter"] == BROKEN
+    desk.reader.turn_page(1)
+    desk.run_frames(4)
     assert desk.session.error is None and not desk.session.drafts.texts and not desk.bench.files.editing
-    desk.reading.turn_page(-1)
-    desk.reading.bugs.break_it(fault)
+    desk.reader.turn_page(-1)
+    desk.reader.bugs.break_it(bug)
     assert "totals /" in desk.bench.files.editing[0].text.base, "what was typed is there again"
 
 
 def test_code_is_shown_as_the_copy_has_it_until_it_is_put_back(desk):
     before = FILE.read_text(encoding="utf-8")
     desk.open(3)
-    code, faults = block(desk, "mean"), desk.reading.bugs
-    assert "float(2 * r)" in faults.excerpt(code).text and not faults.is_edited(code)
-    faults.edit(code)
-    desk.turn(3)
+    code, bugs = block(desk, "mean"), desk.reader.bugs
+    assert "float(2 * r)" in bugs.excerpt(code).text and not bugs.is_edited(code)
+    bugs.edit(code)
+    desk.run_frames(3)
     editing = desk.bench.files.editing[0]
     assert editing.text.base == before
     assert before.split("\n")[editing.line - 2].strip() == "// anchor: height"
     editing.text.save(before.replace("float(2 * r)", "float(3 * r)"))
-    desk.turn(3)
-    assert "float(3 * r)" in faults.excerpt(code).text and faults.is_edited(code)
+    desk.run_frames(3)
+    assert "float(3 * r)" in bugs.excerpt(code).text and bugs.is_edited(code)
     assert desk.session.drafts.texts == {str(FILE): editing.text.base}
-    faults.put_back(code)
-    desk.turn(3)
-    assert not faults.is_edited(code) and not desk.session.drafts.texts and not desk.bench.files.editing
+    bugs.put_back(code)
+    desk.run_frames(3)
+    assert not bugs.is_edited(code) and not desk.session.drafts.texts and not desk.bench.files.editing
     assert FILE.read_text(encoding="utf-8") == before
 
 
 def test_a_mistake_in_a_copy_is_edited_in_the_copy_also_where_its_window_was_closed(desk):
     desk.open(3)
-    fault = block(desk, "quarter")
+    bug = block(desk, "quarter")
     desk.bench.files.open(FILE, here=True)  # the reader has the file itself open
     (own,) = desk.bench.files.editing
-    desk.reading.bugs.break_it(fault)
-    desk.turn(3)
+    desk.reader.bugs.break_it(bug)
+    desk.run_frames(3)
     copy = desk.bench.files.editing[-1]
     desk.bench.files.open(FILE, 5, here=True)
     assert (copy.line, copy.focus) == (5, True) and not own.focus
     desk.bench.files.editing.remove(copy)
     desk.bench.files.open(FILE, 6)
     assert desk.bench.files.editing == [own, copy] and copy.line == 6
-    desk.reading.bugs.fix_it(fault)
+    desk.reader.bugs.fix_it(bug)
     desk.bench.files.open(FILE, 7, here=True)
     assert desk.bench.files.editing == [own] and own.line == 7
 
 
 def test_what_was_typed_in_a_copy_and_not_saved_is_there_again(desk):
     desk.open(3)
-    fault, code, faults = block(desk, "quarter"), block(desk, "mean"), desk.reading.bugs
-    faults.break_it(fault)
-    desk.turn(4)
+    bug, code, bugs = block(desk, "quarter"), block(desk, "mean"), desk.reader.bugs
+    bugs.break_it(bug)
+    desk.run_frames(4)
     text_window(desk).replace_text_in_current_cursor("// mine\n")
-    desk.turn(2)
-    desk.reading.turn_page(1)
-    desk.turn(3)
+    desk.run_frames(2)
+    desk.reader.turn_page(1)
+    desk.run_frames(3)
     assert not desk.bench.files.editing
-    desk.reading.turn_page(-1)
-    faults.break_it(fault)
-    desk.turn(3)
+    desk.reader.turn_page(-1)
+    bugs.break_it(bug)
+    desk.run_frames(3)
     assert "// mine" in text_window(desk).get_text()
     text_window(desk).replace_text_in_current_cursor("// more\n")
     desk.bench.files.editing.clear()  # its window is closed
-    desk.turn(2)
-    faults.focus(fault)
+    desk.run_frames(2)
+    bugs.focus(bug)
     assert "// more" in text_window(desk).get_text()
-    faults.fix_it(fault)
-    desk.turn(3)
-    faults.break_it(fault)
-    desk.turn(3)
-    assert "// mine" not in text_window(desk).get_text(), "the lesson's mend forgets what was typed"
-    faults.fix_it(fault)
-    faults.edit(code)
-    desk.turn(3)
+    bugs.fix_it(bug)
+    desk.run_frames(3)
+    bugs.break_it(bug)
+    desk.run_frames(3)
+    assert "// mine" not in text_window(desk).get_text(), "the lesson's fix forgets what was typed"
+    bugs.fix_it(bug)
+    bugs.edit(code)
+    desk.run_frames(3)
     text_window(desk).replace_text_in_current_cursor("// other\n")
-    faults.put_back(code)
-    faults.edit(code)
-    desk.turn(3)
+    bugs.put_back(code)
+    bugs.edit(code)
+    desk.run_frames(3)
     assert "// other" not in text_window(desk).get_text(), "so does putting the file back"
 
 
 def test_numbers_are_computed_while_nothing_moves_and_the_picture_stays(desk):
     desk.open(1)
-    desk.turn(3)
+    desk.run_frames(3)
     seen, runs = as_seen(desk), dict(desk.session.engine.runs)
-    number = desk.reading.numbers.known["halving"]["peaks"]
+    number = desk.reader.numbers.known["halving"]["peaks"]
     values = desk.session.engine.read(block(desk, "peaks").scene.sketch, "height")
-    tops = sum(
+    peaks = sum(
         values[y, x] == values[y - 1 : y + 2, x - 1 : x + 2].max() for y in range(1, 32) for x in range(1, 32)
     )
-    assert number.value == tops and 50 < tops < 200
-    assert desk.reading.numbers.fill("{{peaks}} tops", desk.reading.lesson) == f"{tops} tops"
+    assert number.value == peaks and 50 < peaks < 200
+    assert desk.reader.numbers.fill("{{peaks}} peaks", desk.reader.lesson) == f"{peaks} peaks"
     assert runs, "what the panel counts is that of the picture"
     desk.session.redraw()
-    desk.turn(2)
+    desk.run_frames(2)
     np.testing.assert_array_equal(as_seen(desk), seen)
 
 
 def test_opening_a_sketch_meanwhile_takes_the_stage_from_the_lesson(desk):
     desk.open()
-    assert desk.reading.figure.own is not None
+    assert desk.reader.figure.before_lesson is not None
     desk.bench.commands.open(find("diamond_square_steps"))
-    desk.turn(3)
-    assert desk.reading.figure.own is None and desk.reading.figure.key is None
+    desk.run_frames(3)
+    assert desk.reader.figure.before_lesson is None and desk.reader.figure.key is None
 
 
 def test_a_lesson_is_read_on_in_french_where_it_was(desk):
     desk.open(1)
-    desk.reading.speak("fr")
-    desk.turn(2)
-    assert desk.reading.lesson.title == "Moitiés" and desk.reading.index == 1
-    assert desk.reading.section.title == "Étape par étape"
-    desk.reading.open("after")
-    assert desk.reading.lesson.title == "After it"
+    desk.reader.speak("fr")
+    desk.run_frames(2)
+    assert desk.reader.lesson.title == "Moitiés" and desk.reader.index == 1
+    assert desk.reader.section.title == "Étape par étape"
+    desk.reader.open("after")
+    assert desk.reader.lesson.title == "After it"
     assert any("anglais" in notice.text for notice in desk.bench.notices.items)
 
 
 def test_an_unknown_lesson_is_named_with_the_nearest(desk):
-    assert not desk.reading.open("halvin")
+    assert not desk.reader.open("halvin")
     assert any("no lesson 'halvin'" in n.text and "halving" in n.text for n in desk.bench.notices.items)
-    assert desk.reading.lesson is None and library.lesson_files() == ["after", "halving"]
+    assert desk.reader.lesson is None and library.lesson_files() == ["after", "halving"]
 
 
 class Silent:
-    """A trial that never answers."""
+    """A sandbox that never answers."""
 
     def submit(self, request: object) -> None:
         """Take a sketch, and forget it."""
@@ -529,15 +506,15 @@ class Silent:
 
 def test_while_a_picture_is_tried_the_one_before_stays_as_it_was(desk):
     desk.open(show=False)
-    desk.reading.show(block(desk, "land"))
-    desk.turn(3)
+    desk.reader.show(block(desk, "rubble"))
+    desk.run_frames(3)
     seen = as_seen(desk)
     desk.session.drafts._checks = replace(desk.session.drafts._checks, sandbox=Silent())
-    desk.reading.go(1)
-    desk.turn(3)
-    assert desk.reading.figure.busy and desk.session.view.steps == {}
+    desk.reader.go(1)
+    desk.run_frames(3)
+    assert desk.reader.figure.busy and desk.session.view.steps == {}
     np.testing.assert_array_equal(as_seen(desk), seen)
     desk.session.drafts._checks = replace(desk.session.drafts._checks, sandbox=None)
-    desk.reading.show(block(desk, "turns"))
-    desk.turn(3)
-    assert not desk.reading.figure.busy and desk.session.view.steps == {"height.raw": 0, "phase": 0}
+    desk.reader.show(block(desk, "halves"))
+    desk.run_frames(3)
+    assert not desk.reader.figure.busy and desk.session.view.steps == {"height.raw": 0, "phase": 0}

@@ -3,76 +3,63 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from imgui_bundle import ImVec2, imgui
 
 from playground import cli
-from playground.engine.engine import Engine
 from playground.lessons.scenes import Sketches
 from playground.sketch.find import find
 from playground.workbench.lesson.links import follow
 
-from .lesson_desk import Desk, shelved
-from .test_lesson_figures import FILE, OWN, value
-
-
-@pytest.fixture
-def desk(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) -> Iterator[Desk]:
-    shelved(monkeypatch, tmp_path)
-    own = tmp_path / "own"
-    own.mkdir()
-    (own / "sketch.toml").write_text(OWN, encoding="utf-8")
-    made = Desk(any_engine, own)
-    yield made
-    made.close()
+from .lesson_desk import FILE, value
 
 
 def test_a_key_brings_the_lessons_where_they_were_left_and_takes_them_away(desk, tmp_path):
     desk.key(imgui.Key.f2)
-    assert desk.reading.lesson is not None and not desk.bench.interface.panel_shown
+    assert desk.reader.lesson is not None and not desk.bench.interface.panel_shown
     desk.key(imgui.Key.page_down)
-    desk.turn(3)
-    assert desk.reading.index == 1 and desk.session.path == find("diamond_square_steps")
+    desk.run_frames(3)
+    assert desk.reader.index == 1 and desk.session.path == find("diamond_square_steps")
     desk.key(imgui.Key.page_up)
-    assert desk.reading.index == 0
+    assert desk.reader.index == 0
     desk.key(imgui.Key.page_down)
     desk.key(imgui.Key.f2)
-    assert not desk.reading.progress.shown and desk.bench.interface.panel_shown
-    kept = json.loads((tmp_path / "state/terrain-shader-playground/lessons.json").read_text())
-    assert kept["lesson"] == "halving" and kept["sections"] == {"halving": 1} and not kept["shown"]
+    assert not desk.reader.progress.shown and desk.bench.interface.panel_shown
+    progress = json.loads((tmp_path / "state/terrain-shader-playground/lessons.json").read_text())
+    assert (
+        progress["lesson"] == "halving" and progress["sections"] == {"halving": 1} and not progress["shown"]
+    )
     desk.key(imgui.Key.page_down)
-    assert desk.reading.index == 1, "no page is turned that is not seen"
+    assert desk.reader.index == 1, "no page is turned that is not seen"
 
 
 def test_buttons_turn_pages_and_go_to_the_next_lesson(desk):
     desk.open(show=False)
     for _ in range(4):
         desk.click("Next##next")
-    assert desk.reading.index == 4 and desk.reading.progress.done == ["halving"]
+    assert desk.reader.index == 4 and desk.reader.progress.done == ["halving"]
     desk.click("Next lesson##next")
-    assert desk.reading.lesson.name == "after"
-    desk.reading.open("halving")
-    desk.turn(2)
-    assert desk.reading.index == 4, "where it was left"
+    assert desk.reader.lesson.name == "after"
+    desk.reader.open("halving")
+    desk.run_frames(2)
+    assert desk.reader.index == 4, "where it was left"
 
 
 def test_sliders_of_a_figure_act_on_the_session(desk):
     desk.open()
     desk.click("##height.seed", 0.5)
     assert value(desk, "height.seed") != 3
-    desk.turn(2)
+    desk.run_frames(2)
     desk.click("Reset")
-    desk.turn(2)
+    desk.run_frames(2)
     assert value(desk, "height.seed") == 3
 
 
 def test_a_slider_over_turns_stops_the_kernels(desk):
     desk.open(1)
     desk.drag("##steps", 0.05, 0.95)
-    assert desk.reading.at["turns"] == 3 and desk.session.view.steps == {"height.raw": 4, "phase": 4}
+    assert desk.reader.at["halves"] == 3 and desk.session.view.steps == {"height.raw": 4, "phase": 4}
     desk.click("<")
     assert desk.session.view.steps == {"height.raw": 2, "phase": 2}
 
@@ -82,37 +69,37 @@ def test_an_answer_waits_for_a_choice_and_a_solution_for_its_button(desk):
     assert "Show the answer" in desk.places and "Hide it##answer" not in desk.places
     choices = [key for key in desk.places if key == "##choice"]
     assert choices
-    desk.reading.chosen["which"] = 1
-    desk.turn(2)
+    desk.reader.chosen["which"] = 1
+    desk.run_frames(2)
     assert "Show the answer" in desk.places
-    desk.reading.chosen["which"] = 0
+    desk.reader.chosen["which"] = 0
     desk.places.clear()
-    desk.turn(2)
+    desk.run_frames(2)
     assert "Show the answer" not in desk.places, "a right choice shows it"
     assert "Show its picture" not in desk.places
-    desk.reading.shown.add(("guess", "solution"))
-    desk.turn(2)
+    desk.reader.shown.add(("guess", "solution"))
+    desk.run_frames(2)
     desk.click("Show its picture")
-    desk.turn(2)
+    desk.run_frames(2)
     assert value(desk, "height.seed") == 9
 
 
-def test_break_it_and_mend_it_are_buttons(desk):
+def test_break_it_and_fix_it_are_buttons(desk):
     desk.open(3)
     assert "Fix it" not in desk.places
     desk.click("Break it")
-    desk.turn(2)
+    desk.run_frames(2)
     assert len(desk.bench.files.editing) == 1
     desk.click("Fix it")
-    desk.turn(2)
-    assert not desk.bench.files.editing and desk.reading.bugs.state["quarter"] == "shown"
+    desk.run_frames(2)
+    assert not desk.bench.files.editing and desk.reader.bugs.state["quarter"] == "shown"
 
 
-def test_a_fault_is_mended_by_typing_in_the_copy(desk):
+def test_a_bug_is_fixed_by_typing_in_the_copy(desk):
     before = FILE.read_bytes()
     desk.open(3)
     desk.click("Break it")
-    desk.turn(3)
+    desk.run_frames(3)
     (editing,) = desk.bench.files.editing
     lines = editing.text.base.split("\n")
     start = next(n for n, line in enumerate(lines) if line.startswith("float kernel("))
@@ -125,41 +112,41 @@ def test_a_fault_is_mended_by_typing_in_the_copy(desk):
     desk.key(imgui.Key.delete)
     desk.type("3")
     desk.key(imgui.Key.mod_ctrl, imgui.Key.s)
-    desk.turn(4)
+    desk.run_frames(4)
     assert "4.0 : 3.0)" in editing.text.base
     assert desk.session.error is None
-    assert desk.reading.bugs.state["quarter"] == "fixed"
+    assert desk.reader.bugs.state["quarter"] == "fixed"
     assert FILE.read_bytes() == before
 
 
 def test_brackets_that_are_typed_stand_as_they_were_typed(desk):
     desk.open(3)
     desk.click("Break it")
-    desk.turn(3)
+    desk.run_frames(3)
     (editing,) = desk.bench.files.editing
     desk.key(imgui.Key.home)
     desk.type('(all(inside) ? a[0] : "b")')
-    desk.turn(2)
+    desk.run_frames(2)
     assert '(all(inside) ? a[0] : "b")float kernel(' in editing.view.editor.get_text()
 
 
 def test_languages_are_buttons(desk):
     desk.open(1)
     desk.click("FR##fr")
-    assert desk.reading.lesson.title == "Moitiés" and desk.reading.index == 1
+    assert desk.reader.lesson.title == "Moitiés" and desk.reader.index == 1
     assert "Suivant##next" in desk.places
     desk.click("EN##en")
-    assert desk.reading.lesson.title == "Halving"
+    assert desk.reader.lesson.title == "Halving"
 
 
 def test_back_is_there_once_a_lesson_has_taken_the_stage(desk):
     desk.open(show=False)
     assert "Back to my sketch##back" not in desk.places
     desk.click("Show")
-    desk.turn(3)
+    desk.run_frames(3)
     assert desk.session.path == find("white_noise")
     desk.click("Back to my sketch##back")
-    desk.turn(3)
+    desk.run_frames(3)
     assert desk.session.path.parent.name == "own"
 
 
@@ -173,58 +160,60 @@ def test_links_lead_to_lessons_and_sketches(desk, monkeypatch):
     for address in (
         "https://doi.org/10.1145/358523.358553",
         "thesis:1.3.2",
+        "term:texel",
         "lesson:after",
         "sketch:white_noise",
     ):
-        follow(desk.reading, address)
-        desk.turn(3)
+        follow(desk.reader, address)
+        desk.run_frames(3)
     assert opened == ["https://doi.org/10.1145/358523.358553"]
+    assert any("One element of a texture" in notice.text for notice in desk.bench.notices.items)
     assert any("section 1.3.2" in notice.text for notice in desk.bench.notices.items)
-    assert desk.reading.lesson.name == "after" and desk.session.path == find("white_noise")
-    assert desk.reading.figure.own is None, "it is the reader's own"
+    assert desk.reader.lesson.name == "after" and desk.session.path == find("white_noise")
+    assert desk.reader.figure.before_lesson is None, "it is the reader's own"
 
 
 def test_a_narrow_window_makes_the_panel_no_narrower_for_good(desk):
     desk.open(show=False)
-    before = desk.reading.progress.width
+    before = desk.reader.progress.width
     imgui.get_io().display_size = ImVec2(500, 400)
-    desk.turn(3)
-    assert desk.reading.progress.width == before
+    desk.run_frames(3)
+    assert desk.reader.progress.width == before
 
 
 def test_every_page_is_drawn_in_both_languages_at_every_size(desk):
     for language in ("en", "fr"):
         for page in range(5):
-            desk.reading.open("halving", language=language, page=page)
-            desk.reading.shown |= {(name, what) for name in ("guess", "try") for what in ("hint", "solution")}
-            desk.turn(3)
-            right = desk.reading.progress.width
+            desk.reader.open("halving", language=language, page=page)
+            desk.reader.shown |= {(name, what) for name in ("guess", "try") for what in ("hint", "solution")}
+            desk.run_frames(3)
+            right = desk.reader.progress.width
             for label, (x, _, wide, _) in desk.places.items():
-                beside = x >= right  # of the view's own
-                assert beside or (x >= 0 and x + wide <= right + 1), (language, page, label)
+                in_view = x >= right  # of the view's own
+                assert in_view or (x >= 0 and x + wide <= right + 1), (language, page, label)
             desk.places.clear()
 
 
 def test_lessons_are_read_only_when_they_are_opened(desk, monkeypatch):
     monkeypatch.setattr(Sketches, "load", lambda *_: pytest.fail("a sketch is loaded"))
-    assert [one.title for one in desk.reading.summaries] == ["Halving", "After it"]
+    assert [one.title for one in desk.reader.summaries] == ["Halving", "After it"]
 
 
-def test_the_command_without_arguments_has_lessons_beside_its_window(monkeypatch):
+def test_the_command_without_arguments_shows_lessons_in_its_window(monkeypatch):
     given: list[dict[str, object]] = []
     monkeypatch.setattr("playground.gpu.doctor.where_to_show", lambda *_: ":0")
     monkeypatch.setattr(cli.live, "open_window", lambda *_, **rest: given.append(rest))
     assert cli.main([]) == 0
-    assert given == [{"beside": True}]
+    assert given == [{"show_lessons": True}]
 
 
 @pytest.mark.parametrize("shown", [True, False])
-def test_lessons_beside_a_sketch_open_where_they_were_left_unless_they_were_closed(desk, shown):
-    desk.reading.progress.lesson, desk.reading.progress.shown = "after", shown
+def test_lessons_next_to_a_sketch_open_where_they_were_left_unless_they_were_closed(desk, shown):
+    desk.reader.progress.lesson, desk.reader.progress.shown = "after", shown
     assert desk.lessons is not None
-    desk.lessons.begin("", "", beside=True)
-    assert desk.reading.figure.own is None, "the sketch stays in view"
-    assert (desk.reading.lesson.name if desk.reading.lesson else "") == ("after" if shown else "")
-    desk.lessons.begin("halving", "fr", beside=False)
-    desk.turn(3)
-    assert desk.reading.lesson.title == "Moitiés" and desk.session.path == find("white_noise")
+    desk.lessons.begin("", "", show_lessons=True)
+    assert desk.reader.figure.before_lesson is None, "the sketch stays in view"
+    assert (desk.reader.lesson.name if desk.reader.lesson else "") == ("after" if shown else "")
+    desk.lessons.begin("halving", "fr", show_lessons=False)
+    desk.run_frames(3)
+    assert desk.reader.lesson.title == "Moitiés" and desk.session.path == find("white_noise")

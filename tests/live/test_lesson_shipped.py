@@ -64,7 +64,7 @@ def test_every_picture_can_be_set_by_hand(name):
             count += 1
             file = load(Path(scene.sketch.file))
             made = Draft(file, file, edits_of(scene, file)).sketch
-            assert all(turn >= 0 for turn in steps_of(scene).values())
+            assert all(step >= 0 for step in steps_of(scene).values())
             if scene.view:
                 shown = map_of(scene)
                 assert shown is not None and ":" in shown.ref

@@ -81,7 +81,7 @@ def test_lines_break_at_blanks_and_nowhere_else():
 
 def test_a_formula_keeps_the_comma_behind_it():
     lines = broken((Run("so "), Run("h^2", formula=True), Run(", and")), 8, ruler)
-    assert texts(lines) == ["so h^2,", "and"], "4 wide, whatever its source"
+    assert texts(lines) == ["so h^2,", "and"], "4 wide, with any source"
 
 
 def test_what_is_wider_than_a_line_is_broken_inside():
@@ -92,14 +92,14 @@ def test_what_is_wider_than_a_line_is_broken_inside():
 
 @each("seed", range(60))
 def test_no_letter_is_lost_doubled_or_out_of_its_line(seed):
-    chance = random.Random(seed)
-    width = chance.randint(3, 40)
+    rng = random.Random(seed)
+    width = rng.randint(3, 40)
     pieces = [
         (
-            "".join(chance.choices(string.ascii_letters + "     ,.", k=chance.randint(1, 12))),
-            chance.random() < 0.4,
+            "".join(rng.choices(string.ascii_letters + "     ,.", k=rng.randint(1, 12))),
+            rng.random() < 0.4,
         )
-        for _ in range(chance.randint(0, 8))
+        for _ in range(rng.randint(0, 8))
     ]
     runs = tuple(Run(text, bold) for text, bold in pieces)
     lines = broken(runs, width, ruler)
@@ -131,7 +131,7 @@ def test_a_formula_is_set_as_one():
     assert 0 < fraction.baseline < fraction.pixels.shape[0]
     for edge in (alpha[0], alpha[-1], alpha[:, 0], alpha[:, -1]):
         assert edge.any(), "nothing empty around it"
-    assert letter.baseline >= letter.pixels.shape[0] - 2, "an a stands on the baseline"
+    assert letter.baseline >= letter.pixels.shape[0] - 2, "an a is on the baseline"
     assert (fraction.pixels[alpha == 255][:, :3] == 0xEE).all()
 
 
@@ -206,7 +206,7 @@ def test_a_width_that_no_window_has_is_brought_into_range(tmp_path):
     assert read_progress(file).width == NARROWEST
 
 
-def test_what_cannot_be_written_is_said_in_a_sentence(tmp_path):
+def test_what_cannot_be_written_is_reported_in_a_sentence(tmp_path):
     (tmp_path / "file").write_text("", encoding="utf-8")
     complaint = write_progress(Progress(), tmp_path / "file" / "lessons.json")
     assert complaint.startswith("where you are in the lessons cannot be remembered")

@@ -19,7 +19,7 @@ from playground.workbench.random_targets import targets
 from ..sketch_texts import map_of, passes
 from .desk import Bare
 
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high the hills are
 uniform float seed = 3.0; //! slider(0, 9) Which hills
@@ -32,12 +32,12 @@ vec4 kernel(ivec2 texel) { return vec4(seed); }
 """
 SKETCH = (
     'format = 1\nsize = 33\nmain = ["light.seed", "height.seed"]\n'
-    + passes(height="./land", light="./light")
+    + passes(height="./terrain", light="./light")
     + map_of("height")
 )
 
 
-FILES = {"land.glsl": LAND, "light.glsl": LIGHT, "sketch.toml": SKETCH}
+FILES = {"terrain.glsl": TERRAIN, "light.glsl": LIGHT, "sketch.toml": SKETCH}
 
 
 def value(bare: Bare, path: str) -> object:
@@ -55,7 +55,7 @@ def test_the_main_parameters_stand_first_in_their_order_and_the_passes_are_folde
     found = bare.panel.memory.listing.main(bare.session.shown)
     assert [item.path for item in found] == ["light.seed", "height.seed"]
     assert [item.title for item in found] == ["Light: seed", "Height: seed"], "a title alone would not do"
-    bare.turn(2)
+    bare.run_frames(2)
     light, height = bare.places["##main light.seed"], bare.places["##main height.seed"]
     assert light[1] < height[1]
     assert "##height.level" not in bare.places, "its pass is folded"
@@ -94,7 +94,7 @@ def test_a_main_parameter_is_typed_where_it_was_clicked_on(bare: Bare) -> None:
     imgui.get_io().add_key_event(imgui.Key.mod_ctrl, True)
     bare.click("##main height.seed", 0.2)
     imgui.get_io().add_key_event(imgui.Key.mod_ctrl, False)
-    bare.turn(2)
+    bare.run_frames(2)
     assert "##main height.seed-typed" in bare.places and "##height.seed-typed" not in bare.places
     bare.type("7")
     bare.key(imgui.Key.enter)
@@ -108,7 +108,7 @@ def test_the_menu_of_a_main_parameter_resets_it(bare: Bare) -> None:
     assert value(bare, "height.seed") == 3.0
 
 
-def test_random_values_are_for_the_shape_unless_everything_is_asked_for(bare: Bare) -> None:
+def test_random_values_are_for_the_shape_unless_everything_is_chosen(bare: Bare) -> None:
     bare.click("Random")
     bare.click("Random values")
     assert value(bare, "height.seed") != 3.0
@@ -132,8 +132,8 @@ def test_random_values_are_for_the_shape_unless_everything_is_asked_for(bare: Ba
     ],
 )
 def test_random_values_of_shipped_sketches(name: str, least: set[str], words: str) -> None:
-    found, said = drawn_for(name)
-    assert least <= set(found) and said == words
+    found, label = drawn_for(name)
+    assert least <= set(found) and label == words
     assert not any(path.startswith("view.") or path.endswith("raw_size") for path in found)
 
 

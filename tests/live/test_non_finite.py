@@ -1,4 +1,4 @@
-"""Numbers that are not finite: found at rest, a pass a turn, named, and gone when they are mended."""
+"""Numbers that are not finite: found at rest, a pass a frame, named, and gone once fixed."""
 
 from __future__ import annotations
 
@@ -49,16 +49,16 @@ class Desk:
         self.bench = Bench(self.session, WindowControls(lambda: None), folder=folder, now=lambda: self.time)
         self.watch = FiniteWatch(lambda: self.time)
 
-    def turn(self, seconds: float = 0.0, held: bool = False) -> None:
+    def run_frames(self, seconds: float = 0.0, held: bool = False) -> None:
         self.time += seconds
         self.session.frame((40, 40))
         self.watch.update(self.session, held=held)
 
     def rest(self) -> list[str]:
-        self.turn()
-        self.turn(2 * REST)
+        self.run_frames()
+        self.run_frames(2 * REST)
         for _ in range(20):
-            self.turn()
+            self.run_frames()
         return [found.path for found in self.watch.found]
 
 
@@ -79,20 +79,20 @@ def test_the_first_pass_is_named_and_what_follows_is_counted(desk: Desk) -> None
 
 
 def test_it_waits_for_rest_and_for_the_button_and_looks_at_one_pass_a_turn(desk: Desk) -> None:
-    desk.turn()
-    desk.turn(REST / 2)
+    desk.run_frames()
+    desk.run_frames(REST / 2)
     assert desk.watch.looks == 0 and desk.watch.patience is not None
-    desk.turn(REST, held=True)
+    desk.run_frames(REST, held=True)
     assert desk.watch.looks == 0
     for number in range(1, 3):
-        desk.turn(REST if number == 1 else 0.0)
+        desk.run_frames(REST if number == 1 else 0.0)
         assert desk.watch.looks == number
     desk.session.drafts.set("first.root", 0.25)
-    desk.turn()
+    desk.run_frames()
     assert desk.watch.looks == 2, "another picture: what was under way is of no use"
 
 
-def test_it_goes_when_it_is_mended(desk: Desk) -> None:
+def test_it_goes_once_fixed(desk: Desk) -> None:
     assert desk.rest()
     desk.session.drafts.set("first.root", 0.25)
     assert desk.rest() == []
@@ -116,7 +116,7 @@ def test_a_map_of_the_texture_shows_it_in_magenta_where_the_mark_is(desk: Desk) 
 
 
 def test_a_texture_that_was_read_since_changes_nothing(desk: Desk) -> None:
-    desk.turn()
+    desk.run_frames()
     desk.session.read_values("first:first")
     ran = list(desk.session.engine.ran)
     runs = dict(desk.session.engine.runs)
@@ -127,16 +127,16 @@ def test_a_texture_that_was_read_since_changes_nothing(desk: Desk) -> None:
 def test_time_that_runs_is_looked_at_now_and_then(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Session, "animated", True)
     desk.session.clock.playing = True
-    desk.turn(held=True)
+    desk.run_frames(held=True)
     assert desk.watch.looks == 0
-    desk.turn()
+    desk.run_frames()
     seen = desk.watch.looks
     assert desk.watch.found and seen > 0
     for _ in range(10):
         desk.session.redraw()
-        desk.turn(0.05)
+        desk.run_frames(0.05)
     assert desk.watch.looks == seen
-    desk.turn(3.0)
+    desk.run_frames(3.0)
     assert desk.watch.looks > seen
 
 
@@ -165,7 +165,7 @@ def test_the_words_lead_to_the_texture_and_back(
             finite.draw_not_finite(watch, bare.session, bare.theme, (400.0, 0.0, 880.0, 720.0))
 
         monkeypatch.setattr(bare, "draw", both)
-        bare.turn(120)
+        bare.run_frames(120)
         bare.click("Show it")
         assert bare.session.view.map is not None and bare.session.view.map.ref == "first:first"
         bare.click("Back to the picture")
@@ -235,7 +235,7 @@ def test_a_hole_that_the_view_makes_is_shown_too(
     desk = Desk(any_engine, tmp_path)
     (tmp_path / "sketch.toml").write_text(sketch, encoding="utf-8")
     desk.session.drafts.reload()
-    desk.turn()
+    desk.run_frames()
     if by_hand:
         desk.session.drafts.set("view.root", -1.0)
     desk.rest()
@@ -244,16 +244,16 @@ def test_a_hole_that_the_view_makes_is_shown_too(
     ref = ref_of(found)
     assert ref == "view.lit:frame" and desk.session.can_show(ref)
     desk.bench.session.show(ref)
-    desk.turn()
+    desk.run_frames()
     assert desk.session.view.map is not None and desk.session.error is None and not desk.session.notes
     frame = desk.session.read()
     assert frame is not None
     magenta = np.argwhere((frame.array[::-1, :, :3] == (255, 0, 255)).all(axis=2))
     assert magenta.tolist() == [[5, 7]], "the texel itself, in a picture of its size"
     desk.rest()
-    assert desk.watch.found == (found,), "it has its own name, whatever the map calls it"
+    assert desk.watch.found == (found,), "it has its own name, under any name in the map"
     desk.bench.session.show(None)
-    desk.turn()
+    desk.run_frames()
     desk.rest()
     assert desk.watch.found == (found,)
     desk.session.release()
@@ -261,7 +261,7 @@ def test_a_hole_that_the_view_makes_is_shown_too(
 
 def test_what_the_view_lacks_cannot_be_shown(any_engine: Engine, tmp_path: Path) -> None:
     desk = Desk(any_engine, tmp_path)
-    desk.turn()
+    desk.run_frames()
     session = desk.session
     assert session.can_show("view:frame") and session.can_show("first:first")
     for wrong in ("view:light", "view.lit:frame", "other:frame", "first.view:first", "view"):

@@ -17,7 +17,7 @@ from playground.sketch.assign import values_of
 from ..sketch_texts import map_of, passes
 from .desk import Bare
 
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high the hills are
 uniform float turn = 0.0; //! angle The way that the hills run
@@ -33,7 +33,7 @@ SKETCH = (
 title = "Hills, with a title that is longer than any panel has room for in one line"
 size = 33
 """
-    + passes(height=("./land", "set = { level = 0.6 }"))
+    + passes(height=("./terrain", "set = { level = 0.6 }"))
     + map_of("height")
     + """[[preset]]
 name = "high"
@@ -43,7 +43,7 @@ set = { "height.level" = 1.0, "height.count" = 5 }
 LEVEL, COUNT = "##height.level", "##height.count"
 
 
-FILES = {"land.glsl": LAND, "sketch.toml": SKETCH}
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": SKETCH}
 
 
 def value(bare: Bare, name: str) -> object:
@@ -51,7 +51,7 @@ def value(bare: Bare, name: str) -> object:
     return values_of(bare.session.sketch)[f"height.{name}"]
 
 
-def said(bare: Bare) -> str:
+def notices_of(bare: Bare) -> str:
     return "; ".join(notice.text for notice in bare.bench.notices.items)
 
 
@@ -80,7 +80,7 @@ def test_a_value_is_typed_as_an_expression(bare: Bare, by: str) -> None:
     else:
         bare.click(LEVEL, 0.2, button=1)
         bare.click("Type a value")
-    bare.turn(3)
+    bare.run_frames(3)
     assert value(bare, "level") == 0.6, "the click itself has moved nothing"
     bare.type("1/8 + 1/8")
     bare.key(imgui.Key.enter)
@@ -88,15 +88,15 @@ def test_a_value_is_typed_as_an_expression(bare: Bare, by: str) -> None:
     assert [list(s.after.values()) for s in bare.bench.undo.history.steps][-1] == [0.25]
 
 
-def test_what_cannot_be_typed_is_said_and_escape_leaves_it(bare: Bare) -> None:
+def test_an_invalid_value_is_reported_and_escape_leaves_it(bare: Bare) -> None:
     bare.click(LEVEL, 0.2, times=2)
-    bare.turn(3)
+    bare.run_frames(3)
     bare.type("2")
     bare.key(imgui.Key.enter)
-    assert value(bare, "level") == 0.6 and "outside its range 0 to 1" in said(bare)
-    bare.turn(60)
+    assert value(bare, "level") == 0.6 and "outside its range 0 to 1" in notices_of(bare)
+    bare.run_frames(60)
     bare.click(LEVEL, 0.2, times=2)
-    bare.turn(3)
+    bare.run_frames(3)
     bare.type("0.125")
     bare.key(imgui.Key.escape)
     assert value(bare, "level") == 0.6
@@ -105,7 +105,7 @@ def test_what_cannot_be_typed_is_said_and_escape_leaves_it(bare: Bare) -> None:
 def test_resets_of_one_of_a_group_and_of_all(bare: Bare) -> None:
     def change() -> None:
         bare.session.drafts.set_all({"height.level": 0.75, "height.count": 5, "height.rough": 2.0})
-        bare.turn(2)
+        bare.run_frames(2)
 
     change()
     bare.click(f"{LEVEL}-reset")
@@ -123,46 +123,46 @@ def test_resets_of_one_of_a_group_and_of_all(bare: Bare) -> None:
     assert (value(bare, "level"), value(bare, "count"), value(bare, "rough")) == (0.6, 3, 1.0)
 
 
-def test_a_padlock_locks_and_chance_leaves_it(bare: Bare) -> None:
+def test_a_padlock_locks_and_random_values_leave_it(bare: Bare) -> None:
     bare.point(LEVEL)
     bare.click("lock height.level")
     assert bare.session.shown is not None and bare.session.shown.edits.locked == ("height.level",)
     bare.click("Random")
     bare.click("Random values")
-    assert "Random, seed 1: 6 parameters" in said(bare)
+    assert "Random, seed 1: 6 parameters" in notices_of(bare)
     assert value(bare, "level") == 0.6 and value(bare, "rough") != 1.0
     first = dict(values_of(bare.session.sketch))  # type: ignore[arg-type]
     bare.click("Mutate")
-    assert "Mutation, seed 2" in said(bare)
+    assert "Mutation, seed 2" in notices_of(bare)
     bare.bench.undo.undo()
-    assert values_of(bare.session.sketch) == first, "chance is one step"  # type: ignore[arg-type]
+    assert values_of(bare.session.sketch) == first, "random values are one step"  # type: ignore[arg-type]
 
 
 def test_the_search_finds_and_only_changed_ones_show(bare: Bare) -> None:
     bare.type("/")
-    bare.turn(2)
+    bare.run_frames(2)
     bare.type("waves metre")
     bare.places.clear()
-    bare.turn(2)
+    bare.run_frames(2)
     shown = {label for label in bare.places if label.startswith("##height.")}
     assert shown == {"##height.rough"}
     bare.key(imgui.Key.escape)
-    bare.turn(2)
+    bare.run_frames(2)
     assert bare.panel.memory.filter.search == ""
     bare.session.drafts.set("height.count", 5)
     bare.click("Changed##only")
     bare.places.clear()
-    bare.turn(2)
+    bare.run_frames(2)
     assert COUNT in bare.places and LEVEL not in bare.places
 
 
 def test_a_value_is_saved_in_the_fewest_digits_and_then_is_the_file_s(bare: Bare, folder: Path) -> None:
     bare.session.drafts.set("height.level", 1 / 3)
-    bare.turn(2)
+    bare.run_frames(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
-    bare.turn(5)
+    bare.run_frames(5)
     assert "set = { level = 0.33333334 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
-    assert "new value" not in said(bare), "the file says what was set, so nothing gives way"
+    assert "new value" not in notices_of(bare), "the file says what was set, so nothing gives way"
     bare.bench.undo.undo()
     assert value(bare, "level") == 0.6
 
@@ -170,7 +170,7 @@ def test_a_value_is_saved_in_the_fewest_digits_and_then_is_the_file_s(bare: Bare
 def test_the_lines_at_the_panel_s_foot_are_whole_however_narrow_it_is(bare: Bare) -> None:
     for width in (240.0, 330.0, 620.0):
         bare.panel.width = width
-        bare.turn(3)
+        bare.run_frames(3)
         panel = imgui.internal.find_window_by_name("panel")
         assert panel.content_size.y + 2 * panel.window_padding.y <= panel.size.y + 1, width
 
@@ -184,7 +184,7 @@ def test_presets_say_what_was_changed_since_and_new_ones_are_saved(bare: Bare, f
     bare.click("##name")
     bare.type("mine")
     bare.click("Save preset")
-    bare.turn(5)
+    bare.run_frames(5)
     assert 'name = "mine"' in (folder / "sketch.toml").read_text(encoding="utf-8")
     assert bare.session.sketch is not None and [p.name for p in bare.session.sketch.presets] == [
         "high",
@@ -195,7 +195,7 @@ def test_presets_say_what_was_changed_since_and_new_ones_are_saved(bare: Bare, f
 def test_the_history_lists_every_step_and_goes_there(bare: Bare) -> None:
     for number in (0.1, 0.2, 0.3):
         bare.session.drafts.set("height.level", number)
-        bare.turn(90)
+        bare.run_frames(90)
     bare.click("History")
     bare.click("Level: the file's to 0.1##1")
     assert value(bare, "level") == 0.1 and bare.bench.undo.history.done == 1
@@ -208,7 +208,7 @@ def test_what_is_set_is_copied(bare: Bare) -> None:
     bare.click("Copy")
     bare.click("As --set words")
     assert bare.clipboard == "--set height.level=0.25 --set height.kind=sharp"
-    bare.turn(25)
+    bare.run_frames(25)
     bare.click("Copy")
     bare.click("As TOML")
     assert 'set = { level = 0.25, kind = "sharp" }' in bare.clipboard
@@ -216,7 +216,7 @@ def test_what_is_set_is_copied(bare: Bare) -> None:
 
 def test_ctrl_s_saves(bare: Bare, folder: Path) -> None:
     bare.session.drafts.set("height.level", 0.25)
-    bare.turn(2)
+    bare.run_frames(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
     assert "set = { level = 0.25 }" in (folder / "sketch.toml").read_text(encoding="utf-8")
     assert bare.bench.captures.saved is None, "and no picture"
@@ -229,13 +229,13 @@ def test_nothing_reaches_beyond_the_panel(
     bare = Bare(any_engine, folder, size, scale)
     bare.session.drafts.set_all({"height.level": 0.75, "height.count": 5, "height.sun": (90.0, 20.0)})
     bare.places.clear()
-    bare.turn(3)
+    bare.run_frames(3)
     right = PANEL_WIDTH * scale
     for label, (x, _, wide, _) in bare.places.items():
         assert 0 <= x and x + wide <= right, label
     for name, widget in (("level", ""), ("sun", "-elevation")):
         field, cross = bare.places[f"##height.{name}{widget}"], bare.places[f"##height.{name}-reset"]
-        assert field[0] + field[2] <= cross[0], "the reset stands beside its field"
+        assert field[0] + field[2] <= cross[0], "the reset is next to its field"
     bare.close()
 
 
@@ -243,7 +243,7 @@ def test_the_key_map_shows_every_key_and_fits(folder: Path, any_engine: Engine) 
     for size, scale in (((1280, 720), 1.0), ((800, 600), 1.0), ((1600, 1200), 2.0)):
         bare = Bare(any_engine, folder, size, scale)
         bare.type("?")
-        bare.turn(3)
+        bare.run_frames(3)
         window = imgui.internal.find_window_by_name("keys")
         assert window.content_size.y + 2 * window.window_padding.y <= window.size.y + 1, "nothing is cut off"
         assert 0 <= window.pos.x and window.pos.x + window.size.x <= size[0]
@@ -257,13 +257,13 @@ def test_the_key_map_shows_every_key_and_fits(folder: Path, any_engine: Engine) 
         bare.press(False)
         assert not bare.bench.interface.keymap_shown
         bare.key(imgui.Key.escape)
-        assert not bare.quits and "Ctrl+Q" in said(bare)
+        assert not bare.quits and "Ctrl+Q" in notices_of(bare)
         bare.key(imgui.Key.mod_ctrl, imgui.Key.q)
         assert bare.quits
         bare.close()
 
 
-IMAGE = """// land.glsl -- a height from an image
+IMAGE = """// terrain.glsl -- a height from an image
 #pragma kernel(output = "height:r32f")
 uniform sampler2D image;  //! file() label("Elevation")
 float kernel(ivec2 texel) { return texelFetch(image, texel % textureSize(image, 0), 0).r; }
@@ -275,86 +275,86 @@ def test_an_image_that_is_dropped_is_put_where_a_hand_says(folder: Path, any_eng
     image = folder / "other" / "white.png"
     image.parent.mkdir()
     write_png(image, np.full((4, 4, 4), 255, np.uint8))
-    (folder / "land.glsl").write_text(IMAGE, encoding="utf-8")
+    (folder / "terrain.glsl").write_text(IMAGE, encoding="utf-8")
     text = SKETCH[: SKETCH.index("[[preset]]")].replace("level = 0.6", 'image = "none.png"')
     (folder / "sketch.toml").write_text(text, encoding="utf-8")
     bare = Bare(any_engine, folder)
     bare.drops.take([image, folder / "other" / "notes.txt"])
-    assert "notes.txt is neither a sketch, a shader nor an image" in said(bare)
-    bare.turn(3)
+    assert "notes.txt is neither a sketch, a shader nor an image" in notices_of(bare)
+    bare.run_frames(3)
     bare.click("Elevation   height.image##height.image")
     assert value(bare, "image") == str(image.resolve()) and bare.drops.waiting == []
     assert bare.session.read_values("height:height").max() == 1.0  # type: ignore[union-attr]
     bare.bench.undo.undo()
     assert value(bare, "image") == "none.png"
     bare.drops.take([image, image])
-    bare.turn(3)
+    bare.run_frames(3)
     bare.click("Elevation   height.image##height.image")
-    assert len(bare.drops.waiting) == 1, "and the next is asked about"
+    assert len(bare.drops.waiting) == 1, "and the next one waits for a choice"
     bare.bench.undo.undo()
-    bare.turn(3)
+    bare.run_frames(3)
     imgui.get_io().add_mouse_pos_event(1000, 700)
     bare.press(True)
     bare.press(False)
-    bare.turn(2)
-    assert bare.drops.waiting == [] and value(bare, "image") == "none.png", "a click beside it is a no"
+    bare.run_frames(2)
+    assert bare.drops.waiting == [] and value(bare, "image") == "none.png", "a click outside it cancels"
     bare.close()
 
 
 def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
     other = folder / "two"
     other.mkdir()
-    for name in ("land.glsl", "sketch.toml"):
+    for name in ("terrain.glsl", "sketch.toml"):
         (other / name).write_bytes((folder / name).read_bytes())
     bare.session.drafts.set("height.level", 0.25)
     bare.drops.take([other])
-    bare.turn(3)
+    bare.run_frames(3)
     assert bare.session.path == other / "sketch.toml" and value(bare, "level") == 0.6
     shader = "#version 330\nout vec4 colour;\nvoid main() { colour = vec4(1.0); }\n"
     (other / "plain.frag").write_text(shader, encoding="utf-8")
     bare.drops.take([other / "plain.frag"])
-    bare.turn(3)
+    bare.run_frames(3)
     assert bare.session.path.name == "plain.frag" and bare.session.error is None
     assert bare.session.sketch is not None and bare.session.sketch.name == "plain"
     bare.drops.take([folder / "gone.toml"])
-    assert "gone.toml" in said(bare)
+    assert "gone.toml" in notices_of(bare)
     bare.drops.take([folder / "picture.png"])
-    assert "picture.png is neither" in said(bare)
+    assert "picture.png is neither" in notices_of(bare)
 
 
 def test_an_image_has_no_place_where_nothing_takes_a_file(bare: Bare, folder: Path) -> None:
     write_png(folder / "white.png", np.full((4, 4, 4), 255, np.uint8))
     bare.drops.take([folder / "white.png"])
-    assert "no parameter of this sketch takes a file" in said(bare) and bare.drops.waiting == []
+    assert "no parameter of this sketch takes a file" in notices_of(bare) and bare.drops.waiting == []
 
 
 def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_engine: Engine) -> None:
     bare = Bare(any_engine, SKETCHES / "white_noise.toml")
     bare.bench.commands.folder = tmp_path
     bare.session.drafts.set("height.seed", 4)
-    bare.turn(2)
+    bare.run_frames(2)
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
-    bare.turn(3)
+    bare.run_frames(3)
     bare.click("Cancel")
-    bare.turn(5)
+    bare.run_frames(5)
     assert list(tmp_path.iterdir()) == []
     bare.key(imgui.Key.mod_ctrl, imgui.Key.s)
-    bare.turn(3)
+    bare.run_frames(3)
     bare.click("Save a copy")
-    bare.turn(5)
+    bare.run_frames(5)
     assert bare.session.path == tmp_path / "white_noise" / "sketch.toml" and value(bare, "seed") == 4
     bare.close()
 
 
 def test_keys_that_come_up_within_the_turn_are_heard(bare: Bare) -> None:
     bare.session.drafts.set("height.level", 0.25)
-    bare.turn(2)
+    bare.run_frames(2)
     events = imgui.get_io()
     events.add_key_event(imgui.Key.mod_ctrl, True)
-    bare.turn()
+    bare.run_frames()
     events.add_key_event(imgui.Key.z, True)
     events.add_key_event(imgui.Key.mod_ctrl, False)
-    bare.turn()
+    bare.run_frames()
     events.add_key_event(imgui.Key.z, False)
-    bare.turn(2)
+    bare.run_frames(2)
     assert value(bare, "level") == 0.6

@@ -92,14 +92,14 @@ EYE = look(CAMERA, (1000.0, 1000.0), 100.0, (640, 480))
 
 
 def project(camera: Camera, point: tuple[float, float, float]) -> np.ndarray:
-    """Return where a point of the land is in the picture: right and up, -1..1."""
+    """Return where a point of the terrain is in the picture: right and up, -1..1."""
     clip = look(camera, (1000.0, 1000.0), 100.0, (640, 480)).clip_from_world @ np.array([*point, 1.0])
     return clip[:2] / clip[3]
 
 
 @pytest.mark.parametrize("panning", [False, True])
-def test_the_land_follows_the_hand(panning: bool) -> None:
-    # A point between the eye and the middle: it is on the near side of the turn.
+def test_the_terrain_follows_the_mouse(panning: bool) -> None:
+    # A point between the eye and the middle: it is on the near side of the rotation.
     near = tuple(0.7 * t + 0.3 * p for t, p in zip(EYE.target, EYE.position, strict=True))
     point = (near[0], near[1], 50.0)
     gesture = Gesture(480, across=30, down=12, orbiting=not panning, panning=panning)
@@ -108,7 +108,7 @@ def test_the_land_follows_the_hand(panning: bool) -> None:
     assert moved[1] < 0, "downwards"
 
 
-def test_the_wheel_brings_the_land_nearer_and_back() -> None:
+def test_the_wheel_brings_the_terrain_nearer_and_back() -> None:
     near = steered(CAMERA, EYE, Gesture(480, wheel=1.0))
     assert near.distance < CAMERA.distance
     eye = look(near, (1000.0, 1000.0), 100.0, (640, 480))
@@ -132,6 +132,6 @@ def test_pictures_never_replace_one_another(tmp_path: Path) -> None:
     assert sorted(p.name for p in tmp_path.iterdir()) == sorted(names)
 
 
-def test_a_folder_that_is_not_there_is_said(tmp_path: Path) -> None:
+def test_a_missing_folder_is_reported(tmp_path: Path) -> None:
     with pytest.raises(DataError, match="nothing can be written here"):
         save_new(Frame(np.zeros((4, 6, 4), np.uint8)), tmp_path / "none", "a")

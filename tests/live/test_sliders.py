@@ -20,14 +20,14 @@ from ..sketch_texts import map_of_height
 from .desk import Bare
 
 WIDE = 150.0
-LAND = """// land.glsl -- a slope
+TERRAIN = """// terrain.glsl -- a slope
 #pragma kernel(output = "height:r32f")
 uniform vec4 corners = vec4(0.25, 0.25, 0.25, 0.25); //! slider(0, 1) parts("SW", "SE", "NW", "NE") Heights
 uniform ivec2 part = ivec2(0); //! parts("east", "north") Which
 uniform int method = 0; //! menu("a choice whose name is longer than any closed list is wide", "b")
 float kernel(ivec2 texel) { return corners.x + float(part.x) + float(method); }
 """
-SKETCH = "format = 1\nsize = 33\n" + map_of_height()
+SKETCH = "format = 1\nsize = 33\n" + map_of_height("./terrain")
 
 
 @pytest.fixture
@@ -62,7 +62,7 @@ def drawn_knob(draw: object) -> tuple[float, float]:
 @pytest.mark.parametrize("share", [0.0, 0.3, 0.5, 1.0])
 def test_the_knob_is_where_imgui_draws_it(screen: Theme, share: float) -> None:
     least = imgui.get_style().grab_min_size
-    for drawn, told in (
+    for drawn, computed in (
         (drawn_knob(lambda: slide("##a", share, (0.0, 1.0), "%.2f")), knob_of(share, WIDE, least)),
         (
             drawn_knob(lambda: slide("##b", 100.0**share, (1.0, 100.0), "%.2f", logarithmic=True)),
@@ -73,7 +73,7 @@ def test_the_knob_is_where_imgui_draws_it(screen: Theme, share: float) -> None:
             knob_of(share, WIDE, least, 11),
         ),
     ):
-        np.testing.assert_allclose(drawn, told, atol=1.5)  # imgui rounds to whole pixels and their edges
+        np.testing.assert_allclose(drawn, computed, atol=1.5)  # imgui rounds to whole pixels and their edges
 
 
 @pytest.mark.parametrize("text", [10.0, 40.0, 65.0])
@@ -85,13 +85,13 @@ def test_a_number_keeps_clear_of_the_knob_and_inside_the_slider(text: float) -> 
         assert start + text <= knob[0] or knob[1] <= start
 
 
-def test_a_number_far_from_the_knob_stands_in_the_middle() -> None:
+def test_a_number_far_from_the_knob_is_in_the_middle() -> None:
     assert place_of_number(WIDE, 40.0, knob_of(0.0, WIDE, 9.0), 3.0) == (WIDE - 40.0) / 2
 
 
 @pytest.fixture
 def bare(tmp_path: Path, any_engine: Engine) -> Iterator[Bare]:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     made = Bare(any_engine, tmp_path)
     yield made
@@ -100,8 +100,8 @@ def bare(tmp_path: Path, any_engine: Engine) -> Iterator[Bare]:
 
 def test_each_part_of_a_vector_has_a_slider_of_its_own_one_below_the_other(bare: Bare) -> None:
     names = ["SW", "SE", "NW", "NE"]
-    tops = [bare.places[f"##height.corners.{name}"][1] for name in names]
-    assert tops == sorted(tops) and len(set(tops)) == 4
+    heights = [bare.places[f"##height.corners.{name}"][1] for name in names]
+    assert heights == sorted(heights) and len(set(heights)) == 4
     bare.drag("##height.corners.NW", 0.25, 0.9)
     assert bare.session.sketch is not None
     south_west, south_east, north_west, north_east = values_of(bare.session.sketch)["height.corners"]  # type: ignore[misc]
@@ -111,7 +111,7 @@ def test_each_part_of_a_vector_has_a_slider_of_its_own_one_below_the_other(bare:
 
 def test_a_part_is_typed_by_a_double_click_like_any_number(bare: Bare) -> None:
     bare.click("##height.corners.SE", 0.9, times=2)
-    bare.turn(3)
+    bare.run_frames(3)
     bare.type("0.1,0.2,0.3,0.4")
     bare.key(imgui.Key.enter)
     assert bare.session.sketch is not None

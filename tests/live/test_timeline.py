@@ -15,7 +15,7 @@ from playground.workbench.inspect.time_range import marks_of, span_of, stepped, 
 
 from .desk import Bare
 
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level; }
@@ -24,7 +24,7 @@ SKETCH = """format = 1
 size = 17
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "view/terrain"
 """
@@ -41,7 +41,7 @@ set = { "height.level" = 1.0 }
 """
 
 
-FILES = {"land.glsl": LAND, "sketch.toml": SKETCH + KEYFRAMES}
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": SKETCH + KEYFRAMES}
 
 
 def test_a_loop_goes_round_and_keeps_what_is_over() -> None:
@@ -70,7 +70,7 @@ def test_a_loop_goes_round_and_keeps_what_is_over() -> None:
         (1 / 3, -1, 0.3),
     ],
 )
-def test_a_step_lands_on_a_picture_of_the_film(time: float, frames: int, then: float) -> None:
+def test_a_step_ends_on_a_picture_of_the_film(time: float, frames: int, then: float) -> None:
     assert stepped(time, frames) == pytest.approx(then, abs=1e-12)
 
 
@@ -84,7 +84,7 @@ def test_many_steps_on_and_back_end_where_they_began() -> None:
     assert time == 0.0
 
 
-def test_the_bar_holds_the_keyframes_and_whatever_time_it_is(folder: Path) -> None:
+def test_the_bar_shows_the_keyframes_and_the_current_time(folder: Path) -> None:
     sketch, clock = load(folder), Clock()
     assert marks_of(sketch) == (1.0, 3.0) and span_of(sketch, clock) == 3.0
     clock.time = 12.0
@@ -103,7 +103,7 @@ def test_keyframes_move_the_picture_as_time_goes(bare: Bare) -> None:
     session.clock.playing = False
     for time, azimuth in ((0.0, 100.0), (2.0, 150.0), (3.0, 200.0), (9.0, 200.0)):
         bare.bench.undo.seek(time)
-        bare.turn(2)
+        bare.run_frames(2)
         assert session.plan.sketch.camera.azimuth == pytest.approx(azimuth)
 
 
@@ -143,11 +143,11 @@ def test_a_scrub_is_one_step_and_keeps_to_a_mark(bare: Bare) -> None:
 
 
 def test_shift_and_a_drag_choose_the_loop(bare: Bare) -> None:
-    bare.turn()
+    bare.run_frames()
     imgui.get_io().add_key_event(imgui.Key.mod_shift, True)
     bare.drag("##timeline", 0.5, 0.9)
     imgui.get_io().add_key_event(imgui.Key.mod_shift, False)
-    bare.turn()
+    bare.run_frames()
     loop = bare.session.clock.loop
     assert loop is not None and loop == pytest.approx((1.5, 2.7), abs=0.01)
 
@@ -156,7 +156,7 @@ def test_a_sketch_that_rests_has_no_bar(folder: Path, any_engine: Engine) -> Non
     (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     bare = Bare(any_engine, folder)
     try:
-        bare.turn(3)
+        bare.run_frames(3)
         assert "##timeline" not in bare.places and not bare.session.animated
         bare.key(imgui.Key.l)
         bare.type(".")
@@ -169,11 +169,11 @@ def test_a_drag_begins_where_the_keyframes_left_the_camera(bare: Bare) -> None:
     session, io = bare.session, imgui.get_io()
     session.clock.playing = False
     bare.bench.undo.seek(2.0)
-    bare.turn(2)
+    bare.run_frames(2)
     assert session.plan is not None and session.plan.sketch.camera.azimuth == pytest.approx(150.0)
     hand = PictureMouse(session, bare.bench.painting)
 
-    def turn(x: float, y: float, down: bool) -> None:
+    def drag_frame(x: float, y: float, down: bool) -> None:
         io.add_mouse_pos_event(x, y)
         io.add_mouse_button_event(0, down)
         imgui.new_frame()
@@ -183,14 +183,14 @@ def test_a_drag_begins_where_the_keyframes_left_the_camera(bare: Bare) -> None:
             texture.set_status(imgui.ImTextureStatus.ok)
         session.frame((48, 32))
 
-    turn(900, 300, False)
-    turn(900, 300, True)
-    turn(904, 300, True)  # 1 degree of 180 a height
+    drag_frame(900, 300, False)
+    drag_frame(900, 300, True)
+    drag_frame(904, 300, True)  # 1 degree of 180 a height
     assert session.plan.sketch.camera.azimuth == pytest.approx(150.0, abs=1.5)
     assert session.plan.sketch.camera.azimuth != pytest.approx(150.0, abs=0.1)
-    turn(908, 300, True)
+    drag_frame(908, 300, True)
     assert session.plan.sketch.camera.azimuth == pytest.approx(150.0, abs=2.5)
-    turn(908, 300, False)
+    drag_frame(908, 300, False)
     session.clock.time = 3.0
     session.frame((48, 32))
     assert session.plan.sketch.camera.azimuth == pytest.approx(150.0, abs=2.5)  # the hand's stays

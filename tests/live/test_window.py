@@ -7,7 +7,6 @@ itself comes as JSON lines (``playground.live.status``).
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -17,7 +16,10 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from .screen import ON_LINUX, ROOT, Program, Screen
+from playground.errors import ContextError
+from playground.live.app import run
+
+from .screen import ON_LINUX, Program, Screen
 
 WIDTH, HEIGHT = 800, 500
 PANEL = 330  # pixels at scale 1
@@ -27,7 +29,7 @@ from playground.live.app import run
 sys.exit(run(sys.argv[1], size=(800, 500), time_limit=300))
 """
 
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #include "inc/wave.glsl"
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high
@@ -41,7 +43,7 @@ extent = 1000.0
 relief = 200.0
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "view/terrain"
 samples = 1
@@ -60,7 +62,7 @@ class App(Program):
         self.pictures = folder / "pictures"
         (self.sketch / "inc").mkdir(parents=True, exist_ok=True)
         self.pictures.mkdir(exist_ok=True)
-        for name, text in {"land.glsl": LAND, "inc/wave.glsl": WAVE, "sketch.toml": SKETCH}.items():
+        for name, text in {"terrain.glsl": TERRAIN, "inc/wave.glsl": WAVE, "sketch.toml": SKETCH}.items():
             (self.sketch / name).write_text(text, encoding="utf-8")
         super().__init__(screen, folder, [sys.executable, "-c", RUN, str(self.sketch)], self.pictures)
         self.wait(lambda now: now["draws"] > 0)
@@ -71,6 +73,14 @@ class App(Program):
 
 
 SCREEN = WIDTH, HEIGHT  # [pixels]
+
+
+@pytest.fixture(scope="module")
+def shared(screen: Screen, tmp_path_factory: pytest.TempPathFactory) -> Iterator[App]:
+    """Give a window for tests that leave the files and the picture as they were."""
+    made = App(screen, tmp_path_factory.mktemp("shared"))
+    yield made
+    made.close()
 
 
 @pytest.fixture
@@ -85,9 +95,9 @@ def save_in_place(path: Path, text: str) -> None:
 
 
 def save_by_rename(path: Path, text: str) -> None:
-    beside = path.with_name(f".{path.name}.swp")
-    beside.write_text(text, encoding="utf-8")
-    beside.replace(path)
+    neighbour = path.with_name(f".{path.name}.swp")
+    neighbour.write_text(text, encoding="utf-8")
+    neighbour.replace(path)
 
 
 def is_red(pixel: NDArray[np.uint8]) -> bool:
@@ -95,20 +105,20 @@ def is_red(pixel: NDArray[np.uint8]) -> bool:
 
 
 def soon(is_so: Callable[[], bool], seconds: float = 60.0) -> bool:
-    """Say whether something comes true: what the status tells, the screen may show a moment later."""
+    """Return whether something comes true: what the status tells, the screen may show a moment later."""
     end = time.monotonic() + seconds
     while not (found := is_so()) and time.monotonic() < end:
         time.sleep(0.05)
     return found
 
 
-def test_an_edit_that_works_one_that_breaks_and_one_that_mends(app: App) -> None:
-    land, wave = app.sketch / "land.glsl", app.sketch / "inc" / "wave.glsl"
+def test_an_edit_that_works_one_that_breaks_and_one_that_fixes(shared: App) -> None:
+    app, terrain, wave = shared, shared.sketch / "terrain.glsl", shared.sketch / "inc" / "wave.glsl"
     for save in (save_in_place, save_by_rename):
         first, first_hash = app.picture(), app.now()["picture"]
-        assert first.std() > 1.0, "there is land on the screen"
+        assert first.std() > 1.0, "there is terrain on the screen"
 
-        save(land, LAND.replace("level * wave", "0.3 * level * wave"))
+        save(terrain, TERRAIN.replace("level * wave", "0.3 * level * wave"))
         app.wait(lambda now, old=first_hash: now["picture"] != old and not now["error"])
         lower = app.picture()
         assert not np.array_equal(lower, first)
@@ -120,10 +130,33 @@ def test_an_edit_that_works_one_that_breaks_and_one_that_mends(app: App) -> None
         assert soon(lambda: is_red(app.screen.pixels()[HEIGHT - 40, PANEL + 30])), "a red box says so"
 
         save(wave, WAVE)
-        save(land, LAND)
+        save(terrain, TERRAIN)
         app.wait(lambda now, old=first_hash: now["picture"] == old and not now["error"])
         assert soon(lambda old=first: np.array_equal(app.picture(), old))
     assert app.process.poll() is None
+
+
+def test_a_sketch_that_vanishes_says_so_and_goes_on_when_it_is_back(shared: App) -> None:
+    folder, path = shared.sketch, shared.sketch / "sketch.toml"
+    first, errors = shared.now()["picture"], shared.complaint().count("the file is gone")
+    path.unlink()
+    error = shared.wait(lambda now: now["error"])["error"]
+    assert "the file is gone" in error and "sketch.toml" in error
+    path.write_text(SKETCH.replace("relief = 200.0", "relief = 300.0"), encoding="utf-8")
+    shared.wait(lambda now: not now["error"] and now["picture"] != first)
+    path.unlink()
+    time.sleep(0.15)
+    path.write_text(SKETCH, encoding="utf-8")
+    shared.wait(lambda now: not now["error"] and now["picture"] == first)
+    folder.rename(folder.with_name("elsewhere"))
+    error = shared.wait(lambda now: now["error"])["error"]
+    assert "gone with its folder" in error
+    assert shared.now()["picture"] == first, "the last good picture stays"
+    folder.with_name("elsewhere").rename(folder)
+    shared.wait(lambda now: not now["error"] and now["picture"] == first)
+    errors = shared.complaint().count("the file is gone") - errors
+    assert errors in (2, 3), "the terminal shows each once"
+    assert "Traceback" not in shared.complaint()
 
 
 @pytest.mark.slow
@@ -155,7 +188,7 @@ def test_the_mouse_and_the_keys(app: App) -> None:
     screen.do("key", "r")
     app.wait(lambda now: now["picture"] == first)
     runs = app.now()["runs"]
-    assert runs["height"] == 1, "the camera moved; the land was not made again"
+    assert runs["height"] == 1, "the camera moved; the terrain was not made again"
 
     screen.do("mousemove", 100, 300, "mousedown", 1, "mousemove", 160, 300, "mouseup", 1)
     time.sleep(0.5)
@@ -181,7 +214,7 @@ def test_the_mouse_and_the_keys(app: App) -> None:
 
 PARTED = """// parted.glsl -- black on the left of a line, white on its right
 #pragma kernel(output = "frame:rgba8")
-uniform float line = 0.5;  //! divider Where it stands
+uniform float line = 0.5;  //! divider Where it is
 vec4 kernel(ivec2 texel) { return vec4(vec3(float(texel.x) + 0.5 < line * float(size.x) ? 0.0 : 1.0), 1.0); }
 """
 
@@ -203,7 +236,7 @@ def test_a_line_in_the_picture_is_dragged_and_nothing_else_is(app: App) -> None:
     middle = PANEL + wide // 2
     screen.do("mousemove", middle + 60, 150, "mousedown", 1, "mousemove", middle + 90, 150, "mouseup", 1)
     time.sleep(0.3)
-    assert app.now()["picture"] == shown, "taken hold of beside the line"
+    assert app.now()["picture"] == shown, "grabbed next to the line"
     for words in (("mousemove", middle + 2, 150), ("mousedown", 1), ("mousemove", middle + 50, 160)):
         screen.do(*words)
         time.sleep(0.15)
@@ -244,7 +277,7 @@ def test_a_context_that_is_lost_costs_nothing_but_a_moment(
         app.wait(lambda now: now["picture"] == nearer and not now["error"])
         assert soon(lambda: np.array_equal(app.picture(), picture))
         assert soon(lambda: np.array_equal(screen.pixels()[:50, :PANEL], panel[:50])), "and its texts"
-        save_in_place(app.sketch / "land.glsl", LAND.replace("level * wave", "0.3 * level * wave"))
+        save_in_place(app.sketch / "terrain.glsl", TERRAIN.replace("level * wave", "0.3 * level * wave"))
         app.wait(lambda now: now["picture"] not in ("", nearer) and not now["error"])
         screen.do("mousemove", PANEL + 200, 200, "key", "ctrl+q")
         assert app.ended() == 0, app.complaint()
@@ -259,8 +292,8 @@ def test_after_a_crash_it_opens_as_it_was(screen: Screen, tmp_path: Path) -> Non
         first = app.now()["picture"]
         screen.do("mousemove", PANEL + 200, 200, "click", 4)
         nearer = app.wait(lambda now: now["picture"] != first)["picture"]
-        kept = tmp_path / "state" / "terrain-shader-playground" / "sessions"
-        assert soon(lambda: any('"distance"' in p.read_text("utf-8") for p in kept.glob("*.json")))
+        memories = tmp_path / "state" / "terrain-shader-playground" / "sessions"
+        assert soon(lambda: any('"distance"' in p.read_text("utf-8") for p in memories.glob("*.json")))
         app.process.kill()
         app.process.wait(60)
     finally:
@@ -290,28 +323,17 @@ def test_nothing_is_drawn_while_nothing_happens(app: App) -> None:
     assert app.ended() == 0, app.complaint()
 
 
-def test_without_a_display_it_says_so_in_one_sentence(tmp_path: Path) -> None:
-    gone = ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET", "XDG_RUNTIME_DIR")
-    environment = {k: v for k, v in os.environ.items() if k not in gone}
-    environment["PYTHONPATH"] = str(ROOT)
-    (tmp_path / "land.frag").write_text(
-        "#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", encoding="utf-8"
-    )
-    code = (
-        "import sys; from playground.errors import PlaygroundError; from playground.live.app import run\n"
-        "try: run(sys.argv[1])\n"
-        "except PlaygroundError as error: print(type(error).__name__, error); sys.exit(error.exit_status)\n"
-    )
-    done = subprocess.run(
-        [sys.executable, "-c", code, str(tmp_path / "land.frag")],
-        env=environment,
-        capture_output=True,
-        text=True,
-        timeout=180,
-    )
-    assert done.returncode == 2, done.stderr
-    assert done.stdout.startswith("ContextError ") and done.stdout.count("\n") == 1
-    assert "no screen to open a window on" in done.stdout and "Traceback" not in done.stderr
+def test_without_a_display_it_says_so_in_one_sentence(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET", "XDG_RUNTIME_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    file = tmp_path / "terrain.frag"
+    file.write_text("#version 330\nout vec4 c;\nvoid main() { c = vec4(1); }\n", encoding="utf-8")
+    with pytest.raises(ContextError, match="no screen to open a window on") as caught:
+        run(file)
+    assert caught.value.exit_status == 2 and "\n" not in str(caught.value)
+    assert "Traceback" not in capfd.readouterr().err
 
 
 def cpu_seconds(pid: int) -> float:

@@ -14,7 +14,7 @@ import sys
 from playground.live.app import run
 sys.exit(run(sys.argv[1], size=(800, 600), time_limit=300))
 """
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 float kernel(ivec2 texel) {
     return sin(0.3 * float(texel.x));
@@ -24,7 +24,7 @@ SKETCH = """format = 1
 size = 17
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "view/map"
 [view.inputs]
@@ -38,7 +38,7 @@ SCREEN = 800, 600  # [pixels]
 
 
 def opened(screen: Screen, folder: Path) -> Program:
-    (folder / "land.glsl").write_text(LAND, encoding="utf-8")
+    (folder / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     made = Program(screen, folder, [sys.executable, "-c", RUN, str(folder)], folder)
     made.wait(lambda now: now["draws"] > 0)
@@ -50,39 +50,39 @@ def opened(screen: Screen, folder: Path) -> Program:
 def test_a_key_starts_the_editor_at_the_line(
     screen: Screen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    told = tmp_path / "told.txt"
+    given = tmp_path / "opened.txt"
     script = tmp_path / "editor.py"
     script.write_text("import pathlib, sys\npathlib.Path(sys.argv[1]).write_text('|'.join(sys.argv[2:]))\n")
-    command = f"{sys.executable} {script} {told} {{file}} {{line}} {{column}}"
+    command = f"{sys.executable} {script} {given} {{file}} {{line}} {{column}}"
     monkeypatch.setenv("PLAYGROUND_EDITOR", command)
     window = opened(screen, tmp_path)
     try:
-        (tmp_path / "land.glsl").write_text(LAND.replace("sin", "sine"), encoding="utf-8")
+        (tmp_path / "terrain.glsl").write_text(TERRAIN.replace("sin", "sine"), encoding="utf-8")
         window.wait(lambda now: now["error"])
         screen.do("key", "e")
-        window.wait(lambda _: told.exists() and told.read_text())
-        assert told.read_text() == f"{tmp_path / 'land.glsl'}|4|12"
-        window.wait(lambda now: any("opened land.glsl in" in text for text in now["notices"]))
+        window.wait(lambda _: given.exists() and given.read_text())
+        assert given.read_text() == f"{tmp_path / 'terrain.glsl'}|4|12"
+        window.wait(lambda now: any("opened terrain.glsl in" in text for text in now["notices"]))
     finally:
         window.close()
 
 
 @pytest.mark.slow
-def test_the_editor_in_the_window_mends_the_file(
+def test_the_editor_in_the_window_fixes_the_file(
     screen: Screen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("PLAYGROUND_EDITOR", "builtin")
     window = opened(screen, tmp_path)
     try:
         good = window.now()["picture"]
-        (tmp_path / "land.glsl").write_text(LAND.replace("sin(", "in("), encoding="utf-8")
+        (tmp_path / "terrain.glsl").write_text(TERRAIN.replace("sin(", "in("), encoding="utf-8")
         window.wait(lambda now: now["error"])
         screen.do("key", "e")
-        window.wait(lambda now: now["typing"] == ["land.glsl"])
-        screen.do("key", "s")  # the cursor stands before "in"
-        window.wait(lambda now: now["unsaved"] == ["land.glsl"])
+        window.wait(lambda now: now["typing"] == ["terrain.glsl"])
+        screen.do("key", "s")  # the cursor is before "in"
+        window.wait(lambda now: now["unsaved"] == ["terrain.glsl"])
         screen.do("keydown", "ctrl", "sleep", 0.3, "key", "s", "sleep", 0.3, "keyup", "ctrl")
         window.wait(lambda now: not now["error"] and now["picture"] == good)
-        assert (tmp_path / "land.glsl").read_text(encoding="utf-8") == LAND
+        assert (tmp_path / "terrain.glsl").read_text(encoding="utf-8") == TERRAIN
     finally:
         window.close()

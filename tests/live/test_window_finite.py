@@ -1,4 +1,4 @@
-"""NaN as a person meets it: the words over the picture lead to the texture, and go when it is mended."""
+"""NaN as a person meets it: the message over the picture leads to the texture, and goes once it is fixed."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ import sys
 from playground.live.app import run
 sys.exit(run(sys.argv[1], size=(800, 500), time_limit=300))
 """
-LAND = """// land.glsl -- hills with a hole
+TERRAIN = """// terrain.glsl -- hills with a hole
 #pragma kernel(output = "height:r32f")
 uniform float root = -1.0; //! slider(-1, 1)
 float kernel(ivec2 texel) { return texel / 4 == ivec2(3, 5) ? sqrt(root) : 0.5; }
 """
-SKETCH = "format = 1\nsize = 33\n" + map_of_height()
+SKETCH = "format = 1\nsize = 33\n" + map_of_height("./terrain")
 
 pytestmark = [*ON_LINUX, pytest.mark.slow]
 
@@ -32,7 +32,7 @@ SCREEN = WIDTH, HEIGHT  # [pixels]
 
 
 def test_the_words_lead_to_the_texels_in_magenta(screen: Screen, tmp_path: Path) -> None:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     program = Program(screen, tmp_path, [sys.executable, "-c", RUN, str(tmp_path)], tmp_path)
     try:
@@ -43,7 +43,7 @@ def test_the_words_lead_to_the_texels_in_magenta(screen: Screen, tmp_path: Path)
         pixels = screen.pixels()[:, 340:]
         magenta = (pixels == np.array([255, 0, 255])).all(axis=2).sum()
         assert magenta > 1000, "sixteen texels of a map of 33, on half a thousand pixels"
-        (tmp_path / "land.glsl").write_text(LAND.replace("= -1.0", "= 1.0"), encoding="utf-8")
+        (tmp_path / "terrain.glsl").write_text(TERRAIN.replace("= -1.0", "= 1.0"), encoding="utf-8")
         program.wait(lambda now: not now["not_finite"])
     finally:
         program.close()

@@ -1,4 +1,4 @@
-"""Lessons in a real window: opened beside a sketch, turned by keys, closed for good when they were closed."""
+"""Lessons in a real window: opened next to a sketch, paged by keys, and closed for good."""
 
 from __future__ import annotations
 
@@ -10,8 +10,7 @@ import pytest
 
 from playground.workbench.lesson.progress import Progress, write_progress
 
-from ..sketch_texts import map_of_height
-from .lesson_desk import write_lessons
+from .lesson_desk import OWN, write_lessons
 from .screen import ON_LINUX, Program, Screen
 
 RUN = """
@@ -20,9 +19,8 @@ from pathlib import Path
 from playground.lessons import library
 library.TEXTS = Path(sys.argv[1])
 from playground.live.app import run
-sys.exit(run(sys.argv[2], size=(1000, 700), beside=True, time_limit=300))
+sys.exit(run(sys.argv[2], size=(1000, 700), show_lessons=True, time_limit=300))
 """
-OWN = "format = 1\nsize = 17\n" + map_of_height("generation/white_noise")
 pytestmark = ON_LINUX
 
 
@@ -46,10 +44,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.mark.slow
-def test_a_lesson_beside_a_sketch_takes_the_view_when_its_page_is_turned(
+def test_a_lesson_next_to_a_sketch_takes_the_view_when_its_page_is_turned(
     screen: Screen, folder: Path
 ) -> None:
-    kept = folder / "state" / "terrain-shader-playground" / "lessons.json"
+    progress = folder / "state" / "terrain-shader-playground" / "lessons.json"
     window = opened(screen, folder)
     try:
         own = window.now()["picture"]
@@ -58,8 +56,8 @@ def test_a_lesson_beside_a_sketch_takes_the_view_when_its_page_is_turned(
         page = screen.pixels()[:, :420]
         assert (page.min(axis=2) > 200).sum() > 500, "a page of text"
         screen.do("key", "F2")
-        window.wait(lambda _: not json.loads(kept.read_text())["shown"])
-        assert json.loads(kept.read_text())["sections"] == {"halving": 1}
+        window.wait(lambda _: not json.loads(progress.read_text())["shown"])
+        assert json.loads(progress.read_text())["sections"] == {"halving": 1}
         screen.do("key", "ctrl+q")
         assert window.ended() == 0, window.complaint()
     finally:
@@ -70,9 +68,9 @@ def test_a_lesson_beside_a_sketch_takes_the_view_when_its_page_is_turned(
 def test_lessons_that_were_closed_stay_closed_and_leave_no_trace_in_sketches(
     screen: Screen, folder: Path
 ) -> None:
-    kept = folder / "state" / "terrain-shader-playground" / "lessons.json"
-    kept.parent.mkdir(parents=True)
-    write_progress(Progress("halving", shown=False, sections={"halving": 1}), kept)
+    progress = folder / "state" / "terrain-shader-playground" / "lessons.json"
+    progress.parent.mkdir(parents=True)
+    write_progress(Progress("halving", shown=False, sections={"halving": 1}), progress)
     window = opened(screen, folder)
     try:
         screen.do("key", "Next")
@@ -80,11 +78,11 @@ def test_lessons_that_were_closed_stay_closed_and_leave_no_trace_in_sketches(
         now = window.wait(lambda now: now["map"] == "" and now["draws"] > 2)
         assert now["steps"] == {}, "no page is turned: the panel is closed"
         screen.do("key", "F2", "sleep", 0.2, "key", "Prior")
-        window.wait(lambda _: json.loads(kept.read_text())["sections"] == {"halving": 0})
-        window.wait(lambda now: now["runs"].get("light"))  # the lesson's land
+        window.wait(lambda _: json.loads(progress.read_text())["sections"] == {"halving": 0})
+        window.wait(lambda now: now["runs"].get("light"))  # the lesson's terrain
         screen.do("key", "ctrl+q")
         assert window.ended() == 0, window.complaint()
-        memories = [json.loads(f.read_text())["sketch"] for f in kept.parent.rglob("sessions/*.json")]
+        memories = [json.loads(f.read_text())["sketch"] for f in progress.parent.rglob("sessions/*.json")]
         assert memories in ([], [str(folder / "sketch.toml")]), "none of the lesson's sketches"
     finally:
         window.close()

@@ -17,7 +17,7 @@ import sys
 from playground.live.app import run
 sys.exit(run(sys.argv[1], size=SIZE, time_limit=300))
 """
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * (0.5 + 0.5 * sin(9.0 * float(texel.x) / float(size.x))); }
@@ -29,7 +29,7 @@ size = 65
 extent = 1000.0
 relief = 200.0
 """
-    + passes(height=("./land", "set = { level = 0.75 }   # by eye"))
+    + passes(height=("./terrain", "set = { level = 0.75 }   # by eye"))
     + map_of("height")
 )
 
@@ -37,7 +37,7 @@ pytestmark = ON_LINUX
 
 
 SCREEN = WIDTH + 200, HEIGHT + 100  # [pixels]
-FILES = {"land.glsl": LAND, "sketch.toml": SKETCH}
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": SKETCH}
 
 
 def opened(screen: Screen, folder: Path, size: object) -> Program:

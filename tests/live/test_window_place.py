@@ -1,4 +1,4 @@
-"""A window stands where it stood the last time, and its title says which sketch is in it."""
+"""A window opens where it was the last time, and its title says which sketch is in it."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ use = "generation/diamond_square"
 def test_a_sketch_in_a_folder_is_called_by_its_folder(tmp_path: Path) -> None:
     assert title_of(tmp_path / "hills" / "sketch.toml") == "hills – terrain shader playground"
     assert title_of(tmp_path / "hills" / "valley.toml") == "valley – terrain shader playground"
-    assert title_of(tmp_path / "land.glsl") == "land – terrain shader playground"
+    assert title_of(tmp_path / "terrain.glsl") == "terrain – terrain shader playground"
 
 
 SCREEN = 1000, 700  # [pixels]
@@ -92,7 +92,7 @@ def windows(screen: Screen, tmp_path: Path) -> Iterator[Windows]:
 @pytest.mark.slow
 @pytest.mark.live
 @ON_LINUX[1]
-def test_it_stands_where_it_stood_and_follows_its_sketch(windows: Windows) -> None:
+def test_it_opens_where_it_was_and_follows_its_sketch(windows: Windows) -> None:
     assert windows.ask("getwindowname", windows.id()) == "hills – terrain shader playground"
     windows.ask("windowsize", "--sync", windows.id(), "620", "410")
     windows.ask("windowmove", "--sync", windows.id(), "210", "150")

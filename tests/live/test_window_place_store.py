@@ -1,4 +1,4 @@
-"""Where a window stands on the screens that there are, and files dropped on it, as GLFW tells of them."""
+"""Where a window goes on the screens that there are, and files dropped on it, as GLFW reports them."""
 
 from __future__ import annotations
 

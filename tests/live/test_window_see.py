@@ -1,4 +1,4 @@
-"""What is shown beside the picture, as a person meets it: a real X server, a mouse and keys by xdotool."""
+"""What is shown around the picture, as a person meets it: a real X server, a mouse and keys by xdotool."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ import sys
 from playground.live.app import run
 sys.exit(run(sys.argv[1], size=SIZE, time_limit=300))
 """
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * (0.5 + 0.5 * sin(9.0 * float(texel.x) / float(size.x))); }
@@ -32,7 +32,7 @@ size = [65, 33]
 extent = [1000.0, 500.0]
 relief = 200.0
 """
-    + passes(height=("./land", "set = { level = 0.75 }"))
+    + passes(height=("./terrain", "set = { level = 0.75 }"))
     + map_of("height")
     + """[[keyframe]]
 time = 1.0
@@ -51,7 +51,7 @@ SCREEN = WIDTH + 50, HEIGHT + 50  # [pixels]
 
 @pytest.fixture
 def program(screen: Screen, tmp_path: Path) -> Iterator[Program]:
-    (tmp_path / "land.glsl").write_text(LAND, encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     run = RUN.replace("SIZE", repr((WIDTH, HEIGHT)))
     made = Program(screen, tmp_path, [sys.executable, "-c", run, str(tmp_path)], tmp_path)
@@ -61,7 +61,7 @@ def program(screen: Screen, tmp_path: Path) -> Iterator[Program]:
 
 
 def picture(screen: Screen) -> NDArray[np.uint8]:
-    """Return the part of the screen that shows the land, between what lies over it above and below."""
+    """Return the part of the screen that shows the terrain, between what lies over it above and below."""
     return screen.pixels()[70 : HEIGHT - 60, PANEL + 4 : WIDTH - 4]
 
 

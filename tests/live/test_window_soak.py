@@ -26,7 +26,7 @@ import sys
 from playground.live.app import run
 sys.exit(run(sys.argv[1], size=(640, 420), time_limit=3000))
 """
-LAND = """// land.glsl -- hills
+TERRAIN = """// terrain.glsl -- hills
 #include "wave.glsl"
 #pragma kernel(output = "height:r32f")
 float kernel(ivec2 texel) {{ return 0.1 * float({n}) * wave(vec2(texel)); }}
@@ -41,13 +41,13 @@ extent = 1000.0
 relief = 20{n}.0
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "view/map"
 inputs = {{ shown = "height" }}
 set = {{ lowest = 0.0, highest = 0.{n} }}
 """
-FILES = {"land.glsl": LAND, "wave.glsl": WAVE, "sketch.toml": SKETCH}
+FILES = {"terrain.glsl": TERRAIN, "wave.glsl": WAVE, "sketch.toml": SKETCH}
 GOOD = 5
 """Good texts of each file: with the other two as they began, each gives a picture of its own."""
 
@@ -58,7 +58,7 @@ HOSTILE: dict[str, tuple[bytes, ...]] = {
         b"\0\0\0\0",
         b"\xff\xfe\x00\x01 not UTF-8",
         b"#version 330\nvoid main() {",
-        b'#include "land.glsl"\n#include "wave.glsl"\n',
+        b'#include "terrain.glsl"\n#include "wave.glsl"\n',
         b'#include "gone.glsl"\n',
         b"this is no GLSL at all",
         b"/* never closed",
@@ -77,7 +77,7 @@ HOSTILE: dict[str, tuple[bytes, ...]] = {
         b"\0" * 4096,
         b"[[pass]]\nname = 7\n",
         b"a = " + b"[" * 3000,
-        SKETCH.format(n=1).replace("./land", "./gone").encode(),
+        SKETCH.format(n=1).replace("./terrain", "./gone").encode(),
         SKETCH.format(n=1).replace("size = 33", "size = -1").encode(),
         SKETCH.format(n=1).replace("size = 33", 'size = "height.size.x"').encode(),
         SKETCH.format(n=1).replace("view/map", "view/nothing").encode(),
@@ -93,29 +93,29 @@ def in_place(path: Path, data: bytes, _: random.Random) -> None:
 
 
 def by_rename(path: Path, data: bytes, _: random.Random) -> None:
-    beside = path.with_name(f".{path.name}.swp")
-    beside.write_bytes(data)
-    beside.replace(path)
+    neighbour = path.with_name(f".{path.name}.swp")
+    neighbour.write_bytes(data)
+    neighbour.replace(path)
 
 
-def delete_and_create(path: Path, data: bytes, chance: random.Random) -> None:
+def delete_and_create(path: Path, data: bytes, rng: random.Random) -> None:
     path.unlink()
-    time.sleep(chance.uniform(0.05, 0.5))
+    time.sleep(rng.uniform(0.05, 0.5))
     path.write_bytes(data)
 
 
-def truncate_and_write_twice(path: Path, data: bytes, chance: random.Random) -> None:
+def truncate_and_write_twice(path: Path, data: bytes, rng: random.Random) -> None:
     with path.open("wb") as file:
-        time.sleep(chance.uniform(0.0, 0.1))
+        time.sleep(rng.uniform(0.0, 0.1))
         file.write(data[: len(data) // 2])
         file.flush()
-        time.sleep(chance.uniform(0.0, 0.1))
+        time.sleep(rng.uniform(0.0, 0.1))
         file.write(data[len(data) // 2 :])
 
 
-def through_a_link(path: Path, data: bytes, chance: random.Random) -> None:
-    """Write what a link leads to; where there is none yet, or by chance, put another link in its place."""
-    if path.is_symlink() and chance.random() < 0.5:
+def through_a_link(path: Path, data: bytes, rng: random.Random) -> None:
+    """Write what a link leads to; where there is none yet, or at random, put another link in its place."""
+    if path.is_symlink() and rng.random() < 0.5:
         path.resolve().write_bytes(data)
         return
     real = path.with_name(
@@ -165,39 +165,39 @@ def window(screen: Screen, tmp_path: Path) -> Iterator[Program]:
 
 
 def test_the_window_outlives_every_save_and_shows_the_last_good_one(window: Program, tmp_path: Path) -> None:
-    chance, home = random.Random(SEED), tmp_path / "sketch"
+    rng, home = random.Random(SEED), tmp_path / "sketch"
     known = learned(window, home)
     assert len(set(known.values())) == len(FILES) * (GOOD - 1) + 1, "each good text has its own picture"
-    told: Counter[str] = Counter()
+    counts: Counter[str] = Counter()
     good = window.now()["picture"]
     for _ in range(SAVES):
-        save, name = chance.choice(STYLES), chance.choice(list(FILES))
+        save, name = rng.choice(STYLES), rng.choice(list(FILES))
         path = home / name
-        if chance.random() < 0.5:
+        if rng.random() < 0.5:
             kind = "sketch.toml" if name == "sketch.toml" else "shader"
-            save(path, chance.choice(HOSTILE[kind]), chance)
-            told[f"hostile, {save.__name__}"] += 1
-            if chance.random() < 0.7:
+            save(path, rng.choice(HOSTILE[kind]), rng)
+            counts[f"hostile, {save.__name__}"] += 1
+            if rng.random() < 0.7:
                 now = window.wait(lambda now: now["error"] and now["stage"] in ("NONE", "FAILED"))
                 assert now["picture"] == good, (save.__name__, name, now["error"])
-                told["hostile, waited for"] += 1
+                counts["hostile, waited for"] += 1
             else:
-                time.sleep(chance.uniform(0.0, 0.3))
-            chance.choice(STYLES)(path, FILES[name].format(n=1).encode(), chance)
+                time.sleep(rng.uniform(0.0, 0.3))
+            rng.choice(STYLES)(path, FILES[name].format(n=1).encode(), rng)
             good = settled(window, known[name, 1])
         else:
-            number = chance.randint(1, GOOD)
-            save(path, FILES[name].format(n=number).encode(), chance)
-            told[f"good, {save.__name__}"] += 1
+            number = rng.randint(1, GOOD)
+            save(path, FILES[name].format(n=number).encode(), rng)
+            counts[f"good, {save.__name__}"] += 1
             good = settled(window, known[name, number])
-            chance.choice(STYLES)(path, FILES[name].format(n=1).encode(), chance)
+            rng.choice(STYLES)(path, FILES[name].format(n=1).encode(), rng)
             good = settled(window, known[name, 1])
-        told["good, shown"] += 1
-    said = window.complaint()
-    told["deaths"] = int(window.process.poll() is not None)
-    told["tracebacks"] = said.count("Traceback")
-    print("\n" + "\n".join(f"{count:5} {what}" for what, count in sorted(told.items())))
-    assert told["deaths"] == 0 and told["tracebacks"] == 0, said[-4000:]
+        counts["good, shown"] += 1
+    log = window.complaint()
+    counts["deaths"] = int(window.process.poll() is not None)
+    counts["tracebacks"] = log.count("Traceback")
+    print("\n" + "\n".join(f"{count:5} {what}" for what, count in sorted(counts.items())))
+    assert counts["deaths"] == 0 and counts["tracebacks"] == 0, log[-4000:]
 
 
 def learned(window: Program, home: Path) -> dict[tuple[str, int], str]:

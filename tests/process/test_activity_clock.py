@@ -69,3 +69,24 @@ def test_what_a_pass_waited_for_a_processor_is_left_out_but_for_a_share(time: Ti
     clock.begin("b")
     time.passes(40.0, waited=30.0)
     assert clock.seconds == pytest.approx(10.0), "what the pass before waited is not this one's"
+
+
+def test_a_reader_amid_the_end_of_an_activity_counts_nothing_twice(time: Time):
+    """Another thread may read the clock anywhere in ``begin``: here, where that reads what was waited."""
+    totals: list[float] = []
+
+    def waits() -> dict[str, int]:
+        nonlocal reads
+        reads, amid = False, reads
+        if amid:
+            totals.append(clock.total)
+        reads = amid
+        return time.waits()
+
+    reads = False
+    clock = ActivityClock(waits)
+    clock.begin("start")
+    time.passes(8.0)
+    reads = True
+    clock.begin("height")
+    assert totals and totals == pytest.approx([8.0] * len(totals))

@@ -31,6 +31,6 @@ def test_what_is_read_is_what_was_written(data: bytes):
         (_HEAD.pack(_MARK, 2**60), NotAFrame),  # it is not even tried to read so much
     ],
 )
-def test_what_is_no_frame_is_told_from_one(data: bytes, kind: type[Exception]):
+def test_what_is_no_frame_is_recognised(data: bytes, kind: type[Exception]):
     with pytest.raises(kind):
         read(io.BytesIO(data))

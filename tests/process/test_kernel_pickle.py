@@ -13,12 +13,14 @@ from playground.sketch.model import Kernel, Sketch, kernels_of
 
 from ..sketch_texts import passes
 
-LAND = """#pragma kernel(output = "height:r32f")
+TERRAIN = """#pragma kernel(output = "height:r32f")
 float kernel(ivec2 texel) { return 0.5; }
 """
 SKETCH = (
     "format = 1\nsize = 33\n"
-    + passes(height="./land", again="./land", light=("lighting/ray_cast", 'inputs = { height = "height" }'))
+    + passes(
+        height="./terrain", again="./terrain", light=("lighting/ray_cast", 'inputs = { height = "height" }')
+    )
     + '[view]\nuse = "view/terrain"\n'
 )
 
@@ -44,7 +46,7 @@ def ends() -> Ends:
 
 @pytest.fixture
 def folder(tmp_path):
-    (tmp_path / "land.glsl").write_text(LAND)
+    (tmp_path / "terrain.glsl").write_text(TERRAIN)
     (tmp_path / "sketch.toml").write_text(SKETCH)
     return tmp_path
 
@@ -55,7 +57,7 @@ def kernels(sketch: Sketch) -> dict[str, Kernel]:
 
 def test_what_is_received_is_what_was_sent(ends, folder):
     for edit in ("0.5", "0.25", "0.5"):
-        (folder / "land.glsl").write_text(LAND.replace("0.5", edit))
+        (folder / "terrain.glsl").write_text(TERRAIN.replace("0.5", edit))
         request = TrySketch(load(folder), time=1.0, drivers=("fragment",))
         assert ends.send(request) == request
     library = TryLibrary("a", "b")
@@ -66,7 +68,7 @@ def test_what_is_received_is_what_was_sent(ends, folder):
 def test_only_what_changed_is_sent(ends, folder):
     before = kernels(ends.send(TrySketch(load(folder))).sketch)
     whole = ends.bytes
-    (folder / "land.glsl").write_text(LAND.replace("0.5", "0.25"))
+    (folder / "terrain.glsl").write_text(TERRAIN.replace("0.5", "0.25"))
     after = kernels(ends.send(TrySketch(load(folder))).sketch)
     assert ends.bytes < whole / 4
     assert {path for path in after if after[path] is not before[path]} == {"height", "again"}
@@ -74,8 +76,8 @@ def test_only_what_changed_is_sent(ends, folder):
 
 
 def test_neither_end_holds_what_is_no_longer_used(ends, folder):
-    for number in range(20):
-        (folder / "land.glsl").write_text(LAND.replace("0.5", f"0.{number + 1}"))
+    for number in range(6):
+        (folder / "terrain.glsl").write_text(TERRAIN.replace("0.5", f"0.{number + 1}"))
         sketch = load(folder)
         ends.send(TrySketch(sketch))
         distinct = len({id(kernel) for kernel in kernels(sketch).values()})

@@ -1,4 +1,4 @@
-"""Delta debugging gives a part that passes and of which no item can be spared, whatever the test."""
+"""Delta debugging gives a part that passes and of which no item can be spared, for any test."""
 
 from __future__ import annotations
 
@@ -20,45 +20,43 @@ def needs(*cores):
     return lambda some: any(core <= set(some) for core in cores)
 
 
-def assert_one_minimal(kept, test):
-    assert test(kept)
-    for index in range(len(kept)):
-        assert not test(kept[:index] + kept[index + 1 :]), f"{kept[index]} can be spared"
+def assert_one_minimal(left, test):
+    assert test(left)
+    for index in range(len(left)):
+        assert not test(left[:index] + left[index + 1 :]), f"{left[index]} can be spared"
 
 
 @each("seed", range(40))
 def test_of_one_core_it_finds_just_that(seed):
     """Where all that passes holds one set, that set is the smallest: brute force says the same."""
-    chance = random.Random(seed)
-    n = chance.randint(1, 10)
-    core = set(chance.sample(range(n), chance.randint(0, n)))
+    rng = random.Random(seed)
+    n = rng.randint(1, 10)
+    core = set(rng.sample(range(n), rng.randint(0, n)))
     test = needs(core)
     assert set(ddmin(range(n), test)) == core == min(passing(n, test), key=len)
 
 
 @each("seed", range(60))
-def test_whatever_the_test_no_item_can_be_spared(seed):
+def test_for_any_test_no_item_can_be_spared(seed):
     """Also where the test knows no order: a list may fail though a part of it passes."""
-    chance = random.Random(seed)
-    n = chance.randint(1, 9)
-    good = {frozenset(c for c in range(n) if chance.random() < 0.5) for _ in range(12)} | {
-        frozenset(range(n))
-    }
+    rng = random.Random(seed)
+    n = rng.randint(1, 9)
+    good = {frozenset(c for c in range(n) if rng.random() < 0.5) for _ in range(12)} | {frozenset(range(n))}
 
     def test(some):
         return frozenset(some) in good
 
-    kept = ddmin(range(n), test)
-    assert set(kept) in passing(n, test)
-    assert_one_minimal(kept, test)
+    left = ddmin(range(n), test)
+    assert set(left) in passing(n, test)
+    assert_one_minimal(left, test)
 
 
 def test_of_several_cores_it_finds_one_and_keeps_the_order():
     test = needs({2, 5, 11}, {3, 7})
-    kept = ddmin(range(16), test)
-    assert set(kept) in ({2, 5, 11}, {3, 7})
-    assert kept == sorted(kept)
-    assert_one_minimal(kept, test)
+    left = ddmin(range(16), test)
+    assert set(left) in ({2, 5, 11}, {3, 7})
+    assert left == sorted(left)
+    assert_one_minimal(left, test)
 
 
 def test_equal_items_are_items_each():

@@ -16,15 +16,15 @@ from ..cases import each
 
 TEXT = """#pragma kernel(output = "height:r32f", repeat = "8")
 uniform float gain = 1.0;  //! slider(0, 4) step(0.5) How high
-uniform sampler2D land;    //! input "linear"
-const int turns = 3;
+uniform sampler2D terrain;    //! input "linear"
+const int count = 3;
 struct Sun { vec3 to; float size; };
 float twice(float x, float unused) { return 2.0 * x; }   // a comment
 float kernel(ivec2 texel) {
     float h = -gain;
-    for (int i = 0; i < turns; i++) h += twice(max(h, 1.5), 0.5);
+    for (int i = 0; i < count; i++) h += twice(max(h, 1.5), 0.5);
     if (h > 2.0) { h = h > 3.0 ? sqrt(h) : 1.0 - h; } else { h -= 1.0; }
-    return h + texelFetch(land, texel, 0).r;
+    return h + texelFetch(terrain, texel, 0).r;
 }
 """
 
@@ -48,7 +48,7 @@ def test_an_annotation_of_several_lines_is_written_on_one(tmp_path: Path):
 
 def test_a_statement_is_a_line():
     lines = tidy(TEXT).splitlines()
-    assert "    for (int i = 0; i < turns; i++) h += twice(max(h, 1.5), 0.5);" in lines
+    assert "    for (int i = 0; i < count; i++) h += twice(max(h, 1.5), 0.5);" in lines
     assert "    float h = -gain;" in lines
     assert "        h = h > 3.0 ? sqrt(h) : 1.0 - h;" in lines
     assert not any("comment" in line for line in lines)
@@ -70,7 +70,7 @@ def test_lines_go_until_none_can():
     assert text.split("\n") == [
         "float kernel(ivec2 texel) {",
         "        h -= 1.0;",  # no longer in its else; tidy moves it back
-        "    return h + texelFetch(land, texel, 0).r;",
+        "    return h + texelFetch(terrain, texel, 0).r;",
         "}",
         "",
     ]
@@ -100,8 +100,8 @@ def every_edit(text: str) -> list[str]:
         "h = h > 3.0 ? h : 1.0 - h;",
         "h = twice(max(h, 1.5), 0.5);",  # += to =
         "float h = gain;",  # a sign
-        "return texelFetch(land, texel, 0).r;",
-        "return h + texelFetch(land, texel, 0);",  # a swizzle
+        "return texelFetch(terrain, texel, 0).r;",
+        "return h + texelFetch(terrain, texel, 0);",  # a swizzle
         "return 0.0;",
         "if (true)",
         "i < 3;",  # a constant in the place of its name
@@ -109,7 +109,7 @@ def every_edit(text: str) -> list[str]:
         'repeat = "1"',
         "const float gain = 2.5;",
         "uniform float gain = 1.0;\n",
-        "uniform sampler2D land;  //! input\n",
+        "uniform sampler2D terrain;  //! input\n",
     ],
 )
 def test_an_edit_gives(wanted: str):
@@ -121,16 +121,16 @@ def test_an_edit_gives(wanted: str):
 def test_edits_come_to_an_end():
     """Taking any edit, over and over, comes to a text that has none left: no edit undoes another."""
     text = tidy(TEXT)
-    for turn in range(3000):
+    for step in range(3000):
         found = [e for e in map(tidy, every_edit(text)) if e != text]
         if not found:
             break
-        text = found[(7 * turn) % len(found)]
+        text = found[(7 * step) % len(found)]
     else:
         raise AssertionError("there is always another edit")
 
 
-def test_zeros_are_not_put_in_where_they_would_be_the_fault():
+def test_zeros_are_not_put_in_where_they_would_be_the_defect():
     text = tidy("float f(float x) { return x / (x + 1.5); }")
     with_zero = list(edits.expressions(text))
     without = list(edits.expressions(text, edits.LITERALS_WITHOUT_ZERO))

@@ -92,7 +92,7 @@ class Browser:
         self._ask("POST", "/goog/cdp/execute", {"cmd": f"Emulation.{what}", "params": settings})
 
     def log(self) -> list[str]:
-        """Return the errors on the console since it was asked last, and what a policy refused."""
+        """Return the errors on the console since the last call, and what a policy refused."""
         found = self._ask("POST", "/se/log", {"type": "browser"})
         return [str(entry["message"]) for entry in found if entry["level"] == "SEVERE"]
 

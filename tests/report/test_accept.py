@@ -140,10 +140,10 @@ def test_undo_never_loses_what_was_written_since(leave) -> None:
     assert files() == before
 
 
-def test_a_damaged_reference_is_replaced_but_not_kept_beside(leave) -> None:
+def test_a_damaged_reference_is_replaced_but_never_a_further_one(leave) -> None:
     PLACE.mkdir(parents=True)
     record = leave(actual=picture(1), expected=picture(2), word="unreadable", sentence="damaged")
-    with pytest.raises(DataError, match="is damaged, so that cannot stay"):
+    with pytest.raises(DataError, match="is damaged, so it cannot stay"):
         accept(RESULTS, record, also=True)
     accept(RESULTS, record)
     np.testing.assert_array_equal(read_png(PLACE / "dawn.png")[0], picture(1))
@@ -205,24 +205,26 @@ def test_the_command_writes_and_says_what(leave, capsys) -> None:
     leave("hills/noon", picture(4), picture(4))
     leave("hills/night", word="hang", sentence="took more than 60 s")
     assert main(["shots", "accept", "results", "hills/dawn"]) == 0
-    said = capsys.readouterr()
+    message = capsys.readouterr()
     assert (
-        said.out == "wrote screenshots/hills/llvmpipe/dawn.png  (in place of the one before)\n"
-        and not said.err
+        message.out == "wrote screenshots/hills/llvmpipe/dawn.png  (in place of the one before)\n"
+        and not message.err
     )
-    assert main(["shots", "accept", "results", "hills/n*"]) == 2, "asked for by name, it is a mistake"
+    assert main(["shots", "accept", "results", "hills/n*"]) == 2, "chosen by name, it is a mistake"
     assert "error: hills/night: no reference can be made" in capsys.readouterr().err
     assert main(["shots", "accept", "results", "--all", "--also"]) == 0
-    said = capsys.readouterr()
-    assert "hills/dawn: a reference is this picture already" in said.out
-    assert "dusk.png  (the first)" in said.out
-    assert said.err == ("left as it is: hills/night: no reference can be made of it (took more than 60 s)\n")
+    message = capsys.readouterr()
+    assert "hills/dawn: a reference is this picture already" in message.out
+    assert "dusk.png  (the first)" in message.out
+    assert message.err == (
+        "left as it is: hills/night: no reference can be made of it (took more than 60 s)\n"
+    )
     assert {record.name for record in read_results(RESULTS)} >= {"hills/noon"}
     assert sorted(files()) == ["dawn.png", "dusk.png", "noon.png"]
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         ([], "expected the names of shots, or --all"),
         (["results"], "expected the names of shots, or --all"),
@@ -231,11 +233,11 @@ def test_the_command_writes_and_says_what(leave, capsys) -> None:
         (["nowhere/results", "hills/dawn"], "shots-report: there is no such folder"),
     ],
 )
-def test_what_is_asked_wrongly_is_told_in_a_sentence(leave, capsys, arguments: list[str], said: str) -> None:
+def test_a_wrong_choice_is_one_sentence(leave, capsys, arguments: list[str], message: str) -> None:
     leave(actual=picture(1), expected=picture(2))
     before = files()
     assert main(["shots", "accept", *arguments]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
     assert files() == before
 
 

@@ -18,7 +18,7 @@ import pytest
 from playground.errors import DataError
 from playground.images.files import read_png
 from playground.markup import Markup, tag
-from playground.shots.page.labels import MEANINGS, TIERS
+from playground.shots.page.labels import MEANINGS
 from playground.shots.page.shot import CAPTIONS
 from playground.shots.report import report_html, write_report
 from playground.shots.results import NEVER_ACCEPTED, Record, read_results
@@ -86,10 +86,10 @@ def test_every_picture_is_inside_and_shows_what_was_drawn(leave) -> None:
         np.testing.assert_array_equal(shown[kind], pixels)
         assert (image["width"], image["height"]) == ("12", "8")
         assert image["alt"].startswith("hills/dawn: ")
-    assert len(page.all("img")) == 3  # there is no FLIP map here, and nothing stands in for one
+    assert len(page.all("img")) == 3  # there is no FLIP map here, and nothing replaces it
 
 
-def test_nothing_is_asked_of_a_network_and_only_its_own_script_runs(leave) -> None:
+def test_nothing_is_fetched_from_a_network_and_only_its_own_script_runs(leave) -> None:
     leave(actual=picture(1), expected=picture(2))
     page = made()
     policy = next(a["content"] for a, _ in page.all("meta", http_equiv="Content-Security-Policy"))
@@ -147,7 +147,7 @@ def test_text_is_escaped_unless_it_is_markup() -> None:
     assert isinstance(tag("img", alt="<"), Markup) and tag("img", alt="<") == '<img alt="&lt;">'
 
 
-def test_links_lead_to_the_shot_whatever_its_name(leave) -> None:
+def test_links_lead_to_the_shot_of_any_name(leave) -> None:
     record = leave(actual=picture(1))
     names = [("a b", "c"), ("<i>", "ü-1"), ("50%", "x"), ("d#1", "y")]
     records = [replace(record, sketch=sketch, shot=shot) for sketch, shot in names]
@@ -192,20 +192,20 @@ def test_without_a_failure_it_says_so_and_holds_no_picture(leave) -> None:
 def test_every_word_has_its_own_explanation(leave) -> None:
     leave(actual=picture(1), expected=picture(2))
     (record,) = read_results(Path("results"))
-    said = set()
+    message = set()
     for word, found in MEANINGS.items():
         if word == "same":
             continue
         page = Page(report_html([replace(record, word=word, tier="")], Path("results")))
         assert page.text("p", class_="meaning") == found.sentence
-        said.add(found.sentence)
+        message.add(found.sentence)
         commands = [text for _, text in page.all("code")]
         assert bool(commands) is (word not in NEVER_ACCEPTED)
         assert found.broken is (word in NEVER_ACCEPTED)
-    assert len(said) == len(MEANINGS) - 1
-    for tier, sentence in TIERS.items():
-        page = Page(report_html([replace(record, tier=tier)], Path("results")))
-        assert sentence in page.text("p", class_="meaning") and page.text("span", class_="tier") == tier
+    assert len(message) == len(MEANINGS) - 1
+    page = Page(report_html([replace(record, tier="same build", catches="Any change.")], Path("results")))
+    assert page.text("p", class_="meaning").endswith(" Any change.")
+    assert page.text("span", class_="tier") == "same build"
 
 
 def test_the_command_accepts_this_shot_from_this_folder(leave) -> None:
@@ -215,7 +215,7 @@ def test_the_command_accepts_this_shot_from_this_folder(leave) -> None:
     assert commands == [accept, [*accept, "--also"], ["pytest", "--shots-update", "x"]]
 
 
-def test_differences_of_fingerprints_are_told_and_marked(leave) -> None:
+def test_differences_of_fingerprints_are_listed_and_marked(leave) -> None:
     leave(actual=picture(1), expected=picture(2))
     page = made()
     assert "22.3.6; the reference's: 22.3.5" in page.text("ul", class_="differences")
@@ -245,7 +245,7 @@ def test_three_hundred_records_stay_small(leave) -> None:
     assert len(report_html(many, Path("results"))) < 300 * 400 + 100_000
 
 
-def test_a_picture_that_has_gone_is_told(leave) -> None:
+def test_a_picture_that_has_gone_is_reported(leave) -> None:
     record = leave(actual=picture(1), expected=picture(2))
     (Path("results") / record.pictures["expected"]).unlink()
     page = made()
@@ -253,7 +253,7 @@ def test_a_picture_that_has_gone_is_told(leave) -> None:
     assert len(page.all("img")) == 2
 
 
-def test_the_report_goes_where_it_is_asked_to_and_says_where(leave, tmp_path: Path) -> None:
+def test_the_report_goes_where_it_should_and_says_where(leave, tmp_path: Path) -> None:
     leave(actual=picture(1))
     assert write_report(Path("results")) == Path("results/index.html")
     assert write_report(Path("results"), tmp_path / "r.html") == tmp_path / "r.html"

@@ -7,8 +7,6 @@ import json
 import re
 import socket
 import struct
-import subprocess
-import sys
 import threading
 from collections.abc import Iterator
 from dataclasses import replace
@@ -95,7 +93,7 @@ def test_it_listens_on_this_machine_alone(client: Client) -> None:
 
 @pytest.mark.parametrize("token", ["", "x", "%00", "..", "a" * 5000])
 @pytest.mark.parametrize("path", ["", "state", "picture/hills/dawn.actual.png"])
-def test_without_its_token_nothing_is_told(client: Client, token: str, path: str) -> None:
+def test_without_its_token_nothing_is_revealed(client: Client, token: str, path: str) -> None:
     status, text, _ = client.ask("GET", path, token=token)
     assert status == 403 and "token" in text and "hills" not in text
 
@@ -163,7 +161,7 @@ def test_every_answer_forbids_what_a_page_need_not_do(client: Client) -> None:
     assert page_policy in client.ask("GET", "")[2]["Content-Security-Policy"]
 
 
-# What may be asked for
+# What may be requested
 
 
 @pytest.mark.parametrize(
@@ -388,7 +386,7 @@ def test_many_at_once_are_done_one_after_the_other(client: Client) -> None:
     assert sorted(files()) == ["dawn.2.png", "dawn.png", "noon.png"]
 
 
-def test_a_record_that_cannot_be_read_is_told_and_does_not_end_it(client: Client) -> None:
+def test_a_record_that_cannot_be_read_is_reported_and_does_not_end_it(client: Client) -> None:
     path = RESULTS / "hills/dawn.json"
     before = path.read_text(encoding="utf-8")
     path.write_text("{", encoding="utf-8")
@@ -413,7 +411,7 @@ def test_done_ends_it_once_it_is_answered(leave) -> None:
         assert review.summary() == ["nothing was accepted"]
 
 
-def test_done_ends_it_also_where_nobody_waits_for_the_answer(leave, capfd) -> None:
+def test_done_ends_it_also_where_the_client_has_gone(leave, capfd) -> None:
     leave(actual=picture(1))
     with Review(RESULTS) as review:
         serving = threading.Thread(target=review.serve)
@@ -427,23 +425,24 @@ def test_done_ends_it_also_where_nobody_waits_for_the_answer(leave, capfd) -> No
         assert not serving.is_alive() and capfd.readouterr().err == ""
 
 
-def test_a_port_that_is_taken_is_told(leave) -> None:
+def test_a_port_that_is_taken_is_reported(leave) -> None:
     leave(actual=picture(1))
     with Review(RESULTS) as first, pytest.raises(DataError, match=f"cannot listen on port {first.port}: "):
         Review(RESULTS, first.port)
 
 
-def test_a_folder_without_results_is_told_before_anything_listens(leave, capsys) -> None:
+def test_a_folder_without_results_is_refused_before_anything_listens(leave, capsys) -> None:
     assert main(["shots", "review", "nowhere", "--no-open"]) == 2
     assert "nowhere: there is no such folder" in capsys.readouterr().err
 
 
-def test_the_command_prints_its_address_and_says_at_the_end_what_was_accepted(leave) -> None:
+def test_the_command_prints_its_address_and_says_at_the_end_what_was_accepted(
+    leave, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     record = leave(actual=picture(1), expected=picture(2))
-    command = [sys.executable, "-m", "playground", "shots", "review", "results", "--no-open"]
-    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        assert process.stdout and process.stderr
-        url = process.stdout.readline().strip()
+    opened: list[str] = []
+
+    def accept_and_end(url: str) -> None:
         found = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/([\w-]+)/", url)
         assert found, url
         connection = http.client.HTTPConnection("127.0.0.1", int(found[1]), timeout=GENEROUS)
@@ -454,6 +453,15 @@ def test_the_command_prints_its_address_and_says_at_the_end_what_was_accepted(le
             connection.request("POST", f"/{found[2]}/{path}", json.dumps(body), {"X-Shots-Token": found[2]})
             assert connection.getresponse().read()
         connection.close()
-        said = process.stderr.read()
-        assert process.wait(GENEROUS) == 0
-    assert f"wrote {PLACE.as_posix()}/dawn.png  (in place of the one before)" in said and found[2] not in said
+
+    def browse(url: str) -> bool:
+        opened.append(url)
+        threading.Thread(target=accept_and_end, args=[url]).start()
+        return True
+
+    monkeypatch.setattr("webbrowser.open", browse)
+    assert main(["shots", "review", "results"]) == 0
+    out, err = capsys.readouterr()
+    assert out.splitlines() == opened
+    assert f"wrote {PLACE.as_posix()}/dawn.png  (in place of the one before)" in err
+    assert opened[0].split("/")[3] not in err, "the token is a secret"

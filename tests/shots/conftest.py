@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import email.parser  # noqa: F401
+import shutil
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
+import PIL.Image
+import PIL.ImageOps
 import pytest
 
-# Here already, for what a run of pytest inside pytest imports first is forgotten after it.
+# A run of pytest inside pytest forgets the modules that it imports first, so these are imported here.
 from playground.shots import checking, collect, fixture  # noqa: F401
 from playground.shots.fingerprint import Fingerprint
 from playground.shots.renderer_process import RendererProcess
@@ -28,7 +32,7 @@ OURS = Fingerprint(
     tool="tool 1",
 )
 
-KERNEL = """// land.glsl -- a slope.
+KERNEL = """// terrain.glsl -- a slope.
 #pragma kernel(output = "height:r32f")
 
 uniform float gain = 0.5;  //! slider(0, 1) How bright it is in the east
@@ -43,7 +47,7 @@ size = 32
 
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 
 [view]
 use = "view/map"
@@ -65,7 +69,8 @@ Run = Callable[..., pytest.RunResult]
 
 @pytest.fixture(scope="session")
 def warm_renderer() -> Iterator[RendererProcess]:
-    """Give one child that draws, for all runs of pytest inside pytest: starting it takes the most time."""
+    """Give one process that renders for all runs of pytest inside pytest: starting it takes the most time."""
+    PIL.Image.preinit()
     with RendererProcess() as process:
         yield process
 
@@ -109,17 +114,40 @@ def run(
     for variable in ("CI", "GALLIUM_DRIVER", "PYTEST_ADDOPTS", "PYTEST_XDIST_TESTRUNUID"):
         monkeypatch.delenv(variable, raising=False)
     monkeypatch.setattr(checking, "RendererProcess", lambda *_: Lent(warm_renderer, ends))
-    Path("land.glsl").write_text(KERNEL)
+    Path("terrain.glsl").write_text(KERNEL)
     Path("slope.toml").write_text(SKETCH)
     fixed = ("-p", "playground.shots.plugin", "-p", "no:cacheprovider", "-W", "error", "-ra")
     return lambda *arguments: pytester.runpytest_inprocess(*fixed, *arguments)
 
 
+@pytest.fixture(scope="session")
+def written_references() -> dict[str, dict[Path, bytes]]:
+    """Give what `write_references` keeps: the references of each sketch or test file, by path."""
+    return {}
+
+
 @pytest.fixture
-def accepted(run: Run) -> Run:
-    """Give the same, with references that match."""
-    run("slope.toml", "--shots-update").assert_outcomes(passed=3)
-    return run
+def write_references(run: Run, written_references: dict[str, dict[Path, bytes]]) -> Callable[[str, int], Run]:
+    """Give what writes the references of a file: by a run of so many tests, later times by copying them."""
+
+    def write(file: str, tests: int) -> Run:
+        if file not in written_references:
+            run(file, "--shots-update").assert_outcomes(passed=tests)
+            found = Path("screenshots").rglob("*.png")
+            written_references[file] = {path: path.read_bytes() for path in found}
+            shutil.rmtree("shots-report")
+        for path, data in written_references[file].items():
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_bytes(data)
+        return run
+
+    return write
+
+
+@pytest.fixture
+def accepted(write_references: Callable[[str, int], Run]) -> Run:
+    """Give what runs pytest on the tiny sketch, with references that match."""
+    return write_references("slope.toml", 3)
 
 
 @pytest.fixture

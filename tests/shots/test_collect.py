@@ -1,4 +1,4 @@
-"""Which sketches become tests, by which names and markers, and what is said of those that cannot."""
+"""Which sketches become tests, by which names and markers, and what is reported of those that cannot."""
 
 from __future__ import annotations
 
@@ -40,16 +40,16 @@ def test_a_sketch_on_the_command_line_gives_a_test_for_each_shot(run: Run) -> No
 
 def test_a_folder_with_a_sketch_is_a_sketch(run: Run) -> None:
     Path("hills").mkdir()
-    Path("land.glsl").rename("hills/land.glsl")
+    Path("terrain.glsl").rename("hills/terrain.glsl")
     Path("slope.toml").rename("hills/sketch.toml")
     Path("hills/other.toml").touch()
     names = [f"hills/sketch.toml::{name}" for name in ("plain", "bright", "references")]
     assert listing(run, "hills") == names
-    assert listing(run) == []  # nobody asked for it
+    assert listing(run) == []  # it was not named
 
 
 def test_nothing_changes_for_who_does_not_use_it(run: Run, pytester: pytest.Pytester) -> None:
-    """Sketches that nobody names, and TOML files that are none, are not looked at."""
+    """Sketches that are not named, and TOML files that are none, are not looked at."""
     Path("other.toml").write_text("not even = TOML")
     pytester.makepyfile(test_one="def test_one(): pass")
     result = run()
@@ -69,7 +69,7 @@ def test_the_configuration_names_sketches(run: Run, file: str, text: str) -> Non
     for folder, name in (("sketches", "slope.toml"), ("hills", "sketch.toml")):
         Path(folder).mkdir()
         Path(folder, name).write_text(Path("slope.toml").read_text())
-        Path(folder, "land.glsl").write_text(Path("land.glsl").read_text())
+        Path(folder, "terrain.glsl").write_text(Path("terrain.glsl").read_text())
     Path("sketches/notes.txt").touch()
     Path(file).write_text(text)
     names = [
@@ -94,13 +94,13 @@ def test_a_pattern_that_matches_nothing_is_a_mistake(run: Run) -> None:
 
 def test_what_is_no_sketch_fails_in_a_sentence_and_the_others_run(run: Run, edit: Edit) -> None:
     Path("pyproject.toml").write_text('[project]\nname = "x"\n')
-    edit("slope.toml", 'use = "./land"', 'use = "./lend"')
-    Path("empty.toml").write_text("format = 1\nsize = 32\n[[pass]]\nname = 'height'\nuse = './land'\n")
+    edit("slope.toml", 'use = "./terrain"', 'use = "./terrian"')
+    Path("empty.toml").write_text("format = 1\nsize = 32\n[[pass]]\nname = 'height'\nuse = './terrain'\n")
     result = run("slope.toml", "pyproject.toml", "empty.toml")
     result.assert_outcomes(failed=3, passed=1)
     result.stdout.fnmatch_lines(
         [
-            "slope.toml:6: *lend*did you mean*",
+            "slope.toml:6: *terrian*did you mean*",
             "pyproject.toml:*",
             "empty.toml: this sketch promises no picture; *",
         ]

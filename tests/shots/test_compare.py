@@ -69,7 +69,7 @@ def test_two_levels_darker_or_brighter_fail(by: int) -> None:
 
 
 @pytest.mark.parametrize("by", [-1, 1])
-def test_one_level_passes_and_is_told(by: int) -> None:
+def test_one_level_passes_and_is_reported(by: int) -> None:
     expected = picture(low=2, high=254)
     found = compare((expected.astype(int) + by).astype(np.uint8), expected)
     assert found.ok
@@ -175,12 +175,12 @@ def test_the_order_in_memory_does_not_matter() -> None:
 
 def test_neither_picture_is_written_to() -> None:
     one, other = picture(), picture()
-    kept = one.copy(), other.copy()
+    before = one.copy(), other.copy()
     for array in (one, other):
         array.setflags(write=False)
     compare(one, other)
     difference_picture(one, other)
-    np.testing.assert_array_equal((one, other), kept)
+    np.testing.assert_array_equal((one, other), before)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What a picture says it comes from: read from drivers' words, kept by a PNG, and compared in words."""
+"""What a picture says it comes from: read from the driver, stored in a PNG, and compared in sentences."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ def test_equal_ones_differ_in_nothing() -> None:
     assert OURS.differences(replace(OURS)) == ()
 
 
-def test_silence_is_no_excuse_but_is_told() -> None:
+def test_silence_is_no_excuse_but_is_reported() -> None:
     assert OURS.same_build(Fingerprint())
     assert OURS.same_build(replace(OURS, cpu="", simd="", drawn=""))
     (line,) = OURS.differences(replace(OURS, cpu="", simd="", drawn=""))
@@ -136,12 +136,12 @@ def test_a_png_without_texts_says_nothing(tmp_path: Path) -> None:
 
 HASH = "// hash.glsl -- numbers.\nfloat scatter(int n) { return fract(float(n) * 0.618); }\n"
 
-LAND = """// land.glsl -- a slope with a picture on it.
+TERRAIN = """// terrain.glsl -- a slope with a picture on it.
 #include "hash.glsl"
 #define TWICE(x) (2.0 * (x))
-#pragma kernel(output = "height:r32f", repeat = "turns")
+#pragma kernel(output = "height:r32f", repeat = "count")
 
-uniform int   turns = 2;      //! slider(1, 4) Turns
+uniform int   count = 2;      //! slider(1, 4) Steps
 uniform float gain  = 0.5;    //! slider(0, 1) How steep it is
 uniform float idle  = 0.5;    //! slider(0, 1) Nothing reads it
 uniform sampler2D stones;     //! file("stones.png")
@@ -155,7 +155,7 @@ float kernel(ivec2 texel) {
 SKETCH = (
     "format = 1\nsize = 16\nextent = 1000.0\n"
     + passes(
-        height=("./land", 'set = { gain = 0.25, stones = "stones.png" }'),
+        height=("./terrain", 'set = { gain = 0.25, stones = "stones.png" }'),
         light=("lighting/l_dot_n", 'inputs = { height = "height" }', "set = { sun = [135.0, 30.0] }"),
     )
     + """[view]
@@ -171,7 +171,7 @@ def folder(tmp_path: Path) -> Path:
     made = tmp_path / "one"
     made.mkdir()
     (made / "hash.glsl").write_text(HASH)
-    (made / "land.glsl").write_text(LAND)
+    (made / "terrain.glsl").write_text(TERRAIN)
     (made / "hills.toml").write_text(SKETCH)
     stones = np.random.default_rng(3).integers(0, 256, (4, 4, 4), dtype=np.uint8)
     stones[..., 3] = 255
@@ -206,14 +206,14 @@ def test_nothing_drawn_has_no_hash(drawing: Engine) -> None:
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [
-        ("land.glsl", "rises to the east", "falls to the west"),
-        ("land.glsl", "a slope with a picture", "another title"),
-        ("land.glsl", "How steep it is", "Another tooltip"),
-        ("land.glsl", "    return previous", "\n\n\t/* two\nlines */ return\nprevious"),
-        ("land.glsl", "TWICE(slope) + scatter", "TWICE( slope )+scatter"),
+        ("terrain.glsl", "rises to the east", "falls to the west"),
+        ("terrain.glsl", "a slope with a picture", "another title"),
+        ("terrain.glsl", "How steep it is", "Another tooltip"),
+        ("terrain.glsl", "    return previous", "\n\n\t/* two\nlines */ return\nprevious"),
+        ("terrain.glsl", "TWICE(slope) + scatter", "TWICE( slope )+scatter"),
         ("hash.glsl", "-- numbers", "-- no numbers"),
         ("hills.toml", "size = 16\nextent = 1000.0", "extent = 1000  # metres\nsize = 16"),
-        ("hills.toml", 'name = "height"\nuse = "./land"', 'use = "./land"\nname = "height"'),
+        ("hills.toml", 'name = "height"\nuse = "./terrain"', 'use = "./terrain"\nname = "height"'),
         ("hills.toml", "gain = 0.25", "gain = 0.250"),
         ("hills.toml", "gain = 0.25", "gain = 0.25, idle = 0.75"),
         ("hills.toml", "format = 1", 'format = 1\ntitle = "Hills"'),
@@ -233,10 +233,10 @@ def test_moved_files_change_no_hash(drawing: Engine, folder: Path, tmp_path: Pat
     shutil.copytree(folder, moved)
     assert drawn(drawing, moved) == before
     (moved / "deeper").mkdir()
-    for name in ("land.glsl", "hash.glsl"):
+    for name in ("terrain.glsl", "hash.glsl"):
         (moved / name).rename(moved / "deeper" / name)
     (moved / "stones.png").rename(moved / "pebbles.png")
-    edited(moved, "hills.toml", "./land", "./deeper/land")
+    edited(moved, "hills.toml", "./terrain", "./deeper/terrain")
     edited(moved, "hills.toml", "stones.png", "pebbles.png")
     assert drawn(drawing, moved) == before
 
@@ -250,11 +250,11 @@ def test_another_engine_gives_the_same_hash(drawing: Engine, folder: Path, ctx: 
     ("file", "old", "new"),
     [
         ("hash.glsl", "0.618", "0.619"),
-        ("land.glsl", "(2.0 * (x))", "(2.5 * (x))"),
-        ("land.glsl", "previous(texel) + TWICE", "previous(texel) - TWICE"),
-        ("land.glsl", "turns = 2", "turns = 3"),
-        ("land.glsl", "height:r32f", "height:r16f"),
-        ("land.glsl", 'file("stones.png")', 'file("stones.png") input("linear")'),
+        ("terrain.glsl", "(2.0 * (x))", "(2.5 * (x))"),
+        ("terrain.glsl", "previous(texel) + TWICE", "previous(texel) - TWICE"),
+        ("terrain.glsl", "count = 2", "count = 3"),
+        ("terrain.glsl", "height:r32f", "height:r16f"),
+        ("terrain.glsl", 'file("stones.png")', 'file("stones.png") input("linear")'),
         ("hills.toml", "gain = 0.25", "gain = 0.2500001"),
         ("hills.toml", "size = 16", "size = 17"),
         ("hills.toml", "extent = 1000.0", "extent = 1001.0"),
@@ -288,7 +288,7 @@ def test_one_byte_of_an_image_changes_the_hash(drawing: Engine, folder: Path) ->
 
 
 def test_the_shots_own_settings_change_the_hash(drawing: Engine, folder: Path) -> None:
-    edited(folder, "land.glsl", "TWICE(slope)", "TWICE(slope) * (1.0 + time)")
+    edited(folder, "terrain.glsl", "TWICE(slope)", "TWICE(slope) * (1.0 + time)")
     found = [drawn(drawing, folder), drawn(drawing, folder, (25, 16)), drawn(drawing, folder, time=1.0)]
     found.append(drawn(drawing, folder, height=1))
     sketch = load(folder / "hills.toml")

@@ -61,8 +61,8 @@ vec4 kernel(ivec2 texel) {
 SKETCH = (
     "format = 1\nsize = 16\n"
     + passes(
-        land="./sound",
-        middle=("./ill", 'inputs = { height = "land" }'),
+        terrain="./sound",
+        middle=("./ill", 'inputs = { height = "terrain" }'),
         end=("./after", 'inputs = { shown = "middle" }'),
     )
     + '[view]\nuse = "./bytes"\ninputs = { shown = "end" }\n'
@@ -210,11 +210,11 @@ def test_only_what_ran_anew_is_looked_at_again(drawing: Engine, folder: Path) ->
     assert drawing._finite.looked_at == 0
     assert found_in(drawing, folder, {"view.broken": 0.25}) is None
     assert drawing._finite.looked_at == 1
-    assert found_in(drawing, folder, {"land.gain": 0.5}) is None
+    assert found_in(drawing, folder, {"terrain.gain": 0.5}) is None
     assert drawing._finite.looked_at == 4
 
 
-def test_what_is_kept_is_still_told(drawing: Engine, folder: Path) -> None:
+def test_what_is_cached_is_still_reported(drawing: Engine, folder: Path) -> None:
     write(folder, "middle:r32f", ILL, NAN)
     for broken in (0.0, 0.25, 0.25):
         found = found_in(drawing, folder, {"view.broken": broken})
@@ -223,23 +223,23 @@ def test_what_is_kept_is_still_told(drawing: Engine, folder: Path) -> None:
     assert found_in(drawing, folder, {"middle.at": (99, 99)}) is None
 
 
-def test_turns_that_go_on_in_place_are_looked_at_again(ctx: moderngl.Context, tmp_path: Path) -> None:
-    (tmp_path / "walk.glsl").write_text(
-        "// walk.glsl -- a texel a turn, of which the third is ill.\n"
-        '#pragma kernel(output = "height:r32f", repeat = "turns", visits = "1, 1")\n'
-        "uniform int turns = 6;  //! slider(1, 9) Turns\n"
+def test_steps_that_continue_in_place_are_looked_at_again(ctx: moderngl.Context, tmp_path: Path) -> None:
+    (tmp_path / "line.glsl").write_text(
+        "// line.glsl -- one texel in each step, of which the third is not finite.\n"
+        '#pragma kernel(output = "height:r32f", repeat = "count", visits = "1, 1")\n'
+        "uniform int count = 6;  //! slider(1, 9) Steps\n"
         "ivec2 visit(ivec2 cell) { return ivec2(iteration, 0); }\n"
         "float kernel(ivec2 texel) {\n"
         "    if (texel != ivec2(iteration, 0)) return previous(texel);\n"
         f"    return iteration == 2 ? {INFINITY} : 0.5;\n"
         "}\n"
     )
-    (tmp_path / "chain.toml").write_text("format = 1\nsize = 16\n" + map_of_height("./walk", channel="red"))
+    (tmp_path / "chain.toml").write_text("format = 1\nsize = 16\n" + map_of_height("./line", channel="red"))
     with Engine(ctx) as engine:
-        for turns, ill in ((1, False), (2, False), (3, True), (4, True), (2, False)):
-            engine.render(load(tmp_path / "chain.toml"), size=(16, 16), steps={"height": turns})
+        for steps, ill in ((1, False), (2, False), (3, True), (4, True), (2, False)):
+            engine.render(load(tmp_path / "chain.toml"), size=(16, 16), steps={"height": steps})
             found = engine.not_finite()
-            assert (found is not None) is ill, turns
+            assert (found is not None) is ill, steps
             assert found is None or (found.path, found.texel) == ("height", (2, 0))
 
 
@@ -249,13 +249,13 @@ def test_nothing_drawn_is_no_alarm(ctx: moderngl.Context) -> None:
 
 
 def test_gaps_that_a_source_fills_are_no_alarm(ctx: moderngl.Context, tmp_path: Path) -> None:
-    land = np.add.outer(np.arange(16.0), np.arange(16.0)).astype(np.float32)
-    land[4:6, 7] = np.nan
-    np.save(tmp_path / "land.npy", land)
+    terrain = np.add.outer(np.arange(16.0), np.arange(16.0)).astype(np.float32)
+    terrain[4:6, 7] = np.nan
+    np.save(tmp_path / "terrain.npy", terrain)
     (tmp_path / "hills.toml").write_text(
         "format = 1\nrelief = 100.0\nextent = 1000.0\n"
         '[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
-        'set = { elevation = "land.npy", no_data = "fill" }\n[view]\nuse = "view/terrain"\n'
+        'set = { elevation = "terrain.npy", no_data = "fill" }\n[view]\nuse = "view/terrain"\n'
     )
     with Engine(ctx) as engine:
         engine.render(load(tmp_path / "hills.toml"), size=(32, 16))
@@ -278,7 +278,7 @@ def test_it_leaves_no_object_and_no_error_behind(
     for looks in (False, True):
         with Engine(ctx) as engine:
             for broken in range(8):
-                if broken == 4:  # by now all that is kept for looking is there
+                if broken == 4:  # by now everything that the check allocates exists
                     before = Counter(alive)
                 engine.render(
                     load(folder / "chain.toml").with_values({"view.broken": broken / 10}), size=(32, 16)
@@ -288,4 +288,4 @@ def test_it_leaves_no_object_and_no_error_behind(
             grown.append(Counter(alive) - before)
             assert ctx.error == "GL_NO_ERROR"
         assert +alive == Counter()
-    assert grown[0] == grown[1] != Counter()  # each of the pictures is kept
+    assert grown[0] == grown[1] != Counter()  # each of the pictures is cached

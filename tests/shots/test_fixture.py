@@ -31,14 +31,13 @@ FOLDER = Path("screenshots/test_slope.py")
 
 
 @pytest.fixture
-def tests(run: Run, pytester: pytest.Pytester) -> Run:
+def tests(write_references: Callable[[str, int], Run], pytester: pytest.Pytester) -> Run:
     """Give what runs pytest where a test file has its references."""
     pytester.makepyfile(test_slope=TESTS)
-    run("--shots-update").assert_outcomes(passed=2)
-    return run
+    return write_references("test_slope.py", 2)
 
 
-def test_references_lie_beside_the_test_file_by_renderer(tests: Run) -> None:
+def test_references_are_next_to_the_test_file_by_renderer(tests: Run) -> None:
     files = sorted(path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*.png"))
     assert files == ["llvmpipe/seven.png", "numpy/ramp-of-bytes.png", "numpy/ramp.png"]
     pixels, text = read_png(FOLDER / "numpy/ramp.png")
@@ -64,7 +63,7 @@ def test_a_change_fails_with_what_accepts_it(tests: Run, edit: Edit) -> None:
     tests("--shots-update").assert_outcomes(passed=2)
 
 
-def test_broken_numbers_are_told_by_their_word(tests: Run, edit: Edit) -> None:
+def test_broken_numbers_are_reported_by_their_word(tests: Run, edit: Edit) -> None:
     edit("test_slope.py", "shot.check(RAMP,", "RAMP[1, 2, 0] = np.nan; shot.check(RAMP,")
     for arguments in ((), ("--shots-update",)):
         result = tests("-k", "given", *arguments)
@@ -105,9 +104,11 @@ def test_what_went_into_an_engines_last_frame_is_looked_at(
     )
     folder = Path("screenshots/test_engine.py/llvmpipe")
     assert read_png(folder / "last.png")[1]["drawn"] and "drawn" not in read_png(folder / "part.png")[1]
-    # One texel of the land is no number: in the picture that is a dark spot, and no more.
+    # One texel of the terrain is no number: in the picture that is a dark spot, and no more.
     edit(
-        "land.glsl", "return gain *", "if (texel == ivec2(5, 7)) return sqrt(gain - 2.0);\n    return gain *"
+        "terrain.glsl",
+        "return gain *",
+        "if (texel == ivec2(5, 7)) return sqrt(gain - 2.0);\n    return gain *",
     )
     before = (folder / "last.png").read_bytes()
     for arguments in ((), ("--shots-update",)):
@@ -140,7 +141,9 @@ def test_a_name_may_begin_with_a_digit(run: Run, pytester: pytest.Pytester) -> N
         ("shot.render('slope.toml', values={'height.gian': 1})", "*did you mean 'height.gain'"),
     ],
 )
-def test_a_mistake_is_told_at_the_tests_own_line(tests: Run, edit: Edit, call: str, sentence: str) -> None:
+def test_a_mistake_is_reported_at_the_tests_own_line(
+    tests: Run, edit: Edit, call: str, sentence: str
+) -> None:
     edit("test_slope.py", 'shot.check(RAMP, "ramp", by="numpy")', call)
     result = tests("-k", "given", "--shots-update", "--tb=short")
     result.assert_outcomes(failed=1, deselected=1)
@@ -180,7 +183,7 @@ def test_a_reference_that_no_test_uses_fails_when_all_tests_of_its_file_ran(test
     result.assert_outcomes(passed=2, failed=1)
     assert result.ret == pytest.ExitCode.TESTS_FAILED
     result.stdout.fnmatch_lines([*STALE, "FAILED test_slope.py::references*"])
-    # Where not all of them ran, or one did not pass, nobody knows.
+    # Where not all of them ran, or one did not pass, it is not known.
     for arguments in (
         ("-k", "drawn"),
         ("test_slope.py::test_drawn",),

@@ -200,7 +200,7 @@ def test_one_of_this_very_build_is_not_loosened_by_another_builds() -> None:
     assert nearest is not None
 
 
-def test_an_accepted_picture_passes_to_one_level_whoever_drew_it() -> None:
+def test_an_accepted_picture_passes_to_one_level_even_of_another_build() -> None:
     base = picture()
     actual = changed(base, block(64), 9)
     references = [reference(base, OURS), reference(actual, NEWER, "dawn.2.png")]
@@ -210,7 +210,7 @@ def test_an_accepted_picture_passes_to_one_level_whoever_drew_it() -> None:
         assert nearest is references[1]
 
 
-def test_of_several_other_builds_any_may_match_and_else_the_nearest_is_told() -> None:
+def test_of_several_other_builds_any_may_match_and_else_the_nearest_is_reported() -> None:
     base = picture()
     far, near = changed(base, block(80), 9), changed(base, scattered(12), 3)
     references = [reference(far, NEWER), reference(near, OTHERS["processor"], "dawn.2.png")]
@@ -246,7 +246,7 @@ SHIPPED = ["jacksboro/morning", "splat/near", "contours/over-the-land"]
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_another_renderers_edges_pass_and_what_that_means_is_said(name: str) -> None:
+def test_another_renderers_edges_pass_and_what_that_means_is_reported(name: str) -> None:
     base = shot(name)
     found = by_eye(softened(base), base)
     assert found.comparison.most > 20
@@ -304,7 +304,7 @@ def test_another_renderers_picture_counts_for_nothing_where_there_is_an_own_one(
     assert nearest is not None and nearest.pixels is other
 
 
-# ── whatever the reference ───────────────────────────────────────────────────
+# ── for any reference ───────────────────────────────────────────────────────
 
 
 @pytest.mark.parametrize("drawn_by", [OURS, NEWER])

@@ -43,9 +43,9 @@ def test_sketches_of_one_name_do_not_hide_each_others_failures(run: Run, edit: E
     for folder in ("a", "b"):
         Path(folder).mkdir()
         shutil.copy("slope.toml", folder)
-        shutil.copy("land.glsl", folder)
+        shutil.copy("terrain.glsl", folder)
     run("a/slope.toml", "b/slope.toml", "--shots-update").assert_outcomes(passed=6)
-    edit("a/land.glsl", "return gain *", "return 0.5 * gain *")
+    edit("a/terrain.glsl", "return gain *", "return 0.5 * gain *")
     for _ in range(2):  # the second run finds the same folders
         run("a/slope.toml", "b/slope.toml").assert_outcomes(passed=4, failed=2)
         (other,) = {name.partition("/")[0] for name in words()} - {"slope"}
@@ -61,8 +61,8 @@ def test_sketches_of_one_name_do_not_hide_each_others_failures(run: Run, edit: E
         assert (REPORT / "slope/plain.difference.png").is_file()
     run("b/slope.toml").assert_outcomes(passed=3)
     assert words()["slope/plain"] == wrong, "the other's stays"
-    edit("a/land.glsl", "return 0.5 * gain *", "return gain *")
-    edit("b/land.glsl", "return gain *", "return 0.5 * gain *")
+    edit("a/terrain.glsl", "return 0.5 * gain *", "return gain *")
+    edit("b/terrain.glsl", "return gain *", "return 0.5 * gain *")
     result = run("b/slope.toml::plain")
     result.stdout.fnmatch_lines([f"    actual      */shots-report/{other}/plain.actual.png"])
     shutil.rmtree("a")
@@ -85,7 +85,7 @@ def test_test_files_of_one_name_are_two(run: Run) -> None:
 
 
 @pytest.mark.parametrize("first", ["0.5 * ", ""], ids=["the first fails", "the second fails"])
-def test_of_two_tests_that_check_one_name_what_failed_is_kept(run: Run, first: str) -> None:
+def test_of_two_tests_that_check_one_name_what_failed_stays(run: Run, first: str) -> None:
     second = "" if first else "0.5 * "
     test = RAMP + "def test_{}(shot): shot.check({}RAMP, 'ramp', by='numpy')\n"
     Path("test_x.py").write_text(test.format("a", ""))
@@ -104,11 +104,11 @@ def test_of_two_tests_that_check_one_name_what_failed_is_kept(run: Run, first: s
 def test_a_sketch_that_does_not_load_is_on_the_page_until_it_does(accepted: Run, edit: Edit) -> None:
     accepted("slope.toml", "--shots-report")
     assert "All 2 shots passed" in headline()
-    edit("slope.toml", 'use = "./land"', 'use = "./lend"')
+    edit("slope.toml", 'use = "./terrain"', 'use = "./terrian"')
     accepted("slope.toml").assert_outcomes(failed=1)
     assert words() == {"slope/plain": "same", "slope/bright": "same", "slope/sketch": "error"}
-    assert "1 of 3 shots failed" in headline() and "lend" in sentence("slope/sketch")
-    edit("slope.toml", 'use = "./lend"', 'use = "./land"')
+    assert "1 of 3 shots failed" in headline() and "terrian" in sentence("slope/sketch")
+    edit("slope.toml", 'use = "./terrian"', 'use = "./terrain"')
     accepted("slope.toml").assert_outcomes(passed=3)
     assert words() == {"slope/plain": "same", "slope/bright": "same"}
     assert "All 2 shots passed" in headline()
@@ -135,14 +135,14 @@ def test_a_renderer_that_is_missing_in_ci_is_on_the_page(
     accepted: Run, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     Path("test_one.py").write_text("def test_one(shot): shot.render('slope.toml')\n")
-    asked = ("slope.toml", "test_one.py", "--shots-renderer=nvidia-h200")
-    result = accepted(*asked)
+    options = ("slope.toml", "test_one.py", "--shots-renderer=nvidia-h200")
+    result = accepted(*options)
     result.assert_outcomes(skipped=3, passed=1)
     result.stdout.fnmatch_lines(
         ["*= shots =*", "3 shots were not compared: the expected renderer is missing: *"]
     )
     monkeypatch.setenv("CI", "true")
-    accepted(*asked).assert_outcomes(failed=3, passed=1)
+    accepted(*options).assert_outcomes(failed=3, passed=1)
     assert words() == {"slope/plain": "error", "slope/bright": "error", "test_one.py/test_one": "error"}
     assert "All 3 shots failed" in headline() or "3 of 3 shots failed" in headline()
 
@@ -168,7 +168,7 @@ def test_meant(shot):
     ],
     ids=["crash", "hang"],
 )
-def test_what_render_raised_is_told_in_its_word_and_on_the_page(
+def test_what_render_raised_is_reported_in_its_word_and_on_the_page(
     run: Run, ends: dict[str, Exception], end: Exception, word: str
 ) -> None:
     Path("test_x.py").write_text(RENDERS)
@@ -176,22 +176,22 @@ def test_what_render_raised_is_told_in_its_word_and_on_the_page(
     ends["bright"], ends["plain"] = end, SandboxCrash("drawing it crashed: by SIGSEGV")
     result = run("--shots-report")
     result.assert_outcomes(passed=1, failed=1)
-    said = str(end).partition("\n")[0]
-    result.stdout.fnmatch_lines([f"E *Sandbox*: {word}: {said}", "test_x.py:6: *"])
+    message = str(end).partition("\n")[0]
+    result.stdout.fnmatch_lines([f"E *Sandbox*: {word}: {message}", "test_x.py:6: *"])
     assert "playground/shots" not in result.stdout.str().replace("shots-report", "").replace("\\", "/")
     assert words() == {"test_x.py/test_one": word}, "and not what an earlier run has found"
-    assert sentence("test_x.py/test_one") == said
+    assert sentence("test_x.py/test_one") == message
     ends.clear()
     run("-k", "one").assert_outcomes(passed=1, deselected=1)
     assert words() == {"test_x.py/one": "same"} and "1 shot passed" in headline()
 
 
-def test_a_sketch_with_a_mistake_is_told_in_render_without_our_frames(run: Run, edit: Edit) -> None:
+def test_a_sketch_with_a_mistake_is_reported_in_render_without_our_frames(run: Run, edit: Edit) -> None:
     Path("test_x.py").write_text(RENDERS)
-    edit("slope.toml", 'use = "./land"', 'use = "./lend"')
+    edit("slope.toml", 'use = "./terrain"', 'use = "./terrian"')
     result = run("-k", "one")
     result.assert_outcomes(failed=1, deselected=1)
-    result.stdout.fnmatch_lines(["E *SketchError: slope.toml:6: *lend*"])
+    result.stdout.fnmatch_lines(["E *SketchError: slope.toml:6: *terrian*"])
     assert "/playground/" not in result.stdout.str()
     assert words() == {"test_x.py/test_one": "error"} and "1 of 1 shot failed" in headline()
 
@@ -225,21 +225,21 @@ def test_references_of_a_test_file_in_vain_are_on_the_page(run: Run) -> None:
     assert words() == {"test_x.py/ramp": "same"} and "1 shot passed" in headline()
 
 
-def test_where_results_cannot_be_kept_one_sentence_says_so(accepted: Run, edit: Edit) -> None:
+def test_where_results_cannot_be_recorded_one_sentence_says_so(accepted: Run, edit: Edit) -> None:
     Path("taken").write_text("mine")
-    asked = ("slope.toml", "--shots-output", "taken")
-    said = "no results are kept: *taken*; --shots-output names another folder"
-    result = accepted(*asked)
+    options = ("slope.toml", "--shots-output", "taken")
+    message = "no results are recorded: *taken*; --shots-output names another folder"
+    result = accepted(*options)
     result.assert_outcomes(passed=3)
-    result.stdout.fnmatch_lines(["*= shots =*", said])
-    assert result.stdout.str().count("no results are kept") == 1
-    edit("land.glsl", "return gain *", "return 0.5 * gain *")
-    result = accepted(*asked)
+    result.stdout.fnmatch_lines(["*= shots =*", message])
+    assert result.stdout.str().count("no results are recorded") == 1
+    edit("terrain.glsl", "return gain *", "return 0.5 * gain *")
+    result = accepted(*options)
     result.assert_outcomes(passed=1, failed=2)
-    result.stdout.fnmatch_lines(["slope/plain: differs: *", f"    {said}", "slope/bright: differs: *"])
-    edit("land.glsl", "float(size.x)", "float(siez.x)")
-    result = accepted(*asked)
-    result.stdout.fnmatch_lines(["slope/plain: *land.glsl:7:*siez*", f"    {said}"])
+    result.stdout.fnmatch_lines(["slope/plain: differs: *", f"    {message}", "slope/bright: differs: *"])
+    edit("terrain.glsl", "float(size.x)", "float(siez.x)")
+    result = accepted(*options)
+    result.stdout.fnmatch_lines(["slope/plain: *terrain.glsl:7:*siez*", f"    {message}"])
     result.stdout.no_fnmatch_line("*Traceback*")
     assert Path("taken").read_text() == "mine"
 
@@ -250,13 +250,13 @@ def test_from_a_subfolder_the_command_that_accepts_names_the_file_from_there(
     """Pytest's own ids begin at its root folder."""
     Path("pytest.ini").write_text("[pytest]\n")
     Path("sub").mkdir()
-    for file in ("slope.toml", "land.glsl"):
+    for file in ("slope.toml", "terrain.glsl"):
         shutil.copy(file, "sub")
     whole = str(Path("slope.toml").absolute())
     monkeypatch.chdir("sub")
     for given, named in (("slope.toml", "slope.toml"), ("../slope.toml", whole)):
         if given != named:
-            edit("../land.glsl", "return gain *", "return 0.5 * gain *")
+            edit("../terrain.glsl", "return gain *", "return 0.5 * gain *")
         result = accepted(given, "-k", "plain")
         result.assert_outcomes(failed=1, deselected=2)
         result.stdout.fnmatch_lines([f"    accept it   pytest --shots-update {named}::plain"])
@@ -276,5 +276,5 @@ def test_of_sketches_of_one_name_that_come_at_once_one_has_the_plain_folder(tmp_
         places = list(pool.map(ask, homes))
     assert len(set(places)) == len(homes) and "hills" in places
     assert [place_of(tmp_path / "out", "hills", home) for home in homes] == places
-    (tmp_path / "out").rename(tmp_path / "moved")  # with what lies beside it, it may be moved
+    (tmp_path / "out").rename(tmp_path / "moved")  # with the folders next to it, it may be moved
     assert place_of(tmp_path / "moved", "hills", homes[0]) == places[0]

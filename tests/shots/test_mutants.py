@@ -44,7 +44,7 @@ from ..sketch_texts import map_of_height
 SIZE = (160, 90)
 SMALLER = {"size": (86, 101), "view.grid": 97}  # the file's is 344 × 403, the colour sixteen times that
 
-SLOPE = """// slope.glsl -- slopes one beside the other, higher turn by turn and with time.
+SLOPE = """// slope.glsl -- slopes side by side, higher with each step and with time.
 #pragma kernel(output = "height:r32f", repeat = "3")
 uniform float rise = 1.0;  //! slider(0, 4) How high they rise
 float kernel(ivec2 texel) {
@@ -180,8 +180,8 @@ def test_texts_read_again_with_comments_draw_the_same_bits(bench: Bench):
 def test_the_hash_of_what_was_drawn_knows_every_defect_of_rendering(results: list[Result]):
     for result in results:
         if result.applies:
-            told = any("what is drawn has changed" in line for line in result.tiers[0].differences)
-            assert told is (result.mutant.kind == "rendering"), result.mutant.name
+            reported = any("what is drawn has changed" in line for line in result.tiers[0].differences)
+            assert reported is (result.mutant.kind == "rendering"), result.mutant.name
 
 
 def test_values_that_are_no_numbers_have_their_own_word_in_every_tier(results: list[Result]):
@@ -207,16 +207,16 @@ def test_wires_are_exchanged(default_sketch: Sketch):
 
 
 @pytest.mark.parametrize(
-    ("edit", "said"),
+    ("edit", "message"),
     [
         (Edit("view/present.glsl", "no such words", ""), "expected once, found 0 times: no such words"),
         (Edit("view/present.glsl", "light", ""), "expected once, found"),
     ],
 )
 def test_an_anchor_that_is_not_there_once_is_a_mistake_of_the_mutant(
-    edit: Edit, said: str, default_sketch: Sketch
+    edit: Edit, message: str, default_sketch: Sketch
 ):
-    with pytest.raises(DataError, match=said) as caught:
+    with pytest.raises(DataError, match=message) as caught:
         broken(Rendering(name="old", broke="It is old.", edits=(edit,)), default_sketch)
     assert "present.glsl" in str(caught.value) and "'old'" in str(caught.value)
 
@@ -229,7 +229,7 @@ def test_a_sketch_of_ones_own_is_broken_as_far_as_it_can_be(mine: Path, any_engi
     assert found["layers-swapped"].why_not == "there is no input 'colour.mix.grass'"
     assert [m.name for m in FINISHED if not (found[m.name].applies and found[m.name].well)] == []
     assert found["one-turn-fewer"].caught() and found["one-frame-late"].caught()
-    # A third of the light is missing with one turn of three.
+    # A third of the light is missing with one step of three.
     assert found["one-turn-fewer"].picture.mean() < bench.expected["dark"].array.mean()
     assert found["one-frame-late"].picture.mean() > bench.expected["dark"].array.mean()
 
@@ -252,7 +252,7 @@ def test_names_are_of_one_mutant_each_and_sentences_are_sentences():
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ('name = "a"\nbroke = "It is."\nsett = {}', "no key 'sett'"),
         ('name = "a"\nbroke = "It is"\nsamples = 1', "needs a name, and a sentence"),
@@ -263,10 +263,10 @@ def test_names_are_of_one_mutant_each_and_sentences_are_sentences():
         ),
     ],
 )
-def test_a_mistake_in_the_table_is_told(text: str, said: str, tmp_path: Path):
+def test_a_mistake_in_the_table_is_reported(text: str, message: str, tmp_path: Path):
     table = tmp_path / "table.toml"
     table.write_text(f"[[mutant]]\n{text}\n")
-    with pytest.raises(DataError, match=said):
+    with pytest.raises(DataError, match=message):
         rendering_mutants(table)
 
 
@@ -275,13 +275,13 @@ def test_a_mistake_in_the_table_is_told(text: str, said: str, tmp_path: Path):
 
 def test_pictures_are_broken_as_they_say_and_the_original_is_left_alone():
     picture = noise_like()
-    kept = picture.copy()
+    original = picture.copy()
     for one in FINISHED:
         changed = one.change(picture)
-        np.testing.assert_array_equal(picture, kept)
+        np.testing.assert_array_equal(picture, original)
         assert changed.dtype == np.uint8 and changed.shape[2] == 4
         assert (changed.shape == picture.shape) is (one.name != "a-row-short")
-        np.testing.assert_array_equal(changed, one.change(picture))  # chance is seeded
+        np.testing.assert_array_equal(changed, one.change(picture))  # random numbers are seeded
     for name in ("upside-down", "mirrored", "blue-for-red"):
         np.testing.assert_array_equal(finished(name)(finished(name)(picture)), picture)
     magenta = finished("magenta-square")(picture)
@@ -306,7 +306,7 @@ def test_noise_is_as_strong_as_it_says():
 
 def redrawn(bench: Bench, sketch: Sketch, count: int) -> list[Redrawn]:
     shot = shot_of(sketch, size=SIZE)
-    # A process loads the file, which says nothing of a smaller land; so the shot does.
+    # A process loads the file, which says nothing of a smaller terrain; so the shot does.
     smaller = replace(shot, values=tuple(SMALLER.items()))
     return list(redraw(sketch, smaller, bench.unbroken(shot), bench.engine.info, count))
 
@@ -418,7 +418,7 @@ def test_the_command_fails_where_a_defect_passes(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["--mutant", "no-shadows"], "no mutant 'no-shadows'; did you mean 'no-shadow'?"),
         (["--shot", "mornin"], "no shot 'mornin' in sketch jacksboro; did you mean 'morning'?"),
@@ -426,13 +426,13 @@ def test_the_command_fails_where_a_defect_passes(
         (["--again", "-1"], "invalid value for '--again'"),
     ],
 )
-def test_a_mistake_is_one_sentence(arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]):
+def test_a_mistake_is_one_sentence(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["shots", "mutants", *arguments]) == 2
     out, error = capsys.readouterr()
-    assert out == "" and said in error and len(error.splitlines()) == 1
+    assert out == "" and message in error and len(error.splitlines()) == 1
 
 
-def test_every_mutant_has_a_name_to_be_asked_for():
+def test_every_mutant_can_be_chosen_by_name():
     assert named(()) == all_mutants()
     (one,) = named(["seam"])
     assert isinstance(one, Rendering) and isinstance(named(["grey"])[0], Finished)

@@ -86,7 +86,7 @@ def test_update_leaves_what_matches_alone_and_says_so(accepted: Run, edit: Edit)
 def test_a_visible_change_of_the_kernel_fails_with_everything_to_see_it_by(
     accepted: Run, edit: Edit, factor: str
 ) -> None:
-    edit("land.glsl", "return gain *", f"return {factor} * gain *")
+    edit("terrain.glsl", "return gain *", f"return {factor} * gain *")
     result = accepted("slope.toml", "-k", "plain")
     result.assert_outcomes(failed=1, deselected=2)
     output = result.stdout.str()
@@ -97,8 +97,8 @@ def test_a_visible_change_of_the_kernel_fails_with_everything_to_see_it_by(
     assert (signed <= 0).all() if factor < "1" else (signed >= 0).all()
     most, over = np.abs(signed).max(), np.count_nonzero(np.abs(signed).max(axis=2) > 1)
     assert most in (6, 7)  # the brightest is 0.5 * 31/32 * 255 = 123.5; 5 % of that are 6.2 levels
-    said = rf"slope/plain: differs: max difference {most} of 255, at x = \d+, y = 0 from the top left"
-    assert re.search(said, output)
+    message = rf"slope/plain: differs: max difference {most} of 255, at x = \d+, y = 0 from the top left"
+    assert re.search(message, output)
     assert f"; {over} of 1024 pixels ({100 * over / 1024:.3g} %) over 1" in output
     np.testing.assert_array_equal(shown[..., :3], 16 * np.abs(signed[..., :3]))
     np.testing.assert_array_equal(expected, read_png(FOLDER / "plain.png")[0])
@@ -108,15 +108,15 @@ def test_a_visible_change_of_the_kernel_fails_with_everything_to_see_it_by(
     assert left["command"] == "pytest --shots-update slope.toml::plain"
 
 
-def test_a_change_nobody_can_see_passes(accepted: Run, edit: Edit) -> None:
-    edit("land.glsl", "return gain *", "// the east is up\n    return 0.9999 * gain *")
+def test_an_invisible_change_passes(accepted: Run, edit: Edit) -> None:
+    edit("terrain.glsl", "return gain *", "// the east is up\n    return 0.9999 * gain *")
     accepted("slope.toml").assert_outcomes(passed=3)
 
 
 def test_each_failure_has_its_own_word_and_the_next_shot_still_runs(
     accepted: Run, edit: Edit, ends: dict[str, Exception]
 ) -> None:
-    """Another size, a crash, a hang and a mistake beside a shot that passes, in one run."""
+    """Another size, a crash, a hang and a mistake, and a shot that passes, in one run."""
     crash = "drawing slope/crashed crashed: the process was ended by SIGSEGV\n    | nir: validation failed"
     ends["crashed"] = SandboxCrash(crash)
     ends["hung"] = SandboxTimeout("drawing slope/hung took more than 120 s and was stopped")
@@ -154,7 +154,7 @@ def test_each_failure_has_its_own_word_and_the_next_shot_still_runs(
 
 
 def test_any_further_reference_may_match_and_an_update_removes_them(accepted: Run, edit: Edit) -> None:
-    edit("land.glsl", "return gain *", "return 0.5 * gain *")
+    edit("terrain.glsl", "return gain *", "return 0.5 * gain *")
     shutil.copy(FOLDER / "plain.png", FOLDER / "plain.2.png")
     result = accepted("slope.toml", "-k", "plain", "--shots-update")
     result.stdout.fnmatch_lines(["wrote *plain.png *", "removed screenshots/slope/llvmpipe/plain.2.png *"])
@@ -166,7 +166,7 @@ def test_any_further_reference_may_match_and_an_update_removes_them(accepted: Ru
 
 
 def test_a_broken_picture_fails_and_is_never_written(accepted: Run, edit: Edit) -> None:
-    edit("land.glsl", "return gain *", "return 0.0 *")
+    edit("terrain.glsl", "return gain *", "return 0.0 *")
     before = (FOLDER / "plain.png").read_bytes()
     for arguments in ((), ("--shots-update",)):
         result = accepted("slope.toml", *arguments)
@@ -179,7 +179,7 @@ def test_a_broken_picture_fails_and_is_never_written(accepted: Run, edit: Edit) 
 
 def test_a_reference_that_no_shot_uses_fails(accepted: Run, edit: Edit) -> None:
     edit("slope.toml", 'name = "bright"', 'name = "brighter"')
-    for name in ("pictures/of/mine.png", "pictures/mine.png"):  # beside them: nobody's reference
+    for name in ("pictures/of/mine.png", "pictures/mine.png"):  # no reference, in the same folder
         Path("screenshots", name).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(
             put_at(accepted("slope.toml", "-k", "brighter").stdout.str(), "actual"), f"screenshots/{name}"
@@ -202,7 +202,7 @@ def test_references_of_a_sketch_that_is_gone_fail_once(accepted: Run) -> None:
 
 
 def test_results_go_where_they_are_wanted(accepted: Run, edit: Edit) -> None:
-    edit("land.glsl", "return gain *", "return 0.5 * gain *")
+    edit("terrain.glsl", "return gain *", "return 0.5 * gain *")
     result = accepted("slope.toml", "--shots-output", "out")
     result.assert_outcomes(failed=2, passed=1)
     assert put_at(result.stdout.str(), "actual") == Path("out/slope/plain.actual.png").absolute()
@@ -213,10 +213,10 @@ def test_results_go_where_they_are_wanted(accepted: Run, edit: Edit) -> None:
 
 
 def test_a_mistake_in_a_kernel_fails_with_its_place(accepted: Run, edit: Edit) -> None:
-    edit("land.glsl", "float(size.x)", "float(siez.x)")
+    edit("terrain.glsl", "float(size.x)", "float(siez.x)")
     result = accepted("slope.toml", "-k", "plain")
     result.assert_outcomes(failed=1, deselected=2)
-    result.stdout.fnmatch_lines(["slope/plain: *land.glsl:7:*siez*"])
+    result.stdout.fnmatch_lines(["slope/plain: *terrain.glsl:7:*siez*"])
     assert record("plain")["word"] == "error"
 
 
@@ -239,33 +239,33 @@ def test_another_renderer_is_a_failure_in_ci_and_a_skip_with_its_reason_elsewher
     monkeypatch.setenv("CI", value)
     for arguments in ((), ("--shots-update",)):
         result = accepted("slope.toml", "--shots-renderer", "nvidia-h200", *arguments)
-        said = "the expected renderer is missing: shots are compared on nvidia-h200; OpenGL gave llvmpipe*"
+        message = "the expected renderer is missing: shots are compared on nvidia-h200; OpenGL gave llvmpipe*"
         if value == "true":
             result.assert_outcomes(failed=2, passed=1)
-            result.stdout.fnmatch_lines([f"{said} (a failure, for CI is set)"])
+            result.stdout.fnmatch_lines([f"{message} (a failure, for CI is set)"])
         else:
             result.assert_outcomes(skipped=2, passed=1)
-            result.stdout.fnmatch_lines([f"SKIPPED *{said}"])
+            result.stdout.fnmatch_lines([f"SKIPPED *{message}"])
     assert references() == before
 
 
-def test_another_renderer_may_be_allowed_and_is_then_said_to_be_compared_loosely(
+def test_another_renderer_may_be_allowed_and_is_then_reported_as_compared_loosely(
     accepted: Run, edit: Edit
 ) -> None:
     """To pytest here, llvmpipe is the other renderer, and the references are of one that is not there."""
     FOLDER.rename(FOLDER.with_name("nvidia-h200"))
-    asked = ("slope.toml", "--shots-renderer=nvidia-h200", "--shots-any-renderer")
-    result = accepted(*asked)
+    options = ("slope.toml", "--shots-renderer=nvidia-h200", "--shots-any-renderer")
+    result = accepted(*options)
     result.assert_outcomes(passed=3)
-    said = "2 drawn by llvmpipe compared by structure only, as --shots-any-renderer allows"
-    result.stdout.fnmatch_lines(["*= shots =*", said])
+    message = "2 drawn by llvmpipe compared by structure only, as --shots-any-renderer allows"
+    result.stdout.fnmatch_lines(["*= shots =*", message])
     assert record("plain")["tier"] == "another renderer"
-    edit("land.glsl", "return gain *", "return (texel.y > 15 ? 2.0 : 0.3) * gain *")
-    result = accepted(*asked, "-k", "plain")
+    edit("terrain.glsl", "return gain *", "return (texel.y > 15 ? 2.0 : 0.3) * gain *")
+    result = accepted(*options, "-k", "plain")
     result.assert_outcomes(failed=1, deselected=2)
     update = "pytest --shots-update --shots-renderer=nvidia-h200 --shots-any-renderer slope.toml::plain"
     result.stdout.fnmatch_lines(["slope/plain: structure: *", f"    accept it   {update}"])
-    accepted(*asked, "-k", "plain", "--shots-update").assert_outcomes(passed=1, deselected=2)
+    accepted(*options, "-k", "plain", "--shots-update").assert_outcomes(passed=1, deselected=2)
     assert FOLDER.joinpath("plain.png").exists()  # llvmpipe's own, from now on
 
 
@@ -278,18 +278,18 @@ gain = "height.gain"
 """
 
 
-def test_a_fast_variant_that_is_left_out_is_told_and_may_be_left_out(accepted: Run, edit: Edit) -> None:
-    shutil.copyfile("land.glsl", "twin.glsl")
+def test_a_fast_variant_that_is_left_out_is_reported_and_may_be_left_out(accepted: Run, edit: Edit) -> None:
+    shutil.copyfile("terrain.glsl", "twin.glsl")
     edit("twin.glsl", "return gain *", "return 0.9999 * gain *")
-    Path("land.fast.toml").write_text(FAST)
+    Path("terrain.fast.toml").write_text(FAST)
     trust(Path.cwd())
     for options in ((), ("--shots-plain",)):
         result = accepted("slope.toml", *options)
         result.assert_outcomes(passed=3)
-    edit("land.glsl", "return gain *", "return 0.95 * gain *")
+    edit("terrain.glsl", "return gain *", "return 0.95 * gain *")
     result = accepted("slope.toml")
     result.assert_outcomes(failed=2, passed=1)
-    result.stdout.fnmatch_lines(["*= shots =*", "land.fast.toml is left out, the plain form runs: *"])
+    result.stdout.fnmatch_lines(["*= shots =*", "terrain.fast.toml is left out, the plain form runs: *"])
     assert result.stdout.str().count("is left out") == 1
     result = accepted("slope.toml", "--shots-plain")
     result.assert_outcomes(failed=2, passed=1)

@@ -12,9 +12,9 @@ import pytest
 from playground import paths
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
+from playground.shots.fingerprint import fingerprint_of
 from playground.shots.references import (
     accepted,
-    drawn_by,
     home_of,
     read_reference,
     reference_path,
@@ -43,7 +43,7 @@ def put(home: Path, *names: str) -> list[Path]:
     return [home / name for name in names]
 
 
-def test_a_user_keeps_them_beside_the_sketch(tmp_path: Path) -> None:
+def test_a_user_has_them_next_to_the_sketch(tmp_path: Path) -> None:
     sketch = sketch_in(tmp_path)
     assert home_of(sketch) == tmp_path / "screenshots"
     assert reference_path(sketch, "dawn", "llvmpipe") == tmp_path / "screenshots/hills/llvmpipe/dawn.png"
@@ -77,7 +77,7 @@ def test_a_reference_comes_back_as_written_and_says_who_drew_it(tmp_path: Path) 
     assert removed == []
     reference = read_reference(path)
     np.testing.assert_array_equal(reference.pixels, PICTURE)
-    assert reference.drawn_by == drawn_by(LLVMPIPE)
+    assert reference.fingerprint == fingerprint_of(LLVMPIPE, (6, 4))
     assert reference.text["sketch"] == "hills"
     assert reference.text["shot"] == "dawn"
     assert reference.text["tool"].startswith("terrain-shader-playground ")
@@ -93,7 +93,7 @@ def test_another_build_of_the_renderer_says_so(tmp_path: Path) -> None:
     other = replace(LLVMPIPE, version="4.5 Mesa 25.0.7")
     path, _ = write_reference(sketch_in(tmp_path), "dawn", other, PICTURE)
     assert path.parent.name == "llvmpipe"
-    assert read_reference(path).drawn_by != drawn_by(LLVMPIPE)
+    assert not read_reference(path).fingerprint.same_build(fingerprint_of(LLVMPIPE, (6, 4)))
 
 
 def test_further_ones_are_accepted_in_the_order_of_their_numbers(tmp_path: Path) -> None:
@@ -110,11 +110,11 @@ def test_a_new_reference_removes_the_further_ones_of_its_shot_alone(tmp_path: Pa
     sketch = sketch_in(tmp_path)
     home = home_of(sketch) / "hills"
     second, third = put(home / "llvmpipe", "dawn.2.png", "dawn.3.png")
-    kept = [*put(home / "llvmpipe", "dusk.png", "dusk.2.png"), *put(home / "softpipe", "dawn.2.png")]
+    others = [*put(home / "llvmpipe", "dusk.png", "dusk.2.png"), *put(home / "softpipe", "dawn.2.png")]
     path, removed = write_reference(sketch, "dawn", LLVMPIPE, PICTURE)
     assert removed == [second, third]
     assert accepted(sketch, "dawn", "llvmpipe") == [path]
-    assert all(file.exists() for file in kept)
+    assert all(file.exists() for file in others)
 
 
 def test_a_write_that_fails_leaves_the_old_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -149,7 +149,7 @@ def test_a_reference_that_is_no_picture_is_a_sentence(tmp_path: Path, content: b
         read_reference(path)
 
 
-def test_used_references_are_not_stale_whatever_the_renderer(tmp_path: Path) -> None:
+def test_used_references_are_not_stale_for_any_renderer(tmp_path: Path) -> None:
     sketch = sketch_in(tmp_path)
     put(home_of(sketch) / "hills", "llvmpipe/dawn.png", "llvmpipe/dawn.2.png", "nvidia-h200/dusk.png")
     assert stale_references([sketch]) == []

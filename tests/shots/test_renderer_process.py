@@ -30,11 +30,11 @@ pytestmark = pytest.mark.skipif(
     reason="the reference renderer, Mesa's llvmpipe, is chosen by name on Linux",
 )
 
-KERNEL = """// land.glsl -- bands that time moves.
-#pragma kernel(output = "height:r32f", repeat = "turns")
+KERNEL = """// terrain.glsl -- bands that time moves.
+#pragma kernel(output = "height:r32f", repeat = "count")
 
-uniform int turns = 3;         //! slider(1, 9) How often it is made brighter
-uniform float gain = 0.2;      //! slider(0, 1) How much brighter in a turn
+uniform int count = 3;         //! slider(1, 9) How often it is made brighter
+uniform float gain = 0.2;      //! slider(0, 1) How much brighter in each step
 
 float kernel(ivec2 texel) {
     return previous(texel) + gain * fract(float(texel.x) / float(size.x) + 0.1 * time);
@@ -43,7 +43,7 @@ float kernel(ivec2 texel) {
 
 SKETCH = (
     "format = 1\nsize = 32\n"
-    + map_of_height(channel="red")
+    + map_of_height("./terrain", channel="red")
     + """[[preset]]
 name = "dim"
 set = { "height.gain" = 0.1 }
@@ -61,7 +61,7 @@ preset = "dim"
 [[shot]]
 name = "short"
 size = [32, 32]
-set = { "height.turns" = 2 }
+set = { "height.count" = 2 }
 [[shot]]
 name = "first"
 size = [32, 32]
@@ -72,15 +72,9 @@ steps = { height = 1 }
 
 @pytest.fixture
 def cases(tmp_path: Path) -> dict[str, ShotCase]:
-    (tmp_path / "land.glsl").write_text(KERNEL)
+    (tmp_path / "terrain.glsl").write_text(KERNEL)
     (tmp_path / "bands.toml").write_text(SKETCH)
     return {case.shot.name: case for case in shots_of([tmp_path / "bands.toml"])}
-
-
-@pytest.fixture(scope="module")
-def renderer() -> Iterator[RendererProcess]:
-    with RendererProcess() as made:
-        yield made
 
 
 def test_a_case_is_named_by_sketch_and_shot(cases: dict[str, ShotCase]) -> None:
@@ -89,19 +83,21 @@ def test_a_case_is_named_by_sketch_and_shot(cases: dict[str, ShotCase]) -> None:
 
 
 def test_the_worker_draws_what_an_engine_here_draws(
-    cases: dict[str, ShotCase], renderer: RendererProcess, any_engine: Engine
+    cases: dict[str, ShotCase], warm_renderer: RendererProcess, any_engine: Engine
 ) -> None:
-    if any_engine.info.slug != renderer.renderer.slug:
+    if any_engine.info.slug != warm_renderer.renderer.slug:
         pytest.skip(f"OpenGL here is {any_engine.info.renderer}")
     for case in cases.values():
-        np.testing.assert_array_equal(renderer.render(case).array, render_shot(any_engine, case).array)
+        np.testing.assert_array_equal(warm_renderer.render(case).array, render_shot(any_engine, case).array)
 
 
-def test_a_shot_obeys_each_of_its_settings(cases: dict[str, ShotCase], renderer: RendererProcess) -> None:
-    frames = {name: renderer.render(case) for name, case in cases.items()}
+def test_a_shot_obeys_each_of_its_settings(
+    cases: dict[str, ShotCase], warm_renderer: RendererProcess
+) -> None:
+    frames = {name: warm_renderer.render(case) for name, case in cases.items()}
     assert frames["plain"].size == (48, 32)
     assert (frames["later"].size, frames["later"].time) == ((40, 32), 2.5)
-    # The land is 32 texels wide; at x = 31 its value is turns * gain * 31/32 (* fract(31/32 + 0.25)).
+    # The terrain is 32 texels wide; at x = 31 its value is count * gain * 31/32 (* fract(31/32 + 0.25)).
     bright = {name: int(frame.array[16, -1 - (frame.size[0] - 32) // 2, 0]) for name, frame in frames.items()}
     expected = {
         "plain": 3 * 0.2 * 31 / 32,
@@ -132,16 +128,16 @@ def test_cases_and_frames_cross_over_whole(cases: dict[str, ShotCase]) -> None:
 
 
 def test_a_mistake_of_the_sketch_crosses_over_and_the_next_shot_still_runs(
-    cases: dict[str, ShotCase], renderer: RendererProcess, tmp_path: Path
+    cases: dict[str, ShotCase], warm_renderer: RendererProcess, tmp_path: Path
 ) -> None:
-    (tmp_path / "land.glsl").write_text(KERNEL.replace("gain *", "gian *"))
+    (tmp_path / "terrain.glsl").write_text(KERNEL.replace("gain *", "gian *"))
     broken = shots_of([tmp_path / "bands.toml"])[0]
-    with pytest.raises(ShaderError, match=r"land\.glsl:8.*gian"):
-        renderer.render(broken)
+    with pytest.raises(ShaderError, match=r"terrain\.glsl:8.*gian"):
+        warm_renderer.render(broken)
     wrong = ShotCase(cases["plain"].sketch, Shot("wrong", values=(("height.gian", 1.0),)))
     with pytest.raises(ParameterError, match="gian"):
-        renderer.render(wrong)
-    assert renderer.render(cases["plain"]).size == (48, 32)
+        warm_renderer.render(wrong)
+    assert warm_renderer.render(cases["plain"]).size == (48, 32)
 
 
 def test_a_missing_software_renderer_is_reported_each_time(
@@ -304,7 +300,7 @@ def test_a_worker_ends_with_its_parent_in_the_middle_of_a_draw(fake: RendererPro
 
 ENDING = (
     "format = 1\nsize = 32\n"
-    + map_of_height()
+    + map_of_height("./terrain")
     + '[[shot]]\nname = "crash"\n[[shot]]\nname = "hang"\n[[shot]]\nname = "next"\n'
 )
 
@@ -316,7 +312,7 @@ def test_how_a_worker_ends_is_reported_by_the_plugin(
         monkeypatch.delenv(variable, raising=False)
     monkeypatch.syspath_prepend(pytester.path)
     monkeypatch.setattr(renderer_module, "HANDLER", "fake_handler")
-    files = {"fake_handler.py": FAKE, "land.glsl": KERNEL, "bands.toml": ENDING}
+    files = {"fake_handler.py": FAKE, "terrain.glsl": KERNEL, "bands.toml": ENDING}
     for name, text in files.items():
         Path(name).write_text(text)
     Path("test_x.py").write_text("def test_one(shot): shot.render('bands.toml', shot='crash')\n")
@@ -338,7 +334,7 @@ def test_how_a_worker_ends_is_reported_by_the_plugin(
     result.stdout.no_fnmatch_line("*Traceback*")
     result = run("-k", "hang", "--shots-timeout=0.2")  # where it is sure to be over
     result.assert_outcomes(failed=1, deselected=3)
-    said = "drawing bands/hang took more than 0.2 s and was stopped"
-    result.stdout.fnmatch_lines([f"bands/hang: hang: {said}*"])
+    message = "drawing bands/hang took more than 0.2 s and was stopped"
+    result.stdout.fnmatch_lines([f"bands/hang: hang: {message}*"])
     words = {p.stem: json.loads(p.read_text())["word"] for p in Path("shots-report/bands").glob("*.json")}
     assert words == {"crash": "crash", "next": "blank", "hang": "hang"}

@@ -38,7 +38,7 @@ FULL = Record(
     texts={"renderer": "llvmpipe (LLVM 15.0.6)", "sketch": "hills – Hügel"},
     expected_texts={"renderer": "llvmpipe (LLVM 14.0.0)"},
     fingerprint=("LLVM 15.0.6 drew it now, LLVM 14.0.0 the reference",),
-    root="/a/land",
+    root="/a/terrain",
     home="screenshots",
     compared="dawn.2.png",
     references={"dawn.png": "ab" * 32, "dawn.2.png": "cd" * 32},
@@ -115,7 +115,7 @@ def test_a_stamp_tells_one_result_from_the_next() -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"format": 2}, "another format; this version reads format 1"),
         ({"sketch": ".."}, "'sketch' in a record is the name of a sketch; found \"..\""),
@@ -137,16 +137,16 @@ def test_a_stamp_tells_one_result_from_the_next() -> None:
         ({"sentence": None}, "'sentence' in a record is a text; found null"),
     ],
 )
-def test_what_is_no_record_is_refused_by_name(change: dict[str, object], said: str) -> None:
+def test_what_is_no_record_is_refused_by_name(change: dict[str, object], message: str) -> None:
     data = json.loads(to_json(FULL)) | change
     with pytest.raises(DataError) as caught:
         from_json(json.dumps(data), "out/hills/dawn.json")
-    assert said in str(caught.value)
+    assert message in str(caught.value)
     assert str(caught.value).startswith("out/hills/dawn.json: ")
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("", "no JSON"),
         ("[]", "expected an object"),
@@ -155,8 +155,8 @@ def test_what_is_no_record_is_refused_by_name(change: dict[str, object], said: s
         ('{"format": 1, "sketch": ' + "[" * 900 + "]" * 900 + "}", "nested deeper than 64"),
     ],
 )
-def test_what_is_no_json_is_refused(text: str, said: str) -> None:
-    with pytest.raises(DataError, match=said):
+def test_what_is_no_json_is_refused(text: str, message: str) -> None:
+    with pytest.raises(DataError, match=message):
         from_json(text)
 
 
@@ -175,7 +175,7 @@ def test_a_record_in_the_place_of_another_is_refused(tmp_path: Path) -> None:
         read_result(path.with_name("dusk.json"))
 
 
-def test_an_empty_or_missing_folder_is_said_to_be_one(tmp_path: Path) -> None:
+def test_an_empty_or_missing_folder_is_reported(tmp_path: Path) -> None:
     with pytest.raises(DataError, match="no record of a shot is in it"):
         read_results(tmp_path)
     with pytest.raises(DataError, match="there is no such folder"):

@@ -11,8 +11,8 @@ from playground.errors import PlaygroundError
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
-LAND = """\
-// land.glsl -- a slope.
+TERRAIN = """\
+// terrain.glsl -- a slope.
 #pragma kernel(output = "height:r32f")
 uniform float rise = 0.5;  //! slider(0, 2) How steep
 float kernel(ivec2 texel) { return rise * float(texel.x); }
@@ -22,17 +22,17 @@ VIEW = """\
 uniform sampler2D height;  //! input
 vec4 kernel(ivec2 texel) { return vec4(texelFetch(height, texel, 0).r); }
 """
-PASS = '[[pass]]\nname = "height"\nuse = "./land"\n'
+PASS = '[[pass]]\nname = "height"\nuse = "./terrain"\n'
 TAIL = '[view]\nuse = "./look"\n'
 
 
 class Folder:
-    """A sketch's folder, with ``land.glsl`` and a view ``look.glsl`` in it."""
+    """A sketch's folder, with ``terrain.glsl`` and a view ``look.glsl`` in it."""
 
     def __init__(self, path: Path) -> None:
         self.path = path
         path.mkdir(exist_ok=True)
-        self.write("land.glsl", LAND)
+        self.write("terrain.glsl", TERRAIN)
         self.write("look.glsl", VIEW)
 
     def write(self, name: str, text: str) -> Path:

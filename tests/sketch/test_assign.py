@@ -1,4 +1,4 @@
-"""Parameters by path: what each stands for, what is set, what a person is shown."""
+"""Parameters by path: what each resolves to, what is set, what is listed."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_every_inner_parameter_has_a_path(sketch):
         ("height.detail", ["height.two.fine.octaves"]),
     ],
 )
-def test_a_path_stands_for_leaves_three_deep(sketch, path, leaves):
+def test_a_path_resolves_to_leaves_three_deep(sketch, path, leaves):
     assert [t.path for t in resolve(sketch.graph, path)] == leaves
 
 
@@ -91,7 +91,7 @@ def test_a_path_that_is_none_names_the_nearest(sketch, path):
 
 def test_outer_settings_win_and_targets_share_the_first_s_value(sketch):
     values = values_of(sketch)
-    # Written down by hand from the three files, innermost first.
+    # Written down from the three files, innermost first.
     assert values == {
         "height.one.coarse.gain": 4.0,
         "height.one.fine.gain": 4.0,
@@ -142,7 +142,7 @@ def test_values_come_in_any_form(sketch):
         ({"base_elevation": -5}, "base_elevation", -5.0),
     ],
 )
-def test_the_land_is_set_like_a_parameter(sketch, given, field, value):
+def test_the_terrain_is_set_like_a_parameter(sketch, given, field, value):
     found = sketch.with_values(given)
     assert getattr(found, field) == value and found.overrides == ()
     hash(found)
@@ -176,14 +176,14 @@ def test_the_land_is_set_like_a_parameter(sketch, given, field, value):
     ],
     ids=[str(i) for i in range(29)],
 )
-def test_what_is_no_land_is_one_sentence(sketch, key, given):
+def test_what_is_no_terrain_is_one_sentence(sketch, key, given):
     assert key in TERRAIN_KEYS
     with pytest.raises(ParameterError, match=f"^{key} = .*: expected") as caught:
         sketch.with_values({key: given})
     assert len(str(caught.value)) < 200
 
 
-def test_a_preset_may_change_the_land(sketch):
+def test_a_preset_may_change_the_terrain(sketch):
     found = sketch.with_preset("big")
     assert found.relief == 9.0 and values_of(found)["height.one.fine.gain"] == 7.0
     with pytest.raises(ParameterError, match="no preset 'bog'; did you mean 'big'"):

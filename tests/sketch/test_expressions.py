@@ -1,4 +1,4 @@
-"""Expressions: against Python's own exact arithmetic, and against those who mean harm."""
+"""Expressions: against Python's own exact arithmetic, and against hostile texts."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from ..cases import each
 NAMES = {"size.x": 513, "size.y": 257, "octaves": 5, "half": 0.5, "sea": True}
 
 
-def grown(chance: random.Random, depth: int) -> tuple[str, Fraction]:
+def grown(rng: random.Random, depth: int) -> tuple[str, Fraction]:
     """Return a random expression with its value, which is worked out while the text is made."""
-    if depth == 0 or chance.random() < 0.2:
-        if chance.random() < 0.4:
-            name = chance.choice(["size.x", "size.y", "octaves"])
+    if depth == 0 or rng.random() < 0.2:
+        if rng.random() < 0.4:
+            name = rng.choice(["size.x", "size.y", "octaves"])
             return name, Fraction(NAMES[name])
-        number = chance.randint(0, 40)
+        number = rng.randint(0, 40)
         return str(number), Fraction(number)
-    (a, x), (b, y) = grown(chance, depth - 1), grown(chance, depth - 1)
-    kind = chance.choice("+-*/%<?nma^f")
+    (a, x), (b, y) = grown(rng, depth - 1), grown(rng, depth - 1)
+    kind = rng.choice("+-*/%<?nma^f")
     if kind in "/%" and y == 0:
         kind = "+"
     if kind == "/":
@@ -58,10 +58,10 @@ def grown(chance: random.Random, depth: int) -> tuple[str, Fraction]:
 
 
 def test_random_expressions_agree_with_exact_arithmetic():
-    chance = random.Random(4)
+    rng = random.Random(4)
     exact = 0
     for _ in range(3000):
-        text, value = grown(chance, 4)
+        text, value = grown(rng, 4)
         if abs(value) > 2**40 or value.denominator > 2**40:
             continue
         try:
@@ -187,11 +187,11 @@ def test_what_is_no_expression_is_one_sentence_and_quick(text):
     start = time.process_time()
     with pytest.raises(ExpressionError):
         evaluate(text, NAMES)
-    assert time.process_time() - start < 5.0  # [s] of this process; what means harm takes hours
+    assert time.process_time() - start < 5.0  # [s] of this process; a hostile text takes hours
 
 
 def test_rubbish_raises_nothing_else():
-    chance = random.Random(8)
+    rng = random.Random(8)
     pieces = [
         *"0123456789.+-*/%()<>=,'\"[]{}~ \\\t\n#:@",
         "**",
@@ -204,7 +204,7 @@ def test_rubbish_raises_nothing_else():
         "1e9",
     ]
     for _ in range(1500):
-        text = "".join(chance.choice(pieces) for _ in range(chance.randint(1, 14)))
+        text = "".join(rng.choice(pieces) for _ in range(rng.randint(1, 14)))
         for function in (lambda t: evaluate(t, NAMES), names_in, lambda t: check(t, NAMES), accepted_sizes):
             try:
                 function(text)
@@ -212,7 +212,7 @@ def test_rubbish_raises_nothing_else():
                 assert str(error)
 
 
-def test_an_unknown_name_is_told_with_the_nearest():
+def test_an_unknown_name_is_reported_with_the_nearest():
     with pytest.raises(ExpressionError, match=r"names 'octave'.*did you mean 'octaves'"):
         evaluate("2 * octave", NAMES)
     with pytest.raises(ExpressionError, match=r"calls 'log'.*did you mean 'log2'"):

@@ -1,4 +1,4 @@
-"""Flattening: what feeds what, in which order, with which values, whatever is nested in what."""
+"""Flattening: what feeds what, in which order, with which values, at any nesting."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ from ..loading import load
 
 
 def kernel(outputs: str, *inputs: str, repeat: str = "", parameters: str = "") -> str:
-    turns = f', repeat = "{repeat}"' if repeat else ""
-    lines = [f'#pragma kernel(output = "{outputs}"{turns})']
+    repeats = f', repeat = "{repeat}"' if repeat else ""
+    lines = [f'#pragma kernel(output = "{outputs}"{repeats})']
     for name in inputs:
         name, _, mode = name.partition("?")
         lines.append(f"uniform sampler2D {name};  //! input({mode and chr(34) + mode + chr(34)})")
@@ -52,7 +52,7 @@ def make(folder):
     folder.write("water.glsl", kernel("water:r32f", "height", parameters="rain"))
     folder.write("light.glsl", kernel("light:r16f", "height", "water?black"))
     folder.write("both.glsl", kernel("height:r32f, water:r16f", "height"))
-    folder.write("turns.glsl", kernel("height:r32f", "mask?white", repeat="size.x // 2"))
+    folder.write("steps.glsl", kernel("height:r32f", "mask?white", repeat="size.x // 2"))
     folder.write("look.glsl", kernel("frame:rgba8", "light?white", "height?black"))
 
     def make_(body: str, **files: str):
@@ -131,12 +131,12 @@ def test_a_pass_that_reads_itself_is_a_circle(make):
 
 
 def test_any_order_of_the_file_runs_each_pass_after_what_it_reads(make):
-    chance = random.Random(1)
+    rng = random.Random(1)
     for _ in range(60):
-        count = chance.randint(2, 9)
-        reads = {i: chance.randrange(i) for i in range(1, count)}
+        count = rng.randint(2, 9)
+        reads = {i: rng.randrange(i) for i in range(1, count)}
         order = list(range(count))
-        chance.shuffle(order)
+        rng.shuffle(order)
         specs = [f"p{i} water; inputs = {{ height = 'p{reads[i]}' }}" if i else "p0 h" for i in order]
         sketch = make(passes(*specs))
         flat = flatten(sketch)
@@ -221,7 +221,7 @@ def test_what_is_wired_inside_wins_over_the_export_around_it(make):
     body = passes("a h", "b h", "t two; inputs = { 'y.height' = 'a' }")
     found = wires(make(body, two=two))
     assert (found["t.x"], found["t.y"]) == ({"height": "b:height"}, {"height": "a:height"})
-    # Once all that an export stands for is wired, the export itself needs nothing.
+    # Once all targets of an export are wired, the export itself needs nothing.
     one = passes("x water") + '[inputs]\nheight = "x.height"\n'
     body = passes("t one; inputs = { 'x.height' = 'late' }", "late h")
     assert wires(make(body, one=one))["t.x"] == {"height": "late:height"}
@@ -235,7 +235,7 @@ def test_optional_inputs_stay_empty_and_are_optional_through_a_technique(make):
 
 
 def test_initial_states_are_optional_inputs(make):
-    sketch = make(passes("a h", "b turns; inputs = { initial = 'a' }"))
+    sketch = make(passes("a h", "b steps; inputs = { initial = 'a' }"))
     assert wires(sketch)["b"] == {"mask": "nothing", "initial": "a:height"}
     technique = sketch.graph.find("b").technique
     assert initial_names(technique) == {"initial": "height"}
@@ -331,7 +331,7 @@ def doubled(make, trusted_variants):
     return doubled_
 
 
-def test_a_fast_variant_stands_in_for_its_technique_where_it_can_run(doubled):
+def test_a_fast_variant_replaces_its_technique_where_it_can_run(doubled):
     sketch = doubled(passes("h h", "t fast; set = { rise = 3 }", "l light"))
     assert set(wires(sketch)) == {"h", "t.a", "t.b", "l", "view"}
     assert wires(sketch, variants=VARIANTS)["t"] == {"height": "h:height"}
@@ -358,7 +358,7 @@ def test_a_fast_variant_steps_back_where_something_is_wired_to_what_is_inside(do
     assert all(s == "nothing" or s.partition(":")[0] in known for w in found.values() for s in w.values())
 
 
-def test_a_fast_variant_steps_back_for_a_path_that_is_asked_for(doubled):
+def test_a_fast_variant_steps_back_for_a_path_that_is_opened(doubled):
     sketch = doubled(passes("h h", "t around", "l light"))
     assert "t.f" in wires(sketch, variants=VARIANTS) and "t.f.a" not in wires(sketch, variants=VARIANTS)
     assert wires(sketch, variants=VARIANTS, opened=("t.f.a",)) == wires(sketch)

@@ -58,23 +58,23 @@ def refused(parse):
 def test_a_kernel_s_header(parse):
     found = parse(
         """\
-// main.glsl -- land by halving.
+// main.glsl -- terrain by halving.
 #pragma kernel(output = "height:r32f, water:rgba16f", repeat = "2 * log2(size.x - 1)", \\
-               accepts = "2**n + 1", visits = "size.x, 2 if iteration == 0 else turns")
+               accepts = "2**n + 1", visits = "size.x, 2 if iteration == 0 else steps")
 uniform sampler2D before;  //! input("linear", "repeat", "mipmap")
 uniform sampler2D light;   //! input("white")
 uniform sampler2D grass;   //! file("textures/grass.png", "repeat") group("Ground") Blades
-uniform int turns = 3;     //! slider(1, 9) unit("turns") label("How often") group("Time") Not \\
+uniform int steps = 3;     //! slider(1, 9) unit("steps") label("How often") group("Time") Not \\
                            //  too often
 """
     )
-    assert found.kind == "kernel" and found.title == "Land by halving"
+    assert found.kind == "kernel" and found.title == "Terrain by halving"
     assert [(o.name, o.format, o.components, o.glsl) for o in found.outputs] == [
         ("height", "r32f", 1, "float"),
         ("water", "rgba16f", 4, "vec4"),
     ]
     assert (found.repeat, found.accepts) == ("2 * log2(size.x - 1)", "2**n + 1")
-    assert found.visits == "size.x, 2 if iteration == 0 else turns"
+    assert found.visits == "size.x, 2 if iteration == 0 else steps"
     before, light = found.inputs
     assert (before.sampling.filter, before.sampling.wrap, before.sampling.mipmap) == (
         "linear",
@@ -83,22 +83,22 @@ uniform int turns = 3;     //! slider(1, 9) unit("turns") label("How often") gro
     )
     assert (light.fallback, light.sampling.filter, light.sampling.wrap) == ("white", "nearest", "clamp")
     assert found.needs_inputs == ("before",)
-    grass, turns = found.parameters
+    grass, steps = found.parameters
     assert (grass.default, grass.group, grass.tooltip, grass.sampling.wrap) == (
         "textures/grass.png",
         "Ground",
         "Blades",
         "repeat",
     )
-    assert (turns.default, turns.unit, turns.label, turns.group, turns.title) == (
+    assert (steps.default, steps.unit, steps.label, steps.group, steps.title) == (
         3,
-        "turns",
+        "steps",
         "How often",
         "Time",
         "How often",
     )
-    assert turns.tooltip.startswith("Not ") and turns.tooltip.endswith("too often")
-    assert turns.line == 7
+    assert steps.tooltip.startswith("Not ") and steps.tooltip.endswith("too often")
+    assert steps.line == 7
 
 
 @pytest.mark.parametrize(
@@ -195,15 +195,15 @@ def test_a_guarded_file_may_come_twice_by_two_ways(parse, tmp_path):
 @pytest.mark.parametrize(
     ("text", "title"),
     [
-        ("// land.glsl -- a slope.\n", "A slope"),
+        ("// terrain.glsl -- a slope.\n", "A slope"),
         ("// land.frag: a slope.\n", "A slope"),
         ("// A slope\n", "A slope"),
         ("//////////////\n// -----\n// A slope\n", "A slope"),
         ("#version 330\n\n// A slope\n", "A slope"),
         ("float x;\n// no title\n", ""),
         ('#include "lib.glsl"\n// mine\n', "Mine"),
-        ("// land.glsl -- sRGB's curve: NaN stays NaN.\n", "sRGB's curve: NaN stays NaN"),
-        ("// land.glsl -- a slope: " + "long " * 20 + "\n", "A slope"),
+        ("// terrain.glsl -- sRGB's curve: NaN stays NaN.\n", "sRGB's curve: NaN stays NaN"),
+        ("// terrain.glsl -- a slope: " + "long " * 20 + "\n", "A slope"),
         ("// NaN. Or not …\n", "NaN. Or not …"),
         ("", ""),
     ],
@@ -285,7 +285,7 @@ def test_every_shipped_file_has_a_header_that_can_be_read(path):
         ('#pragma kernel(output = "h")', "has no format ''"),
         ('#pragma kernel(output = "h:r33f")', "no format 'r33f'; did you mean 'r32f'"),
         ('#pragma kernel(output = "h:rgb32f")', "no format 'rgb32f'"),
-        ('#pragma kernel(output = "h:r32f, h:r8")', "'h' stands twice"),
+        ('#pragma kernel(output = "h:r32f, h:r8")', "'h' appears twice"),
         ('#pragma kernel(output = "1h:r32f")', "expected name:format"),
         ('#pragma kernel(output = "size:r32f")', "'size' is given to every kernel"),
         ('#pragma kernel(output = "k_h:r32f")', "are reserved"),
@@ -298,7 +298,7 @@ def test_every_shipped_file_has_a_header_that_can_be_read(path):
         ),
         ('#pragma kernel(output = "h:r32f", repeat = "iteration")', "names 'iteration'"),
         ('#pragma kernel(output = "h:r32f", visits = "2")', "2 expressions"),
-        ('#pragma kernel(output = "h:r32f", visits = "2, turns")', "names 'turns'"),
+        ('#pragma kernel(output = "h:r32f", visits = "2, steps")', "names 'steps'"),
         ('#pragma kernel(output = "h:r32f", accepts = "2**k")', "accepts: '2**k' names 'k'"),
         ('#pragma kernel(output = "h:r32f", accepts = "0")', "allows no size"),
         ('#pragma source(output = "h:r32f")', "needs its name"),
@@ -343,7 +343,7 @@ def test_mistakes_in_a_pragma(refused, text, words):
         ("uniform float a = 0.2; //! slider(0, 1) step(0)", "a number above 0"),
         ("uniform float a = 0.2; //! slider(0, 1) step(nan)", "one number"),
         ("uniform float a = 0.2; //! slider(0, 1) step(1, 2)", "one number"),
-        ("uniform float a = 0.2; //! slider(0, 1) slider(0, 2)", "'slider' stands twice"),
+        ("uniform float a = 0.2; //! slider(0, 1) slider(0, 2)", "'slider' appears twice"),
         ("uniform float a = 0.2; //! angle slider(0, 2)", "two widgets: angle and slider"),
         ('uniform float a = 0.2; //! unit("m", "s")', "one text in quotes"),
         ("uniform float a = 0.2; //! unit()", "one text in quotes"),
@@ -413,11 +413,11 @@ def test_mistakes_in_a_line(refused, line, words):
     refused(KERNEL + "float f;\n" + line + "\n", words, 3)
 
 
-def test_a_name_declared_twice_is_told_at_the_second(refused):
+def test_a_name_declared_twice_is_reported_at_the_second(refused):
     refused(KERNEL + "uniform float a;\nuniform float a;\n", "'a' is declared twice", 3)
 
 
-def test_a_mistake_in_an_included_file_is_told_there(parse, tmp_path):
+def test_a_mistake_in_an_included_file_is_reported_there(parse, tmp_path):
     (tmp_path / "lib.glsl").write_text("\nuniform float a = x;\n")
     with pytest.raises(ShaderError) as caught:
         parse(KERNEL + '#include "lib.glsl"\n')
@@ -466,23 +466,23 @@ def test_no_line_is_too_long_for_its_pattern(parse):
 
 
 def test_mutated_headers_raise_nothing_but_sentences(parse):
-    chance = random.Random(5)
+    rng = random.Random(5)
     texts = [p.read_text() for p in sorted(GLSL.rglob("*.glsl"))[:40]]
     texts = ["\n".join(line for line in t.split("\n") if "include" not in line)[:3000] for t in texts]
     for _ in range(1500):
-        letters = list(chance.choice(texts))
-        for _ in range(chance.randint(1, 6)):
-            if chance.random() < 0.5 or not letters:
-                at = chance.randint(0, len(letters))
+        letters = list(rng.choice(texts))
+        for _ in range(rng.randint(1, 6)):
+            if rng.random() < 0.5 or not letters:
+                at = rng.randint(0, len(letters))
                 letters.insert(
                     at,
-                    chance.choice(
+                    rng.choice(
                         [*'()",=;:[]{}\\/*!#', "uniform ", "//! ", "#pragma ", "vec2", "9", "-", "é", "\n"]
                     ),
                 )
             else:
-                at = chance.randrange(len(letters))
-                del letters[at : at + chance.randint(1, 8)]
+                at = rng.randrange(len(letters))
+                del letters[at : at + rng.randint(1, 8)]
         try:
             parse("".join(letters))
         except PlaygroundError as error:

@@ -15,7 +15,7 @@ from playground.sketch.model import Camera, Sketch
 
 from ..sketch_texts import passes
 
-LAND = (
+TERRAIN = (
     'format = 1\ntitle = "Keyframes"\nsize = 33\n'
     + passes(height="generation/diamond_square", light="lighting/ray_cast")
     + """[view]
@@ -43,7 +43,7 @@ set = { "light.sun" = [100, 30], "light.sun_colour" = "#ffffff", "height.seed" =
 def write(tmp_path: Path):
     def made(keys: str) -> Path:
         path = tmp_path / "sketch.toml"
-        path.write_text(LAND + keys, encoding="utf-8")
+        path.write_text(TERRAIN + keys, encoding="utf-8")
         return path
 
     return made
@@ -122,7 +122,7 @@ def test_monotone_slopes_are_those_of_scipy():
 
 
 def test_azimuths_go_the_short_way_round():
-    track = Track((0.0, 1.0, 2.0), (350.0, 20.0, 340.0), ("linear",) * 3, turns=(0,))
+    track = Track((0.0, 1.0, 2.0), (350.0, 20.0, 340.0), ("linear",) * 3, angles=(0,))
     assert track.at(0.5) == pytest.approx(5.0)
     assert track.at(1.5) == pytest.approx(0.0)
     assert track.at(1.75) == pytest.approx(350.0)
@@ -161,10 +161,10 @@ def test_the_camera_moves_in_what_keyframes_name_and_stays_in_the_rest(sketch: S
     assert sketch.at(3.0).camera.azimuth == pytest.approx(10.0)
 
 
-def test_what_is_set_by_hand_stays(sketch: Sketch):
-    by_hand = sketch.with_values({"light.sun": (45.0, 45.0)})
+def test_what_is_set_by_user_stays(sketch: Sketch):
+    by_user = sketch.with_values({"light.sun": (45.0, 45.0)})
     for time in (0.0, 2.2, 9.0):
-        found = by_hand.at(time)
+        found = by_user.at(time)
         assert found.overrides[-1] == ("light.sun", (45.0, 45.0))
         assert found.camera == sketch.at(time).camera
     turned = sketch.with_camera(Camera(azimuth=7.0))
@@ -190,23 +190,25 @@ MISTAKES = [
     (TWO + keyframe("time = 1", GAIN), 17, "time = 1: the one before is at 2 s, on line 13"),
     (keyframe("time = 1", "[keyframe.set]", "'light.gian' = 2"), 16, "did you mean 'light.gain'?"),
     (keyframe("time = 1", "[keyframe.set]", "light.gain = 900"), 16, "900 is outside its range"),
-    (keyframe("time = 1", "set = { size = 65 }"), 15, "'size' is the land's"),
+    (keyframe("time = 1", "set = { size = 65 }"), 15, "'size' is the terrain's"),
     (keyframe("time = 1", GAIN.strip(), "ease = 'soft'"), 16, "expected smooth, linear, hold"),
     (keyframe("time = 1", "camera = { elevation = 95 }"), 15, "elevation = 95: expected -89 to 89"),
     (
         keyframe("time = 1", "camera = { distance = 0 }") + keyframe("time = 2", "camera = { distance = 5 }"),
         15,
-        "distance = 0 shows the whole land",
+        "distance = 0 shows the whole terrain",
     ),
     ("[keyframe]\ntime = 1", 13, "[keyframe]: expected [[keyframe]]"),
 ]
 
 
-@pytest.mark.parametrize(("keys", "line", "said"), MISTAKES, ids=[said for _, _, said in MISTAKES])
-def test_a_mistake_is_a_sentence_with_its_line(write, keys: str, line: int, said: str):
+@pytest.mark.parametrize(
+    ("keys", "line", "sentence"), MISTAKES, ids=[sentence for _, _, sentence in MISTAKES]
+)
+def test_a_mistake_is_a_sentence_with_its_line(write, keys: str, line: int, sentence: str):
     with pytest.raises(SketchError) as caught:
         load(write(keys))
-    assert said in str(caught.value)
+    assert sentence in str(caught.value)
     assert caught.value.diagnostics[0].line == line
 
 

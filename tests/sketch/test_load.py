@@ -12,23 +12,18 @@ from pathlib import Path
 import pytest
 
 from playground.errors import DataError, ParameterError, PlaygroundError, ShaderError, SketchError
-from playground.paths import GLSL, SKETCHES
+from playground.paths import SKETCHES
 from playground.sketch.find import find, shipped_names, shipped_sketches
 from playground.sketch.load import is_technique, load, load_with
 from playground.sketch.model import Camera, Kernel
-from playground.sketch.techniques import Techniques, WithLibrary, read_technique, shipped_techniques
+from playground.sketch.techniques import Techniques, WithLibrary, shipped_techniques
 from playground.sketch.values import coerce
 
 from ..cases import each
+from ..loading import library
+from ..loading import load as load_once
+from .conftest import PASS, TAIL, TERRAIN
 
-LAND = """\
-// land.glsl -- a slope.
-#pragma kernel(output = "height:r32f")
-uniform float rise = 0.5;  //! slider(0, 2) How steep
-float kernel(ivec2 texel) { return rise * float(texel.x); }
-"""
-PASS = '[[pass]]\nname = "height"\nuse = "./land"\n'
-TAIL = '[view]\nuse = "./look"\n'
 IMAGE = """\
 #pragma kernel(output = "height:r32f")
 uniform sampler2D picture;  //! file("")
@@ -52,7 +47,7 @@ base_elevation = -10
         body="""
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 size = "size // 2"
 set = { rise = 0.25 }
 """,
@@ -91,7 +86,7 @@ set = { height.rise = 1.5 }
     seen = found.for_shot(shot)
     assert (seen.relief, seen.size, seen.samples) == (900.0, (17, 17), 1)
     assert dict(seen.overrides) == {"height.rise": 1.5}
-    assert [Path(p).name for p in found.files] == ["s.toml", "land.glsl", "look.glsl"]
+    assert [Path(p).name for p in found.files] == ["s.toml", "terrain.glsl", "look.glsl"]
 
 
 def test_what_is_absent_has_its_default(folder):
@@ -123,7 +118,7 @@ def test_any_line_ends_and_mark(folder):
 
 
 def test_dotted_keys_and_tables_are_paths(folder):
-    folder.write("inner.toml", "[[pass]]\nname = 'shape'\nuse = './land'\n")
+    folder.write("inner.toml", "[[pass]]\nname = 'shape'\nuse = './terrain'\n")
     body = '[[pass]]\nname = "height"\nuse = "./inner"\n'
     for given in (
         'set = { "shape.rise" = 0.5 }',
@@ -160,17 +155,18 @@ def test_a_sketch_is_hashable_and_crosses_to_a_child_process(folder):
 
 
 def test_every_shipped_sketch_loads_and_is_a_value():
-    one, other = WithLibrary(Techniques()), WithLibrary(Techniques())  # each reads the library for itself
+    other = WithLibrary(Techniques())  # it reads the library for itself
+    found = {}
 
     @each("name", shipped_sketches())
     def check(name):
-        found = load_with(one, name)
-        assert found.title and hash(found) == hash(load_with(other, name))
-        assert pickle.loads(pickle.dumps(found)) == found
-        for shot in found.shots:
-            found.for_shot(shot)
+        found[name] = sketch = load_once(name)
+        assert sketch.title and hash(sketch) == hash(load_with(other, name))
+        for shot in sketch.shots:
+            sketch.for_shot(shot)
 
     check()
+    assert pickle.loads(pickle.dumps(found)) == found
 
 
 # Names
@@ -183,8 +179,7 @@ def test_what_ships_is_listed_and_found():
     assert not {"noise/hash", "colour/encode"} & set(techniques)
     assert set(techniques) <= set(shipped_names())
     assert find("jacksboro") == SKETCHES / "jacksboro.toml"
-    for name in techniques:
-        read_technique(name, GLSL, GLSL)
+    assert library().keys() == set(techniques), "each can be read"
 
 
 def test_a_shipped_name_wins_over_a_folder_that_holds_no_sketch(tmp_path, monkeypatch):
@@ -225,23 +220,23 @@ def test_a_file_of_another_kind_or_an_empty_folder_is_refused(tmp_path):
 
 
 def test_a_kernel_alone_takes_its_place_in_the_default_sketch(folder):
-    found = load(folder.path / "land.glsl")
+    found = load(folder.path / "terrain.glsl")
     stage = load()
     assert [p.name for p in found.graph.passes] == [p.name for p in stage.graph.passes]
     height = found.graph.find("height")
     assert height is not None and isinstance(height.technique, Kernel) and height.technique.title == "A slope"
-    assert (found.name, found.title, found.camera) == ("land", "A slope", stage.camera)
+    assert (found.name, found.title, found.camera) == ("terrain", "A slope", stage.camera)
 
 
 def test_what_stays_of_the_default_sketch_keeps_its_files(folder):
-    folder.write("light.glsl", LAND.replace("height:r32f", "light:r16f"))
+    folder.write("light.glsl", TERRAIN.replace("height:r32f", "light:r16f"))
     found = load(folder.path / "light.glsl")
     paths = [str(v) for _, v in found.overrides]
     assert paths and all(Path(p).is_absolute() and Path(p).is_file() for p in paths)
 
 
 def test_other_outputs_are_shown_from_above(folder):
-    folder.write("odd.glsl", LAND.replace("height:r32f", "oddity:r32f"))
+    folder.write("odd.glsl", TERRAIN.replace("height:r32f", "oddity:r32f"))
     found = load(folder.path / "odd.glsl")
     assert [p.name for p in found.graph.passes[-2:]] == ["oddity", "view"]
     assert found.graph.passes[-1].inputs == (("shown", "oddity"),)
@@ -249,7 +244,7 @@ def test_other_outputs_are_shown_from_above(folder):
 
 
 def test_a_technique_alone(folder):
-    path = folder.write("t.toml", "[[pass]]\nname='a'\nuse='./land'\n[parameters]\nsteep='a.rise'\n")
+    path = folder.write("t.toml", "[[pass]]\nname='a'\nuse='./terrain'\n[parameters]\nsteep='a.rise'\n")
     assert is_technique(path) and not is_technique(folder.write("s.toml", "format = 1\n" + PASS + TAIL))
     assert not is_technique(folder.write("bad.toml", "= 1"))
     found = load(path).with_values({"height.steep": 1.0})
@@ -267,8 +262,8 @@ def test_a_library_file_and_a_lonely_variant_are_sentences(folder):
         load(folder.write("lib.glsl", "float f;\n"))
     with pytest.raises(SketchError, match=r"in place of only\.glsl or only\.toml, which is missing"):
         load(folder.write("only.comp", '#pragma compute(groups = "1, 1")\n'))
-    folder.write("land.comp", '#pragma compute(groups = "1, 1")\nuniform float rise;\n')
-    assert load(folder.path / "land.comp").graph.find("height").technique.variants[0].kind == "compute"
+    folder.write("terrain.comp", '#pragma compute(groups = "1, 1")\nuniform float rise;\n')
+    assert load(folder.path / "terrain.comp").graph.find("height").technique.variants[0].kind == "compute"
 
 
 PLAIN_COMPUTE = """#version 430
@@ -278,8 +273,8 @@ void main() { imageStore(picture, ivec2(gl_GlobalInvocationID.xy), vec4(1.0)); }
 """
 
 
-@pytest.mark.parametrize("name", ["land.comp", "sketch.comp"])
-def test_a_plain_shader_opens_itself_whatever_stands_beside_it(folder, name):
+@pytest.mark.parametrize("name", ["terrain.comp", "sketch.comp"])
+def test_a_plain_shader_opens_itself_whatever_its_name(folder, name):
     folder.sketch('[[pass]]\nname = "height"\nuse = "generation/fbm"\n')
     found = load(folder.write(name, PLAIN_COMPUTE))
     assert found.file.endswith(name) and found.graph.passes[0].technique.kind == "plain_compute"
@@ -321,18 +316,18 @@ P = PASS
         ({"body": "[pass]\nname = 'a'\n"}, "[pass]: expected [[pass]]", 2),
         ({"body": "pass = 3\n"}, "each begun by [[pass]]", 2),
         ({"body": "pass = [1]\n"}, "each begun by [[pass]]", 2),
-        ({"body": "[[pass]]\nuse = './land'\n"}, "name = '': a pass needs a name", 2),
-        ({"body": "[[pass]]\nname = 'a b'\nuse = './land'\n"}, "letters, digits and _", 3),
-        ({"body": "[[pass]]\nname = 'view'\nuse = './land'\n"}, "may not be named 'view'", 3),
+        ({"body": "[[pass]]\nuse = './terrain'\n"}, "name = '': a pass needs a name", 2),
+        ({"body": "[[pass]]\nname = 'a b'\nuse = './terrain'\n"}, "letters, digits and _", 3),
+        ({"body": "[[pass]]\nname = 'view'\nuse = './terrain'\n"}, "may not be named 'view'", 3),
         ({"body": P + P}, "a second pass named 'height'", 6),
         ({"body": "[[pass]]\nname = 'a'\n"}, "pass 'a' needs use", 2),
         ({"body": "[[pass]]\nname = 'a'\nuse = 3\n"}, "use = 3: expected text", 4),
         (
-            {"body": "[[pass]]\nname = 'a'\nuse = './lnad'\n"},
-            "no technique './lnad'; did you mean './land'",
+            {"body": "[[pass]]\nname = 'a'\nuse = './terain'\n"},
+            "no technique './terain'; did you mean './terrain'",
             4,
         ),
-        ({"body": "[[pass]]\nname = 'a'\nuse = './land.glsl'\n"}, "(without '.glsl')", 4),
+        ({"body": "[[pass]]\nname = 'a'\nuse = './terrain.glsl'\n"}, "(without '.glsl')", 4),
         (
             {"body": "[[pass]]\nname = 'a'\nuse = 'generation/heigtmap'\n"},
             "did you mean 'generation/heightmap'",
@@ -347,7 +342,7 @@ P = PASS
         ({"body": P + "set = { rise = 1979-05-27 }\n"}, "expected a number", 5),
         ({"body": P + "[pass.set]\n\nrise = 3\n"}, "outside its range", 7),
         ({"body": P + "set = { a.b.c = 3 }\n"}, "no parameter 'a.b.c'", 5),
-        ({"body": P + "inputs = { height = 'x' }\n"}, "./land has no input 'height'", 5),
+        ({"body": P + "inputs = { height = 'x' }\n"}, "./terrain has no input 'height'", 5),
         ({"body": P + "inputs = 'x'\n"}, "expected a table", 5),
         ({"body": P + "size = 0.5\n"}, "size = 0.5: expected a number, an expression", 5),
         ({"body": P + "size = [1]\n"}, "or [x, y]", 5),
@@ -428,6 +423,33 @@ def test_every_mistake_has_its_line(folder, parts, words, line):
     folder.refused(words, line, **parts)
 
 
+@each(
+    ("parts", "words", "line"),
+    [
+        ({"body": P + '[pass.inputs]\nx = "a"\n"b.c" = 3\n'}, "b.c = 3: expected text", 7),
+        ({"body": P + '[pass.inputs]\nx."c.d" = 3\n'}, "x.c.d = 3: expected text", 6),
+        ({"body": P + '[pass.inputs]\n\n"b.c" = "x"\n'}, "no input 'b.c'", 7),
+        ({"body": P + 'repeat = 2\n[pass.feedback]\n"b.c" = "x"\n'}, "no input 'b.c'", 7),
+        ({"body": P + '[pass.set]\n\na."b.c" = 3\n'}, "no parameter 'a.b.c'", 7),
+        ({"tail": TAIL + '[[shot]]\nname = "a"\n[shot.steps]\n\n"b.c" = 1\n'}, "no repeated pass 'b.c'", 11),
+        ({"tail": TAIL + '[[shot]]\nname = "a"\n[shot.steps]\n\n"b.c" = -1\n'}, "0 or more", 11),
+        (
+            {"tail": TAIL + '[[keyframe]]\ntime = 1\n[keyframe.set]\n\n"size" = 1\n'},
+            "'size' is the terrain's",
+            11,
+        ),
+    ],
+)
+def test_a_key_in_quotes_that_holds_a_dot_has_its_own_line(folder, parts, words, line):
+    folder.refused(words, line, **parts)
+
+
+@each(("key", "line"), [("parameters", 6), ("inputs", 6), ("outputs", 6)])
+def test_a_name_in_quotes_that_a_technique_may_not_export_has_its_own_line(folder, key, line):
+    folder.write("t.toml", f"[[pass]]\nname = 'a'\nuse = './terrain'\n[{key}]\n\n'x.y' = 'a.rise'\n")
+    folder.refused("expected a name of letters", line, file="t.toml", body=PASS.replace("terrain", "t"))
+
+
 def test_a_mistake_in_toml_itself_shows_the_line(folder):
     error = folder.refused("not TOML", 3, head="format = 1\ntitle = 'x'\nsize = 3 4\n")
     assert "size = 3 4" in str(error) and error.diagnostics[0].column == 10
@@ -437,14 +459,14 @@ def test_a_mistake_in_toml_itself_shows_the_line(folder):
         load(folder.path / "s.toml")
 
 
-def test_a_mistake_in_a_kernel_is_told_in_the_kernel(folder):
-    folder.write("land.glsl", LAND.replace("slider(0, 2)", "slidr(0, 2)"))
-    folder.refused("no widget 'slidr'", 3, file="land.glsl")
+def test_a_mistake_in_a_kernel_is_reported_in_the_kernel(folder):
+    folder.write("terrain.glsl", TERRAIN.replace("slider(0, 2)", "slidr(0, 2)"))
+    folder.refused("no widget 'slidr'", 3, file="terrain.glsl")
 
 
-def test_a_mistake_inside_a_technique_is_told_there(folder):
+def test_a_mistake_inside_a_technique_is_reported_there(folder):
     body = "[[pass]]\nname = 'height'\nuse = './t'\n"
-    inner = "[[pass]]\nname = 'a'\nuse = './land'\n"
+    inner = "[[pass]]\nname = 'a'\nuse = './terrain'\n"
     for text, words, line in (
         (inner + "set = { rise = 3 }\n", "outside its range", 4),
         (inner + "[parameters]\nx = 'a.rize'\n", "x: no parameter 'a.rize'; did you mean 'a.rise'", 5),
@@ -468,37 +490,37 @@ def test_a_mistake_inside_a_technique_is_told_there(folder):
 
 def test_an_export_s_targets_have_one_type(folder):
     folder.write(
-        "two.glsl", LAND.replace("uniform float rise = 0.5;  //! slider(0, 2)", "uniform int n = 1; //!")
+        "two.glsl", TERRAIN.replace("uniform float rise = 0.5;  //! slider(0, 2)", "uniform int n = 1; //!")
     )
-    text = "[[pass]]\nname='a'\nuse='./land'\n[[pass]]\nname='b'\nuse='./two'\n"
+    text = "[[pass]]\nname='a'\nuse='./terrain'\n[[pass]]\nname='b'\nuse='./two'\n"
     text += "[parameters]\nx=['a.rise', 'b.n']\n"
     folder.write("t.toml", text.replace("float(texel.x)", "1"))
     folder.refused(
-        "types of their own: a.rise float, b.n int", 8, file="t.toml", body=PASS.replace("land", "t")
+        "types of their own: a.rise float, b.n int", 8, file="t.toml", body=PASS.replace("terrain", "t")
     )
 
 
 def test_two_files_of_one_name_are_refused(folder):
-    folder.write("land.toml", "[[pass]]\nname = 'a'\nuse = './look'\n")
+    folder.write("terrain.toml", "[[pass]]\nname = 'a'\nuse = './look'\n")
     error = folder.refused("is both", 4)
-    assert "land.toml" in str(error) and "land.glsl" in str(error)
+    assert "terrain.toml" in str(error) and "terrain.glsl" in str(error)
 
 
 def test_techniques_that_use_each_other_are_a_circle(folder):
     folder.write("a.toml", "[[pass]]\nname = 'x'\nuse = './b'\n")
     folder.write("b.toml", "[[pass]]\nname = 'x'\nuse = './a'\n")
-    error = folder.refused("use each other in a circle", 3, file="b.toml", body=PASS.replace("land", "a"))
+    error = folder.refused("use each other in a circle", 3, file="b.toml", body=PASS.replace("terrain", "a"))
     assert str(error).count("a.toml") == 2
 
 
 def test_a_few_lines_cannot_nest_millions(folder):
     for i in range(14):
-        inner = f"./t{i + 1}" if i < 13 else "./land"
+        inner = f"./t{i + 1}" if i < 13 else "./terrain"
         folder.write(f"t{i}.toml", "".join(f"[[pass]]\nname = '{n}'\nuse = '{inner}'\n" for n in "abcd"))
-    folder.refused("1000 is the most", None, file="t9.toml", body=PASS.replace("land", "t0"))
+    folder.refused("1000 is the most", None, file="t9.toml", body=PASS.replace("terrain", "t0"))
     for i in range(20):
         folder.write(f"t{i}.toml", f"[[pass]]\nname = 'a'\nuse = './t{i + 1}'\n")
-    folder.refused("nest more than 16 deep", None, file="t15.toml", body=PASS.replace("land", "t0"))
+    folder.refused("nest more than 16 deep", None, file="t15.toml", body=PASS.replace("terrain", "t0"))
 
 
 def test_one_technique_in_two_passes_is_read_once(folder):
@@ -512,8 +534,8 @@ def test_one_technique_in_two_passes_is_read_once(folder):
 @pytest.mark.parametrize(
     "use",
     [
-        "./../land",
-        "../land",
+        "./../terrain",
+        "../terrain",
         "/tmp/land",
         "./",
         ".",
@@ -527,27 +549,27 @@ def test_one_technique_in_two_passes_is_read_once(folder):
     ],
 )
 def test_a_technique_stays_in_the_folder_and_the_library(folder, tmp_path: Path, use):
-    for name in ("land.glsl", "secret.glsl", "mine.glsl", ".glsl"):
-        (tmp_path / name).write_text(LAND)
+    for name in ("terrain.glsl", "secret.glsl", "mine.glsl", ".glsl"):
+        (tmp_path / name).write_text(TERRAIN)
     (folder.path / "link.glsl").symlink_to(tmp_path / "secret.glsl")
     (folder.path / "linked").symlink_to(tmp_path)
     folder.refused("lies outside", 4, body=f'[[pass]]\nname = "height"\nuse = "{use}"\n')
 
 
 def test_a_fast_variant_stays_there_too(folder, tmp_path: Path):
-    (tmp_path / "land.comp").write_text('#pragma compute(groups = "1, 1")\n')
-    (folder.path / "land.comp").symlink_to(tmp_path / "land.comp")
+    (tmp_path / "terrain.comp").write_text('#pragma compute(groups = "1, 1")\n')
+    (folder.path / "terrain.comp").symlink_to(tmp_path / "terrain.comp")
     with pytest.raises(SketchError, match="lies outside"):
         folder.sketch()
 
 
-def test_a_technique_in_a_folder_below_uses_what_is_beside_it(folder):
-    folder.write("below/t.toml", "[[pass]]\nname = 'a'\nuse = './land'\n")
-    folder.write("below/land.glsl", LAND.replace("a slope", "below"))
-    found = folder.sketch(PASS.replace("land", "below/t"))
+def test_a_technique_in_a_folder_below_uses_the_files_there(folder):
+    folder.write("below/t.toml", "[[pass]]\nname = 'a'\nuse = './terrain'\n")
+    folder.write("below/terrain.glsl", TERRAIN.replace("a slope", "below"))
+    found = folder.sketch(PASS.replace("terrain", "below/t"))
     assert found.graph.passes[0].technique.passes[0].technique.title == "Below"
-    folder.write("below/t.toml", "[[pass]]\nname = 'a'\nuse = './../land'\n")
-    assert folder.sketch(PASS.replace("land", "below/t"))
+    folder.write("below/t.toml", "[[pass]]\nname = 'a'\nuse = './../terrain'\n")
+    assert folder.sketch(PASS.replace("terrain", "below/t"))
 
 
 OUTSIDE = [
@@ -569,7 +591,7 @@ def test_a_sketch_s_own_files_stay_in_its_folder(folder, tmp_path: Path, path):
     (tmp_path / "secret.png").write_bytes(b"")
     (folder.path / "link.png").symlink_to(tmp_path / "secret.png")
     (folder.path / "linked").symlink_to(tmp_path)
-    folder.write("land.glsl", IMAGE)
+    folder.write("terrain.glsl", IMAGE)
     folder.refused(
         "lies outside the sketch's own folder and glsl/", 5, body=PASS + f'set = {{ picture = "{path}" }}\n'
     )
@@ -577,11 +599,11 @@ def test_a_sketch_s_own_files_stay_in_its_folder(folder, tmp_path: Path, path):
         tail = TAIL + f'[[{key}]]\nname = "a"\nset = {{ height.picture = "{path}" }}\n'
         folder.refused("lies outside", 9, tail=tail)
     folder.write("t.toml", PASS + f'set = {{ picture = "{path}" }}\n')
-    folder.refused("lies outside", 4, file="t.toml", body=PASS.replace("land", "t"))
-    folder.write("land.glsl", IMAGE.replace('file("")', f'file("{path}")'))
-    folder.refused("lies outside", 2, file="land.glsl")
+    folder.refused("lies outside", 4, file="t.toml", body=PASS.replace("terrain", "t"))
+    folder.write("terrain.glsl", IMAGE.replace('file("")', f'file("{path}")'))
+    folder.refused("lies outside", 2, file="terrain.glsl")
     with pytest.raises(PlaygroundError, match="lies outside"):
-        load(folder.path / "land.glsl")
+        load(folder.path / "terrain.glsl")
 
 
 @pytest.mark.parametrize(
@@ -589,14 +611,14 @@ def test_a_sketch_s_own_files_stay_in_its_folder(folder, tmp_path: Path, path):
 )
 def test_files_inside_may_be_named_whether_or_not_they_are_there(folder, path):
     folder.write("a.png", "")
-    folder.write("land.glsl", IMAGE)
+    folder.write("terrain.glsl", IMAGE)
     assert folder.sketch(PASS + f'set = {{ picture = "{path}" }}\n').graph.passes[0].values == (
         ("picture", path),
     )
 
 
 def test_what_the_user_types_may_lie_anywhere(folder, tmp_path: Path):
-    folder.write("land.glsl", IMAGE)
+    folder.write("terrain.glsl", IMAGE)
     found = folder.sketch()
     for path in (str(tmp_path / "secret.png"), tmp_path / "secret.png"):
         assert dict(found.with_values({"height.picture": path}).overrides) == {"height.picture": str(path)}
@@ -606,9 +628,9 @@ def test_what_the_user_types_may_lie_anywhere(folder, tmp_path: Path):
 
 
 def test_mutated_sketches_raise_nothing_but_sentences(folder):
-    chance = random.Random(7)
-    folder.write("t.toml", "[[pass]]\nname = 'a'\nuse = './land'\n[parameters]\nsteep = 'a.rise'\n")
-    folder.write("back.glsl", LAND + "uniform sampler2D before; //! input\n")
+    rng = random.Random(7)
+    folder.write("t.toml", "[[pass]]\nname = 'a'\nuse = './terrain'\n[parameters]\nsteep = 'a.rise'\n")
+    folder.write("back.glsl", TERRAIN + "uniform sampler2D before; //! input\n")
     valid = """\
 format = 1
 title = "x"
@@ -667,17 +689,17 @@ preset = "p"
     loaded = 0
     for _ in range(2500):
         text = valid
-        for _ in range(chance.randint(1, 3)):
-            at = chance.randrange(len(text))
-            match chance.randrange(3):
+        for _ in range(rng.randint(1, 3)):
+            at = rng.randrange(len(text))
+            match rng.randrange(3):
                 case 0:
-                    text = text[:at] + text[at + chance.randint(1, 12) :]
+                    text = text[:at] + text[at + rng.randint(1, 12) :]
                 case 1:
-                    text = text[:at] + chance.choice(words) + text[at:]
+                    text = text[:at] + rng.choice(words) + text[at:]
                 case _:
                     lines = text.split("\n")
-                    chance.shuffle(lines) if chance.random() < 0.1 else lines.insert(
-                        chance.randrange(len(lines)), chance.choice(lines)
+                    rng.shuffle(lines) if rng.random() < 0.1 else lines.insert(
+                        rng.randrange(len(lines)), rng.choice(lines)
                     )
                     text = "\n".join(lines)
         path.write_text(text)
@@ -695,13 +717,13 @@ preset = "p"
         "",
         "a." * 3000 + "b = 1",
         "format = 1\nset." + "a." * 3000 + "b = 1",
-        "format = 1\n[[pass]]\nname='a'\nuse='./land'\nset." + "a." * 3000 + "b = 1\n",
-        "format = 1\n[[pass]]\nname='a'\nuse='./land'\ninputs." + "a." * 3000 + "b = 1\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./terrain'\nset." + "a." * 3000 + "b = 1\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./terrain'\ninputs." + "a." * 3000 + "b = 1\n",
         "format = 1\n[[pass]]\nname='a'\nuse='./" + "a" * 100_000 + "'\n",
         "format = 1\n[[pass]]\nname='a'\nuse='./" + "a/" * 10_000 + "b'\n",
-        "format = 1\n[[pass]]\nname='a'\nuse='./land'\nsize='" + "(" * 100_000 + "'\n",
-        "format = 1\n[[pass]]\nname='a'\nuse='./land'\nsize=" + "9" * 4000 + "\n",
-        "format = 1\n[[pass]]\nname='a'\nuse='./land'\nset = { rise = " + "9" * 4000 + " }\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./terrain'\nsize='" + "(" * 100_000 + "'\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./terrain'\nsize=" + "9" * 4000 + "\n",
+        "format = 1\n[[pass]]\nname='a'\nuse='./terrain'\nset = { rise = " + "9" * 4000 + " }\n",
     ],
     ids=range(10),
 )

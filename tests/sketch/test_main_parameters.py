@@ -1,4 +1,4 @@
-"""The parameters that a sketch is about: read, checked, kept when it is saved and when a technique goes."""
+"""The parameters that a sketch is about: read, checked, saved, and replaced with a technique."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_a_sketch_lists_its_main_parameters(folder):
     [
         ('["height.rize"]', "did you mean 'height.rise'"),
         ('["relief"]', "no parameter 'relief'"),
-        ('["height.rise", "height.rise"]', "'height.rise' stands twice"),
+        ('["height.rise", "height.rise"]', "'height.rise' appears twice"),
         ('"height.rise"', "expected a list"),
         ("[1]", "expected paths of parameters"),
     ],
@@ -38,11 +38,11 @@ def test_a_wrong_one_is_refused_at_its_line(folder, main, words):
 
 
 def test_a_technique_does_not_take_the_key(folder):
-    folder.write("two.toml", 'main = ["a.rise"]\n[[pass]]\nname = "a"\nuse = "./land"\n')
+    folder.write("two.toml", 'main = ["a.rise"]\n[[pass]]\nname = "a"\nuse = "./terrain"\n')
     folder.refused("no key 'main' here", 1, "two.toml", body='[[pass]]\nname = "height"\nuse = "./two"\n')
 
 
-def test_it_is_kept_when_a_value_is_saved(folder):
+def test_it_stays_when_a_value_is_saved(folder):
     file = folder.sketch(head=HEAD)
     save(file, file.with_values({"height.rise": 1.5}))
     assert load(file.file).main == ("height.rise",)
@@ -59,7 +59,7 @@ def test_one_that_a_new_technique_lacks_goes_with_the_old_technique(folder):
 
 
 def test_of_a_technique_opened_alone_all_its_own_are_main(folder):
-    assert load(folder.path / "land.glsl").main == ("height.rise",)
+    assert load(folder.path / "terrain.glsl").main == ("height.rise",)
 
 
 @each("name", sorted(shipped_sketches()))

@@ -63,13 +63,13 @@ def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alon
     assert {place for place in spans.pairs if place in found} == set(found), "tomllib sees the same values"
     for place, value in found.items():
         pair = spans.pairs[place]
-        said = text[pair.value : pair.end]
-        assert tomllib.loads(f"x = {said}")["x"] == value
+        written = text[pair.value : pair.end]
+        assert tomllib.loads(f"x = {written}")["x"] == value
     for place in some(found, every):
         pair = spans.pairs[place]
-        said = text[pair.value : pair.end]
+        written = text[pair.value : pair.end]
         table, key = place[:-1], str(place[-1])
-        assert put(text, table, key, said) == text
+        assert put(text, table, key, written) == text
         changed = put(text, table, key, "[7, 8]")
         assert changed == text[: pair.value] + "[7, 8]" + text[pair.end :]
         assert dict(leaves(tomllib.loads(changed))) == {**found, place: [7, 8]}
@@ -83,15 +83,15 @@ def test_any_value_of_any_shipped_file_can_be_added_and_taken_out(path: Path, ev
     for table in some({place[:-1] for place in found}, every):
         more = put(text, table, "new-one", "3")
         assert dict(leaves(tomllib.loads(more))) == {**found, (*table, "new-one"): 3}
-        kept = drop(more, table, "new-one")
-        assert kept == text, "and then every byte is as it was"
+        left = drop(more, table, "new-one")
+        assert left == text, "and then every byte is as it was"
     for place in some(found, every):
         less = dict(leaves(tomllib.loads(drop(text, place[:-1], str(place[-1])))))
         others = {p: v for p, v in found.items() if p != place}
         assert {p: v for p, v in less.items() if v != {}} == others
 
 
-KERNEL = """// land.glsl -- level land
+KERNEL = """// terrain.glsl -- level terrain
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1)
 uniform int count = 3; //! slider(0, 9)
@@ -103,14 +103,14 @@ uniform vec4 many = vec4(0.0);
 uniform sampler2D image; //! file()
 float kernel(ivec2 texel) { return level; }
 """
-BARE = KERNEL.replace("land", "bare").replace("uniform int count = 3; //! slider(0, 9)\n", "")
+BARE = KERNEL.replace("terrain", "bare").replace("uniform int count = 3; //! slider(0, 9)\n", "")
 SKETCH = """# A sketch   of ours.
 format = 1
   relief   =   200   # metres
 
 [[pass]]
-name = "height"   # the land
-use = "./land"
+name = "height"   # the terrain
+use = "./terrain"
 set = { level = 0.25, count=4 }   # by eye
 
 [view]
@@ -123,7 +123,7 @@ inputs = { shown = "height" }
 def folder(tmp_path: Path) -> Path:
     made = tmp_path / "own"
     made.mkdir()
-    for name, text in {"land.glsl": KERNEL, "bare.glsl": BARE, "sketch.toml": SKETCH}.items():
+    for name, text in {"terrain.glsl": KERNEL, "bare.glsl": BARE, "sketch.toml": SKETCH}.items():
         (made / name).write_bytes(text.encode())
     return made
 
@@ -178,7 +178,7 @@ def test_values_are_saved_however_the_file_is_written(
     for path, (_, written) in VALUES.items():
         assert f"{path.removeprefix('height.')} = {written}" in after.replace("count=", "count = ")
     assert after.startswith(mark) and after.count("\n") == after.count(newline)
-    for comment in ("# A sketch   of ours.", "  relief   =   200   # metres", "# the land"):
+    for comment in ("# A sketch   of ours.", "  relief   =   200   # metres", "# the terrain"):
         assert comment in after
     assert all(
         line in after
@@ -224,24 +224,43 @@ def test_a_sketch_without_a_view_gets_the_one_it_has(folder: Path) -> None:
 def test_a_technique_is_saved_without_what_it_has_no_place_for(folder: Path) -> None:
     sketch = load(folder)
     wanted = with_technique(sketch, "height", "./bare")
-    assert saved(folder, wanted) == SKETCH.replace("./land", "./bare").replace(", count=4", "")
+    assert saved(folder, wanted) == SKETCH.replace("./terrain", "./bare").replace(", count=4", "")
 
 
 def test_a_value_set_inside_is_written_over_where_the_file_has_another_name_for_it(folder: Path) -> None:
     (folder / "both.toml").write_text(
-        '[[pass]]\nname = "inner"\nuse = "./land"\n[parameters]\nhigh = "inner.level"\n', encoding="utf-8"
+        '[[pass]]\nname = "inner"\nuse = "./terrain"\n[parameters]\nhigh = "inner.level"\n', encoding="utf-8"
     )
-    text = SKETCH.replace("./land", "./both").replace("level = 0.25, count=4", "high = 0.25")
+    text = SKETCH.replace("./terrain", "./both").replace("level = 0.25, count=4", "high = 0.25")
     wanted = rewritten(folder, text).with_values({"height.inner.level": 0.75, "height.inner.count": 8})
     assert saved(folder, wanted) == text.replace("high = 0.25", 'high = 0.75, "inner.count" = 8')
 
 
-def test_a_file_from_elsewhere_is_copied_beside_the_sketch(folder: Path, tmp_path: Path) -> None:
+def test_a_file_from_elsewhere_is_copied_into_the_folder(folder: Path, tmp_path: Path) -> None:
     image = tmp_path / "else where.png"
     write_png(image, np.zeros((2, 2, 4), np.uint8))
     save(load(folder), load(folder).with_values({"height.image": str(image)}))
     assert values_of(load(folder))["height.image"] == "else where.png"
     assert (folder / "else where.png").read_bytes() == image.read_bytes()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="files have no limit there")
+def test_a_file_from_elsewhere_that_cannot_be_copied_whole_is_not_there_at_all(
+    folder: Path, tmp_path: Path
+) -> None:
+    import resource
+
+    image = tmp_path / "large.png"
+    image.write_bytes(bytes(2**20))
+    sketch = load(folder)
+    before, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2**19, hard))  # as a disk that is full halfway
+    try:
+        with pytest.raises(DataError, match="cannot be copied into the folder of the sketch"):
+            save(sketch, sketch.with_values({"height.image": str(image)}))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (before, hard))
+    assert {path.name for path in folder.iterdir()} == {"bare.glsl", "terrain.glsl", "sketch.toml"}
 
 
 def test_presets_are_saved_and_saved_over(folder: Path) -> None:
@@ -343,7 +362,7 @@ def test_a_file_that_may_not_be_written_is_left_for_a_copy(folder: Path, tmp_pat
 
 
 def test_a_shader_opened_alone_has_nothing_to_save_into(folder: Path) -> None:
-    sketch = load(folder / "land.glsl")
+    sketch = load(folder / "terrain.glsl")
     with pytest.raises(ReadOnlySketch, match="no sketch file"):
         save(sketch, sketch.with_camera(Camera(azimuth=5.0)))
 
@@ -353,7 +372,7 @@ def test_a_copy_that_fails_leaves_nothing(folder: Path, tmp_path: Path) -> None:
     (tmp_path / "file").write_text("", encoding="utf-8")
     with pytest.raises(DataError):
         save_copy(sketch, sketch, tmp_path / "file")
-    (folder / "land.glsl").write_text("broken", encoding="utf-8")
+    (folder / "terrain.glsl").write_text("broken", encoding="utf-8")
     with pytest.raises(SketchError):
         save_copy(sketch, sketch.with_values({"height.level": 0.75}), tmp_path)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["file", "own"]

@@ -121,14 +121,14 @@ def test_any_change_is_what_it_says_and_leaves_the_rest_alone(file: Path, seed: 
     for _ in range(6):
         known = list(load(file).keyframes)
         for keyframe in known[:]:
-            chance = rng.random()
-            if chance < 0.2:
+            share = rng.random()
+            if share < 0.2:
                 known.remove(keyframe)
-            elif chance < 0.5:
+            elif share < 0.5:
                 known[known.index(keyframe)] = replace(keyframe, time=round(rng.random() * 20, 2))
-            elif chance < 0.7:
+            elif share < 0.7:
                 known[known.index(keyframe)] = replace(keyframe, ease=rng.choice(["hold", "linear"]))
-            elif chance < 0.8 and keyframe.values:
+            elif share < 0.8 and keyframe.values:
                 known[known.index(keyframe)] = replace(keyframe, values=(("light.gain", rng.random()),))
         if rng.random() < 0.6:
             known.append(Keyframe(30 + round(rng.random() * 20, 2), (("elevation", 20.0 + rng.random()),)))

@@ -1,4 +1,4 @@
-"""A default that something sets over is told with what sets it, and where."""
+"""A default that has no effect is reported with what sets the parameter, and where."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ size = 9
 
 [[pass]]
 name = "first"
-use = "./land"
+use = "./terrain"
 
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 set = { rise = 5, kind = "sharp" }
 
 [[pass]]
@@ -38,48 +38,48 @@ two.free = 7
 """
 BOTH = """[[pass]]
 name = "one"
-use = "./land"
+use = "./terrain"
 
 [[pass]]
 name = "two"
-use = "./land"
+use = "./terrain"
 set = { rise = 3 }
 """
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    (tmp_path / "land.glsl").write_text(KERNEL)
+    (tmp_path / "terrain.glsl").write_text(KERNEL)
     (tmp_path / "both.toml").write_text(BOTH)
     (tmp_path / "sketch.toml").write_text(SKETCH)
     return tmp_path
 
 
-def said(found) -> list[str]:
+def listed(found) -> list[str]:
     return [f"{one.path} {one.by.rpartition('/')[2]} {str(one).partition(': ')[2]}" for one in found]
 
 
 def edited(folder: Path, before: str, after: str):
     old = load(folder)
-    text = (folder / "land.glsl").read_text()
-    (folder / "land.glsl").write_text(text.replace(before, after))
+    text = (folder / "terrain.glsl").read_text()
+    (folder / "terrain.glsl").write_text(text.replace(before, after))
     return old, load(folder)
 
 
 def test_each_default_that_a_file_sets_over_names_its_line(folder):
     sketch = load(folder)
     place = folder.as_posix()
-    assert said(shadowed_by_files(sketch)) == [
+    assert listed(shadowed_by_files(sketch)) == [
         f"height.rise sketch.toml:11 the default is 2; {place}/sketch.toml:11 sets 5",
         f"height.kind sketch.toml:11 the default is round; {place}/sketch.toml:11 sets sharp",
         f"nested.two.rise both.toml:8 the default is 2; {place}/both.toml:8 sets 3",
         f"nested.two.free sketch.toml:18 the default is 1; {place}/sketch.toml:18 sets 7",
     ]
     warning = shadowed_by_files(sketch)[0].warning
-    assert (Path(warning.file).name, warning.line, warning.severity) == ("land.glsl", 2, "warning")
+    assert (Path(warning.file).name, warning.line, warning.severity) == ("terrain.glsl", 2, "warning")
 
 
-def test_what_is_set_by_hand_or_ships_or_sets_the_very_default_needs_no_word(folder):
+def test_what_is_set_by_users_or_ships_or_sets_the_very_default_needs_no_word(folder):
     sketch = load(folder).with_values({"height.rise": 1.0, "nested.two.free": 2.0})
     assert [one.path for one in shadowed_by_files(sketch)] == ["height.kind", "nested.two.rise"]
     assert shadowed_by_files(load("jacksboro")) == []
@@ -87,13 +87,13 @@ def test_what_is_set_by_hand_or_ships_or_sets_the_very_default_needs_no_word(fol
     assert "height.rise" not in [one.path for one in shadowed_by_files(now)]
 
 
-def test_an_edit_of_a_default_is_told_where_it_shows_nothing(folder):
+def test_an_edit_of_a_default_is_reported_where_it_has_no_effect(folder):
     old, now = edited(folder, "rise = 2.0", "rise = 9.0")
     assert [one.path for one in newly_shadowed(old, now)] == ["height.rise", "nested.two.rise"]
     assert str(newly_shadowed(old, now)[0]).endswith("the default is 9; " + f"{folder}/sketch.toml:11 sets 5")
     assert newly_shadowed(now, now) == []
-    by_hand = now.with_values({"first.rise": 4.0, "height.rise": 1.0})
-    assert [(one.path, one.by.rpartition("/")[2], one.value) for one in newly_shadowed(old, by_hand)] == [
+    by_user = now.with_values({"first.rise": 4.0, "height.rise": 1.0})
+    assert [(one.path, one.by.rpartition("/")[2], one.value) for one in newly_shadowed(old, by_user)] == [
         ("first.rise", "the panel", 4.0),
         ("height.rise", "the panel", 1.0),
         ("nested.two.rise", "both.toml:8", 3.0),
@@ -102,6 +102,6 @@ def test_an_edit_of_a_default_is_told_where_it_shows_nothing(folder):
     assert newly_shadowed(old, moving)[0].by.endswith("sketch.toml:20")
 
 
-def test_where_the_new_default_is_what_stands_there_nothing_is_hidden(folder):
+def test_where_the_new_default_is_the_value_set_nothing_is_hidden(folder):
     old, now = edited(folder, "rise = 2.0", "rise = 5.0")
     assert [one.path for one in newly_shadowed(old, now)] == ["nested.two.rise"]

@@ -1,4 +1,4 @@
-"""Parameters that several kernels share: declared once in an included file, read as if they stood there."""
+"""Parameters that several kernels share: declared once in an included file."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from playground.errors import ShaderError
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Kernel
 from playground.sketch.source import read_source
-from playground.sketch.unused_parameters import unread
+from playground.sketch.warnings import unread
 
 PRAGMA = '#pragma kernel(output = "height:r32f")\n'
 SUN = """#ifndef SUN
@@ -64,7 +64,7 @@ def test_an_included_parameter_has_its_annotation_and_its_own_place(folder: Fold
     assert (Path(gain.file).name, gain.line) == ("sun.glsl", 3)
 
 
-def test_the_panel_has_them_where_the_include_stands(folder: Folder) -> None:
+def test_the_panel_has_them_where_the_include_is(folder: Folder) -> None:
     text = f'{PRAGMA}uniform float first;\n#include "sun.glsl"\nuniform float last;\n'
     assert [p.name for p in folder.kernel(text).parameters] == ["first", "gain", "steps", "last"]
 
@@ -87,7 +87,7 @@ def test_a_file_that_comes_twice_gives_its_parameters_once(folder: Folder) -> No
         ('#include "sun.glsl"\nuniform float gain = 1.0;\n', ("kernel.glsl", 3, ())),
     ],
 )
-def test_a_kernel_that_declares_it_again_is_told_where_both_stand(
+def test_a_kernel_that_declares_it_again_is_reported_with_both_places(
     folder: Folder, own: str, place: tuple[str, int, tuple[str, ...]]
 ) -> None:
     message, *found = folder.refused(PRAGMA + own)
@@ -96,7 +96,7 @@ def test_a_kernel_that_declares_it_again_is_told_where_both_stand(
     assert message.startswith("'gain' is declared twice: first at ") and message.endswith(first)
 
 
-def test_one_that_differs_stands_in_the_kernel_and_the_rest_is_included(folder: Folder) -> None:
+def test_one_that_differs_is_in_the_kernel_and_the_rest_is_included(folder: Folder) -> None:
     folder.write(steps="uniform int steps = 4;\n")
     text = f'{PRAGMA}uniform float gain = 1.0;  //! label("Brightness")\n#include "steps.glsl"\n'
     gain, steps = folder.kernel(text).parameters
@@ -109,11 +109,11 @@ def test_one_that_differs_stands_in_the_kernel_and_the_rest_is_included(folder: 
         ("\nuniform float a = 1.0;  //! slidr(0, 1)\n", 2, "no widget 'slidr'"),
         ("\nuniform float a = 1.0;  //! slider(1, 0)\n", 2, "slider of 'a'"),
         ('uniform float a;  //! slider(0, 1)\n  //! unit("m")\n//! grup("Sun") Words\n', 3, "'group'"),
-        ("uniform float a;  //! step(1)\n//! step(2)\n", 2, "'step' stands twice"),
+        ("uniform float a;  //! step(1)\n//! step(2)\n", 2, "'step' appears twice"),
         ("uniform float a;  //! step(1)\n//! slider(0,\n", 2, "'slider(' is not closed"),
     ],
 )
-def test_a_mistake_in_an_included_annotation_is_told_at_its_line(
+def test_a_mistake_in_an_included_annotation_is_reported_at_its_line(
     folder: Folder, text: str, line: int, words: str
 ) -> None:
     folder.write(shared=text)
@@ -122,7 +122,7 @@ def test_a_mistake_in_an_included_annotation_is_told_at_its_line(
     assert place == ["shared.glsl", line, ("kernel.glsl:3",)]
 
 
-def test_what_no_code_reads_is_told_at_its_declaration(folder: Folder) -> None:
+def test_what_no_code_reads_is_reported_at_its_declaration(folder: Folder) -> None:
     found = unread(folder.kernel(f'{PRAGMA}#include "sun.glsl"\nfloat kernel(ivec2 t) {{ return gain; }}\n'))
     assert [(Path(d.file).name, d.line, d.message) for d in found] == [
         ("sun.glsl", 5, "nothing reads 'steps', so it has no effect")
@@ -165,7 +165,7 @@ def test_where_names_expressions_of_the_pragma(folder: Folder) -> None:
     assert found.repeat == "2 * ((size.x // 2) + steps)"
 
 
-def test_where_reaches_groups_and_the_counts_of_buffers_not_their_names(folder: Folder) -> None:
+def test_where_applies_to_groups_and_the_counts_of_buffers_not_their_names(folder: Folder) -> None:
     found = folder.kernel(
         '#pragma compute(where = "row = size.x + 1; float = 2", groups = "row, 1", \\\n'
         '                buffers = "row:float:row * size.y * float")\n'

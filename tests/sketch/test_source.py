@@ -109,16 +109,16 @@ def stripped(text: str) -> str:
 
 
 def test_comments_are_blanked_as_by_a_pattern_over_the_whole_text(write):
-    chance = random.Random(1)
+    rng = random.Random(1)
     for _ in range(500):
         pieces = ["//", "/*", "*/", "\n", "a", " ", "x y", '"q//"', "//!", "/", "*", "\t"]
-        text = "".join(chance.choice(pieces) for _ in range(30))
+        text = "".join(rng.choice(pieces) for _ in range(30))
         found = read(write("main.glsl", text))
         wanted = [line.replace("\t", " ").rstrip() for line in stripped(text).split("\n")]
         assert [line.code.replace("\t", " ") for line in found.lines] == wanted, repr(text)
 
 
-def test_what_stands_in_a_comment_is_not_read(write):
+def test_what_is_in_a_comment_is_not_read(write):
     text = """\
     // #include "nothing.glsl"
     /* #include "nothing.glsl"
@@ -170,7 +170,7 @@ def test_a_diamond_is_read_twice_and_listed_once(write):
     assert chains[0] != chains[1]
 
 
-def test_cycles_are_told_whole(write):
+def test_cycles_are_reported_whole(write):
     write("a.glsl", '\n#include "b.glsl"\n')
     write("b.glsl", '#include "a.glsl"\n')
     path = write("main.glsl", '#include "a.glsl"\n')
@@ -300,7 +300,7 @@ def test_reading_imports_no_opengl():
 
 
 def test_any_bytes_are_read_or_refused(write):
-    chance = random.Random(6)
+    rng = random.Random(6)
     write("lib.glsl", "x\n")
     for _ in range(1500):
         pieces = [
@@ -317,7 +317,7 @@ def test_any_bytes_are_read_or_refused(write):
             b"\0",
             b"#pragma kernel(",
         ]
-        text = b"".join(chance.choice(pieces) for _ in range(chance.randint(0, 25)))
+        text = b"".join(rng.choice(pieces) for _ in range(rng.randint(0, 25)))
         try:
             found = read(write("main.glsl", text))
         except PlaygroundError as error:

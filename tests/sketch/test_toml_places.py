@@ -122,12 +122,12 @@ def test_what_is_not_toml_gives_what_there_is(text):
 
 
 def test_any_text_ends_soon_and_raises_nothing():
-    chance = random.Random(2)
+    rng = random.Random(2)
     for _ in range(3000):
         letters = list(TEXT)
-        for _ in range(chance.randint(1, 12)):
-            at = chance.randrange(len(letters))
-            letters[at : at + chance.randint(0, 3)] = chance.choice(
+        for _ in range(rng.randint(1, 12)):
+            at = rng.randrange(len(letters))
+            letters[at : at + rng.randint(0, 3)] = rng.choice(
                 ["", "[", '"', "'''", "{", "=", "\n", "\\", "}"]
             )
         TomlPlaces("".join(letters))

@@ -128,28 +128,23 @@ def test_what_is_refused_in_one_sentence(parameter, given, words):
 
 
 @each("parameter", [SLIDER, WHOLE, SEED, PAIR, SUN, TINT, GLASS, MENU, FLAG, FILE, POINT])
-def test_what_is_expected_is_said(parameter):
+def test_every_parameter_says_what_it_expects(parameter):
     assert expected(parameter)
 
 
 def test_writing_and_reading_gives_the_value_back():
-    chance = random.Random(3)
+    rng = random.Random(3)
     for _ in range(500):
-        number = chance.choice(
-            [chance.random(), chance.random() * 10 ** chance.randint(-9, 0), 1 / 3, 0.0, 1.0]
-        )
+        number = rng.choice([rng.random(), rng.random() * 10 ** rng.randint(-9, 0), 1 / 3, 0.0, 1.0])
         assert coerce(SLIDER, write(SLIDER, number)) == number
-        assert (
-            coerce(SEED, write(SEED, whole := chance.choice([0, 7, 2**32 - 1, chance.getrandbits(32)])))
-            == whole
-        )
-        pair = (chance.randint(-(2**31), 2**31 - 1), chance.randint(-9, 9))
+        assert coerce(SEED, write(SEED, whole := rng.choice([0, 7, 2**32 - 1, rng.getrandbits(32)]))) == whole
+        pair = (rng.randint(-(2**31), 2**31 - 1), rng.randint(-9, 9))
         assert coerce(PAIR, write(PAIR, pair)) == pair
-        sun = (chance.uniform(-720, 720), chance.uniform(-90, 90))
+        sun = (rng.uniform(-720, 720), rng.uniform(-90, 90))
         assert coerce(SUN, write(SUN, sun)) == sun
-        tint = tuple(chance.uniform(0, 2) for _ in range(3))
+        tint = tuple(rng.uniform(0, 2) for _ in range(3))
         assert coerce(TINT, write(TINT, tint)) == pytest.approx(tint, abs=1e-7)
-        hexadecimal = f"#{chance.getrandbits(24):06x}"
+        hexadecimal = f"#{rng.getrandbits(24):06x}"
         assert write(TINT, coerce(TINT, hexadecimal)) == hexadecimal
     for value in (True, False):
         assert coerce(FLAG, write(FLAG, value)) is value
@@ -158,7 +153,7 @@ def test_writing_and_reading_gives_the_value_back():
     assert write(SLIDER, 0.1) == "0.1"
 
 
-def test_values_are_spelt_short_whatever_they_are():
+def test_values_are_spelt_short():
     deep: list[object] = []
     for _ in range(100):
         deep = [deep]

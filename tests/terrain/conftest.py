@@ -1,4 +1,4 @@
-"""What the tests of land share: where a latitude and a longitude are in space."""
+"""What the tests of terrain share: where a latitude and a longitude are in space."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where known points of the land are in the picture, by slow trigonometry of its own."""
+"""Where known points of the terrain are in the picture, by slow trigonometry of its own."""
 
 from __future__ import annotations
 
@@ -70,9 +70,9 @@ def test_the_eye_stands_where_its_azimuth_says(azimuth, right, up):
 
 @each("size", [(1280, 720), (640, 640), (360, 720), (2000, 400), (300, 1500)])
 @each("elevation", [-40.0, 0.0, 10.0, 32.0, 60.0, 89.0])
-@each("land", [((12_000.0, 8_000.0), 1_500.0), ((1_000.0, 9_000.0), 100.0), ((500.0, 500.0), 3_000.0)])
-def test_all_of_the_land_is_in_the_picture_and_fills_it(size, elevation, land):
-    (east, north), relief = land
+@each("heightmap", [((12_000.0, 8_000.0), 1_500.0), ((1_000.0, 9_000.0), 100.0), ((500.0, 500.0), 3_000.0)])
+def test_all_of_the_terrain_is_in_the_picture_and_fills_it(size, elevation, heightmap):
+    (east, north), relief = heightmap
     corners = [(x, y, z) for x in (0, east) for y in (0, north) for z in (0, relief)]
     reach = []
     for azimuth in range(0, 360, 15):
@@ -95,7 +95,7 @@ def test_near_things_hide_far_ones():
     assert -1.0 < near < far < 1.0
 
 
-def test_the_inverse_takes_the_picture_back_to_the_land():
+def test_the_inverse_takes_the_picture_back_to_the_terrain():
     eye = look(Camera(77.0, 25.0), EXTENT, RELIEF, WIDE)
     product = eye.world_from_clip.astype(np.float64) @ eye.clip_from_world.astype(np.float64)
     np.testing.assert_allclose(product, np.eye(4), atol=2e-3)
@@ -149,7 +149,7 @@ def test_zoom_keeps_the_target_and_its_limits():
     assert zoom(camera, 1e9, 1e6).distance == 1e8
 
 
-def test_a_flat_and_a_tiny_land_have_eyes_too():
+def test_a_flat_and_a_tiny_terrain_have_eyes_too():
     for extent, relief in (((1.0, 1.0), 0.0), ((1e-3, 1e-3), 1e-4), ((1e7, 1e7), 9_000.0)):
         eye = look(Camera(), extent, relief, WIDE)
         assert np.isfinite(eye.clip_from_world).all()

@@ -29,7 +29,7 @@ WAYS = [Rules(), Rules(random_weights=True, seed=1), Rules(random_weights=True, 
 def sets(triangles):
     """Return triangles as a set of sets of points."""
     found = {frozenset(t) for t in np.asarray(triangles).tolist()}
-    assert len(found) == len(triangles), "no triangle stands twice"
+    assert len(found) == len(triangles), "no triangle occurs twice"
     return found
 
 
@@ -128,7 +128,7 @@ def test_ties_are_left_alike_by_both_methods(monkeypatch):
     points, ties = 9, 0
     for seed in range(20):
         made = [
-            triangulate.__wrapped__(Rules(points=points, seed=seed, by_flips=by_flips))  # not kept
+            triangulate.__wrapped__(Rules(points=points, seed=seed, by_flips=by_flips))  # not cached
             for by_flips in (False, True)
         ]
         np.testing.assert_array_equal(made[0].triangles, made[1].triangles)
@@ -145,7 +145,7 @@ def test_ties_are_left_alike_by_both_methods(monkeypatch):
 
 @pytest.mark.parametrize("rules", WAYS, ids=["equal", "random", "wide"])
 @pytest.mark.parametrize("points", [0, 1, 60, 2000])
-def test_areas_sum_to_the_land_and_none_is_turned(rules, points):
+def test_areas_sum_to_the_terrain_and_none_is_turned(rules, points):
     made = triangulate(replace(rules, points=points))
     areas = twice_areas(made)
     assert len(areas) == 2 * points + 2

@@ -27,7 +27,7 @@ def test_gaps_are_refused_with_their_number_and_place():
 
 
 @pytest.mark.parametrize("mode", ["refuse", "fill"])
-def test_land_without_gaps_is_left_alone(mode):
+def test_terrain_without_gaps_is_left_alone(mode):
     whole = Elevation(plane(9), "hill")
     assert fill_no_data(whole, mode) is whole
 
@@ -48,23 +48,23 @@ def test_a_hole_in_a_plane_is_filled_by_the_plane(n):
 def test_a_fill_is_smooth_within_range_and_the_same_each_time():
     y, x = np.mgrid[:129, :200] / 60.0
     heights = (100 * np.sin(3 * x) * np.cos(2 * y)).astype(np.float32)
-    land = heights.copy()
-    land[:40, :50] = land[60:90, 100:160] = np.nan
-    land[RNG.random(land.shape) < 0.2] = np.nan
-    one, two = (fill_no_data(Elevation(land, "hill"), "fill").heights for _ in range(2))
+    heightmap = heights.copy()
+    heightmap[:40, :50] = heightmap[60:90, 100:160] = np.nan
+    heightmap[RNG.random(heightmap.shape) < 0.2] = np.nan
+    one, two = (fill_no_data(Elevation(heightmap, "hill"), "fill").heights for _ in range(2))
     np.testing.assert_array_equal(one, two)
-    assert np.nanmin(land) <= one.min() and one.max() <= np.nanmax(land)
+    assert np.nanmin(heightmap) <= one.min() and one.max() <= np.nanmax(heightmap)
     steepest = np.abs(np.diff(heights, axis=1)).max()
     assert np.abs(np.diff(one, axis=1)).max() < 3 * steepest
 
 
-def test_one_known_texel_fills_the_land():
+def test_one_known_texel_fills_the_terrain():
     heights = np.full((37, 21), np.nan, np.float32)
     heights[30, 2] = 7.25
     assert (fill_no_data(Elevation(heights, "hill"), "fill").heights == np.float32(7.25)).all()
 
 
-def test_a_fill_keeps_the_symmetry_of_the_land():
+def test_a_fill_keeps_the_symmetry_of_the_terrain():
     heights = plane(65)
     heights[20:45, 20:45] = np.nan
     a = fill_no_data(Elevation(heights, "a"), "fill").heights

@@ -1,4 +1,4 @@
-"""Tiles and their levels: whole meshes at any levels, errors as small as asked, all that is seen drawn."""
+"""Tiles and their levels: whole meshes at any level, errors within the tolerance, visible tiles drawn."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from playground.sketch.model import Camera
-from playground.terrain import lod, tiles
-from playground.terrain import visibility as sight
+from playground.terrain import lod, tiles, visibility
 from playground.terrain.camera import look
 
 from ..cases import each
@@ -18,9 +17,9 @@ from ..cases import each
 EXTENT, RELIEF, SIZE = (1000.0, 800.0), 300.0, (640, 360)
 
 
-def view_of(camera: Camera, size: tuple[int, int] = SIZE) -> sight.View:
+def view_of(camera: Camera, size: tuple[int, int] = SIZE) -> visibility.View:
     eye = look(camera, EXTENT, RELIEF, size)
-    return sight.View(eye.clip_from_world.astype(np.float64), eye.position, EXTENT, RELIEF, size)
+    return visibility.View(eye.clip_from_world.astype(np.float64), eye.position, EXTENT, RELIEF, size)
 
 
 def random_camera(rng: np.random.Generator) -> Camera:
@@ -30,7 +29,7 @@ def random_camera(rng: np.random.Generator) -> Camera:
     )
 
 
-def pixels(view: sight.View, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def pixels(view: visibility.View, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return where places stand in the picture, (n, 2), and which of them are in it."""
     clip = places @ view.clip_from_world[:, :3].T + view.clip_from_world[:, 3]
     inside = (np.abs(clip[:, :3]) <= clip[:, 3:]).all(axis=1)
@@ -82,7 +81,7 @@ def test_a_tile_s_quarters_are_its_finest_triangles():
 
 
 def mesh_edges(chosen: tiles.Chosen) -> Counter:
-    """Count the directed edges of everything chosen, by their ends' nodes in the whole land."""
+    """Count the directed edges of everything chosen, by their ends' nodes in the whole terrain."""
     edges: Counter = Counter()
     start = 0
     for piece, count in chosen.runs:
@@ -93,15 +92,15 @@ def mesh_edges(chosen: tiles.Chosen) -> Counter:
     return edges
 
 
-def far_view() -> sight.View:
+def far_view() -> visibility.View:
     return view_of(Camera(elevation=60.0, distance=6000.0, target=(500.0, 400.0, 0.0)))
 
 
-def boxes(ny: int, nx: int, view: sight.View) -> sight.Boxes:
-    return sight.boxes_of(np.tile(np.float32([0, 1]), (ny, nx, 1)), view)
+def boxes(ny: int, nx: int, view: visibility.View) -> visibility.Boxes:
+    return visibility.boxes_of(np.tile(np.float32([0, 1]), (ny, nx, 1)), view)
 
 
-def corners_of(around: sight.Boxes) -> tuple[np.ndarray, np.ndarray]:
+def corners_of(around: visibility.Boxes) -> tuple[np.ndarray, np.ndarray]:
     """Return the lower south-western and the upper north-eastern corners of boxes, (ny, nx, 3)."""
     ny, nx = around.up.shape[1:]
     each = [
@@ -172,8 +171,8 @@ def test_a_box_left_out_holds_nothing_that_is_seen(seed):
     rng = np.random.default_rng(seed)
     view = view_of(random_camera(rng))
     spans = np.sort(rng.uniform(-0.2, 1.2, (9, 11, 2)), axis=-1).astype(np.float32)
-    around = sight.boxes_of(spans, view)
-    seen, depths = around.seen(view), around.depths(view)
+    around = visibility.boxes_of(spans, view)
+    seen, depths = around.visible(view), around.depths(view)
     share = rng.uniform(0, 1, (400, 1, 1, 3))
     share[:200] = np.round(share[:200])  # corners
     low, high = corners_of(around)
@@ -185,9 +184,9 @@ def test_a_box_left_out_holds_nothing_that_is_seen(seed):
     assert (at[visible] >= np.broadcast_to(depths, visible.shape)[visible] * (1 - 1e-6)).all()
 
 
-def test_looking_at_one_corner_leaves_most_of_the_land_out():
+def test_looking_at_one_corner_leaves_most_of_the_terrain_out():
     view = view_of(Camera(45.0, 50.0, 60.0, (20.0, 20.0, 100.0)))
-    assert sight.boxes_of(np.tile(np.float32([0, 1]), (16, 16, 1)), view).seen(view).mean() < 0.2
+    assert visibility.boxes_of(np.tile(np.float32([0, 1]), (16, 16, 1)), view).visible(view).mean() < 0.2
 
 
 # ── levels ───────────────────────────────────────────────────────────────────
@@ -223,13 +222,13 @@ def test_each_tile_is_as_coarse_as_its_error_and_its_neighbours_allow(seed, tole
 def test_holes_and_heights_without_bound_stay_fine_and_break_nothing():
     view = far_view()
     spans = np.float32([[[0, 1], [0, 1e30]], [[-1e30, 0], [np.nan, np.nan]]])
-    around = sight.boxes_of(np.nan_to_num(spans), view)
+    around = visibility.boxes_of(np.nan_to_num(spans), view)
     errors = np.full((2, 2, 4), 1e30, np.float32)
     assert not lod.levels_of(errors, around, view, 16.0).any()
     assert lod.tiles_at(np.zeros((2, 2), int), around, view).runs
 
 
-def test_flat_land_takes_two_triangles_a_tile_at_no_tolerance_at_all():
+def test_flat_terrain_takes_two_triangles_a_tile_at_no_tolerance_at_all():
     view = far_view()
     tables = {"spans": np.zeros((3, 4, 2), np.float32), "errors": np.zeros((3, 4, 4), np.float32)}
     chosen = lod.geomipmap({"tolerance": 0.0}, tables, view)

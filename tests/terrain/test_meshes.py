@@ -29,7 +29,7 @@ def areas(faces: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("n", [2, 3, 5, 33])
-def test_the_land_is_covered_once(n):
+def test_the_terrain_is_covered_once(n):
     faces = triangles(grid(n))
     flat = faces[(faces[..., 2] == 0).all(axis=1)]
     assert len(flat) == 2 * (n - 1) ** 2

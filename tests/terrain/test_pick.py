@@ -48,7 +48,7 @@ def test_what_is_projected_is_found_again(camera):
 
 
 def test_the_nearer_of_two_slopes_is_taken():
-    """A wall across the land hides what is behind it."""
+    """A wall across the terrain hides what is behind it."""
     heights = np.zeros((21, 21), np.float32)
     heights[10] = 1.0
     eye = look(Camera(180, 8), EXTENT, RELIEF, SIZE)  # from the south
@@ -57,13 +57,13 @@ def test_the_nearer_of_two_slopes_is_taken():
     assert abs(x - 0.5) < 0.02 and 0.45 <= y <= 0.5
 
 
-def test_in_the_sky_and_beside_the_land_there_is_none():
+def test_in_the_sky_and_beside_the_terrain_there_is_none():
     eye = look(Camera(20, 20), EXTENT, RELIEF, SIZE)
     assert ground_under(eye, (0.5, 0.99), hills(), EXTENT, RELIEF) is None
     assert ground_under(eye, (0.01, 0.02), hills(), EXTENT, RELIEF) is None
 
 
-def test_the_smallest_land():
+def test_the_smallest_terrain():
     eye = look(Camera(45, 60), EXTENT, RELIEF, SIZE)
     flat = np.full((2, 2), 0.5, np.float32)
     found = ground_under(eye, projected(eye, flat, 0.3, 0.6), flat, EXTENT, RELIEF)

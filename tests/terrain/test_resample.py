@@ -1,4 +1,4 @@
-"""Land at another size: SciPy's splines, planes, symmetries, the range that may not be left."""
+"""Terrain at another size: SciPy's splines, planes, symmetries, the range that may not be left."""
 
 from __future__ import annotations
 
@@ -32,35 +32,35 @@ def test_a_plane_stays_a_plane_with_its_corners(size):
 
 @pytest.mark.parametrize("size", SIZES)
 def test_corners_keep_their_heights(size):
-    land = RNG.random((40, 65), dtype=np.float32)
+    heightmap = RNG.random((40, 65), dtype=np.float32)
     corners = np.ix_([0, -1], [0, -1])
-    np.testing.assert_allclose(resample(land, size)[corners], land[corners], atol=1e-6)
+    np.testing.assert_allclose(resample(heightmap, size)[corners], heightmap[corners], atol=1e-6)
 
 
-def test_the_same_size_is_the_same_land():
-    land = RNG.random((40, 65), dtype=np.float32)
-    np.testing.assert_allclose(resample(land, (65, 40)), land, atol=1e-7)
+def test_the_same_size_is_the_same_terrain():
+    heightmap = RNG.random((40, 65), dtype=np.float32)
+    np.testing.assert_allclose(resample(heightmap, (65, 40)), heightmap, atol=1e-7)
 
 
 @pytest.mark.parametrize("size", [(129, 129), (300, 77), (500, 500)])
-def test_growing_smooth_land_follows_scipy_s_spline(size):
+def test_growing_smooth_terrain_follows_scipy_s_spline(size):
     x, y = np.linspace(0, 1, 65), np.linspace(0, 1, 49)
-    land = np.sin(5 * x)[None] * np.cos(4 * y)[:, None] + x[None] ** 2
-    spline = RectBivariateSpline(y, x, land)
+    heightmap = np.sin(5 * x)[None] * np.cos(4 * y)[:, None] + x[None] ** 2
+    spline = RectBivariateSpline(y, x, heightmap)
     expected = spline(np.linspace(0, 1, size[1]), np.linspace(0, 1, size[0]))
-    difference = np.abs(resample(land, size) - expected)
+    difference = np.abs(resample(heightmap, size) - expected)
     margin = math.ceil(2 * size[0] / 65), math.ceil(2 * size[1] / 49)
     assert difference[margin[1] : -margin[1], margin[0] : -margin[0]].max() < 6e-5
-    # The edges have no neighbour beyond: there the land's curvature, f'' h^2 / 16, is not seen.
+    # The edges have no neighbour beyond: there the terrain's curvature, f'' h^2 / 16, is not seen.
     assert difference.max() < (25 + 16 + 2) / 48**2 / 16
 
 
 @pytest.mark.parametrize("size", [(65, 65), (100, 47), (33, 33)])
-def test_shrinking_smooth_land_follows_scipy_s_spline(size):
+def test_shrinking_smooth_terrain_follows_scipy_s_spline(size):
     x, y = np.linspace(0, 1, 513), np.linspace(0, 1, 385)
-    land = np.sin(5 * x)[None] * np.cos(4 * y)[:, None] + x[None] ** 2
-    expected = RectBivariateSpline(y, x, land)(np.linspace(0, 1, size[1]), np.linspace(0, 1, size[0]))
-    assert np.abs(resample(land, size) - expected).max() < 2e-3
+    heightmap = np.sin(5 * x)[None] * np.cos(4 * y)[:, None] + x[None] ** 2
+    expected = RectBivariateSpline(y, x, heightmap)(np.linspace(0, 1, size[1]), np.linspace(0, 1, size[0]))
+    assert np.abs(resample(heightmap, size) - expected).max() < 2e-3
 
 
 def test_shrinking_averages_and_does_not_alias():
@@ -75,18 +75,18 @@ def test_shrinking_averages_and_does_not_alias():
 
 
 def test_tiles_that_share_an_edge_share_it_afterwards():
-    land = RNG.random((65, 129))
+    heightmap = RNG.random((65, 129))
     for size in ((17, 17), (129, 100)):
-        west, east = resample(land[:, :65], size), resample(land[:, 64:], size)
+        west, east = resample(heightmap[:, :65], size), resample(heightmap[:, 64:], size)
         np.testing.assert_allclose(west[:, -1], east[:, 0], atol=1e-6)
 
 
-def test_turning_the_land_turns_the_result():
-    land = RNG.random((40, 65))
+def test_turning_the_terrain_turns_the_result():
+    heightmap = RNG.random((40, 65))
     for size in ((31, 90), (100, 20)):
-        found = resample(land, size)
-        np.testing.assert_allclose(resample(land[::-1, ::-1], size), found[::-1, ::-1], atol=1e-6)
-        np.testing.assert_allclose(resample(land.T, size[::-1]), found.T, atol=1e-6)
+        found = resample(heightmap, size)
+        np.testing.assert_allclose(resample(heightmap[::-1, ::-1], size), found[::-1, ::-1], atol=1e-6)
+        np.testing.assert_allclose(resample(heightmap.T, size[::-1]), found.T, atol=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -109,15 +109,17 @@ def test_what_cannot_be_resampled_is_a_sentence(heights, size, words):
 def test_a_cliff_overshoots_unless_it_is_kept_within(size):
     cliff = np.zeros((40, 65), np.float32)
     cliff[10:, 20:] = 1.0
-    free, kept = resample(cliff, size), resample(cliff, size, within=(0.0, 1.0))
+    free, limited = resample(cliff, size), resample(cliff, size, within=(0.0, 1.0))
     assert free.max() > 1.02 and free.min() < -0.02
-    assert (kept.min(), kept.max()) == (0.0, 1.0)
+    assert (limited.min(), limited.max()) == (0.0, 1.0)
     inside = (free >= 0) & (free <= 1)
-    np.testing.assert_array_equal(kept[inside], free[inside])
-    assert kept.dtype == np.float32 and kept.flags.c_contiguous
+    np.testing.assert_array_equal(limited[inside], free[inside])
+    assert limited.dtype == np.float32 and limited.flags.c_contiguous
 
 
 def test_tiles_kept_within_the_same_range_share_their_edge():
-    land = (RNG.random((65, 129)) > 0.5).astype(np.float32)
-    west, east = (resample(tile, (129, 100), within=(0, 1)) for tile in (land[:, :65], land[:, 64:]))
+    heightmap = (RNG.random((65, 129)) > 0.5).astype(np.float32)
+    west, east = (
+        resample(tile, (129, 100), within=(0, 1)) for tile in (heightmap[:, :65], heightmap[:, 64:])
+    )
     np.testing.assert_allclose(west[:, -1], east[:, 0], atol=1e-6)

@@ -1,6 +1,9 @@
-"""Sources: what an elevation file tells of its land, and the heights it becomes."""
+"""Sources: what an elevation file says of its terrain, and the heights it becomes."""
 
 from __future__ import annotations
+
+import os
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,12 +14,12 @@ from playground.sketch.techniques import read_technique
 from playground.terrain.sources import SOURCES, Terrain, source_kind
 
 KIND = source_kind("elevation_file")
-LAND = np.array([[10, 20, 30], [40, 60, 50]], np.uint8)  # first row first
+HEIGHTS = np.array([[10, 20, 30], [40, 60, 50]], np.uint8)  # first row first
 
 
 @pytest.fixture
 def values(tmp_path):
-    np.save(tmp_path / "a.npy", LAND.astype(np.float32))
+    np.save(tmp_path / "a.npy", HEIGHTS.astype(np.float32))
 
     def values_(**changes):
         found = {p.name: p.default for p in read_technique("generation/heightmap", GLSL, GLSL).parameters}
@@ -54,7 +57,7 @@ def test_the_triangulation_s_kernel_declares_what_its_source_reads():
     )
 
 
-@pytest.mark.parametrize(("first_row", "south_first"), [(0, LAND[::-1]), (1, LAND)])
+@pytest.mark.parametrize(("first_row", "south_first"), [(0, HEIGHTS[::-1]), (1, HEIGHTS)])
 def test_the_first_row_is_north_unless_it_is_said_to_be_south(values, first_row, south_first):
     made = KIND.make(values(first_row=first_row), (3, 2))["height"]
     np.testing.assert_allclose(made, (south_first - 10.0) / 50.0, atol=1e-7)
@@ -76,7 +79,7 @@ def test_a_steep_file_stays_in_its_range_too(values, tmp_path):
         assert made.min() >= 0.0 and made.max() <= 1.0
 
 
-def test_flat_land_is_0(values, tmp_path):
+def test_flat_terrain_is_0(values, tmp_path):
     np.save(tmp_path / "flat.npy", np.full((4, 4), 7.0))
     assert (KIND.make(values(elevation=str(tmp_path / "flat.npy")), (9, 9))["height"] == 0).all()
 
@@ -84,7 +87,7 @@ def test_flat_land_is_0(values, tmp_path):
 def test_metres_that_the_user_gives_are_those_of_the_file_s_codes(values, tmp_path):
     from PIL import Image
 
-    Image.fromarray(LAND).save(tmp_path / "a.png")
+    Image.fromarray(HEIGHTS).save(tmp_path / "a.png")
     found = KIND.describe(values(elevation=str(tmp_path / "a.png"), metres=(100.0, 355.0)))
     assert (found.size, found.extent) == ((3, 2), None)
     assert (found.base_elevation, found.relief) == pytest.approx((110.0, 50.0))  # a metre a grey
@@ -94,8 +97,38 @@ def test_metres_that_the_user_gives_are_those_of_the_file_s_codes(values, tmp_pa
 
 def test_a_file_is_read_anew_when_it_changes(values, tmp_path):
     first = KIND.make(values(), (3, 2))["height"]
-    np.save(tmp_path / "a.npy", np.flip(LAND).astype(np.float64))
+    np.save(tmp_path / "a.npy", np.flip(HEIGHTS).astype(np.float64))
     assert not np.array_equal(KIND.make(values(), (3, 2))["height"], first)
+
+
+def replaced(path):
+    new = path.with_name("new.npy")
+    np.save(new, np.flip(HEIGHTS).astype(np.float32))
+    new.replace(path)
+
+
+def rewritten(path):
+    np.save(path, np.flip(HEIGHTS).astype(np.float32))
+
+
+@pytest.mark.parametrize("change", [replaced, rewritten])
+def test_a_file_of_the_same_size_and_time_is_read_anew(values, tmp_path, change):
+    file = tmp_path / "a.npy"
+    an_hour_ago = file.stat().st_mtime_ns - 3600 * 10**9
+    os.utime(file, ns=(an_hour_ago, an_hour_ago))
+    first = KIND.make(values(), (3, 2))["height"]
+    change(file)
+    os.utime(file, ns=(an_hour_ago, an_hour_ago))
+    np.testing.assert_array_equal(KIND.make(values(), (3, 2))["height"], np.flip(first))
+
+
+def test_a_file_that_does_not_change_is_read_once(values, tmp_path, monkeypatch):
+    file = tmp_path / "a.npy"
+    os.utime(file, (0, 0))
+    given = values()
+    first = KIND.make(given, (3, 2))["height"]
+    monkeypatch.setattr(Path, "open", None)
+    np.testing.assert_array_equal(KIND.make(given, (3, 2))["height"], first)
 
 
 def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):

@@ -1,9 +1,9 @@
-"""Light that the land throws on itself (thesis, eqs 3.1 and 3.2): radiosity by a full matrix, on small lands.
+"""Interreflection (thesis, eqs 3.1 and 3.2): radiosity by a full matrix, on small terrains.
 
 Row p of the matrix says how much of what texel p receives comes from each other texel, if
-all were equally bright. Towards each azimuth the land comes into sight cell by cell, as
+all were equally bright. Towards each azimuth the terrain comes into sight cell by cell, as
 the steepest angle met so far grows: from the elevation it had to the one it has, a ray
-first meets the land in that cell.
+first meets the terrain in that cell.
 """
 
 from __future__ import annotations
@@ -15,19 +15,19 @@ from .land import Array, Land
 from .sky import azimuths
 
 
-def exchange(land: Land, *, count: int = 64) -> Array:
+def exchange(terrain: Land, *, count: int = 64) -> Array:
     """Return the matrix (texels, texels): the cosine-weighted share of a row's view that a column fills.
 
     A row and the texel's K add up to 1, less what looks out below the level beyond the border.
     """
-    ny, nx = land.heights.shape
-    normal, number = land.normals(), np.arange(nx * ny).reshape(ny, nx)
+    ny, nx = terrain.heights.shape
+    normal, number = terrain.normals(), np.arange(nx * ny).reshape(ny, nx)
     matrix = np.zeros((nx * ny, nx * ny))
     for azimuth in azimuths(count):
         a = np.radians(azimuth)
         across, up = normal[..., 0] * np.sin(a) + normal[..., 1] * np.cos(a), normal[..., 2]
         highest = np.arctan2(-across, up)  # nothing is received from behind the surface
-        for _, place, shown, tangent in profile(land, azimuth):
+        for _, place, shown, tangent in profile(terrain, azimuth):
             angle = np.arctan(tangent)
             low = highest[shown]
             high = np.maximum(angle, low)
@@ -48,12 +48,14 @@ def _received(across: Array, up: Array, e: Array) -> Array:
     return across * (e / 2 + np.sin(2 * e) / 4) + up * np.sin(e) ** 2 / 2
 
 
-def bounced(land: Land, direct: Array, colour: float, *, times: int | None = None, count: int = 64) -> Array:
+def bounced(
+    terrain: Land, direct: Array, colour: float, *, times: int | None = None, count: int = 64
+) -> Array:
     """Return what each texel receives in all, of ground of one colour, from what it receives directly.
 
     ``times`` is how often light is thrown on; None: until nothing is left.
     """
-    matrix = colour * exchange(land, count=count)
+    matrix = colour * exchange(terrain, count=count)
     first = direct.ravel()
     if times is None:
         return np.linalg.solve(np.eye(len(first)) - matrix, first).reshape(direct.shape)

@@ -1,4 +1,4 @@
-"""Measure every method of lighting against the truth, on three lands under three suns.
+"""Measure every method of lighting against the truth, on three terrains under three suns.
 
     python tests/truth [--size 97] [--json] [NAME…]
 
@@ -6,7 +6,7 @@ Prints one table: the mean and the 99th percentile, over the texels, of the erro
 sun's visible part and of the light, both 0..1; and the mean error of the visible part over the
 texels that truly see a part of the sun. Methods of the sky are held against an even sky of
 strength 1, those of sun and sky against both, and those that throw light on against radiosity,
-on the same lands at 25 x 25, over ground of colour 0.5.
+on the same terrains at 25 x 25, over ground of colour 0.5.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from .sun import sunlight
 
 @dataclass(frozen=True)
 class Errors:
-    """One method on one land under one sun: mean and 99th percentile of |found - truth|."""
+    """One method on one terrain under one sun: mean and 99th percentile of |found - truth|."""
 
     method: str
     land: str
@@ -51,13 +51,13 @@ class Errors:
 
 @dataclass(frozen=True)
 class Truth:
-    """What a land's light should be."""
+    """What a terrain's light should be."""
 
     land: Land
     suns: tuple[tuple[Array, Array], ...]  # visible share and light, for each of SUNS
     sky: Array
     small: Land
-    bounced: Array  # on the small land, over ground of colour GROUND
+    bounced: Array  # on the small terrain, over ground of colour GROUND
 
 
 SMALL = 25  # texels a side, where each sees each
@@ -71,7 +71,7 @@ def _heights(name: str, size: int) -> Land:
 def truth_of(
     engine: Engine, folder: Path, name: str, size: int, *, strips: int = 12, azimuths: int = 48
 ) -> Truth:
-    """Work out the truth for one of the lands, at the heights that the engine's texture has."""
+    """Work out the truth for one of the terrains, at the heights that the engine's texture has."""
     land, small = (
         as_read(engine, sketch_of(folder, _heights(name, n), ""), _heights(name, n)) for n in (size, SMALL)
     )
@@ -81,7 +81,7 @@ def truth_of(
 
 
 def measure(engine: Engine, folder: Path, method: Method, truth: Truth) -> Iterator[Errors]:
-    """Yield a method's errors on one land."""
+    """Yield a method's errors on one terrain."""
     head = (method.name, truth.land.name, method.gives)
     if method.gives in (SKY, BOUNCED):
         land, wanted = (truth.land, truth.sky) if method.gives == SKY else (truth.small, truth.bounced)
@@ -127,7 +127,7 @@ def main(arguments: list[str] | None = None) -> None:
 
 
 def table_of(found: Iterable[Errors], title: str) -> Table:
-    """Return the errors as a table, a row for each method, land and sun."""
+    """Return the errors as a table, a row for each method, terrain and sun."""
     table = Table(title=title)
     for heading in ("method", "land"):
         table.add_column(heading)

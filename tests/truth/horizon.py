@@ -1,6 +1,6 @@
-"""The horizon of every texel towards any azimuth, exact on bilinear land.
+"""The horizon of every texel towards any azimuth, exact on bilinear terrain.
 
-Over one cell the land along a ray is a parabola in the distance s, and the tangent of the
+Over one cell the terrain along a ray is a parabola in the distance s, and the tangent of the
 angle under which it is seen, (h(s) - h(0)) / s, has its greatest value at the ends of the
 cell or where its derivative is 0. Rays from one place in every cell cross the grid's lines
 at the same distances, so each crossing is a few sums of whole shifted arrays.
@@ -34,12 +34,12 @@ def _ahead(azimuth: float) -> Array:
     return np.where(np.abs(ahead) < 1e-12, 0, ahead)  # along an axis, whatever the rounding of pi
 
 
-def crossings(land: Land, azimuth: float, part: Place = NODE) -> list[Crossing]:
+def crossings(terrain: Land, azimuth: float, part: Place = NODE) -> list[Crossing]:
     """Return where rays towards an azimuth meet the grid's lines, from ``part`` [texels] of any cell."""
-    way = _ahead(azimuth) / land.spacing  # texels a metre
+    way = _ahead(azimuth) / terrain.spacing  # texels a metre
     met = []
     for axis in (0, 1):
-        for k in range(land.heights.shape[1 - axis] if way[axis] else 0):
+        for k in range(terrain.heights.shape[1 - axis] if way[axis] else 0):
             line = float(k + 1) if way[axis] > 0 else float(-k)
             if (line - part[axis]) * way[axis] > 0:
                 met.append(((line - part[axis]) / way[axis], axis, line))
@@ -53,9 +53,9 @@ def crossings(land: Land, azimuth: float, part: Place = NODE) -> list[Crossing]:
     return result
 
 
-def _sampled(land: Land, place: Place) -> tuple[Array, tuple[slice, slice]]:
-    """Return the heights at a place as seen from each texel, and the texels for which it is on the land."""
-    ny, nx = land.heights.shape
+def _sampled(terrain: Land, place: Place) -> tuple[Array, tuple[slice, slice]]:
+    """Return the heights at a place as seen from each texel, and for which of them it is on the terrain."""
+    ny, nx = terrain.heights.shape
     rows, row_part, row_from = _shift(place[1], ny)
     columns, column_part, column_from = _shift(place[0], nx)
     shown = (slice(rows[0], rows[1]), slice(columns[0], columns[1]))
@@ -67,7 +67,7 @@ def _sampled(land: Land, place: Place) -> tuple[Array, tuple[slice, slice]]:
                     total
                     + wx
                     * wy
-                    * land.heights[
+                    * terrain.heights[
                         rows[0] + row_from + y : rows[1] + row_from + y,
                         columns[0] + column_from + x : columns[1] + column_from + x,
                     ]
@@ -76,7 +76,7 @@ def _sampled(land: Land, place: Place) -> tuple[Array, tuple[slice, slice]]:
 
 
 def _shift(offset: float, n: int) -> tuple[tuple[int, int], float, int]:
-    """Return the texels (first, end) for which texel + offset is on the land, its part, its whole part."""
+    """Return the texels (first, end) for which texel + offset is on the terrain, its part, its whole part."""
     whole = int(np.floor(offset))
     part = offset - whole
     first = max(0, -whole)
@@ -84,28 +84,28 @@ def _shift(offset: float, n: int) -> tuple[tuple[int, int], float, int]:
     return (first, max(end, first)), part, whole
 
 
-def profile(land: Land, azimuth: float, part: Place = NODE) -> Iterator[tuple[float, Place, tuple, Array]]:
+def profile(terrain: Land, azimuth: float, part: Place = NODE) -> Iterator[tuple[float, Place, tuple, Array]]:
     """Yield the greatest tangent within each cell that rays cross, cell by cell outwards.
 
     (distance [m] of the cell's middle, its place, the texels whose rays are still on the
-    land, the tangent over the cell for those texels).
+    terrain, the tangent over the cell for those texels).
     """
-    start, everywhere = _sampled(land, part)
-    base = np.full(land.heights.shape, np.nan)
+    start, everywhere = _sampled(terrain, part)
+    base = np.full(terrain.heights.shape, np.nan)
     base[everywhere] = start
     last = Crossing(0.0, part)
     before, seen = start, everywhere
-    for crossing in crossings(land, azimuth, part):
+    for crossing in crossings(terrain, azimuth, part):
         half = (crossing.distance - last.distance) / 2
         middle = (last.distance + crossing.distance) / 2
         place = ((last.place[0] + crossing.place[0]) / 2, (last.place[1] + crossing.place[1]) / 2)
-        after, shown = _sampled(land, crossing.place)
+        after, shown = _sampled(terrain, crossing.place)
         inner = _overlap(seen, shown)
         if after.size and inner[0].stop > inner[0].start and inner[1].stop > inner[1].start:
             origin = base[inner]
             h1 = before[_within(inner, seen)] - origin
             h2 = after[_within(inner, shown)] - origin
-            between, around = _sampled(land, place)
+            between, around = _sampled(terrain, place)
             hm = between[_within(inner, around)] - origin
             yield middle, place, inner, _steepest(h1, hm, h2, last.distance, half)
         last, before, seen = crossing, after, shown
@@ -140,31 +140,31 @@ def _within(inner: tuple[slice, slice], outer: tuple[slice, slice]) -> tuple[sli
     return found[0], found[1]
 
 
-def horizon(land: Land, azimuth: float, part: Place = NODE) -> Array:
+def horizon(terrain: Land, azimuth: float, part: Place = NODE) -> Array:
     """Return the tangent of the horizon's elevation towards an azimuth [degrees], for every texel.
 
-    -inf where no land lies that way, NaN where ``part`` of the texel's cell is off the land.
-    What stands above it is seen, what is below it hidden: the land has no overhangs.
+    -inf where no terrain lies that way, NaN where ``part`` of the texel's cell is off the terrain.
+    What stands above it is seen, what is below it hidden: the terrain has no overhangs.
     """
-    result = np.full(land.heights.shape, np.nan)
-    _, there = _sampled(land, part)
+    result = np.full(terrain.heights.shape, np.nan)
+    _, there = _sampled(terrain, part)
     result[there] = -np.inf
-    for _, _, shown, tangent in profile(land, azimuth, part):
+    for _, _, shown, tangent in profile(terrain, azimuth, part):
         result[shown] = np.maximum(result[shown], tangent)
     return result
 
 
-def marched(land: Land, azimuth: float, x: Array, y: Array, step: float = 1 / 64) -> Array:
+def marched(terrain: Land, azimuth: float, x: Array, y: Array, step: float = 1 / 64) -> Array:
     """Return the same for places in texels by steps of so many texels: never above the exact one."""
     x, y = np.asarray(x, np.float64), np.asarray(y, np.float64)
-    ny, nx = land.heights.shape
+    ny, nx = terrain.heights.shape
     way = _ahead(azimuth)
-    length = step / np.abs(way / land.spacing).max()  # [m]
-    foot, best = land.at(x, y), np.full(np.shape(x), -np.inf)
+    length = step / np.abs(way / terrain.spacing).max()  # [m]
+    foot, best = terrain.at(x, y), np.full(np.shape(x), -np.inf)
     for k in range(1, int((nx + ny) / step) + 1):
-        px, py = x + k * length * way[0] / land.spacing[0], y + k * length * way[1] / land.spacing[1]
+        px, py = x + k * length * way[0] / terrain.spacing[0], y + k * length * way[1] / terrain.spacing[1]
         on = (px >= 0) & (py >= 0) & (px <= nx - 1) & (py <= ny - 1)
         if not on.any():
             break
-        best[on] = np.maximum(best[on], (land.at(px[on], py[on]) - foot[on]) / (k * length))
+        best[on] = np.maximum(best[on], (terrain.at(px[on], py[on]) - foot[on]) / (k * length))
     return best

@@ -1,6 +1,6 @@
-"""Lands in float64 metres, read as the shaders read them, and the lands that methods are measured on.
+"""Terrains in float64 metres, read as the shaders read them, and the terrains that methods are measured on.
 
-Texels are nodes: texel k of n stands at k · extent / (n - 1). Between them the land is
+Texels are nodes: texel k of n stands at k · extent / (n - 1). Between them the terrain is
 bilinear, and it ends at its border. Row 0 is in the south; x is east, y north.
 """
 
@@ -32,7 +32,7 @@ class Land:
         return (nx - 1) * self.spacing[0], (ny - 1) * self.spacing[1]
 
     def at(self, x: object, y: object) -> Array:
-        """Return the heights [m] at places in texels, which must lie on the land."""
+        """Return the heights [m] at places in texels, which must lie on the terrain."""
         x, y = np.broadcast_arrays(np.asarray(x, np.float64), np.asarray(y, np.float64))
         ny, nx = self.heights.shape
         i, j = np.clip(x.astype(int), 0, max(nx - 2, 0)), np.clip(y.astype(int), 0, max(ny - 2, 0))
@@ -70,7 +70,7 @@ def towards(azimuth: object, elevation: object) -> Array:
 
 
 def _grid(size: int, extent: float, middle: tuple[float, float] = (0.5, 0.5)) -> tuple[Array, Array]:
-    """Return east and north [m] of a square land's nodes, from a place that is a share of its sides."""
+    """Return east and north [m] of a square terrain's nodes, from a place that is a share of its sides."""
     along = np.linspace(0, extent, size)
     return tuple(np.meshgrid(along - middle[0] * extent, along - middle[1] * extent))  # type: ignore[return-value]
 
@@ -78,7 +78,7 @@ def _grid(size: int, extent: float, middle: tuple[float, float] = (0.5, 0.5)) ->
 def cone(size: int = 97, extent: float = 2400.0, slope: float = 30.0) -> Land:
     """Return one mountain on a plain, a cone that rises at an angle [degrees].
 
-    It stands where the shadow of a sun in the west-south-west, 5 degrees high, ends on the land.
+    It stands where the shadow of a sun in the west-south-west, 5 degrees high, ends on the terrain.
     """
     east, north = _grid(size, extent, (0.25, 0.375))
     heights = np.maximum(extent / 9.6 - np.hypot(east, north), 0) * np.tan(np.radians(slope))
@@ -92,7 +92,7 @@ def valley(size: int = 97, extent: float = 2400.0, slope: float = 35.0) -> Land:
 
 
 def real(size: int = 97) -> Land:
-    """Return a piece of the default sketch's real land, where ridges are steep; not exaggerated."""
+    """Return a piece of the default sketch's real terrain, where ridges are steep; not exaggerated."""
     elevation = read_elevation(SKETCHES / "data" / "jacksboro_fault_dem.npz")
     assert elevation.spacing is not None
     piece = elevation.heights[192 : 192 + size, :size].astype(np.float64)

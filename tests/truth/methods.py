@@ -1,7 +1,7 @@
 """How each method of lighting is set up to be compared: one sun of strength 1, white, and nothing else.
 
 A method is a technique in ``glsl/lighting``, under one choice of its parameters. ``sketch_of`` hands a
-land of the truth to the engine; the engine's own heights, times the relief, are what the truth is worked
+terrain of the truth to the engine; the engine's own heights, times the relief, are what the truth is worked
 out from, so both look at the same numbers.
 """
 
@@ -36,7 +36,7 @@ class Method:
     after: str = ""  # a technique below lighting/ that changes its light afterwards
     after_values: Mapping[str, object] = field(default_factory=dict)
     arc: str = ""  # a parameter that takes the sun's azimuth too
-    shadows: bool = True  # land hides its sun as it would hide a sun of this diameter
+    shadows: bool = True  # terrain hides its sun as it would hide a sun of this diameter
     diameter: float = 0.0  # [degrees] of the sun that it has in mind, at most; 0: a point
     measured: bool = True  # against the truth under the real sun
     output: str = ""  # which of its outputs is its light
@@ -73,7 +73,7 @@ METHODS = [
     Method("cone 0.0046", "soft_cone", {**_ONE, "delta_r": 0.0046}, diameter=_wide(0.0046)),
     Method("cone 0.0046, sweep", "soft_cone", {**_SWEPT, "delta_r": 0.0046}, diameter=_wide(0.0046)),
     Method("sun disc", "sun_disc", _ONE, diameter=0.53),
-    Method("sun disc, stride 0.25", "sun_disc", {**_ONE, "stride": 0.25}, diameter=0.53),
+    Method("sun disc, step length 0.25", "sun_disc", {**_ONE, "step_length": 0.25}, diameter=0.53),
     Method("sun disc, sweep", "sun_disc", _SWEPT, diameter=0.53),
     Method("night", "night", _ONE, shadows=False, measured=False),
     Method("horizon sun, on its arc", "horizon_sun", _ON_ARC, arc="arc", diameter=0.53),
@@ -107,31 +107,31 @@ float kernel(ivec2 texel) { return base + texelFetch(land, texel, 0).r; }
 """
 
 
-def sketch_of(folder: Path, land: Land, passes: str, *, base: float = 0.0) -> Sketch:
-    """Write a sketch of a land, as the pass ``height``, and the passes that light it.
+def sketch_of(folder: Path, terrain: Land, passes: str, *, base: float = 0.0) -> Sketch:
+    """Write a sketch of a terrain, as the pass ``height``, and the passes that light it.
 
     Heights are 0..1 and ``base`` more; the relief makes them metres.
     """
-    low, relief = float(land.heights.min()), relief_of(land)
-    ny, nx = land.heights.shape
-    # A file of heights has two texels a side or more; of a smaller land, some are not read.
-    kept = np.pad((land.heights - low) / relief, ((0, max(2 - ny, 0)), (0, max(2 - nx, 0))))
-    np.save(folder / "land.npy", kept.astype(np.float32))
+    low, relief = float(terrain.heights.min()), relief_of(terrain)
+    ny, nx = terrain.heights.shape
+    # A file of heights has two texels a side or more; of a smaller terrain, some are not read.
+    kept = np.pad((terrain.heights - low) / relief, ((0, max(2 - ny, 0)), (0, max(2 - nx, 0))))
+    np.save(folder / "terrain.npy", kept.astype(np.float32))
     (folder / "raised.glsl").write_text(RAISED)
-    extent = [max(n - 1, 1) * metres for n, metres in zip((nx, ny), land.spacing, strict=True)]
+    extent = [max(n - 1, 1) * metres for n, metres in zip((nx, ny), terrain.spacing, strict=True)]
     path = folder / "sketch.toml"
     path.write_text(
         f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"
         '[[pass]]\nname = "land"\nuse = "generation/heightmap"\n'
-        f'size = {list(kept.shape[::-1])}\nset = {{ elevation = "land.npy", first_row = "south" }}\n'
+        f'size = {list(kept.shape[::-1])}\nset = {{ elevation = "terrain.npy", first_row = "south" }}\n'
         f'[[pass]]\nname = "height"\nuse = "./raised"\nset = {{ base = {float(base)} }}\n{passes}'
     )
     return load(path)
 
 
-def relief_of(land: Land) -> float:
-    """Return the metres that height 1 stands for; 1 where the land is flat."""
-    return float(np.ptp(land.heights)) or 1.0
+def relief_of(terrain: Land) -> float:
+    """Return the metres that height 1 stands for; 1 where the terrain is flat."""
+    return float(np.ptp(terrain.heights)) or 1.0
 
 
 def passes_of(method: Method, sun: tuple[float, float] | None = None) -> str:
@@ -150,22 +150,22 @@ def _pass(name: str, use: str, values: Mapping[str, object], light: str = "") ->
     return f'[[pass]]\nname = "{name}"\nuse = "lighting/{use}"\n{wires}[pass.set]\n{setting}'
 
 
-def as_read(engine: Engine, sketch: Sketch, land: Land) -> Land:
-    """Return the land as the engine's texture has it."""
-    heights = engine.read(sketch, "height").astype(np.float64) * relief_of(land)
-    return Land(heights, land.spacing, land.name)
+def as_read(engine: Engine, sketch: Sketch, terrain: Land) -> Land:
+    """Return the terrain as the engine's texture has it."""
+    heights = engine.read(sketch, "height").astype(np.float64) * relief_of(terrain)
+    return Land(heights, terrain.spacing, terrain.name)
 
 
 def lit(
     engine: Engine,
     folder: Path,
     method: Method,
-    land: Land,
+    terrain: Land,
     sun: tuple[float, float] | None,
     *,
     base: float = 0.0,
 ) -> Array:
     """Return a method's light (ny, nx, components); in alpha is the visible part of the sun."""
-    sketch = sketch_of(folder, land, passes_of(method, sun), base=base)
+    sketch = sketch_of(folder, terrain, passes_of(method, sun), base=base)
     found = engine.read(sketch, f"light:{method.output}" if method.output else "light").astype(np.float64)
-    return found.reshape(*land.heights.shape, -1)
+    return found.reshape(*terrain.heights.shape, -1)

@@ -2,7 +2,7 @@
 
 Over the azimuth the midpoint rule, over the elevation the exact integral above the
 horizon, or Gauss's rule where the sky's radiance is a function of both. The sky is what
-stands above the level: towards a valley the land's own slope may look below it, and sees
+stands above the level: towards a valley the terrain's own slope may look below it, and sees
 nothing there.
 """
 
@@ -24,28 +24,30 @@ def azimuths(count: int) -> Array:
 
 
 def _slices(
-    land: Land, count: int, part: Place, normals: Array
+    terrain: Land, count: int, part: Place, normals: Array
 ) -> Iterator[tuple[float, Array, Array, Array]]:
     """Yield each azimuth [degrees], N's components that way and up, the lowest elevation seen [radians]."""
     for azimuth in azimuths(count):
         a = np.radians(azimuth)
         across, up = normals[..., 0] * np.sin(a) + normals[..., 1] * np.cos(a), normals[..., 2]
         own = np.arctan2(-across, up)
-        lowest = np.maximum(np.maximum(np.arctan(horizon(land, azimuth, part)), own), 0)
+        lowest = np.maximum(np.maximum(np.arctan(horizon(terrain, azimuth, part)), own), 0)
         yield float(azimuth), across, up, lowest
 
 
-def sky_visibility(land: Land, *, count: int = 64, part: Place = NODE, normals: Array | None = None) -> Array:
-    """Return K (eq. 3.12): the light of an even sky of radiance 1, per texel; 1 on flat land."""
-    normals = land.normals() if normals is None else normals
-    total = np.zeros(land.heights.shape)
-    for _, across, up, low in _slices(land, count, part, normals):
+def sky_visibility(
+    terrain: Land, *, count: int = 64, part: Place = NODE, normals: Array | None = None
+) -> Array:
+    """Return K (eq. 3.12): the light of an even sky of radiance 1, per texel; 1 on flat terrain."""
+    normals = terrain.normals() if normals is None else normals
+    total = np.zeros(terrain.heights.shape)
+    for _, across, up, low in _slices(terrain, count, part, normals):
         total += across * (np.pi / 4 - low / 2 - np.sin(2 * low) / 4) + up * np.cos(low) ** 2 / 2
     return total * 2 / count
 
 
 def sky_light(
-    land: Land,
+    terrain: Land,
     radiance: Radiance,
     *,
     count: int = 64,
@@ -54,10 +56,10 @@ def sky_light(
     normals: Array | None = None,
 ) -> Array:
     """Return eq. 3.4 for a sky whose radiance is a function of azimuth and elevation [radians]."""
-    normals = land.normals() if normals is None else normals
+    normals = terrain.normals() if normals is None else normals
     places, weights = np.polynomial.legendre.leggauss(heights)
-    total = np.zeros(land.heights.shape)
-    for azimuth, across, up, low in _slices(land, count, part, normals):
+    total = np.zeros(terrain.heights.shape)
+    for azimuth, across, up, low in _slices(terrain, count, part, normals):
         half = (np.pi / 2 - low) / 2
         for place, weight in zip(places, weights, strict=True):
             e = low + half * (1 + place)

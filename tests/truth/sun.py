@@ -41,7 +41,7 @@ def strips(azimuth: float, elevation: float, diameter: float, count: int) -> Ite
 
 
 def sunlight(
-    land: Land,
+    terrain: Land,
     azimuth: float,
     elevation: float,
     *,
@@ -56,16 +56,18 @@ def sunlight(
     behind the surface itself is not seen. A disc of diameter 0 is a point. The part of the
     disc below the level is not seen.
     """
-    normal = land.normals() if normals is None else normals
+    normal = terrain.normals() if normals is None else normals
     if diameter == 0:
-        return _point(land, azimuth, elevation, part, normal)
-    share, light, whole = np.zeros(land.heights.shape), np.zeros(land.heights.shape), 0.0
+        return _point(terrain, azimuth, elevation, part, normal)
+    share, light, whole = np.zeros(terrain.heights.shape), np.zeros(terrain.heights.shape), 0.0
     for towards_azimuth, low, high, width in strips(azimuth, elevation, diameter, count):
         a, lowest, top = np.radians((towards_azimuth, low, high))
         across, up = normal[..., 0] * np.sin(a) + normal[..., 1] * np.cos(a), normal[..., 2]
         # N·v > 0 above the slope of the surface itself; the vertical never is one.
         own = np.arctan2(-across, up)
-        floor = np.maximum(np.arctan(horizon(land, towards_azimuth, part)), np.maximum(own, max(lowest, 0.0)))
+        floor = np.maximum(
+            np.arctan(horizon(terrain, towards_azimuth, part)), np.maximum(own, max(lowest, 0.0))
+        )
         edge = np.minimum(floor, top)
         whole += width * (np.sin(top) - np.sin(lowest))
         share += width * np.maximum(np.sin(top) - np.sin(edge), 0)
@@ -75,10 +77,12 @@ def sunlight(
     return share / whole, light / whole
 
 
-def _point(land: Land, azimuth: float, elevation: float, part: Place, normal: Array) -> tuple[Array, Array]:
+def _point(
+    terrain: Land, azimuth: float, elevation: float, part: Place, normal: Array
+) -> tuple[Array, Array]:
     received = normal @ towards(azimuth, elevation)
     high = np.tan(np.radians(elevation)) if elevation < 90 else np.inf
-    seen = (received > 0) & (horizon(land, azimuth, part) <= high) & (elevation >= 0)
+    seen = (received > 0) & (horizon(terrain, azimuth, part) <= high) & (elevation >= 0)
     return seen.astype(np.float64), np.where(seen, received, 0)
 
 

@@ -25,28 +25,28 @@ def plane(east, north, size=(17, 13), spacing=(10.0, 23.0)):
 
 
 def wall(distance, high, thin, count=3):
-    """A wall from south to north across even land, ``distance`` metres east of the western border."""
+    """A wall from south to north across even terrain, ``distance`` metres east of the western border."""
     n = int(distance / thin) + 3
     heights = np.zeros((count, n))
     heights[:, int(distance / thin)] = high
     return Land(heights, (thin, 1e5))
 
 
-# The land
+# The terrain
 
 
 def test_heights_between_nodes_are_bilinear():
-    land = Land(np.array([[1.0, 2.0, 4.0], [3.0, 8.0, 0.0]]), (2.0, 5.0))
+    terrain = Land(np.array([[1.0, 2.0, 4.0], [3.0, 8.0, 0.0]]), (2.0, 5.0))
     np.testing.assert_allclose(
-        land.at([0, 0.5, 2, 1.25, 2], [0, 0, 0.5, 0.5, 1]), [1, 1.5, 2, (2.5 + 6) / 2, 0]
+        terrain.at([0, 0.5, 2, 1.25, 2], [0, 0, 0.5, 0.5, 1]), [1, 1.5, 2, (2.5 + 6) / 2, 0]
     )
-    assert land.extent == (4.0, 5.0)
+    assert terrain.extent == (4.0, 5.0)
 
 
 def test_a_plane_has_one_normal():
-    land = plane(0.3, -0.7)
+    terrain = plane(0.3, -0.7)
     truth = np.cross([1, 0, 0.3], [0, 1, -0.7])
-    np.testing.assert_allclose(land.normals(), np.broadcast_to(truth / np.linalg.norm(truth), (13, 17, 3)))
+    np.testing.assert_allclose(terrain.normals(), np.broadcast_to(truth / np.linalg.norm(truth), (13, 17, 3)))
 
 
 def test_compass():
@@ -58,11 +58,11 @@ def test_compass():
 
 
 @pytest.mark.parametrize("make", LANDS.values(), ids=LANDS)
-def test_a_land_of_any_size_has_true_metres(make):
+def test_a_terrain_of_any_size_has_true_metres(make):
     for size in (33, 65, 129):
-        land = make(size)
-        assert land.heights.shape == (size, size) and land.heights.min() == pytest.approx(0, abs=1e-9)
-        assert 100 < np.ptp(land.heights) < 900 and 10 < land.spacing[0] < 100
+        terrain = make(size)
+        assert terrain.heights.shape == (size, size) and terrain.heights.min() == pytest.approx(0, abs=1e-9)
+        assert 100 < np.ptp(terrain.heights) < 900 and 10 < terrain.spacing[0] < 100
 
 
 # The horizon
@@ -77,10 +77,10 @@ def test_a_land_of_any_size_has_true_metres(make):
     "azimuth", [0.0, 90.0, 180.0, 270.0, 250.0, 17.3, 133.0, np.degrees(np.arctan2(10, 23))]
 )
 def test_the_exact_horizon_is_what_small_steps_tend_to(azimuth, part):
-    land = rough()
-    exact = horizon(land, azimuth, part)
+    terrain = rough()
+    exact = horizon(terrain, azimuth, part)
     y, x = np.mgrid[0 : 13 - (part[1] > 0), 0 : 17 - (part[0] > 0)].astype(float)
-    found = marched(land, azimuth, x + part[0], y + part[1], 1 / 128)
+    found = marched(terrain, azimuth, x + part[0], y + part[1], 1 / 128)
     exact = exact[: len(x), : x.shape[1]]
     assert not np.isnan(exact).any()
     seen = np.isfinite(found)
@@ -91,35 +91,35 @@ def test_the_exact_horizon_is_what_small_steps_tend_to(azimuth, part):
 
 
 def test_smaller_steps_come_nearer():
-    land = rough()
-    exact = horizon(land, 250.0)
+    terrain = rough()
+    exact = horizon(terrain, 250.0)
     y, x = np.mgrid[0:13, 0:17].astype(float)
     errors = []
     for step in (1.0, 1 / 4, 1 / 16, 1 / 64):
-        found = marched(land, 250.0, x, y, step)
+        found = marched(terrain, 250.0, x, y, step)
         seen = np.isfinite(found)
         errors.append(np.abs(np.arctan(found[seen]) - np.arctan(exact[seen])).mean())
     assert all(b < a / 2 for a, b in pairwise(errors)), errors
 
 
 def test_rays_meet_every_line_of_the_grid_once():
-    land = rough((9, 5))
+    terrain = rough((9, 5))
     for azimuth in (30.0, 45.0, 222.0):
-        met = crossings(land, azimuth, (0.3, 0.2))
+        met = crossings(terrain, azimuth, (0.3, 0.2))
         assert len(met) == 9 + 5
         assert all(c.place[0] == round(c.place[0]) or c.place[1] == round(c.place[1]) for c in met)
     assert len(crossings(Land(np.zeros((6, 6)), (3.0, 3.0)), 45.0)) == 6  # every line is met at a node
 
 
 def test_a_planes_horizon_is_its_slope():
-    land = plane(0.3, -0.7)
+    terrain = plane(0.3, -0.7)
     for azimuth in (12.0, 90.0, 211.0):
         rise = 0.3 * np.sin(np.radians(azimuth)) - 0.7 * np.cos(np.radians(azimuth))
-        found = horizon(land, azimuth)
+        found = horizon(terrain, azimuth)
         np.testing.assert_allclose(found[np.isfinite(found)], rise, atol=1e-12)
 
 
-def test_beyond_the_border_there_is_no_land():
+def test_beyond_the_border_there_is_no_terrain():
     found = horizon(rough(), 90.0)
     assert np.isneginf(found[:, -1]).all() and np.isfinite(found[:, :-1]).all()
     found = horizon(rough(), 225.0)
@@ -127,13 +127,13 @@ def test_beyond_the_border_there_is_no_land():
 
 
 def test_turning_and_mirroring_turn_and_mirror():
-    land = rough((15, 15), (10.0, 10.0))
-    here = horizon(land, 250.0)
+    terrain = rough((15, 15), (10.0, 10.0))
+    here = horizon(terrain, 250.0)
     turned = horizon(
-        Land(np.rot90(land.heights, -1), land.spacing), 160.0
+        Land(np.rot90(terrain.heights, -1), terrain.spacing), 160.0
     )  # rows go north: a quarter turn left
     np.testing.assert_allclose(turned, np.rot90(here, -1), rtol=1e-9)
-    mirrored = horizon(Land(land.heights[:, ::-1], land.spacing), -250.0)
+    mirrored = horizon(Land(terrain.heights[:, ::-1], terrain.spacing), -250.0)
     np.testing.assert_allclose(mirrored, here[:, ::-1], rtol=1e-9)
 
 
@@ -174,8 +174,8 @@ def test_a_plane_turned_away_has_none_and_one_that_grazes_half():
 
 
 def test_a_sun_half_behind_a_wall_is_half_seen():
-    land = wall(1000.0, 100.0, 20.0)
-    share, _ = sunlight(land, 90.0, np.degrees(np.arctan(0.1)))
+    terrain = wall(1000.0, 100.0, 20.0)
+    share, _ = sunlight(terrain, 90.0, np.degrees(np.arctan(0.1)))
     assert share[1, 0] == pytest.approx(0.5, abs=2e-4)
 
 
@@ -185,8 +185,8 @@ def test_a_walls_shadow_ends_and_its_penumbra_is_as_wide_as_the_sun(elevation, d
 
     Across the ray, the penumbra is the way from the wall's crest times 2 tan(0.265 degrees) wide.
     """
-    land = wall(distance, 100.0, thin)
-    share = sunlight(land, 90.0, elevation)[0][1, :-3]
+    terrain = wall(distance, 100.0, thin)
+    share = sunlight(terrain, 90.0, elevation)[0][1, :-3]
     away = distance - np.arange(len(share)) * thin
     dark, lit = away[share == 0].max(), away[share == 1].min()
     high = np.radians(elevation)
@@ -201,17 +201,17 @@ def test_a_walls_shadow_ends_and_its_penumbra_is_as_wide_as_the_sun(elevation, d
 
 
 def test_a_point_sun_is_the_limit_of_small_discs():
-    land = cone(33)
-    point = sunlight(land, 250.0, 12.0, diameter=0)
-    small = sunlight(land, 250.0, 12.0, diameter=0.01)
+    terrain = cone(33)
+    point = sunlight(terrain, 250.0, 12.0, diameter=0)
+    small = sunlight(terrain, 250.0, 12.0, diameter=0.01)
     for a, b in zip(point, small, strict=True):
         assert (np.abs(a - b) > 1e-3).mean() < 0.005
     assert 0.01 < (point[0] == 0).mean() < 0.5
 
 
 def test_few_strips_do():
-    land = LANDS["real"](49)
-    fine, coarse = (sunlight(land, 250.0, 5.0, count=c) for c in (64, 16))
+    terrain = LANDS["real"](49)
+    fine, coarse = (sunlight(terrain, 250.0, 5.0, count=c) for c in (64, 16))
     for a, b in zip(fine, coarse, strict=True):
         assert np.abs(a - b).max() < 0.03 and np.abs(a - b).mean() < 5e-4
 
@@ -219,7 +219,7 @@ def test_few_strips_do():
 # The sky
 
 
-def test_flat_land_has_the_whole_sky():
+def test_flat_terrain_has_the_whole_sky():
     np.testing.assert_allclose(sky_visibility(plane(0, 0)), 1, atol=1e-12)
 
 
@@ -227,16 +227,16 @@ def test_flat_land_has_the_whole_sky():
 @pytest.mark.parametrize("way", [0.0, 33.0])
 def test_an_inclined_plane_sees_its_share(angle, way):
     a, w = np.radians([angle, way])
-    land = plane(np.tan(a) * np.sin(w), np.tan(a) * np.cos(w))
-    np.testing.assert_allclose(sky_visibility(land), (1 + np.cos(a)) / 2, atol=2e-3)
+    terrain = plane(np.tan(a) * np.sin(w), np.tan(a) * np.cos(w))
+    np.testing.assert_allclose(sky_visibility(terrain), (1 + np.cos(a)) / 2, atol=2e-3)
 
 
 def test_a_valleys_walls_see_what_lies_between_the_rims():
     """Without an end, cos² a; with rims, (1 + cos(a + e)) / 2, e being the far rim's elevation."""
     a = np.radians(35)
     across = np.abs(np.arange(-20, 21)) * 10.0
-    land = Land(np.tile(across * np.tan(a), (9, 1)), (10.0, 1e6))
-    found = sky_visibility(land, count=128)[4]
+    terrain = Land(np.tile(across * np.tan(a), (9, 1)), (10.0, 1e6))
+    found = sky_visibility(terrain, count=128)[4]
     x = np.arange(1, 20)  # on the eastern wall, from the bed up
     rim = np.arctan((200 - x * 10) * np.tan(a) / (200 + x * 10))
     np.testing.assert_allclose(found[21:40], (1 + np.cos(a + rim)) / 2, atol=2e-3)
@@ -246,24 +246,24 @@ def test_a_valleys_walls_see_what_lies_between_the_rims():
 
 def test_every_place_in_a_bowl_sees_as_much_sky():
     """Inside a sphere every piece counts alike: K is the missing cap's share, (1 + cos rim) / 2."""
-    land = bowl(65, rim=45.0)
-    found = sky_visibility(land, count=32)
+    terrain = bowl(65, rim=45.0)
+    found = sky_visibility(terrain, count=32)
     y, x = np.mgrid[-32:33, -32:33] / 32
     inner = np.hypot(x, y) < 0.85
     np.testing.assert_allclose(found[inner], (1 + np.cos(np.radians(45))) / 2, atol=6e-3)
 
 
 def test_an_even_sky_is_what_the_closed_form_says():
-    land = rough()
+    terrain = rough()
     np.testing.assert_allclose(
-        sky_light(land, lambda azimuth, elevation: np.full_like(elevation, 3.0)),
-        3 * sky_visibility(land),
+        sky_light(terrain, lambda azimuth, elevation: np.full_like(elevation, 3.0)),
+        3 * sky_visibility(terrain),
         rtol=1e-9,
     )
 
 
 def test_a_sky_that_brightens_upwards():
-    """L = sin(e) on flat land: 2 ∫ sin² e cos e de = 2/3; a hemisphere bright to the east only: half."""
+    """L = sin(e) on flat terrain: 2 ∫ sin² e cos e de = 2/3; a hemisphere bright to the east only: half."""
     flat = plane(0, 0)
     np.testing.assert_allclose(sky_light(flat, lambda a, e: np.sin(e)), 2 / 3, rtol=1e-9)
     east = sky_light(flat, lambda a, e: np.where(np.sin(a) > 0, 1.0, 0.0))
@@ -277,22 +277,22 @@ def test_a_sky_that_brightens_upwards():
 # Light between places
 
 
-def test_what_is_not_sky_is_land():
-    for land in (bowl(17, rim=45.0), valley(17)):
-        matrix = exchange(land)
+def test_what_is_not_sky_is_terrain():
+    for terrain in (bowl(17, rim=45.0), valley(17)):
+        matrix = exchange(terrain)
         assert (matrix >= 0).all()
-        whole = matrix.sum(axis=1).reshape(land.heights.shape) + sky_visibility(land)
+        whole = matrix.sum(axis=1).reshape(terrain.heights.shape) + sky_visibility(terrain)
         inner = whole[3:-3, 3:-3]
         assert (inner <= 1 + 1e-9).all()
-        if land.name == "bowl":
+        if terrain.name == "bowl":
             np.testing.assert_allclose(inner, 1, atol=1e-3)
 
 
 def test_views_are_mutual():
     """Equal faces see as much of each other: the share times the receiver's area is symmetric."""
-    land = bowl(21, rim=50.0)
-    area = 1 / land.normals()[..., 2].ravel()
-    flow = exchange(land, count=128) * area[:, None]
+    terrain = bowl(21, rim=50.0)
+    area = 1 / terrain.normals()[..., 2].ravel()
+    flow = exchange(terrain, count=128) * area[:, None]
     bed, wall = 10 * 21 + 10, 10 * 21 + 3
     blocks = [np.add.outer(np.add.outer([-21, 0, 21], [-1, 0, 1]).ravel(), [p]).ravel() for p in (bed, wall)]
     there, back = flow[np.ix_(*blocks)].sum(), flow[np.ix_(*blocks[::-1])].sum()
@@ -302,8 +302,8 @@ def test_views_are_mutual():
 @pytest.mark.parametrize("colour", [0.3, 0.8])
 def test_in_a_bowl_all_bounces_add_up_to_the_closed_form(colour):
     """Stewart and Langer's K / (1 - C (1 - K)) is exact inside a sphere: all its places are alike."""
-    land = bowl(33, rim=50.0)
-    found = bounced(land, sky_visibility(land), colour)
+    terrain = bowl(33, rim=50.0)
+    found = bounced(terrain, sky_visibility(terrain), colour)
     k = (1 + np.cos(np.radians(50))) / 2
     y, x = np.mgrid[-16:17, -16:17] / 16
     np.testing.assert_allclose(found[np.hypot(x, y) < 0.8], k / (1 - colour * (1 - k)), atol=0.012)
@@ -313,8 +313,8 @@ def test_a_valleys_walls_light_each_other():
     """Across an endless valley two faces exchange half the difference of the sines of their angles."""
     a, n, colour = np.radians(40), 25, 0.6
     across = np.abs(np.arange(-n, n + 1)) * 10.0
-    land = Land(np.tile(across * np.tan(a), (5, 1)), (10.0, 1e6))
-    found = bounced(land, sky_visibility(land, count=64), colour, count=64)[2]
+    terrain = Land(np.tile(across * np.tan(a), (5, 1)), (10.0, 1e6))
+    found = bounced(terrain, sky_visibility(terrain, count=64), colour, count=64)[2]
 
     edges = np.linspace(0, n * 10.0, 8 * n + 1)  # pieces of the western wall, met from the eastern one
     middles = (edges[1:] + edges[:-1]) / 2
@@ -332,10 +332,10 @@ def test_a_valleys_walls_light_each_other():
 
 
 def test_bounces_converge_and_add():
-    land = bowl(9)
-    direct = sky_visibility(land)
-    lit = [bounced(land, direct, 0.5, times=t) for t in (0, 1, 2, 30)]
+    terrain = bowl(9)
+    direct = sky_visibility(terrain)
+    lit = [bounced(terrain, direct, 0.5, times=t) for t in (0, 1, 2, 30)]
     np.testing.assert_array_equal(lit[0], direct)
     assert (lit[1] >= lit[0]).all() and (lit[2] >= lit[1]).all() and (lit[2] > lit[1]).any()
-    np.testing.assert_allclose(lit[3], bounced(land, direct, 0.5), rtol=1e-6)
-    np.testing.assert_array_equal(bounced(land, direct, 0.0), direct)
+    np.testing.assert_allclose(lit[3], bounced(terrain, direct, 0.5), rtol=1e-6)
+    np.testing.assert_array_equal(bounced(terrain, direct, 0.0), direct)

@@ -1,4 +1,4 @@
-"""Which editor opens a file, what it is told, and what becomes of one that fails."""
+"""Which editor opens a file, which arguments it gets, and what becomes of one that fails."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ import pytest
 
 from playground.workbench.editors import Editor, Opener, find_editor, find_terminal
 
-FILE = Path("/land/my hills/land.glsl").absolute()
+FILE = Path("/terrain/my hills/terrain.glsl").absolute()
 
 
 def installed(*names: str) -> Callable[[str], str | None]:
-    """Return a stand-in for ``shutil.which`` on a machine with these programs."""
-    return lambda asked: f"/usr/bin/{asked}" if asked in names else None
+    """Return a fake ``shutil.which`` on a machine with these programs."""
+    return lambda name: f"/usr/bin/{name}" if name in names else None
 
 
 @pytest.mark.parametrize(
@@ -40,7 +40,7 @@ def installed(*names: str) -> Callable[[str], str | None]:
         (("own-editor", "--at={line}", "{file}"), ["--at=12", str(FILE)]),
     ],
 )
-def test_each_editor_is_told_the_place_its_own_way(words: tuple[str, ...], expected: list[str]) -> None:
+def test_each_editor_gets_the_place_its_own_way(words: tuple[str, ...], expected: list[str]) -> None:
     assert Editor(words).command(FILE, 12, 5) == [words[0], *expected]
 
 
@@ -49,7 +49,7 @@ def test_a_place_that_is_not_known_is_the_first() -> None:
 
 
 def test_a_file_named_like_a_mark_is_left_alone() -> None:
-    odd = Path("/land/{line}.glsl").absolute()
+    odd = Path("/terrain/{line}.glsl").absolute()
     assert Editor(("subl",)).command(odd, 3, 4) == ["subl", f"{odd}:3:4"]
 
 
@@ -99,7 +99,7 @@ def test_a_terminal_editor_runs_in_a_terminal() -> None:
         ({"EDITOR": "vim"}, "no terminal to open it in"),
     ],
 )
-def test_a_wish_that_cannot_be_is_told_and_the_next_is_taken(environ: dict[str, str], part: str) -> None:
+def test_a_wish_that_cannot_be_is_reported_and_the_next_is_taken(environ: dict[str, str], part: str) -> None:
     editor, complaint = find_editor(environ, installed("kate", "vim"), "linux")
     assert editor is not None and editor.name == "kate"
     assert part in complaint
@@ -132,7 +132,7 @@ def test_what_was_started_is_waited_for_and_gets_the_words_as_they_are(
 
     real = subprocess.Popen
     monkeypatch.setattr(subprocess, "Popen", start)
-    out = tmp_path / "told.txt"
+    out = tmp_path / "got.txt"
     code = "import sys, pathlib; pathlib.Path(sys.argv[1]).write_text('|'.join(sys.argv[2:]))"
     odd = tmp_path / "a $(touch owned); b.glsl"
     odd.write_text("// nothing\n")
@@ -148,7 +148,7 @@ def test_what_was_started_is_waited_for_and_gets_the_words_as_they_are(
 ODD = [
     "my hills.glsl",
     "it's.glsl",
-    'say "land".glsl',
+    'say "terrain".glsl',
     "$(touch owned).glsl",
     "`touch owned`.glsl",
     "a;touch owned;.glsl",
@@ -156,7 +156,7 @@ ODD = [
     "back\\slash$HOME${PWD}*.glsl",
     "-n {line} {file}.glsl",
 ]
-TELLS = "import pathlib, sys; pathlib.Path('told.txt').write_text(sys.argv[1])"
+WRITES = "import pathlib, sys; pathlib.Path('got.txt').write_text(sys.argv[1])"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs sh")
@@ -174,26 +174,26 @@ TELLS = "import pathlib, sys; pathlib.Path('told.txt').write_text(sys.argv[1])"
 )
 def test_a_script_never_reads_the_file_s_name(tmp_path: Path, script: str, name: str) -> None:
     file = tmp_path / name
-    (tmp_path / "tells").write_text(TELLS)
-    whole = script.replace("python", f"{sys.executable} tells").replace("{mark}", "{file}")
+    (tmp_path / "writes").write_text(WRITES)
+    whole = script.replace("python", f"{sys.executable} writes").replace("{mark}", "{file}")
     ways = (("sh", "-c", whole), ("sh", "-ec", whole, "sh", "more"), ("env", "A=b c", "sh", "-c", whole))
     for words in ways[: 3 if name == ODD[0] else 1]:
         command = Editor(words).command(file, 3)
         done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=60)
         assert (done.returncode, done.stderr) == (0, ""), command
-        assert (tmp_path / "told.txt").read_text() == str(file)
+        assert (tmp_path / "got.txt").read_text() == str(file)
         assert not (tmp_path / "owned").exists()
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs sh")
 @pytest.mark.parametrize("name", ODD)
-@pytest.mark.parametrize("script", ["tells {file}", 'tells "{file}"', "tells '{file}'"])
+@pytest.mark.parametrize("script", ["writes {file}", 'writes "{file}"', "writes '{file}'"])
 def test_a_command_in_one_word_has_the_name_quoted(tmp_path: Path, script: str, name: str) -> None:
     """As of a terminal multiplexer, which hands the word to a shell itself."""
-    (tmp_path / "tells").write_text(TELLS)
+    (tmp_path / "writes").write_text(WRITES)
     word = Editor(("tmux", "new-window", script)).command(tmp_path / name)[2]
     done = subprocess.run(["sh", "-c", f"{sys.executable} {word}"], cwd=tmp_path, timeout=60)
-    assert done.returncode == 0 and (tmp_path / "told.txt").read_text() == str(tmp_path / name)
+    assert done.returncode == 0 and (tmp_path / "got.txt").read_text() == str(tmp_path / name)
     assert not (tmp_path / "owned").exists()
 
 

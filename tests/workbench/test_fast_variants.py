@@ -69,7 +69,7 @@ def runs_fast(session: Session) -> bool:
     return session.plan is not None and session.plan.step("height") is not None
 
 
-def test_a_save_of_the_plain_text_shows_and_is_told_once(session, folder):
+def test_a_save_of_the_plain_text_shows_and_is_reported_once(session, folder):
     before = picture(session)
     assert runs_fast(session) and not session.notes
     change(folder / "diamond_square/raw.glsl", BEFORE, AFTER)
@@ -79,7 +79,7 @@ def test_a_save_of_the_plain_text_shows_and_is_told_once(session, folder):
     assert "diamond_square.comp is left out, the plain form runs" in note
     change(folder / "diamond_square/raw.glsl", "// end: height", "// more\n// end: height")
     saved(session)
-    assert not session.notes, "what was told before is not told again"
+    assert not session.notes, "what was reported before is not reported again"
     change(folder / "diamond_square/raw.glsl", AFTER, BEFORE)
     np.testing.assert_array_equal(saved(session), before)
     assert runs_fast(session) and not session.notes
@@ -88,7 +88,7 @@ def test_a_save_of_the_plain_text_shows_and_is_told_once(session, folder):
     assert len(session.notes) == 1, "it ran again in between"
 
 
-def test_what_is_wrong_from_the_beginning_is_told(ctx, folder):
+def test_what_is_wrong_from_the_beginning_is_reported(ctx, folder):
     (folder / NAME).unlink()
     with Engine(ctx) as engine:
         session = Session(engine, folder)
@@ -128,7 +128,7 @@ def test_plain_from_the_beginning(ctx, folder):
         session.release()
 
 
-def test_a_text_that_stands_in_for_a_file_shows_as_well(session, folder):
+def test_a_text_that_replaces_a_file_shows_as_well(session, folder):
     before = picture(session)
     path = folder / "diamond_square/raw.glsl"
     session.drafts.read_as({str(path): path.read_text(encoding="utf-8").replace(BEFORE, AFTER)})

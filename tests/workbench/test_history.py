@@ -20,7 +20,7 @@ from playground.workbench.session import Session
 from ..sketch_texts import map_of_height
 
 SIZE = (48, 32)
-KERNEL = """// land.glsl -- a slope
+KERNEL = """// terrain.glsl -- a slope
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.25; //! slider(0, 1)
 uniform float other = 0.0; //! slider(0, 1)
@@ -28,7 +28,7 @@ float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x) + othe
 """
 SKETCH = (
     "format = 1  # ours\nsize = 33\n"
-    + map_of_height()
+    + map_of_height("./terrain")
     + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0, "height.other" = 0.5 }\n'
 )
 
@@ -39,15 +39,15 @@ class Desk:
     def __init__(self, engine: Engine, folder: Path, path: Path | None = None) -> None:
         self.folder = folder
         if path is None:
-            (folder / "land.glsl").write_text(KERNEL, encoding="utf-8")
-            (folder / "other.glsl").write_text(KERNEL.replace("land", "other"), encoding="utf-8")
+            (folder / "terrain.glsl").write_text(KERNEL, encoding="utf-8")
+            (folder / "other.glsl").write_text(KERNEL.replace("terrain", "other"), encoding="utf-8")
             (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
         self.session = Session(engine, path or folder)
         self.time = 0.0
         self.bench = Bench(self.session, WindowControls(lambda: None), folder=folder, now=lambda: self.time)
-        self.turn()
+        self.frame()
 
-    def turn(self) -> np.ndarray:
+    def frame(self) -> np.ndarray:
         """Let a turn of the window pass, a second after the one before; return the picture."""
         self.time += 1.0
         self.session.frame(SIZE)
@@ -66,7 +66,7 @@ class Desk:
         return (self.folder / "sketch.toml").read_text(encoding="utf-8")
 
     @property
-    def said(self) -> str:
+    def messages(self) -> str:
         return "; ".join(notice.text for notice in self.bench.notices.items)
 
 
@@ -79,7 +79,7 @@ def desk(tmp_path: Path, any_engine: Engine) -> Iterator[Desk]:
 
 def test_everything_is_undone_and_done_again(desk: Desk) -> None:
     session, bench = desk.session, desk.bench
-    pictures = [desk.turn()]
+    pictures = [desk.frame()]
     for act in (
         lambda: session.drafts.set("height.level", 0.5),
         lambda: bench.commands.apply_preset("high"),
@@ -91,38 +91,38 @@ def test_everything_is_undone_and_done_again(desk: Desk) -> None:
         lambda: bench.commands.set_all("Random, seed 1", {"height.level": 0.125}),
     ):
         act()
-        pictures.append(desk.turn())
+        pictures.append(desk.frame())
     assert len(bench.undo.history.steps) == 8
     assert desk.value("other") == 0.5, "the reset left what is locked"
     for picture in reversed(pictures[:-1]):
         bench.undo.undo()
-        np.testing.assert_array_equal(desk.turn(), picture)
+        np.testing.assert_array_equal(desk.frame(), picture)
     assert session.clock.time == 0.0 and session.shown is not None
     assert session.shown.edits.values == () and session.sketch == session.shown.file
     for picture in pictures[1:]:
         bench.undo.redo()
-        np.testing.assert_array_equal(desk.turn(), picture)
+        np.testing.assert_array_equal(desk.frame(), picture)
     assert session.clock.time == 2.5 and session.shown.edits.locked == ("height.other",)
     bench.undo.go_to(2)
-    np.testing.assert_array_equal(desk.turn(), pictures[2])
+    np.testing.assert_array_equal(desk.frame(), pictures[2])
     bench.undo.redo()
     bench.undo.go_to(0)
-    desk.turn()
+    desk.frame()
     bench.undo.undo()
-    assert "nothing to undo" in desk.said
+    assert "nothing to undo" in desk.messages
 
 
 def test_undo_goes_on_after_a_reload_and_a_broken_one(desk: Desk) -> None:
     desk.session.drafts.set("height.level", 0.5)
-    desk.turn()
-    land = desk.folder / "land.glsl"
+    desk.frame()
+    terrain = desk.folder / "terrain.glsl"
     for text in ("broken", KERNEL.replace("+ other", "- other")):
-        land.write_text(text, encoding="utf-8")
+        terrain.write_text(text, encoding="utf-8")
         desk.session.drafts.reload()
         desk.session.frame(SIZE)
         desk.bench.undo.record()
     desk.session.drafts.set("height.other", 0.75)
-    desk.turn()
+    desk.frame()
     assert (desk.value("level"), desk.value("other")) == (0.5, 0.75)
     desk.bench.undo.undo()
     assert (desk.value("level"), desk.value("other")) == (0.5, 0.0)
@@ -133,57 +133,57 @@ def test_undo_goes_on_after_a_reload_and_a_broken_one(desk: Desk) -> None:
 def test_a_locked_parameter_is_left_by_presets(desk: Desk) -> None:
     desk.session.drafts.lock("height.level", True)
     desk.bench.commands.apply_preset("high")
-    desk.turn()
+    desk.frame()
     assert (desk.value("level"), desk.value("other")) == (0.25, 0.5)
-    assert "1 parameter; 1 locked parameter left alone" in desk.said
+    assert "1 parameter; 1 locked parameter left alone" in desk.messages
 
 
 def test_what_is_saved_is_in_the_file_and_can_still_be_undone(desk: Desk) -> None:
     desk.session.drafts.set("height.level", 0.5)
-    desk.turn()
+    desk.frame()
     desk.session.drafts.set_camera(Camera(azimuth=12.3456, elevation=30.0))
-    before = desk.turn()
+    before = desk.frame()
     desk.bench.commands.save_values()
-    assert 'use = "./land"\nset = { level = 0.5 }\n' in desk.text and "azimuth = 12.35" in desk.text
+    assert 'use = "./terrain"\nset = { level = 0.5 }\n' in desk.text and "azimuth = 12.35" in desk.text
     assert desk.text.startswith("format = 1  # ours\n")
-    np.testing.assert_array_equal(desk.turn(), before)
+    np.testing.assert_array_equal(desk.frame(), before)
     assert desk.session.shown is not None
     assert desk.session.shown.edits.values == () and desk.session.shown.edits.camera is None
-    assert "saved 1 value and the camera" in desk.said and "is taken" not in desk.said
+    assert "saved 1 value and the camera" in desk.messages and "is taken" not in desk.messages
     desk.bench.undo.undo()
-    desk.turn()
+    desk.frame()
     assert desk.session.sketch is not None
     assert desk.session.sketch.camera == Camera() and desk.value("level") == 0.5
     desk.bench.undo.undo()
     assert desk.value("level") == 0.25, "what the file said before"
     desk.bench.commands.save_values()
-    desk.turn()
+    desk.frame()
     assert "set = { level = 0.25 }" in desk.text and "azimuth = 200" in desk.text
     for _ in range(2):
         desk.bench.undo.redo()
-        desk.turn()
+        desk.frame()
     assert desk.value("level") == 0.5 and desk.session.sketch.camera.azimuth == 12.35
 
 
 def test_a_technique_is_saved_and_undone(desk: Desk) -> None:
     desk.session.drafts.choose("height", "./other")
-    desk.turn()
+    desk.frame()
     desk.bench.commands.save_values()
-    desk.turn()
+    desk.frame()
     assert 'use = "./other"' in desk.text and desk.session.shown is not None
     assert desk.session.shown.edits.techniques == ()
     desk.bench.undo.undo()
-    desk.turn()
+    desk.frame()
     spec = desk.session.shown.base.graph.find("height")
-    assert spec is not None and spec.use == "./land"
+    assert spec is not None and spec.use == "./terrain"
 
 
 def test_values_by_hand_become_a_preset(desk: Desk) -> None:
     desk.bench.commands.save_as_preset("low")
-    assert "would be empty" in desk.said and "low" not in desk.text
+    assert "would be empty" in desk.messages and "low" not in desk.text
     desk.session.drafts.set("height.level", 0.125)
     desk.bench.commands.save_as_preset(" low ")
-    desk.turn()
+    desk.frame()
     assert desk.session.sketch is not None
     assert [p.name for p in desk.session.sketch.presets] == ["high", "low"]
     assert desk.session.sketch.presets[1].values == (("height.level", 0.125),)
@@ -191,23 +191,23 @@ def test_values_by_hand_become_a_preset(desk: Desk) -> None:
     assert desk.session.shown.edits.has("height.level"), "a preset more is no saved value"
 
 
-def test_a_file_changed_meanwhile_is_said(desk: Desk) -> None:
+def test_a_file_changed_meanwhile_is_reported(desk: Desk) -> None:
     desk.session.drafts.set("height.level", 0.5)
     text = SKETCH.replace("size = 33", "size = 17")
     (desk.folder / "sketch.toml").write_text(text, encoding="utf-8")
     desk.bench.commands.save_values()
-    assert "changed meanwhile" in desk.said and desk.text == text
+    assert "changed meanwhile" in desk.messages and desk.text == text
 
 
 def test_a_shipped_sketch_is_offered_as_a_copy(tmp_path: Path, any_engine: Engine) -> None:
     desk = Desk(any_engine, tmp_path, SKETCHES / "white_noise.toml")
     before = (SKETCHES / "white_noise.toml").read_bytes()
     desk.session.drafts.set("height.seed", 4)
-    picture = desk.turn()
+    picture = desk.frame()
     desk.bench.commands.save_values()
     assert desk.bench.file.offer == "This sketch belongs to the playground itself."
     desk.bench.commands.save_a_copy()
-    np.testing.assert_array_equal(desk.turn(), picture)
+    np.testing.assert_array_equal(desk.frame(), picture)
     assert desk.session.path == tmp_path / "white_noise" / "sketch.toml"
     assert desk.session.shown is not None and desk.session.shown.edits.values == ()
     assert (SKETCHES / "white_noise.toml").read_bytes() == before
@@ -220,11 +220,19 @@ def test_another_sketch_begins_anew(desk: Desk, tmp_path: Path) -> None:
     desk.session.drafts.set("height.level", 0.5)
     other = tmp_path / "two" / "sketch.toml"
     other.parent.mkdir()
-    for name in ("land.glsl", "sketch.toml"):
+    for name in ("terrain.glsl", "sketch.toml"):
         (other.parent / name).write_bytes((tmp_path / name).read_bytes())
     desk.bench.commands.open(other)
-    desk.turn()
+    desk.frame()
     assert desk.value("level") == 0.25 and not desk.bench.undo.history.can_undo
+
+
+def test_a_step_that_fails_gives_its_name_to_no_other(desk: Desk) -> None:
+    with pytest.raises(ZeroDivisionError), desk.bench.undo.step("Random"):
+        raise ZeroDivisionError
+    desk.session.drafts.set("height.level", 0.5)
+    desk.frame()
+    assert [step.name for step in desk.bench.undo.history.steps] == [""]
 
 
 def test_a_saved_camera_has_as_many_digits_as_a_person_would_write() -> None:
@@ -233,7 +241,7 @@ def test_a_saved_camera_has_as_many_digits_as_a_person_would_write() -> None:
 
 
 class Brush:
-    """A brush in the hand, with so many strokes to take back."""
+    """A brush that is on, with so many strokes to take back."""
 
     on = True
 
@@ -257,21 +265,21 @@ class Brush:
         self.strokes, self.undone = self.strokes + 1, self.undone - 1
 
 
-def test_with_the_brush_in_the_hand_strokes_are_undone_and_redone_and_no_values(desk: Desk) -> None:
+def test_while_painting_strokes_are_undone_and_redone_and_no_values(desk: Desk) -> None:
     desk.session.drafts.set("height.level", 0.5)
-    desk.turn()
+    desk.frame()
     brush = Brush(1)
     desk.bench.undo.painting = brush  # type: ignore[assignment]
     desk.bench.undo.undo()
     assert brush.strokes == 0 and desk.value("level") == 0.5
-    assert "took the last stroke back; put the brush down (B) to undo values" in desk.said
+    assert "took the last stroke back; put the brush down (B) to undo values" in desk.messages
     desk.bench.undo.undo()
-    assert "no stroke to take back" in desk.said and desk.value("level") == 0.5
+    assert "no stroke to take back" in desk.messages and desk.value("level") == 0.5
     desk.bench.undo.redo()
     assert brush.strokes == 1 and desk.value("level") == 0.5
-    assert "painted the stroke again; put the brush down (B) to redo values" in desk.said
+    assert "painted the stroke again; put the brush down (B) to redo values" in desk.messages
     desk.bench.undo.redo()
-    assert "no stroke to paint again" in desk.said
+    assert "no stroke to paint again" in desk.messages
     brush.on = False
     desk.bench.undo.undo()
     assert desk.value("level") == 0.25

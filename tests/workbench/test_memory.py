@@ -1,4 +1,4 @@
-"""What was set by hand is there again after the window is closed, or has crashed."""
+"""What was set by the user is there again after the window is closed, or has crashed."""
 
 from __future__ import annotations
 
@@ -14,30 +14,22 @@ from playground.engine.engine import Engine
 from playground.folders import cache_folder, state_folder
 from playground.sketch.assign import values_of
 from playground.sketch.model import Camera
-from playground.workbench.autosave import QUIET, TIME, Rememberer
+from playground.workbench.autosave import QUIET, TIME, Autosave
 from playground.workbench.edit_merge import FileValue
 from playground.workbench.edits import Edits
 from playground.workbench.memory import Compared, Memory, Remembered
 from playground.workbench.session import Session
 
 from ..cases import each
+from ..sketch_texts import TERRAIN_IN_3D as SKETCH
 
 SIZE = (64, 48)
-LAND = """#pragma kernel(output = "height:r32f", repeat = "4")
+TERRAIN = """#pragma kernel(output = "height:r32f", repeat = "4")
 uniform float level = 0.25; //! slider(0, 1)
 uniform vec2 slope = vec2(1.0, 2.0);
 float kernel(ivec2 texel) {
     return previous(texel) * 0.5 + level * dot(slope, vec2(texel)) * (0.5 + fract(time)) / float(size.x);
 }
-"""
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/terrain"
-samples = 1
 """
 FULL = Remembered(
     Edits(
@@ -72,17 +64,17 @@ class Place:
     def __init__(self, folder: Path, engine: Engine) -> None:
         self.sketch, self.state, self.engine, self.now = folder / "sketch", folder / "state", engine, 100.0
         self.sketch.mkdir()
-        (self.sketch / "land.glsl").write_text(LAND, encoding="utf-8")
+        (self.sketch / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
         (self.sketch / "sketch.toml").write_text(SKETCH, encoding="utf-8")
-        self.open: list[tuple[Session, Rememberer]] = []
+        self.open: list[tuple[Session, Autosave]] = []
 
-    def start(self, **more: object) -> tuple[Session, Rememberer]:
+    def start(self, **more: object) -> tuple[Session, Autosave]:
         memory = Memory(self.sketch / "sketch.toml", self.state)
         found, complaint = memory.read()
         more |= {"start": found.start}
         session = Session(self.engine, self.sketch, **more)  # type: ignore[arg-type]
         session.notes.extend(filter(None, [complaint]))
-        made = session, Rememberer(session, memory, found, lambda: self.now)
+        made = session, Autosave(session, memory, found, lambda: self.now)
         self.open.append(made)
         session.frame(SIZE)
         return made
@@ -95,8 +87,8 @@ class Place:
 def place(tmp_path: Path, any_engine: Engine):
     made = Place(tmp_path, any_engine)
     yield made
-    for session, rememberer in made.open:
-        rememberer.close()
+    for session, autosave in made.open:
+        autosave.close()
         session.release()
 
 
@@ -137,25 +129,25 @@ def test_a_file_of_before_there_was_more_to_remember_is_read(tmp_path: Path) -> 
 
 
 def test_the_times_between_which_it_goes_round_come_back(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     session.clock.set_loop(0.5, 2.0)
-    rememberer.look((900, 600))
-    rememberer.close()
-    again, rememberer = place.start()
+    autosave.look((900, 600))
+    autosave.close()
+    again, autosave = place.start()
     assert again.clock.loop == (0.5, 2.0)
     again.clock.loop = None
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     assert place.start()[0].clock.loop is None
 
 
 @pytest.mark.parametrize("moved", [False, True])
 def test_a_camera_by_hand_gives_way_where_the_file_moved_its_own_meanwhile(place: Place, moved: bool) -> None:
-    session, rememberer = place.start()
-    by_hand = Camera(azimuth=70.0, elevation=50.0, distance=15000.0)
-    session.drafts.set_camera(by_hand)
-    rememberer.look((900, 600))
-    rememberer.close()
+    session, autosave = place.start()
+    by_user = Camera(azimuth=70.0, elevation=50.0, distance=15000.0)
+    session.drafts.set_camera(by_user)
+    autosave.look((900, 600))
+    autosave.close()
     other = SKETCH + ("camera = { azimuth = 12.0 }\n" if moved else "# the same camera\n")
     (place.sketch / "sketch.toml").write_text(other, encoding="utf-8")
     again, _ = place.start()
@@ -164,15 +156,15 @@ def test_a_camera_by_hand_gives_way_where_the_file_moved_its_own_meanwhile(place
         assert again.sketch.camera == again.shown.file.camera and again.sketch.camera.azimuth == 12.0
         assert list(again.notes) == ["camera: the file's new one is taken"]
     else:
-        assert again.sketch.camera == by_hand and not again.notes
+        assert again.sketch.camera == by_user and not again.notes
 
 
 def test_a_session_goes_on_where_another_ended_to_the_bit(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     change_everything(session)
     before, edits = picture(session), session.shown.edits
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     again, _ = place.start()
     assert again.shown.edits == edits and again.view.steps == {"height": 3}
     assert again.clock.time == 0.3 and not again.clock.playing
@@ -181,49 +173,49 @@ def test_a_session_goes_on_where_another_ended_to_the_bit(place: Place) -> None:
 
 
 def test_a_map_comes_back_too(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     session.show("height:height")
     session.view.set_map("highest", 3.0)
     before = picture(session)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     again, _ = place.start()
     np.testing.assert_array_equal(picture(again), before)
 
 
 def test_it_is_written_as_one_goes_once_it_rests(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     for value in (0.5, 0.6, 0.7):
         session.drafts.set("height.level", value)
         place.now += QUIET / 2
-        rememberer.look((900, 600))
-        assert place.files() == [] and rememberer.waits
+        autosave.look((900, 600))
+        assert place.files() == [] and autosave.waits
     place.now += QUIET
-    rememberer.look((900, 600))
-    assert len(place.files()) == 1 and not rememberer.waits
+    autosave.look((900, 600))
+    assert len(place.files()) == 1 and not autosave.waits
     assert json.loads((place.state / place.files()[0]).read_text())["values"]["height.level"]["value"] == 0.7
 
 
 def test_time_that_runs_is_written_now_and_then(place: Place) -> None:
-    session, rememberer = place.start()
-    rememberer.look((900, 600))
+    session, autosave = place.start()
+    autosave.look((900, 600))
     place.now += QUIET
-    rememberer.look((900, 600))
+    autosave.look((900, 600))
     written = []
     for _ in range(100):
         place.now += TIME / 20
         session.clock.time += TIME / 20
-        rememberer.look((900, 600))
+        autosave.look((900, 600))
         written.append(json.loads((place.state / place.files()[0]).read_text())["time"])
     assert 4 <= len(set(written)) <= 6
 
 
 def test_what_the_file_says_anew_goes_before_what_was_set(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     change_everything(session)
-    rememberer.look((900, 600))
-    rememberer.close()
-    text = SKETCH.replace('use = "./land"', 'use = "./land"\nset = { level = 0.5 }')
+    autosave.look((900, 600))
+    autosave.close()
+    text = SKETCH.replace('use = "./terrain"', 'use = "./terrain"\nset = { level = 0.5 }')
     (place.sketch / "sketch.toml").write_text(text, encoding="utf-8")
     again, _ = place.start()
     values = values_of(again.sketch)
@@ -232,19 +224,19 @@ def test_what_the_file_says_anew_goes_before_what_was_set(place: Place) -> None:
 
 
 def test_a_new_default_is_no_newer_word_than_what_was_set(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     change_everything(session)
-    rememberer.look((900, 600))
-    rememberer.close()
-    text = LAND.replace("level = 0.25", "level = 0.5").replace("vec2(1.0, 2.0)", "vec2(3.0, 2.0)")
-    (place.sketch / "land.glsl").write_text(text, encoding="utf-8")
+    autosave.look((900, 600))
+    autosave.close()
+    text = TERRAIN.replace("level = 0.25", "level = 0.5").replace("vec2(1.0, 2.0)", "vec2(3.0, 2.0)")
+    (place.sketch / "terrain.glsl").write_text(text, encoding="utf-8")
     again, _ = place.start()
     values = values_of(again.sketch)
     assert values["height.level"] == 0.75 and values["height.slope"] == (0.5, 0.25)
     assert not again.notes
 
 
-SAYS = {  # what the sketch sets, and the land's default, when the hand sets 0.75, and afterwards
+SAYS = {  # what the sketch sets, and the terrain's default, when the user sets 0.75, and afterwards
     "another default": ("", 0.25, "", 0.5),
     "the same": ("level = 0.5", 0.25, "level = 0.5", 0.25),
     "set anew": ("", 0.25, "level = 0.5", 0.25),
@@ -252,7 +244,7 @@ SAYS = {  # what the sketch sets, and the land's default, when the hand sets 0.7
     "set otherwise": ("level = 0.125", 0.25, "level = 0.5", 0.25),
     "set no more": ("level = 0.125", 0.25, "", 0.25),
     "set no more, the default as it was set": ("level = 0.25", 0.125, "", 0.25),
-    "set to the hand's": ("", 0.25, "level = 0.75", 0.25),
+    "set to the user's": ("", 0.25, "level = 0.75", 0.25),
 }
 
 
@@ -260,36 +252,36 @@ SAYS = {  # what the sketch sets, and the land's default, when the hand sets 0.7
 @pytest.mark.parametrize("what", SAYS)
 def test_a_new_start_and_a_reload_judge_alike(place: Place, what: str, locked: bool) -> None:
     def save(own: str, default: float) -> None:
-        text = SKETCH.replace('use = "./land"', f'use = "./land"\nset = {{ {own} }}')
+        text = SKETCH.replace('use = "./terrain"', f'use = "./terrain"\nset = {{ {own} }}')
         (place.sketch / "sketch.toml").write_text(text, encoding="utf-8")
-        land = LAND.replace("level = 0.25", f"level = {default}")
-        (place.sketch / "land.glsl").write_text(land, encoding="utf-8")
+        terrain = TERRAIN.replace("level = 0.25", f"level = {default}")
+        (place.sketch / "terrain.glsl").write_text(terrain, encoding="utf-8")
 
     own, default, then, later = SAYS[what]
     save(own, default)
-    session, rememberer = place.start()
+    session, autosave = place.start()
     session.drafts.set("height.level", 0.75)
     session.drafts.lock("height.level", locked)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     save(then, later)
     session.drafts.reload()
     session.frame(SIZE)
     again, _ = place.start()
     assert again.shown.edits == session.shown.edits
-    # Of an edit that changes a default to no effect only the reload tells: a new start knows of no edit.
+    # Of an edit that changes a default to no effect only the reload reports: a new start knows of no edit.
     assert list(again.notes) == [note for note in session.notes if "the default is" not in note]
     stays = locked or what in ("another default", "the same", "set to what it was") or "as it was" in what
     assert again.shown.edits.has("height.level") == stays
 
 
 @pytest.mark.parametrize("locked", [False, True])
-def test_the_lands_own_values_are_the_files_word(place: Place, locked: bool) -> None:
-    session, rememberer = place.start()
+def test_the_terrains_own_values_are_the_files_word(place: Place, locked: bool) -> None:
+    session, autosave = place.start()
     session.drafts.set("relief", 500.0)
     session.drafts.lock("relief", locked)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     (place.sketch / "sketch.toml").write_text(SKETCH.replace("size = 33", "size = 33\nrelief = 700.0"))
     session.drafts.reload()
     session.frame(SIZE)
@@ -299,19 +291,19 @@ def test_the_lands_own_values_are_the_files_word(place: Place, locked: bool) -> 
 
 
 def test_what_the_command_line_sets_goes_before_all(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     change_everything(session)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     again, _ = place.start(values={"height.level": 0.125})
     assert values_of(again.sketch)["height.level"] == 0.125
 
 
 def test_when_all_is_reset_nothing_is_remembered_but_the_window(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     change_everything(session)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     again, second = place.start()
     again.reset_values()
     again.drafts.set_camera(None)
@@ -335,18 +327,18 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_a_broken_file_is_set_aside_and_one_is_told(place: Place, name: str) -> None:
+def test_a_broken_file_is_set_aside_and_one_is_reported(place: Place, name: str) -> None:
     memory = Memory(place.sketch / "sketch.toml", place.state)
     place.state.mkdir()
     data = BROKEN[name].encode("utf-8", "surrogatepass")
     memory.path.write_bytes(data)
-    session, rememberer = place.start()
+    session, autosave = place.start()
     assert session.shown is not None and session.error is None
     assert "cannot be read" in session.notes[0] and ".unread.json" in session.notes[0]
     assert memory.path.with_suffix(".unread.json").read_bytes() == data, "nothing is lost"
     session.drafts.set("height.level", 0.5)
-    rememberer.look((900, 600))
-    rememberer.close()
+    autosave.look((900, 600))
+    autosave.close()
     found, complaint = memory.read()
     assert complaint == "" and dict(found.edits.values) == {"height.level": 0.5}
 
@@ -365,11 +357,11 @@ def test_no_value_of_another_kind_is_taken_or_raises(tmp_path: Path, key: str, w
 def test_two_windows_on_one_sketch_do_not_fight(place: Place) -> None:
     first, one = place.start()
     second, two = place.start()
-    for session, rememberer, value in ((first, one, 0.5), (second, two, 0.75), (first, one, 0.625)):
+    for session, autosave, value in ((first, one, 0.5), (second, two, 0.75), (first, one, 0.625)):
         session.drafts.set("height.level", value)
-        rememberer.look((900, 600))
+        autosave.look((900, 600))
         place.now += QUIET
-        rememberer.look((900, 600))
+        autosave.look((900, 600))
     assert any("another window" in note for note in second.notes)
     found, _ = Memory(place.sketch / "sketch.toml", place.state).read()
     assert dict(found.edits.values) == {"height.level": 0.625}
@@ -382,39 +374,39 @@ def test_two_windows_on_one_sketch_do_not_fight(place: Place) -> None:
 
 
 def test_each_sketch_opened_in_a_window_is_remembered_by_itself(place: Place) -> None:
-    session, rememberer = place.start()
+    session, autosave = place.start()
     session.drafts.set("height.level", 0.5)
-    rememberer.look((900, 600))
+    autosave.look((900, 600))
     other = place.sketch / "other.toml"
     other.write_text(SKETCH, encoding="utf-8")
     session.drafts.path = other
     session.drafts.reload()
     session.drafts.set("height.level", 0.75)
     session.frame(SIZE)
-    rememberer.look((900, 600))
-    rememberer.close()
-    kept = [Memory(path, place.state).read()[0] for path in (place.sketch / "sketch.toml", other)]
-    assert [dict(found.edits.values) for found in kept] == [{"height.level": 0.5}, {"height.level": 0.75}]
+    autosave.look((900, 600))
+    autosave.close()
+    written = [Memory(path, place.state).read()[0] for path in (place.sketch / "sketch.toml", other)]
+    assert [dict(found.edits.values) for found in written] == [{"height.level": 0.5}, {"height.level": 0.75}]
 
 
 @pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root may write anywhere")
-def test_where_nothing_can_be_written_one_is_told_once(place: Place) -> None:
+def test_where_nothing_can_be_written_it_is_reported_once(place: Place) -> None:
     place.state.mkdir(mode=0o500)
-    check_told_once(place)
+    check_reported_once(place)
 
 
-def test_where_the_folder_is_a_file_one_is_told_once(place: Place) -> None:
+def test_where_the_folder_is_a_file_it_is_reported_once(place: Place) -> None:
     place.state.write_text("not a folder")
-    check_told_once(place)
+    check_reported_once(place)
 
 
-def check_told_once(place: Place) -> None:
-    session, rememberer = place.start()
+def check_reported_once(place: Place) -> None:
+    session, autosave = place.start()
     for value in (0.5, 0.75):
         session.drafts.set("height.level", value)
-        rememberer.look((900, 600))
+        autosave.look((900, 600))
         place.now += QUIET
-        rememberer.look((900, 600))
+        autosave.look((900, 600))
     assert len([note for note in session.notes if "cannot be remembered" in note]) == 1
 
 

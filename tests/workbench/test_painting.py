@@ -1,4 +1,4 @@
-"""Painting on a mask: where a stroke goes, what it leaves, how it is kept and taken back."""
+"""Painting on a mask: where a stroke goes, what it leaves, how it is saved and undone."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def test_a_layer_takes_from_the_others_and_an_eraser_from_all():
     assert (mask[25, 50] == 0).all() and mask[0, 0, 0] == 0.75
 
 
-def test_beside_the_land_nothing_is_painted():
+def test_outside_the_terrain_nothing_is_painted():
     mask = empty()
     stroke(mask, (3.0, 3.0), (4.0, 3.0), EXTENT, HARD)
     assert (mask == 0).all()
@@ -85,7 +85,7 @@ def test_a_new_mask_has_the_pass_s_size_and_a_new_name(tmp_path: Path):
     assert read_image(first.path).size == SIZE
 
 
-def test_a_canvas_has_the_land_s_size_and_a_very_large_one_is_held_to_a_bound(tmp_path: Path):
+def test_a_canvas_has_the_terrain_s_size_and_a_very_large_one_is_held_to_a_bound(tmp_path: Path):
     canvas = Canvas.begun(tmp_path, "usual", None, (1025, 513))
     assert read_image(canvas.path).size == canvas.mask.shape[1::-1] == (1025, 513)
     canvas = Canvas.begun(tmp_path, "large", None, (4097, 2049), most=1024)
@@ -93,7 +93,7 @@ def test_a_canvas_has_the_land_s_size_and_a_very_large_one_is_held_to_a_bound(tm
     assert MOST_TEXELS == 2**12 + 1
 
 
-def test_strokes_are_kept_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
+def test_strokes_are_saved_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
     canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
     pictures = [read_image(canvas.path).pixels]
     for x in (0.2, 0.8):
@@ -267,7 +267,7 @@ def shown(tmp_path: Path, engine: Engine, text: str, *files: tuple[str, str]) ->
     return made
 
 
-def test_land_that_is_not_square_can_be_painted_on(tmp_path: Path, any_engine: Engine) -> None:
+def test_terrain_that_is_not_square_can_be_painted_on(tmp_path: Path, any_engine: Engine) -> None:
     text = SKETCH.replace("extent = [2000.0, 2000.0]", "extent = [2000.0, 1100.0]")
     session = shown(tmp_path, any_engine, text)
     try:
@@ -313,7 +313,7 @@ def test_a_mask_that_was_taken_away_is_written_again(session: Session, tmp_path:
     assert canvas.path.exists() and session.error is None
 
 
-def test_without_its_mask_the_brush_is_not_in_the_hand(session: Session, tmp_path: Path) -> None:
+def test_without_its_mask_the_brush_is_off(session: Session, tmp_path: Path) -> None:
     painting = Painting(session, tmp_path)
     painting.toggle()
     assert painting.on

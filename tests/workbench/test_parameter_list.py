@@ -1,4 +1,4 @@
-"""The panel's pure parts: what it lists, what is typed, values by chance, undo."""
+"""The panel's pure parts: what it lists, what is typed, random values, undo."""
 
 from __future__ import annotations
 
@@ -13,26 +13,26 @@ from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, Widget
 from playground.sketch.values import coerce, tidied
 from playground.workbench.edits import Draft, Edits
-from playground.workbench.history import History, applied, edits_of, in_words, state_of
+from playground.workbench.history import History, State, applied, edits_of, in_words, state_of
 from playground.workbench.parameter_list import Filter, Listing, set_words
 from playground.workbench.randomise import at_random, mutated
 from playground.workbench.typed_values import read_typed
 
 from ..sketch_texts import map_of_height
 
-KERNEL = """// land.glsl -- level land
+KERNEL = """// terrain.glsl -- level terrain
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1) How high it lies
 uniform float other = 0.5; //! slider(0, 1) group("More") label("Beside it")
 float kernel(ivec2 texel) { return level + other; }
 """
 SKETCH = "format = 1\nsize = 33\n" + map_of_height("./both")
-BOTH = '[[pass]]\nname = "inner"\nuse = "./land"\n[parameters]\nhigh = "inner.level"\n'
+BOTH = '[[pass]]\nname = "inner"\nuse = "./terrain"\n[parameters]\nhigh = "inner.level"\n'
 
 
 @pytest.fixture
 def draft(tmp_path: Path) -> Draft:
-    for name, text in {"land.glsl": KERNEL, "sketch.toml": SKETCH, "both.toml": BOTH}.items():
+    for name, text in {"terrain.glsl": KERNEL, "sketch.toml": SKETCH, "both.toml": BOTH}.items():
         (tmp_path / name).write_text(text, encoding="utf-8")
     sketch = load(tmp_path)
     return Draft(sketch, sketch)
@@ -61,8 +61,8 @@ def test_a_pass_lists_what_it_exports_and_what_is_inside(draft: Draft) -> None:
     ],
 )
 def test_a_search_finds_every_word_somewhere(draft: Draft, search: str, found: set[str]) -> None:
-    kept = Listing().filtered(draft, Filter(search))
-    assert {i.path for section in kept.values() for i in section.items if section.name == "height"} == found
+    left = Listing().filtered(draft, Filter(search))
+    assert {i.path for section in left.values() for i in section.items if section.name == "height"} == found
 
 
 def test_what_is_changed_by_any_name_is_marked_and_found(draft: Draft) -> None:
@@ -109,7 +109,7 @@ def test_a_value_may_be_typed_as_an_expression(parameter: Parameter, text: str, 
 
 
 @pytest.mark.parametrize(
-    ("parameter", "text", "said"),
+    ("parameter", "text", "message"),
     [
         (ANGLE, "11", "outside its range 0 to 10"),
         (ANGLE, "1/0", "division by zero"),
@@ -120,10 +120,10 @@ def test_a_value_may_be_typed_as_an_expression(parameter: Parameter, text: str, 
         (MENU, "hrad", "did you mean 'hard'"),
     ],
 )
-def test_what_cannot_be_taken_is_said(parameter: Parameter, text: str, said: str) -> None:
+def test_what_cannot_be_taken_is_reported(parameter: Parameter, text: str, message: str) -> None:
     with pytest.raises(ParameterError, match=r"p\.a") as caught:
         read_typed(parameter, text, "p.a")
-    assert said in str(caught.value)
+    assert message in str(caught.value)
 
 
 def test_a_number_of_the_graphics_card_is_written_short() -> None:
@@ -132,7 +132,7 @@ def test_a_number_of_the_graphics_card_is_written_short() -> None:
         assert np.float32(short) == np.float32(value) and len(repr(short)) <= 12
 
 
-# ── chance ───────────────────────────────────────────────────────────────────
+# ── random values ───────────────────────────────────────────────────────────────────
 
 MANY = [
     ("p.slider", Parameter("slider", "float", 0.5, Widget("slider", 0.0, 1.0), step=0.25)),
@@ -148,7 +148,7 @@ FREE = ("p.free", Parameter("free", "float", 2.0))
 FILE = ("p.file", Parameter("file", "sampler2D", "x.png", Widget("file")))
 
 
-def test_chance_stays_in_the_ranges_and_repeats_itself() -> None:
+def test_random_values_stay_in_the_ranges_and_repeat() -> None:
     parameters = dict(MANY)
     seen: dict[str, list[object]] = {path: [] for path in parameters}
     for seed in range(200):
@@ -187,24 +187,35 @@ def test_a_mutation_stays_near_and_goes_farther_with_its_strength() -> None:
 
 
 class Desk:
-    """A history, and the edits that it follows; a second passes in each turn."""
+    """A history, and the edits that it follows; a second passes in each frame."""
 
     def __init__(self) -> None:
-        self.history, self.edits, self.now, self.file = History(), Edits(), 0.0, object()
-        self.turn()
+        self.history, self.edits, self.now, self.reads = History(), Edits(), 0.0, 0
+        self.frame()
 
-    def turn(self, held: bool = False, seconds: float = 1.0) -> None:
+    def frame(self, held: bool = False, seconds: float = 1.0) -> None:
         self.now += seconds
-        self.history.look(self.edits, {}, self.file, held=held, now=self.now)
+        self.history.look(self.edits, {}, self.reads, held=held, now=self.now)
 
     def set(self, path: str, value: float, **how: float) -> None:
         self.edits = self.edits.with_value(path, value)
-        self.turn(**how)  # type: ignore[arg-type]
+        self.frame(**how)  # type: ignore[arg-type]
 
-    def take(self, changes: object) -> None:
-        self.edits = edits_of(applied(state_of(self.edits, {}), changes))  # type: ignore[arg-type]
+    def undo(self) -> None:
+        assert self.history.go(-1, self._apply)
+        self._settle()
+
+    def redo(self) -> None:
+        assert self.history.go(1, self._apply)
+        self._settle()
+
+    def _apply(self, changes: State) -> bool:
+        self.edits = edits_of(applied(state_of(self.edits, {}), changes))
+        return True
+
+    def _settle(self) -> None:
         self.history.settle(self.edits, {})
-        self.turn()
+        self.frame()
 
 
 def test_undo_and_redo_go_through_every_state() -> None:
@@ -213,14 +224,14 @@ def test_undo_and_redo_go_through_every_state() -> None:
         desk.set(f"p.{n % 2}", float(n))
         states.append(desk.edits)
     desk.edits = Edits(desk.edits.values, (("p", "x"),), Camera(azimuth=1.0), ("p.1",))
-    desk.turn()
+    desk.frame()
     states.append(desk.edits)
     for state in reversed(states[:-1]):
-        desk.take(desk.history.undo())
+        desk.undo()
         assert state_of(desk.edits, {}) == state_of(state, {})
-    assert not desk.history.can_undo and desk.history.undo() == {}
+    assert not desk.history.can_undo and not desk.history.go(-1, lambda changes: True)
     for state in states[1:]:
-        desk.take(desk.history.redo())
+        desk.redo()
         assert state_of(desk.edits, {}) == state_of(state, {})
     assert not desk.history.can_redo and len(desk.history.steps) == 6
 
@@ -229,12 +240,12 @@ def test_a_drag_is_one_step_and_one_that_comes_back_is_none() -> None:
     desk = Desk()
     for n in range(10):
         desk.set("p.a", n / 10, held=True, seconds=2.0)
-    desk.turn(held=False)
+    desk.frame(held=False)
     assert [s.after for s in desk.history.steps] == [{("value", "p.a"): 0.9}]
     for value in (0.5, 0.9):
         desk.set("p.a", value, held=True)
     desk.set("p.a", 0.9, held=False, seconds=0.1)
-    desk.turn()
+    desk.frame()
     desk.set("p.b", 1.0)
     assert [list(s.after) for s in desk.history.steps] == [[("value", "p.a")], [("value", "p.b")]]
 
@@ -243,22 +254,22 @@ def test_what_goes_on_in_the_same_way_is_one_step() -> None:
     desk = Desk()
     for n in range(5):
         desk.edits = Edits(camera=Camera(distance=100.0 - n))
-        desk.turn(seconds=0.1)
-    desk.turn(seconds=5.0)
+        desk.frame(seconds=0.1)
+    desk.frame(seconds=5.0)
     desk.edits = Edits(camera=Camera(distance=50.0))
-    desk.turn()
+    desk.frame()
     assert len(desk.history.steps) == 2
 
 
 def test_a_new_step_ends_what_could_be_redone_and_the_oldest_go_first() -> None:
     desk = Desk()
     desk.history = History(most=4)
-    desk.turn()
+    desk.frame()
     for n in range(6):
         desk.set("p.a", float(n))
     assert len(desk.history.steps) == 4 and desk.history.steps[0].after == {("value", "p.a"): 2.0}
-    desk.take(desk.history.undo())
-    desk.take(desk.history.undo())
+    desk.undo()
+    desk.undo()
     desk.set("p.b", 1.0)
     assert len(desk.history.steps) == 3 and not desk.history.can_redo
 
@@ -267,27 +278,27 @@ def test_undo_leaves_alone_what_its_step_did_not_change_and_reloads_are_no_steps
     desk = Desk()
     desk.set("p.a", 1.0)
     desk.set("p.b", 1.0)
-    desk.file, desk.edits = object(), Edits((("p.b", 1.0),))  # a reload took p.a away
-    desk.turn()
+    desk.reads, desk.edits = 1, Edits((("p.b", 1.0),))  # a reload took p.a away
+    desk.frame()
     assert len(desk.history.steps) == 2
-    desk.take(desk.history.undo())
+    desk.undo()
     assert desk.edits == Edits()
-    desk.take(desk.history.redo())
+    desk.redo()
     assert desk.edits == Edits((("p.b", 1.0),))
 
 
 def test_an_undo_that_takes_its_time_is_no_step() -> None:
     desk = Desk()
     desk.edits = Edits(techniques=(("p", "x"),))
-    desk.turn()
-    desk.history.undo()
+    desk.frame()
+    assert desk.history.go(-1, lambda changes: True)
     desk.history.settle(desk.edits, {})  # nothing has come of it yet
-    desk.turn()
+    desk.frame()
     desk.edits = Edits()
-    desk.turn()
+    desk.frame()
     assert desk.history.done == 0 and desk.history.can_redo
-    desk.edits = Edits(techniques=(("p", "x"),))  # by hand, not by redo
-    desk.turn()
+    desk.edits = Edits(techniques=(("p", "x"),))  # by the user, not by redo
+    desk.frame()
     assert desk.history.done == 1 and not desk.history.can_redo
 
 
@@ -295,11 +306,11 @@ def test_what_is_saved_into_the_file_can_be_undone() -> None:
     desk = Desk()
     desk.set("p.a", 0.9)
     desk.history.saved({("value", "p.a"): 0.5})
-    desk.file, desk.edits = object(), Edits()  # the reload that follows
-    desk.turn()
-    desk.take(desk.history.undo())
+    desk.reads, desk.edits = 1, Edits()  # the reload that follows
+    desk.frame()
+    desk.undo()
     assert desk.edits == Edits((("p.a", 0.5),)), "what the file said before"
-    desk.take(desk.history.redo())
+    desk.redo()
     assert desk.edits == Edits((("p.a", 0.9),))
 
 
@@ -308,20 +319,30 @@ def test_steps_have_names() -> None:
     desk.set("p.a", 0.5)
     desk.history.call("Preset dusk")
     desk.edits = desk.edits.with_value("p.a", 0.75).with_value("p.b", 0.25)
-    desk.turn()
+    desk.frame()
     desk.edits = Edits(desk.edits.values, (("p", "x"),))
-    desk.turn()
+    desk.frame()
     desk.edits = Edits(desk.edits.values, (("p", "x"),), locked=("p.a",))
-    desk.turn()
+    desk.frame()
     desk.history.jump(1.0, 0.0, held=False, now=desk.now)
 
-    def said(path: str, value: object) -> str:
+    def written(path: str, value: object) -> str:
         return "the file's" if value is None else f"{value:g}"
 
-    assert [in_words(s, str.upper, said) for s in desk.history.steps] == [
+    assert [in_words(s, str.upper, written) for s in desk.history.steps] == [
         "P.A: the file's to 0.5",
         "Preset dusk",
         "p: x",
         "Lock P.A",
         "Time 1.00 s to 0.00 s",
     ]
+
+
+def test_a_step_that_is_refused_is_not_undone() -> None:
+    desk = Desk()
+    desk.set("p.a", 0.5)
+    assert not desk.history.go(-1, lambda changes: False)
+    assert desk.history.done == 1
+    desk.undo()
+    assert not desk.history.go(1, lambda changes: False)
+    assert desk.history.done == 0 and desk.history.can_redo

@@ -25,23 +25,23 @@ use = "view/terrain"
 
 
 @pytest.fixture
-def land(tmp_path: Path) -> Sketch:
-    (tmp_path / "land.toml").write_text(SKETCH, encoding="utf-8")
-    return load(tmp_path / "land.toml")
+def terrain(tmp_path: Path) -> Sketch:
+    (tmp_path / "terrain.toml").write_text(SKETCH, encoding="utf-8")
+    return load(tmp_path / "terrain.toml")
 
 
-def test_it_has_one_sample_and_a_coarser_mesh(land: Sketch):
-    chosen = as_preview(land)
+def test_it_has_one_sample_and_a_coarser_mesh(terrain: Sketch):
+    chosen = as_preview(terrain)
     assert chosen.samples == 1 and values_of(chosen)["view.land.grid"] == GRID
-    assert values_of(chosen) == values_of(land) | {"view.land.grid": GRID}
-    assert chosen.size == land.size
+    assert values_of(chosen) == values_of(terrain) | {"view.land.grid": GRID}
+    assert chosen.size == terrain.size
 
 
 @pytest.mark.parametrize("grid", [2, 100, 256, 1025])
-def test_a_mesh_that_somebody_asked_for_stays(land: Sketch, grid: int):
-    asked = land.with_values({"view.grid": grid})
-    assert values_of(as_preview(asked))["view.land.grid"] == grid
-    alone = replace(asked, samples=1)
+def test_a_mesh_that_somebody_set_stays(terrain: Sketch, grid: int):
+    chosen = terrain.with_values({"view.grid": grid})
+    assert values_of(as_preview(chosen))["view.land.grid"] == grid
+    alone = replace(chosen, samples=1)
     assert as_preview(alone) is alone
 
 
@@ -59,8 +59,8 @@ def test_draws_that_must_share_a_mesh_still_do():
     assert len(grids) > 1 and set(grids) == {GRID}
 
 
-def test_the_hasty_picture_shows_the_same_land(land: Sketch, any_engine: Engine):
-    hasty = any_engine.render(as_preview(land), size=(160, 90)).array.astype(np.float64)
-    full = any_engine.render(land, size=(160, 90)).array.astype(np.float64)
-    far = np.abs(hasty - full).max(axis=2) > 32
-    assert (hasty != full).any() and far.mean() < 0.1
+def test_the_preview_shows_the_same_land(terrain: Sketch, any_engine: Engine):
+    preview = any_engine.render(as_preview(terrain), size=(160, 90)).array.astype(np.float64)
+    full = any_engine.render(terrain, size=(160, 90)).array.astype(np.float64)
+    far = np.abs(preview - full).max(axis=2) > 32
+    assert (preview != full).any() and far.mean() < 0.1

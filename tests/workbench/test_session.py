@@ -1,4 +1,4 @@
-"""A session without a window: a save shows, a mistake is said, and the last good picture stays."""
+"""A session without a window: a save shows, a mistake is reported, and the last good picture stays."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from playground.workbench.session import Session
 from ..sketch_texts import map_of_height
 
 SIZE = (64, 48)
-KERNEL = """// land.glsl -- a slope
+KERNEL = """// terrain.glsl -- a slope
 #include "inc/tilt.glsl"
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.25; //! slider(0, 1)
@@ -35,7 +35,7 @@ float tilt(ivec2 texel, ivec2 size) { return float(texel.x) / float(size.x); }
 """
 SKETCH = (
     "format = 1\nsize = 33\n"
-    + map_of_height(channel="red")
+    + map_of_height("./terrain", channel="red")
     + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0 }\n'
 )
 
@@ -53,13 +53,13 @@ samples = 4
 class Bench:
     """A sketch's folder and a session on it."""
 
-    def __init__(self, folder: Path, engine: Engine, trial: FakeTrial | None = None) -> None:
+    def __init__(self, folder: Path, engine: Engine, sandbox: FakeSandbox | None = None) -> None:
         self.folder = folder
         (folder / "inc").mkdir()
-        self.write("land.glsl", KERNEL)
+        self.write("terrain.glsl", KERNEL)
         self.write("inc/tilt.glsl", TILT)
         self.write("sketch.toml", SKETCH)
-        self.session = Session(engine, folder, sandbox=trial)
+        self.session = Session(engine, folder, sandbox=sandbox)
 
     def write(self, name: str, text: str) -> None:
         (self.folder / name).write_text(text, encoding="utf-8")
@@ -77,8 +77,8 @@ class Bench:
         return frame.array
 
 
-class FakeTrial:
-    """A trial that answers when it is told to."""
+class FakeSandbox:
+    """A sandbox that answers when a test says so."""
 
     def __init__(self) -> None:
         self.requests: list[TrySketch] = []
@@ -100,10 +100,10 @@ def bench(tmp_path: Path, any_engine: Engine) -> Iterator[Bench]:
 
 
 @pytest.fixture
-def tried(tmp_path: Path, any_engine: Engine) -> Iterator[tuple[Bench, FakeTrial]]:
-    trial = FakeTrial()
-    made = Bench(tmp_path, any_engine, trial)
-    yield made, trial
+def tried(tmp_path: Path, any_engine: Engine) -> Iterator[tuple[Bench, FakeSandbox]]:
+    sandbox = FakeSandbox()
+    made = Bench(tmp_path, any_engine, sandbox)
+    yield made, sandbox
     made.session.release()
 
 
@@ -117,7 +117,7 @@ def test_the_picture_is_the_engines(bench: Bench) -> None:
 @pytest.mark.parametrize(
     ("name", "old", "new"),
     [
-        ("land.glsl", "level * tilt", "1.0 - level * tilt"),
+        ("terrain.glsl", "level * tilt", "1.0 - level * tilt"),
         ("inc/tilt.glsl", "texel.x", "texel.y"),
         ("sketch.toml", 'channel = "red"', 'channel = "red", highest = 0.5'),
     ],
@@ -132,7 +132,7 @@ def test_a_save_shows(bench: Bench, name: str, old: str, new: str) -> None:
 def test_a_save_of_an_included_parameter_shows(bench: Bench) -> None:
     declared = "uniform float level = 0.25; //! slider(0, 1)\n"
     bench.write("inc/level.glsl", declared)
-    bench.change("land.glsl", declared, '#include "inc/level.glsl"\n')
+    bench.change("terrain.glsl", declared, '#include "inc/level.glsl"\n')
     before = bench.picture()
     bench.change("inc/level.glsl", "0.25", "0.75")
     assert not np.array_equal(bench.picture(), before)
@@ -144,15 +144,15 @@ def test_a_save_of_an_included_parameter_shows(bench: Bench) -> None:
 @pytest.mark.parametrize(
     ("name", "old", "new", "place"),
     [
-        ("land.glsl", "level * tilt", "levle * tilt", "land.glsl:6:"),
+        ("terrain.glsl", "level * tilt", "levle * tilt", "terrain.glsl:6:"),
         ("inc/tilt.glsl", "float(texel.x)", "float(texle.x)", "tilt.glsl:2:"),
-        ("land.glsl", "//! slider", "//! slidder", "land.glsl:4"),
+        ("terrain.glsl", "//! slider", "//! slidder", "terrain.glsl:4"),
         ("sketch.toml", "[view]", "[view", "sketch.toml:6:"),
-        ("sketch.toml", "./land", "./lnad", "sketch.toml:5"),
-        ("land.glsl", "inc/tilt", "inc/tlit", "land.glsl:2"),
+        ("sketch.toml", "./terrain", "./lnad", "sketch.toml:5"),
+        ("terrain.glsl", "inc/tilt", "inc/tlit", "terrain.glsl:2"),
     ],
 )
-def test_what_is_broken_is_said_and_the_last_good_picture_stays_until_it_is_mended(
+def test_what_is_broken_is_reported_and_the_last_good_picture_stays_until_it_is_fixed(
     bench: Bench, name: str, old: str, new: str, place: str
 ) -> None:
     before = bench.picture()
@@ -165,28 +165,28 @@ def test_what_is_broken_is_said_and_the_last_good_picture_stays_until_it_is_mend
     np.testing.assert_array_equal(bench.picture(), before)
 
 
-def test_the_last_good_sketch_can_still_be_changed_by_hand(bench: Bench) -> None:
+def test_the_last_good_sketch_can_still_be_changed_by_the_user(bench: Bench) -> None:
     before = bench.picture()
-    bench.change("land.glsl", "level * tilt", "levle * tilt")
+    bench.change("terrain.glsl", "level * tilt", "levle * tilt")
     bench.picture()
     bench.session.drafts.set("height.level", 0.75)
     assert not np.array_equal(bench.picture(), before)
     assert bench.session.error is not None
-    bench.change("land.glsl", "levle * tilt", "level * tilt")
+    bench.change("terrain.glsl", "levle * tilt", "level * tilt")
     bench.picture()
     assert values_of(bench.session.sketch)["height.level"] == 0.75
 
 
-def test_a_sketch_that_is_broken_from_the_start_is_shown_once_it_is_mended(
+def test_a_sketch_that_is_broken_from_the_start_is_shown_once_it_is_fixed(
     tmp_path: Path, any_engine: Engine
 ) -> None:
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     session = Session(any_engine, tmp_path)
     assert session.frame(SIZE) is None and session.sketch is None
-    assert "./land" in str(session.error)
+    assert "./terrain" in str(session.error)
     (tmp_path / "inc").mkdir()
     (tmp_path / "inc" / "tilt.glsl").write_text(TILT, encoding="utf-8")
-    (tmp_path / "land.glsl").write_text(KERNEL, encoding="utf-8")
+    (tmp_path / "terrain.glsl").write_text(KERNEL, encoding="utf-8")
     session.drafts.reload()
     assert session.frame(SIZE) is not None and session.error is None
     session.release()
@@ -214,8 +214,8 @@ def test_where_the_processor_draws_a_change_shows_at_once_and_in_full_when_it_re
     if not any_engine.info.software:
         pytest.skip("on a GPU every picture is drawn in full")
     now = [100.0]
-    (tmp_path / "land.toml").write_text(SKETCH_3D, encoding="utf-8")
-    session = Session(any_engine, tmp_path / "land.toml", now=lambda: now[0])
+    (tmp_path / "terrain.toml").write_text(SKETCH_3D, encoding="utf-8")
+    session = Session(any_engine, tmp_path / "terrain.toml", now=lambda: now[0])
     session.frame(SIZE)
     assert session.is_preview and session.draws == 1
     session.frame(SIZE)
@@ -239,7 +239,7 @@ def test_where_the_processor_draws_a_change_shows_at_once_and_in_full_when_it_re
 
 def test_time_moves_what_names_it_and_stays_over_a_save(bench: Bench) -> None:
     before = bench.picture()
-    bench.change("land.glsl", "level * tilt", "fract(time) * tilt")
+    bench.change("terrain.glsl", "level * tilt", "fract(time) * tilt")
     still = bench.picture()
     bench.session.clock.advance(0.5)
     moved = bench.picture()
@@ -247,24 +247,56 @@ def test_time_moves_what_names_it_and_stays_over_a_save(bench: Bench) -> None:
     bench.session.clock.toggle()
     bench.session.clock.advance(0.5)
     np.testing.assert_array_equal(bench.picture(), moved)
-    bench.change("land.glsl", "fract(time)", "fract(time) * 1.0")
+    bench.change("terrain.glsl", "fract(time)", "fract(time) * 1.0")
     np.testing.assert_array_equal(bench.picture(), moved)
     assert not np.array_equal(before, moved) and bench.session.clock.time == 0.5
+
+
+def test_a_size_that_names_time_moves(bench: Bench) -> None:
+    bench.change("sketch.toml", 'use = "./terrain"', 'use = "./terrain"\nsize = "9 + time"')
+    bench.picture()
+    session = bench.session
+    assert session.error is None and session.animated and session.plan is not None
+    sizes = []
+    for _ in range(2):
+        session.frame(SIZE)
+        sizes.append(session.plan.step("height").size[0])
+        session.clock.advance(4.0)
+    assert sizes == [9, 13]
+
+
+def test_how_many_steps_there_are_follows_time_and_keyframes(bench: Bench) -> None:
+    bench.change("terrain.glsl", 'output = "height:r32f"', 'output = "height:r32f", repeat = "2 + time"')
+    bench.picture()
+    assert bench.session.repeats == {"height": 2}
+    bench.session.clock.advance(3.0)
+    assert bench.session.repeats == {"height": 5}
+    bench.change("terrain.glsl", "2 + time", "count")
+    bench.change("terrain.glsl", "uniform float", "uniform int count = 2; //! slider(1, 9)\nuniform float")
+    keyframes = [f'[[keyframe]]\ntime = {t}\nset = {{ "height.count" = {n} }}\n' for t, n in ((0, 2), (4, 6))]
+    bench.change("sketch.toml", "[[preset]]", "".join(keyframes) + "[[preset]]")
+    bench.picture()
+    bench.session.clock.time = 0.0
+    assert bench.session.error is None and bench.session.repeats == {"height": 2}
+    bench.session.clock.time = 4.0
+    assert bench.session.repeats == {"height": 6}
 
 
 def test_values_are_kept_and_those_of_another_type_fall_back(bench: Bench) -> None:
     bench.picture()
     bench.session.drafts.set("height.level", 0.75)
-    bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
+    bench.change("terrain.glsl", "level * tilt", "1.0 - level * tilt")
     bench.picture()
     assert values_of(bench.session.sketch)["height.level"] == 0.75
     bench.write(
         "sketch.toml", SKETCH.partition("[[preset]]")[0]
     )  # a preset of another type would be a mistake
     bench.change(
-        "land.glsl", "uniform float level = 0.25; //! slider(0, 1)", "uniform bool level = true; //! checkbox"
+        "terrain.glsl",
+        "uniform float level = 0.25; //! slider(0, 1)",
+        "uniform bool level = true; //! checkbox",
     )
-    bench.change("land.glsl", "1.0 - level", "1.0 - float(level)")
+    bench.change("terrain.glsl", "1.0 - level", "1.0 - float(level)")
     bench.picture()
     assert values_of(bench.session.sketch)["height.level"] is True
     assert any("height.level" in note for note in bench.session.notes)
@@ -305,7 +337,7 @@ def test_a_technique_that_does_not_draw_leaves_the_one_there_was(bench: Bench) -
     bench.session.drafts.choose("height", "generation/diamond_square")
     np.testing.assert_array_equal(bench.picture(), before)
     assert "33 x 33" in str(bench.session.error)
-    bench.session.drafts.choose("height", "./land")
+    bench.session.drafts.choose("height", "./terrain")
     np.testing.assert_array_equal(bench.picture(), before)
     assert bench.session.error is None and bench.session.drafts.stage is ReloadStage.NONE
 
@@ -321,7 +353,7 @@ def test_any_texture_is_shown_as_a_map_fitted_to_its_values(bench: Bench) -> Non
     np.testing.assert_array_equal(bench.picture(), own)
 
 
-def test_what_one_looks_at_survives_saves_mistakes_and_their_mending(bench: Bench) -> None:
+def test_what_one_looks_at_survives_saves_mistakes_and_their_repair(bench: Bench) -> None:
     session = bench.session
     bench.picture()
     session.show("height:height")
@@ -332,7 +364,7 @@ def test_what_one_looks_at_survives_saves_mistakes_and_their_mending(bench: Benc
     session.drafts.set("height.level", 0.75)
     looked_at = session.view.map, session.clock.time, session.clock.playing, session.shown.edits
     for old, new in [("level * tilt", "1.0 - level * tilt"), ("1.0 -", "1.0 - x"), ("1.0 - x", "")]:
-        bench.change("land.glsl", old, new)
+        bench.change("terrain.glsl", old, new)
         bench.picture()
         assert (session.view.map, session.clock.time, session.clock.playing, session.shown.edits) == looked_at
     expected = session.engine.render(session.view.map.of(session.sketch), size=SIZE, time=3.0)
@@ -343,7 +375,7 @@ def test_a_map_whose_texture_is_gone_gives_way(bench: Bench) -> None:
     bench.picture()
     bench.session.show("height:height")
     bench.picture()
-    text = SKETCH.replace('"height"', '"land"').replace("height.level", "land.level")
+    text = SKETCH.replace('"height"', '"terrain"').replace("height.level", "terrain.level")
     bench.write("sketch.toml", text)
     bench.session.drafts.reload()
     bench.picture()
@@ -351,15 +383,15 @@ def test_a_map_whose_texture_is_gone_gives_way(bench: Bench) -> None:
     assert bench.session.view.map is None and bench.session.error is None
 
 
-def test_the_trial_comes_first(tried: tuple[Bench, FakeTrial]) -> None:
-    bench, trial = tried
+def test_the_sandbox_comes_first(tried: tuple[Bench, FakeSandbox]) -> None:
+    bench, sandbox = tried
     assert bench.session.frame(SIZE) is None and bench.session.drafts.testing
-    trial.answer = SandboxReport(True, seconds=0.01)
+    sandbox.answer = SandboxReport(True, seconds=0.01)
     before = bench.picture()
-    bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
+    bench.change("terrain.glsl", "level * tilt", "1.0 - level * tilt")
     np.testing.assert_array_equal(bench.picture(), before)
-    assert bench.session.drafts.testing and len(trial.requests) == 2
-    trial.answer = SandboxReport(True)
+    assert bench.session.drafts.testing and len(sandbox.requests) == 2
+    sandbox.answer = SandboxReport(True)
     assert not np.array_equal(bench.picture(), before)
     assert not bench.session.drafts.testing
 
@@ -369,11 +401,11 @@ def test_a_first_picture_that_fails_is_an_error_and_no_more(tmp_path: Path, any_
     text = SKETCH_3D.replace("generation/diamond_square", "generation/heightmap")
     (tmp_path / "sketch.toml").write_text(text.replace("[view]", 'set = { elevation = "none.npy" }\n[view]'))
     np.save(tmp_path / "none.npy", np.zeros((3, 3), np.float32))
-    trial = FakeTrial()
-    session = Session(any_engine, tmp_path / "sketch.toml", sandbox=trial)
+    sandbox = FakeSandbox()
+    session = Session(any_engine, tmp_path / "sketch.toml", sandbox=sandbox)
     try:
         (tmp_path / "none.npy").unlink()
-        trial.answer = SandboxReport(False, ContextError("no context"))
+        sandbox.answer = SandboxReport(False, ContextError("no context"))
         for _ in range(3):
             assert session.frame(SIZE) is None
         assert "none.npy" in str(session.error) and not session.is_preview
@@ -381,42 +413,42 @@ def test_a_first_picture_that_fails_is_an_error_and_no_more(tmp_path: Path, any_
         session.release()
 
 
-def test_what_the_trial_refuses_is_never_drawn(tried: tuple[Bench, FakeTrial]) -> None:
-    bench, trial = tried
-    trial.answer = SandboxReport(True)
+def test_what_the_sandbox_refuses_is_never_drawn(tried: tuple[Bench, FakeSandbox]) -> None:
+    bench, sandbox = tried
+    sandbox.answer = SandboxReport(True)
     before = bench.picture()
-    bench.change("land.glsl", "level * tilt", "1.0 - level * tilt")
-    trial.answer = SandboxReport(False, SandboxTimeout("the trial took longer than 10 s"))
+    bench.change("terrain.glsl", "level * tilt", "1.0 - level * tilt")
+    sandbox.answer = SandboxReport(False, SandboxTimeout("the sandbox took longer than 10 s"))
     np.testing.assert_array_equal(bench.picture(), before)
     assert "longer than 10 s" in str(bench.session.error)
     bench.session.drafts.set("height.level", 0.5)
     assert not np.array_equal(bench.picture(), before), "the last good sketch goes on"
-    bench.change("land.glsl", "1.0 - level * tilt", "level * tilt")
+    bench.change("terrain.glsl", "1.0 - level * tilt", "level * tilt")
     assert bench.session.error is None, "it is the sketch that is shown already"
-    assert len(trial.requests) == 2
+    assert len(sandbox.requests) == 2
 
 
 @pytest.mark.parametrize(
     ("name", "old", "new", "is_tried"),
     [
-        ("land.glsl", "a slope", "another comment", False),
-        ("land.glsl", "slider(0, 1)", "slider(0, 2) step(0.5) How high", False),
+        ("terrain.glsl", "a slope", "another comment", False),
+        ("terrain.glsl", "slider(0, 1)", "slider(0, 2) step(0.5) How high", False),
         ("sketch.toml", '"height.level" = 1.0', '"height.level" = 0.5', False),
-        ("land.glsl", "level = 0.25", "level = 0.5", True),
+        ("terrain.glsl", "level = 0.25", "level = 0.5", True),
         ("sketch.toml", 'channel = "red"', 'channel = "red", highest = 0.5', True),
         ("inc/tilt.glsl", "texel.x", "texel.y", True),
     ],
     ids=["comment", "range", "preset", "default", "value", "include"],
 )
-def test_what_the_driver_has_drawn_already_needs_no_trial(
-    tried: tuple[Bench, FakeTrial], name: str, old: str, new: str, is_tried: bool
+def test_what_the_driver_has_drawn_already_needs_no_sandbox(
+    tried: tuple[Bench, FakeSandbox], name: str, old: str, new: str, is_tried: bool
 ) -> None:
-    bench, trial = tried
-    trial.answer = SandboxReport(True)
+    bench, sandbox = tried
+    sandbox.answer = SandboxReport(True)
     before = bench.picture()
     bench.change(name, old, new)
-    assert bench.session.drafts.testing == is_tried and len(trial.requests) == (2 if is_tried else 1)
-    trial.answer = SandboxReport(True)
+    assert bench.session.drafts.testing == is_tried and len(sandbox.requests) == (2 if is_tried else 1)
+    sandbox.answer = SandboxReport(True)
     assert np.array_equal(bench.picture(), before) == (not is_tried)
     assert bench.session.error is None
     assert bench.session.drafts.coming is None, "the new text is the one shown"
@@ -444,14 +476,14 @@ def test_a_fault_of_the_playground_itself_does_not_end_the_session(
 def test_every_file_is_watched_images_as_well(bench: Bench) -> None:
     bench.picture()
     bench.change(
-        "land.glsl",
+        "terrain.glsl",
         "uniform float level",
         'uniform sampler2D grass; //! file("grass.png")\nuniform float level',
     )
     bench.picture()
     names = {path.name for path in bench.session.drafts.files}
-    assert {"sketch.toml", "land.glsl", "tilt.glsl", "map.glsl"} <= names
-    assert "grass.png" in names, "it is missing, and its coming would mend that"
+    assert {"sketch.toml", "terrain.glsl", "tilt.glsl", "map.glsl"} <= names
+    assert "grass.png" in names, "it is missing, and its coming would fix that"
     assert bench.session.sketch is not None
     assert {p.name for p in files_of(bench.session.sketch)} <= names
 
@@ -459,11 +491,11 @@ def test_every_file_is_watched_images_as_well(bench: Bench) -> None:
 def test_places_where_a_file_may_come_are_watched_too(bench: Bench) -> None:
     """An include that is missing, in a folder that is missing; and one before which another may stand."""
     bench.picture()
-    bench.change("land.glsl", "inc/tilt", "new/place/tilt")
+    bench.change("terrain.glsl", "inc/tilt", "new/place/tilt")
     bench.picture()
     assert "new/place/tilt" in str(bench.session.error)
     assert bench.folder / "new" / "place" / "tilt.glsl" in bench.session.drafts.files
-    bench.change("land.glsl", "new/place/tilt", "noise/hash")
+    bench.change("terrain.glsl", "new/place/tilt", "noise/hash")
     bench.picture()
     missing = bench.folder / "noise" / "hash.glsl"
     assert missing in bench.session.drafts.files, "it would stand before the library's"
@@ -471,14 +503,16 @@ def test_places_where_a_file_may_come_are_watched_too(bench: Bench) -> None:
 
 
 def stepped(bench: Bench) -> Session:
-    bench.write("sketch.toml", SKETCH.replace("./land", "generation/diamond_square").split("[[preset]]")[0])
+    bench.write(
+        "sketch.toml", SKETCH.replace("./terrain", "generation/diamond_square").split("[[preset]]")[0]
+    )
     bench.session.drafts.reload()
     bench.session.frame(SIZE)
     assert bench.session.error is None
     return bench.session
 
 
-def test_a_repeat_is_shown_at_the_step_that_is_asked_for(bench: Bench) -> None:
+def test_a_repeat_is_shown_at_the_step_that_is_requested(bench: Bench) -> None:
     session = stepped(bench)
     assert session.repeats == {"height.raw": 11}
     whole = bench.picture()
@@ -491,7 +525,7 @@ def test_a_repeat_is_shown_at_the_step_that_is_asked_for(bench: Bench) -> None:
     np.testing.assert_array_equal(bench.picture(), whole)
 
 
-def test_a_step_stays_over_a_save_and_is_let_go_where_there_are_fewer_turns(bench: Bench) -> None:
+def test_a_step_stays_over_a_save_and_is_let_go_where_there_are_fewer_steps(bench: Bench) -> None:
     session = stepped(bench)
     whole = bench.picture()
     session.stop_at("height.raw", 8)
@@ -509,7 +543,7 @@ def test_a_step_stays_over_a_save_and_is_let_go_where_there_are_fewer_turns(benc
     np.testing.assert_array_equal(bench.picture(), whole)
 
 
-def test_an_eye_under_the_terrain_is_told_of_once(tmp_path: Path, any_engine: Engine) -> None:
+def test_an_eye_under_the_terrain_is_reported_once(tmp_path: Path, any_engine: Engine) -> None:
     (tmp_path / "sketch.toml").write_text(SKETCH_3D, encoding="utf-8")
     session = Session(any_engine, tmp_path / "sketch.toml")
     try:

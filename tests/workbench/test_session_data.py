@@ -1,4 +1,4 @@
-"""Images and elevation files are read by the trial first: what it does not survive is not loaded here."""
+"""Images and elevation files are read by the sandbox first: what it does not survive is not loaded here."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.session import Session
 
 from ..sketch_texts import map_of, passes
-from .test_session import FakeTrial
+from .test_session import FakeSandbox
 
 SIZE = (32, 32)
 SKETCH = (
     "format = 1\nextent = 100.0\n"
-    + passes(height=("generation/heightmap", 'set = { elevation = "land.npy" }'))
+    + passes(height=("generation/heightmap", 'set = { elevation = "terrain.npy" }'))
     + map_of("height")
 )
 
@@ -49,7 +49,7 @@ def read(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    for name, slope in (("land.npy", 1.0), ("other.npy", 2.0)):
+    for name, slope in (("terrain.npy", 1.0), ("other.npy", 2.0)):
         np.save(tmp_path / name, slope * np.outer(np.ones(9), np.arange(9)).astype(np.float32))
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     return tmp_path
@@ -57,31 +57,31 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def session(folder: Path, any_engine: Engine, read: list[str]) -> Iterator[Session]:
-    made = Session(any_engine, folder, sandbox=FakeTrial())
+    made = Session(any_engine, folder, sandbox=FakeSandbox())
     yield made
     made.release()
 
 
 def answer(session: Session, report: SandboxReport) -> None:
-    trial = session.drafts._checks.sandbox
-    assert isinstance(trial, FakeTrial)
-    trial.answer = report
+    sandbox = session.drafts._checks.sandbox
+    assert isinstance(sandbox, FakeSandbox)
+    sandbox.answer = report
     session.frame(SIZE)
 
 
-def test_the_first_picture_s_file_is_read_by_the_trial_first(session: Session, read: list[str]) -> None:
+def test_the_first_picture_s_file_is_read_by_the_sandbox_first(session: Session, read: list[str]) -> None:
     session.frame(SIZE)
     assert session.drafts.testing and read == []
     answer(session, SandboxReport(True))
-    assert session.sketch is not None and set(read) == {"land.npy"}
+    assert session.sketch is not None and set(read) == {"terrain.npy"}
 
 
-def test_a_file_saved_anew_is_tried_and_not_read_when_the_trial_dies(
+def test_a_file_saved_anew_is_tried_and_not_read_when_the_sandbox_dies(
     session: Session, folder: Path, read: list[str]
 ) -> None:
     answer(session, SandboxReport(True))
     read.clear()
-    np.save(folder / "land.npy", np.eye(11, dtype=np.float32))
+    np.save(folder / "terrain.npy", np.eye(11, dtype=np.float32))
     session.drafts.reload()
     assert session.drafts.testing and read == []
     answer(session, SandboxReport(False, SandboxCrash("ran out of memory")))
@@ -92,7 +92,7 @@ def test_a_file_saved_anew_is_tried_and_not_read_when_the_trial_dies(
     session.drafts.reload()
     assert session.drafts.testing, "it is tried again, not believed"
     answer(session, SandboxReport(True))
-    assert session.error is None and read == ["land.npy"]
+    assert session.error is None and read == ["terrain.npy"]
     session.drafts.reload()
     assert not session.drafts.testing, "nothing of it is new by now"
 
@@ -109,7 +109,7 @@ def test_a_file_chosen_by_hand_is_tried_first(
     assert "the decoder crashed" in str(session.error) and read == []
     session.frame(SIZE)
     assert read == [], "what is shown stays as it was"
-    session.drafts.set("height.elevation", str(folder / "land.npy"))
+    session.drafts.set("height.elevation", str(folder / "terrain.npy"))
     session.frame(SIZE)
     assert session.error is None and not session.drafts.testing and session.drafts.stage is ReloadStage.NONE
 
@@ -128,11 +128,13 @@ def test_a_file_chosen_by_hand_is_drawn_once_it_proved_good(
     assert "view.channel" in dict(session.shown.edits.values)
 
 
-def test_a_save_during_its_trial_does_not_lose_a_file_chosen_by_hand(session: Session, folder: Path) -> None:
+def test_a_save_during_its_check_does_not_lose_a_file_chosen_by_the_user(
+    session: Session, folder: Path
+) -> None:
     answer(session, SandboxReport(True))
     other = str(folder / "other.npy")
     for seed, text in enumerate((SKETCH, SKETCH.replace("100.0", "200.0"))):
-        session.drafts.set("height.elevation", str(folder / "land.npy"))
+        session.drafts.set("height.elevation", str(folder / "terrain.npy"))
         session.frame(SIZE)
         np.save(folder / "other.npy", np.random.default_rng(seed).random((9, 9), np.float32))
         session.drafts.set("height.elevation", other)
@@ -146,7 +148,7 @@ def test_a_save_during_its_trial_does_not_lose_a_file_chosen_by_hand(session: Se
         assert session.shown.sketch.extent == ((100.0, 100.0) if text == SKETCH else (200.0, 200.0))
 
 
-@pytest.mark.parametrize("when", ["during its trial", "after it"])
+@pytest.mark.parametrize("when", ["during its check", "after it"])
 def test_a_file_that_is_taken_back_has_no_verdict(session: Session, folder: Path, when: str) -> None:
     answer(session, SandboxReport(True))
     bad = SandboxReport(False, SandboxCrash("the decoder crashed"))
@@ -163,14 +165,14 @@ def test_a_file_that_is_taken_back_has_no_verdict(session: Session, folder: Path
 def test_a_file_that_was_only_touched_is_no_other(session: Session, folder: Path) -> None:
     answer(session, SandboxReport(True))
     before = session.draws
-    path = folder / "land.npy"
+    path = folder / "terrain.npy"
     data = path.read_bytes()
     path.unlink()
     path.write_bytes(data)
     os.utime(path, ns=(10**18, 10**18))
     session.drafts.set_camera(Camera(azimuth=12.0))
     session.frame(SIZE)
-    assert session.draws > before, "the picture does not wait for a trial that nobody asks for"
+    assert session.draws > before, "the picture does not wait for a check that nobody requested"
     session.drafts.reload()
     assert not session.drafts.testing
 
@@ -181,23 +183,23 @@ def test_other_values_wait_for_nothing(session: Session) -> None:
     assert not session.drafts.testing
 
 
-def test_the_trial_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: Engine) -> None:
+def test_the_sandbox_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: Engine) -> None:
     from playground.engine.sandbox import Sandbox, TrySketch
     from playground.sketch.load import load
 
-    with (folder / "land.npy").open("wb") as file:  # 4 GiB of float32 and of holes
+    with (folder / "terrain.npy").open("wb") as file:  # 4 GiB of float32 and of holes
         np.lib.format.write_array_header_1_0(
             file, {"descr": "<f8", "fortran_order": False, "shape": (16384, 16384)}
         )
         file.truncate(file.tell() + 8 * 16384**2)
-    with Sandbox(memory_bytes=2**30) as trial:
-        report = trial.run(TrySketch(load(folder)))
+    with Sandbox(memory_bytes=2**30) as sandbox:
+        report = sandbox.run(TrySketch(load(folder)))
         assert not report.ok and report.error is not None
         assert "there is not enough memory to read it" in str(report.error)
-        assert "land.npy" in str(report.error)
+        assert "terrain.npy" in str(report.error)
         write_png(folder / "fine.png", np.zeros((4, 4, 3), np.uint8))
-        np.save(folder / "land.npy", np.eye(9, dtype=np.float32))
-        assert trial.run(TrySketch(load(folder))).ok, "the same child goes on"
+        np.save(folder / "terrain.npy", np.eye(9, dtype=np.float32))
+        assert sandbox.run(TrySketch(load(folder))).ok, "the same child goes on"
 
 
 def test_nothing_looks_into_the_picture_while_new_data_is_checked(session: Session, folder: Path) -> None:
@@ -209,7 +211,7 @@ def test_nothing_looks_into_the_picture_while_new_data_is_checked(session: Sessi
     assert not thumbnails.refresh(["height:height"], 1.0) and thumbnails.made == 1
     compare.keep()
     compare.follow(picture)
-    np.save(folder / "land.npy", np.full((9, 9), 0.25, np.float32))
+    np.save(folder / "terrain.npy", np.full((9, 9), 0.25, np.float32))
     assert session.awaits_data and not session.rests
     assert inspector.at((6, 6), picture) is None
     made, draws = thumbnails.made, compare.draws

@@ -13,19 +13,12 @@ import pytest
 from playground.engine.engine import Engine
 from playground.workbench.session import Session
 
+from ..sketch_texts import TERRAIN_IN_3D as SKETCH
+
 SIZE = (64, 36)
-LAND = """#pragma kernel(output = "height:r32f", repeat = "3")
+TERRAIN = """#pragma kernel(output = "height:r32f", repeat = "3")
 uniform float level = 0.25; //! slider(0, 1)
 float kernel(ivec2 texel) { return previous(texel) * EDIT + level * float(texel.x) / float(size.x); }
-"""
-SKETCH = """format = 1
-size = 33
-[[pass]]
-name = "height"
-use = "./land"
-[view]
-use = "view/terrain"
-samples = 1
 """
 
 
@@ -40,7 +33,7 @@ def resident() -> int:
 def test_memory_is_flat_over_five_hundred_reloads(
     tmp_path: Path, ctx: moderngl.Context, alive: Counter[str]
 ) -> None:
-    """Each with another text, every tenth with a mistake, values set by hand between."""
+    """Each with another text, every tenth with a mistake, values set by the user between."""
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     seen = []
     before = dict(+alive)
@@ -48,7 +41,7 @@ def test_memory_is_flat_over_five_hundred_reloads(
         session = None
         for number in range(500):
             edit = "wrong" if number % 10 == 9 else f"0.{number + 1000}"
-            (tmp_path / "land.glsl").write_text(LAND.replace("EDIT", edit), encoding="utf-8")
+            (tmp_path / "terrain.glsl").write_text(TERRAIN.replace("EDIT", edit), encoding="utf-8")
             if session is None:
                 session = Session(engine, tmp_path)
             else:

@@ -17,7 +17,7 @@ from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.session import Session
 
 SIZE = (64, 48)
-LAND = """#pragma kernel(output = "height:r32f", repeat = "4")
+TERRAIN = """#pragma kernel(output = "height:r32f", repeat = "4")
 uniform float level = 0.25; //! slider(0, 1)
 float kernel(ivec2 texel) {
     return previous(texel) * 0.5 + level * float(texel.x + texel.y) * fract(time) / float(size.x);
@@ -27,7 +27,7 @@ SKETCH = """format = 1
 size = 33
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "view/terrain"
 samples = 4
@@ -39,7 +39,7 @@ class Machine:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        (folder / "land.glsl").write_text(LAND, encoding="utf-8")
+        (folder / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
         (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
         self.is_lost = False
         self.engine = Engine(open_context(), owns_context=True)
@@ -60,8 +60,8 @@ class Machine:
         self.is_lost = False
 
     def save(self, old: str, new: str) -> None:
-        assert old in LAND
-        (self.folder / "land.glsl").write_text(LAND.replace(old, new), encoding="utf-8")
+        assert old in TERRAIN
+        (self.folder / "terrain.glsl").write_text(TERRAIN.replace(old, new), encoding="utf-8")
         self.session.drafts.reload()
 
 
@@ -98,11 +98,11 @@ def test_what_is_coming_and_what_is_wrong_are_kept(machine: Machine) -> None:
     before = machine.picture()
     machine.save("* 0.5", "* undeclared")
     machine.picture()
-    said = str(machine.session.error)
-    assert "undeclared" in said
+    message = str(machine.session.error)
+    assert "undeclared" in message
     machine.lose()
     np.testing.assert_array_equal(machine.picture(), before)
-    assert str(machine.session.error) == said
+    assert str(machine.session.error) == message
     machine.save("* 0.5", "* 0.25")
     machine.lose()
     machine.session.clock.time = 0.3

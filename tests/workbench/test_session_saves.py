@@ -1,4 +1,4 @@
-"""Whatever is saved, however and whenever: in the end the session shows what is on the disk.
+"""However and whenever files are saved: in the end the session shows what is on the disk.
 
 Random sequences of real file operations, each from its seed, while the session goes on
 as it does in a window. When they are over and it has come to rest, it must show what a
@@ -42,7 +42,7 @@ SHORT, LONG = range(8), range(8, 208)
 def kernel(term: str, includes: str = '#include "inc/tilt.glsl"', level: str = "level") -> str:
     declared = "uniform float level = 0.25; //! slider(0, 1)\n" if level == "level" else ""
     return (
-        f'// land.glsl -- one of several\n{includes}\n#pragma kernel(output = "height:r32f")\n{declared}'
+        f'// terrain.glsl -- one of several\n{includes}\n#pragma kernel(output = "height:r32f")\n{declared}'
         f'uniform sampler2D grass; //! file("grass.png")\n'
         f"float kernel(ivec2 texel) {{\n    vec4 g = texelFetch(grass, ivec2(0), 0);\n"
         f"    return {level} * ({term}) + 0.3 * g.r;\n}}\n"
@@ -71,25 +71,25 @@ def heights(side: int, top: float) -> bytes:
 
 TILT = "tilt(texel, size)"
 EXTRA = '#include "inc/tilt.glsl"\n#include "inc/deep/extra.glsl"'
-# One of the library's own, before which a file of the same name in the sketch's folder stands.
+# One of the library's own, before which a file of the same name in the sketch's folder comes.
 SHADOW = '#include "inc/tilt.glsl"\n#include "colour/ramp.glsl"'
 # Every file that may be there, and what it may hold; the first is what a sequence begins with.
 VARIANTS: dict[str, list[bytes]] = {
     "sketch.toml": [
         text.encode()
         for text in (
-            sketch("./land"),
-            sketch("./land", "size = 9"),
+            sketch("./terrain"),
+            sketch("./terrain", "size = 9"),
             sketch("./tech"),
             sketch("./other"),
-            sketch("generation/heightmap", "size = 9", 'elevation = "land.npy"'),
-            sketch("generation/heightmap", "", 'elevation = "land.npy"'),
-            sketch("./land").replace('channel = "red"', 'channel = "red", highest = 0.5'),
+            sketch("generation/heightmap", "size = 9", 'elevation = "terrain.npy"'),
+            sketch("generation/heightmap", "", 'elevation = "terrain.npy"'),
+            sketch("./terrain").replace('channel = "red"', 'channel = "red", highest = 0.5'),
             sketch("./lnad"),
-            sketch("./land").replace("[view]", "[view"),
+            sketch("./terrain").replace("[view]", "[view"),
         )
     ],
-    "land.glsl": [
+    "terrain.glsl": [
         text.encode()
         for text in (
             kernel(TILT),
@@ -119,10 +119,10 @@ VARIANTS: dict[str, list[bytes]] = {
     ],
     "other.glsl": [b"", *(kernel(f"{TILT} * {x}").encode() for x in ("0.6", "0.2", "wrong"))],
     "tech.toml": [
-        f'[[pass]]\nname = "inner"\nuse = "{use}"\n'.encode() for use in ("./land", "./other", "./nothing")
+        f'[[pass]]\nname = "inner"\nuse = "{use}"\n'.encode() for use in ("./terrain", "./other", "./nothing")
     ],
     "grass.png": [image((255, 0, 0)), image((10, 9, 8)), image((120, 50, 8), 4), image((1, 2, 3))[:40]],
-    "land.npy": [heights(9, 1.0), heights(5, 0.5), heights(9, 0.25), heights(9, 0.5)[:60]],
+    "terrain.npy": [heights(9, 1.0), heights(5, 0.5), heights(9, 0.25), heights(9, 0.5)[:60]],
 }
 
 
@@ -160,10 +160,10 @@ def save_in_place(folder: Folder, name: str, data: bytes, rest: Callable[[], Non
 def save_by_rename(folder: Folder, name: str, data: bytes, rest: Callable[[], None]) -> None:
     path = folder.path / name
     path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{path.name}.tmp")
-    beside.write_bytes(data)
+    temporary = path.with_name(f".{path.name}.tmp")
+    temporary.write_bytes(data)
     rest()  # so that its time lies well before the moment when it takes the file's place
-    beside.replace(path)
+    temporary.replace(path)
     folder.note()
 
 
@@ -202,10 +202,10 @@ def save_with_an_old_time(folder: Folder, name: str, data: bytes, rest: Callable
     """As unpacking an archive does, or a checkout that keeps times."""
     path = folder.path / name
     path.parent.mkdir(parents=True, exist_ok=True)
-    beside = path.with_name(f".{path.name}.tmp")
-    beside.write_bytes(data)
-    os.utime(beside, (1e9, 1e9))
-    beside.replace(path)
+    temporary = path.with_name(f".{path.name}.tmp")
+    temporary.write_bytes(data)
+    os.utime(temporary, (1e9, 1e9))
+    temporary.replace(path)
     folder.note()
 
 
@@ -246,28 +246,28 @@ class Truth:
 class Run:
     """One sequence: a session that goes on while files are saved under it."""
 
-    def __init__(self, folder: Folder, engine: Engine, seed: int, trial: Sandbox | None) -> None:
+    def __init__(self, folder: Folder, engine: Engine, seed: int, sandbox: Sandbox | None) -> None:
         self.folder = folder
         self.dice = random.Random(seed)
         self.woken = threading.Event()
         self.levels: list[float | None] = [None]
         folder.fill()
-        self.session = Session(engine, folder.path, sandbox=trial)
+        self.session = Session(engine, folder.path, sandbox=sandbox)
         self.watcher = Watcher(self.woken.set, also=(".glsl", ".toml"))
         self.follower = Follower(self.session, self.watcher)
         self.follower.follow()
         self.watcher.start()
 
-    def turn(self) -> None:
-        """Do what the window does in a turn."""
+    def frame(self) -> None:
+        """Do what the window does in a frame."""
         self.follower.take()
         self.session.frame(SIZE)
         self.follower.follow()
 
     def rest(self) -> None:
-        """Let the session have some turns, or none."""
+        """Let the session have some frames, or none."""
         for _ in range(self.dice.choice([0, 0, 1, 3])):
-            self.turn()
+            self.frame()
             time.sleep(self.dice.choice([0.0, 0.001, 0.01]))
 
     def play(self) -> list[str]:
@@ -286,7 +286,7 @@ class Run:
         return done
 
     def edit(self) -> None:
-        """Set something by hand, as a person does while files are being saved."""
+        """Edit something, as a user does while files are being saved."""
         if self.session.sketch is not None and LEVEL in values_of(self.session.sketch):
             self.levels.append(round(self.dice.random(), 2))
             self.session.drafts.set(LEVEL, self.levels[-1])
@@ -301,7 +301,7 @@ class Run:
         return self.session.drafts.stage in (ReloadStage.NONE, ReloadStage.FAILED)
 
     def shows(self, wrong: str, picture: bytes) -> bool:
-        """Say whether this mistake is said, or this picture shown."""
+        """Say whether this mistake is reported, or this picture shown."""
         if not self.is_at_rest() or str(self.session.error or "") != wrong:
             return False
         return bool(wrong) or self.picture() == picture
@@ -310,7 +310,7 @@ class Run:
         """Go on until this is shown."""
         begun = time.monotonic()
         while not self.shows(wrong, picture) and time.monotonic() - begun < PATIENCE:
-            self.turn()
+            self.frame()
             self.woken.wait(0.003)
             self.woken.clear()
 
@@ -320,32 +320,32 @@ class Run:
 
 
 @pytest.fixture(scope="module")
-def shared_trial() -> Iterator[Sandbox]:
+def shared_sandbox() -> Iterator[Sandbox]:
     with Sandbox(limit_seconds=PATIENCE) as made:
         made.start()
         yield made
 
 
-def check(tmp_path: Path, engine: Engine, seed: int, trial: Sandbox | None) -> None:
+def check(tmp_path: Path, engine: Engine, seed: int, sandbox: Sandbox | None) -> None:
     folder = Folder(tmp_path / "sketch")
     folder.path.mkdir()
-    run = Run(folder, engine, seed, trial)
+    run = Run(folder, engine, seed, sandbox)
     with Engine(engine.ctx) as other:
         truth = Truth(other)
         try:
             begun = time.monotonic()
             while run.session.draws == 0 and time.monotonic() - begun < PATIENCE:
-                run.turn()
+                run.frame()
             assert run.session.draws and run.session.error is None
             done = run.play()
             camera, seconds = run.session.shown.edits.camera, run.session.clock.time
             wrong, picture = truth.of(folder.path, run.levels[-1], seconds)
-            for _ in range(2):  # and after whatever is still told of late, it is so again
+            for _ in range(2):  # and after what is still reported late, it is so again
                 run.settle(wrong, picture)
                 found = f"seed {seed}: {'; '.join(done)}\nsaid: {run.session.error}\ntrue: {wrong}"
                 assert run.shows(wrong, picture), found
                 for _ in range(3):
-                    run.turn()
+                    run.frame()
             assert run.session.shown.edits.camera == camera and run.session.clock.time == seconds, found
             if wrong:
                 assert run.picture() in pictures_of(tmp_path / "past", folder, truth, run.levels, seconds), (
@@ -384,15 +384,15 @@ def is_data(name: str) -> bool:
 
 
 @pytest.mark.parametrize("seed", SHORT)
-def test_whatever_is_saved_it_is_shown_in_the_end(
-    tmp_path: Path, any_engine: Engine, seed: int, shared_trial: Sandbox
+def test_every_save_is_shown_in_the_end(
+    tmp_path: Path, any_engine: Engine, seed: int, shared_sandbox: Sandbox
 ) -> None:
-    check(tmp_path, any_engine, seed, shared_trial if seed % 2 else None)
+    check(tmp_path, any_engine, seed, shared_sandbox if seed % 2 else None)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", LONG)
-def test_whatever_is_saved_it_is_shown_in_the_end_again_and_again(
-    tmp_path: Path, any_engine: Engine, seed: int, shared_trial: Sandbox
+def test_every_save_is_shown_in_the_end_again_and_again(
+    tmp_path: Path, any_engine: Engine, seed: int, shared_sandbox: Sandbox
 ) -> None:
-    check(tmp_path, any_engine, seed, shared_trial if seed % 2 else None)
+    check(tmp_path, any_engine, seed, shared_sandbox if seed % 2 else None)

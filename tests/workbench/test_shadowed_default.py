@@ -1,4 +1,4 @@
-"""A saved default that changes nothing to be seen is told with what stands over it."""
+"""A saved default that changes nothing visible is reported with what overrides it."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def saved(session: Session) -> tuple[np.ndarray, list[str]]:
     ],
 )
 def test_the_first_edit_that_the_readme_proposes_shows(any_engine: Engine, folder: Path, edit):
-    """Step 1: in hills/my_land.glsl, change a number and save; the land in the window changes."""
+    """Step 1: in hills/my_land.glsl, change a number and save; the terrain in the window changes."""
     session = Session(any_engine, folder)
     before, _ = saved(session)
     change(folder / "my_land.glsl", *edit)

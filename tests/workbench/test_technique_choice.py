@@ -13,13 +13,13 @@ from playground.sketch.replace_technique import choices, with_technique
 
 from ..sketch_texts import map_of, passes
 
-FLAT = """// flat.glsl -- level land
+FLAT = """// flat.glsl -- level terrain
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1)
 uniform float smoothing = 0.1; //! slider(0, 0.3)
 float kernel(ivec2 texel) { return level * smoothing; }
 """
-RAISED = """// raised.glsl -- land on land
+RAISED = """// raised.glsl -- terrain on terrain
 #pragma kernel(output = "height:r32f")
 uniform sampler2D height; //! input
 uniform float level = 0.25; //! slider(0, 1)

@@ -1,19 +1,19 @@
-"""The terminal is told of each error once, while it lasts."""
+"""The terminal reports each error once, while it lasts."""
 
 from __future__ import annotations
 
 from playground.errors import Diagnostic
 from playground.workbench.terminal_errors import TerminalErrors
 
-ONE, OTHER = Diagnostic("no name 'p'", "land.glsl", 3), Diagnostic("a ; is missing", "wave.glsl", 7)
+ONE, OTHER = Diagnostic("no name 'p'", "terrain.glsl", 3), Diagnostic("a ; is missing", "wave.glsl", 7)
 
 
-def test_each_error_is_told_once_and_again_after_it_was_fixed() -> None:
-    told: list[str] = []
-    terminal = TerminalErrors(told.append)
+def test_each_error_is_reported_once_and_again_after_it_was_fixed() -> None:
+    printed: list[str] = []
+    terminal = TerminalErrors(printed.append)
     for errors in ([ONE], [ONE], [ONE, OTHER], [OTHER], [], [ONE], [ONE]):
         terminal.take(errors)
-    assert told == [str(ONE), str(OTHER), str(ONE)]
+    assert printed == [str(ONE), str(OTHER), str(ONE)]
 
 
 def test_a_terminal_that_is_gone_stops_nothing() -> None:

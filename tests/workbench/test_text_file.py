@@ -18,17 +18,17 @@ TEXT = "one\ntwo\nthree\nfour\nfive\n"
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    path = tmp_path / "land.glsl"
+    path = tmp_path / "terrain.glsl"
     path.write_bytes(TEXT.encode())
     return path
 
 
-def test_a_save_leaves_the_text_and_nothing_beside_it(file: Path) -> None:
+def test_a_save_leaves_the_text_and_no_other_file(file: Path) -> None:
     text = OpenText.read(file)
     assert text.base == TEXT and not text.changed_outside()
     assert text.save(TEXT + "six ³\n")
     assert file.read_bytes() == (TEXT + "six ³\n").encode()
-    assert [path.name for path in file.parent.iterdir()] == ["land.glsl"]
+    assert [path.name for path in file.parent.iterdir()] == ["terrain.glsl"]
     assert not text.changed_outside() and text.save("again\n")
 
 
@@ -89,7 +89,7 @@ def test_a_file_that_cannot_be_written_stays_and_says_so(file: Path, monkeypatch
     with pytest.raises(DataError, match="could not be saved: No space left"):
         text.save("mine\n")
     assert file.read_text(encoding="utf-8") == TEXT
-    assert [path.name for path in file.parent.iterdir()] == ["land.glsl"]
+    assert [path.name for path in file.parent.iterdir()] == ["terrain.glsl"]
     monkeypatch.undo()
     assert text.save("mine\n"), "the text is not lost"
 
@@ -109,13 +109,13 @@ def test_changes_far_apart_merge_and_near_ones_do_not(file: Path) -> None:
 
 def test_a_merge_of_changes_to_other_lines_is_both() -> None:
     """Against the truth: change lines far apart, some by me and some by others."""
-    chance = random.Random(7)
+    randoms = random.Random(7)
     for _ in range(200):
         lines = [f"line {n}" for n in range(60)]
         mine, theirs, both = list(lines), list(lines), list(lines)
         for n in range(0, 60, 4):
-            text = f"new {n}" * chance.randint(0, 3)
-            whose = chance.choice((None, mine, theirs))
+            text = f"new {n}" * randoms.randint(0, 3)
+            whose = randoms.choice((None, mine, theirs))
             if whose is not None:
                 whose[n] = both[n] = text
         joined = ["\n".join(t) + "\n" for t in (lines, mine, theirs, both)]

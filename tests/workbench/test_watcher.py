@@ -22,7 +22,7 @@ class Watched:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
-        self.file = folder / "land.glsl"
+        self.file = folder / "terrain.glsl"
         self.include = folder / "inc" / "deep" / "noise.glsl"
         self.include.parent.mkdir(parents=True)
         self.file.write_text("one", encoding="utf-8")
@@ -43,7 +43,7 @@ class Watched:
         return set(wanted) <= found
 
     def rests(self) -> bool:
-        """Wait until nothing is told for a while: a file may be told of half-written and again when whole."""
+        """Wait until nothing is reported for a while: a file may be reported half-written."""
         end = time.monotonic() + LIMIT
         while time.monotonic() < end:
             if self.sees_nothing():
@@ -67,9 +67,9 @@ def save_in_place(path: Path, text: str) -> None:
 
 
 def save_by_rename(path: Path, text: str) -> None:
-    beside = path.with_name(f".{path.name}.tmp")
-    beside.write_text(text, encoding="utf-8")
-    beside.replace(path)
+    temporary = path.with_name(f".{path.name}.tmp")
+    temporary.write_text(text, encoding="utf-8")
+    temporary.replace(path)
 
 
 def save_by_deleting(path: Path, text: str) -> None:
@@ -134,7 +134,7 @@ def test_a_deleted_file_is_a_change_and_so_is_its_return(watched: Watched) -> No
     assert watched.sees(watched.file)
 
 
-def test_a_new_shader_beside_a_watched_one_is_told_of(watched: Watched) -> None:
+def test_a_new_shader_next_to_a_watched_one_is_reported(watched: Watched) -> None:
     new = watched.folder / "new.glsl"
     save_in_place(new, "new")
     assert watched.sees(new)
@@ -162,7 +162,7 @@ def test_a_change_between_reading_and_following_is_not_lost(watched: Watched) ->
     assert watched.sees(other)
 
 
-def test_what_a_reader_saw_and_nobody_was_told_of_is_told(watched: Watched) -> None:
+def test_what_a_reader_saw_and_was_never_reported_is_reported(watched: Watched) -> None:
     """It was away for a moment, just when another save had it read: deleted and created is no change."""
     watched.watcher.follow([watched.file, watched.include], read={watched.file: None})
     assert watched.sees(watched.file)
@@ -176,10 +176,10 @@ def test_a_save_that_bears_an_old_time_is_not_lost_while_it_is_read(watched: Wat
     other = watched.folder / "late.toml"
     save_in_place(other, "one")
     read_at, read = time.time() + 1.0, {other: signature(other)}
-    beside = watched.folder / "unpacked.tmp"
-    save_in_place(beside, "from an archive")
-    os.utime(beside, (1e9, 1e9))
-    beside.replace(other)
+    temporary = watched.folder / "unpacked.tmp"
+    save_in_place(temporary, "from an archive")
+    os.utime(temporary, (1e9, 1e9))
+    temporary.replace(other)
     watched.watcher.follow([watched.file, other], read_at=read_at, read=read)
     assert watched.sees(other)
 

@@ -40,7 +40,7 @@ float exact_cross(ivec2 a, ivec2 b) {
     return float(high) * 16777216.0 + float(((middle & 4095) << 12) | (low & 4095));
 }
 
-// Where a texel stands on a side of the lattice, a multiple of 4096: whole spacings, then the rest
+// Where a texel is on a side of the lattice, a multiple of 4096: whole spacings, then the rest
 // of one.
 vec2 exact_place(int texel, int texels, int side) {
     int intervals = max(texels - 1, 1);

@@ -5,7 +5,7 @@
 //            and height, colour and light of the 3 x 3 parts in their middle
 //   units    pixels
 //   source   Belaiche 2010, section 5.6, figure 5.15; drawn here from data
-//   tested   tests/glsl/test_endless.py, by what stands where
+//   tested   tests/glsl/test_endless.py, by the places of things
 //
 // Above on the left, the shape of the terrain, cut into parts; below it the one detail component.
 // On the right the detail put on a part and its neighbours, and only that part in light and
@@ -42,7 +42,7 @@ vec3 shaded(sampler2D field, vec2 share, float steep) {
         texelFetch(field, node + ivec2(0, 1), 0).r - texelFetch(field, node - ivec2(0, 1), 0).r);
     vec3 normal = normalize(vec3(-rise, 1.0));
     float lit = max(dot(normal, normalize(vec3(-0.5, 0.5, 0.8))), 0.0);
-    // A little by height as well, so that valleys and mountains are told apart.
+    // A little by height as well, so that valleys and mountains are distinguished.
     return vec3(0.78, 0.79, 0.80) * lit * (0.55 + 0.6 * texelFetch(field, node, 0).r);
 }
 

@@ -17,7 +17,7 @@
 
 const int PLACES = 32768;  // of a side
 
-// Where a texel of a row (or column) of `side` texels stands, 0..32768.
+// Where a texel of a row (or column) of `side` texels is, 0..32768.
 int place_of_texel(int texel, int side) {
     int most = max(side - 1, 1);
     return quotient(texel * PLACES + (most >> 1), most);

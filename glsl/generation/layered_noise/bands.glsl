@@ -1,6 +1,6 @@
 // generation/layered_noise/bands.glsl -- for each band and column, all layers as one polynomial.
 //
-//   gives    bands: what stands with 1, v, v² and v³, where v counts rows from the band's first
+//   gives    bands: the factors of 1, v, v² and v³, where v counts rows from the band's first
 //   needs    generation/layered_noise/layers.glsl, noise/hash.glsl
 //   units    heights without unit
 //   source   the sum of generation/layered_noise/sum.glsl; the polynomial is derived here

@@ -1,4 +1,4 @@
-// generation/layered_noise/columns.glsl -- where a column of texels stands in each layer.
+// generation/layered_noise/columns.glsl -- where a column of texels is in each layer.
 //
 //   gives    columns: which random numbers the node to the west and the one to the east read, the
 //            share between them after the curve, and the layer's intervals; a layer a row
@@ -12,7 +12,7 @@
 uniform int frequency = 4;     //! log_slider(1, 1024) As in the technique
 uniform int interpolation = 1; //! menu("linear", "smooth") As in the technique
 uniform int tiles = 1;         //! slider(1, 64) As in the technique
-uniform int seams = 1;         //! menu("mended", "left") As in the technique
+uniform int seams = 1;         //! menu("removed", "left") As in the technique
 
 vec4 kernel(ivec2 texel) {
     int intervals = 1;

@@ -11,7 +11,7 @@
 // that hills stay round.
 //
 // The thesis's layer of random numbers has as many as the terrain has texels, and a node reads
-// the one it stands on: so at each size the same seed is another terrain. Here the layer has
+// the one it is on: so at each size the same seed is another terrain. Here the layer has
 // 32768 numbers a side, whatever the size, and a node reads the one at its share of the side.
 #ifndef GENERATION_LAYERED_NOISE_LAYERS
 #define GENERATION_LAYERED_NOISE_LAYERS
@@ -55,12 +55,12 @@ const int RANDOM_SIDE = 32768;
 // side that fit each other, the last node reads the number of the next part's first one, and all
 // parts are alike.
 // anchor: beyond
-Nodes nodes_around(int place, int side, int intervals, int tiles, bool mended) {
+Nodes nodes_around(int place, int side, int intervals, int tiles, bool wraps) {
     int before = quotient(place * intervals, side);
     int from = quotient(before * side, intervals);
     int to = min(quotient((before + 1) * side, intervals), side - 1);
     int apart = max(to - from, 1);
-    int after = mended && before + 1 == intervals ? 0 : before + 1;
+    int after = wraps && before + 1 == intervals ? 0 : before + 1;
     int most = intervals * tiles;
     return Nodes(quotient(before * RANDOM_SIDE, most), quotient(after * RANDOM_SIDE, most),
                  float(place - from) / float(apart), apart);

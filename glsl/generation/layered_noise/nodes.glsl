@@ -1,4 +1,4 @@
-// generation/layered_noise/nodes.glsl -- where the first row of each band stands in each layer.
+// generation/layered_noise/nodes.glsl -- where the first row of each band is in each layer.
 //
 //   gives    nodes: which random numbers the node to the south and the one to the north read, the
 //            share between them before the curve, and how much of it a row is; a layer a row
@@ -12,7 +12,7 @@
 uniform sampler2D columns; //! input
 uniform sampler2D rows;    //! input
 uniform int tiles = 1;     //! slider(1, 64) As in the technique
-uniform int seams = 1;     //! menu("mended", "left") As in the technique
+uniform int seams = 1;     //! menu("removed", "left") As in the technique
 
 vec4 kernel(ivec2 texel) {
     ivec2 texels = ivec2(textureSize(columns, 0).x, size.x);

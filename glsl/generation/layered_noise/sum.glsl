@@ -41,7 +41,8 @@ uniform int left_out = 0;        //! slider(0, 8) Of these layers, so many of th
                                  //! out
 uniform int tiles = 1;           //! slider(1, 64) This is one of so many parts a side, and has its
                                  //! share of the intervals
-uniform int seams = 1;           //! menu("mended", "left") Whether its last nodes are its first
+uniform int seams = 1;           //! menu("removed", "left") was("mended: removed")
+                                 //! Whether its last nodes are its first
                                  //! ones again
 
 // anchor: layer
@@ -51,9 +52,9 @@ float curve(float a) {
 
 // One layer at a texel: the heights of the four nodes around it, interpolated along x, then y.
 float layer_at(ivec2 texel, ivec2 intervals, uint which) {
-    bool mended = seams == 0 && tiles > 1;
-    Nodes x = nodes_around(texel.x, size.x, intervals.x, tiles, mended);
-    Nodes y = nodes_around(texel.y, size.y, intervals.y, tiles, mended);
+    bool wraps = seams == 0 && tiles > 1;
+    Nodes x = nodes_around(texel.x, size.x, intervals.x, tiles, wraps);
+    Nodes y = nodes_around(texel.y, size.y, intervals.y, tiles, wraps);
     float south = mix(random(ivec2(x.first, y.first), which),
                       random(ivec2(x.second, y.first), which), curve(x.share));
     float north = mix(random(ivec2(x.first, y.second), which),

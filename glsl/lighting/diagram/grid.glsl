@@ -76,7 +76,7 @@ vec4 kernel(ivec2 texel) {
 
     vec2 way = to_sun(vec2(sun.x, 0.0)).xy / spacing_of(grid, extent);
     way /= max(abs(way.x), abs(way.y));
-    vec2 read = vec2(here) + reach * way;
+    vec2 read = vec2(here) + step_length * way;
     bool off = any(lessThan(read, vec2(-1e-3))) || any(greaterThan(read, vec2(last) + 1e-3));
     float there = height_at(height, read);
     float share = off ? 1.0 : clamp(1.0 - (there - foot) / soft, 0.0, 1.0);
@@ -105,7 +105,7 @@ vec4 kernel(ivec2 texel) {
     colour = mix(colour, EDGE, covered(0.6 * u - abs(length(place - bright) - 17.0 * u)));
     vec2 beyond = read;
     for (int k = 2; k <= steps; k++) {
-        beyond += max(reach, 0.25) * way;
+        beyond += max(step_length, 0.25) * way;
         vec2 at = middle + (beyond - vec2(here)) * pitch;
         bool inside = all(greaterThanEqual(beyond, vec2(-1e-3)))
                 && all(lessThanEqual(beyond, vec2(last) + 1e-3));

@@ -1,4 +1,4 @@
-// lighting/diagram/label.glsl -- where a label stands, and the character under a pixel.
+// lighting/diagram/label.glsl -- where a label is, and the character under a pixel.
 //
 //   gives    Label, label_on_left, label_on_right, label_around, board_cover, cell_of
 //   needs    lighting/diagram/ink.glsl, lighting/diagram/letters.glsl

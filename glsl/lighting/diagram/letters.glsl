@@ -2,7 +2,7 @@
 //
 //   gives    LETTER, letter_away, character_of, number_character
 //   needs    maths/whole.glsl
-//   units    units of the letters: a capital is 9 high, one letter stands LETTER.x after another
+//   units    units of the letters: a capital is 9 high, one letter is LETTER.x after another
 //   source   strokes drawn here
 //   tested   tests/glsl/test_diagrams.py, which reads what pictures say
 //
@@ -131,7 +131,7 @@ int character_of(uvec4 text, int place) {
 }
 
 // A character of a number, written with so many decimals and standing on the right of `room`
-// places; its sign, if it is negative, stands before its first digit.
+// places; its sign, if it is negative, is before its first digit.
 int number_character(float value, int decimals, int place, int room) {
     float scale = decimals == 0 ? 1.0 : decimals == 1 ? 10.0 : decimals == 2 ? 100.0 : 1000.0;
     int whole = int(min(floor(abs(value) * scale + 0.5), 9999999.0));

@@ -1,4 +1,4 @@
-// lighting/diagram/paints.glsl -- the diagrams' colours, told apart by the colour-blind too.
+// lighting/diagram/paints.glsl -- the diagrams' colours, which the colour-blind can distinguish.
 //
 //   gives    SKY, GROUND, EDGE, INK, FREE, PARTLY, HIDDEN, SUN, DULL
 //   needs    nothing

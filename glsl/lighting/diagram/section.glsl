@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_diagrams.py, by where heights must be in the picture
 //
 // Lengths along and upwards have one scale, so that angles in the picture are angles. The
-// texels that are shown fill the width; the lowest of their heights stands `foot` of the
+// texels that are shown fill the width; the lowest of their heights is `foot` of the
 // picture's height above its edge.
 #ifndef LIGHTING_DIAGRAM_SECTION
 #define LIGHTING_DIAGRAM_SECTION

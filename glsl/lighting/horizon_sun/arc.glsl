@@ -1,4 +1,4 @@
-// lighting/horizon_sun/arc.glsl -- where a sun stands on its arc, and how much of it is seen.
+// lighting/horizon_sun/arc.glsl -- where a sun is on its arc, and how much of it is seen.
 //
 //   gives    ARC, EIGHT, directions_for, on_arc, Weights, weights_of, elevation_of, in_diameters,
 //            disc_seen
@@ -13,7 +13,7 @@
 // one: two horizons a texel are enough. The arc is under the sun unless an azimuth is set for it;
 // a sun that then leaves it is put on it, where it is nearest. With eight horizons the sun may
 // stand anywhere, and its horizon is taken between the two that are nearest to its azimuth, which
-// rounds off what stands between them. The sun of a daylight keeps to no arc, and no parameter
+// rounds off what is between them. The sun of a daylight keeps to no arc, and no parameter
 // knows its azimuth: it takes the eight.
 #ifndef LIGHTING_HORIZON_SUN_ARC
 #define LIGHTING_HORIZON_SUN_ARC

@@ -4,7 +4,7 @@
 //            turned away from it; visibility: the part of the sun that is over the horizon
 //   needs    lighting/daylight_reading.glsl, lighting/horizon_sun/arc.glsl,
 //            terrain/maps.glsl, lighting/sun.glsl, terrain/heightfield.glsl; angles, normals,
-//            the table of sunlight, and where the sun stands
+//            the table of sunlight, and where the sun is
 //   units    light without unit, 1 for white; not cut at 1, that is the view's to do
 //   source   Belaiche 2010, section 3.4, eqs 3.3, 3.7 and 3.8
 //   tested   tests/glsl/test_analytic.py, against float64

@@ -1,4 +1,4 @@
-// lighting/horizon_sun/stand.glsl -- where the sun stands among the horizons.
+// lighting/horizon_sun/stand.glsl -- where the sun is among the horizons.
 //
 //   gives    stand: texels 0 and 1, by what the two textures of angles are multiplied and summed
 //            to give the horizon; texel 2, the sky's light on open level ground, and in alpha the

@@ -71,7 +71,7 @@ void kernel(ivec2 texel, out vec4 ahead, out vec4 behind, out float sky, out flo
     float back = relief * steepest_from(grid, start, -towards, metres, land, highest);
     there = min(there, 60000.0);
     back = min(back, 60000.0);
-    // A single pair stands in all channels.
+    // A single pair is in all channels.
     bvec4 here = equal(ivec4(keep ? iteration : -1),
                        iterations == 1 ? ivec4(0) : ivec4(0, 1, 2, 3));
     ahead = mix(previous_ahead(texel), vec4(there), here);

@@ -265,8 +265,8 @@ void follow_hull(int which, int block, Course course, int line, int hull_at, int
         row = rest_in * BLOCK + NEAR + nearest_in(rest);
         float next_tall = height_on(course, row, line + which);
         float next_away = float(row - first_row);
-        // Whoever stands over the line through both sees more at the next; a row that will be on
-        // the hull and stands there covers this point.
+        // A row over the line through both sees more at the next; a row that will be on
+        // the hull and is there covers this point.
         float slope = more ? (next_tall - tall) / (next_away - away) : 0.0;
         float base = tall - slope * away;
         float highest = NONE;

@@ -9,8 +9,8 @@
 //   tested   tests/glsl/test_shadows.py, against NumPy
 //
 // From each texel a ray goes to the lamp, which is a small ball: a cone from the texel around
-// it, as in soft_cone, gives its free part. With inverse square falloff `reach` is how far off the
-// lamp is as bright as its gain; with the soft one it is where the light ends.
+// it, as in soft_cone, gives its free part. With inverse square falloff the lamp is as bright as
+// its gain at `max_distance`; with the soft one the light ends there.
 #include "lighting/march.glsl"
 #include "lighting/sun.glsl"
 #pragma kernel(output = "light:rgba16f")
@@ -26,16 +26,17 @@ uniform float lamp_radius = 1.0;   //! slider(0, 100) step(0.5) group("Lamp") un
 uniform vec3 lamp_colour = vec3(1.0, 0.6, 0.25);  //! colour group("Lamp") Colour of its light
 uniform float lamp_gain = 0.0;   //! slider(0, 8) step(0.05) group("Lamp")
                                  //! Its light is multiplied by it; at 0 there is none
-uniform float reach = 800.0;     //! log_slider(1, 100000) group("Lamp") unit("m")
-                                 //! How far it shines
+uniform float max_distance = 800.0;  //! log_slider(1, 100000) group("Lamp") unit("m")
+                                     //! was("reach") How far it shines
 uniform int falloff = 0;         //! menu("inverse square", "soft") group("Lamp")
-                                 //! How its light falls off; the soft way ends at its reach
+                                 //! How its light falls off; the soft way ends at the distance
+                                 //! that it shines
 #include "lighting/parameters/normal.glsl"
 
 const float BRIGHTEST = 1000.0;  // over its gain, close by, where the inverse square has no bound
 
 float falling_off(float distance_to) {
-    float share = distance_to / reach;
+    float share = distance_to / max_distance;
     if (falloff == 1) return pow(max(1.0 - share * share, 0.0), 2.0);
     return min(1.0 / max(share * share, 1e-12), BRIGHTEST);
 }

@@ -1,6 +1,6 @@
 // lighting/parameters/march.glsl -- what a ray march towards the sun reads, and its steps.
 //
-//   gives    height, block_maxima, range, stride, reading
+//   gives    height, block_maxima, range, step_length, sampling
 //   needs    nothing
 //   units    texels; heights without unit
 //   source   Belaiche 2010, section 3.5.4
@@ -10,10 +10,12 @@
 uniform sampler2D height;        //! input
 uniform sampler2D block_maxima;  //! input
 uniform sampler2D range;         //! input
-uniform float stride = 1.0;      //! slider(0.25, 4) step(0.25) group("March") unit("texels")
+uniform float step_length = 1.0; //! slider(0.25, 4) step(0.25) group("March") unit("texels")
+                                 //! was("stride")
                                  //! Length of a step, along the axis that the ray follows more.
                                  //! Long steps jump over ridges
-uniform int reading = 0;         //! menu("interpolated", "cut down") group("March")
+uniform int sampling = 0;        //! menu("interpolated", "cut down") group("March")
+                                 //! was("reading")
                                  //! Heights between texels, or of the texel that a place is cut
                                  //! down to, as in the thesis
 #endif

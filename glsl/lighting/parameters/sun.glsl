@@ -1,4 +1,4 @@
-// lighting/parameters/sun.glsl -- where the sun stands: a parameter, or a wired daylight.
+// lighting/parameters/sun.glsl -- where the sun is: a parameter, or a wired daylight.
 //
 //   gives    daylight, sun
 //   needs    nothing

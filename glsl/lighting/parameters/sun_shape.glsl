@@ -1,4 +1,4 @@
-// lighting/parameters/sun_shape.glsl -- what stands for the sun in a sweep.
+// lighting/parameters/sun_shape.glsl -- what represents the sun in a sweep.
 //
 //   gives    shape, spread
 //   needs    nothing

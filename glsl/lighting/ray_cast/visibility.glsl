@@ -44,7 +44,7 @@ float kernel(ivec2 texel) {
     if (swept) return texelFetch(horizon, texel, 0).r * length(light.xy) > light.z ? 0.0 : 1.0;
     ivec2 grid = textureSize(height, 0);
     vec2 place = place_on(grid, texel, size);
-    March march = march_from(height, place, size == grid, light, extent, relief, stride);
+    March march = march_from(height, place, size == grid, light, extent, relief, step_length);
     march.count = steps_below(march, march.climb, texelFetch(range, ivec2(0), 0).g * relief);
-    return marched(march, height, block_maxima, reading, march.climb, 1.0);
+    return marched(march, height, block_maxima, sampling, march.climb, 1.0);
 }

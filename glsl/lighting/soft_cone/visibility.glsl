@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
 //
 // The thesis's own method. Around the ray to the sun grows a cone, from radius 0 at the texel.
-// Where terrain stands at height H, the ray at HL and the cone's radius is r, the part
+// Where terrain is at height H, the ray at HL and the cone's radius is r, the part
 // ((HL + r) - H) / 2r of the cone is free; the least of all steps counts. Terrain over the whole
 // cone hides the sun.
 
@@ -22,7 +22,7 @@ float free_part(float clearance, float radius) {
 // delta_r is what the radius grows over one unit of path, heights and lengths in the same unit:
 // the tangent of the cone's half angle, but for the radius being upright. The thesis adds it at
 // every step, so that half the step makes the cone twice as wide: that remains a choice, and is
-// the same at a stride of 1.
+// the same at a step length of 1.
 //
 // In tangents of elevations the free part is 1/2 - (horizon - sun) cos(elevation) / (2 delta_r):
 // so the sweep, which finds the horizon, gives it too.
@@ -39,7 +39,7 @@ uniform int growth = 0;        //! menu("per unit of path", "per step") group("C
                                //! long they are
 #include "lighting/parameters/form.glsl"
 #include "lighting/parameters/march.glsl"
-uniform int reach = 0;         //! slider(0, 4096) group("March") unit("texels")
+uniform int max_distance = 0;  //! slider(0, 4096) group("March") unit("texels") was("reach")
                                //! In the march, terrain farther than this throws no shadow, and in
                                //! the last quarter less of one; 0: all of it does
 
@@ -48,8 +48,8 @@ float radius_a_step;  // what the radius grows from step to step  [m]
 // How much a step is left out because it is far: for a part of a larger terrain, since what its
 // texture does not hold must not count for some texels only.
 float left_out(float t) {
-    float last_step = float(reach) / stride;
-    return reach > 0 ? clamp((t - 0.75 * last_step) * (4.0 / last_step), 0.0, 1.0) : 0.0;
+    float last_step = float(max_distance) / step_length;
+    return max_distance > 0 ? clamp((t - 0.75 * last_step) * (4.0 / last_step), 0.0, 1.0) : 0.0;
 }
 
 // anchor: cone
@@ -74,14 +74,14 @@ float kernel(ivec2 texel) {
     if (swept) return free_part(light.z - texelFetch(horizon, texel, 0).r * level, delta_r);
     ivec2 grid = textureSize(height, 0);
     vec2 place = place_on(grid, texel, size);
-    March march = march_from(height, place, size == grid, light, extent, relief, stride);
-    radius_a_step = delta_r * march.path / (growth == 1 ? stride : 1.0);
+    March march = march_from(height, place, size == grid, light, extent, relief, step_length);
+    radius_a_step = delta_r * march.path / (growth == 1 ? step_length : 1.0);
     // With a delta_r over the sun's own climb the cone's lower side goes down, to the terrain's
     // edge.
     float lower_side = march.climb - radius_a_step;
     march.count = steps_below(march, lower_side, texelFetch(range, ivec2(0), 0).g * relief);
-    if (reach > 0) march.count = min(march.count, int(float(reach) / stride));
-    // Under the zenith the cone stands over the texel itself, which only a very wide one notices.
+    if (max_distance > 0) march.count = min(march.count, int(float(max_distance) / step_length));
+    // Under the zenith the cone is over the texel itself, which only a very wide one notices.
     float whole = level < 1e-6 ? free_part(light.z, delta_r) : 1.0;
-    return marched(march, height, block_maxima, reading, lower_side, whole);
+    return marched(march, height, block_maxima, sampling, lower_side, whole);
 }

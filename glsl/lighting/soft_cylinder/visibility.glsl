@@ -39,8 +39,8 @@ float kernel(ivec2 texel) {
     if (light.z < 0.0) return 0.0;
     ivec2 grid = textureSize(height, 0);
     vec2 place = place_on(grid, texel, size);
-    March march = march_from(height, place, size == grid, light, extent, relief, stride);
+    March march = march_from(height, place, size == grid, light, extent, relief, step_length);
     // The beginning leaves a half: only terrain over the cylinder's middle takes more.
     march.count = steps_below(march, march.climb, texelFetch(range, ivec2(0), 0).g * relief);
-    return marched(march, height, block_maxima, reading, march.climb, 0.5);
+    return marched(march, height, block_maxima, sampling, march.climb, 0.5);
 }

@@ -1,4 +1,4 @@
-// lighting/sun_disc/visibility.glsl -- how much of the sun's disc stands over the horizon.
+// lighting/sun_disc/visibility.glsl -- how much of the sun's disc is over the horizon.
 //
 //   gives    visibility: the visible part of the disc's area, 0..1
 //   needs    lighting/daylight_reading.glsl, lighting/march.glsl, lighting/sun_disc/area.glsl,
@@ -44,11 +44,11 @@ float kernel(ivec2 texel) {
     if (swept) return disc_over(max(texelFetch(horizon, texel, 0).r, 0.0), elevation, diameter);
     ivec2 grid = textureSize(height, 0);
     vec2 place = place_on(grid, texel, size);
-    March march = march_from(height, place, size == grid, light, extent, relief, stride);
-    // Horizons below the disc need not be told apart, nor those above it.
+    March march = march_from(height, place, size == grid, light, extent, relief, step_length);
+    // Horizons below the disc need not be distinguished, nor those above it.
     float least = max(tangent_of(elevation - 0.5 * diameter), 0.0);
     disc_hidden_from = tangent_of(elevation + 0.5 * diameter);
     march.count = steps_below(march, least * march.run, texelFetch(range, ivec2(0), 0).g * relief);
-    float tangent = marched(march, height, block_maxima, reading, least * march.run, least);
+    float tangent = marched(march, height, block_maxima, sampling, least * march.run, least);
     return disc_over(tangent, elevation, diameter);
 }

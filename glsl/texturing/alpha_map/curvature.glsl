@@ -2,7 +2,7 @@
 //
 //   gives    curvature_at
 //   needs    terrain/heightfield.glsl; the texture comes as an argument
-//   units    places in texels of the texture, metres a texel, reach in metres; units of height
+//   units    places in texels of the texture, metres a texel, radius in metres; units of height
 //            per square metre (times relief: 1/m), above 0 in a hollow
 //   source   second differences; half the sum over two directions at right angles is the mean
 //            curvature of terrain that lies level (do Carmo 1976, section 3.3)
@@ -14,7 +14,7 @@
 #define TEXTURING_ALPHA_MAP_CURVATURE
 #include "terrain/heightfield.glsl"
 
-float curvature_at(sampler2D field, vec2 place, vec2 metres, float reach) {
+float curvature_at(sampler2D field, vec2 place, vec2 metres, float radius) {
     vec2 last = vec2(textureSize(field, 0) - 1);
     float middle = height_at(field, place);
     float total = 0.0;
@@ -22,7 +22,7 @@ float curvature_at(sampler2D field, vec2 place, vec2 metres, float reach) {
     for (int k = 0; k < 4; k++) {
         vec2 along = k == 0 ? vec2(1.0, 0.0) : k == 1 ? vec2(0.0, 1.0) : k == 2
                 ? vec2(0.70710678, 0.70710678) : vec2(-0.70710678, 0.70710678);
-        vec2 away = reach * along / metres;
+        vec2 away = radius * along / metres;
         vec2 low = min(place - away, place + away);
         vec2 high = max(place - away, place + away);
         if (all(greaterThanEqual(low, vec2(0.0))) && all(lessThanEqual(high, last))) {
@@ -31,6 +31,6 @@ float curvature_at(sampler2D field, vec2 place, vec2 metres, float reach) {
             lines += 1.0;
         }
     }
-    return lines > 0.0 ? total / (lines * reach * reach) : 0.0;
+    return lines > 0.0 ? total / (lines * radius * radius) : 0.0;
 }
 #endif

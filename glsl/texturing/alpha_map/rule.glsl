@@ -46,7 +46,8 @@ uniform float curvature_to = 20.0;    //! slider(-20, 20) step(0.1) unit("1/km")
 uniform float curvature_fade = 1.0;   //! slider(0, 10) step(0.1) unit("1/km") group("Curvature")
                                       //! label("Fade")
                                       //! Over how much curvature it begins and ends
-uniform float reach = 60.0;           //! log_slider(1, 2000) unit("m") group("Curvature")
+uniform float curvature_distance = 60.0;  //! log_slider(1, 2000) unit("m") group("Curvature")
+                                      //! label("Distance") was("reach")
                                       //! How far away the terrain is looked at
 uniform float strength = 1.0;         //! slider(0, 1) step(0.01) How much it covers where it does
 uniform float ragged = 0.0;           //! slider(0, 4) step(0.05) group("Chance")
@@ -83,7 +84,7 @@ float kernel(ivec2 texel) {
                 * band(incline, slope_from > 0.0 ? slope_from : -1e6,
                        slope_to < 90.0 ? slope_to : 1e6, slope_fade, moved);
     if (by_curvature) {
-        float bend = 1000.0 * relief * curvature_at(height, place, metres, reach);
+        float bend = 1000.0 * relief * curvature_at(height, place, metres, curvature_distance);
         cover *= band(bend, curvature_from, curvature_to, curvature_fade, moved);
     }
     // Terrain that is not a number has no cover, so that it stays visible as such in the view.

@@ -2,7 +2,7 @@
 //
 //   gives    colour, linear light
 //   needs    maths/land.glsl, maths/nodes.glsl; texturing/splat_many/atlas and choose
-//   units    a tile stands `repeats` times side by side from west to east
+//   units    a tile is `repeats` times side by side from west to east
 //   source   as texturing/splat/mix.glsl; reading the atlas: made here
 //   tested   tests/glsl/test_splat_many.py, against the mixture in float64
 //

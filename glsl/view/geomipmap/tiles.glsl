@@ -8,7 +8,7 @@
 //
 // A tile is 16 x 16 cells, from 512 triangles down to 2 in five levels. So many tiles lie over a
 // terrain that a cell is no larger than a texel; where the texels less one are a multiple of 16,
-// each node stands on a texel, and elsewhere between texels, so that all cells are equal.
+// each node is on a texel, and elsewhere between texels, so that all cells are equal.
 #ifndef VIEW_GEOMIPMAP_TILES
 #define VIEW_GEOMIPMAP_TILES
 #include "maths/drape.glsl"

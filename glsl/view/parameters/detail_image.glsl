@@ -1,6 +1,6 @@
 // view/parameters/detail_image.glsl -- an image over the cover, seen near the eye.
 //
-//   gives    detail_image, detail_repeats, detail_strength, detail_reach
+//   gives    detail_image, detail_repeats, detail_strength, detail_max_distance
 //   needs    nothing
 //   units    metres
 //   source   Belaiche 2010, section 2.7
@@ -16,7 +16,8 @@ uniform float detail_strength = 1.0;   //! slider(0, 2) step(0.01) group("Detail
                                        //! label("Strength")
                                        //! How much of it is seen at the eye; 1: as its own greys
                                        //! have it
-uniform float detail_reach = 2500.0;   //! log_slider(10, 50000) unit("m") group("Detail image")
-                                       //! label("Reach")
+uniform float detail_max_distance = 2500.0;  //! log_slider(10, 50000) unit("m")
+                                       //! group("Detail image") label("Max distance")
+                                       //! was("detail_reach")
                                        //! Distance from the eye at which nothing of it is left
 #endif

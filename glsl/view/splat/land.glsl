@@ -5,7 +5,7 @@
 //            view/surface.glsl, view/vertices.glsl; a height 0..1, weights as of
 //            texturing/alpha_map, four tiles; a light and texturing/splat/means if there are, and
 //            for tiles of the mesh what view/geomipmap/errors gives
-//   units    metres; colours linear; a tile stands so many times side by side from west to east
+//   units    metres; colours linear; a tile is so many times side by side from west to east
 //   source   Belaiche 2010, section 2.5, figure 2.9; by heights: see texturing/splat/mix.glsl
 //   tested   tests/glsl/test_splat_view.py, against the same mixture baked, and against float64
 //

@@ -4,7 +4,7 @@
 //   needs    colour/encode.glsl; four tiles, weights, the baked colour; a light if there is one
 //   units    tiles and colour linear, weights 0..1 shown as greys; the picture's parts in pixels
 //   source   Belaiche 2010, figure 2.9
-//   tested   tests/glsl/test_splat_view.py, by what stands in each part
+//   tested   tests/glsl/test_splat_view.py, by what is in each part
 //
 // Four tiles, their alpha maps below, the result beside them.
 #include "colour/encode.glsl"

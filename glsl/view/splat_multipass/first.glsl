@@ -4,7 +4,7 @@
 //   needs    view/splat/surface.glsl, view/surface.glsl, view/vertices.glsl; a height 0..1, a
 //            tile; a light if there is one, and for tiles of the mesh what view/geomipmap/errors
 //            gives
-//   units    metres; colours linear; the tile stands `repeats` times side by side from west to
+//   units    metres; colours linear; the tile is `repeats` times side by side from west to
 //            east
 //   source   Belaiche 2010, section 2.6: the first of the draws
 //   tested   tests/glsl/test_splat_view.py: with the layers over it, the picture of view/splat

@@ -5,7 +5,7 @@
 //            view/splat/surface.glsl, view/surface.glsl, view/vertices.glsl; a height 0..1,
 //            weights as of texturing/alpha_map, a tile; a light if there is one, and for tiles of
 //            the mesh what view/geomipmap/errors gives
-//   units    metres; colours linear; the tile stands `repeats` times side by side from west to
+//   units    metres; colours linear; the tile is `repeats` times side by side from west to
 //            east
 //   source   Belaiche 2010, section 2.6, whose blender does
 //            result = alpha texture + (1 - alpha) previous                              (1)

@@ -1,6 +1,6 @@
 #version 330
-// An image over an area of the screen. Texels are fetched, not sampled, so that whatever sampler is
-// bound changes nothing; an image of another size is stretched.
+// An image over an area of the screen. Texels are fetched, not sampled, so that a bound sampler
+// changes nothing; an image of another size is stretched.
 uniform sampler2D picture;
 uniform ivec4 area;
 uniform bool grey;

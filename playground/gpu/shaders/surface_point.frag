@@ -1,7 +1,7 @@
 #version 330
 // The point of the terrain under a pixel: march along its ray, then halve the step that goes below.
 uniform sampler2D height;
-uniform vec3 start;  // [m] where the ray comes over the land
+uniform vec3 start;  // [m] where the ray enters the terrain's bounds
 uniform vec3 way;    // its unit vector
 uniform float far;   // [m] along it to where it leaves
 uniform int steps;

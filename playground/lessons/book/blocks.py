@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from playground.lessons import model
-from playground.lessons.book.html import Address, code_block, line, plain, prose
+from playground.lessons.book.html import Anchor, code_block, line, plain, prose
 from playground.lessons.bugs import bug_region
 from playground.lessons.excerpt import excerpt
 from playground.lessons.figure_renders import Picture, pictures_in
@@ -29,15 +29,15 @@ class Setting:
     label: Labels  # around the lesson, in its language
     numbers: Mapping[str, Number]
     source: Callable[[Picture], str]  # address of a picture
-    address: Address
+    anchor: Anchor
 
     def line(self, markdown: str) -> Markup:
         """Return a text within a line, with the numbers in it."""
-        return line(self._filled(markdown), self.address)
+        return line(self._filled(markdown), self.anchor)
 
     def prose(self, markdown: str) -> Markup:
         """Return a text as paragraphs, with the numbers in it."""
-        return prose(self._filled(markdown), self.address)
+        return prose(self._filled(markdown), self.anchor)
 
     def image(self, picture: Picture, *, lazy: bool = True, alt: str | None = None) -> Markup:
         """Return a picture as an element with its size, so that nothing jumps when it is loaded."""
@@ -204,11 +204,10 @@ def _question(block: model.Question, setting: Setting) -> Markup:
 
 
 def _exercise(block: model.Exercise, setting: Setting) -> Markup:
-    names = [each.name for each in setting.lesson.blocks if isinstance(each, model.Exercise)]
     pictures = [tag("figure", setting.image(found)) for found in pictures_in(block)]
     return setting.titled(
         block,
-        f"{setting.label('exercise')} {names.index(block.name) + 1}",
+        f"{setting.label('exercise')} {setting.lesson.number_of(block)}",
         setting.prose(block.ask),
         setting.folded("hint", setting.prose(block.hint)) if block.hint else None,
         setting.folded("solution", setting.prose(block.solution), *pictures),

@@ -14,7 +14,7 @@
     const frames = [...list.children];
     const labels = frames.map((frame) => frame.querySelector("b").textContent);
     const range = make("input", { type: "range", min: 0, max: frames.length - 1, step: 1 });
-    const told = make("output");
+    const output = make("output");
     const back = make("button", { type: "button", textContent: "‹", title: words.backward });
     const on = make("button", { type: "button", textContent: "›", title: words.forward });
     const run = make("button", { type: "button", textContent: words.run });
@@ -24,14 +24,14 @@
     let timer = 0;
     const show = (index) => {
       frames.forEach((frame, i) => frame.classList.toggle("now", i === index));
-      // The neighbours come before they are asked for, so that dragging does not stutter.
+      // The neighbours come before they are needed, so that dragging does not stutter.
       for (const i of [index - 1, index, index + 1]) {
         const image = frames[i] && frames[i].querySelector("img");
         if (image) image.loading = "eager";
       }
       range.value = index;
       range.setAttribute("aria-valuetext", labels[index]);
-      told.textContent = labels[index];
+      output.textContent = labels[index];
       // Not disabled: a button that is loses the keys of one who has just pressed it.
       back.setAttribute("aria-disabled", index === 0);
       on.setAttribute("aria-disabled", index === frames.length - 1);
@@ -51,7 +51,7 @@
     });
     list.removeAttribute("tabindex");
     figure.classList.add("dragged");
-    list.after(make("div", { className: "controls" }, back, range, on, told, run));
+    list.after(make("div", { className: "controls" }, back, range, on, output, run));
     // A sweep opens in its middle, where there is something to drag towards on both sides.
     show(figure.dataset.kind === "step" ? 0 : frames.length >> 1);
   }
@@ -65,13 +65,13 @@
     const button = make("button", { type: "button" });
     const controls = make("div", { className: "controls" }, range, button);
     const at = (share) => { range.value = share; list.style.setProperty("--at", `${range.value}%`); };
-    const lay = (over) => {
+    const overlay = (over) => {
       figure.classList.toggle("swiped", over);
       range.disabled = !over;
       button.textContent = over ? words.side : words.over;
     };
     range.addEventListener("input", () => at(range.value));
-    button.addEventListener("click", () => lay(!figure.classList.contains("swiped")));
+    button.addEventListener("click", () => overlay(!figure.classList.contains("swiped")));
     const drag = (event) => {
       if (!figure.classList.contains("swiped") || !(event.buttons & 1)) return;
       const box = list.getBoundingClientRect();
@@ -87,7 +87,7 @@
     list.style.touchAction = "pan-y";
     list.after(controls);
     at(50);
-    lay(true);
+    overlay(true);
   }
 
   for (const field of document.querySelectorAll("fieldset")) {

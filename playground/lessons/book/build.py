@@ -1,7 +1,7 @@
 """Build the book: one folder that needs no network.
 
 index.html          chooses a language
-en/, fr/            a page for each lesson, the contents, the thesis's figures
+en/, fr/            a page for each lesson, the contents, the glossary, the thesis's figures
 pictures/           all pictures, for all languages
 book.css, book.js
 book.json           the files that were written, so that the next build removes what is no more
@@ -24,10 +24,12 @@ from playground.lessons.book.gallery import gallery_html
 from playground.lessons.book.images import Album, of_picture
 from playground.lessons.book.page import (
     FIGURES,
+    GLOSSARY,
     Book,
     contents_page,
     door_page,
     gallery_page,
+    glossary_page,
     lesson_page,
 )
 from playground.lessons.figure_renders import pictures_of
@@ -112,11 +114,12 @@ def _pages(build: Build, book: Book, numbers: dict[str, dict[str, Number]]) -> I
     covers = {}
     for lesson in book.lessons:
         source = of_picture(build.files[lesson.name], f"../{PICTURES}")
-        setting = Setting(lesson, book.label, numbers[lesson.name], source, book.address)
+        setting = Setting(lesson, book.label, numbers[lesson.name], source, book.anchor)
         cover = pictures_of(lesson)[0]
         covers[lesson.name] = setting.image(cover, alt="")
         yield f"{lesson.name}.html", lesson_page(book, lesson, setting)
     yield "index.html", contents_page(book, covers)
+    yield f"{GLOSSARY}.html", glossary_page(book)
     if build.figures:
 
         def address(drawn: FigurePicture) -> str:

@@ -43,7 +43,7 @@ def _figure(book: Book, figure: ThesisFigure, source: Source) -> Markup:
 
 
 def _caption(book: Book, figure: ThesisFigure) -> Markup:
-    return line(figure.captions[book.language], book.address)
+    return line(figure.captions[book.language], book.anchor)
 
 
 def _picture(book: Book, number: str, picture: FigurePicture, source: Source) -> Markup:

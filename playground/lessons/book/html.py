@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from functools import lru_cache
-from html import escape
 from typing import Any
 
 from latex2mathml.converter import convert
@@ -14,20 +13,20 @@ from markdown_it.token import Token
 from playground.lessons.markdown import parser
 from playground.markup import Markup, tag
 
-Address = Callable[[str], str]
-"""Maps a link to its address in the book: "lesson:fourier" → "fourier.html"."""
+Anchor = Callable[[str], dict[str, str]]
+"""Maps a link to the attributes of its element: "lesson:fourier" → {"href": "fourier.html"}."""
 
 
-def prose(markdown: str, address: Address) -> Markup:
+def prose(markdown: str, anchor: Anchor) -> Markup:
     """Return blocks of Markdown as HTML."""
-    return Markup(_rendered(markdown, address, inline=False))
+    return Markup(_rendered(markdown, anchor, inline=False))
 
 
-def line(markdown: str, address: Address) -> Markup:
+def line(markdown: str, anchor: Anchor) -> Markup:
     """Return Markdown within a line as HTML; of several paragraphs, one after the other."""
     if "\n\n" in markdown:
-        return prose(markdown, address)
-    return Markup(_rendered(markdown, address, inline=True))
+        return prose(markdown, anchor)
+    return Markup(_rendered(markdown, anchor, inline=True))
 
 
 def plain(markdown: str) -> str:
@@ -74,7 +73,7 @@ class _Renderer(RendererHTML):
 
     def link_open(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
         href = str(tokens[idx].attrs["href"])
-        return f'<a href="{escape(env["address"](href))}">'
+        return tag("a", **env["anchor"](href)).removesuffix("</a>")
 
     def table_open(self, tokens: Sequence[Token], idx: int, options: Any, env: Any) -> str:
         return '<div class="table" tabindex="0"><table>\n'
@@ -91,8 +90,8 @@ class _Renderer(RendererHTML):
         return code_block(text, token.info or "code") if token.info == "glsl" else str(_plain_block(text))
 
 
-def _rendered(markdown: str, address: Address, *, inline: bool) -> str:
+def _rendered(markdown: str, anchor: Anchor, *, inline: bool) -> str:
     found = parser()
     found.renderer = _Renderer(found)
-    env: dict[str, Any] = {"address": address}
+    env: dict[str, Any] = {"anchor": anchor}
     return str(found.renderInline(markdown, env) if inline else found.render(markdown, env))

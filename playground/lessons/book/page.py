@@ -9,13 +9,17 @@ from dataclasses import dataclass
 
 from playground._version import __version__
 from playground.lessons.book.blocks import Setting, block_html, open_command
-from playground.lessons.book.html import Address, line, plain
+from playground.lessons.book.html import Anchor, line, plain
+from playground.lessons.glossary import Term, alphabetical, linked_term, terms_of
 from playground.lessons.library import LANGUAGES, THESIS, Labels
 from playground.lessons.model import Lesson
 from playground.markup import Markup, joined, tag
 
 FIGURES = "figures"
 """The name of the gallery's page."""
+
+GLOSSARY = "glossary"
+"""The name of the page of terms."""
 
 
 @dataclass(frozen=True)
@@ -29,16 +33,20 @@ class Book:
     renderer: str  # that drew the pictures
     gallery: bool = True  # whether the thesis's figures are among the pages
 
-    def address(self, link: str) -> str:
-        """Return where a link of a lesson leads to in the book."""
+    def anchor(self, link: str) -> dict[str, str]:
+        """Return the attributes of a lesson's link: its address in the book, and what a term means."""
         kind, _, what = link.partition(":")
         if kind == "lesson":
-            return f"{what}.html"
+            return {"href": f"{what}.html"}
         if kind == "thesis":  # its text is not ours to give; the figures of that chapter are here
-            return f"{FIGURES}.html#chapter-{what.partition('.')[0]}" if self.gallery else "#thesis-title"
+            chapter = f"{FIGURES}.html#chapter-{what.partition('.')[0]}"
+            return {"href": chapter if self.gallery else "#thesis-title"}
         if kind == "sketch":
-            return "#play"
-        return link
+            return {"href": "#play"}
+        if term := linked_term(link):
+            href = f"{GLOSSARY}.html#{term.key}"
+            return {"href": href, "class_": "term", "title": term.definition(self.language)}
+        return {"href": link}
 
 
 def lesson_page(book: Book, lesson: Lesson, setting: Setting) -> str:
@@ -65,7 +73,7 @@ def lesson_page(book: Book, lesson: Lesson, setting: Setting) -> str:
         tag("p", tag("b", label("goal")), label("colon"), setting.line(lesson.goal), class_="goal"),
         tag("p", label("stale"), class_="stale") if lesson.stale else None,
     )
-    ending = (_play(book, lesson), _references(book, lesson, setting.address), _pager(book, lesson))
+    ending = (_play(book, lesson), _references(book, lesson, setting.anchor), _pager(book, lesson))
     return _page(book, lesson.title, lesson.name, joined(head, *body, *ending))
 
 
@@ -75,7 +83,7 @@ def contents_page(book: Book, covers: Mapping[str, Markup]) -> str:
     for lesson in book.lessons:
         name = tag("span", f"{lesson.number}. {lesson.title}", class_="name")
         link = tag("a", covers[lesson.name], name, href=f"{lesson.name}.html")
-        rows.append(tag("li", link, tag("p", line(lesson.goal, book.address))))
+        rows.append(tag("li", link, tag("p", line(lesson.goal, book.anchor))))
     label = book.label
     figures = tag("a", label("figures"), href=f"{FIGURES}.html")
     body = joined(
@@ -96,6 +104,33 @@ def gallery_page(book: Book, body: Markup) -> str:
         tag("p", book.label("source", thesis=THESIS)),
     )
     return _page(book, book.label("figures"), FIGURES, joined(head, body), wide=True)
+
+
+def glossary_page(book: Book) -> str:
+    """Return the page of terms: what each means, and which lessons use it."""
+    users: dict[str, list[Lesson]] = {}
+    for lesson in book.lessons:
+        for term in terms_of(lesson):
+            users.setdefault(term.key, []).append(lesson)
+    rows = [row for term in alphabetical(book.language) for row in _term(book, term, users.get(term.key, []))]
+    title, goal = book.label("glossary"), tag("p", book.label("glossary_goal"), class_="goal")
+    body = joined(tag("header", tag("h1", title), goal), tag("dl", *rows, class_="glossary"))
+    return _page(book, title, GLOSSARY, body)
+
+
+def _term(book: Book, term: Term, users: Sequence[Lesson]) -> tuple[Markup, Markup]:
+    """Return a term and its definition, as entries of a list of definitions."""
+    label = book.label
+    name, *synonyms = term.names[book.language]
+    translations = tag("i", ", ".join(term.names["en" if book.language == "fr" else "fr"]))
+    notes: list[tuple[str, list[str | Markup]]] = [(label("other_language"), [translations])]
+    if synonyms:
+        notes.insert(0, (label("also"), [", ".join(synonyms)]))
+    if users:
+        links = [(", ", tag("a", lesson.title, href=f"{lesson.name}.html")) for lesson in users]
+        notes.append((label("in_lessons"), [part for pair in links for part in pair][1:]))
+    lines = [tag("small", about, label("colon"), *inside) for about, inside in notes]
+    return tag("dt", name, id=term.key), tag("dd", tag("p", term.meaning[book.language]), *lines)
 
 
 def door_page(languages: Sequence[str], titles: Mapping[str, str]) -> str:
@@ -141,6 +176,7 @@ def _page(book: Book, title: str, name: str, body: Markup, *, wide: bool = False
         "nav",
         tag("a", label("contents"), href="index.html"),
         tag("a", label("figures"), href=f"{FIGURES}.html") if book.gallery else None,
+        tag("a", label("glossary"), href=f"{GLOSSARY}.html"),
         *others,
         tag("button", label("theme"), type="button", id="theme", hidden=True),
         class_="top",
@@ -177,11 +213,11 @@ def command_line(command: str) -> Markup:
     return tag("pre", tag("code", command), class_="command", tabindex=0)
 
 
-def _references(book: Book, lesson: Lesson, address: Address) -> Markup:
+def _references(book: Book, lesson: Lesson, anchor: Anchor) -> Markup:
     label = book.label
     listed: list[str | Markup] = []
     for number in lesson.thesis:
-        listed += [", ", tag("a", label("section", n=number), href=address(f"thesis:{number}"))]
+        listed += [", ", tag("a", label("section", n=number), **anchor(f"thesis:{number}"))]
     return tag(
         "section",
         tag("h2", label("thesis"), id="thesis-title"),

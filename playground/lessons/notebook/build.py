@@ -10,10 +10,11 @@ from playground.errors import DataError
 from playground.lessons import model
 from playground.lessons.bugs import bug_region
 from playground.lessons.excerpt import excerpt
+from playground.lessons.glossary import linked_term, terms_of
 from playground.lessons.library import SOURCE, THESIS, interface_labels
 from playground.lessons.measuring import Number, filled
 
-_LINK = re.compile(r"\[([^\]]*)\]\((lesson|sketch|thesis):([^)]*)\)")
+_LINK = re.compile(r"\[([^\]]*)\]\((lesson|sketch|thesis|term):([^)]*)\)")
 
 
 def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number]) -> str:
@@ -63,6 +64,9 @@ class _Writer:
         papers = "\n".join(f"- {paper}" for paper in lesson.papers)
         thesis = f"## {label('thesis')}\n\n{THESIS}{label('colon')}{sections}."
         yield "markdown", f"{thesis}\n\n## {label('papers')}\n\n{papers}"
+        if terms := terms_of(lesson):
+            entries = "\n".join(f"- {term.definition(lesson.language)}" for term in terms)
+            yield "markdown", f"## {label('glossary')}\n\n{entries}"
 
     def block(self, block: model.Block) -> Iterator[tuple[str, str]]:
         """Yield the cells of a block: its text, then the code that draws it."""
@@ -86,8 +90,8 @@ class _Writer:
             yield "markdown", "\n\n".join(folded)
         elif isinstance(block, model.Question):
             choices = "".join(f"\n- {text(choice)}" for choice in block.choices)
-            asked = f"### {label('question')}\n\n{text(block.ask)}\n{choices}".rstrip()
-            yield "markdown", f"{asked}\n\n{self.folded('answer', block.answer)}"
+            question = f"### {label('question')}\n\n{text(block.ask)}\n{choices}".rstrip()
+            yield "markdown", f"{question}\n\n{self.folded('answer', block.answer)}"
         elif isinstance(block, model.Exercise):
             yield "markdown", self.exercise(block)
         elif isinstance(block, model.Measure) and block.sentence:
@@ -96,8 +100,7 @@ class _Writer:
 
     def exercise(self, block: model.Exercise) -> str:
         """Return an exercise, its solution folded away."""
-        others = [one.name for one in self.lesson.blocks if isinstance(one, model.Exercise)]
-        parts = [f"### {self.label('exercise')} {others.index(block.name) + 1}", self.text(block.ask)]
+        parts = [f"### {self.label('exercise')} {self.lesson.number_of(block)}", self.text(block.ask)]
         if block.hint:
             parts.append(self.folded("hint", block.hint))
         parts.append(self.folded("solution", block.solution))
@@ -109,9 +112,11 @@ class _Writer:
 
     def text(self, markdown: str) -> str:
         """Return a text with its numbers, and with links that a notebook can follow."""
-        return _LINK.sub(_linked, filled(markdown, self.numbers, comma=self.lesson.language == "fr"))
+        return _LINK.sub(self.linked, filled(markdown, self.numbers, comma=self.lesson.language == "fr"))
 
-
-def _linked(match: re.Match[str]) -> str:
-    text, kind, what = match.groups()
-    return f"[{text}]({what}.ipynb)" if kind == "lesson" else text
+    def linked(self, link: re.Match[str]) -> str:
+        """Return a link that a notebook can follow: of a term, to the list at its end."""
+        text, kind, what = link.groups()
+        if term := linked_term(f"{kind}:{what}"):
+            return f'[{text}](#{self.label("glossary")} "{term.definition(self.lesson.language)}")'
+        return f"[{text}]({what}.ipynb)" if kind == "lesson" else text

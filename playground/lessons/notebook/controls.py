@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
-from typing import Any
+from dataclasses import dataclass
 
 from playground.lessons.library import Labels
 from playground.lessons.model import Compare, Figure, Scene, Slider, Steps
@@ -30,10 +29,6 @@ class Control:
     step: float = 1.0
     choices: tuple[str, ...] = ()  # of a choice: their names; of a frame: one for each
     unit: str = ""
-
-    def as_json(self) -> dict[str, Any]:
-        """Return it as a browser takes it."""
-        return asdict(self)
 
 
 def controls_of(block: Figure | Steps | Slider | Compare, language: str, label: Labels) -> list[Control]:
@@ -80,8 +75,8 @@ def _parameter(scene: Scene, path: str, label: Labels) -> list[Control]:
     parameter = resolve(scene.sketch.graph, path)[0].parameter
     value = value_of(scene.sketch, path, values_of(scene.sketch))
     widget = parameter.widget
-    if widget.kind == "menu":
-        return [Control(path, parameter.title, "choice", float(_scalar(value)), choices=widget.choices)]
+    if widget.kind == "menu" and isinstance(value, int):
+        return [Control(path, parameter.title, "choice", float(value), choices=widget.choices)]
     if parameter.type == "bool":
         return [Control(path, parameter.title, "checkbox", float(bool(value)))]
     if widget.kind == "direction" and isinstance(value, tuple):
@@ -105,8 +100,3 @@ def _value(scene: Scene, path: str, given: float) -> Value:
     if is_whole(parameter.type):
         return round(given)
     return float(given)
-
-
-def _scalar(value: Value) -> float:
-    assert not isinstance(value, tuple | str)
-    return float(value)

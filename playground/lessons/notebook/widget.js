@@ -36,11 +36,11 @@ function render({ model, el }) {
     waiting = false;
     if (next) { const values = next; next = null; send(values); }
   };
-  const said = () => { mistake.textContent = model.get("mistake"); };
+  const showMistake = () => { mistake.textContent = model.get("mistake"); };
   const current = () => ({ ...model.get("values"), ...(next || {}) });
 
   for (const control of model.get("controls")) {
-    const told = make("output");
+    const output = make("output");
     const value = model.get("values")[control.key];
     let input;
     if (control.kind === "choice") {
@@ -53,24 +53,24 @@ function render({ model, el }) {
       input.value = value;
     }
     const read = () => (control.kind === "checkbox" ? Number(input.checked) : Number(input.value));
-    const tell = () => {
+    const showValue = () => {
       if (control.kind !== "range") return;
       const number = read();
-      told.textContent = control.choices.length ? control.choices[number] : `${+number.toPrecision(6)} ${control.unit}`;
+      output.textContent = control.choices.length ? control.choices[number] : `${+number.toPrecision(6)} ${control.unit}`;
     };
-    input.addEventListener("input", () => { tell(); send({ ...current(), [control.key]: read() }); });
-    tell();
-    rows.append(make("label", {}, make("span", { textContent: control.label }), input, told));
+    input.addEventListener("input", () => { showValue(); send({ ...current(), [control.key]: read() }); });
+    showValue();
+    rows.append(make("label", {}, make("span", { textContent: control.label }), input, output));
   }
   model.on("change:picture", show);
-  model.on("change:mistake", said);
+  model.on("change:mistake", showMistake);
   model.on("msg:custom", answered);
   el.append(image, rows, mistake);
   show();
-  said();
+  showMistake();
   return () => {
     model.off("change:picture", show);
-    model.off("change:mistake", said);
+    model.off("change:mistake", showMistake);
     model.off("msg:custom", answered);
     if (url) URL.revokeObjectURL(url);
   };

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +41,7 @@ class PictureWidget(anywidget.AnyWidget):
         super().__init__(
             picture=draw(values),
             alt=alt,
-            controls=[control.as_json() for control in controls],
+            controls=[asdict(control) for control in controls],
             values=values,
         )
         self.observe(self._changed, names="values")

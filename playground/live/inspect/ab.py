@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from imgui_bundle import ImVec2, imgui
 
 from playground.live import theme
-from playground.live.dividers import REACH, moved
+from playground.live.dividers import GRAB_DISTANCE, moved
 from playground.live.draw import OVERLAY, Area, button, choose, window
 from playground.live.sliders import slide
 from playground.live.theme import Theme
@@ -41,7 +41,7 @@ def paint_both(
 
 
 def shows_first(now: float) -> bool:
-    """Say whether A is shown at a moment [s] of flickering."""
+    """Return whether A is shown at a moment [s] of flickering."""
     return int(now / PERIOD) % 2 == 0
 
 
@@ -52,7 +52,7 @@ def drag_line(compare: Compare, area: Area) -> bool:
         compare.held = False
         return False
     across = io.mouse_pos.x - area[0]
-    near = abs(across - compare.split * area[2]) <= REACH and not io.want_capture_mouse
+    near = abs(across - compare.split * area[2]) <= GRAB_DISTANCE and not io.want_capture_mouse
     if not imgui.is_mouse_down(0):
         compare.held = False
     elif imgui.is_mouse_clicked(0) and near:

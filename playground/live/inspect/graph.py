@@ -6,12 +6,11 @@ from dataclasses import dataclass, field
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.errors import counted
 from playground.live import theme
 from playground.live.draw import QUIET, Area, styled
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
-from playground.workbench.inspect.pass_graph import Wiring
+from playground.workbench.inspect.pass_graph import Wiring, cost_of
 from playground.workbench.inspect.thumbnails import Thumbnails
 from playground.workbench.inspect.toggles import Inspection
 from playground.workbench.session import Session
@@ -110,14 +109,10 @@ def _node(node: str, ref: str, drawing: _Drawing) -> None:
         dim = 1.0 if thumbnails.is_current(ref) else 0.45  # of another picture than the last
         tint = theme.packed((1.0, 1.0, 1.0), dim)
         draw.add_image(imgui.ImTextureRef(texture.glo), low, high, ImVec2(0, 1), ImVec2(1, 0), tint)
-    mine = [path for path in session.engine.runs if path == node or path.startswith(f"{node}.")]
-    ran = any(path in mine for path in session.engine.ran)
-    lines = [(node, theme.INK), (counted(sum(session.engine.runs[p] for p in mine), "run"), theme.DIM)]
-    if ran:
-        lines[1] = lines[1][0], theme.ACCENT
+    runs, ran, spent = cost_of(session, node)
+    lines = [(node, theme.INK), (runs, theme.ACCENT if ran else theme.DIM)]
     if session.engine.profiling:
-        spent = [session.times[path] for path in mine if path in session.times]
-        lines.append((f"{sum(spent):.2f} ms" if spent else "", theme.DIM))
+        lines.append((f"{spent:.2f} ms" if spent is not None else "", theme.DIM))
     line = imgui.get_text_line_height()
     for number, (text, ink) in enumerate(lines):
         text = fitting(text, (_WIDE - 8) * scale)

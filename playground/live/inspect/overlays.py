@@ -1,4 +1,4 @@
-"""Draw what is shown beside the picture, over it."""
+"""Draw the inspection tools over the picture."""
 
 from __future__ import annotations
 

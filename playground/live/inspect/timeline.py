@@ -59,11 +59,8 @@ def _controls(undo: Undo, look: Theme) -> None:
     imgui.set_item_tooltip("Repeat a span of time (L); Shift+drag on the bar chooses from when to when")
     imgui.same_line(0, gap)
     imgui.set_next_item_width(64 * look.scale)
-    no_arrow = imgui.ComboFlags_.no_arrow_button
-    speed = choose(
-        "##speed", f"{clock.speed:g} x", SPEEDS, clock.speed, name=lambda s: f"{s:g} x", flags=no_arrow
-    )
-    clock.speed = speed or clock.speed
+    shown = _times(clock.speed)
+    clock.speed = choose("##speed", shown, SPEEDS, clock.speed, name=_times, flags=_NO_ARROW) or clock.speed
     imgui.set_item_tooltip("Seconds of the sketch in a second")
     imgui.same_line(0, gap)
     imgui.set_next_item_width(84 * look.scale)

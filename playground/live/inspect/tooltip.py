@@ -1,4 +1,4 @@
-"""The box beside the mouse that shows what is under it."""
+"""The box at the mouse that shows what is under it."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from playground.live import theme
 from playground.live.draw import OVERLAY, Area, table, window
 from playground.live.panel_head import ref_name
 from playground.live.theme import Theme
-from playground.workbench.inspect.inspector import Found, Reading, Spot
+from playground.workbench.inspect.inspector import GroundPoint, PixelReport, Sample
 
 _AWAY = 18.0  # of the box from the mouse
 _POINTS = ("north", "north-east", "east", "south-east", "south", "south-west", "west", "north-west")
 
 
-def draw_values(found: Found, look: Theme, area: Area) -> None:
+def draw_values(found: PixelReport, look: Theme, area: Area) -> None:
     """Draw it at the mouse, where there is room for it in the picture."""
     mouse, away = imgui.get_io().mouse_pos, _AWAY * look.scale
     x, y, wide, high = area
@@ -40,42 +40,42 @@ def draw_values(found: Found, look: Theme, area: Area) -> None:
         table("readings", 2, rows, imgui.TableFlags_.sizing_fixed_fit)
 
 
-def lines_of(found: Found) -> list[tuple[str, str, theme.Rgb]]:
+def lines_of(found: PixelReport) -> list[tuple[str, str, theme.Rgb]]:
     """Return the box's lines: a name, what there is, and the colour it is written in."""
     shade = "".join(f"{byte:02x}" for byte in found.picture)
     lines = [("pixel", f"{found.pixel[0]}, {found.pixel[1]}  #{shade}", theme.INK)]
-    if found.spot is not None:
-        lines += [(name, text, theme.INK) for name, text in _place(found.spot)]
+    if found.ground is not None:
+        lines += [(name, text, theme.INK) for name, text in _place(found.ground)]
     if found.shown is not None:
         lines.append(_line(found.shown, theme.ACCENT))
-    elif found.spot is None:
+    elif found.ground is None:
         lines.append(("terrain", "none here", theme.DIM))
     shown = found.shown.name if found.shown else ""
-    lines += [_line(reading, theme.INK) for reading in found.readings if reading.name != shown]
+    lines += [_line(sample, theme.INK) for sample in found.samples if sample.name != shown]
     if found.missing:
         listed = ", ".join(ref_name(name) for name in found.missing)
         lines.append(("not in this picture", listed, theme.DIM))
     return lines
 
 
-def _place(spot: Spot) -> list[tuple[str, str]]:
-    east, north, up = spot.normal
+def _place(ground: GroundPoint) -> list[tuple[str, str]]:
+    east, north, up = ground.normal
     found = [
-        ("place", f"{spot.east:.1f} m east, {spot.north:.1f} m north"),
-        ("ground", f"{spot.height:.2f} m, {spot.above_sea:.2f} m above the sea"),
+        ("place", f"{ground.east:.1f} m east, {ground.north:.1f} m north"),
+        ("ground", f"{ground.height:.2f} m, {ground.above_sea:.2f} m above the sea"),
         ("normal", f"{east:+.3f} {north:+.3f} {up:+.3f}"),
     ]
     faces = ""
     if math.hypot(east, north) > 1e-6:
-        turn = math.degrees(math.atan2(east, north)) % 360
-        faces = f", faces {_POINTS[round(turn / 45) % 8]}"
-    return [*found, ("slope", f"{spot.slope:.1f}°{faces}")]
+        azimuth = math.degrees(math.atan2(east, north)) % 360
+        faces = f", faces {_POINTS[round(azimuth / 45) % 8]}"
+    return [*found, ("slope", f"{ground.slope:.1f}°{faces}")]
 
 
-def _line(reading: Reading, ink: theme.Rgb) -> tuple[str, str, theme.Rgb]:
-    text = "  ".join(f"{value:.6g}" for value in reading.values)
-    if reading.metres is not None and math.isfinite(reading.metres):
-        text += f" = {reading.metres:.2f} m"
-    text += f"   at {reading.texel[0]}, {reading.texel[1]}"
-    colour = ink if all(map(math.isfinite, reading.values)) else theme.ALARM
-    return ref_name(reading.name), text, colour
+def _line(sample: Sample, ink: theme.Rgb) -> tuple[str, str, theme.Rgb]:
+    text = "  ".join(f"{value:.6g}" for value in sample.values)
+    if sample.metres is not None and math.isfinite(sample.metres):
+        text += f" = {sample.metres:.2f} m"
+    text += f"   at {sample.texel[0]}, {sample.texel[1]}"
+    colour = ink if all(map(math.isfinite, sample.values)) else theme.ALARM
+    return ref_name(sample.name), text, colour

@@ -1,14 +1,5 @@
-"""Lessons in the live window: a panel of text beside the picture, which is the live view itself.
+"""Lessons in the live window: a panel of text next to the picture, which is the live view itself.
 
-    labels.py           what is written around lessons, in each language
-    markdown_runs.py    Markdown as runs of one style
-    line_breaking.py    runs broken into lines
-    formulas.py         LaTeX as textures
-    prose.py            texts laid out and drawn
-    page.py             what every block is drawn with
-    figure_blocks.py, questions.py, code_blocks.py   the blocks
-    panel.py            the panel
-    host.py             what the window asks of all that
-
-Each imports only those above it; a reader without a window is in ``workbench.lesson``.
+Markdown becomes runs of one style, runs are broken into lines, lines are drawn by ``prose``; each kind of
+block has a function that ``panel`` calls. A reader without a window is in ``workbench.lesson``.
 """

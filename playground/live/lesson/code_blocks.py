@@ -13,7 +13,7 @@ from playground.workbench.lesson.bugs import BROKEN, FIXED, SHOWN
 
 def draw_code_block(block: Code, page: Page) -> None:
     """Draw an excerpt of a shader as it is now, with a way to edit a copy of it."""
-    bugs = page.reading.bugs
+    bugs = page.reader.bugs
     edited = bugs.is_edited(block)
     with page.frame(block.name, theme.WARM if edited else theme.LINE):
         try:
@@ -36,7 +36,7 @@ def draw_code_block(block: Code, page: Page) -> None:
 
 def draw_break(block: Break, page: Page) -> None:
     """Draw a bug: it is put into the picture, searched for, and fixed."""
-    bugs = page.reading.bugs
+    bugs = page.reader.bugs
     state = bugs.state.get(block.name, "")
     rgb = theme.ALARM if state == BROKEN else theme.ACCENT if state in (FIXED, SHOWN) else theme.WARM
     with page.frame(block.name, rgb):
@@ -60,7 +60,7 @@ def draw_break(block: Break, page: Page) -> None:
 
 
 def _hint(block: Break, page: Page) -> None:
-    known, key = page.reading.shown, (block.name, "hint")
+    known, key = page.reader.shown, (block.name, "hint")
     if key in known:
         page.text(block.hint)
         return

@@ -32,8 +32,8 @@ def draw_figure(block: Figure, page: Page) -> None:
 
 def draw_steps(block: Steps, page: Page) -> None:
     """Draw the steps of a repeated kernel: a slider over them, and buttons to play them."""
-    reading, last = page.reading, len(block.scenes) - 1
-    at = min(reading.at.get(block.name, 0), last)
+    reader, last = page.reader, len(block.scenes) - 1
+    at = min(reader.at.get(block.name, 0), last)
     with page.frame(block.name, _bar(page, block)):
         _player(block, page, at, last)
         imgui.set_next_item_width(-1)
@@ -41,8 +41,8 @@ def draw_steps(block: Steps, page: Page) -> None:
             "##steps", at, (0, last), lambda n: page.say("step", block.iterations[n], block.iterations[-1])
         )
         if chosen is not None:
-            reading.playing = ""
-            reading.move(block, chosen)
+            reader.playing = ""
+            reader.move(block, chosen)
         if block.captions:
             page.text(block.captions[at], size=theme.SMALL)
         page.text(block.caption, size=theme.SMALL, dim=True)
@@ -50,85 +50,89 @@ def draw_steps(block: Steps, page: Page) -> None:
 
 def draw_slider(block: Slider, page: Page) -> None:
     """Draw one parameter that is swept: its own widget, and a button that plays."""
-    reading, last = page.reading, len(block.scenes) - 1
-    at = min(reading.at.get(block.name, 0), last)
+    reader, last = page.reader, len(block.scenes) - 1
+    at = min(reader.at.get(block.name, 0), last)
     with page.frame(block.name, _bar(page, block)):
         _player(block, page, at, last)
-        if reading.is_on(block):
+        if reader.is_on(block):
             _parameters(block, (block.parameter,), page)
         else:
             imgui.set_next_item_width(-1)
             chosen = slide_whole("##values", at, (0, last), lambda n: _named(block, n))
             if chosen is not None:
-                reading.move(block, chosen)
+                reader.move(block, chosen)
         page.text(block.caption, size=theme.SMALL, dim=True)
 
 
 def draw_compare(block: Compare, page: Page) -> None:
     """Draw a choice of variants; two of them can be shown at once, parted by a line."""
-    reading = page.reading
-    on = reading.at.get(block.name) if reading.is_on(block) else None
+    reader = page.reader
+    on = reader.at.get(block.name) if reader.is_on(block) else None
     with page.frame(block.name, _bar(page, block)):
         first = True
         if len(block.scenes) == 2 and comparable(*block.scenes):
             first = False
             note = f"A: {block.labels[0]}\nB: {block.labels[1]}"
             if page.button(page.say("both"), note, on=on == BOTH):
-                reading.choose(block, BOTH)
+                reader.choose(block, BOTH)
         for index, label in enumerate(block.labels):
             if not first:
                 page.same_line(label)
             first = False
             if page.button(f"{label}##{index}", block.alt, on=on == index):
-                reading.choose(block, index)
+                reader.choose(block, index)
         if on == BOTH:
             page.text(f"A: {block.labels[0]} | B: {block.labels[1]}", size=theme.SMALL)
         page.text(block.caption, size=theme.SMALL, dim=True)
 
 
 def _show(block: Figure, page: Page) -> None:
-    reading = page.reading
-    on = reading.is_on(block)
-    shows = page.say("show" if not on else "coming" if reading.figure.busy else "on_view")
+    reader = page.reader
+    on = reader.is_on(block)
+    shows = page.say("show" if not on else "coming" if reader.figure.busy else "on_view")
     if page.button(shows, block.alt or page.say("show_note"), on=on) and not on:
-        reading.show(block)
-    if on and reading.figure.changed:
+        reader.show(block)
+    if on:
+        _reset(block, page)
+
+
+def _reset(block: Figure | Slider, page: Page) -> None:
+    """Draw a button that resets the figure, where the reader has changed it."""
+    if page.reader.figure.changed:
         imgui.same_line()
         if page.button(page.say("reset"), page.say("reset_note")):
-            reading.reset(block)
+            page.reader.reset(block)
 
 
 def _player(block: Steps | Slider, page: Page, at: int, last: int) -> None:
     """Draw buttons that go through a series."""
-    reading, on = page.reading, page.reading.is_on(block)
+    reader, on = page.reader, page.reader.is_on(block)
     if not on:
         if page.button(page.say("show"), block.alt):
-            reading.show(block)
+            reader.show(block)
         imgui.same_line()
-    playing = reading.playing == block.name
+    playing = reader.playing == block.name
     for label, by in (("<", -1), (page.say("pause" if playing else "play"), 0), (">", 1)):
         if by >= 0:
             imgui.same_line()
         if page.button(label, "" if by else block.alt, on=playing and not by, enabled=0 <= at + by <= last):
             if by:
-                reading.playing = ""
-                reading.move(block, at + by)
+                reader.playing = ""
+                reader.move(block, at + by)
             else:
-                reading.play_or_pause(block)
-    if on and reading.figure.changed and isinstance(block, Slider):
-        imgui.same_line()
-        if page.button(page.say("reset"), page.say("reset_note")):
-            reading.reset(block)
+                reader.play_or_pause(block)
+    if on and isinstance(block, Slider):
+        _reset(block, page)
 
 
 def _parameters(block: Figure | Slider, paths: tuple[str, ...], page: Page) -> None:
     """Draw parameters of the figure that is shown, as the panel draws them."""
-    bench, memory = page.reading.bench, page.memory
+    bench, memory = page.reader.bench, page.memory
     session, draft = bench.session, bench.session.shown
     scene = block.scene if isinstance(block, Figure) else block.scenes[0]
-    if not paths or scene is None or draft is None or not page.reading.is_on(block):
+    if not paths or scene is None or draft is None or not page.reader.is_on(block):
         return
-    if session.path != path_of(scene) or page.reading.figure.busy:
+    if session.path != path_of(scene) or page.reader.figure.busy:
         return
     items = {item.leaf: item for section in memory.listing.sections(draft) for item in section.items}
     values = memory.listing.values(draft)
@@ -139,7 +143,7 @@ def _parameters(block: Figure | Slider, paths: tuple[str, ...], page: Page) -> N
             if item is not None:
                 rows.draw(item, Path(draft.sketch.folder))
     if session.shown is not draft:
-        page.reading.playing = ""
+        page.reader.playing = ""
     if memory.menu:
         rows.draw_menu({item.label: item for item in items.values()})
 
@@ -151,4 +155,4 @@ def _named(block: Slider, at: int) -> str:
 
 
 def _bar(page: Page, block: Figure | Steps | Slider | Compare) -> theme.Rgb:
-    return _ON if page.reading.is_on(block) else _OFF
+    return _ON if page.reader.is_on(block) else _OFF

@@ -86,7 +86,7 @@ def set_formula(latex: str, size: int, colour: int, *, display: bool) -> Setting
     style = microtex.TexStyle.display if display else microtex.TexStyle.text
     try:
         made = microtex.render(latex, float(size), colour, style)
-    except Exception:  # nanobind's RuntimeError, of whatever MicroTeX threw
+    except Exception:  # nanobind's RuntimeError, for any exception of MicroTeX
         return None
     return _cut(Setting(made.pixels_as_array().copy(), made.baseline_y))
 
@@ -103,7 +103,7 @@ def _cut(setting: Setting) -> Setting:
 
 @cache
 def can_set() -> bool:
-    """Say whether formulas can be set here; begins to, on the first call."""
+    """Return whether formulas can be set here; begins to, on the first call."""
     folder = Path(imgui_bundle.__file__).parent / "assets" / "fonts" / "latex"
     try:
         microtex.init(str(folder / "latinmodern-math.clm1"), str(folder / "latinmodern-math.otf"))
@@ -125,12 +125,13 @@ def _proves_good() -> bool:
 
 @contextmanager
 def _as_american() -> Iterator[None]:
-    """Let the C library find a locale en_US.UTF-8, which MicroTeX asks for by that name.
+    """Provide a locale en_US.UTF-8 to the C library, which MicroTeX requires by that name.
 
     On Linux it is only there where somebody has made it. The plain one of Unicode has the same
-    character classes; MicroTeX asks once, and keeps what it was given.
+    character classes; MicroTeX looks it up once.
     """
-    plain = next((p for p in _plain_locales() if p.is_dir()), None)
+    locales = Path("/usr/lib/locale")
+    plain = next((p for p in (locales / "C.utf8", locales / "C.UTF-8") if p.is_dir()), None)
     if not sys.platform.startswith("linux") or plain is None:
         yield
         return
@@ -145,7 +146,3 @@ def _as_american() -> Iterator[None]:
                 del os.environ["LOCPATH"]
             else:
                 os.environ["LOCPATH"] = before
-
-
-def _plain_locales() -> list[Path]:
-    return [Path(folder) / name for folder in ("/usr/lib/locale",) for name in ("C.utf8", "C.UTF-8")]

@@ -41,7 +41,7 @@ class Line:
 
     @property
     def width(self) -> float:
-        """How far it reaches."""
+        """The right end of the last run."""
         return max((p.x + p.extent.width for p in self.placed), default=0.0)
 
 

@@ -1,4 +1,4 @@
-"""Markdown as runs of one style each: what has to be laid out, and nothing about how."""
+"""Markdown as runs of one style each: what the layout needs, without a font or a width."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Run:
 Runs = tuple[Run, ...]
 
 INSTEAD = str.maketrans({"\u202f": "\u00a0", "⅓": "1/3", "⅔": "2/3"})
-"""What is written for what the text's font has not."""
+"""Replacements for characters that the text's font lacks."""
 
 
 @dataclass(frozen=True)
@@ -38,10 +38,10 @@ class Part:
     kind: str  # paragraph | heading | formula | code | table | rule
     runs: Runs = ()
     level: int = 0  # of a heading, from 1
-    indent: int = 0  # lists and quotes that it stands in
+    indent: int = 0  # lists and quotes that it is in
     mark: str = ""  # of a list's item: "•" or "2."
     rows: tuple[tuple[Runs, ...], ...] = ()  # of a table; the first is its head
-    numbers: tuple[bool, ...] = ()  # of a table: which columns stand to the right
+    numbers: tuple[bool, ...] = ()  # of a table: which columns are aligned right
     close: bool = False  # it follows closely on the part before, as items of a list do
 
 

@@ -16,7 +16,7 @@ from playground.live.lesson.prose import Prose
 from playground.live.panel_memory import Memory
 from playground.live.theme import Theme
 from playground.workbench.lesson.labels import labels_in
-from playground.workbench.lesson.reader import Reading
+from playground.workbench.lesson.reader import Reader
 
 TEXT = theme.TEXT_SIZE + 1.0
 """Of a lesson's text: it is read at length."""
@@ -24,9 +24,9 @@ TEXT = theme.TEXT_SIZE + 1.0
 
 @dataclass
 class Page:
-    """One frame's."""
+    """What the blocks of a page are drawn with, in one frame."""
 
-    reading: Reading
+    reader: Reader
     lesson: Lesson
     look: Theme
     prose: Prose
@@ -34,23 +34,23 @@ class Page:
 
     def say(self, key: str, *given: object) -> str:
         """Return a label of the interface."""
-        return labels_in(self.reading.language)[key].format(*given)
+        return labels_in(self.reader.language)[key].format(*given)
 
     def text(self, words: Markdown, *, size: float = TEXT, dim: bool = False) -> None:
         """Draw a text of the lesson, its numbers in their places."""
         if words:
             ink = theme.packed(theme.DIM if dim else theme.INK)
-            filled = self.reading.numbers.fill(words, self.lesson)
+            filled = self.reader.numbers.fill(words, self.lesson)
             self.prose.draw(filled, self.look, size=size, ink=ink)
 
     def label(self, text: str, rgb: theme.Rgb = theme.ACCENT) -> None:
-        """Write what a block is."""
+        """Write a block's label."""
         with self.look.font(self.look.bold, theme.SMALL):
             imgui.text_colored(theme.colour(rgb), text)
 
     @contextmanager
     def frame(self, name: str, rgb: theme.Rgb = theme.LINE) -> Iterator[None]:
-        """Set off what is drawn inside by a bar on its left."""
+        """Draw the block inside with a bar on its left."""
         scale = self.look.scale
         with pushed_id(name):
             top = imgui.get_cursor_screen_pos()

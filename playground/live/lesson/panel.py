@@ -34,9 +34,9 @@ from playground.live.lesson.questions import draw_exercise, draw_measure, draw_p
 from playground.live.panel_memory import Memory
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
-from playground.workbench.lesson.links import follow, play_on
+from playground.workbench.lesson.links import described, follow, play_on
 from playground.workbench.lesson.progress import NARROWEST, WIDEST
-from playground.workbench.lesson.reader import Reading
+from playground.workbench.lesson.reader import Reader
 
 DRAWN: dict[type[Block], Any] = {
     Prose: draw_prose,
@@ -53,7 +53,7 @@ DRAWN: dict[type[Block], Any] = {
 """What draws each kind of block."""
 
 _LEAST = 200.0
-"""Room that the picture keeps beside the panel, in units of scale 1."""
+"""Room that the picture has next to the panel, in units of scale 1."""
 
 
 @dataclass
@@ -64,35 +64,39 @@ class LessonPanel:
     _formulas: Formulas | None = None
     _texts: Texts | None = None
 
-    def draw(self, reading: Reading, look: Theme) -> float:
+    def draw(self, reader: Reader, look: Theme) -> float:
         """Draw the panel at the window's left side; return the width it takes, 0 while it is hidden."""
-        lesson = reading.lesson
-        if lesson is None or not reading.progress.shown:
+        lesson = reader.lesson
+        if lesson is None or not reader.progress.shown:
             return 0.0
         if self._texts is None:
-            self._texts = Texts(lambda: self._formulas_of(reading), lambda to: follow(reading, to))
+            self._texts = Texts(
+                lambda: self._formulas_of(reader),
+                lambda to: follow(reader, to),
+                lambda to: described(reader, to),
+            )
         room, scale = imgui.get_main_viewport().size, look.scale
         widest = max(room.x - _LEAST * scale, 160.0)
         imgui.set_next_window_pos(ImVec2(0, 0))
-        wanted = min(reading.progress.width * scale, widest)
+        wanted = min(reader.progress.width * scale, widest)
         imgui.set_next_window_size(ImVec2(wanted, room.y))
         imgui.set_next_window_size_constraints(
             ImVec2(min(NARROWEST * scale, widest), room.y), ImVec2(min(WIDEST * scale, widest), room.y)
         )
         with window("lesson", SIDE_PANEL, ground=theme.colour((0.110, 0.119, 0.127))):
-            page = Page(reading, lesson, look, self._texts, self.memory)
+            page = Page(reader, lesson, look, self._texts, self.memory)
             _head(page)
             scrolls = imgui.WindowFlags_.always_vertical_scrollbar
             imgui.begin_child("page", ImVec2(0, -_foot_height()), 0, scrolls)
-            if reading.to_top:
-                reading.to_top = False
+            if reader.to_top:
+                reader.to_top = False
                 imgui.set_scroll_y(0.0)
             _page(page)
             imgui.end_child()
             _foot(page)
             width = imgui.get_window_size().x
         if abs(width - wanted) > 0.5:  # pulled; a narrow window alone makes it no narrower for good
-            reading.progress.width = width / scale
+            reader.progress.width = width / scale
         return float(width)
 
     def release(self) -> None:
@@ -101,8 +105,8 @@ class LessonPanel:
             self._formulas.release()
         self._formulas = None
 
-    def _formulas_of(self, reading: Reading) -> Formulas:
-        ctx = reading.bench.session.engine.ctx
+    def _formulas_of(self, reader: Reader) -> Formulas:
+        ctx = reader.bench.session.engine.ctx
         if self._formulas is None or self._formulas.ctx is not ctx:
             self._formulas = Formulas(ctx)  # those before went with a context that was lost
         return self._formulas
@@ -110,7 +114,7 @@ class LessonPanel:
 
 def _head(page: Page) -> None:
     """Draw which lesson this is, the way to others, the languages, and what closes the panel."""
-    reading, lesson, look = page.reading, page.lesson, page.look
+    reader, lesson, look = page.reader, page.lesson, page.look
     style = imgui.get_style()
     codes = [code.upper() for code in LANGUAGES]
     buttons = sum(imgui.calc_text_size(code).x + 2 * style.frame_padding.x for code in codes)
@@ -119,32 +123,32 @@ def _head(page: Page) -> None:
     if imgui.begin_combo(
         "##lessons", page.say("lesson", lesson.number), imgui.ComboFlags_.height_largest.value
     ):
-        for one in reading.summaries:
-            done = one.name in reading.progress.done  # read to its end: in green
+        for one in reader.summaries:
+            done = one.name in reader.progress.done  # read to its end: in green
             label = f"{one.number}  {written(one.title)}##{one.name}"
             with inked(theme.ACCENT if done else theme.INK):
                 if imgui.selectable(label, one.name == lesson.name)[0]:
-                    reading.open(one.name)
+                    reader.open(one.name)
             imgui.set_item_tooltip(f"{plain(one.goal)}\n{page.say('minutes', one.minutes)}")
         imgui.end_combo()
     for code in LANGUAGES:
         imgui.same_line(0, 4 * look.scale)
-        if page.button(f"{code.upper()}##{code}", LANGUAGES[code], on=code == reading.language):
-            reading.speak(code)
+        if page.button(f"{code.upper()}##{code}", LANGUAGES[code], on=code == reader.language):
+            reader.speak(code)
     imgui.same_line(0, 4 * look.scale)
     if page.button("×##close", page.say("close")):
-        reading.toggle()
+        reader.toggle()
     with look.font(look.bold, theme.TEXT_SIZE + 5):
         imgui.text_wrapped(written(lesson.title))
     with look.font(look.text, theme.SMALL):
-        parts = [page.say("minutes", lesson.minutes), page.say("page", reading.index + 1, _count(page))]
+        parts = [page.say("minutes", lesson.minutes), page.say("page", reader.index + 1, _count(page))]
         imgui.text_disabled("   ".join(parts))
     _pages(page)
 
 
 def _pages(page: Page) -> None:
     """Draw one bar for each page; a click on one goes there."""
-    count, at, scale = _count(page), page.reading.index, page.look.scale
+    count, at, scale = _count(page), page.reader.index, page.look.scale
     gap, high = 3 * scale, 5 * scale
     wide = (imgui.get_content_region_avail().x - gap * (count - 1)) / count
     corner, draw = imgui.get_cursor_screen_pos(), imgui.get_window_draw_list()
@@ -161,18 +165,18 @@ def _pages(page: Page) -> None:
         if over:
             imgui.set_tooltip(plain(section.title or page.lesson.title))
             if imgui.is_mouse_clicked(0):
-                page.reading.go(index)
+                page.reader.go(index)
     imgui.dummy(ImVec2(1, high + 2 * scale))
 
 
 def _page(page: Page) -> None:
     """Draw the open page."""
-    reading, lesson = page.reading, page.lesson
-    section = reading.section
+    reader, lesson = page.reader, page.lesson
+    section = reader.section
     if section is None:
         return
     gap = ImVec2(1, 3 * page.look.scale)
-    if reading.index == 0:
+    if reader.index == 0:
         page.text(lesson.goal, dim=True)
         imgui.dummy(gap)
     if section.title:
@@ -183,7 +187,7 @@ def _page(page: Page) -> None:
             continue  # the title is above
         DRAWN[type(block)](block, page)
         imgui.dummy(gap)
-    if reading.index == _count(page) - 1:
+    if reader.index == _count(page) - 1:
         _sources(page)
 
 
@@ -201,33 +205,33 @@ def _sources(page: Page) -> None:
 
 def _foot(page: Page) -> None:
     """Draw the way back and on, and out of the lesson."""
-    reading, count = page.reading, _count(page)
+    reader, count = page.reader, _count(page)
     imgui.separator()
     half = (imgui.get_content_region_avail().x - imgui.get_style().item_spacing.x) / 2
-    if button(f"{page.say('previous')}##previous", "PgUp", enabled=reading.index > 0, wide=half):
-        reading.turn_page(-1)
+    if button(f"{page.say('previous')}##previous", "PgUp", enabled=reader.index > 0, wide=half):
+        reader.turn_page(-1)
     imgui.same_line()
-    last = reading.index == count - 1
-    following = next((one for one in reading.summaries if one.number > page.lesson.number), None)
+    last = reader.index == count - 1
+    following = next((one for one in reader.summaries if one.number > page.lesson.number), None)
     text = page.say("next_lesson") if last else page.say("next")
     note = "PgDn" if not last else following.title if following else ""
     with styled({imgui.Col_.button: theme.colour((0.29, 0.46, 0.32))}):
         if button(f"{text}##next", note, enabled=not last or following is not None, wide=half):
             if not last:
-                reading.turn_page(1)
+                reader.turn_page(1)
             elif following is not None:
-                reading.open(following.name, page=0)
-    if reading.figure.own is not None:
-        own = reading.figure.own.path
+                reader.open(following.name, page=0)
+    if reader.figure.before_lesson is not None:
+        own = reader.figure.before_lesson.path
         name = own.parent.name if own.name == "sketch.toml" else own.stem
         if button(fitting(page.say("back"), half) + "##back", page.say("back_note", name), wide=half):
-            reading.go_back()
+            reader.go_back()
     else:
         imgui.dummy(ImVec2(half, imgui.get_frame_height()))
     imgui.same_line()
     note = page.say("play_on_note", page.lesson.sketch)
     if button(fitting(page.say("play_on"), half) + "##play on", note, wide=half):
-        play_on(reading)
+        play_on(reader)
 
 
 def _foot_height() -> float:

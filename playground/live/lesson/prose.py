@@ -1,12 +1,12 @@
-"""Markdown in the window: laid out once for each width, then drawn line by line.
+"""Markdown in the window: its layout is computed once for each width, then it is drawn line by line.
 
-Formulas stand on the baseline of their line, or in the middle of one of their own.
+Formulas are on the baseline of their line, or in the middle of one of their own.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from imgui_bundle import ImVec2, imgui
 
@@ -14,6 +14,7 @@ from playground.live import theme
 from playground.live.lesson.formulas import Formulas
 from playground.live.lesson.line_breaking import Extent, Line, Placed, broken
 from playground.live.lesson.markdown_runs import Part, Run, Runs, parts_of, written
+from playground.live.panel_rows import explain
 from playground.live.theme import Theme
 
 _GAP, _CLOSE = 9.0, 4.0  # between parts, in units of scale 1
@@ -22,7 +23,7 @@ _INDENT = 20.0
 _CELL = 12.0
 _PAD = 3.0  # around code in a line
 _HEADINGS = {1: 6.0, 2: 4.0, 3: 2.0}  # how much larger
-_KEPT = 400
+_CACHED = 400
 
 
 @dataclass(frozen=True)
@@ -35,7 +36,7 @@ class _Style:
 
 
 @dataclass(frozen=True)
-class _Set:
+class _Piece:
     """A line in its place, or a rectangle."""
 
     x: float
@@ -45,19 +46,111 @@ class _Set:
 
 
 @dataclass(frozen=True)
-class _Laid:
-    pieces: tuple[tuple[_Set, _Style], ...]
+class _Layout:
+    pieces: tuple[tuple[_Piece, _Style], ...]
     height: float
     width: float
 
 
 @dataclass
+class _Typesetter:
+    """Puts the parts of a text one below the other; ``y`` is where the last one ends."""
+
+    look: Theme
+    style: _Style
+    width: float
+    extent: Callable[[Run, _Style, Theme], Extent]
+    y: float = 0.0
+    pieces: list[tuple[_Piece, _Style]] = field(default_factory=list)
+
+    def add(self, part: Part) -> None:
+        """Put a part below those before it."""
+        left = part.indent * _INDENT * self.look.scale
+        room = max(self.width - left, 40.0 * self.look.scale)
+        if part.kind == "rule":
+            self._box(0, self.width, self.look.scale, theme.LINE)
+            self.y += self.look.scale
+        elif part.kind == "table":
+            self._table(part, left, room)
+        elif part.kind == "code":
+            self._code(part, left, room)
+        else:
+            self._paragraph(part, left, room)
+
+    def _paragraph(self, part: Part, left: float, room: float) -> None:
+        runs, style, leading = part.runs, self.style, _LEADING * self.look.scale
+        if part.kind == "heading":
+            style = replace(style, size=style.size + _HEADINGS.get(part.level, 0.0))
+            runs = tuple(replace(run, bold=True) for run in runs)
+        lines = self._lines(runs, room, style)
+        if part.mark and lines:
+            mark = self._lines((Run(part.mark),), room, style)[0]
+            place = left - mark.width - 6 * self.look.scale
+            self.pieces.append((_Piece(place, self.y + lines[0].ascent - mark.ascent, mark), style))
+        for line in lines:
+            x = left + max(room - line.width, 0.0) / 2 if part.kind == "formula" else left
+            self.pieces.append((_Piece(x, self.y, line), style))
+            self.y += line.ascent + line.descent + leading
+        self.y -= leading if lines else 0.0
+
+    def _code(self, part: Part, left: float, room: float) -> None:
+        pad, at, top = 8 * self.look.scale, len(self.pieces), self.y
+        self.y += pad
+        for text in part.runs[0].text.split("\n"):
+            # Blanks at the start of a line of code are its indentation.
+            run = Run(text.replace(" ", "\u00a0"), code=True, alone=True)
+            lines = self._lines((run,), room - 2 * pad, self.style)
+            for line in lines:
+                self.pieces.append((_Piece(left + pad, self.y, line), self.style))
+                self.y += line.ascent + line.descent
+            if not lines:
+                self.y += self.extent(Run("", code=True), self.style, self.look).ascent
+        self.y += pad
+        ground = _Piece(left, top, box=(room, self.y - top, theme.packed(theme.FIELD)))
+        self.pieces.insert(at, (ground, self.style))
+
+    def _table(self, part: Part, left: float, room: float) -> None:
+        gap, scale = _CELL * self.look.scale, self.look.scale
+        count = max(map(len, part.rows), default=0)
+        wanted = [0.0] * count
+        for row in part.rows:
+            for column, cell in enumerate(row):
+                lines = self._lines(cell, 1e6, self.style)
+                wanted[column] = max([wanted[column], *(line.width for line in lines)])
+        gaps = gap * max(count - 1, 0)
+        widths = _shared(wanted, room - gaps)
+        for number, row in enumerate(part.rows):
+            x, bottom = left, self.y
+            for column, cell in enumerate(row):
+                down = self.y
+                for line in self._lines(cell, widths[column] + 1, self.style):
+                    shift = widths[column] - line.width if part.numbers[column] else 0.0
+                    self.pieces.append((_Piece(x + shift, down, line), self.style))
+                    down += line.ascent + line.descent
+                bottom = max(bottom, down)
+                x += widths[column] + gap
+            self.y = bottom + 3 * scale
+            self._box(left, sum(widths) + gaps, scale, theme.LINE if number == 0 else theme.FIELD)
+            self.y += 4 * scale
+
+    def _lines(self, runs: Runs, room: float, style: _Style) -> tuple[Line, ...]:
+        return broken(runs, room, lambda run: self.extent(run, style, self.look))
+
+    def _box(self, x: float, wide: float, high: float, rgb: theme.Rgb) -> None:
+        self.pieces.append((_Piece(x, self.y, box=(wide, high, theme.packed(rgb))), self.style))
+
+
+@dataclass
 class Prose:
-    """Draws texts; ``follow`` receives the address of a link that is clicked on."""
+    """Draws texts.
+
+    ``follow`` receives the address of a link that is clicked on; ``describe`` returns the tooltip of one.
+    """
 
     formulas: Callable[[], Formulas]
     follow: Callable[[str], None]
-    _laid: dict[object, _Laid] = field(default_factory=dict)
+    describe: Callable[[str], str]
+    _layouts: dict[object, _Layout] = field(default_factory=dict)
 
     def draw(
         self,
@@ -70,13 +163,13 @@ class Prose:
     ) -> None:
         """Draw a text where the cursor is, over the width that is left or one of its own."""
         wide = width or imgui.get_content_region_avail().x
-        laid = self._lay(words, look, size, theme.packed(theme.INK) if ink is None else ink, wide)
+        layout = self._layout_of(words, look, size, theme.packed(theme.INK) if ink is None else ink, wide)
         corner = imgui.get_cursor_screen_pos()
-        imgui.dummy(ImVec2(min(laid.width, wide), max(laid.height, 1.0)))
+        imgui.dummy(ImVec2(min(layout.width, wide), max(layout.height, 1.0)))
         if not imgui.is_item_visible():
             return
         draw = imgui.get_window_draw_list()
-        for piece, style in laid.pieces:
+        for piece, style in layout.pieces:
             x, y = corner.x + piece.x, corner.y + piece.y
             if piece.line is None:
                 wide_box, high_box, colour = piece.box
@@ -87,127 +180,26 @@ class Prose:
 
     def height(self, words: str, look: Theme, width: float, size: float = theme.TEXT_SIZE) -> float:
         """Return how high a text is at a width, in the window's units."""
-        return self._lay(words, look, size, theme.packed(theme.INK), width).height
+        return self._layout_of(words, look, size, theme.packed(theme.INK), width).height
 
     # ── layout ───────────────────────────────────────────────────────────────
 
-    def _lay(self, words: str, look: Theme, size: float, ink: int, width: float) -> _Laid:
+    def _layout_of(self, words: str, look: Theme, size: float, ink: int, width: float) -> _Layout:
         key = words, size, ink, round(width), look.scale
-        if key not in self._laid:
-            if len(self._laid) >= _KEPT:
-                self._laid.clear()
-            self._laid[key] = self._layout(words, look, size, ink, width)
-        return self._laid[key]
+        if key not in self._layouts:
+            if len(self._layouts) >= _CACHED:
+                self._layouts.clear()
+            self._layouts[key] = self._layout(words, look, size, ink, width)
+        return self._layouts[key]
 
-    def _layout(self, words: str, look: Theme, size: float, ink: int, width: float) -> _Laid:
-        pieces: list[tuple[_Set, _Style]] = []
-        y = 0.0
+    def _layout(self, words: str, look: Theme, size: float, ink: int, width: float) -> _Layout:
+        setter = _Typesetter(look, _Style(size, ink, look.scale), width, self._extent)
         for number, part in enumerate(parts_of(words)):
             if number:
-                y += (_CLOSE if part.close else _GAP) * look.scale
-            y = self._part(part, y, pieces, _Style(size, ink, look.scale), look, width)
-        reach = max((p.x + (p.line.width if p.line else p.box[0]) for p, _ in pieces), default=0.0)
-        return _Laid(tuple(pieces), y, reach)
-
-    def _part(
-        self,
-        part: Part,
-        y: float,
-        pieces: list[tuple[_Set, _Style]],
-        style: _Style,
-        look: Theme,
-        width: float,
-    ) -> float:
-        """Put a part into its place; return where it ends."""
-        left = part.indent * _INDENT * look.scale
-        room = max(width - left, 40.0 * look.scale)
-        if part.kind == "rule":
-            pieces.append((_Set(0, y, box=(width, look.scale, theme.packed(theme.LINE))), style))
-            return y + look.scale
-        if part.kind == "table":
-            return self._table(part, left, y, pieces, style, look, room)
-        runs = part.runs
-        if part.kind == "heading":
-            style = _Style(style.size + _HEADINGS.get(part.level, 0.0), style.ink, style.scale)
-            runs = tuple(Run(r.text, True, r.italic, r.code, r.formula, r.link, r.breaks) for r in runs)
-        if part.kind == "code":
-            return self._code(part, left, y, pieces, style, look, room)
-        lines = broken(runs, room, lambda run: self._extent(run, style, look))
-        if part.mark and lines:
-            mark = broken((Run(part.mark),), room, lambda run: self._extent(run, style, look))[0]
-            place = left - mark.width - 6 * look.scale
-            pieces.append((_Set(place, y + lines[0].ascent - mark.ascent, mark), style))
-        for line in lines:
-            x = left + max(room - line.width, 0.0) / 2 if part.kind == "formula" else left
-            pieces.append((_Set(x, y, line), style))
-            y += line.ascent + line.descent + _LEADING * look.scale
-        return y - (_LEADING * look.scale if lines else 0.0)
-
-    def _code(
-        self,
-        part: Part,
-        left: float,
-        y: float,
-        pieces: list[tuple[_Set, _Style]],
-        style: _Style,
-        look: Theme,
-        room: float,
-    ) -> float:
-        pad = 8 * look.scale
-        at = len(pieces)
-        top, y = y, y + pad
-        for text in part.runs[0].text.split("\n"):
-            # Blanks at the start of a line of code are its indentation.
-            run = Run(text.replace(" ", "\u00a0"), code=True, alone=True)
-            lines = broken((run,), room - 2 * pad, lambda r: self._extent(r, style, look))
-            for line in lines:
-                pieces.append((_Set(left + pad, y, line), style))
-                y += line.ascent + line.descent
-            if not lines:
-                y += self._extent(Run("", code=True), style, look).ascent
-        y += pad
-        pieces.insert(at, (_Set(left, top, box=(room, y - top, theme.packed(theme.FIELD))), style))
-        return y
-
-    def _table(
-        self,
-        part: Part,
-        left: float,
-        y: float,
-        pieces: list[tuple[_Set, _Style]],
-        style: _Style,
-        look: Theme,
-        room: float,
-    ) -> float:
-        gap = _CELL * look.scale
-
-        def lines_of(runs: Runs, width: float) -> tuple[Line, ...]:
-            return broken(runs, width, lambda run: self._extent(run, style, look))
-
-        count = max(map(len, part.rows), default=0)
-        wanted = [0.0] * count
-        for row in part.rows:
-            for column, cell in enumerate(row):
-                wanted[column] = max([wanted[column], *(line.width for line in lines_of(cell, 1e6))])
-        free = room - gap * max(count - 1, 0)
-        widths = _shared(wanted, free)
-        for number, row in enumerate(part.rows):
-            set_row = [lines_of(cell, widths[column] + 1) for column, cell in enumerate(row)]
-            x, bottom = left, y
-            for column, lines in enumerate(set_row):
-                down = y
-                for line in lines:
-                    shift = widths[column] - line.width if part.numbers[column] else 0.0
-                    pieces.append((_Set(x + shift, down, line), style))
-                    down += line.ascent + line.descent
-                bottom = max(bottom, down)
-                x += widths[column] + gap
-            y = bottom + 3 * look.scale
-            strong = theme.LINE if number == 0 else theme.FIELD
-            rule = sum(widths) + gap * max(count - 1, 0), look.scale, theme.packed(strong)
-            pieces.append((_Set(left, y, box=rule), style))
-            y += 4 * look.scale
-        return y
+                setter.y += (_CLOSE if part.close else _GAP) * look.scale
+            setter.add(part)
+        widest = max((p.x + (p.line.width if p.line else p.box[0]) for p, _ in setter.pieces), default=0.0)
+        return _Layout(tuple(setter.pieces), setter.y, widest)
 
     def _extent(self, run: Run, style: _Style, look: Theme) -> Extent:
         if run.formula:
@@ -264,7 +256,7 @@ class Prose:
         draw.add_line(ImVec2(low.x, line), ImVec2(high.x, line), theme.packed(theme.ACCENT, alpha))
         if under:
             imgui.set_mouse_cursor(imgui.MouseCursor_.hand)
-            imgui.set_tooltip(run.link)
+            explain(written(self.describe(run.link)), "")
             if imgui.is_mouse_released(0) and not imgui.is_mouse_dragging(0):
                 self.follow(run.link)
 

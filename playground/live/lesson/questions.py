@@ -20,11 +20,11 @@ def draw_prose(block: Prose, page: Page) -> None:
 
 def draw_question(block: Question, page: Page) -> None:
     """Draw a question; its answer waits behind a button."""
-    reading = page.reading
+    reader = page.reader
     with page.frame(block.name, theme.WARM):
         page.label(page.say("question"), theme.WARM)
         page.text(block.ask)
-        chosen = reading.chosen.get(block.name, -1)
+        chosen = reader.chosen.get(block.name, -1)
         for index, choice in enumerate(block.choices):
             _choice(block, index, choice, chosen, page)
         right = bool(block.choices) and chosen == block.right
@@ -38,7 +38,7 @@ def draw_question(block: Question, page: Page) -> None:
 
 def draw_exercise(block: Exercise, page: Page) -> None:
     """Draw an exercise; hint and solution wait behind buttons."""
-    reading = page.reading
+    reader = page.reader
     with page.frame(block.name, theme.WARM):
         page.label(page.say("exercise"), theme.WARM)
         page.text(block.ask)
@@ -46,19 +46,19 @@ def draw_exercise(block: Exercise, page: Page) -> None:
             _behind(block.name, "hint", block.hint, page)
             page.same_line(page.say("solution"))
         _behind(block.name, "solution", block.solution, page)
-        if (block.name, "solution") in reading.shown and block.scene is not None:
-            if page.button(page.say("solution_picture"), block.alt, on=reading.is_on(block)):
-                reading.show(block)
+        if (block.name, "solution") in reader.shown and block.scene is not None:
+            if page.button(page.say("solution_picture"), block.alt, on=reader.is_on(block)):
+                reader.show(block)
 
 
 def draw_measure(block: Measure, page: Page) -> None:
     """Draw a number that is computed here and now, in its sentence where it has one."""
-    reading = page.reading
-    failed = reading.numbers.failed.get((page.lesson.name, block.name))
+    reader = page.reader
+    failed = reader.numbers.failed.get((page.lesson.name, block.name))
     if not block.sentence and failed is None:
-        return  # it stands in the prose
+        return  # it is in the prose
     with page.frame(block.name, theme.LINE):
-        waits = any(reading.numbers.waits(page.lesson, name) for name in named_in(block.sentence))
+        waits = any(reader.numbers.waits(page.lesson, name) for name in named_in(block.sentence))
         page.label(page.say("measuring") if waits else page.say("measured"))
         if failed is not None:
             page.text(page.say("unmeasured", failed), size=theme.SMALL, dim=True)
@@ -78,14 +78,14 @@ def _choice(block: Question, index: int, choice: str, chosen: int, page: Page) -
         page.text(choice)
         imgui.end_group()
         if marked or imgui.is_item_clicked(0):
-            page.reading.chosen[block.name] = index
+            page.reader.chosen[block.name] = index
     if imgui.is_item_hovered():
         imgui.set_tooltip(plain(choice))
 
 
 def _behind(name: str, what: str, words: str, page: Page) -> None:
     """Draw a button, and what it uncovers."""
-    shown, key = page.reading.shown, (name, what)
+    shown, key = page.reader.shown, (name, what)
     if key not in shown:
         if page.button(page.say(what)):
             shown.add(key)

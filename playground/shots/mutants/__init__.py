@@ -2,12 +2,12 @@
 
     model.py         a mutant: its name, and one sentence, what a person would have broken
     rendering.toml   mutants that the engine draws: texts, parameters, wiring, camera
-    rendering.py     that table, read
+    render_mutants.py    that table, read
     breaking.py      a mutant and a sketch → the broken sketch
-    pictures.py      mutants that are made of the finished picture
-    suite.py         every mutant of a shot, judged in every tier
+    image_mutants.py    mutants that are made of the finished picture
+    tiers.py, suite.py    every mutant of a shot, judged in every tier
     harmless.py      conditions under which a shot must look the same
-    again.py         the shot drawn under them, in processes of their own, and judged
+    redraw_handler.py, repeatability.py    the shot drawn under them, in processes of their own, and judged
 
 Each knows only those above it. Importing this opens nothing.
 """

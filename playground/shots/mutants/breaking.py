@@ -104,21 +104,21 @@ def _passes(graph: Graph) -> Iterator[PassSpec]:
 
 def _with_steps(graph: Graph, more: int) -> Graph:
     """Return the technique with another number of steps of all that repeats; a draw has none."""
-    changed = _turned(graph, more)
+    changed = _with_more_steps(graph, more)
     if changed == graph:
         raise DoesNotApply("nothing in the sketch repeats")
     assert isinstance(changed, Graph)
     return changed
 
 
-def _turned(technique: Technique, more: int) -> Technique:
+def _with_more_steps(technique: Technique, more: int) -> Technique:
     if isinstance(technique, Kernel):
         repeats = technique.kind == "kernel" and technique.repeat != "1"
         return replace(technique, repeat=f"({technique.repeat}) + {more}") if repeats else technique
     passes = tuple(
         replace(
             spec,
-            technique=_turned(spec.technique, more),
+            technique=_with_more_steps(spec.technique, more),
             repeat=f"({spec.repeat}) + {more}" if spec.repeat else "",
         )
         for spec in technique.passes

@@ -1,7 +1,7 @@
 """Conditions under which a shot must look the same, and a choice of many of them.
 
 Some are of a whole process: its environment, the folder that it runs in, where the sketch
-lies. Others are of one drawing: the driver, how much the engine may keep, what it drew
+lies. Others are of one drawing: the driver, how much the engine may cache, what it drew
 before. The choice is seeded: the same number of drawings is the same drawings.
 """
 
@@ -33,19 +33,20 @@ class Drawing:
 
     driver: str = "auto"
     fresh: bool = False  # by a new engine; else by the one of the drawing before
-    cache_bytes: int = 0  # what the new engine may keep; 0: what engines keep
+    cache_bytes: int = 0  # of the new engine's cache; 0: as usual
     before: str = ""  # what is drawn before it by the same engine
     commented: bool = False  # comments and blank lines are put into its shaders
 
     @property
     def words(self) -> str:
         """What is unusual about it."""
-        found = [f"driver {self.driver}" if self.driver != "auto" else ""]
-        found.append("new engine" if self.fresh else "")
-        found.append(f"keeps {self.cache_bytes // 2**20} MiB" if self.cache_bytes else "")
-        found.append(f"after {self.before}" if self.before else "")
-        found.append("comments edited" if self.commented else "")
-        return ", ".join(filter(None, found)) or "as usual"
+        return _listed(
+            f"driver {self.driver}" if self.driver != "auto" else "",
+            "new engine" if self.fresh else "",
+            f"caches {self.cache_bytes // 2**20} MiB" if self.cache_bytes else "",
+            f"after {self.before}" if self.before else "",
+            "comments edited" if self.commented else "",
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,36 +67,41 @@ class Process:
     @property
     def words(self) -> str:
         """What is unusual about it."""
-        found = [f"{name}={value}" for name, value in self.environment]
-        found.append("in another folder" if self.elsewhere else "")
-        found.append("sketch moved" if self.moved else "")
-        found.append("cold shader cache" if self.cold else "")
-        return ", ".join(filter(None, found)) or "as usual"
+        return _listed(
+            *(f"{name}={value}" for name, value in self.environment),
+            "in another folder" if self.elsewhere else "",
+            "sketch moved" if self.moved else "",
+            "cold shader cache" if self.cold else "",
+        )
+
+
+def _listed(*conditions: str) -> str:
+    return ", ".join(filter(None, conditions)) or "as usual"
 
 
 def processes(count: int, drivers: tuple[str, ...]) -> list[Process]:
     """Choose so many drawings, by these drivers, and share them out among processes."""
-    chance = random.Random(_SEED)
+    randomness = random.Random(_SEED)
     found: list[Process] = []
     left = count
     while left > 0:
-        number = len(found)  # environments come in turn, so that a few processes have most of them
+        number = len(found)  # environments alternate, so that a few processes have most of them
         threads = _THREADS[number % len(_THREADS)]
         environment = _ENVIRONMENTS[number % len(_ENVIRONMENTS)]
         if threads:
             environment = (*environment, ("LP_NUM_THREADS", threads))
-        drawings = [_drawing(chance, drivers) for _ in range(min(left, _A_PROCESS))]
-        moved, elsewhere, cold = (chance.random() < part for part in (0.3, 0.5, 0.2))
+        drawings = [_drawing(randomness, drivers) for _ in range(min(left, _A_PROCESS))]
+        moved, elsewhere, cold = (randomness.random() < part for part in (0.3, 0.5, 0.2))
         found.append(Process(tuple(drawings), environment, elsewhere, moved, cold))
         left -= len(drawings)
     return found
 
 
-def _drawing(chance: random.Random, drivers: tuple[str, ...]) -> Drawing:
+def _drawing(randomness: random.Random, drivers: tuple[str, ...]) -> Drawing:
     return Drawing(
-        chance.choice(drivers),
-        chance.random() < 0.4,
-        chance.choice((0, 0, 1, 16)) * 2**20,
-        chance.choice(_BEFORE),
-        chance.random() < 0.25,
+        randomness.choice(drivers),
+        randomness.random() < 0.4,
+        randomness.choice((0, 0, 1, 16)) * 2**20,
+        randomness.choice(_BEFORE),
+        randomness.random() < 0.25,
     )

@@ -20,8 +20,8 @@ class DoesNotApply(Exception):
 class Edit:
     """A change of one text."""
 
-    file: str  # in ``glsl/``, or "./x.glsl" beside the sketch
-    find: str  # stands there exactly once
+    file: str  # in ``glsl/``, or "./x.glsl" in the sketch's folder
+    find: str  # occurs there exactly once
     put: str
 
 

@@ -46,15 +46,6 @@ def _mutant(entry: dict[str, Any], table: Path) -> Rendering:
         steps=entry.get("steps", 0),
         shot=entry.get("shot", ""),
     )
-    broken = (
-        mutant.edits,
-        mutant.values,
-        mutant.plus,
-        mutant.times,
-        mutant.wires,
-        mutant.later,
-        mutant.steps,
-    )
-    if not any(broken) and mutant.samples is None:
+    if mutant == Rendering(name=name, broke=mutant.broke, shot=mutant.shot):
         raise DataError(f"mutant '{name}' breaks nothing", file=table)
     return mutant

@@ -2,7 +2,7 @@
 
 What a mutant is compared with is the unbroken shot, drawn just before by the same engine:
 so the suite needs no reference, and any renderer, sketch and size will do. The reference
-is then said to be of the same build, of another build, of another renderer: three
+is then treated as one of the same build, of another build, of another renderer: three
 judgements of one picture.
 """
 
@@ -24,7 +24,7 @@ from playground.shots.suite import RenderedShot, ShotCase, render_shot
 from playground.sketch.model import Shot, Sketch
 
 ROUNDING = 1
-"""[levels of 255] What a sum that is rounded the other way changes; no defect can be told from it."""
+"""[levels of 255] What rounding the other way may change; a defect of that size cannot be detected."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -56,7 +56,7 @@ class Result:
         return self.applies and not self.unseen and not self.mutant.exempt
 
     def caught(self, tier: int = 0) -> bool:
-        """Say whether a tier does not let it pass."""
+        """Return whether a tier does not let it pass."""
         return not self.tiers[tier].ok
 
     @property
@@ -128,7 +128,7 @@ class Bench:
     ) -> None:
         self.engine = engine
         self.sketch = sketch
-        self.shot = shot  # which is drawn, whatever mutants ask for; "": each the one that shows it
+        self.shot = shot  # which is drawn for every mutant; "": for each mutant the one that shows it
         self.size = size  # [pixels] None: the shot's
         self.expected: dict[str, RenderedShot] = {}  # unbroken, by the shot's name
 

@@ -30,28 +30,6 @@ _REVIEW_KEYS = tag(
     tag("th", tag("kbd", "y"), Markup(" "), tag("kbd", "u"), scope="row"),
     tag("td", "accept this shot, undo that"),
 )
-_ASK = tag(
-    "dialog",
-    tag("h2", "", id="ask-title"),
-    tag("p", "", id="ask-text"),
-    tag("ul", id="ask-list", tabindex=0),
-    tag(
-        "p",
-        tag(
-            "label",
-            tag("input", type="checkbox", id="ask-also"),
-            " Keep the references that are there: these are further ones that may match",
-        ),
-    ),
-    tag(
-        "p",
-        tag("button", "Cancel", type="button", id="ask-no"),
-        tag("button", "", type="button", id="ask-yes", class_="main"),
-        class_="buttons",
-    ),
-    id="ask",
-    aria_labelledby="ask-title",
-)
 
 
 def page(records: Sequence[Record], setting: Setting, notes: Sequence[str] = ()) -> str:
@@ -74,7 +52,7 @@ def page(records: Sequence[Record], setting: Setting, notes: Sequence[str] = ())
         failures=joined(*(failure(record, setting) for record in failed)),
         passed=_passed(passed, opened=not failed) if passed else "",
         keys=_REVIEW_KEYS if setting.review else "",
-        dialogs=_ASK if setting.review else "",
+        dialogs=_read("review.html") if setting.review else "",
     )
 
 

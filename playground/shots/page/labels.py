@@ -1,4 +1,4 @@
-"""Say what each word of a result means: a label, and a sentence or two on what to make of it."""
+"""Explain each word of a result: a label, and a sentence or two on what to make of it."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ MEANINGS = {
     ),
     "nan": Meaning(
         "not a number",
-        "Values that are no numbers, or infinite, were drawn. What a screen shows for them is chance,"
+        "Values that are no numbers, or infinite, were drawn. What a screen shows for them is undefined,"
         " so the picture cannot be accepted, however it looks.",
         broken=True,
     ),
@@ -82,17 +82,6 @@ MEANINGS = {
         broken=True,
     ),
 }
-
-TIERS = {
-    "same build": "The reference is of this very build of the renderer, so one level in a channel is allowed,"
-    " alpha included: whatever is more than rounding fails.",
-    "another build": "The reference is of another build of this renderer, which rounds differently, so single"
-    " pixels may differ by three levels. A change that is small and even all over, under three levels,"
-    " cannot be told from that.",
-    "another renderer": "The reference is of another renderer, so only what an eye would see is looked for:"
-    " this catches structural defects (something missing, moved or of another colour), not small ones.",
-}
-"""What a tier allows and catches."""
 
 
 def meaning(word: str) -> Meaning:

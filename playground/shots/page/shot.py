@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from urllib.parse import quote
 
 from playground.markup import Markup, tag
-from playground.shots.page.labels import TIERS, meaning
+from playground.shots.page.labels import meaning
 from playground.shots.results import FOLDER, NEVER_ACCEPTED, Record
 
 CAPTIONS = {"expected": "Expected", "actual": "Actual", "difference": "Difference ×16", "flip": "FLIP map"}
@@ -44,7 +44,7 @@ class Setting:
 
     folder: str  # the results, as a shell in the tests' folder names them
     source: Callable[[Record, str], str]  # URL of a picture, to show; "" where it is only linked to
-    beside: str = ""  # path from the page to the results, for links: "" or one that ends in "/"
+    results: str = ""  # path from the page to the results, for links: "" or one that ends in "/"
     review: bool = False  # whether there are buttons that accept
 
 
@@ -72,7 +72,7 @@ def accept_command(record: Record, folder: str) -> str:
 def failure(record: Record, setting: Setting) -> Markup:
     """Return the article on a shot that failed."""
     heading = f"title-{anchor(record)}"
-    explained = (meaning(record.word).sentence, record.catches or TIERS.get(record.tier, ""))
+    explained = (meaning(record.word).sentence, record.catches)
     return tag(
         "article",
         tag(
@@ -109,7 +109,7 @@ def failure(record: Record, setting: Setting) -> Markup:
 
 
 def _verdict(record: Record) -> str:
-    """Return the sentence without the word that it begins with, which the page says beside it."""
+    """Return the sentence without the word that it begins with, which the page shows next to it."""
     found = record.sentence.removeprefix(f"{record.word}: ")
     return found[:1].upper() + found[1:]
 
@@ -132,7 +132,7 @@ def _pictures(record: Record, setting: Setting) -> Markup | None:
                 loading="lazy",
             )
         else:
-            shown = tag("a", record.pictures[kind], href=quote(setting.beside + record.pictures[kind]))
+            shown = tag("a", record.pictures[kind], href=quote(setting.results + record.pictures[kind]))
         figures.append(tag("figure", tag("figcaption", caption), shown, data_kind=kind))
     return tag("div", *figures, class_="pictures") if figures else None
 
@@ -163,7 +163,7 @@ def _buttons(record: Record) -> Markup:
 
 def _accepting(record: Record, setting: Setting) -> Markup:
     if not can_be_accepted(record):
-        why = "No reference can be made of it: mend the sketch or the shader, then run the tests again."
+        why = "No reference can be made of it: fix the sketch or the shader, then run the tests again."
         if record.word not in NEVER_ACCEPTED:
             why = "There is no picture here to accept; run the tests again."
         return tag("section", tag("p", why), class_="accepting")
@@ -171,7 +171,7 @@ def _accepting(record: Record, setting: Setting) -> Markup:
     commands = [("accepts this very picture", accept_command(record, setting.folder))]
     if record.references:
         also = f"{accept_command(record, setting.folder)} --also"
-        commands.append(("accepts it beside those accepted so far", also))
+        commands.append(("accepts it in addition to those accepted so far", also))
     if record.command:
         commands.append(("takes it anew and accepts that", record.command))
     rows = [

@@ -19,7 +19,7 @@ from playground.sketch.dialects import main, shadertoy
 from playground.sketch.dialects.es import rewritten, version_of
 from playground.sketch.dialects.foreign import Read, Rules, commented_files, graph_of, places_of
 from playground.sketch.model import Graph
-from playground.sketch.source import Origin, read_foreign_source, read_text
+from playground.sketch.source import Origin, read_source_and_origin, read_text
 
 OWN = "own"
 _MOST = 64
@@ -137,7 +137,7 @@ def read_foreign(
         return None
     if chosen.rules is None:
         raise _unread(chosen, path)
-    source, origin = read_foreign_source(path, root, instead)
+    source, origin = read_source_and_origin(path, (root,), instead, foreign=True)
     graph = None
     if chosen.rules is main.RULES:
         main.refuse_passes(source)

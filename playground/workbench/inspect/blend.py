@@ -11,12 +11,11 @@ if TYPE_CHECKING:
     import moderngl
 
 
-class Blend:
-    """Paints into whatever framebuffer it is given."""
+class Blend(FullScreen):
+    """Paints two pictures into a framebuffer."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
-        self.ctx = ctx
-        self._shader = FullScreen(ctx, own_shader("blend_images.frag"))
+        super().__init__(ctx, own_shader("blend_images.frag"))
 
     def paint(
         self,
@@ -33,8 +32,4 @@ class Blend:
         is shown is the difference of their display-encoded colours, so many times.
         """
         named = dict(zip(("first", "second"), pictures, strict=True))
-        self._shader.draw(target, named, area=area, split=split, gain=gain)
-
-    def release(self) -> None:
-        """Release the program."""
-        self._shader.release()
+        self.draw(target, named, area=area, split=split, gain=gain)

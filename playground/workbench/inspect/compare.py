@@ -57,7 +57,7 @@ class Stored:
 
 
 class Compare:
-    """A, and how it is shown beside what one session shows."""
+    """A, and how it is shown with what one session shows."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
@@ -82,7 +82,7 @@ class Compare:
 
     @property
     def stored(self) -> Stored | None:
-        """A itself, to be taken up again later."""
+        """A itself, to be restored later by ``resume``."""
         return self._stored
 
     @property
@@ -90,41 +90,41 @@ class Compare:
         """A's picture; None where there is no A."""
         return self._picture.texture if self.on and self._picture is not None else None
 
-    # ── keeping, swapping ────────────────────────────────────────────────────
+    # ── storing, swapping ────────────────────────────────────────────────────
 
     def toggle(self) -> None:
-        """Keep what is shown as A, or let A go."""
+        """Store what is shown as A, or end the comparison."""
         if self.on:
             self.end()
         else:
             self.keep()
 
     def keep(self) -> None:
-        """Take what is shown for A."""
+        """Store what is shown as A."""
         self._set(self._now())
 
     def resume(self, stored: Stored) -> None:
-        """Compare with an A that was stored before; it is let go where another sketch is open by now."""
+        """Compare with an A that was stored before; it ends where another sketch is open by now."""
         self._set(stored)
 
     def keep_state(self, draft: Draft, steps: Mapping[str, int]) -> None:
-        """Take another state of the sketch that is shown for A; it is drawn as B is shown."""
+        """Store another state of the shown sketch as A; it is drawn as B is shown."""
         now = self._now()
         if now is not None:
             self._set(replace(now, draft=draft, steps=dict(steps)))
 
     def end(self) -> None:
-        """Let A go."""
+        """End the comparison."""
         self._stored = None
         self.release()
 
     def back(self) -> None:
-        """Go on from A, which stays."""
+        """Restore A as the current state; it stays stored."""
         if self._stored is not None:
             self._take(self._stored)
 
     def swap(self) -> None:
-        """Go on from A, and take what was shown for A."""
+        """Exchange A and the current state."""
         now, before = self._now(), self._stored
         if before is not None and now is not None:
             self._take(before)
@@ -140,7 +140,7 @@ class Compare:
         return Compared(self._stored.draft.edits, steps, self.mode.value, self.split, self.gain)
 
     def recall(self, compared: Compared) -> bool:
-        """Compare with A of an earlier session, over the files as they are now; say whether that is done.
+        """Compare with A of an earlier session, over the files as they are now; return whether that is done.
 
         Until it has proved good it is tried as what is saved is: ask again.
         """
@@ -182,7 +182,7 @@ class Compare:
         session = self.session
         if session.shown is not None and stored.draft.file is not session.shown.file:
             session.notes.append("A is of the files as they were; the next save brings those of now")
-        session.drafts.shown = stored.draft
+        session.drafts.show(stored.draft)
         session.view.steps.clear()
         session.view.steps.update(stored.steps)
         session.redraw()
@@ -190,7 +190,7 @@ class Compare:
     # ── A's picture ──────────────────────────────────────────────────────────
 
     def follow(self, picture: moderngl.Texture) -> None:
-        """Bring A's picture to the size, camera and time of B's, which the session has just drawn."""
+        """Draw A's picture at the size, camera and time of B's, which the session has just drawn."""
         stored, session = self._stored, self.session
         if stored is None or session.awaits_data:
             return
@@ -261,7 +261,7 @@ class Compare:
 
 @contextmanager
 def as_before(engine: Engine, plan: Plan) -> Iterator[None]:
-    """Draw something else, and have the engine tell of the picture before it all the same."""
+    """Draw something else, and leave the engine's records those of the picture before it."""
     record, runs, profiling = engine.record, engine.runs.copy(), engine.profiling
     engine.profiling = False
     try:

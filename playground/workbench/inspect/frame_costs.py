@@ -1,38 +1,14 @@
-"""What each of the last pictures cost: milliseconds, texels, triangles. Kept only while it is shown."""
+"""What each of the last pictures cost: milliseconds, texels, triangles. Recorded only while it is shown."""
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
-
-import numpy as np
-from numpy.typing import NDArray
 
 LENGTH = 240
 """Pictures that are recorded."""
-
-
-class Ring:
-    """The last numbers of a row that goes on; a number that is missing is 0."""
-
-    def __init__(self, length: int = LENGTH) -> None:
-        self._numbers: NDArray[np.float64] = np.zeros(
-            2 * length
-        )  # each number twice, so that any stretch is one piece
-        self._length = length
-        self.count = 0
-
-    def add(self, number: float) -> None:
-        """Take in a number; the oldest goes."""
-        at = self.count % self._length
-        self._numbers[at] = self._numbers[at + self._length] = number
-        self.count += 1
-
-    @property
-    def values(self) -> NDArray[np.float64]:
-        """The numbers, oldest first; a view that the next number changes."""
-        held = min(self.count, self._length)
-        start = (self.count - held) % self._length
-        return self._numbers[start : start + held]
+Numbers = deque[float]
+"""The last numbers of a series, oldest first."""
 
 
 class Record:
@@ -45,29 +21,26 @@ class Record:
     def clear(self) -> None:
         """Forget all of it."""
         self.pictures = 0
-        self.passes: dict[str, Ring] = {}  # [ms] by path
-        self.whole = Ring(self._length)  # [ms] of all passes
-        self.texels = Ring(self._length)
-        self.triangles = Ring(self._length)
+        self.passes: dict[str, Numbers] = {}  # [ms] by path
+        self.whole = self._numbers()  # [ms] of all passes
+        self.texels = self._numbers()
+        self.triangles = self._numbers()
 
     def add(self, times: Mapping[str, float], texels: int, triangles: int) -> None:
         """Take in a picture; a pass that did not run for it cost nothing."""
         for path in times:
-            if path not in self.passes:
-                self.passes[path] = ring = Ring(self._length)
-                for _ in range(min(self.pictures, self._length)):
-                    ring.add(0.0)
-        for path, ring in self.passes.items():
-            ring.add(times.get(path, 0.0))
-        self.whole.add(sum(times.values()))
-        self.texels.add(texels)
-        self.triangles.add(triangles)
+            self.passes.setdefault(path, self._numbers(self.pictures))
+        for path, spent in self.passes.items():
+            spent.append(times.get(path, 0.0))
+        self.whole.append(sum(times.values()))
+        self.texels.append(texels)
+        self.triangles.append(triangles)
         self.pictures += 1
-        gone = [path for path, ring in self.passes.items() if path not in times and not ring.values.any()]
-        for path in gone:
-            del self.passes[path]
+        self.passes = {path: spent for path, spent in self.passes.items() if path in times or any(spent)}
 
-    def dearest(self, most: int) -> list[str]:
-        """Return the passes that cost most, dearest first."""
-        sums = {path: float(ring.values.sum()) for path, ring in self.passes.items()}
-        return sorted(sums, key=lambda path: -sums[path])[:most]
+    def most_expensive(self, most: int) -> list[str]:
+        """Return the passes that cost most, the most expensive first."""
+        return sorted(self.passes, key=lambda path: -sum(self.passes[path]))[:most]
+
+    def _numbers(self, zeros: int = 0) -> Numbers:
+        return deque([0.0] * min(zeros, self._length), self._length)

@@ -1,7 +1,7 @@
-"""How the numbers of a texture are spread: read and counted a bounded piece a turn, so that no turn waits.
+"""How the numbers of a texture are spread: read and counted a bounded piece a frame, so that no frame waits.
 
 A texture of up to ``MOST`` texels is read whole; of a larger one rows are left out, evenly,
-and it says so. A reading goes twice over its numbers: once for the least, the greatest,
+and it says so. The count goes twice over its numbers: once for the least, the greatest,
 the mean and what is no number, once to count them into bins between the two.
 """
 
@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.gpu.textures import read_texels
+from playground.workbench.inspect.results import result_of
+from playground.workbench.session import Session
 
 if TYPE_CHECKING:
     import moderngl
-
-    from playground.workbench.session import Session
 
 BINS = 128
 PIECE = 2**17
@@ -107,7 +107,7 @@ def count(texture: moderngl.Texture, piece: int = PIECE, most: int = MOST) -> It
 
 @dataclass
 class _Sums:
-    """What is known of a channel so far; means are joined as Chan, Golub and LeVeque 1983 do it."""
+    """Running statistics of a channel; means are combined as in Chan, Golub and LeVeque 1983."""
 
     count: int = 0
     nans: int = 0
@@ -173,7 +173,7 @@ class Counter:
         return self.latest is not None and self._counted == self._of
 
     def go_on(self) -> None:
-        """Do a piece of the work; begin anew where other numbers are shown."""
+        """Count one more piece; restart where another texture, or a new version of it, is shown."""
         found = self._shown()
         if found is None:
             self.stop()
@@ -198,15 +198,6 @@ class Counter:
         return self._counted[:2] if isinstance(self._counted, tuple) else ()
 
     def _shown(self) -> tuple[moderngl.Texture, tuple[object, ...]] | None:
-        session = self.session
-        plan, engine = session.plan, session.engine
-        if session.view.map is None or plan is None:
-            return None
-        path, _, output = session.view.map.ref.partition(":")
-        ref = plan.flat.outputs.get(path, {}).get(output)
-        result = engine.results.get(ref.path) if ref is not None else None
-        if result is None or ref is None:
-            return None
-        texture = result.textures[ref.output]
-        # The same texture's numbers change only when its pass runs again.
-        return texture, (session.view.map.ref, id(engine), result.number, engine.runs[ref.path])
+        shown = self.session.view.map
+        found = result_of(self.session, shown.ref) if shown is not None else None
+        return (found[0], (shown.ref, *found[1])) if shown is not None and found is not None else None

@@ -15,7 +15,7 @@ import numpy as np
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import view_height
 from playground.gpu.textures import read_texels
-from playground.sketch.flat import Ref
+from playground.workbench.inspect.results import result_of
 from playground.workbench.inspect.surface_point import Ground
 from playground.workbench.session import Session
 
@@ -27,8 +27,8 @@ Pixel = tuple[int, int]
 
 
 @dataclass(frozen=True)
-class Reading:
-    """What one texture has at a place."""
+class Sample:
+    """The texel of one texture at a place."""
 
     name: str  # "pass" or "pass:output"
     texel: tuple[int, int]
@@ -37,8 +37,8 @@ class Reading:
 
 
 @dataclass(frozen=True)
-class Spot:
-    """A place of the terrain."""
+class GroundPoint:
+    """A point of the terrain."""
 
     east: float  # [m] from the terrain's south-west corner
     north: float
@@ -49,20 +49,20 @@ class Spot:
 
 
 @dataclass(frozen=True)
-class Found:
-    """All that is known of a pixel."""
+class PixelReport:
+    """The textures and the terrain under a pixel."""
 
     pixel: Pixel
     picture: tuple[int, ...]  # the picture's own colour, 0..255, display-encoded
-    spot: Spot | None  # None: sky, or no terrain in the picture
-    readings: tuple[Reading, ...]
-    shown: Reading | None = None  # in a map: the texture that it shows
+    ground: GroundPoint | None  # None: sky, or no terrain in the picture
+    samples: tuple[Sample, ...]
+    shown: Sample | None = None  # in a map: the texture that it shows
     missing: tuple[str, ...] = ()  # passes that this picture was made without
 
 
 @dataclass
 class Inspector:
-    """What lies under the mouse in one session."""
+    """Reads the textures under the mouse in one session."""
 
     session: Session
     on: bool = False
@@ -70,13 +70,13 @@ class Inspector:
     reads: int = 0  # how often anything was read
     _ground: Ground | None = None
     _key: object = None
-    _found: Found | None = field(default=None, repr=False)
+    _found: PixelReport | None = field(default=None, repr=False)
 
     def toggle(self) -> None:
-        """Look closely, or no longer."""
+        """Switch the inspector on or off."""
         self.on = not self.on
 
-    def at(self, pixel: Pixel, picture: moderngl.Texture) -> Found | None:
+    def at(self, pixel: Pixel, picture: moderngl.Texture) -> PixelReport | None:
         """Return what is under a pixel of the picture; None outside it, and while new data is checked.
 
         ``picture`` is what the session's last ``frame`` returned.
@@ -100,69 +100,66 @@ class Inspector:
             self._ground.release()
         self._ground = self._key = None
 
-    def _look(self, pixel: Pixel, picture: moderngl.Texture) -> Found:
+    def _look(self, pixel: Pixel, picture: moderngl.Texture) -> PixelReport:
         session, plan = self.session, self.session.plan
         colour = read_texels(picture, pixel, (1, 1))[0, 0]
         bytes_ = tuple(round(float(c) * 255) for c in colour[:3])
         if plan is None:
-            return Found(pixel, bytes_, None, ())
+            return PixelReport(pixel, bytes_, None, ())
         if session.view.map is not None:
             return self._look_at_map(plan, pixel, bytes_, picture.size)
         ref = view_height(plan)
-        heights = self._texture(plan, ref)
+        heights = self._texture(ref)
         extent, relief = plan.terrain.extent, plan.terrain.relief
         if heights is None or extent is None or relief is None or not session.orbits:
-            return Found(pixel, bytes_, None, ())
+            return PixelReport(pixel, bytes_, None, ())
         if self._ground is None or self._ground.ctx is not session.engine.ctx:
             self._ground = Ground(session.engine.ctx)
         place = (pixel[0] + 0.5) / picture.size[0], (pixel[1] + 0.5) / picture.size[1]
         hit = self._ground.under(plan.eye, place, heights, extent, relief)
         if hit is None:
-            return Found(pixel, bytes_, None, ())
-        readings, missing = self._readings(plan, hit[:2])
-        return Found(pixel, bytes_, spot_of(plan, heights, hit), readings, None, missing)
+            return PixelReport(pixel, bytes_, None, ())
+        samples, missing = self._samples(plan, hit[:2])
+        return PixelReport(pixel, bytes_, ground_point_of(plan, heights, hit), samples, None, missing)
 
-    def _look_at_map(self, plan: Plan, pixel: Pixel, colour: tuple[int, ...], size: tuple[int, int]) -> Found:
+    def _look_at_map(
+        self, plan: Plan, pixel: Pixel, colour: tuple[int, ...], size: tuple[int, int]
+    ) -> PixelReport:
         assert self.session.view.map is not None
         ref = self.session.view.map.ref
-        shown = self._texture(plan, ref)
+        shown = self._texture(ref)
         texel = texel_of_map(pixel, size, shown.size) if shown is not None else None
         if shown is None or texel is None:
-            return Found(pixel, colour, None, ())
+            return PixelReport(pixel, colour, None, ())
         share = texel[0] / max(shown.size[0] - 1, 1), texel[1] / max(shown.size[1] - 1, 1)
-        heights = self._texture(plan, view_height(plan))
-        spot = None
+        heights = self._texture(view_height(plan))
+        ground = None
         if heights is not None:
             high = read_texels(heights, _node(share, heights.size), (1, 1))[0, 0, 0]
-            spot = spot_of(plan, heights, (*share, float(high)))
-        readings, missing = self._readings(plan, share)
-        return Found(pixel, colour, spot, readings, self._reading(plan, ref, shown, texel), missing)
+            ground = ground_point_of(plan, heights, (*share, float(high)))
+        samples, missing = self._samples(plan, share)
+        return PixelReport(pixel, colour, ground, samples, self._sample(plan, ref, shown, texel), missing)
 
-    def _readings(
-        self, plan: Plan, share: tuple[float, float]
-    ) -> tuple[tuple[Reading, ...], tuple[str, ...]]:
+    def _samples(self, plan: Plan, share: tuple[float, float]) -> tuple[tuple[Sample, ...], tuple[str, ...]]:
         """Return every pass's number at the node of its own that is nearest to a place of the terrain."""
         found, missing = [], []
         for name in names_of(plan, inner=self.inner):
-            texture = self._texture(plan, name)
+            texture = self._texture(name)
             if texture is None:
                 missing.append(name)
             else:
-                found.append(self._reading(plan, name, texture, _node(share, texture.size)))
+                found.append(self._sample(plan, name, texture, _node(share, texture.size)))
         return tuple(found), tuple(missing)
 
-    def _reading(self, plan: Plan, name: str, texture: moderngl.Texture, texel: tuple[int, int]) -> Reading:
+    def _sample(self, plan: Plan, name: str, texture: moderngl.Texture, texel: tuple[int, int]) -> Sample:
         values = tuple(read_texels(texture, texel, (1, 1))[0, 0].tolist())
         relief = plan.terrain.relief
         is_height = len(values) == 1 and name.partition(":")[2] == "height" and relief is not None
-        return Reading(name, texel, values, values[0] * relief if is_height and relief is not None else None)
+        return Sample(name, texel, values, values[0] * relief if is_height and relief is not None else None)
 
-    def _texture(self, plan: Plan, name: str) -> moderngl.Texture | None:
-        """Return the texture of that name which the last picture was made from; None where it had none."""
-        path, _, output = name.partition(":")
-        ref: Ref | None = plan.flat.outputs.get(path, {}).get(output) if name else None
-        result = self.session.engine.results.get(ref.path) if ref is not None else None
-        return result.textures.get(ref.output) if result is not None and ref is not None else None
+    def _texture(self, name: str) -> moderngl.Texture | None:
+        found = result_of(self.session, name)
+        return found[0] if found is not None else None
 
 
 def names_of(plan: Plan, *, inner: bool) -> list[str]:
@@ -175,7 +172,7 @@ def names_of(plan: Plan, *, inner: bool) -> list[str]:
 
 
 def texel_of_map(pixel: Pixel, size: tuple[int, int], shown: tuple[int, int]) -> tuple[int, int] | None:
-    """Return which texel of a texture ``shown`` texels large ``view/map`` puts at a pixel; None beside it.
+    """Return which texel of a texture ``shown`` texels large ``view/map`` puts at a pixel; None outside it.
 
     In single precision and in the same order as there.
     """
@@ -188,31 +185,31 @@ def texel_of_map(pixel: Pixel, size: tuple[int, int], shown: tuple[int, int]) ->
     return int(place[0]), int(place[1])
 
 
-def spot_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, float]) -> Spot:
+def ground_point_of(plan: Plan, heights: moderngl.Texture, hit: tuple[float, float, float]) -> GroundPoint:
     """Return the terrain's place there; ``hit``: shares east and north, and the height between the texels.
 
     The normal is by central differences of the nearest node's neighbours, one-sided on the edge.
     """
-    land, (nx, ny) = plan.terrain, heights.size
-    assert land.extent is not None and land.relief is not None
+    terrain, (nx, ny) = plan.terrain, heights.size
+    assert terrain.extent is not None and terrain.relief is not None
     x, y = _node(hit[:2], heights.size)
     west, south, east, north = max(x - 1, 0), max(y - 1, 0), min(x + 1, nx - 1), min(y + 1, ny - 1)
     texels = read_texels(heights, (west, south), (east - west + 1, north - south + 1))[..., 0]
-    block = texels.astype(np.float64) * land.relief
+    block = texels.astype(np.float64) * terrain.relief
     row, column = block[y - south], block[:, x - west]
-    steps = land.extent[0] / max(nx - 1, 1), land.extent[1] / max(ny - 1, 1)
+    steps = terrain.extent[0] / max(nx - 1, 1), terrain.extent[1] / max(ny - 1, 1)
     rise = tuple(
         float(line[-1] - line[0]) / ((len(line) - 1) * step) if len(line) > 1 else 0.0
         for line, step in zip((row, column), steps, strict=True)
     )
     steep = math.hypot(*rise)
     long = math.hypot(steep, 1.0)
-    high = hit[2] * land.relief
-    return Spot(
-        hit[0] * land.extent[0],
-        hit[1] * land.extent[1],
+    high = hit[2] * terrain.relief
+    return GroundPoint(
+        hit[0] * terrain.extent[0],
+        hit[1] * terrain.extent[1],
         high,
-        high + (land.base_elevation or 0.0),
+        high + (terrain.base_elevation or 0.0),
         (-rise[0] / long, -rise[1] / long, 1.0 / long),
         math.degrees(math.atan(steep)),
     )

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from playground.gpu.own_shaders import own_shader
-from playground.gpu.textures import make_framebuffer, make_texture
 from playground.paths import GLSL
-from playground.workbench.full_screen import FullScreen
+from playground.workbench.inspect.results import TexelShader
 
 if TYPE_CHECKING:
     import moderngl
@@ -27,28 +26,24 @@ def colours_of(ctx: moderngl.Context, ramp: int) -> tuple[Colour, ...]:
     The context is the caller's to make current and to leave as it was; nothing stays in it.
     """
     ramp_functions = (GLSL / "colour" / "ramp.glsl").read_text(encoding="utf-8")
-    shader = FullScreen(ctx, f"#version 330\n{ramp_functions}{own_shader('ramp_main.glsl')}")
-    texture = make_texture(ctx, (STEPS, 1), "rgba32f")
-    framebuffer = make_framebuffer(ctx, [texture])
+    shader = TexelShader(ctx, f"#version 330\n{ramp_functions}{own_shader('ramp_main.glsl')}", (STEPS, 1))
     try:
-        shader.draw(framebuffer, {}, ramp=ramp, steps=float(STEPS))
-        values = np.frombuffer(texture.read(), np.float32).reshape(STEPS, 4)
+        (values,) = shader.compute({}, ramp=ramp, steps=float(STEPS))
     finally:
-        for made in (framebuffer, texture, shader):
-            made.release()
+        shader.release()
     return tuple((float(r), float(g), float(b)) for r, g, b, _ in values)
 
 
 def ends_of(shown: Map) -> tuple[float, float]:
     """Return the numbers at the two ends of a map's legend.
 
-    Around a middle they are as far from it on either side, whatever the map's range begins with.
+    Around a middle they are as far from it on either side, independent of where the map's range begins.
     """
     low, high, middle = (_number(shown, name) for name in ("lowest", "highest", "middle"))
     if _number(shown, "ramp") != 4:
         return low, high
-    reach = max(abs(high - middle), abs(low - middle))
-    return middle - reach, middle + reach
+    half = max(abs(high - middle), abs(low - middle))
+    return middle - half, middle + half
 
 
 @lru_cache(maxsize=256)

@@ -10,9 +10,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from playground.errors import counted
 from playground.sketch.flat import Fed, Flat, Ref, leaves_of
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Sketch
+from playground.workbench.session import Session
 
 Edge = tuple[str, str]
 """From who gives to who reads."""
@@ -21,7 +23,7 @@ _SWEEPS = 4
 
 @dataclass(frozen=True)
 class Wiring:
-    """A sketch's passes, and where they stand."""
+    """A sketch's passes as a graph with a layout."""
 
     refs: Mapping[str, str]  # each node's texture, "pass:output", by the node's path; in the order they run
     edges: tuple[Edge, ...]
@@ -42,6 +44,18 @@ def wiring_of(sketch: Sketch, *, inner: bool) -> Wiring:
             if giver and giver != node and not isinstance(source, Fed):
                 edges[giver, node] = None
     return Wiring(refs, tuple(edges), placed(tuple(refs), tuple(edges)))
+
+
+def cost_of(session: Session, node: str) -> tuple[str, bool, float | None]:
+    """Return how often a pass ran, as "3 runs", whether it did for the last picture, and its time [ms].
+
+    What is inside it counts. Without a time None.
+    """
+    engine = session.engine
+    inside = [path for path in engine.runs if path == node or path.startswith(f"{node}.")]
+    spent = [session.times[path] for path in inside if path in session.times]
+    runs = counted(sum(engine.runs[path] for path in inside), "run")
+    return runs, any(path in inside for path in engine.ran), sum(spent) if spent else None
 
 
 def placed(nodes: Sequence[str], edges: Sequence[Edge]) -> dict[str, tuple[int, int]]:

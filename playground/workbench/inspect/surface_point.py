@@ -1,6 +1,6 @@
 """Find the place of the terrain under a pixel on the graphics card, so that its heights stay there.
 
-The walk is that of ``terrain.pick``: along the pixel's ray in steps of a texel, then the
+The ray march is that of ``terrain.pick``: along the pixel's ray in steps of a texel, then the
 step that goes below the ground is halved. One fragment does it, and four numbers come back.
 """
 
@@ -8,26 +8,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from playground.gpu.own_shaders import own_shader
-from playground.gpu.textures import make_framebuffer, make_texture
 from playground.terrain.camera import Eye
-from playground.terrain.pick import walk_over
-from playground.workbench.full_screen import FullScreen
+from playground.terrain.pick import ray_over
+from playground.workbench.inspect.results import TexelShader
 
 if TYPE_CHECKING:
     import moderngl
 
 
-class Ground:
+class Ground(TexelShader):
     """Finds, in one context, places of the terrain."""
 
     def __init__(self, ctx: moderngl.Context) -> None:
-        self.ctx = ctx
-        self._shader = FullScreen(ctx, own_shader("surface_point.frag"))
-        self._texture = make_texture(ctx, (1, 1), "rgba32f")
-        self._framebuffer = make_framebuffer(ctx, [self._texture])
+        super().__init__(ctx, own_shader("surface_point.frag"), (1, 1))
 
     def under(
         self,
@@ -43,12 +37,11 @@ class Ground:
         the answer in shares of the terrain's sides, east and north; the height as the texture has it.
         The context is the caller's to make current and to leave as it was.
         """
-        found = walk_over(eye, place, heights.size, extent)
+        found = ray_over(eye, place, heights.size, extent)
         if found is None:
             return None
         origin, way, entry, leave, steps = found
-        self._shader.draw(
-            self._framebuffer,
+        texels = self.compute(
             {"height": heights},
             start=tuple((origin + entry * way).tolist()),
             way=tuple(way.tolist()),
@@ -57,10 +50,5 @@ class Ground:
             extent=extent,
             relief=relief,
         )
-        east, north, hit, high = np.frombuffer(self._texture.read(), np.float32).tolist()
+        east, north, hit, high = texels.ravel().tolist()
         return (east, north, high) if hit else None
-
-    def release(self) -> None:
-        """Release all of it."""
-        for made in (self._framebuffer, self._texture, self._shader):
-            made.release()

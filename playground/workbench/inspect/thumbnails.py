@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.gpu.own_shaders import own_shader
-from playground.gpu.textures import make_framebuffer, make_texture
+from playground.gpu.textures import make_texture
 from playground.sketch.colour import linear_to_srgb
-from playground.workbench.full_screen import FullScreen
+from playground.workbench.inspect.results import TexelShader, Version, result_of
 from playground.workbench.session import Session
 
 if TYPE_CHECKING:
@@ -25,13 +25,13 @@ _NO_NUMBER = (1.0, 0.0, 1.0)
 
 
 class Thumbnails:
-    """Those of one session's textures, by name."""
+    """The thumbnails of one session's textures, by name."""
 
     def __init__(self, session: Session) -> None:
         self.session = session
         self.made = 0  # how many were drawn so far
         self._cached: dict[str, tuple[object, moderngl.Texture]] = {}  # what each is of, and the thumbnail
-        self._shrink: _Shrink | None = None
+        self._shrink: TexelShader | None = None
         self._last = -APART
 
     def get(self, name: str) -> moderngl.Texture | None:
@@ -40,12 +40,12 @@ class Thumbnails:
         return cached[1] if cached is not None else None
 
     def is_current(self, name: str) -> bool:
-        """Say whether the last picture was made from this very texture."""
+        """Return whether the last picture was made from this very texture."""
         found, cached = self._source(name), self._cached.get(name)
         return found is not None and cached is not None and cached[0] == found[1]
 
     def refresh(self, names: Iterable[str], now: float) -> bool:
-        """Draw the first that is stale, unless another was drawn a moment ago; say whether more are stale.
+        """Draw the first that is stale, unless another was drawn a moment ago; return whether more are stale.
 
         ``now``: seconds of any clock. What has another name is released.
         """
@@ -76,8 +76,8 @@ class Thumbnails:
             self._shrink, self._cached = None, {}  # they went with a context that was lost
         with engine.borrowed():
             if self._shrink is None:
-                self._shrink = _Shrink(engine.ctx)
-            values = self._shrink.values(texture)
+                self._shrink = TexelShader(engine.ctx, own_shader("thumbnail.frag"), (SIDE, SIDE))
+            values = self._shrink.compute({"shown": texture}, side=float(SIDE))
             cached = self._cached.get(name)
             small = cached[1] if cached is not None else make_texture(engine.ctx, (SIDE, SIDE), "rgba8")
             small.filter = (engine.ctx.LINEAR, engine.ctx.LINEAR)
@@ -85,19 +85,10 @@ class Thumbnails:
         self._cached[name] = of, small
         self.made += 1
 
-    def _source(self, name: str) -> tuple[moderngl.Texture, object] | None:
-        plan, engine = self.session.plan, self.session.engine
-        if plan is None:
-            return None
-        path, _, output = name.partition(":")
-        if path.partition(".")[0] == "view" and self.session.view.map is not None:
+    def _source(self, name: str) -> tuple[moderngl.Texture, Version] | None:
+        if name.partition(":")[0].partition(".")[0] == "view" and self.session.view.map is not None:
             return None  # that is the map
-        ref = plan.flat.outputs.get(path, {}).get(output)
-        result = engine.results.get(ref.path) if ref is not None else None
-        if ref is None or result is None:
-            return None
-        texture = result.textures[ref.output]
-        return texture, (id(engine), result.number, engine.runs[ref.path])
+        return result_of(self.session, name)
 
 
 def picture_of(values: NDArray[np.float32], components: int, *, encoded: bool) -> NDArray[np.uint8]:
@@ -122,21 +113,3 @@ def picture_of(values: NDArray[np.float32], components: int, *, encoded: bool) -
     alpha = np.ones((*colour.shape[:2], 1))
     whole: NDArray[np.float64] = np.concatenate([colour, alpha], axis=2)
     return np.rint(np.clip(whole, 0, 1) * 255).astype(np.uint8)
-
-
-class _Shrink:
-    """Draws a texture into few texels, each one of its own, and reads those."""
-
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self.ctx = ctx
-        self._shader = FullScreen(ctx, own_shader("thumbnail.frag"))
-        self._texture = make_texture(ctx, (SIDE, SIDE), "rgba32f")
-        self._framebuffer = make_framebuffer(ctx, [self._texture])
-
-    def values(self, texture: moderngl.Texture) -> NDArray[np.float32]:
-        self._shader.draw(self._framebuffer, {"shown": texture}, side=float(SIDE))
-        return np.frombuffer(self._texture.read(), np.float32).reshape(SIDE, SIDE, 4)
-
-    def release(self) -> None:
-        for made in (self._framebuffer, self._texture, self._shader):
-            made.release()

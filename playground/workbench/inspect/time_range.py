@@ -35,7 +35,7 @@ def stepped(time: float, frames: int) -> float:
 
 
 def toggle_loop(sketch: Sketch, clock: Clock) -> None:
-    """Go round over the keyframes' span, or what the bar shows without any; or no longer."""
+    """Switch the loop on or off: over the keyframes' span, or over the whole bar without any."""
     if clock.loop is not None:
         clock.loop = None
     else:

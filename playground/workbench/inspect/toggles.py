@@ -1,4 +1,4 @@
-"""What is shown beside the picture: what keys and buttons switch, without a screen."""
+"""The state of the inspection tools: what keys and buttons switch, without a screen."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Graph:
         self.thumbnails = Thumbnails(self.session)
 
     def toggle(self) -> None:
-        """Show the passes, or no longer."""
+        """Show or hide the passes."""
         self.on = not self.on
 
     def wiring(self, sketch: Sketch) -> Wiring:
@@ -58,7 +58,7 @@ class Graph:
 
 @dataclass
 class Inspection:
-    """What one session shows of itself."""
+    """The inspection tools of one session."""
 
     session: Session
     inspector: Inspector = field(init=False)
@@ -79,7 +79,7 @@ class Inspection:
         self.graph = Graph(self.session)
 
     def patience(self, now: float) -> float:
-        """Say how long nothing needs to be done here [s], at a moment of the clock that flickers."""
+        """Return how long nothing needs to be done here [s], at a moment of the clock that flickers."""
         if self.spread_shown and self.counter.waits:
             return 0.0
         if self.compare.on and self.compare.mode is Mode.FLICKER:
@@ -91,7 +91,7 @@ class Inspection:
         self.costs_shown = self.spread_shown = False
 
     def update(self) -> None:
-        """Take in the frame's picture; passes are timed only while their times are shown."""
+        """Record the costs of the last picture; passes are timed only while their times are shown."""
         session = self.session
         engine, before = session.engine, self._recorded
         if self.costs_shown and engine.profiling and session.draws != before and before >= 0:

@@ -37,7 +37,7 @@ WHOLE, BROKEN, FIXED, SHOWN = "", "broken", "fixed", "shown"
 
 @dataclass(kw_only=True)
 class Bugs:
-    """Those of one reader."""
+    """The bugs and edited copies of one reader."""
 
     session: Session
     notices: Notices
@@ -150,7 +150,7 @@ class Bugs:
             self.notices.say(self.label("not_in_view").format(shown(path)))
 
     def is_edited(self, block: Code) -> bool:
-        """Say whether a copy with another text replaces the code's file."""
+        """Return whether a copy with another text replaces the code's file."""
         text = self.copies.text_of(file_of(block))
         return text is not None and text != read_text(file_of(block))
 

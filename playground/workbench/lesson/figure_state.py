@@ -33,7 +33,7 @@ def edits_of(scene: Scene, file: Sketch) -> Edits:
 
 def steps_of(scene: Scene) -> dict[str, int]:
     """Return after how many steps each repeated pass of a picture stops, by its whole path."""
-    return {repeated_in(scene.sketch, path): turn for path, turn in scene.steps}
+    return {repeated_in(scene.sketch, path): step for path, step in scene.steps}
 
 
 def map_of(scene: Scene) -> Map | None:

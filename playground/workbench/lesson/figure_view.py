@@ -31,7 +31,7 @@ Key = tuple[str, int]
 
 
 @dataclass(frozen=True)
-class Own:
+class BeforeLesson:
     """What the reader had open."""
 
     path: Path
@@ -44,13 +44,13 @@ class Own:
 
 
 class FigureView:
-    """What one session shows for a lesson."""
+    """Shows the figures of a lesson in one session."""
 
     def __init__(self, undo: Undo, compare: Compare, begins: Callable[[], None] = lambda: None) -> None:
         self.session = undo.session
         self.undo = undo
         self.compared_with = compare
-        self.own: Own | None = None
+        self.before_lesson: BeforeLesson | None = None
         self.key: Key | None = None  # of the picture that is shown
         self.scene: Scene | None = None
         self._begins = begins  # called before the first figure is shown
@@ -73,7 +73,7 @@ class FigureView:
         if session.shown is None:
             return False
         edits = session.shown.edits
-        if self.own is None or self.scene is None:
+        if self.before_lesson is None or self.scene is None:
             return bool(edits.values or edits.techniques)
         return not self.busy and (edits, dict(session.view.steps)) != self._set
 
@@ -94,9 +94,9 @@ class FigureView:
         if known is None:
             self._leave()
             history, before = self._histories.get(path, (History(), edits))
-            _note(history, before, edits, undo.notices.now())
+            _record_change(history, before, edits, undo.notices.now())
             session.open(path, start=StoredEdits(edits), texts=texts)
-            undo.history = history
+            undo.begin(history)
         else:
             undo.record()
             undo.history.call(f"Lesson: {key[0]}")
@@ -126,13 +126,13 @@ class FigureView:
             self._first = first
 
     def update(self) -> None:
-        """Take in what has become of the figure that was requested; once a frame."""
+        """Update the figure that was requested, once a frame."""
         session = self.session
         if self._compared is not None and not session.drafts.opening:
             self.compared_with.resume(self._compared)
             self._compared = None
-        if self.own is not None and session.path != self._path:
-            self.let_go()  # the reader opened a sketch
+        if self.before_lesson is not None and session.path != self._path:
+            self.forget_figure()  # the reader opened a sketch
             return
         if self._waits and session.drafts.stage is ReloadStage.NONE and session.shown is not None:
             self._waits = False
@@ -141,7 +141,7 @@ class FigureView:
 
     def go_back(self) -> None:
         """Show what was open before the lesson's figures, as it was; report it where it is gone."""
-        own, session = self.own, self.session
+        own, session = self.before_lesson, self.session
         if own is None:
             return
         try:
@@ -151,19 +151,19 @@ class FigureView:
             return
         self.compared_with.end()
         self._compared, self._first = own.compared, None
-        self.undo.history = own.history
+        self.undo.begin(own.history)
         session.restore_view(own.steps, own.map)
         session.view.framed_for = DEFAULT_PICTURE
         clock = session.clock
         clock.time, clock.playing, clock.loop = own.clock.time, own.clock.playing, own.clock.loop
         self._waits = False
         self._histories.pop(own.path, None)
-        self.own = self.scene = self.key = None
+        self.before_lesson = self.scene = self.key = None
         self._path = session.path
 
     def _begin(self) -> None:
         """Store what is open, if the reader opened it."""
-        if self.own is not None:
+        if self.before_lesson is not None:
             return
         self._begins()
         session = self.session
@@ -171,7 +171,9 @@ class FigureView:
         edits, (steps, shown) = session.drafts.stored, session.view.state
         clock, compared = replace(session.clock), self._compared or self.compared_with.stored
         self._compared = None
-        self.own = Own(session.path, edits, steps, shown, clock, self.undo.history, compared)
+        self.before_lesson = BeforeLesson(
+            session.path, edits, steps, shown, clock, self.undo.opened, compared
+        )
         self._path = session.path
 
     def _leave(self) -> None:
@@ -182,7 +184,7 @@ class FigureView:
             self._histories[session.path] = self.undo.history, session.shown.edits
 
     def _compare(self) -> None:
-        """Have the picture that is shown parted by a line from the one it is compared with."""
+        """Compare the picture that is shown with the first of two, divided by a line."""
         first, self._first = self._first, None
         draft = self.session.shown
         if first is not None and draft is not None:
@@ -190,22 +192,22 @@ class FigureView:
             compare.mode = Mode.DIVIDER
             compare.keep_state(draft.with_edits(edits_of(first, draft.file)), steps_of(first))
 
-    def let_go(self) -> None:
-        """Give up the figure: what is shown is the reader's own from here on."""
-        self.own = self.scene = self.key = self._first = None
+    def forget_figure(self) -> None:
+        """Forget the figure: what is shown is the reader's own from here on."""
+        self.before_lesson = self.scene = self.key = self._first = None
         self._waits = False
         self.session.view.framed_for = DEFAULT_PICTURE
 
 
 def comparable(first: Scene, second: Scene) -> bool:
-    """Say whether one sketch shows both, at one time and from one place: only then a line can part them."""
+    """Return whether a line can part them: one sketch shows both, at one time and from one place."""
     one, other = (
         (scene.sketch.file, scene.time, scene.view, scene.sketch.camera) for scene in (first, second)
     )
     return one == other
 
 
-def _note(history: History, before: Edits, after: Edits, now: float) -> None:
+def _record_change(history: History, before: Edits, after: Edits, now: float) -> None:
     """Record in a sketch's history that a lesson sets it anew, so that undo restores what was there."""
     was, comes = changes_between(before, after)
     if was:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 _ENGLISH = {
-    "lessons": "Lessons",
     "lesson": "Lesson {}",
     "minutes": "{} min",
     "close": "Close the lessons (F2)",
@@ -58,7 +57,6 @@ _ENGLISH = {
     "sources": "Sources",
 }
 _FRENCH = {
-    "lessons": "Leçons",
     "lesson": "Leçon {}",
     "minutes": "{} min",
     "close": "Fermer les leçons (F2)",

@@ -7,45 +7,53 @@ from collections.abc import Callable
 from pathlib import Path
 
 from playground.errors import PlaygroundError
+from playground.lessons.glossary import linked_term
 from playground.sketch.find import find
 from playground.workbench.history import History
 from playground.workbench.lesson.labels import labels_in
-from playground.workbench.lesson.reader import Reading
+from playground.workbench.lesson.reader import Reader
 
 
-def follow(reading: Reading, address: str) -> None:
-    """Go where a link leads."""
+def follow(reader: Reader, address: str) -> None:
+    """Open what a link names."""
     kind, _, name = address.partition(":")
     if kind == "lesson":
-        reading.open(name)
+        reader.open(name)
     elif kind == "sketch":
-        open_sketch(reading, name)
+        open_sketch(reader, name)
     elif kind == "thesis":
-        reading.bench.notices.say(labels_in(reading.language)["thesis_section"].format(name))
+        reader.bench.notices.say(labels_in(reader.language)["thesis_section"].format(name))
+    elif kind == "term":
+        reader.bench.notices.say(described(reader, address))
     elif kind in ("https", "http") and not webbrowser.open(address):
-        reading.bench.notices.say(address)
+        reader.bench.notices.say(address)
 
 
-def play_on(reading: Reading) -> None:
+def described(reader: Reader, address: str) -> str:
+    """Return what is shown of a link under the mouse: of a term its definition, else its address."""
+    term = linked_term(address)
+    language = reader.lesson.language if reader.lesson else reader.language
+    return term.definition(language) if term else address
+
+
+def play_on(reader: Reader) -> None:
     """Open the lesson's sketch as the reader's own."""
-    if reading.lesson is not None:
-        open_sketch(reading, reading.lesson.sketch)
+    if reader.lesson is not None:
+        open_sketch(reader, reader.lesson.sketch)
 
 
-def open_sketch(reading: Reading, name: str) -> None:
+def open_sketch(reader: Reader, name: str) -> None:
     """Open a sketch as the reader's own, with the user's edits of the last time."""
-    bench, figure = reading.bench, reading.figure
+    bench, figure = reader.bench, reader.figure
     try:
         path = find(name)
     except PlaygroundError as error:
         bench.notices.say(str(error))
         return
-    reading.playing = ""
-    reading.bugs.close_all(drawn=False)
-    if figure.own is None:
-        reading.begins()
-    figure.let_go()
+    reader.playing = ""
+    reader.bugs.close_all(drawn=False)
+    figure.forget_figure()
     bench.interface.panel_shown = True
-    opens: Callable[[Path], None] = reading.play or bench.commands.open
+    opens: Callable[[Path], None] = reader.play or bench.commands.open
     opens(path)
-    bench.undo.history = History()
+    bench.undo.begin(History())

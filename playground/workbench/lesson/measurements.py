@@ -15,7 +15,7 @@ Known = dict[str, Number]
 
 @dataclass
 class Numbers:
-    """What the measures of the lessons read so far came to."""
+    """The results of the measures of the lessons read so far."""
 
     session: Session
     known: dict[str, Known] = field(default_factory=dict)  # by lesson and measure
@@ -23,7 +23,7 @@ class Numbers:
     wanted: list[tuple[str, Measure]] = field(default_factory=list)
 
     def want(self, lesson: Lesson, blocks: tuple[Block, ...]) -> None:
-        """Ask for all numbers that blocks of a lesson show."""
+        """Request all numbers that blocks of a lesson show."""
         names = {name for block in blocks for text in texts_of(block) for name in named_in(text)}
         names |= {block.name for block in blocks if isinstance(block, Measure)}
         found = self.known.setdefault(lesson.name, {})
@@ -36,7 +36,7 @@ class Numbers:
         ]
 
     def waits(self, lesson: Lesson, name: str) -> bool:
-        """Say whether a number is still to be computed."""
+        """Return whether a number is still to be computed."""
         return any((lesson.name, name) == (other, measure.name) for other, measure in self.wanted)
 
     @property
@@ -45,7 +45,7 @@ class Numbers:
         return bool(self.wanted) and self.session.rests
 
     def compute(self) -> bool:
-        """Compute the next number that is wanted, where the picture rests; say whether one was."""
+        """Compute the next number that is wanted, where the picture rests; return whether one was."""
         session = self.session
         if not self.ready or session.plan is None:
             return False

@@ -25,7 +25,7 @@ _LARGEST = 2**20  # [bytes]
 
 @dataclass
 class Progress:
-    """Where a reader is."""
+    """The lesson, page and panel of a reader."""
 
     lesson: str = ""  # the one read last
     language: str = ""  # "": as the system says

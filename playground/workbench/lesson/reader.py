@@ -16,13 +16,13 @@ from playground.lessons.model import Block, Compare, Exercise, Figure, Lesson, S
 from playground.lessons.read import Summary
 from playground.workbench.bench import Bench
 from playground.workbench.lesson.bugs import Bugs
+from playground.workbench.lesson.catalogue import Catalogue
 from playground.workbench.lesson.figure_state import steps_of
 from playground.workbench.lesson.figure_view import FigureView, comparable
 from playground.workbench.lesson.labels import labels_in
 from playground.workbench.lesson.measurements import Numbers
 from playground.workbench.lesson.progress import Progress, progress_file, write_progress
 from playground.workbench.lesson.shader_copies import Copies
-from playground.workbench.lesson.shelf import Shelf
 from playground.workbench.text_file import unsaved
 
 _STEP, _VALUE = 0.8, 0.5
@@ -31,12 +31,12 @@ _STEP, _VALUE = 0.8, 0.5
 BOTH = -1
 """The place of a comparison where two pictures are shown at once."""
 
-Seen = Steps | Slider | Compare | Figure | Exercise
+FigureBlock = Steps | Slider | Compare | Figure | Exercise
 
 
 @dataclass
-class Reading:
-    """One reader's."""
+class Reader:
+    """The lesson, the page and the figure of one reader."""
 
     bench: Bench
     progress: Progress
@@ -61,7 +61,7 @@ class Reading:
             figure=self.figure,
             label=lambda key: labels_in(self.language)[key],
         )
-        self._shelf = Shelf(bench.notices.say)
+        self._catalogue = Catalogue(bench.notices.say)
         self._due = math.inf  # when what plays goes on
         self._hid = False  # the parameters' panel, to make room
 
@@ -88,10 +88,10 @@ class Reading:
     @property
     def summaries(self) -> list[Summary]:
         """All lessons, in their order."""
-        return self._shelf.listed(self.language)
+        return self._catalogue.listed(self.language)
 
     def open(self, name: str = "", *, language: str = "", page: int | None = None, show: bool = True) -> bool:
-        """Open a lesson, at the page where it was left; say whether that could be done.
+        """Open a lesson, at the page where it was left; return whether that could be done.
 
         By default the one read last, or the first. ``show``: its figure is shown.
         """
@@ -100,7 +100,7 @@ class Reading:
         if language:
             self.progress.language = language
         try:
-            lesson = self._shelf.read(name, self.language, labels_in(self.language)["untranslated"])
+            lesson = self._catalogue.read(name, self.language, labels_in(self.language)["untranslated"])
         except PlaygroundError as error:
             self.bench.notices.say(str(error))
             return False
@@ -114,7 +114,7 @@ class Reading:
         return True
 
     def speak(self, language: str) -> None:
-        """Read on in another language."""
+        """Switch to another language."""
         if self.lesson is not None:
             self.open(self.lesson.name, language=language, show=False)
 
@@ -135,7 +135,7 @@ class Reading:
         first = self._picture_of(page)
         if not show or first is None:
             return
-        if unsaved(self.bench.files.editing) or (self.figure.own is None and self.figure.changed):
+        if unsaved(self.bench.files.editing) or (self.figure.before_lesson is None and self.figure.changed):
             self.bench.notices.say(labels_in(self.language)["yours_stays"])
             return
         self.show(first)
@@ -152,12 +152,12 @@ class Reading:
         return next((blocks[-1] for blocks in earlier if blocks), None)
 
     def turn_page(self, pages: int) -> None:
-        """Go so many pages on or back."""
+        """Go a number of pages forwards or backwards."""
         if self.lesson is not None and self.progress.shown:
             self.go(self.index + pages)
 
     def toggle(self) -> None:
-        """Show the panel, or no longer."""
+        """Show or hide the panel."""
         if self.lesson is None:
             self.open(show=False)
             return
@@ -167,7 +167,7 @@ class Reading:
         else:
             self.playing = ""
             self.bench.interface.panel_shown = self.bench.interface.panel_shown or self._hid
-            if self.figure.own is not None and self.figure.changed:
+            if self.figure.before_lesson is not None and self.figure.changed:
                 self.bench.notices.say(labels_in(self.language)["not_kept"])
         self.remember()
 
@@ -176,15 +176,15 @@ class Reading:
         self._hid, self.bench.interface.panel_shown = self.bench.interface.panel_shown, False
 
     def remember(self) -> None:
-        """Write down where the reader is."""
+        """Store where the reader is."""
         complaint = write_progress(self.progress, self.file)
         if complaint:
             self.bench.notices.say(complaint)
 
     # ── pictures ─────────────────────────────────────────────────────────────
 
-    def is_on(self, block: Seen, index: int | None = None) -> bool:
-        """Say whether a figure of a block is shown."""
+    def is_on(self, block: FigureBlock, index: int | None = None) -> bool:
+        """Return whether a figure of a block is shown."""
         key = self.figure.key
         return (
             key is not None and key[0] == block.name and (index is None or self.at.get(block.name) == index)
@@ -230,7 +230,7 @@ class Reading:
         self.move(block, 0 if at >= len(block.scenes) - 1 else at)
         self.playing, self._due = block.name, self.bench.notices.now() + _pause(block)
 
-    def reset(self, block: Seen) -> None:
+    def reset(self, block: FigureBlock) -> None:
         """Show a block's picture as the lesson has it."""
         self.playing = ""
         self.show(block)
@@ -240,7 +240,7 @@ class Reading:
         self.playing = ""
         self.bugs.close_all(drawn=False)
         self.figure.go_back()
-        if self.figure.own is not None:  # it is gone: the lesson's picture stays, without copies
+        if self.figure.before_lesson is not None:  # it is gone: the lesson's picture stays, without copies
             self.bugs.close_all()
 
     def _put(self, scene: Scene, name: str, index: int) -> None:
@@ -252,7 +252,7 @@ class Reading:
     # ── frames ───────────────────────────────────────────────────────────────
 
     def update(self, *, idle: bool) -> None:
-        """Take in what a frame has brought; ``idle``: there is time to compute."""
+        """Update figures and series after a frame; ``idle``: there is time to compute."""
         self.figure.update()
         if self.lesson is None or not self.progress.shown:
             return
@@ -262,7 +262,7 @@ class Reading:
             self.numbers.compute()
 
     def patience(self, now: float) -> float:
-        """Say how long nothing needs to be done here [s]."""
+        """Return how long nothing needs to be done here [s]."""
         if self.lesson is None or not self.progress.shown:
             return math.inf
         if self.playing:

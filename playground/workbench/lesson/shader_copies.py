@@ -27,7 +27,7 @@ class Copy(OpenText):
 
     @property
     def kept(self) -> bool:
-        """Whether it is lost where it is not saved: a lesson has it again."""
+        """Whether unsaved changes must be saved: never, a lesson stores them."""
         return False
 
     def saved(self) -> str:
@@ -39,11 +39,11 @@ class Copy(OpenText):
         return self.base
 
     def changed_outside(self) -> bool:
-        """Return False: nobody else has it."""
+        """Return False: no other program has it."""
         return False
 
     def save(self, text: str, *, over: bool = False) -> bool:
-        """Have the text drawn; the file stays as it is."""
+        """Draw the text; the file stays as it is."""
         self.base = text
         self.apply(text)
         return True
@@ -68,7 +68,7 @@ class Copies:
         self.files.focus(editing, line)
 
     def focus(self, path: Path, line: int = 1) -> bool:
-        """Bring the copy of a file to the front, also where its window was closed; say if there is one."""
+        """Bring the copy of a file to the front, opening its window again; return whether there is one."""
         editing = self._windows.get(path)
         if editing is None:
             return False

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from playground.sketch.dialects.es import rewritten, version_of
-from playground.sketch.source import read_foreign_source
+from playground.sketch.source import read_source_and_origin
 
 
 @pytest.fixture
@@ -13,7 +13,7 @@ def codes(tmp_path):
     def rewrite(text: str) -> list[str]:
         path = tmp_path / "a.frag"
         path.write_text(text)
-        found = rewritten(read_foreign_source(path, tmp_path)[0])
+        found = rewritten(read_source_and_origin(path, (tmp_path,), foreign=True)[0])
         assert [line.text for line in found.source.lines] == text.split("\n")
         return [line.code for line in found.source.lines]
 
@@ -70,7 +70,7 @@ def test_words_are_renamed_only_in_versions_that_have_them_free(codes):
 def test_a_version_from_330_on_stays_with_its_extensions(tmp_path):
     path = tmp_path / "a.frag"
     path.write_text("#version 430 core\n#extension GL_ARB_x : enable\nvarying vec2 a;\n")
-    source, _ = read_foreign_source(path, tmp_path)
+    source, _ = read_source_and_origin(path, (tmp_path,), foreign=True)
     found = rewritten(source)
     assert version_of(source) == 430 and found.prelude == ("#extension GL_ARB_x : enable",)
     assert [line.code for line in found.source.lines[:3]] == ["#version 430 core", "", "in      vec2 a;"]

@@ -23,7 +23,7 @@ float lattice_per_pixel(ivec2 sides, ivec2 picture, vec4 window, float margin) {
     return max(wanted.x, wanted.y);
 }
 
-// The pixel of a place on the terrain, which stands in the middle of its window.
+// The pixel of a place on the terrain, which is in the middle of its window.
 vec2 pixel_of_place(vec2 place, ivec2 sides, ivec2 picture, vec4 window, float margin) {
     vec2 middle = 0.5 * (window.xy + window.zw) * vec2(picture);
     vec2 offset = place - 0.5 * vec2(sides);

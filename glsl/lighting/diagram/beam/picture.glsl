@@ -87,7 +87,7 @@ vec4 kernel(ivec2 texel) {
     float wide = beam == CYLINDER ? radius / 255.0 * relief * section.scale : 0.0;
     int viewpoints = second >= 0 ? 2 : 1;
 
-    // The sun stands at the end of the first beam, whole in the picture; parallel rays end in
+    // The sun is at the end of the first beam, whole in the picture; parallel rays end in
     // arrows.
     vec4 facts = texelFetch(tests, ivec2(0, 0), 0);
     vec2 room = (paper - 12.0 * u - on_paper(section, facts.zw)) / (to_sun + 1e-4);

@@ -63,7 +63,7 @@ vec4 kernel(ivec2 texel) {
     float effective = atan(max(land.x, plane));
     if (texel.x < 2) return vec4(land, plane, effective);
     float radius = max(0.5 * radians(diameter), 1e-7);
-    // How many radii of the disc the horizon stands above the sun's middle.
+    // How many radii of the disc the horizon is above the sun's middle.
     float above = clamp((effective - radians(elevation)) / radius, -1.0, 1.0);
     float area = (acos(above) - above * sqrt(1.0 - above * above)) / (2.0 * HALF_PI);
     return vec4(float(column) * metres.x, texelFetch(height, ivec2(column, line), 0).r * relief,

@@ -9,7 +9,7 @@ import pytest
 from playground.errors import PlaygroundError
 from playground.paths import GLSL
 from playground.sketch.techniques import read_kernel
-from playground.sketch.unused_parameters import unread
+from playground.sketch.warnings import unread
 
 
 def found_in(folder: Path, declared: str, body: str = "", pragma: str = "") -> list[str]:
@@ -34,7 +34,7 @@ def test_what_nothing_reads_is_a_warning_at_its_name(tmp_path: Path) -> None:
     ("declared", "body", "pragma"),
     [
         ("uniform float level = 0.5;", "float a = level;", ""),
-        ("uniform int turns = 5; //! slider(1, 9)", "", ', repeat = "turns"'),
+        ("uniform int steps = 5; //! slider(1, 9)", "", ', repeat = "steps"'),
         ("uniform float level = 0.5;\n#define HALF (0.5 * level)", "", ""),
         ("uniform sampler2D mask; //! input", "if (wired_mask) return 1.0;", ""),
         ("uniform float level = 0.5;\nfloat f() { return level; }", "", ""),

@@ -1,4 +1,4 @@
-"""The lessons that there are, as a reader finds them: by number, in a language, read when they are opened."""
+"""The catalogue of lessons: by number, in a language, read when they are opened."""
 
 from __future__ import annotations
 
@@ -13,13 +13,13 @@ from playground.lessons.scenes import Sketches
 
 
 @dataclass
-class Shelf:
-    """One window's; ``say`` reports what is wrong."""
+class Catalogue:
+    """The lessons of one window; ``say`` reports errors."""
 
     say: Callable[[str], None]
     _sketches: Sketches = field(default_factory=Sketches)
     _listed: dict[str, list[Summary]] = field(default_factory=dict)  # by language
-    _missing: set[str] = field(default_factory=set)  # lessons that were said to have no translation
+    _missing: set[str] = field(default_factory=set)  # lessons reported to have no translation
 
     def listed(self, language: str) -> list[Summary]:
         """Return all lessons, in their order."""
@@ -32,7 +32,7 @@ class Shelf:
         return self._listed[language]
 
     def read(self, name: str, language: str, untranslated: str) -> Lesson:
-        """Return a lesson; in English, and ``untranslated`` is said once, where it has no other words yet.
+        """Return a lesson; without a translation in English, and ``untranslated`` is reported once.
 
         Raises ``SketchError`` for one that is not there or not well written.
         """

@@ -1,4 +1,4 @@
-"""Lands that several tests of light stand on."""
+"""Terrains that several tests of light stand on."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from ..truth.methods import relief_of, written
 
 
 def lit_by(
-    folder: Path, land: Land, name: str, use: str, *, passes: str = "", size: str = "", **values: object
+    folder: Path, terrain: Land, name: str, use: str, *, passes: str = "", size: str = "", **values: object
 ) -> Sketch:
-    """Write and load a sketch of a land, lit by one technique of ``lighting/`` as the pass ``name``."""
-    ny, nx = land.heights.shape
-    relief = relief_of(land)
-    np.save(folder / "land.npy", ((land.heights - land.heights.min()) / relief).astype(np.float32))
+    """Write and load a sketch of a terrain, lit by one technique of ``lighting/`` as the pass ``name``."""
+    ny, nx = terrain.heights.shape
+    relief = relief_of(terrain)
+    np.save(folder / "land.npy", ((terrain.heights - terrain.heights.min()) / relief).astype(np.float32))
     setting = "".join(f"{key} = {written(value)}\n" for key, value in values.items())
-    extent = [(n - 1) * metres for n, metres in zip((nx, ny), land.spacing, strict=True)]
+    extent = [(n - 1) * metres for n, metres in zip((nx, ny), terrain.spacing, strict=True)]
     path = folder / "sketch.toml"
     path.write_text(
         f"format = 1\nsize = [{nx}, {ny}]\nextent = {extent}\nrelief = {relief}\n"

@@ -9,9 +9,9 @@ import pytest
 from playground.errors import DataError, ShaderError
 from playground.sketch.model import VARIANTS, kernels_of
 from playground.sketch.text_overrides import with_texts
-from playground.sketch.variants import standing, trusted
+from playground.sketch.variants import active_variant, trusted
 
-from .conftest import LAND, VIEW
+from .conftest import TERRAIN, VIEW
 
 NESTED = """\
 [[pass]]
@@ -22,7 +22,7 @@ HILL = """\
 title = "A hill"
 [[pass]]
 name = "slope"
-use = "./land"
+use = "./terrain"
 """
 
 
@@ -32,19 +32,19 @@ def kernels(sketch):
 
 def test_a_text_is_read_in_place_of_its_file_and_declares_what_it_declares(folder):
     sketch = folder.sketch()
-    steep = LAND.replace("rise", "climb").replace("0.5", "0.75")
-    found = with_texts(sketch, {str(folder.path / "land.glsl"): steep})
+    steep = TERRAIN.replace("rise", "climb").replace("0.5", "0.75")
+    found = with_texts(sketch, {str(folder.path / "terrain.glsl"): steep})
     before, after = kernels(sketch), kernels(found)
-    assert [(p.name, p.default) for p in before["land"].parameters] == [("rise", 0.5)]
-    assert [(p.name, p.default) for p in after["land"].parameters] == [("climb", 0.75)]
-    assert "climb * float" in after["land"].source.code
+    assert [(p.name, p.default) for p in before["terrain"].parameters] == [("rise", 0.5)]
+    assert [(p.name, p.default) for p in after["terrain"].parameters] == [("climb", 0.75)]
+    assert "climb * float" in after["terrain"].source.code
     assert after["look"] is before["look"], "what no text is of stays itself"
-    assert (folder.path / "land.glsl").read_text(encoding="utf-8") == LAND
+    assert (folder.path / "terrain.glsl").read_text(encoding="utf-8") == TERRAIN
 
 
 def test_an_included_text_changes_every_kernel_that_includes_it(folder):
     file = folder.write("share.glsl", "const float SHARE = 0.5;\n")
-    folder.write("land.glsl", '#include "share.glsl"\n' + LAND)
+    folder.write("terrain.glsl", '#include "share.glsl"\n' + TERRAIN)
     folder.write("look.glsl", '#include "share.glsl"\n' + VIEW)
     found = with_texts(folder.sketch(), {str(file): "const float SHARE = 0.25;\n"})
     assert ["SHARE = 0.25;" in kernel.source.code for kernel in kernels(found).values()] == [True, True]
@@ -53,9 +53,9 @@ def test_an_included_text_changes_every_kernel_that_includes_it(folder):
 def test_a_text_is_found_inside_a_technique_of_several_passes(folder):
     folder.write("hill.toml", HILL)
     sketch = folder.sketch(NESTED)
-    found = with_texts(sketch, {str(folder.path / "land.glsl"): LAND.replace("0.5", "0.75")})
-    assert kernels(found)["land"].parameters[0].default == 0.75
-    assert kernels(sketch)["land"].parameters[0].default == 0.5
+    found = with_texts(sketch, {str(folder.path / "terrain.glsl"): TERRAIN.replace("0.5", "0.75")})
+    assert kernels(found)["terrain"].parameters[0].default == 0.75
+    assert kernels(sketch)["terrain"].parameters[0].default == 0.5
 
 
 def test_texts_that_a_sketch_does_not_use_change_nothing(folder):
@@ -65,24 +65,24 @@ def test_texts_that_a_sketch_does_not_use_change_nothing(folder):
 
 
 def test_a_fast_variant_is_left_out_unless_the_texts_say_the_same(folder):
-    file = folder.write("land.comp", '#pragma compute(groups = "1, 1")\nuniform float rise = 0.5;\n')
+    file = folder.write("terrain.comp", '#pragma compute(groups = "1, 1")\nuniform float rise = 0.5;\n')
     sketch = folder.sketch()
     sketch = replace(sketch, graph=trusted(sketch.graph))
 
     def runs(texts):
-        kernel = kernels(with_texts(sketch, texts))["land"]
-        return standing(kernel, VARIANTS) is not None
+        kernel = kernels(with_texts(sketch, texts))["terrain"]
+        return active_variant(kernel, VARIANTS) is not None
 
-    land = str(folder.path / "land.glsl")
-    assert runs({land: LAND})
-    assert runs({land: LAND + "// the same\n"})
-    assert not runs({land: LAND.replace("0.5", "0.75")})
+    kernel_file = str(folder.path / "terrain.glsl")
+    assert runs({kernel_file: TERRAIN})
+    assert runs({kernel_file: TERRAIN + "// the same\n"})
+    assert not runs({kernel_file: TERRAIN.replace("0.5", "0.75")})
     assert not runs({str(file): file.read_text() + "float more;\n"})
 
 
 def test_a_text_that_is_no_kernel_is_refused_in_a_sentence(folder):
-    sketch, file = folder.sketch(), str(folder.path / "land.glsl")
+    sketch, file = folder.sketch(), str(folder.path / "terrain.glsl")
     with pytest.raises(DataError, match="no kernel is left of this text"):
         with_texts(sketch, {file: "float f() { return 1.0; }\n"})
     with pytest.raises(ShaderError, match=r"no file 'nowhere\.glsl' to include"):
-        with_texts(sketch, {file: '#include "nowhere.glsl"\n' + LAND})
+        with_texts(sketch, {file: '#include "nowhere.glsl"\n' + TERRAIN})

@@ -1,4 +1,4 @@
-"""A sketch read again with what was kept is the sketch read anew, whatever was saved in between."""
+"""A sketch loaded with cached techniques is the sketch loaded without, after any saves."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from playground.errors import PlaygroundError, SketchError
 from playground.sketch.allowed_files import noting_places
 from playground.sketch.load import load, load_with
 from playground.sketch.model import kernels_of
-from playground.sketch.technique_cache import RESTED, KeptTechniques
+from playground.sketch.technique_cache import RESTED, TechniqueCache
 
 KERNEL = """#include "part.glsl"
 #pragma kernel(output = "height:r32f")
@@ -59,7 +59,7 @@ def code_in(sketch) -> list[str]:
 
 
 def test_what_rests_is_the_same_object_in_the_next_reading(files: Files):
-    techniques = KeptTechniques()
+    techniques = TechniqueCache()
     first = load_with(techniques.begin(), files.folder)
     second = load_with(techniques.begin(), files.folder)
     for name in ("height", "again", "view"):
@@ -67,7 +67,7 @@ def test_what_rests_is_the_same_object_in_the_next_reading(files: Files):
 
 
 def test_a_save_of_what_is_included_deep_inside_is_seen(files: Files):
-    techniques = KeptTechniques()
+    techniques = TechniqueCache()
     view = load_with(techniques.begin(), files.folder).graph.find("view").technique
     files.save("part.glsl", PART.replace("1.0", "2.0"))
     sketch = load_with(techniques.begin(), files.folder)
@@ -76,11 +76,11 @@ def test_a_save_of_what_is_included_deep_inside_is_seen(files: Files):
 
 
 def test_what_was_saved_just_before_it_was_read_is_read_again(files: Files):
-    """Two saves in one tick of a coarse clock, of one length: nothing but the text tells them apart."""
+    """Two saves in one tick of a coarse clock, of one length: only the text differs."""
     now = time.time_ns()
     (files.folder / "inner.toml").write_text(INNER.replace("one", "abc"), encoding="utf-8")
     os.utime(files.folder / "inner.toml", ns=(now, now))
-    techniques = KeptTechniques()
+    techniques = TechniqueCache()
     load_with(techniques.begin(), files.folder)
     (files.folder / "inner.toml").write_text(INNER.replace("one", "xyz"), encoding="utf-8")
     os.utime(files.folder / "inner.toml", ns=(now, now))
@@ -89,7 +89,7 @@ def test_what_was_saved_just_before_it_was_read_is_read_again(files: Files):
 
 
 def test_a_file_that_comes_where_another_was_looked_for_is_seen(files: Files):
-    techniques = KeptTechniques()
+    techniques = TechniqueCache()
     load_with(techniques.begin(), files.folder)
     files.save("inner.glsl", KERNEL)
     with pytest.raises(SketchError, match="remove one"):
@@ -99,7 +99,7 @@ def test_a_file_that_comes_where_another_was_looked_for_is_seen(files: Files):
 
 
 def test_the_places_of_a_reading_are_all_there_though_little_was_read(files: Files):
-    techniques = KeptTechniques()
+    techniques = TechniqueCache()
     with noting_places() as anew:
         load(files.folder)
     for _ in range(2):
@@ -108,7 +108,7 @@ def test_the_places_of_a_reading_are_all_there_though_little_was_read(files: Fil
         assert places == anew
 
 
-def test_techniques_that_are_kept_may_nest_no_deeper(files: Files):
+def test_cached_techniques_may_nest_no_deeper(files: Files):
     def chain(first: int, last: int) -> None:
         for level in range(first, last):
             files.save(f"n{level}.toml", INNER.replace("./k", f"./n{level + 1}"))
@@ -116,7 +116,7 @@ def test_techniques_that_are_kept_may_nest_no_deeper(files: Files):
     chain(0, 10)
     files.save("n10.toml", INNER)
     files.save("sketch.toml", SKETCH.replace("./outer", "./n0"))
-    techniques = KeptTechniques()
+    techniques = TechniqueCache()
     load_with(techniques.begin(), files.folder)
     chain(20, 29)
     files.save("n29.toml", INNER.replace("./k", "./n0"))
@@ -125,8 +125,8 @@ def test_techniques_that_are_kept_may_nest_no_deeper(files: Files):
         load_with(techniques.begin(), files.folder)
 
 
-def test_a_circle_that_closes_through_what_is_kept_is_found(files: Files):
-    techniques = KeptTechniques()
+def test_a_circle_that_closes_through_a_cached_technique_is_found(files: Files):
+    techniques = TechniqueCache()
     load_with(techniques.begin(), files.folder)
     files.save("inner.toml", INNER.replace("./k", "./outer"))
     with pytest.raises(SketchError, match="circle"):
@@ -135,7 +135,7 @@ def test_a_circle_that_closes_through_what_is_kept_is_found(files: Files):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_after_any_saves_it_gives_what_a_reading_anew_gives(files: Files, seed: int):
-    chance = random.Random(seed)
+    rng = random.Random(seed)
     texts = {
         "part.glsl": [PART, PART.replace("1.0", "2.0"), "float part( { }\n"],
         "k.glsl": [
@@ -148,13 +148,13 @@ def test_after_any_saves_it_gives_what_a_reading_anew_gives(files: Files, seed: 
         "sub.glsl": ["// nothing\n"],
         "k.comp": ['#pragma compute(groups = "1, 1")\nvoid main() {}\n'],
     }
-    techniques = KeptTechniques()
+    techniques = TechniqueCache()
     for _ in range(60):
-        name = chance.choice(list(texts))
-        if chance.random() < 0.25:
+        name = rng.choice(list(texts))
+        if rng.random() < 0.25:
             (files.folder / name).unlink(missing_ok=True)
         else:
-            files.save(name, chance.choice(texts[name]))
+            files.save(name, rng.choice(texts[name]))
         with noting_places() as places:
             seen = result_of(lambda: load_with(techniques.begin(), files.folder))
         with noting_places() as wanted:
@@ -162,12 +162,12 @@ def test_after_any_saves_it_gives_what_a_reading_anew_gives(files: Files, seed: 
         assert wanted.keys() <= places.keys()
 
 
-def result_of(reading):
+def result_of(loading):
     try:
-        return reading()
+        return loading()
     except PlaygroundError as error:
         return str(error)
 
 
 def test_a_file_counts_as_rested_only_after_the_coarsest_clock_has_ticked():
-    assert RESTED > 2.0, "FAT tells times to two seconds"
+    assert RESTED > 2.0, "the resolution of FAT is two seconds"

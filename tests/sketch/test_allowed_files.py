@@ -1,4 +1,4 @@
-"""Which folder a technique opened alone may read from, and where links lead: one rule, whoever asks."""
+"""Which folder a technique opened alone may read from, and where links lead: one rule for all callers."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def test_a_technique_of_several_passes_does_too(hills: Path):
     assert str(hills / "lib.glsl") in load(whole).files
 
 
-def test_links_are_followed_once_in_a_reading_and_anew_in_the_next(tmp_path):
+def test_links_are_followed_once_in_a_load_and_anew_in_the_next(tmp_path):
     first, second, link = tmp_path / "first", tmp_path / "second", tmp_path / "link"
     first.mkdir()
     second.mkdir()
@@ -66,7 +66,7 @@ def test_links_are_followed_once_in_a_reading_and_anew_in_the_next(tmp_path):
         assert real(link) == first
         link.unlink()
         link_to(link, second)
-        assert real(link) == first, "one reading sees one state"
+        assert real(link) == first, "one load sees one state"
         with noting_places():
             assert real(link) == second
     assert real(link) == second
