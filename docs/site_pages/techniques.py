@@ -22,6 +22,7 @@ FOLDERS = {
     "lighting": "Lighting: what gives light and shadows",
     "view": "Views: what gives the picture",
     "terrain": "Terrain: what reads heights",
+    "foreign": "Channels of other tools' shaders",
 }
 """The folders of the catalogue; one that is not here comes last, by its name."""
 

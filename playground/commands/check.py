@@ -37,12 +37,14 @@ def check(
     paths: Annotated[list[Path], typer.Argument(help="Files, and folders to search.", metavar="PATH...")],
     as_json: Annotated[bool, flag("--json", "Print one JSON object a file, a line each.")] = False,
     plain: options.Plain = False,
+    dialect: options.Dialect = "",
     software: options.Software = False,
     device: options.Device = "",
 ) -> None:
     """Check shaders and sketches."""
     from playground.engine.check import check_file, find_files
     from playground.engine.sandbox import Sandbox
+    from playground.sketch.dialects import check_name
 
     renderer: Renderer = ctx.obj.or_else(software, device)
     files = find_files(paths)
@@ -53,7 +55,7 @@ def check(
         progress("checking", len(files)) as advance,
     ):
         for path, root in files:
-            report = check_file(path, sandbox, root, plain=plain)
+            report = check_file(path, sandbox, root, plain=plain, dialect=check_name(dialect))
             report = replace(report, warnings=tuple(w for w in report.warnings if w not in reported))
             reported |= set(report.warnings)
             failed += not report.ok

@@ -42,6 +42,7 @@ def live(
     settings: options.Set = None,
     driver: options.Driver = "auto",
     plain: options.Plain = False,
+    dialect: options.Dialect = "",
     software: options.Software = False,
     fresh: Annotated[bool, flag("--fresh", "Forget your edits of the last time.")] = False,
     lesson: Annotated[str, value("--lesson NAME", "Open a lesson next to the sketch.", complete_lesson)] = "",
@@ -52,6 +53,8 @@ def live(
     ] = False,
 ) -> None:
     """Open a sketch in a window."""
+    from playground.sketch.dialects import check_name
+
     renderer: Renderer = ctx.obj.or_else(software)
     pixels, values = read_pixels(size), read_values(settings)
     check_display(renderer)
@@ -62,6 +65,7 @@ def live(
         driver=read_driver(driver),
         values=values,
         plain=plain,
+        dialect=check_name(dialect),
         fresh=fresh,
         lesson=lesson,
         language=lang,
@@ -102,7 +106,7 @@ def open_window(
         from playground.sketch.load import load
 
         with suppress(PlaygroundError):  # the window shows what is wrong with the sketch
-            values = with_whole_paths(load(sketch), values)
+            values = with_whole_paths(load(sketch, dialect=options.get("dialect", "")), values)
     options |= {"cache_limit": limit, "report": complain}
     status = run(sketch, size=size, software=renderer.software, values=values, **options)
     if status:

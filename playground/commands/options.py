@@ -48,6 +48,13 @@ def complete_driver(incomplete: str) -> list[str]:
     return [name for name in DRIVERS if name.startswith(incomplete)]
 
 
+def complete_dialect(incomplete: str) -> list[str]:
+    """Return the dialects that complete a word."""
+    from playground.sketch.dialects import names
+
+    return [name for name in names() if name.startswith(incomplete)]
+
+
 def complete_lesson(incomplete: str) -> list[str]:
     """Return the lessons that complete a word."""
     from playground.lessons.library import lesson_files
@@ -100,6 +107,14 @@ Steps = Annotated[
 ]
 Driver = Annotated[str, value("--driver NAME", f"What runs the kernels: {either(DRIVERS)}.", complete_driver)]
 Plain = Annotated[bool, flag("--plain", "Run every technique in its plain form, no fast variant.")]
+Dialect = Annotated[
+    str,
+    value(
+        "--dialect NAME",
+        "Read a shader as that of another tool: main, shadertoy, or own for none; by its text without it.",
+        complete_dialect,
+    ),
+]
 Software = Annotated[bool, flag("--software", "Render in software, on the CPU (Mesa llvmpipe).")]
 Device = Annotated[str, value("--device N", "Render on this EGL device, from 0.")]
 Json = Annotated[bool, flag("--json", "Print JSON, for programs.")]

@@ -94,6 +94,7 @@ def render(
     settings: options.Set = None,
     driver: options.Driver = "auto",
     plain: options.Plain = False,
+    dialect: options.Dialect = "",
     shot: Annotated[str, value("--shot NAME", "Render a shot of the sketch.")] = "",
     preset: options.Preset = "",
     texture: Annotated[str, value("--texture PASS", "Write this pass's own values, not the picture.")] = "",
@@ -149,7 +150,12 @@ def render(
     pixels, seconds_in, values = read_pixels(size, LARGEST_PICTURE), read_seconds(time), read_values(settings)
     runs_by, stops = read_driver(driver), read_steps(steps)
     moment = moment_of(
-        load(sketch).plainly(plain), shot=shot, preset=preset, values=values, steps=stops, time=seconds_in
+        load(sketch, dialect=dialect).plainly(plain),
+        shot=shot,
+        preset=preset,
+        values=values,
+        steps=stops,
+        time=seconds_in,
     )
     renderer: Renderer = ctx.obj.or_else(software, device)
     if series.many:

@@ -23,7 +23,7 @@ from playground.images.content_hash import content_hash
 from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
-from playground.sketch.model import Kernel, Parameter, Sampling, Value
+from playground.sketch.model import Input, Kernel, Parameter, Sampling, Value
 from playground.sketch.reserved_names import MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED
 from playground.terrain.directions import unit_vector
 
@@ -81,20 +81,25 @@ class Binder:
         if UNWIRED in program.uniforms:
             uniforms[UNWIRED] = has_unwired(kernel, inputs)
         for declared in kernel.inputs:
-            result, texture, output = inputs.get(declared.name, NOT_WIRED)
+            texture = inputs.get(declared.name, NOT_WIRED).texture
             uniforms[f"{WIRED}{declared.name}"] = texture is not None
             uniforms[f"{MATCHES}{declared.name}"] = texture is not None and texture.size == step.size
-            if declared.name not in program.uniforms:
-                continue
-            if texture is None:
-                texture = self.constant(declared.fallback or "black")
-            elif declared.sampling.mipmap and (result is None or output not in result.mipmapped):
-                texture.build_mipmaps()
-                if result is not None:
-                    result.mipmapped.add(output)
-            unit = self.texture(program, declared.name, unit, texture, declared.sampling)
+            if declared.name in program.uniforms:
+                texture = self.wired(declared, inputs)
+                unit = self.texture(program, declared.name, unit, texture, declared.sampling)
         program.set_all(uniforms)
         return unit
+
+    def wired(self, declared: Input, inputs: Mapping[str, Wired]) -> moderngl.Texture:
+        """Return what an input reads, with its mipmaps; one texel where nothing is wired."""
+        result, texture, output = inputs.get(declared.name, NOT_WIRED)
+        if texture is None:
+            return self.constant(declared.fallback or "black")
+        if declared.sampling.mipmap and (result is None or output not in result.mipmapped):
+            texture.build_mipmaps()
+            if result is not None:
+                result.mipmapped.add(output)
+        return texture
 
     def previous(
         self, program: Program, kernel: Kernel, state: Mapping[str, moderngl.Texture], unit: int
@@ -123,13 +128,13 @@ class Binder:
         self._units = max(self._units, unit + 1)
         return unit + 1
 
-    def file(
-        self, program: Program, parameter: Parameter, value: Value, unit: int, *, encoded: bool = False
-    ) -> int:
-        """Bind an image file's texture to a sampler; return the next free unit.
+    def file(self, program: Program, parameter: Parameter, value: Value, unit: int) -> int:
+        """Bind an image file's texture to a sampler, in linear light; return the next free unit."""
+        texture = self.file_texture(parameter, value)
+        return self.texture(program, parameter.name, unit, texture, parameter.sampling)
 
-        Its colours are decoded to linear light, or stay as they are ``encoded`` in the file.
-        """
+    def file_texture(self, parameter: Parameter, value: Value, *, encoded: bool = False) -> moderngl.Texture:
+        """Return an image file's texture: decoded to linear light, or as it is ``encoded`` in the file."""
         path = Path(str(value))
         key = (content_hash(path), parameter.sampling.mipmap, encoded)
         if key not in self._files:
@@ -140,7 +145,7 @@ class Binder:
             while len(self._files) > _MAX_FILES:
                 self._files.popitem(last=False)[1].release()
         self._files.move_to_end(key)
-        return self.texture(program, parameter.name, unit, self._files[key], parameter.sampling)
+        return self._files[key]
 
     def constant(self, name: str) -> moderngl.Texture:
         """Return a texture of one texel: white, black, or zero in every channel."""

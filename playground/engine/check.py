@@ -28,14 +28,14 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
 from playground.sketch.allowed_files import TEXTS, is_variant, root_of
 from playground.sketch.assign import values_of
-from playground.sketch.load import is_technique, load
-from playground.sketch.model import Graph, PassSpec, Sketch, Technique, kernels_of
+from playground.sketch.load import is_technique, load, plain_sketch
+from playground.sketch.model import Graph, Sketch, Technique, kernels_of
 from playground.sketch.shadowed import shadowed_by_files
 from playground.sketch.source import read_text
 from playground.sketch.techniques import (
+    Techniques,
     lonely_variant,
     nothing_to_run,
-    read_kernel,
     read_technique,
     technique_beside,
 )
@@ -117,22 +117,28 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
     return list(found.items())
 
 
-def check_file(path: Path, sandbox: Sandbox, root: Path | None = None, *, plain: bool = False) -> FileReport:
+def check_file(
+    path: Path, sandbox: Sandbox, root: Path | None = None, *, plain: bool = False, dialect: str = ""
+) -> FileReport:
     """Check one file and return what is wrong with it; ``root`` is the folder it may include from.
 
-    ``plain``: no fast variant is drawn.
+    ``plain``: no fast variant is drawn. ``dialect`` is that of a shader of another tool; "": by its text.
     """
     path = path.resolve()
     with TemporaryDirectory(prefix="playground-check-") as folder:
-        report = _Check(sandbox, path, root_of(path) if root is None else root, Path(folder), plain).run()
+        root = root_of(path) if root is None else root
+        report = _Check(sandbox, path, root, Path(folder), plain, dialect).run()
     return report
 
 
 class _Check:
     """One file being checked."""
 
-    def __init__(self, sandbox: Sandbox, path: Path, root: Path, scratch: Path, plain: bool) -> None:
+    def __init__(
+        self, sandbox: Sandbox, path: Path, root: Path, scratch: Path, plain: bool, dialect: str
+    ) -> None:
         self.plain = plain
+        self.dialect = dialect
         self.notes: tuple[str, ...] = ()
         self.sandbox = sandbox
         self.path = path
@@ -161,18 +167,19 @@ class _Check:
     # ── the kinds of file ────────────────────────────────────────────────────
 
     def shader(self) -> None:
-        kernel = read_kernel(self.path, self.root)
+        kernel = Techniques().shader(self.path, self.root, self.dialect)
         if kernel is None and self.path.suffix != ".glsl":
             raise nothing_to_run(self.path)
-        if kernel is not None:
-            self.warnings |= dict.fromkeys(warnings_of_kernel(kernel))
+        for _, one in kernels_of(kernel) if kernel is not None else ():
+            if not Path(one.path).is_relative_to(GLSL) or self.path.is_relative_to(GLSL):
+                self.warnings |= dict.fromkeys(warnings_of_kernel(one))
         if kernel is None:
             self.attempt(TryLibrary(str(self.path), str(self.root)))
-        elif kernel.kind.startswith("plain"):
-            view = PassSpec("view", f"./{self.path.stem}", kernel, file=shown(self.path))
-            graph = Graph(kernel.name, str(self.path), (view,))
-            sketch = Sketch(kernel.name, str(self.path), str(self.root), graph)
-            sketch = with_pictures(sketch, self.picture)
+        elif isinstance(kernel, Graph) or kernel.kind.startswith("plain"):
+            sketch = with_pictures(plain_sketch(self.path, kernel, self.root), self.picture)
+            if isinstance(kernel, Graph):
+                self.notes = tuple(f"read as {k.dialect}" for _, k in kernel.kernels if k.dialect)
+                self.warnings |= dict.fromkeys(source_warnings(Planner().plan(sketch, frame_size=_FRAME)))
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif kernel.kind == "compute":
             raise lonely_variant(self.path)

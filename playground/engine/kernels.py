@@ -22,7 +22,7 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.model import Kernel, Sampling
-from playground.sketch.reserved_names import MATCHES, PLAIN_UNIFORMS, UNWIRED, WINDOW, WIRED
+from playground.sketch.reserved_names import MATCHES, PART, SIZES, UNWIRED, WINDOW, WIRED
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
@@ -146,19 +146,28 @@ class Kernels:
         driver = COMPUTE if kernel.kind == "plain_compute" else FRAGMENT
         program = self.programs.get(kernel, driver)
         unit = 0
+        sizes: dict[str, tuple[int, int]] = {}  # [texels] of what each sampler reads
         for parameter in kernel.parameters:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
                 program.set(parameter.name, value)
-            elif parameter.name in program.uniforms:
-                unit = self.binder.file(program, parameter, value, unit, encoded=True)
-        if step.window is not None:
-            program.set(WINDOW, step.window.origin)
-        for meaning, values in usual.items():
-            for name in PLAIN_UNIFORMS[meaning]:
-                if name in program.uniforms:
-                    _set_fitting(program, name, values)
+            elif parameter.name in program.uniforms or kernel.dialect:
+                texture = self.binder.file_texture(parameter, value, encoded=True)
+                sizes[parameter.name] = texture.size
+                unit = self.binder.texture(program, parameter.name, unit, texture, parameter.sampling)
+        for declared in kernel.inputs:
+            texture = self.binder.wired(declared, job.inputs)
+            sizes[declared.name] = texture.size
+            if declared.name in program.uniforms:
+                unit = self.binder.texture(program, declared.name, unit, texture, declared.sampling)
+        origin = step.window.origin if step.window is not None else (0, 0)
+        program.set(WINDOW, origin)
+        program.set(PART, _shares(step.whole_size, origin, step.size))
+        for name, meaning in kernel.usual:
+            if name in program.uniforms:
+                _set_fitting(program, name, usual[meaning] if meaning in usual else _size(meaning, sizes))
         fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}
+        fed |= {declared.name for declared in kernel.inputs}
         for name, uniform in program.uniforms.items():
             if name in fed or getattr(uniform, "gl_type", 0) not in _SAMPLERS:
                 continue
@@ -307,21 +316,35 @@ class Kernels:
 
 
 def usual_of(kernel: Kernel, known: Mapping[str, tuple[float, ...]]) -> dict[str, tuple[float, ...]]:
-    """Return those of the usual uniforms that a plain shader's text names."""
-    return {
-        meaning: values
-        for meaning, values in known.items()
-        if any(kernel.reads(name) for name in PLAIN_UNIFORMS[meaning])
-    }
+    """Return those of the usual uniforms that a plain shader's text names, by meaning."""
+    return {meaning: known[meaning] for _, meaning in kernel.usual if meaning in known}
+
+
+def _shares(whole: tuple[int, int], *pairs: tuple[int, int]) -> tuple[float, ...]:
+    """Return pairs of numbers as shares of a whole pair."""
+    return tuple(number / side for pair in pairs for number, side in zip(pair, whole, strict=True))
+
+
+def _size(meaning: str, sizes: Mapping[str, tuple[int, int]]) -> tuple[float, ...]:
+    """Return the sizes [texels] of the samplers that a meaning lists, three numbers each; 0 for none."""
+    found = [sizes.get(name, (0, 0)) for name in meaning.removeprefix(SIZES).split()]
+    return tuple(float(number) for width, height in found for number in (width, height, 1 if width else 0))
 
 
 def _set_fitting(program: Program, name: str, values: tuple[float, ...]) -> None:
-    """Set as many components as the uniform has, in its own kind of number."""
+    """Set as many components as the uniform has, in its own kind of number; an array's elements in turn.
+
+    Of several elements, ``values`` has three numbers each, or one number for all of them.
+    """
     uniform = program.uniforms[name]
-    count = int(getattr(uniform, "dimension", 1))
+    count, length = int(getattr(uniform, "dimension", 1)), int(getattr(uniform, "array_length", 1))
     whole = getattr(uniform, "gl_type", 0) in _WHOLE
-    found: list[float] = [int(v) if whole else float(v) for v in (*values, *(0.0,) * count)[:count]]
-    uniform.value = found[0] if count == 1 else tuple(found)
+    elements: list[Any] = []
+    for index in range(length):
+        own = values[3 * index : 3 * index + 3] if length > 1 and len(values) > 1 else values
+        found = [int(v) if whole else float(v) for v in (*own, *(0.0,) * count)[:count]]
+        elements.append(found[0] if count == 1 else tuple(found))
+    uniform.value = elements[0] if length == 1 else elements
 
 
 _WHOLE = frozenset({0x1404, 0x1405, *range(0x8B53, 0x8B56), *range(0x8DC6, 0x8DC9)})

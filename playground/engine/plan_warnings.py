@@ -6,9 +6,11 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from playground.engine.plan import Plan
+from playground.engine.plan import Plan, Step
 from playground.errors import DataError, Diagnostic
 from playground.paths import GLSL, shown
+from playground.sketch.dialects.foreign import unfed_warnings
+from playground.sketch.flat import Ref
 from playground.sketch.model import Graph, Kernel, kernels_of
 from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
 from playground.terrain.sources import source_kind
@@ -49,9 +51,15 @@ def kernel_warnings(
 
 
 def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
-    """Return what a plan's sources assumed of their files, or lost, at the pass that names each file."""
+    """Return what a plan's sources assumed of their files, or lost, at the pass that names each file.
+
+    Of another tool's shader what nothing feeds, at its line.
+    """
     found: dict[str, Diagnostic] = {}
     for step in plan.walk():
+        if step.kernel.dialect:
+            for warning in unfed_warnings(step.kernel, _wired(step)):
+                found.setdefault(f"{step.kernel.path} {warning.message}", warning)
         if step.kernel.kind == "source":
             spec = plan.flat.user(step.path)
             notes: tuple[str, ...] = ()
@@ -61,3 +69,10 @@ def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
                 file = spec.file or shown(step.kernel.path)
                 found.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
     return tuple(found.values())
+
+
+def _wired(step: Step) -> set[str]:
+    """Return the inputs that something feeds; a stand-in is the pass beside the step of the input's name."""
+    prefix = step.path.rpartition(".")[0]
+    found = {name: source.path if isinstance(source, Ref) else "" for name, source in step.inputs if source}
+    return {name for name, path in found.items() if path != (f"{prefix}.{name}" if prefix else name)}

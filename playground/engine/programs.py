@@ -102,7 +102,7 @@ class Programs:
         if known is not None and known[1] in self._by_text:
             self._texts.move_to_end(wanted)
             return self._used(known[1])
-        wrapped = wrap(kernel, driver)
+        wrapped = wrap(kernel, driver, self.ctx.version_code)
         if choices:
             wrapped = with_choices(wrapped, choices)
         text = tuple(stage.text for stage in wrapped.stages.values())

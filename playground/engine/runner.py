@@ -5,6 +5,7 @@ Programs, meshes and file textures stay here; results are the caller's.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,7 @@ from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
 from playground.sketch.model import Kernel
+from playground.sketch.reserved_names import NEUTRAL
 from playground.terrain.sources import SourceKind, source_kind
 
 if TYPE_CHECKING:
@@ -38,6 +40,8 @@ class Runner:
         self.pool = pool
         # Uniforms of plain shaders; what has a window and a clock sets them before each frame.
         self.mouse = (0.0, 0.0, 0.0, 0.0)  # pixels from the lower left, then where it was pressed
+        self.hover = (0.0, 0.0)  # pixels from the lower left, pressed or not
+        self.drag = (0.0, 0.0, 0.0, 0.0)  # as ShaderToy's iMouse
         self.frame = 0  # pictures shown so far
         self.delta = 1 / 60  # [s] since the last one
         self.date = (1970.0, 0.0, 1.0, 0.0)  # year, month from 0, day, seconds
@@ -176,4 +180,9 @@ class Runner:
             "frame": (float(self.frame),),
             "delta": (self.delta,),
             "date": self.date,
+            "frame_of_time": (math.floor(self._given["time"] * 60 + 1e-6),),
+            "hover": self.hover,
+            "hover_share": (self.hover[0] / width, self.hover[1] / height),
+            "drag": self.drag,
+            **NEUTRAL,
         }

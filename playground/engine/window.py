@@ -144,7 +144,7 @@ def _with_coordinates(kernel: Kernel, code: str) -> str:
     changed = _COORDINATES.sub(f"(gl_FragCoord + vec4({WINDOW}, 0.0, 0.0))", code)
     if kernel.kind == "draw":
         return f"{changed}uniform vec4 {ZOOM};\n"  # a line of its own
-    if changed == code:
+    if changed == code or kernel.dialect:  # whose wrapper declares it
         return changed
     # A plain shader declares for itself: before its first line that is neither blank nor of the preprocessor.
     lines, depth = changed.split("\n"), 0

@@ -14,7 +14,17 @@ from dataclasses import dataclass, replace
 from playground.errors import ShaderError
 from playground.gpu.own_shaders import TRIANGLE, own_part
 from playground.sketch.model import DRIVERS, Kernel, Output
-from playground.sketch.reserved_names import FETCHES, GIVEN, MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED, ZOOM
+from playground.sketch.reserved_names import (
+    FETCHES,
+    GIVEN,
+    MATCHES,
+    PART,
+    TOWARDS,
+    UNWIRED,
+    WINDOW,
+    WIRED,
+    ZOOM,
+)
 from playground.sketch.source import Line, SourceText
 
 _, FRAGMENT, COMPUTE = DRIVERS
@@ -55,15 +65,18 @@ class Wrapped:
     stages: dict[str, ShaderStage]  # vertex and fragment, or compute
 
 
-def wrap(kernel: Kernel, driver: str) -> Wrapped:
+def wrap(kernel: Kernel, driver: str, version_code: int = 330) -> Wrapped:
     """Wrap a kernel, a draw, a compute variant or a plain shader.
 
+    ``version_code`` is the context's: of another tool's shader that names none it is the text's version.
     Raises ``ShaderError`` where the file's functions do not have the signatures its header asks for.
     """
     if kernel.kind == "draw":
         return _wrap_draw(kernel)
     if kernel.kind == "compute":
         return _wrap_variant(kernel)
+    if kernel.dialect:
+        return _wrap_foreign(kernel, version_code)
     if kernel.kind == "plain_fragment":
         version = version_line(kernel.source)
         assert version is not None  # or it would be no plain shader
@@ -137,6 +150,39 @@ def _whole(kernel: Kernel) -> ShaderStage:
     above = next((i for i, code in enumerate(lines) if code.strip()), 0)
     text = "\n".join([*["//"] * above, *lines[above:]]) + "\n"
     return ShaderStage(text, 1, kernel.source, "void main()")
+
+
+def _wrap_foreign(kernel: Kernel, version_code: int) -> Wrapped:
+    """Wrap another tool's shader: its own version or the context's, what its tool declares, its lines."""
+    own = version_line(kernel.source)
+    version = own.code.strip() if own else f"#version {400 if version_code >= 400 else 330}"
+    before = [
+        version,
+        "#extension GL_ARB_shading_language_420pack : enable",
+        *kernel.prelude,
+        f"uniform ivec2 {WINDOW};",
+    ]
+    lines = ["" if line is own else line.code for line in kernel.source.lines]
+    after = [own_part(kernel.epilogue, window=WINDOW)] if kernel.epilogue else []
+    text = "\n".join([*before, *lines, *after]) + "\n"
+    first = len("\n".join(before).split("\n")) + 1
+    extensions = [line for line in kernel.prelude if line.startswith("#extension")]
+    vertex = own_part(
+        "triangle_with_outputs.vert",
+        version="\n".join([version, *extensions]),
+        shares=PART,
+        declarations="\n".join(declaration for declaration, _ in kernel.vertex),
+        statements="\n    ".join(statements for _, statements in kernel.vertex),
+    )
+    expected = "void mainImage(out vec4, in vec2)" if kernel.epilogue else "void main()"
+    return Wrapped(
+        kernel,
+        FRAGMENT,
+        {
+            "vertex": ShaderStage(vertex + "\n", 0, kernel.source, ""),
+            "fragment": ShaderStage(text, first, kernel.source, expected),
+        },
+    )
 
 
 def version_line(source: SourceText) -> Line | None:

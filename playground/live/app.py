@@ -81,6 +81,7 @@ def run(
     software: bool = False,
     driver: str = "auto",
     plain: bool = False,
+    dialect: str = "",
     values: Mapping[str, object] | None = None,
     fresh: bool = False,
     lesson: str = "",
@@ -105,7 +106,7 @@ def run(
     if lesson:
         lesson_file(lesson, language or SOURCE)  # says so before a window opens, where there is none
     path, unpacked = opened_from(Path(sketch)) if sketch else (find(DEFAULT_SKETCH), "")
-    checked = _checked(path, values or {})
+    checked = _checked(path, values or {}, dialect)
     if software:
         prefer_software()
     with ExitStack() as stack:
@@ -122,6 +123,7 @@ def run(
             values=checked,
             start=found.start,
             plain=plain,
+            dialect=dialect,
             sandbox=sandbox,
             is_lost=lambda: window.lost,
         )
@@ -149,13 +151,13 @@ def title_of(path: Path) -> str:
     return f"{name} – terrain shader playground"
 
 
-def _checked(path: Path, values: Mapping[str, object]) -> dict[str, Value]:
+def _checked(path: Path, values: Mapping[str, object], dialect: str) -> dict[str, Value]:
     """Return values as their parameters take them; raise ``ParameterError`` for one that does not fit.
 
     Where the sketch does not load yet, nothing can be checked: they wait for it as they are.
     """
     try:
-        sketch = load(path) if values else None
+        sketch = load(path, dialect=dialect) if values else None
     except PlaygroundError:
         sketch = None
     if sketch is None:
@@ -397,8 +399,11 @@ class Live:
     def _review(self, kernel: Kernel) -> tuple[Diagnostic, ...]:
         """Return what the driver warns of in a kernel that it has drawn with."""
         try:
+            if kernel.kind == "source":
+                return ()
             driver = COMPUTE if kernel.kind in ("compute", "plain_compute") else FRAGMENT
-            return warnings_of(self.window.ctx, wrap(kernel, driver)) if kernel.kind != "source" else ()
+            ctx = self.window.ctx
+            return warnings_of(ctx, wrap(kernel, driver, ctx.version_code))
         except PlaygroundError:
             return ()
 

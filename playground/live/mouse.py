@@ -56,9 +56,11 @@ class PictureMouse:
             plan, sketch = session.plan, session.sketch
             camera = sketch.camera if by_hand else sketch.at(plan.time).camera
             session.drafts.set_camera(moved_by(camera, plan.eye, gesture, plan.sketch.camera))
-        if imgui.is_mouse_down(0):
+        x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density
+        pressed = imgui.is_mouse_down(0)
+        session.hover((x, y), pressed=pressed, clicked=imgui.is_mouse_clicked(0))
+        if pressed:
             gone = imgui.get_mouse_drag_delta(0, 0.0)
-            x, y = (io.mouse_pos.x - area[0]) * density, (area[3] - io.mouse_pos.y) * density
             session.point((x, y, x - gone.x * density, y + gone.y * density))
 
     def _divide(self, across: float, width: float) -> bool:

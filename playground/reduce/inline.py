@@ -32,8 +32,9 @@ def inline_sketch(
     """
     plan = Planner().plan(sketch, frame_size=frame, time=time, steps=steps)
     leaves = list(plan.walk())
-    if len(leaves) == 1 and leaves[0].kernel.kind.startswith("plain"):
-        return _plain(leaves[0], plan)
+    alone = len(leaves) == 1 or Path(sketch.file).suffix != ".toml"  # the rest stands in for its channels
+    if alone and leaves[-1].kernel.kind.startswith("plain"):
+        return _plain(leaves[-1], plan)
     inliner = _Inliner(plan, leaves[-1].path)
     passes = tuple(inliner.one(node) for node in plan.nodes)
     terrain = plan.terrain
@@ -56,7 +57,9 @@ def inline_sketch(
 
 def _plain(step: Step, plan: Plan) -> Case:
     suffix = Path(step.kernel.path).suffix
-    text = "\n".join(line.code for line in step.kernel.source.lines if line.code.strip()) + "\n"
+    lines = [line for line in step.kernel.source.lines if line.code.strip()]
+    # Of another tool's shader the author's words, which its reader rewrites again.
+    text = "\n".join(line.text if step.kernel.dialect else line.code for line in lines) + "\n"
     name = "shader" if step.kernel.kind == "plain_fragment" else "compute"
     one = Pass(name=name, text=text, suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix)
     return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1)

@@ -234,7 +234,8 @@ class _Flattener:
             self.outputs[path] = self._outputs_of(spec.technique, path)
         inside: dict[str, Source | None] = {}
         for export in graph.inputs:
-            if export.name in wires:
+            # What its caller leaves unwired, a technique's own pass of that name gives.
+            if export.name in wires and (wires[export.name] or not graph.find(export.name)):
                 inside |= dict.fromkeys(export.targets, wires[export.name])
         inside |= {name: source for name, source in wires.items() if "." in name}
         nodes: list[Node] = []

@@ -20,6 +20,7 @@ from playground.sketch.allowed_files import (
     root_of,
 )
 from playground.sketch.assign import effective_values, shown_parameters
+from playground.sketch.dialects import check_name
 from playground.sketch.find import find
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
@@ -28,7 +29,6 @@ from playground.sketch.techniques import (
     check_kernel_count,
     lonely_variant,
     nothing_to_run,
-    read_kernel,
     read_technique,
     technique_beside,
 )
@@ -38,16 +38,17 @@ from playground.sketch.toml_table import TomlFile
 from playground.sketch.wiring import output_names
 
 
-def load(name: str | Path = "") -> Sketch:
+def load(name: str | Path = "", *, dialect: str = "") -> Sketch:
     """Load a sketch by the name of a shipped one, or by path; with no name, the shipped default.
 
     A path is a TOML, a folder that holds ``sketch.toml``, or a shader. A technique alone, a
     kernel or a TOML of several passes, takes the place of the pass with its outputs in the
-    default sketch; a plain shader is the whole picture.
+    default sketch; a plain shader is the whole picture, and so is another tool's shader, whose
+    ``dialect`` goes by its text unless it is named.
 
     Raises ``SketchError`` or ``ShaderError`` naming file, line, what was found and expected.
     """
-    return load_with(Techniques(), name)
+    return load_with(Techniques(check_name(dialect)), name)
 
 
 @following_links_once()
@@ -62,7 +63,9 @@ def load_with(techniques: Techniques, name: str | Path = "", text: str | None = 
     path = technique_beside(path) or path
     try:
         if path.suffix in SHADERS:
-            return _shader_alone(path)
+            return _shader_alone(path, techniques)
+        if techniques.dialect:
+            raise SketchError("--dialect is for a shader file", file=path)
         file = TomlFile(path, path.parent, text)
         if is_variant(path):
             raise lonely_variant(path)
@@ -92,18 +95,28 @@ def _holds_technique(file: TomlFile) -> bool:
     return bool(keys & set(TECHNIQUE_KEYS))
 
 
-def _shader_alone(path: Path) -> Sketch:
+def _shader_alone(path: Path, techniques: Techniques) -> Sketch:
     """Return a sketch that shows one shader file."""
-    kernel = read_kernel(path, root_of(path))
-    if kernel is None:
+    found = techniques.shader(path, root_of(path), techniques.dialect)
+    if found is None:
         raise nothing_to_run(path)
-    if kernel.kind == "compute":
+    if isinstance(found, Kernel) and found.kind == "compute":
         raise lonely_variant(path)
-    if kernel.kind.startswith("plain"):
-        view = PassSpec("view", f"./{path.stem}", kernel, file=shown(path))
-        graph = Graph(path.stem, str(path), (view,), title=kernel.title)
-        return Sketch(path.stem, str(path), str(_folder_of(path)), graph, kernel.title, samples=1)
-    return _in_default_sketch(path, kernel)
+    if isinstance(found, Kernel) and not found.kind.startswith("plain"):
+        return _in_default_sketch(path, found)
+    return plain_sketch(path, found, _folder_of(path))
+
+
+def plain_sketch(path: Path, found: Technique, folder: Path) -> Sketch:
+    """Return the sketch of a shader that is the whole picture; its files stay in ``folder``."""
+    title = found.title
+    if isinstance(found, Graph):
+        title = f"{title or path.stem} ({found.passes[-1].technique.dialect})"  # type: ignore[union-attr]
+        graph = replace(found, inputs=(), parameters=())  # of a sketch all are at view
+    else:
+        view = PassSpec("view", f"./{path.stem}", found, file=shown(path))
+        graph = Graph(path.stem, str(path), (view,), title=title)
+    return Sketch(path.stem, str(path), str(folder), graph, title, samples=1)
 
 
 def _folder_of(path: Path) -> Path:

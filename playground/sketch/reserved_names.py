@@ -44,6 +44,9 @@ texel of its white or black answers for every place."""
 WINDOW = "k_window"
 """Where the window that is drawn lies in the whole picture, an ivec2 in pixels."""
 
+PART = "k_part"
+"""Which part of the whole picture is drawn, a vec4: the share where it begins, then its share of the size."""
+
 ZOOM = "k_zoom"
 """What stretches a draw's clip space to a window, a vec4: factors, then what is added."""
 
@@ -56,6 +59,23 @@ PLAIN_UNIFORMS: dict[str, tuple[str, ...]] = {
     "date": ("iDate", "u_date"),
 }
 """What a plain shader is given, under the names that such shaders use."""
+
+_IDENTITY_3 = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
+_IDENTITY_4 = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
+
+SIZES = "sizes: "
+"""What begins the meaning of a uniform that is given the sizes of samplers, whose names follow."""
+
+NEUTRAL: dict[str, tuple[float, ...]] = {
+    "frame_rate": (60.0,),
+    "sample_rate": (44_100.0,),
+    "forward": (0.0, 0.0, 1.0),
+    "none": (0.0,),
+    "one": (1.0, 1.0, 1.0, 1.0),
+    "identity3": _IDENTITY_3,
+    "identity4": _IDENTITY_4,
+}
+"""What other tools' shaders are given that never changes here, by meaning."""
 
 GIVEN_INSTEAD: dict[str, str] = {
     name: given

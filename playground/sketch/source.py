@@ -125,12 +125,16 @@ def read_source(path: Path, roots: Sequence[Path], instead: Mapping[str, str] | 
 
 
 def read_source_and_origin(
-    path: Path, roots: Sequence[Path], instead: Mapping[str, str] | None = None
+    path: Path, roots: Sequence[Path], instead: Mapping[str, str] | None = None, *, foreign: bool = False
 ) -> tuple[SourceText, Origin]:
-    """Read a GLSL file as ``read_source`` does; return its files and texts as well."""
+    """Read a GLSL file as ``read_source`` does; return its files and texts as well.
+
+    Of a ``foreign`` file, a shader of another tool, an include is also looked for in each folder from the
+    includer's up to those of ``roots``, and each file is included once.
+    """
     path = path.resolve()
     own = tuple(dict.fromkeys(root.resolve() for root in roots))
-    reader = _Reader(own, GLSL.resolve(), instead or {})
+    reader = _Reader(own, GLSL.resolve(), instead or {}, foreign)
     reader.flatten(path, reader.read(path), (), (str(path),))
     codes = with_calls_joined([line.code for line in reader.lines])
     lines = tuple(
@@ -174,8 +178,11 @@ def normalised(text: str) -> str:
 class _Reader:
     """Flattens one file."""
 
-    def __init__(self, own: tuple[Path, ...], library: Path, instead: Mapping[str, str]) -> None:
+    def __init__(
+        self, own: tuple[Path, ...], library: Path, instead: Mapping[str, str], foreign: bool
+    ) -> None:
         self.own = own
+        self.foreign = foreign  # of another tool: includes are found, and counted, otherwise
         self.library = library
         self.instead = instead  # texts that are taken in place of the files', by absolute path
         self.lines: list[Line] = []
@@ -219,6 +226,8 @@ class _Reader:
             raise line.error(f"more than {_MAX_INCLUDES} includes; is something included over and over?")
         target = self.find(name, path, line)
         key = str(target)
+        if self.foreign and key in self.texts:
+            return
         if key in stack:
             cycle = [*stack[stack.index(key) :], key]
             raise line.error("include cycle: " + " → ".join(shown(p) for p in cycle))
@@ -243,7 +252,8 @@ class _Reader:
         in_own = any(includer.is_relative_to(root) for root in self.own)
         from_library = includer.is_relative_to(self.library) and not in_own
         allowed = (self.library,) if from_library else tuple(dict.fromkeys([*self.own, self.library]))
-        for folder in (includer.parent, *allowed):
+        parents = [p for p in includer.parents if any(map(p.is_relative_to, allowed))] if self.foreign else ()
+        for folder in (includer.parent, *parents, *allowed):
             place = folder / name
             candidate = self.looked_at[place] = _file_at(place)
             if candidate is not None:

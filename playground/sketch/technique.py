@@ -9,7 +9,7 @@ from pathlib import Path
 from playground.errors import Diagnostic, ShaderError, SketchError
 from playground.sketch.agreement import Bound
 from playground.sketch.parameter import AS_IT_IS, Parameter, Sampling, Value
-from playground.sketch.reserved_names import GIVEN
+from playground.sketch.reserved_names import GIVEN, PLAIN_UNIFORMS
 from playground.sketch.source import Line, SourceText
 
 VARIANTS = ("compute", "passes")
@@ -84,11 +84,26 @@ class Kernel:
     agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique that it replaces
     title: str = ""  # the sentence that the file begins with
     variants: tuple[Variant, ...] = ()  # its fast variants, the fastest first
+    dialect: str = ""  # of another tool's shader: the name of a row of sketch/dialects
+    prelude: tuple[str, ...] = ()  # likewise: lines that the driver gets before the file's
+    epilogue: str = ""  # likewise: the file of gpu/shaders that follows the file's lines
+    vertex: tuple[tuple[str, str], ...] = ()  # what its vertex shader gives it: declaration, statements
+    meanings: tuple[tuple[str, str], ...] = ()  # uniform → what it is given: see ``usual``
+    unfed: tuple[tuple[str, str], ...] = ()  # likewise: what it lacks where nothing is wired, what is instead
 
     @property
     def path(self) -> str:
         """Absolute path of the file."""
         return self.source.path
+
+    @cached_property
+    def usual(self) -> tuple[tuple[str, str], ...]:
+        """Uniforms that a plain shader names and is given, with what they mean to ``Runner``."""
+        if self.dialect or not self.kind.startswith("plain"):
+            return self.meanings
+        return tuple(
+            (n, meaning) for meaning, names in PLAIN_UNIFORMS.items() for n in names if self.reads(n)
+        )
 
     @property
     def files(self) -> tuple[str, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from playground.errors import PlaygroundError, SketchError, nearest
+from playground.errors import PlaygroundError, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.allowed_files import (
     FAST,
@@ -19,10 +19,10 @@ from playground.sketch.allowed_files import (
     root_of,
 )
 from playground.sketch.canonical import content_of
+from playground.sketch.dialects import OWN, read_foreign
 from playground.sketch.find import shipped_names
 from playground.sketch.kernel_cache import parsed_kernel, replaced
 from playground.sketch.model import Graph, Kernel, Technique, Variant
-from playground.sketch.source import read_text
 from playground.sketch.toml_graph import read_graph
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.variant_check import check_shape
@@ -55,10 +55,7 @@ def nothing_to_run(path: Path) -> SketchError:
     if path.suffix == ".glsl":
         message = "a library file: it has no #pragma kernel, source or draw to run"
         return SketchError(message, file=path)
-    message = "has neither a #version and main of its own nor a #pragma kernel"
-    if "mainImage" in read_text(path):
-        message += "; ShaderToy's mainImage needs a #version before it and a main that calls it"
-    return SketchError(message, file=path)
+    return SketchError("nothing to run: no main, mainImage or #pragma kernel", file=path)
 
 
 def technique_beside(path: Path) -> Path | None:
@@ -99,7 +96,8 @@ def shipped_techniques() -> list[str]:
 class Techniques:
     """Reads techniques for one sketch, each file once."""
 
-    def __init__(self) -> None:
+    def __init__(self, dialect: str = "") -> None:
+        self.dialect = dialect  # of a shader that is opened alone; "": by its signs
         self.known: dict[tuple[str, Path, Path], Technique] = {}
         self.open: list[Path] = []  # techniques of several passes that are being read, outermost first
         self.deepest = 0  # the most that were open at once
@@ -118,9 +116,31 @@ class Techniques:
     def _read(self, path: Path, limit: Path, use: str) -> Technique:
         if path.suffix == ".toml":
             return self.graph(path, use, limit)
-        kernel = self.kernel(path, limit)
-        if kernel is None:
+        found = self.shader(path, limit)
+        if found is None:
             raise SketchError(f"'{use}' is a library file: it has no #pragma kernel, source or draw to run")
+        return found
+
+    def shader(self, path: Path, folder: Path, dialect: str = "") -> Technique | None:
+        """Return a shader file's kernel, or the passes of another tool's shader; None for a library file.
+
+        ``dialect`` is that of another tool, or "" to go by the text.
+        """
+        path, kernel, wrong = path.resolve(), None, None
+        if dialect in ("", OWN):
+            try:
+                kernel = self.kernel(path, folder)
+            except ShaderError as error:
+                wrong = error
+        if (kernel is None or kernel.kind == "plain_fragment") and path.suffix != ".comp" and dialect != OWN:
+            is_plain = kernel is not None
+            found = read_foreign(path, name_of(path), folder, self.read, dialect, is_plain=is_plain)
+            if found is not None:
+                for _, own in found.kernels:
+                    _check_files(own, folder)
+                return found
+        if wrong is not None:
+            raise wrong
         return kernel
 
     def kernel(self, path: Path, folder: Path) -> Kernel | None:

@@ -12,9 +12,11 @@ from typing import cast
 
 from playground.errors import DataError
 from playground.paths import GLSL
+from playground.sketch.dialects import read_foreign
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Graph, Kernel, Sketch, Technique
 from playground.sketch.source import read_source
+from playground.sketch.techniques import Techniques
 
 
 def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
@@ -50,7 +52,12 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
 def _parsed_again(kernel: Kernel, texts: Mapping[str, str], folder: Path) -> Kernel:
     path = Path(kernel.path)
     root = folder if not path.is_relative_to(GLSL) else GLSL
-    found = parse_kernel(kernel.name, read_source(path, (root,), texts))
+    found: Kernel | None
+    if kernel.dialect:
+        graph = read_foreign(path, kernel.name, root, Techniques().read, kernel.dialect, instead=texts)
+        found = graph.kernels[-1][1] if graph is not None else None
+    else:
+        found = parse_kernel(kernel.name, read_source(path, (root,), texts))
     if found is None:
         raise DataError("no kernel is left of this text", file=path)
     if kernel.kind == "compute":  # a compute variant has these of its technique

@@ -19,7 +19,8 @@ def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:
 
 def unheeded(kernel: Kernel) -> tuple[Diagnostic, ...]:
     """Return what a picture does not show though the text says it: unfed samplers, ``#line``."""
-    found = [*(unfed_samplers(kernel.source) if kernel.kind.startswith("plain") else ())]
+    is_plain = kernel.kind.startswith("plain") and not kernel.dialect
+    found = [*(unfed_samplers(kernel.source) if is_plain else ())]
     found += [
         line.diagnostic("#line is left out, so that errors name the file's own lines", severity="warning")
         for line in kernel.source.lines

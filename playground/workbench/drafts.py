@@ -77,6 +77,7 @@ class Drafts:
         *,
         start: StoredEdits | None = None,
         plain: bool = False,
+        dialect: str = "",
     ) -> None:
         self.path = find(path or "").absolute()  # the current folder may be deleted meanwhile
         self.shown: Draft | None = None
@@ -99,6 +100,7 @@ class Drafts:
         self._drawn = drawn
         self._start = start or StoredEdits()
         self._techniques = TechniqueCache()
+        self._techniques.dialect = dialect
         self._subject = self.path.name  # what is read, or checked
         self._saved: Draft | None = None  # what is coming, without what the user has chosen meanwhile
         self._choices: list[Choice] = []  # of the user, that are checked with what is coming, in order
@@ -207,6 +209,7 @@ class Drafts:
         other; ``texts`` replace some of its files.
         """
         found = find(path).absolute()
+        self._techniques.dialect = ""
         if not keep:
             self._leave_out("another sketch is opened", self._choices if self._is_checked else [])
             self._start, self._choices = start or StoredEdits(), []

@@ -16,7 +16,7 @@ from playground.errors import Diagnostic, PlaygroundError, counted
 from playground.paths import GLSL
 from playground.sketch.allowed_files import Signature, root_of, signature
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
-from playground.sketch.techniques import read_kernel
+from playground.sketch.techniques import Techniques
 from playground.sketch.warnings import former_names_used, warnings_of_kernel
 from playground.workbench.dependencies import path_named
 
@@ -192,7 +192,7 @@ def unreadable(sketch: Sketch | None) -> tuple[Diagnostic, ...]:
         if path.is_relative_to(GLSL) or not path.is_file():
             continue
         try:
-            read_kernel(path, root_of(path))
+            Techniques().shader(path, root_of(path))
         except PlaygroundError as error:
             found |= dict.fromkeys(error.diagnostics)
     return tuple(found)

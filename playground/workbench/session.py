@@ -57,6 +57,7 @@ class Session:
         values: Mapping[str, Value] | None = None,
         start: StoredEdits | None = None,
         plain: bool = False,
+        dialect: str = "",
         sandbox: Sandbox | None = None,
         now: Callable[[], float] = time.perf_counter,
         is_lost: Callable[[], bool] = lambda: False,
@@ -74,7 +75,7 @@ class Session:
             sketch_time=lambda: self.clock.time,
         )
         start = (start or StoredEdits()).with_values(values or {})
-        self.drafts = Drafts(path, checks, self, start=start, plain=plain)
+        self.drafts = Drafts(path, checks, self, start=start, plain=plain, dialect=dialect)
         self.notes = self.drafts.notes
         self.plan: Plan | None = None  # of the last picture
         self.last_reload: Reload | None = None
@@ -185,6 +186,24 @@ class Session:
             self.engine.runner.mouse = mouse
             self.redraw()
 
+    def hover(self, place: tuple[float, float], *, pressed: bool, clicked: bool) -> None:
+        """Pass the mouse to other tools' shaders, in pixels from the lower left; see ``Runner.drag``.
+
+        ``clicked``: it was pressed in this very frame.
+        """
+        runner = self.engine.runner
+        x, y, press_x, press_y = runner.drag
+        if clicked:
+            drag = (*place, *place)
+        elif pressed:
+            drag = (*place, abs(press_x), -abs(press_y))
+        else:
+            drag = (x, y, -abs(press_x), -abs(press_y))
+        if (runner.hover, runner.drag) != (place, drag):
+            runner.hover, runner.drag = place, drag
+            if self.sketch is not None and traits_of(self.sketch).mouse:
+                self.redraw()
+
     def advance(self, seconds: float, date: datetime) -> None:
         """Advance the clock by seconds of real time, unless it is paused; plain shaders get the date."""
         self.clock.advance(seconds)
@@ -274,6 +293,7 @@ class Session:
         something is changed.
         """
         engine.runner.mouse = self.engine.runner.mouse
+        engine.runner.hover, engine.runner.drag = self.engine.runner.hover, self.engine.runner.drag
         engine.plain_forms.notice = silent
         engine.painted.update(self.engine.painted)
         self.engine, self.plan, self.is_preview = engine, None, False

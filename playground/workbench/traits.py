@@ -9,9 +9,9 @@ from functools import lru_cache
 from playground.sketch.expressions import names_in
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, kernels_of
-from playground.sketch.reserved_names import PLAIN_UNIFORMS
 
-_MOVING = frozenset(n for meaning in ("time", "frame", "delta", "date") for n in PLAIN_UNIFORMS[meaning])
+_MOVING = frozenset({"time", "frame", "frame_of_time", "delta", "date"})
+_MOUSE = frozenset({"mouse", "hover", "hover_share", "drag"})
 _CAMERA = ("clip_from_world", "world_from_clip", "eye")
 
 
@@ -52,10 +52,10 @@ def _traits(key: Identity[Graph]) -> Traits:
     return Traits(
         moves=counts
         or any(k.reads("time") for _, k in kernels if id(k) not in plain)
-        or any(k.reads(name) for _, k in kernels if id(k) in plain for name in _MOVING),
+        or any(meaning in _MOVING for _, k in kernels for _, meaning in k.usual),
         counts=counts,
         camera=any(kernel.reads(name) for _, kernel in kernels for name in _CAMERA),
-        mouse=any(k.reads(name) for _, k in kernels if id(k) in plain for name in PLAIN_UNIFORMS["mouse"]),
+        mouse=any(meaning in _MOUSE for _, k in kernels for _, meaning in k.usual),
         files=tuple(files),
         draws=tuple((path, kernel) for path, kernel in kernels if kernel.kind == "draw"),
         arcs=any(p.follows for _, k in kernels for p in k.parameters),

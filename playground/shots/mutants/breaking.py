@@ -87,7 +87,12 @@ def _reads_time(graph: Graph) -> bool:
     repeats = [spec.repeat for spec in _passes(graph)]
     kernels = [kernel for _, kernel in kernels_of(graph)]
     repeats += [kernel.repeat for kernel in kernels]
-    return any(names & kernel.source.names for kernel in kernels) or any("time" in text for text in repeats)
+    given = {meaning for kernel in kernels for _, meaning in kernel.usual}
+    return (
+        bool({"time", "frame_of_time"} & given)
+        or any(names & kernel.source.names for kernel in kernels)
+        or any("time" in text for text in repeats)
+    )
 
 
 def _passes(graph: Graph) -> Iterator[PassSpec]:

@@ -1,0 +1,151 @@
+"""Read shaders of other tools, unchanged, as sketches: a table of dialects, by their signs.
+
+A reader returns an ordinary ``Graph`` of plain shaders. The file's lines stay where they are, so that a
+driver's complaint names them.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from playground.errors import ParameterError, SketchError, nearest
+from playground.paths import shown
+from playground.sketch.allowed_files import is_file
+from playground.sketch.dialects import main, shadertoy
+from playground.sketch.dialects.es import rewritten, version_of
+from playground.sketch.dialects.foreign import Read, Rules, commented_files, graph_of, places_of
+from playground.sketch.model import Graph
+from playground.sketch.source import Origin, read_source_and_origin, read_text
+
+OWN = "own"
+_MOST = 64
+
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+_ISF = re.compile(r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES)"', re.DOTALL)
+_EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
+_OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
+_DIRECTIVE = re.compile(r"^[ \t]*#(?:iChannel\d|iUniform|iKeyboard)\b", re.MULTILINE)
+_MAIN = re.compile(r"\bmain\s*\(")
+_MAIN_IMAGE = re.compile(r"\bmainImage\s*\(")
+_SOUND = re.compile(r"\bmain(Sound|VR|Cubemap)\s*\(")
+
+
+@dataclass(frozen=True)
+class Dialect:
+    """A row of the table."""
+
+    name: str  # as --dialect takes it
+    label: str  # in a sentence
+    sign: Callable[[str, str], object]  # of the text, and of the text without comments
+    rules: Rules | None = None  # None: not read yet, or our own
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What was read, and what it was made of."""
+
+    graph: Graph | None
+    origin: Origin
+    pictures: tuple[tuple[Path, bool], ...]  # where a comment's file was looked for, and whether it was there
+
+    def holds(self) -> bool:
+        return self.origin.holds() and all(is_file(place) == there for place, there in self.pictures)
+
+
+DIALECTS = (
+    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text)),
+    Dialect("export", "a Shadertoy export (JSON)", lambda text, code: _EXPORT.match(text)),
+    Dialect(OWN, "a kernel", lambda text, code: _OWN_PRAGMA.search(code)),
+    Dialect(
+        "vscode",
+        "a VS Code Shadertoy file (#iChannel, #iUniform)",
+        lambda text, code: _DIRECTIVE.search(code),
+    ),
+    Dialect(
+        "shadertoy",
+        "a Shadertoy shader",
+        lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code),
+        shadertoy.RULES,
+    ),
+    Dialect("main", "a shader with its own main", lambda text, code: _MAIN.search(code), main.RULES),
+    Dialect("sound", "Shadertoy's sound, VR or cube map", lambda text, code: _SOUND.search(code)),
+)
+"""The dialects, in the order in which a text is looked at."""
+
+_known: OrderedDict[tuple[Path, Path, str], _Known] = OrderedDict()
+
+
+def names() -> tuple[str, ...]:
+    """Return what ``--dialect`` takes."""
+    return tuple(d.name for d in DIALECTS if d.rules is not None or d.name == OWN)
+
+
+def check_name(name: str) -> str:
+    """Return a dialect's name; raise ``ParameterError`` if it is none."""
+    if name and name not in names():
+        raise ParameterError(f"--dialect {name}: no such dialect{nearest(name, names())}")
+    return name
+
+
+def dialect_of(text: str) -> Dialect | None:
+    """Return the dialect of a text, by the first sign that it shows; None where it has nothing to run."""
+    code = _COMMENT.sub(" ", text)
+    return next((dialect for dialect in DIALECTS if dialect.sign(text, code)), None)
+
+
+def refuse_export(path: Path) -> None:
+    """Raise ``SketchError`` for a JSON file that Shadertoy wrote."""
+    found = dialect_of(read_text(path)) if path.suffix == ".json" else None
+    if found is not None and found.name == "export":
+        raise _unread(found, path)
+
+
+def _unread(dialect: Dialect, path: Path) -> SketchError:
+    return SketchError(f"{dialect.label}, which is not read yet", file=shown(path))
+
+
+def read_foreign(
+    path: Path,
+    name: str,
+    root: Path,
+    read: Read,
+    dialect: str = "",
+    *,
+    is_plain: bool = False,
+    instead: Mapping[str, str] | None = None,
+) -> Graph | None:
+    """Read another tool's shader as a technique called ``name``; None for what is none.
+
+    Its files stay in ``root``. ``dialect`` is one of ``names()``, or "" to go by its signs. A file that
+    ``is_plain`` runs as it is, so that only a dialect that gives it more counts. ``instead`` has texts, by
+    absolute path, in place of files'. The same files give the same object.
+
+    Raises ``SketchError`` for a dialect that is not read yet, ``ShaderError`` for what is wrong in the text.
+    """
+    key = (path, root, dialect)
+    known = _known.get(key) if not instead else None
+    if known is not None and known.holds():
+        _known.move_to_end(key)
+        return known.graph
+    text = (instead or {}).get(str(path)) or read_text(path)
+    chosen = next((d for d in DIALECTS if d.name == dialect), None) if dialect else dialect_of(text)
+    if chosen is None or chosen.name == OWN or (is_plain and chosen.rules is None):
+        return None
+    if chosen.rules is None:
+        raise _unread(chosen, path)
+    source, origin = read_source_and_origin(path, (root,), instead, foreign=True)
+    graph = None
+    if chosen.rules is main.RULES:
+        main.refuse_passes(source)
+    if chosen.rules is not main.RULES or dialect or version_of(source) < 330 or main.needs_dialect(source):
+        graph = graph_of(name, rewritten(source), chosen.rules, read, root)
+    if not instead:
+        places = [place for line, file in commented_files(source) for place in places_of(file, line, root)]
+        _known[key] = _Known(graph, origin, tuple((place, is_file(place)) for place in places))
+        while len(_known) > _MOST:
+            _known.popitem(last=False)
+    return graph

@@ -1,0 +1,121 @@
+"""Find what a shader's text declares for all of it: uniforms, and what its vertex shader gives.
+
+Text only, by statements: comments are blanked already, and preprocessor conditions are not judged.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+_PRECISION = r"(?:(?:lowp|mediump|highp)\s+)?"
+_BEGINS = r"(?:^|[;{}\n])[ \t]*"
+_UNIFORM = re.compile(
+    rf"{_BEGINS}(?:layout\s*\([^)]*\)\s*)?uniform\s+{_PRECISION}(\w+)\s+([^;{{}}]*)(?=;)", re.MULTILINE
+)
+_IN = re.compile(
+    rf"{_BEGINS}(layout\s*\([^)]*\)\s*)?"
+    rf"((?:(?:flat|smooth|noperspective|centroid|sample|invariant)\s+)*)in\s+"
+    rf"((?:(?:flat|smooth|noperspective|centroid|sample)\s+)*){_PRECISION}(\w+)\s+([^;(){{}}]*)(?=;)",
+    re.MULTILINE,
+)
+_BLOCK = re.compile(rf"{_BEGINS}in\s+(\w+)\s*\{{([^}}]*)\}}\s*(\w*)\s*;", re.MULTILINE)
+_MEMBER = re.compile(
+    rf"\s*((?:(?:flat|smooth|noperspective|centroid|sample)\s+)*){_PRECISION}(\w+)\s+([^;]*);"
+)
+_NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*(\[[^\]]*\])?")
+_DIRECTIVE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
+_BRACKETS = re.compile(r"\([^()]*\)")
+_VECTOR = re.compile(r"vec([234])|float")
+
+
+@dataclass(frozen=True, slots=True)
+class Declared:
+    """A uniform."""
+
+    name: str
+    type: str
+    is_array: bool
+    position: int  # in the text
+
+
+def uniforms(code: str) -> dict[str, Declared]:
+    """Return the uniforms that a text declares, by name; of one in two branches, the first."""
+    found: dict[str, Declared] = {}
+    for match in _UNIFORM.finditer(code):
+        for name, array, at in _names(match.group(2)):
+            found.setdefault(name, Declared(name, match.group(1), bool(array), match.start(2) + at))
+    return found
+
+
+def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
+    """Return whether a text declares a variable or a function, outside of functions or ``anywhere``."""
+    for match in re.finditer(rf"\b(?!return\b|else\b)[A-Za-z_]\w*\s+{name}\b\s*[=;,)\[(]", code):
+        before = code[: match.start()]
+        if anywhere or before.count("{") == before.count("}"):
+            return True
+    return False
+
+
+def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
+    """Return what the vertex shader gives a fragment shader: declarations, and statements that set them."""
+    code = _DIRECTIVE.sub("", code)
+    found: dict[str, tuple[str, str]] = {}
+    for block in _BLOCK.finditer(code):
+        members = " ".join(block.group(2).split())
+        instance = block.group(3)
+        statements = [
+            _set(f"{instance}.{name}" if instance else name, name, member.group(2), array)
+            for member in _MEMBER.finditer(block.group(2))
+            for name, array, _ in _names(member.group(3))
+        ]
+        declaration = f"out {block.group(1)} {{ {members} }} {instance};"
+        found.setdefault(block.group(1), (declaration, " ".join(statements)))
+    for match in _IN.finditer(code):
+        layout, before, after, kind, names = match.groups()
+        for name, array, _ in _names(names):
+            if not name.startswith("gl_"):
+                ways = " ".join(f"{before}{after}".split())
+                declaration = " ".join(f"{layout or ''} {ways} out {kind} {name}{array};".split())
+                found.setdefault(name, (declaration, _set(name, name, kind, array)))
+    return tuple(found.values())
+
+
+def _names(text: str) -> Iterator[tuple[str, str, int]]:
+    """Yield (name, array, place) of each name that a declaration lists; initialisers are left out."""
+    flat = text
+    while (inner := _BRACKETS.sub(lambda m: " " * len(m.group()), flat)) != flat:
+        flat = inner
+    start = 0
+    for part in flat.split(","):
+        if match := _NAME.match(part):
+            yield match.group(1), (match.group(2) or "").strip(), start + match.start(1)
+        start += len(part) + 1
+
+
+def _set(place: str, name: str, kind: str, array: str) -> str:
+    """Return the statement that sets one output."""
+    value = _value(name.lower(), kind)
+    if array:
+        return f"for (int k_i = 0; k_i < {place}.length(); ++k_i) {place}[k_i] = {value};"
+    return f"{place} = {value};"
+
+
+def _value(name: str, kind: str) -> str:
+    """Return an output's value by its name: coordinates 0..1, a position -1..1, a normal, white, else 0."""
+    vector = _VECTOR.fullmatch(kind)
+    if kind.startswith("mat"):
+        return f"{kind}(1.0)"
+    if vector is None or kind == "float":
+        return f"{kind}({'1' if 'color' in name or 'colour' in name else '0'})"
+    count = int(vector.group(1))
+    if "color" in name or "colour" in name:
+        return f"{kind}(1.0)"
+    if "normal" in name:
+        return {2: "vec2(0.0)", 3: "vec3(0.0, 0.0, 1.0)", 4: "vec4(0.0, 0.0, 1.0, 0.0)"}[count]
+    if re.search(r"uv|tex|coord", name.replace("vertex", "")):
+        return {2: "k_share", 3: "vec3(k_share, 0.0)", 4: "vec4(k_share, 0.0, 1.0)"}[count]
+    if "pos" in name:
+        return {2: "k_place", 3: "vec3(k_place, 0.0)", 4: "vec4(k_place, 0.0, 1.0)"}[count]
+    return f"{kind}(0.0)"

@@ -1,0 +1,142 @@
+"""Rewrite older GLSL (1.00 to 1.50, and that of OpenGL ES) as GLSL 3.30, line by line.
+
+Tokens outside comments change, on ``Line.code``; lines stay, and columns where the new word is
+not the longer one. ``Line.text`` stays what the author wrote.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from playground.sketch.source import Line, SourceText
+
+_VERSION = re.compile(r"\s*#\s*version\s+(\d+)\s*(\w*)")
+_EXTENSION = re.compile(r"\s*#\s*extension\b")
+_PRAGMA = re.compile(r"\s*#\s*pragma\b")
+_DIRECTIVE = re.compile(r"\s*#")
+_OLD = re.compile(
+    r"\b(?:(?P<lookup>texture(?:[123]D|Cube|2DRect)|shadow(?:[12]D|2DRect))(?P<way>Proj)?(?P<level>Lod|Grad)?"
+    r"(?:EXT|ARB)?|varying|attribute|gl_FragColor|gl_FragData|gl_FragDepthEXT)\b"
+)
+_COLOUR, _DATA = "k_frag_color", "k_frag_data"  # as long as gl_FragColor and gl_FragData
+
+_NEVER_NAMES = frozenset(
+    """
+    filter input output common active partition resource class union enum typedef template this packed
+    goto inline noinline public static extern external interface long short half fixed unsigned superp
+    namespace using cast sizeof asm hvec2 hvec3 hvec4 fvec2 fvec3 fvec4
+    """.split()
+)
+"""Reserved words of GLSL 3.30 that mean nothing there: whoever uses one means a name."""
+
+_SINCE_TAKEN = frozenset(
+    """
+    sample smooth flat layout switch case default uint uvec2 uvec3 uvec4 centroid noperspective patch
+    subroutine precise shared buffer coherent volatile restrict readonly writeonly double dvec2 dvec3
+    dvec4 mat2x2 mat2x3 mat2x4 mat3x2 mat3x3 mat3x4 mat4x2 mat4x3 mat4x4
+    """.split()
+)
+"""Words that mean something in GLSL 3.30 to 4.00: names only where the text declares them."""
+
+_FUNCTIONS = ("texture", "textureSize", "textureProj", "textureLod", "textureGrad")
+"""Functions that the rewriting calls: a variable of that name would hide them."""
+
+_NOT_TYPES = (
+    "in|out|inout|const|uniform|varying|attribute|invariant|lowp|mediump|highp|precision|return|else|define"
+    "|flat|smooth|centroid|noperspective|sample|patch|undef|ifdef|ifndef|defined"
+)
+
+
+@dataclass(frozen=True)
+class Rewritten:
+    """A text in GLSL 3.30 or later, or in the version of 3.30 and later that it asks for."""
+
+    source: SourceText
+    prelude: tuple[str, ...]  # lines that come before it: extensions, outputs
+    names: Mapping[str, str]  # what was renamed: new name → the author's
+
+
+def version_of(source: SourceText) -> int:
+    """Return the desktop version that a text asks for, 0 where it asks for none or for one of OpenGL ES."""
+    found = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
+    return int(found.group(1)) if found and found.group(2) != "es" and found.group(1) != "100" else 0
+
+
+def rewritten(source: SourceText) -> Rewritten:
+    """Rewrite a text; one of ``#version`` 330 or more keeps its version and its extensions."""
+    is_modern = version_of(source) >= 330
+    names: dict[str, str] = {}
+    said = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
+    if said is None or int(said.group(1)) < 130:
+        names = _clashing(source)
+    data = "gl_FragData" in source.names
+    rename = re.compile(rf"\b(?:{'|'.join(names)})\b") if names else None
+    lines: list[Line] = []
+    extensions: list[str] = []
+    for line in source.lines:
+        code = line.code
+        if _DIRECTIVE.match(code):
+            if _EXTENSION.match(code) and is_modern:
+                extensions.append(code.strip())
+            if _PRAGMA.match(code) or _EXTENSION.match(code) or (_VERSION.match(code) and not is_modern):
+                lines.append(replace(line, code=""))
+                continue
+        new = _OLD.sub(lambda found: _new(found, data=data), code)
+        if rename:
+            new = rename.sub(lambda found: _renamed(found, names), new)
+        lines.append(line if new == code else replace(line, code=new))
+    prelude = extensions
+    if data:
+        prelude = [*prelude, f"layout(location = 0) out vec4 {_DATA}[4];"]
+    elif "gl_FragColor" in source.names:
+        prelude = [*prelude, f"layout(location = 0) out vec4 {_COLOUR};"]
+    made = SourceText(source.path, tuple(lines), source.files)
+    return Rewritten(made, tuple(prelude), {new: old for old, new in names.items()})
+
+
+def _new(found: re.Match[str], *, data: bool) -> str:
+    """Return what replaces an old word, as long as it."""
+    old = found.group()
+    if found.group("lookup"):
+        new = f"texture{found.group('way') or ''}{found.group('level') or ''}"
+    elif old == "gl_FragColor":
+        new = f"{_DATA}[0]" if data else _COLOUR
+    else:
+        new = {"gl_FragData": _DATA, "gl_FragDepthEXT": "gl_FragDepth"}.get(old, "in")
+    # In a definition, blanks before the bracket would make another macro of it.
+    return new if _DIRECTIVE.match(found.string) else new.ljust(len(old))
+
+
+def _renamed(found: re.Match[str], names: Mapping[str, str]) -> str:
+    """Return the new name, but of a function's name where it is called or stands for another."""
+    name, code = found.group(), found.string
+    if name in _FUNCTIONS and (_DIRECTIVE.match(code) or code[found.end() :].lstrip().startswith("(")):
+        return name
+    return names[name]
+
+
+def _clashing(source: SourceText) -> dict[str, str]:
+    """Return the author's names that GLSL 3.30 has taken, each with a free one."""
+    code = source.code
+    found = sorted(source.names & _NEVER_NAMES)
+    found += [name for name in sorted(source.names & _SINCE_TAKEN) if _declares(code, name)]
+    found += [name for name in _FUNCTIONS if name in source.names and _declares(code, name, variable=True)]
+    names: dict[str, str] = {}
+    for name in found:
+        new = f"{name}_"
+        while new in source.names:
+            new += "1"
+        names[name] = new
+    return names
+
+
+def _declares(code: str, name: str, *, variable: bool = False) -> bool:
+    """Return whether a text declares a name: a type, or a type and other names, before it, or ``#define``."""
+    after = r"\s*[=;,)\[]" if variable else r"\s*[=;,)\[(]"
+    typed = rf"\b(?!(?:{_NOT_TYPES})\b)[A-Za-z_]\w*\s+{name}\b{after}"
+    listed = rf"\b(?:bool|int|float|[bi]?vec[234]|mat[234])\s[^;(){{}}]*,\s*{name}\b\s*[=;,\[]"
+    defined = rf"#\s*define\s+{name}\b"
+    patterns = (typed, listed) if variable else (typed, listed, defined)
+    return any(re.search(pattern, code) for pattern in patterns)

@@ -1,0 +1,25 @@
+"""Read a Shadertoy shader of one file: ``mainImage``, and the names that Shadertoy declares."""
+
+from __future__ import annotations
+
+from playground.sketch.dialects.foreign import Names, Rules
+from playground.sketch.reserved_names import SIZES
+
+CHANNELS = tuple(f"iChannel{number}" for number in range(4))
+
+NAMES: Names = {
+    "iResolution": ("vec3", "resolution"),
+    "iTime": ("float", "time"),
+    "iGlobalTime": ("float", "time"),
+    "iTimeDelta": ("float", "delta"),
+    "iFrame": ("int", "frame_of_time"),
+    "iFrameRate": ("float", "frame_rate"),
+    "iSampleRate": ("float", "sample_rate"),
+    "iMouse": ("vec4", "drag"),
+    "iDate": ("vec4", "date"),
+    "iChannelTime": ("float[4]", "time"),
+    "iChannelResolution": ("vec3[4]", f"{SIZES}{' '.join(CHANNELS)}"),
+    **{name: ("sampler2D", f"noise {number}") for number, name in enumerate(CHANNELS)},
+}
+
+RULES = Rules("shadertoy", NAMES, epilogue="main_image.glsl")

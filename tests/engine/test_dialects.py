@@ -1,0 +1,310 @@
+"""Shaders of other tools run unchanged: what they are given, what feeds them, where mistakes are."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from playground.capture.large import strips
+from playground.engine.check import check_file
+from playground.engine.engine import Engine
+from playground.engine.plan_warnings import source_warnings
+from playground.engine.planner import Planner
+from playground.engine.sandbox import Sandbox
+from playground.errors import ParameterError, PlaygroundError, ShaderError, SketchError
+from playground.gpu.wrap import FRAGMENT, wrap
+from playground.images.files import write_png
+from playground.reduce.inline import inline_sketch
+from playground.sketch.dialects.foreign import unfed_warnings
+from playground.sketch.load import load
+from playground.sketch.text_overrides import with_texts
+from playground.workbench.traits import traits_of
+from tests.dialect_texts import TEXTS, with_mistake
+
+SIZE = (32, 18)
+TOY = "void mainImage(out vec4 c, in vec2 p) {{ c = {}; }}\n"
+MAIN = "{}\nvoid main() {{ gl_FragColor = {}; }}\n"
+DEPRECATED = re.compile(
+    r"\b(?:varying|attribute|gl_FragColor|gl_FragData|gl_FragDepthEXT"
+    r"|(?:texture|shadow)(?:[123]D|Cube|2DRect)\w*)\b"
+)
+
+
+def drawn(engine, path, time=0.0, size=SIZE, **values):
+    return engine.render(load(path).with_values(values), size=size, time=time).array
+
+
+def colours(picture):
+    return len(np.unique(picture[..., :3].reshape(-1, 3), axis=0))
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_each_is_drawn_and_at_a_time_it_is_always_the_same_picture(any_engine, ctx, folder, name):
+    path = folder.write(f"{name}.frag", TEXTS[name])
+    first = drawn(any_engine, path, 1.0)
+    assert colours(first) > 1
+    any_engine.cache.clear()
+    drawn(any_engine, path, 2.0)
+    np.testing.assert_array_equal(drawn(any_engine, path, 1.0), first)
+    with Engine(ctx) as fresh:
+        np.testing.assert_array_equal(drawn(fresh, path, 1.0), first)
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_mistake_is_at_its_own_line(any_engine, folder, name):
+    text, line = with_mistake(TEXTS[name])
+    with pytest.raises(ShaderError) as caught:
+        drawn(any_engine, folder.write(f"{name}.frag", text))
+    found = caught.value.diagnostics[0]
+    assert (found.line, found.file.endswith(f"{name}.frag")) == (line, True)
+    assert "not_declared" in found.message
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_the_driver_gets_no_deprecated_name(folder, name):
+    kernel = load(folder.write(f"{name}.frag", TEXTS[name])).graph.find("view").technique
+    for stage in wrap(kernel, FRAGMENT, 450).stages.values():
+        left = [word for line in stage.text.split("\n") for word in DEPRECATED.findall(line)]
+        assert not left
+
+
+def test_a_mistake_in_an_include_is_at_the_include_s_line(any_engine, folder):
+    folder.write("sketch.toml", "")  # so that this folder is the root
+    folder.write("lib/deep/inner.glsl", "float inner() {\n    return not_declared;\n}\n")
+    folder.write(
+        "lib/outer.glsl", "#pragma once\n#include <lib/deep/inner.glsl>\nfloat outer() { return inner(); }\n"
+    )
+    top = '#include "outer.glsl"\n#include "lib/outer.glsl"\nvoid main() { gl_FragColor = vec4(outer()); }\n'
+    path = folder.write("lib/a/b.frag", top)
+    with pytest.raises(ShaderError) as caught:
+        drawn(any_engine, path)
+    found = caught.value.diagnostics[0]
+    assert (found.file.endswith("lib/deep/inner.glsl"), found.line, len(found.chain)) == (True, 2, 2)
+    folder.write("lib/deep/inner.glsl", "float inner() { return gl_FragCoord.x / 32.0; }\n")
+    assert colours(drawn(any_engine, path)) == SIZE[0]
+
+
+def test_an_include_outside_the_folder_is_refused_at_its_line(any_engine, folder):
+    folder.write("x.glsl", "float x;\n")
+    path = folder.write("own/a.frag", '\n#include "../x.glsl"\nvoid main() {}\n')
+    with pytest.raises(ShaderError, match="lies outside") as caught:
+        load(path)
+    assert caught.value.diagnostics[0].line == 2
+
+
+# ── what is given ────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(
+    ("expression", "expected"),
+    [
+        ("vec4(iTime / 4.0, float(iFrame) / 128.0, iResolution.z, 0.0)", [128, 179, 255, 255]),
+        ("vec4(iTimeDelta * 60.0, iFrameRate / 60.0, iSampleRate / 88200.0, 1.0)", [255, 255, 128, 255]),
+        ("vec4(iDate.x / 3940.0, iDate.y, iDate.z, iDate.w)", [128, 0, 255, 255]),
+        ("vec4(iChannelResolution[1] / 512.0, iChannelTime[2])", [128, 128, 0, 255]),
+        ("iMouse + vec4(iGlobalTime - iTime)", [0, 0, 0, 255]),
+    ],
+)
+def test_what_shadertoy_gives(any_engine, folder, expression, expected):
+    more = "+ 0.0 * texture(iChannel1, p)" if "Resolution[" in expression else ""
+    picture = drawn(any_engine, folder.write("t.frag", TOY.format(f"{expression} {more}")), 1.5)
+    if "iTime /" in expression:
+        expected = [96, 179, 255, 255]  # 1.5 / 4, 90 / 128
+    np.testing.assert_allclose(picture[0, 0], expected, atol=1)
+
+
+def test_the_mouse_of_each_dialect(any_engine, folder):
+    any_engine.runner.hover, any_engine.runner.drag = (16.0, 9.0), (8.0, 4.0, -2.0, -1.0)
+    toy = drawn(any_engine, folder.write("t.frag", TOY.format("vec4(iMouse.xy, -iMouse.zw) / 16.0")))
+    np.testing.assert_allclose(toy[0, 0], [128, 64, 32, 255], atol=1)
+    hover = MAIN.format("uniform vec3 u_mouse;", "vec4(u_mouse.xy / 32.0, 0.0, 1.0)")
+    np.testing.assert_allclose(
+        drawn(any_engine, folder.write("u.frag", hover))[0, 0], [128, 72, 0, 255], atol=1
+    )
+    share = MAIN.format("uniform vec2 mouse;", "vec4(mouse, 0.0, 1.0)")
+    np.testing.assert_allclose(
+        drawn(any_engine, folder.write("s.frag", share))[0, 0], [128, 128, 0, 255], atol=1
+    )
+
+
+def test_shadertoy_s_alpha_is_ignored(any_engine, folder):
+    assert (
+        drawn(any_engine, folder.write("t.frag", TOY.format("vec4(0.5, 0.5, 0.5, 0.0)")))[..., 3] == 255
+    ).all()
+
+
+def test_coordinates_of_a_vertex_shader_run_over_the_picture(any_engine, folder):
+    text = "varying vec2 vUv;\nvoid main() { gl_FragColor = vec4(vUv, 0.0, 1.0); }\n"
+    picture = drawn(any_engine, folder.write("t.frag", text), size=(4, 2))
+    np.testing.assert_allclose(picture[0, :, 0], [32, 96, 159, 223], atol=1)
+    np.testing.assert_allclose(picture[:, 0, 1], [191, 64], atol=1)  # north on top
+
+
+def test_its_own_uniforms_are_parameters_but_for_those_no_panel_can_show(any_engine, folder):
+    text = (
+        "uniform float level; uniform float other;\nuniform float twice = 2.0 * 0.5;\n"
+        "#ifdef NEVER\nuniform vec2 both;\n#else\nuniform float both;\n#endif\nuniform float own = 0.25;\n"
+        "void main() { gl_FragColor = vec4(level, own, twice + other, 1.0); }\n"
+    )
+    path = folder.write("t.frag", text)
+    np.testing.assert_allclose(drawn(any_engine, path)[0, 0], [0, 64, 255, 255], atol=1)
+    np.testing.assert_allclose(drawn(any_engine, path, **{"view.own": 1.0})[0, 0], [0, 255, 255, 255], atol=1)
+
+
+# ── channels ─────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        TOY.format("texture(iChannelN, p / iResolution.xy)"),
+        MAIN.format("uniform sampler2D u_texN;", "texture2D(u_texN, gl_FragCoord.xy / 32.0)"),
+        MAIN.format("uniform sampler2D textureN;", "texture2D(textureN, gl_FragCoord.xy / 32.0)"),
+    ],
+)
+def test_stand_ins_differ_by_number(any_engine, folder, text):
+    made = [drawn(any_engine, folder.write("t.frag", text.replace("N", str(n)))) for n in range(4)]
+    assert all(colours(one) > 4 for one in made)
+    assert all(not np.array_equal(a, b) for i, a in enumerate(made) for b in made[:i])
+
+
+def test_an_annotation_of_our_own_counts(any_engine, folder):
+    write_png(folder.path / "x.png", np.full((4, 4, 4), 255, np.uint8))
+    head = 'uniform sampler2D u_tex0;  //! file("x.png")\nuniform float time = 0.5;  //! slider(0, 1)'
+    path = folder.write("t.frag", MAIN.format(head, "texture2D(u_tex0, vec2(0.5)) * time"))
+    assert [p.name for p in load(path).graph.find("view").technique.parameters] == ["u_tex0", "time"]
+    np.testing.assert_allclose(drawn(any_engine, path, 3.0)[0, 0, :3], 128, atol=1)
+
+
+PHOTO = """uniform vec2 u_resolution;
+uniform sampler2D u_tex0; // photo.png
+uniform vec2 u_tex0Resolution;
+void main() {
+    gl_FragColor = texture2D(u_tex0, gl_FragCoord.xy / u_resolution);
+    gl_FragColor.a = u_tex0Resolution.x / 8.0;
+}
+"""
+
+
+def test_a_comment_names_the_picture(any_engine, folder):
+    pixels = np.random.default_rng(5).integers(0, 256, (6, 8, 4), dtype=np.uint8)
+    pixels[..., 3] = 255
+    path = folder.write("t.frag", PHOTO)
+    (note,) = unfed_warnings(load(path).graph.find("view").technique, ())
+    assert (note.line, note.message) == (
+        2,
+        "nothing feeds u_tex0: there is no file 'photo.png', so a stand-in is drawn",
+    )
+    assert colours(drawn(any_engine, path)) > 1
+    write_png(folder.path / "photo.png", pixels)
+    assert load(path).graph.find("view").technique.unfed == ()
+    np.testing.assert_allclose(drawn(any_engine, path, size=(8, 6)), pixels, atol=1)
+
+
+def test_a_sketch_wires_a_pass_to_a_channel_and_sets_a_parameter(any_engine, folder):
+    folder.write("toy.frag", f"uniform float level;\n{TOY.format('texture(iChannel1, vec2(0.5)) * level')}")
+    folder.write(
+        "red.glsl",
+        '#pragma kernel(output = "colour:rgba8")\nvec4 kernel(ivec2 t) { return vec4(1, 0, 0, 1); }\n',
+    )
+    passes = '[[pass]]\nname = "red"\nuse = "./red"\nsize = 8\n'
+    view = '[view]\nuse = "./toy"\nset = { level = 0.5 }\n'
+    wired = folder.sketch(f'{passes}{view}inputs = {{ iChannel1 = "red" }}\n')
+    np.testing.assert_allclose(any_engine.render(wired, size=(4, 4)).array[0, 0], [128, 0, 0, 255], atol=1)
+    unwired = folder.sketch(passes + view)
+    assert any_engine.render(unwired, size=(4, 4)).array[0, 0, 1] > 0
+
+
+def test_what_nothing_feeds_is_named_once(folder):
+    text = TEXTS["kodelife"]
+    plan = Planner().plan(load(folder.write("t.frag", text)), frame_size=SIZE)
+    fed, black = source_warnings(plan)
+    assert "texture0, texture1, texture2, texture3" in fed.message and fed.line == 6
+    assert "prevFrame, prevPass" in black.message and "reads black" in black.message
+    toy = TOY.format("texture(iChannel0, p) + texture(iChannel1, p)")
+    folder.write("toy.frag", toy)
+    view = '[view]\nuse = "./toy"\ninputs = {{ {} }}\n'
+    passes = '[[pass]]\nname = "card"\nuse = "foreign/picture"\nsize = 8\n'
+    for inputs, left in {
+        "": ["iChannel0, iChannel1"],
+        'iChannel1 = "card"': ["iChannel0"],
+        'iChannel0 = "card", iChannel1 = "card"': [],
+    }.items():
+        plan = Planner().plan(folder.sketch(passes + view.format(inputs)), frame_size=SIZE)
+        assert [w.message.split(":")[0] for w in source_warnings(plan)] == [
+            f"nothing feeds {n}" for n in left
+        ]
+
+
+# ── which dialect ────────────────────────────────────────────────────────────
+
+
+def test_a_dialect_may_be_named(any_engine, folder):
+    both = "void mainImage(out vec4 c, vec2 p) { c = vec4(1, 0, 0, 1); }\n#ifdef X\nvoid main() {}\n#endif\n"
+    path = folder.write("t.frag", both)
+    with pytest.raises(PlaygroundError):
+        any_engine.render(load(path), size=(4, 4))
+    np.testing.assert_array_equal(
+        any_engine.render(load(path, dialect="shadertoy"), size=(4, 4)).array[0, 0], [255, 0, 0, 255]
+    )
+    with pytest.raises(ParameterError, match="did you mean 'shadertoy'"):
+        load(path, dialect="shadertoi")
+    with pytest.raises(SketchError, match="--dialect is for a shader file"):
+        load("jacksboro", dialect="main")
+
+
+def test_what_is_not_read_yet_is_one_sentence(folder):
+    cases = {
+        '/*{"ISFVSN": "2", "INPUTS": []}*/\nvoid main() {}': "an ISF shader, which is not read yet",
+        '{"Shader": {"renderpass": []}}': "a Shadertoy export .JSON., which is not read yet",
+        '#iChannel0 "self"\nvoid mainImage(out vec4 c, vec2 p) {}': "VS Code .* not read yet",
+        "vec2 mainSound(int s, float t) { return vec2(0.0); }": "sound, .* not read yet",
+        "float x;": "nothing to run: no main, mainImage or #pragma",
+        "#if defined(BUFFER_0)\n#endif\nvoid main() {}": "BUFFER_0 is a pass of its own, .* not drawn yet",
+    }
+    for text, sentence in cases.items():
+        with pytest.raises(PlaygroundError, match=sentence):
+            load(folder.write("t.frag", text))
+
+
+@pytest.mark.parametrize("name", ["book", "varying", "toy", "toy_declares"])
+def test_a_picture_drawn_in_parts_is_the_picture_drawn_whole(any_engine, folder, name):
+    sketch = load(folder.write("t.frag", TEXTS[name]))
+    whole = any_engine.render(sketch, size=SIZE, time=1.0).array
+    parts = np.concatenate(list(strips(any_engine, sketch, SIZE, tile=(20, 8), time=1.0)))
+    np.testing.assert_allclose(parts.astype(int), whole, atol=1)
+
+
+@pytest.mark.parametrize("name", ["toy", "varying", "viewer"])
+def test_it_is_reduced_in_its_author_s_words(folder, name):
+    text, _ = with_mistake(TEXTS[name])
+    case = inline_sketch(load(folder.write("t.frag", text)), frame=SIZE)
+    (one,) = case.passes
+    assert one.name == "shader" and "not_declared" in one.text
+    assert set(one.text.splitlines()) <= set(text.splitlines())
+
+
+def test_a_text_that_replaces_the_file_is_read_as_its_dialect(any_engine, folder):
+    path = folder.write("t.frag", TOY.format("vec4(0.0)"))
+    changed = with_texts(load(path), {str(path): TOY.format("vec4(fract(iTime), 0.0, 0.0, 1.0)")})
+    np.testing.assert_array_equal(
+        any_engine.render(changed, size=(2, 2), time=1.0).array[0, 0], [0, 0, 0, 255]
+    )
+    assert traits_of(changed).moves and not traits_of(load(path)).moves
+
+
+def test_check_names_the_dialect_and_the_line(folder):
+    with Sandbox() as sandbox:
+        good = check_file(folder.write("good.frag", TEXTS["toy"]), sandbox)
+        text, line = with_mistake(TEXTS["varying"])
+        bad = check_file(folder.write("bad.frag", text), sandbox)
+    assert (good.ok, good.notes) == (True, ("read as shadertoy",))
+    assert ["nothing feeds iChannel0" in w.message for w in good.warnings] == [True]
+    assert [d.line for d in bad.errors] == [line]
+
+
+def test_the_title_names_the_dialect(folder):
+    assert load(folder.write("t.frag", TEXTS["toy"])).title == "All that Shadertoy declares (shadertoy)"
+    assert load(folder.write("u.frag", TEXTS["book"])).title == "u (main)"

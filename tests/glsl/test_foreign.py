@@ -1,0 +1,53 @@
+"""What stands in for the channels of other tools' shaders, and an image encoded as its file."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from playground.images.files import write_png
+from playground.sketch.load import load
+
+SKETCH = """format = 1
+size = 8
+[[pass]]
+name = "a"
+use = "foreign/{}"
+size = [{}, {}]
+set = {{ {} }}
+"""
+
+
+@pytest.fixture
+def texels(any_engine, tmp_path):
+    def read(kernel: str, size: tuple[int, int] = (64, 64), setting: str = "") -> np.ndarray:
+        path = tmp_path / "s.toml"
+        path.write_text(SKETCH.format(kernel, *size, setting))
+        return any_engine.read(load(path), "a").astype(float)
+
+    return read
+
+
+def test_noise_is_even_and_its_numbers_are_independent(texels):
+    zero, one = texels("noise"), texels("noise", setting="number = 1")
+    assert zero.shape == (64, 64, 4)
+    channels = np.concatenate([zero.reshape(-1, 4), one.reshape(-1, 4)], axis=1)
+    np.testing.assert_allclose(channels.mean(0), 0.5, atol=4 / np.sqrt(12 * 4096))
+    np.testing.assert_allclose(channels.var(0), 1 / 12, rtol=0.06)
+    others = np.corrcoef(channels.T) - np.eye(8)
+    assert np.abs(others).max() < 4 / np.sqrt(4096)
+
+
+def test_pictures_differ_and_show_which_way_is_up(texels):
+    made = [texels("picture", setting=f"number = {n}") for n in range(10)]
+    assert all(np.abs(a - b).mean() > 0.02 for i, a in enumerate(made) for b in made[:i])
+    for one in made:
+        assert (one[:, -8:, 0].mean() - one[:, :8, 0].mean()) > 0.3  # red in the east
+        assert (one[-8:, :, 1].mean() - one[:8, :, 1].mean()) > 0.3  # green in the north
+
+
+def test_an_image_has_the_bytes_of_its_file(texels, tmp_path):
+    pixels = np.random.default_rng(3).integers(0, 256, (6, 8, 4), dtype=np.uint8)
+    write_png(tmp_path / "x.png", pixels)
+    found = texels("image", (8, 6), 'image = "x.png"')
+    np.testing.assert_allclose(found[::-1] * 255, pixels, atol=1)

@@ -1,0 +1,90 @@
+"""A text's dialect is told by its signs, in their order; what it declares is found by its statements."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.sketch.dialects import dialect_of
+from playground.sketch.dialects.declarations import is_declared, uniforms, vertex_outputs
+from playground.sketch.load import load
+
+
+@pytest.mark.parametrize(
+    ("text", "name"),
+    [
+        ('/*{ "DESCRIPTION": "x",\n\t"CATEGORIES": ["a",], }*/\nvoid main() {}', "isf"),
+        ("/*{ a comment }*/\nvoid main() {}", "main"),
+        ('[{"renderpass": []}]', "export"),
+        ('{"renderpass": []}', "export"),
+        ('#pragma kernel(output = "a:r8")\nvoid mainImage() {}', "own"),
+        ("// #pragma kernel\nvoid mainImage(out vec4 c, vec2 p) {}", "shadertoy"),
+        ("void mainImage(out vec4 c, vec2 p) {} void main() {}", "main"),
+        ("/* void main() {} */ void mainImage(out vec4 c, vec2 p) {}", "shadertoy"),
+        ('#iChannel0 "file://a.png"\nvoid mainImage(out vec4 c, vec2 p) {}', "vscode"),
+        ("#iUniform float a = 1.0\nvoid main() {}", "vscode"),
+        ("int main ( ) {}", "main"),
+        ("vec2 mainSound(float t) {}", "sound"),
+        ("float f() { return 1.0; }", None),
+        ("", None),
+    ],
+)
+def test_the_sign_of_a_dialect(text, name):
+    found = dialect_of(text)
+    assert (found.name if found else None) == name
+
+
+@pytest.mark.parametrize("version", ["330", "330 core", "430"])
+def test_a_plain_shader_that_needs_no_more_stays_one(tmp_path, version):
+    path = tmp_path / "a.frag"
+    path.write_text(
+        f"#version {version}\nuniform float iTime;\nout vec4 c;\nvoid main() {{ c = vec4(iTime); }}\n"
+    )
+    assert load(path).graph.find("view").technique.dialect == ""
+    path.write_text(path.read_text().replace("uniform float iTime", "in vec2 uv; uniform float iTime"))
+    assert load(path).graph.find("view").technique.dialect == "main"
+
+
+def test_the_same_files_give_the_same_kernel(tmp_path):
+    path = tmp_path / "a.frag"
+    path.write_text("void main() { gl_FragColor = vec4(1.0); }\n")
+    first = load(path).graph.find("view").technique
+    assert load(path).graph.find("view").technique is first
+    path.write_text("void main() { gl_FragColor = vec4(0.5); }\n")
+    assert load(path).graph.find("view").technique is not first
+
+
+def test_uniforms_of_several_lines_and_names_are_found():
+    code = "uniform float a, b[3];uniform vec2\n  c = vec2(1.0, 2.0), d;\n"
+    code += "layout(location = 1) uniform highp int e;\n"
+    found = uniforms(f"{code}void f(vec2 g) {{ vec2 h; }}\n")
+    assert {n: (d.type, d.is_array) for n, d in found.items()} == {
+        "a": ("float", False),
+        "b": ("float", True),
+        "c": ("vec2", False),
+        "d": ("vec2", False),
+        "e": ("int", False),
+    }
+
+
+def test_a_local_name_is_no_declaration_of_the_file():
+    code = "float time;\nfloat f(float iTime) { float mouse = 1.0; return mouse; }\n"
+    assert is_declared(code, "time", anywhere=False) and is_declared(code, "f", anywhere=False)
+    assert not is_declared(code, "mouse", anywhere=False) and is_declared(code, "mouse", anywhere=True)
+
+
+def test_what_a_vertex_shader_gives():
+    code = (
+        "in vec2 uv, other;\nflat in ivec2 which;\nlayout(location = 2) in vec4 v_color;\nin vec2 many[3];\n"
+        "in Block { vec3 v_normal; vec2 at; } inside;\n"
+        "void f(in vec2 p, in vec3 q) { }\nvoid g(\n  in vec2 r);\n"
+    )
+    assert dict(vertex_outputs(code)) == {
+        "out vec2 uv;": "uv = k_share;",
+        "out vec2 other;": "other = vec2(0.0);",
+        "flat out ivec2 which;": "which = ivec2(0);",
+        "layout(location = 2) out vec4 v_color;": "v_color = vec4(1.0);",
+        "out vec2 many[3];": "for (int k_i = 0; k_i < many.length(); ++k_i) many[k_i] = vec2(0.0);",
+        "out Block { vec3 v_normal; vec2 at; } inside;": (
+            "inside.v_normal = vec3(0.0, 0.0, 1.0); inside.at = vec2(0.0);"
+        ),
+    }
