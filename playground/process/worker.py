@@ -85,9 +85,10 @@ class Worker(Closing):
         self._started = threading.Event()  # it is ready, or dead
         self._sent = self._cancelled = False
         self._cancelling = threading.Lock()
-        self._requests: queue.Queue[bytes | None] = queue.Queue()  # None: no more
+        # Simple queues: Ctrl-C in the midst of a call leaves no lock of theirs taken.
+        self._requests: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()  # None: no more
         self._encoder = Encoder()
-        self._answers: queue.Queue[Answer | None] = queue.Queue()  # None: it is dead
+        self._answers: queue.SimpleQueue[Answer | None] = queue.SimpleQueue()  # None: it is dead
         self._output = _Output()
         life, self._life = os.pipe() if launch.ends_with_parent and sys.platform == "linux" else (-1, -1)
         try:
