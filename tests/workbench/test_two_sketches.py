@@ -64,6 +64,15 @@ class Player:
         found = self.desk.level, dict(self.desk.session.view.steps)
         assert found == (pytest.approx(self.level[name]), self.steps[name]), self.done
 
+    def close(self) -> None:
+        """Close the window; open one on each sketch, and compare it with what was set."""
+        self.desk.close()
+        for name in (SHOWN, OTHER):
+            self.desk.start(name)
+            self.desk.frame()
+            self.check()
+            self.desk.close()
+
 
 @pytest.mark.parametrize("seed", range(24))
 def test_each_of_two_sketches_keeps_what_was_set_in_it(desk: Desk, seed: int) -> None:
@@ -74,9 +83,12 @@ def test_each_of_two_sketches_keeps_what_was_set_in_it(desk: Desk, seed: int) ->
         player.pass_check()
     assert desk.session.error is None and desk.name == player.opened, player.done
     player.check()
-    desk.close()
-    for name in (SHOWN, OTHER):
-        desk.start(name)
-        desk.frame()
-        player.check()
-        desk.close()
+    player.close()
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_a_window_that_is_closed_at_any_moment_has_remembered_both(desk: Desk, seed: int) -> None:
+    player = Player(desk, seed)
+    player.play(player.random.choice((2, 5, 9)))
+    desk.frame()
+    player.close()
