@@ -465,6 +465,8 @@ class Drafts:
             return False
         if self.stage is ReloadStage.FAILED and not self.opening:
             if is_new or (choice.chosen and self._choices):
+                if self._saved is not None:
+                    self._load_error = self._check_error  # the files are still wrong
                 self._drop_coming()  # another is chosen in place of what has failed
                 self._check_error = coming = None
         if not is_new:
