@@ -38,22 +38,24 @@ class Declared:
     type: str
     is_array: bool
     position: int  # in the text
+    written: str  # the name, its array and its initial value
 
 
 def uniforms(code: str) -> dict[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
     found: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
-        for name, array, at in _names(match.group(2)):
-            found.setdefault(name, Declared(name, match.group(1), bool(array), match.start(2) + at))
+        for name, array, at, written in _names(match.group(2)):
+            one = Declared(name, match.group(1), bool(array), match.start(2) + at, written)
+            found.setdefault(name, one)
     return found
 
 
 def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     """Return whether a text declares a variable or a function, outside of functions or ``anywhere``."""
     for match in re.finditer(rf"\b(?!return\b|else\b)[A-Za-z_]\w*\s+{name}\b\s*[=;,)\[(]", code):
-        before = code[: match.start()]
-        if anywhere or before.count("{") == before.count("}"):
+        before = _DIRECTIVE.sub("", code[: match.start()])
+        if anywhere or all(before.count(a) == before.count(b) for a, b in ("{}", "()")):
             return True
     return False
 
@@ -68,13 +70,13 @@ def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
         statements = [
             _set(f"{instance}.{name}" if instance else name, name, member.group(2), array)
             for member in _MEMBER.finditer(block.group(2))
-            for name, array, _ in _names(member.group(3))
+            for name, array, _, _ in _names(member.group(3))
         ]
         declaration = f"out {block.group(1)} {{ {members} }} {instance};"
         found.setdefault(block.group(1), (declaration, " ".join(statements)))
     for match in _IN.finditer(code):
         layout, before, after, kind, names = match.groups()
-        for name, array, _ in _names(names):
+        for name, array, _, _ in _names(names):
             if not name.startswith("gl_"):
                 ways = " ".join(f"{before}{after}".split())
                 declaration = " ".join(f"{layout or ''} {ways} out {kind} {name}{array};".split())
@@ -82,15 +84,16 @@ def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     return tuple(found.values())
 
 
-def _names(text: str) -> Iterator[tuple[str, str, int]]:
-    """Yield (name, array, place) of each name that a declaration lists; initialisers are left out."""
+def _names(text: str) -> Iterator[tuple[str, str, int, str]]:
+    """Yield (name, array, place, as written with its initial value) of each name that a declaration lists."""
     flat = text
     while (inner := _BRACKETS.sub(lambda m: " " * len(m.group()), flat)) != flat:
         flat = inner
     start = 0
     for part in flat.split(","):
         if match := _NAME.match(part):
-            yield match.group(1), (match.group(2) or "").strip(), start + match.start(1)
+            written = text[start + match.start(1) : start + len(part)]
+            yield match.group(1), (match.group(2) or "").strip(), start + match.start(1), written
         start += len(part) + 1
 
 

@@ -69,7 +69,10 @@ def test_uniforms_of_several_lines_and_names_are_found():
 def test_a_local_name_is_no_declaration_of_the_file():
     code = "float time;\nfloat f(float iTime) { float mouse = 1.0; return mouse; }\n"
     assert is_declared(code, "time", anywhere=False) and is_declared(code, "f", anywhere=False)
-    assert not is_declared(code, "mouse", anywhere=False) and is_declared(code, "mouse", anywhere=True)
+    for name in ("mouse", "iTime"):
+        assert not is_declared(code, name, anywhere=False) and is_declared(code, name, anywhere=True)
+    code = f"#define BEGIN (\n#define OPEN {{\n{code}"
+    assert is_declared(code, "time", anywhere=False) and is_declared(code, "f", anywhere=False)
 
 
 def test_what_a_vertex_shader_gives():
