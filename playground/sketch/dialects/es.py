@@ -55,7 +55,6 @@ class Rewritten:
 
     source: SourceText
     prelude: tuple[str, ...]  # lines that come before it: extensions, outputs
-    names: Mapping[str, str]  # what was renamed: new name → the author's
 
 
 def version_of(source: SourceText) -> int:
@@ -93,7 +92,7 @@ def rewritten(source: SourceText) -> Rewritten:
     elif "gl_FragColor" in source.names:
         prelude = [*prelude, f"layout(location = 0) out vec4 {_COLOUR};"]
     made = SourceText(source.path, tuple(lines), source.files)
-    return Rewritten(made, tuple(prelude), {new: old for old, new in names.items()})
+    return Rewritten(made, tuple(prelude))
 
 
 def _new(found: re.Match[str], *, data: bool) -> str:

@@ -23,6 +23,8 @@ from playground.sketch.load import load
         ('#iChannel0 "file://a.png"\nvoid mainImage(out vec4 c, vec2 p) {}', "vscode"),
         ("#iUniform float a = 1.0\nvoid main() {}", "vscode"),
         ("int main ( ) {}", "main"),
+        ("#define M mainImage\nvoid M(out vec4 c, vec2 p) {}", "shadertoy"),
+        ("#define M mainImage\nvoid main() {}", "main"),
         ("vec2 mainSound(float t) {}", "sound"),
         ("float f() { return 1.0; }", None),
         ("", None),
