@@ -26,6 +26,7 @@ _MEMBER = re.compile(
 )
 _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*(\[[^\]]*\])?")
 _DIRECTIVE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
+_QUALIFIER = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+(in|uniform)[ \t]*$", re.MULTILINE)
 _BRACKETS = re.compile(r"\([^()]*\)")
 _VECTOR = re.compile(r"vec([234])|float")
 
@@ -37,17 +38,18 @@ class Declared:
     name: str
     type: str
     is_array: bool
-    position: int  # in the text
+    line: int  # of the text, from 0
     written: str  # the name, its array and its initial value
 
 
 def uniforms(code: str) -> dict[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
+    code = _with_qualifiers(code)
     found: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
         for name, array, at, written in _names(match.group(2)):
-            one = Declared(name, match.group(1), bool(array), match.start(2) + at, written)
-            found.setdefault(name, one)
+            line = code.count("\n", 0, match.start(2) + at)
+            found.setdefault(name, Declared(name, match.group(1), bool(array), line, written))
     return found
 
 
@@ -62,7 +64,7 @@ def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
 
 def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     """Return what the vertex shader gives a fragment shader: declarations, and statements that set them."""
-    code = _DIRECTIVE.sub("", code)
+    code = _DIRECTIVE.sub("", _with_qualifiers(code))
     found: dict[str, tuple[str, str]] = {}
     for block in _BLOCK.finditer(code):
         members = " ".join(block.group(2).split())
@@ -82,6 +84,14 @@ def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
                 declaration = " ".join(f"{layout or ''} {ways} out {kind} {name}{array};".split())
                 found.setdefault(name, (declaration, _set(name, name, kind, array)))
     return tuple(found.values())
+
+
+def _with_qualifiers(code: str) -> str:
+    """Replace macros that stand for a qualifier, as texts for several versions of GLSL have them."""
+    macros = dict(_QUALIFIER.findall(code))
+    if not macros:
+        return code
+    return re.sub(rf"\b(?:{'|'.join(macros)})\b", lambda found: macros[found.group()], code)
 
 
 def _names(text: str) -> Iterator[tuple[str, str, int, str]]:

@@ -156,7 +156,7 @@ class _Shader:
                 yield one.name, one.type
 
     def _line(self, one: Declared) -> Line:
-        return self.source.lines[self.code.count("\n", 0, one.position)]
+        return self.source.lines[one.line]
 
     # ── parameters ───────────────────────────────────────────────────────────
 

@@ -68,6 +68,16 @@ def test_uniforms_of_several_lines_and_names_are_found():
     }
 
 
+def test_a_macro_may_stand_for_a_qualifier():
+    code = "#ifdef A\n#define IN in\n#else\n  # define IN in\n#endif\n#define U uniform\n#define INNER in_\n"
+    code += "IN vec2 uv;\nU float a; U vec2 b;\nINNER vec2 c;\n"
+    assert {n: (d.type, d.line) for n, d in uniforms(code).items()} == {
+        "a": ("float", 8),
+        "b": ("vec2", 8),
+    }
+    assert vertex_outputs(code) == (("out vec2 uv;", "uv = k_share;"),)
+
+
 def test_a_local_name_is_no_declaration_of_the_file():
     code = "float time;\nfloat f(float iTime) { float mouse = 1.0; return mouse; }\n"
     assert is_declared(code, "time", anywhere=False) and is_declared(code, "f", anywhere=False)
