@@ -121,7 +121,7 @@ def test_a_technique_of_several_passes_may_use_it_and_has_it_itself(renamed):
 
 
 def test_saving_writes_the_present_names_and_leaves_the_rest(renamed):
-    head = 'format = 1\nmain = [\n    "height.stride",  # as it was\n    \'height.seams\',\n]\n'
+    head = "format = 1\nmain = [\n    \"height.stride\",  # as it was\n    'height.seams',\n]\n"
     file = renamed.sketch(head=head, body=BODY, tail=TAIL + MORE)
     path = renamed.path / "s.toml"
     before = path.read_text(encoding="utf-8")
