@@ -13,7 +13,6 @@ from collections import OrderedDict
 from collections.abc import Callable, Collection, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
@@ -24,9 +23,6 @@ from playground.engine.frame_record import FrameSource
 from playground.engine.plan import Plan, PlanNode, Step, needed
 from playground.gpu.textures import bytes_of, read_block
 from playground.sketch.flat import Ref
-
-if TYPE_CHECKING:
-    pass
 
 FLOOR = 20.0  # [ms] that a read must save: less is not visible
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
