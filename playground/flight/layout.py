@@ -21,7 +21,7 @@ PartName = tuple[int, int]
 """Which part of the terrain, counted east and north."""
 
 _HEIGHT, _COLOUR, _LIGHT, _DAYLIGHT = "height", "colour", "light", "daylight"
-_PART, _APRON, _HOUR, _REACH = "part", "apron", "hour", "max_distance"
+_PART, _APRON, _HOUR, _MAX_DISTANCE = "part", "apron", "hour", "max_distance"
 _FINEST = 1024  # intervals of a part, and texels of its ground
 FARTHEST = 2**20
 """Parts east or north of the first beyond which a node's number no longer fits 32 bits."""
@@ -134,12 +134,12 @@ def _apron(sketch: Sketch, leaves: dict[str, Value]) -> int:
     """Return the apron of the height [texels]; raise ``SketchError`` where shadows reach beyond it."""
     found = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
     apron = found if isinstance(found, int) else 0
-    reach = _value(sketch, f"{_LIGHT}.{_REACH}", leaves)
+    reach = _value(sketch, f"{_LIGHT}.{_MAX_DISTANCE}", leaves)
     if isinstance(reach, int | float) and reach > apron > 0:
         raise _refused(
             sketch,
-            f"shadows reach {reach:g} texels ({_LIGHT}.{_REACH}), and there are only {apron} around a part "
-            f"({_HEIGHT}.{_APRON}); set {_LIGHT}.{_REACH}={apron}",
+            f"shadows reach {reach:g} texels ({_LIGHT}.{_MAX_DISTANCE}), and there are only {apron} around a part "
+            f"({_HEIGHT}.{_APRON}); set {_LIGHT}.{_MAX_DISTANCE}={apron}",
         )
     return apron
 

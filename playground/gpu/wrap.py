@@ -39,6 +39,7 @@ _NUMBER = re.compile(r"#\s*version\s+(\d+)\s*(\w*)")
 _PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
 _FETCH = re.compile(rf"\b(?:{'|'.join(FETCHES)})\b")
 _SIGNATURE = r"\b(\w+)\s+{name}\s*\(([^)]*)\)\s*\{{"
+_PROTOTYPE = re.compile(r"^(\w+)\s+(\w+)\s*\(([^()]*)\)\s*;", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -110,15 +111,27 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
 
 
 def wrap_library(kernel: Kernel, driver: str) -> Wrapped:
-    """Wrap a library file, which has nothing to run, so that it can be compiled alone."""
+    """Wrap a library file, which has nothing to run, so that it can be compiled alone.
+
+    A function that it declares for who includes it to define gets a body.
+    """
+    bodies = _missing_bodies(kernel.source.code)
     if driver == COMPUTE:
         before = ["#version 430", "layout(local_size_x = 1) in;"]
-        return Wrapped(
-            kernel, COMPUTE, {"compute": _stage(kernel, before, kernel.source.code, ["void main() {}"], "")}
-        )
-    after = ["out vec4 k_out;", "void main() { k_out = vec4(0.0); }"]
+        after = [*bodies, "void main() {}"]
+        return Wrapped(kernel, COMPUTE, {"compute": _stage(kernel, before, kernel.source.code, after, "")})
+    after = [*bodies, "out vec4 k_out;", "void main() { k_out = vec4(0.0); }"]
     stage = _stage(kernel, ["#version 330"], kernel.source.code, after, "")
     return Wrapped(kernel, FRAGMENT, {"vertex": _quad(kernel), "fragment": stage})
+
+
+def _missing_bodies(code: str) -> list[str]:
+    """Return a definition of each function that a text declares and does not define."""
+    return [
+        f"{kind} {name}({arguments}) {{ {'' if kind == 'void' else f'{kind} k_any; return k_any;'} }}"
+        for kind, name, arguments in _PROTOTYPE.findall(code)
+        if not re.search(rf"\b{name}\s*\([^()]*\)\s*\{{", code)
+    ]
 
 
 def signature(kernel: Kernel) -> str:

@@ -149,3 +149,13 @@ def test_a_file_that_the_child_does_not_survive_is_not_read_here(
     with Sandbox(memory_bytes=2**30) as small:
         found = wrong(tmp_path / "sketch.toml", small)
     assert "not enough memory to read it" in found.message and "heights.npy" in found.message
+
+
+LIBRARY = "float height_at(ivec2 texel);\nvoid count_step(inout int steps);\n"
+READS = "float twice(ivec2 texel) { int n = 0; count_step(n); return 2.0 * height_at(texel); }\n"
+
+
+def test_a_library_file_may_declare_what_the_file_that_includes_it_defines(folder, sandbox):
+    assert check_file(folder.write("march.glsl", LIBRARY + READS), sandbox).ok
+    found = wrong(folder.write("slip.glsl", LIBRARY + READS.replace("height_at(", "hight_at(")), sandbox)
+    assert (Path(found.file).name, found.line) == ("slip.glsl", 3), found
