@@ -138,8 +138,8 @@ def _apron(sketch: Sketch, leaves: dict[str, Value]) -> int:
     if isinstance(reach, int | float) and reach > apron > 0:
         raise _refused(
             sketch,
-            f"shadows reach {reach:g} texels ({_LIGHT}.{_MAX_DISTANCE}), and there are only {apron} around a part "
-            f"({_HEIGHT}.{_APRON}); set {_LIGHT}.{_MAX_DISTANCE}={apron}",
+            f"shadows reach {reach:g} texels ({_LIGHT}.{_MAX_DISTANCE}), and there are only {apron} "
+            f"around a part ({_HEIGHT}.{_APRON}); set {_LIGHT}.{_MAX_DISTANCE}={apron}",
         )
     return apron
 
