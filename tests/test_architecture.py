@@ -53,7 +53,7 @@ NAMED = {
     "workbench": {"map"},  # shows any texture from above
 }
 
-# The lists of what is still to go: what is mended is taken out of its list, and nothing is added.
+# The lists of what is still to go: what is fixed is taken out of its list, and nothing is added.
 CIRCLES: tuple[set[str], ...] = ()
 UNCLEAR = ("beside", "drawn", "hasty", "kept", "lay", "mend", "pictures", "said", "same", "seen", "words")
 UNCLEAR_MODULES: set[str] = set()

@@ -24,7 +24,7 @@
 uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
 
 uniform float repeats = 24.0;      //! slider(1, 256) step(1)
-                                   //! How often the images stand side by side from west to east
+                                   //! How often the images repeat from west to east
 uniform float variety = 0.5;       //! slider(0, 1) step(0.01)
                                    //! How much of each image is read a second time, larger and
                                    //! turned, so that its repeats do not show

@@ -40,8 +40,8 @@ class _View:
     editor: text_edit.TextEditor
     saved_at: int = 0  # the editor's undo index when its text was that of the file
     marked: tuple[Diagnostic, ...] = ()
-    clash: str = ""  # why it could not be saved; the user is asked
-    closing: bool = False  # the user is asked whether to save
+    clash: str = ""  # why it could not be saved; the user decides what to do
+    closing: bool = False  # a question is shown: save or discard
     focused_for: int = 0  # frames for which it has had the keys
 
     @property
@@ -87,7 +87,7 @@ def typing(open_files: Iterable[Editing]) -> list[str]:
 
 
 def save(editing: Editing, notices: Notices, *, over: bool = False) -> bool:
-    """Save an open file; return whether that worked. Where others saved it meanwhile, the user is asked."""
+    """Save an open file; return whether that worked. Where others saved it meanwhile, the user decides."""
     view = _view_of(editing)
     try:
         if not editing.text.save(view.written(), over=over):

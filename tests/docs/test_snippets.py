@@ -76,7 +76,7 @@ def test_yaml_is_yaml(block: Block):
 
 
 def test_the_first_kernel_fits_the_sketch_that_new_writes(any_engine: Engine, tmp_path: Path):
-    """As the README tells it: save waves.glsl, use it, remove the preset of my_land, add a tilt."""
+    """As the README says: save waves.glsl, use it, remove the preset of my_land, add a tilt."""
     folder = make_sketch(tmp_path / "hills")
     write_files(tmp_path, "hills/waves.glsl")
     text = (folder / "sketch.toml").read_text("utf-8").replace('"./my_land"', '"./waves"')

@@ -60,18 +60,18 @@ def sums(folder):
 
 @pytest.fixture
 def ran(monkeypatch):
-    """List the files whose programs are asked for."""
+    """List the files whose programs are requested."""
     from playground.engine.programs import Programs
 
-    asked: list[str] = []
+    requested: list[str] = []
     get = Programs.get
 
     def spy(self, kernel, driver, choices=()):
-        asked.append(kernel.path.rpartition("/")[2])
+        requested.append(kernel.path.rpartition("/")[2])
         return get(self, kernel, driver, choices)
 
     monkeypatch.setattr(Programs, "get", spy)
-    return asked
+    return requested
 
 
 @pytest.mark.parametrize("driver", ["auto", "compute", "fragment"])

@@ -294,7 +294,7 @@ def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_sh
             expected = set(engine.stale(sketch, size=(64, 36), steps=steps))
             assert picture(engine, sketch, steps) == picture(plain, sketch, steps)
             # What is read may take the place of what was still there when stale() looked.
-            assert set(engine.ran) == expected or memory < 2**20, "stale() tells what runs"
+            assert set(engine.ran) == expected or memory < 2**20, "stale() returns what runs"
         path = rng.choice(("terrain", "worn", "light"))
         np.testing.assert_array_equal(engine.read(sketch, path), plain.read(sketch, path))
     assert reads + engine.disk_caching.reads > 0, "the disk cache was used"
@@ -741,7 +741,7 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
     assert not list(tmp_path.glob("*.part"))
 
 
-def test_where_nothing_can_be_written_one_is_reported_and_nothing_more_is_tried(tmp_path):
+def test_where_nothing_can_be_written_it_is_reported_and_nothing_more_is_tried(tmp_path):
     (tmp_path / "terrain").write_text("a file where the folder should be")
     store = DiskCache(tmp_path / "terrain")
     store.write("one", some(1))

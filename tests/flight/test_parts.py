@@ -189,7 +189,7 @@ def test_a_sketch_that_cannot_be_flown_over_says_why(small_engine, terrain_of, t
     assert message in str(caught.value) and "\n" not in str(caught.value)
 
 
-def test_every_pass_is_told_the_height_s_apron(small_engine, terrain_of):
+def test_every_pass_gets_the_height_s_apron(small_engine, terrain_of):
     """A colour made with another would not meet its neighbour's."""
     sketch = terrain_of(intervals=16, apron=8).with_values({"colour.apron": 3})
     plot = plot_of(sketch, small_engine)

@@ -149,7 +149,7 @@ def test_the_mask_marks_what_the_terrain_knows(engine, make_sketch, size):
 @pytest.mark.parametrize("size", [2, 3, 17, 129, 1025])
 @pytest.mark.parametrize("random", ["centred", "positive"])
 def test_both_drivers_give_the_same_bits(ctx, make_sketch, size, random):
-    """By fragment, by compute in place, and by whatever stands for the technique where there is compute."""
+    """By fragment, by compute in place, and by the fast variant where there is compute."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     sketch = sketch_of(make_sketch, size, smoothing=0.63, corners=CORNERS, seed=5, random=random)

@@ -1,4 +1,4 @@
-"""What stands for diamond-square where there is compute: the same bits as its passes, whatever is asked."""
+"""The compute variant of diamond-square gives the same bits as its passes, for any parameters."""
 
 import numpy as np
 import pytest

@@ -444,7 +444,7 @@ def test_the_fast_variant_makes_the_terrain_where_there_is_compute(any_engine, s
     any_engine.read(sketch, "terrain")
     assert (any_engine.ran == ["terrain"]) == any_engine.info.compute
     any_engine.read(sketch, "terrain", steps={"terrain.spectrum": 3})
-    assert "terrain.spectrum" in any_engine.ran, "turns are not shown by the fast variant"
+    assert "terrain.spectrum" in any_engine.ran, "iterations are not shown by the fast variant"
 
 
 @pytest.mark.parametrize("side", [2**n + more for n in range(1, 10) for more in (0, 1)])

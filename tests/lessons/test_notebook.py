@@ -197,12 +197,12 @@ def test_one_picture_is_asked_for_at_a_time(events, sent):
 def test_a_picture_that_fails_ends_the_wait_as_well(lesson, opened, monkeypatch):
     """Whatever is raised: else nothing could be dragged any more."""
     widget = opened.show("land")
-    told = []
-    monkeypatch.setattr(widget, "send", told.append)
+    sent = []
+    monkeypatch.setattr(widget, "send", sent.append)
     monkeypatch.setattr(widget, "_draw", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         widget.values = {"height.smoothing": 0.2}
-    assert told == [{"drawn": True}]
+    assert sent == [{"drawn": True}]
 
 
 @pytest.mark.parametrize("text", ["#define A(x) \\", "b = '\\n';"])

@@ -25,7 +25,7 @@ TERRAIN = """// terrain.glsl -- a slope from west to east
 uniform float level = 1.0; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x - 1); }
 """
-SKETCH = "format = 1\nsize = [64, 8]\nrelief = 250.0\n" + map_of_height("./terrain")
+SKETCH = "format = 1\nsize = [64, 8]\nrelief = 250.0\n" + map_of_height()
 
 
 @pytest.fixture

@@ -35,7 +35,7 @@ float tilt(ivec2 texel, ivec2 size) { return float(texel.x) / float(size.x); }
 """
 SKETCH = (
     "format = 1\nsize = 33\n"
-    + map_of_height("./terrain", channel="red")
+    + map_of_height(channel="red")
     + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0 }\n'
 )
 

@@ -27,7 +27,7 @@ uniform sampler2D means;    //! input
 
 uniform int blend = 0;           //! menu("even", "by heights") group("Blend")
                                  //! How materials mix where they meet: as in a mist, or what
-                                 //! stands higher comes through
+                                 //! is higher comes through
 uniform float contrast = 6.0;    //! slider(0, 20) step(0.1) group("Blend")
                                  //! How strictly heights decide; 0 is even
 

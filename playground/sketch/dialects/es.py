@@ -29,7 +29,7 @@ _NEVER_NAMES = frozenset(
     namespace using cast sizeof asm hvec2 hvec3 hvec4 fvec2 fvec3 fvec4
     """.split()
 )
-"""Reserved words of GLSL 3.30 that mean nothing there: whoever uses one means a name."""
+"""Reserved words of GLSL 3.30 that mean nothing in older versions: a text that uses one means a name."""
 
 _SINCE_TAKEN = frozenset(
     """
@@ -110,7 +110,7 @@ def _new(found: re.Match[str], *, data: bool) -> str:
 
 
 def _renamed(found: re.Match[str], names: Mapping[str, str]) -> str:
-    """Return the new name, but of a function's name where it is called or stands for another."""
+    """Return the new name; a function's name that is called, or in a directive, stays."""
     name, code = found.group(), found.string
     if name in _FUNCTIONS and (_DIRECTIVE.match(code) or code[found.end() :].lstrip().startswith("(")):
         return name
