@@ -113,7 +113,7 @@ def test_imports_point_down():
 
 
 def files_named(tree: ast.Module, path: Path, there: dict[str, Path]) -> set[Path]:
-    """Return the files of our own that a module takes names from, wherever its imports stand."""
+    """Return the files of our own that a module takes names from, wherever its imports are."""
     found = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -272,7 +272,7 @@ def shrinks(name: str, found: set[str], allowed: set[str], what: str) -> None:
 
 
 # A whole shader, or a part of one: lines of GLSL. What is put together from names (a wrapper's
-# `uniform` for each output, one `main` for each kind of kernel) has no file to stand in.
+# `uniform` for each output, one `main` for each kind of kernel) has no file to be in.
 SHADER = re.compile(
     r"^#version|^\s*(?:in|out|uniform|flat|varying|attribute) \w+ \w+.*;"
     r"|^\s*(?:void|float|[iu]?vec[234]) \w+\(.*\{",

@@ -157,7 +157,7 @@ def swept(sketch: Sketch, sweeps: Sequence[Sweep]) -> list[list[Swept]]:
 
 
 def columns_of(count: int) -> int:
-    """Return how many of so many pictures stand side by side: all rows full if that leaves few columns."""
+    """Return how many of so many pictures are side by side: all rows full if that leaves few columns."""
     best = math.ceil(math.sqrt(count))
     full = [columns for columns in range(best, min(count, 2 * best) + 1) if count % columns == 0]
     return full[0] if full else best

@@ -118,7 +118,7 @@ class Break(Named):
 
     scene: Scene | None = None  # whole
     file: str = ""  # in glsl/
-    find: str = ""  # what stands there once
+    find: str = ""  # a text that occurs there once
     put: str = ""  # the bug in its place
     ask: Markdown = field(default="", metadata=_NEEDED)
     hint: Markdown = field(default="", metadata=_NEEDED)

@@ -784,7 +784,7 @@ def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("message", "size"),
+    ("given", "size"),
     [
         ("", 2**30),
         ("0", 0),
@@ -795,14 +795,14 @@ def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
         ("64kb", 2**16),
     ],
 )
-def test_the_environment_says_how_much(message, size):
-    assert limit_in({"PLAYGROUND_CACHE": message}) == size
+def test_the_environment_says_how_much(given, size):
+    assert limit_in({"PLAYGROUND_CACHE": given}) == size
 
 
-@pytest.mark.parametrize("message", ["much", "-1", "nan", "inf", "1e40", "1X", "M"])
-def test_what_is_no_size_is_refused_in_a_sentence(message):
-    with pytest.raises(ParameterError, match=f"PLAYGROUND_CACHE={message}: expected a size, as 500M"):
-        limit_in({"PLAYGROUND_CACHE": message})
+@pytest.mark.parametrize("given", ["much", "-1", "nan", "inf", "1e40", "1X", "M"])
+def test_what_is_no_size_is_refused_in_a_sentence(given):
+    with pytest.raises(ParameterError, match=f"PLAYGROUND_CACHE={given}: expected a size, as 500M"):
+        limit_in({"PLAYGROUND_CACHE": given})
 
 
 def test_a_writer_that_hangs_does_not_keep_a_session_from_ending(tmp_path, monkeypatch):

@@ -1,4 +1,4 @@
-"""view/curve: where curves, axes and what is no number stand in the picture."""
+"""view/curve: where curves, axes and what is no number are in the picture."""
 
 import numpy as np
 import pytest

@@ -443,7 +443,7 @@ float kernel(ivec2 texel) { return float(texel.x + 2 * texel.y) / 64.0; }
 
 
 def test_slopes_between_texels_are_the_texels_slopes_interpolated(engine, lit):
-    """Texels of the light on texels of the terrain stand beside others that do not."""
+    """Texels of the light on texels of the terrain are next to others that are not."""
     sun = (135, 25)
     sketch = lit(HILLS, "l_dot_n", sun, light_size="[129, 97]", relief=300.0, extent=640.0)
     heights = engine.read(sketch, "height").astype(np.float64) * 300

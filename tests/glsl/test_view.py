@@ -1,4 +1,4 @@
-"""view/: what stands where in the picture, and what its colours are."""
+"""view/: what is where in the picture, and what its colours are."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def above(sketch, azimuth=180.0, elevation=60.0, **more):
 
 
 def pixels_of(engine, points):
-    """Where points of the terrain stand in the last picture: column and row from the top left."""
+    """Where points of the terrain are in the last picture: column and row from the top left."""
     plan = engine.plan
     clip = np.c_[points, np.ones(len(points))] @ plan.eye.clip_from_world.astype(float).T
     place = clip[:, :2] / clip[:, 3:]

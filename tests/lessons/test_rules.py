@@ -26,7 +26,7 @@ def test_the_small_lesson_keeps_to_all(lesson):
 @pytest.mark.parametrize(
     ("before", "after", "words"),
     [
-        ("A picture first.", "word " * 61, "61 words stand before the first figure"),
+        ("A picture first.", "word " * 61, "61 words before the first figure"),
         (
             "A picture first.",
             "```question early\nask = 'a'\nanswer = 'b'\n```",

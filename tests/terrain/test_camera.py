@@ -123,7 +123,7 @@ def test_orbit_turns_and_stops_short_of_overhead():
 
 @pytest.mark.parametrize("azimuth", [0.0, 60.0, 200.0])
 def test_pan_carries_what_was_to_the_right_to_the_middle(azimuth):
-    """After a pan by half the picture's width, what stood at its right edge stands in its middle."""
+    """After a pan by half the picture's width, what was at its right edge is in its middle."""
     camera = Camera(azimuth, 30.0, 20_000.0, (6_000.0, 4_000.0, 0.0))
     eye = look(camera, EXTENT, RELIEF, WIDE)
     a = math.radians(azimuth)

@@ -110,7 +110,7 @@ def test_without_a_point_there_is_a_tie():
 
 
 def test_ties_are_left_alike_by_both_methods(monkeypatch):
-    """With points on the nodes of a coarse grid alone, many stand on others' circles, exactly."""
+    """With points on the nodes of a coarse grid alone, many are on others' circles, exactly."""
     step = SIDE // 8
 
     def on_the_grid(growing, triangle, point):

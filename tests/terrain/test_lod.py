@@ -30,7 +30,7 @@ def random_camera(rng: np.random.Generator) -> Camera:
 
 
 def pixels(view: visibility.View, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where places stand in the picture, (n, 2), and which of them are in it."""
+    """Return where places are in the picture, (n, 2), and which of them are in it."""
     clip = places @ view.clip_from_world[:, :3].T + view.clip_from_world[:, 3]
     inside = (np.abs(clip[:, :3]) <= clip[:, 3:]).all(axis=1)
     at = clip[:, :2] / np.where(inside, clip[:, 3], 1.0)[:, None]

@@ -10,7 +10,7 @@
 //            Terrain Texture Splatting", the formula made here
 //   tested   tests/glsl/test_splat.py, against the mixture in float64
 //
-// What stands out of a material is bright in these tiles and its cracks are dark, so its
+// What protrudes from a material is bright in these tiles and its cracks are dark, so its
 // brightness over its mean is taken for its own height.
 //
 // rgba16f: linear light in 8 bits leaves 13 steps below the grass's mean.

@@ -10,7 +10,7 @@
 //   tested   tests/glsl/test_view_profile.py, by where curve, ticks and numbers must be
 //
 // The line begins at the disc and ends at the ring, on the map and under the section. Ticks
-// stand at 1, 2 or 5 times a power of ten.
+// are at 1, 2 or 5 times a power of ten.
 #include "colour/encode.glsl"
 #include "maths/segment.glsl"
 #include "terrain/heightfield.glsl"
