@@ -1,4 +1,4 @@
-// texturing/hex_tiled.glsl -- an image laid over the terrain in hexagons, without repeats.
+// texturing/hex_tiled.glsl -- an image mapped onto the terrain in hexagons, without repeats.
 //
 //   gives    colour, linear light
 //   needs    maths/angle.glsl, maths/land.glsl, texturing/hex_tiling.glsl,

@@ -1,4 +1,4 @@
-// texturing/tiled.glsl -- an image laid over the terrain in tiles, without visible repeats.
+// texturing/tiled.glsl -- an image tiled over the terrain, without visible repeats.
 //
 //   gives    colour, linear light
 //   needs    maths/land.glsl; an image that repeats
@@ -8,7 +8,7 @@
 //            too fine, and less contrast about the same mean where less detail is wanted
 //
 // The thesis takes texel (i, j) of the image, modulo its size. Here the image repeats so
-// many times over the terrain, whatever the size of either, and is read at the level of
+// many times over the terrain, at any size of either, and is read at the level of
 // detail where its texels are as large as this texture's: read at level 0, a fine image
 // in a small texture is a few texels picked at random.
 //

@@ -1,4 +1,4 @@
-// texturing/triplanar.glsl -- an image laid on the terrain from above and from the sides.
+// texturing/triplanar.glsl -- an image projected onto the terrain from above and from the sides.
 //
 //   gives    colour, linear light
 //   needs    lighting/sun.glsl, maths/land.glsl, terrain/heightfield.glsl,

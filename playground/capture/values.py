@@ -229,7 +229,7 @@ def _tiff(samples: NDArray[Any], layer: Layer, span: tuple[float, float] | None 
     import tifffile
 
     (dx, dy), rows = layer.spacing, samples.shape[0]
-    citation = "metres from the south-west corner of the land|"
+    citation = "metres from the south-west corner of the terrain|"
     # Key, where its value is (0: here), how many, value.
     keys = [
         (1024, 0, 1, 1),  # GTModelType: projected

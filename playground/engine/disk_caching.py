@@ -28,7 +28,7 @@ from playground.sketch.flat import Ref
 if TYPE_CHECKING:
     pass
 
-FLOOR = 20.0  # [ms] that a read must save: less is not visible
+FLOOR = 20.0  # [ms] that a read must save: less is not noticeable
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
 REST = 1.0  # [s] without another piece of terrain before one is written
 PIECE = 4 * 2**20  # [bytes] read back at once

@@ -12,7 +12,7 @@ Markdown = str
 """Markdown with formulas between dollars, and ``{{name}}`` for the number of a measure."""
 
 
-# What the field of a block is, beside its type: a text that a translation replaces.
+# What the field of a block is, besides its type: a text that a translation replaces.
 _NEEDED: dict[str, Any] = {"translated": True, "needed": True}
 _OPTIONAL: dict[str, Any] = {"translated": True, "needed": False}
 _LISTED: dict[str, Any] = {"translated": True, "listed": True}

@@ -68,8 +68,8 @@ def rewritten(source: SourceText) -> Rewritten:
     """Rewrite a text; one of ``#version`` 330 or more keeps its version and its extensions."""
     is_modern = version_of(source) >= 330
     names: dict[str, str] = {}
-    said = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
-    if said is None or int(said.group(1)) < 130:
+    version = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
+    if version is None or int(version.group(1)) < 130:
         names = _clashing(source)
     data = "gl_FragData" in source.names
     rename = re.compile(rf"\b(?:{'|'.join(names)})\b") if names else None

@@ -9,7 +9,7 @@
 //   tested   tests/glsl/test_diagrams.py, by the colours where angles say that they must be
 //
 // The thesis measures horizons as shares of a quarter circle; degrees are written next to them. The
-// sun's disc is drawn as wide as it is said to be, and may be said to be wider than it is.
+// sun's disc is drawn as wide as its parameter says, which may be wider than the real one.
 #include "lighting/diagram/ink.glsl"
 #include "lighting/diagram/label.glsl"
 #include "lighting/diagram/paints.glsl"
