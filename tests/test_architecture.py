@@ -191,7 +191,7 @@ def test_importing_loads_nothing_that_is_slow():
     assert heavy == "", f"importing playground imports {heavy}"
 
 
-def test_every_public_name_comes_from_the_home_that_it_is_said_to_have():
+def test_every_public_name_comes_from_the_module_that_the_list_gives():
     """The table that is run, the imports that type checkers read, and what is there, are the same."""
     import playground
 
@@ -295,7 +295,7 @@ def test_shaders_stand_in_files():
     shrinks("GLSL_IN_PYTHON", found, GLSL_IN_PYTHON, "has a shader in a string")
 
 
-def test_nothing_asks_to_be_kept_the_same():
+def test_nothing_must_be_edited_in_two_places():
     """What two places say has one home, or a test that they agree."""
     wrong = []
     asks = re.compile(r"\bmust match\b|\bkeep (?:this |these |it )?in (?:sync|step)\b|\bsame as in\b", re.I)

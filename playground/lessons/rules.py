@@ -134,7 +134,7 @@ def _references(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
         for address in links(text):
             kind, _, what = address.partition(":")
             if kind in targets and what not in targets[kind]:
-                yield line, f"a link to {kind} '{what}', which there is not{nearest(what, targets[kind])}"
+                yield line, f"a link to {kind} '{what}', which does not exist{nearest(what, targets[kind])}"
             elif kind == "thesis" and not all(part.isdigit() for part in what.split(".")):
                 yield line, f"a link to section '{what}' of the thesis, which is no number"
             elif kind == "term" and address in linked:

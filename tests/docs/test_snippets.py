@@ -114,7 +114,7 @@ def test_python_runs(block: Block, tmp_path: Path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("block", PYTHON, ids=by_name)
-def test_python_runs_as_it_stands(block: Block, tmp_path: Path):
+def test_python_runs_as_it_is_written(block: Block, tmp_path: Path):
     runs(block.text, tmp_path)
 
 

@@ -154,7 +154,7 @@ void main() {
 """
 
 
-def test_one_beside_a_technique_stands_for_all_of_it(ctx, folder):
+def test_one_next_to_a_technique_replaces_all_of_it(ctx, folder):
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     for name, text in {"values": VALUES, "doubled": DOUBLED, "add": ADD}.items():
@@ -367,7 +367,7 @@ def test_a_buffer_of_other_numbers_is_no_output(folder):
         folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
 
 
-def test_one_that_stands_for_a_technique_takes_the_sizes_that_the_technique_takes(any_engine, folder):
+def test_one_that_replaces_a_technique_takes_the_sizes_that_the_technique_takes(any_engine, folder):
     folder.write("values.glsl", VALUES)
     folder.write("doubled.glsl", DOUBLED)
     folder.write("add.glsl", ADD.replace('"sum:r32f"', '"sum:r32f", accepts = "2**n"'))

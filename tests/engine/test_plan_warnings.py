@@ -47,7 +47,7 @@ def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
     return path
 
 
-def test_an_engine_tells_each_once_whatever_is_drawn_after(any_engine, sketch):
+def test_an_engine_reports_each_once(any_engine, sketch):
     reports: list[tuple[str, str]] = []
     any_engine.warnings.report = lambda found: reports.append((found.place, found.message))
     for size in ((8, 8), (9, 9)):

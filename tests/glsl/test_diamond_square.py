@@ -108,7 +108,7 @@ PHASES = {
 }
 
 
-def test_the_turns_are_the_figures(engine, make_sketch, numbers):
+def test_the_iterations_are_the_figures(engine, make_sketch, numbers):
     """Figures 1.8 to 1.11: four corners, one centre, four edges, four centres, twelve edges."""
     sketch = sketch_of(make_sketch, 5, corners=CORNERS, smoothing=0.5, seed=2)
     drawn = numbers(5, 2)
@@ -127,7 +127,7 @@ def known_of(make_sketch, size):
     return make_sketch('[[pass]]\nname = "known"\nuse = "generation/diamond_square/known"\n', size=size)
 
 
-def test_the_mask_tells_the_turn_that_sets_a_point(engine, make_sketch):
+def test_the_mask_shows_the_iteration_that_sets_a_point(engine, make_sketch):
     sketch = known_of(make_sketch, 5)
     for turn, phase in engine.steps(sketch, "known"):
         assert (phase > 0).sum() == FIGURES.get(turn, 0)

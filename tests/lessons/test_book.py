@@ -146,7 +146,7 @@ def test_its_pictures_are_the_engine_s(book, lesson, engine):
         assert np.abs(stored - drawn).mean() < (0.01 if is_diagram(drawn) else 4.0), picture.name
 
 
-def test_every_stored_picture_counts_and_one_that_cannot_be_stored_is_said(
+def test_every_stored_picture_counts_and_one_that_cannot_be_stored_is_reported(
     tmp_path, lesson, engine, monkeypatch
 ):
     """Pictures are stored aside, while the next are drawn."""

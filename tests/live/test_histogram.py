@@ -107,7 +107,7 @@ def test_shares_of_the_numbers(ctx: moderngl.Context) -> None:
     texture.release()
 
 
-def test_a_turn_reads_no_more_than_a_piece(ctx: moderngl.Context, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_frame_reads_no_more_than_a_piece(ctx: moderngl.Context, monkeypatch: pytest.MonkeyPatch) -> None:
     real, sizes = histogram.read_texels, []
 
     def noted(texture: moderngl.Texture, corner: tuple[int, int], size: tuple[int, int]) -> object:

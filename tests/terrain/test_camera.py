@@ -55,7 +55,7 @@ def test_points_are_where_angles_put_them(azimuth, elevation, size):
     ("azimuth", "right", "up"),
     [(180.0, "east", "north"), (0.0, "west", "south"), (90.0, "north", "west"), (270.0, "south", "east")],
 )
-def test_the_eye_stands_where_its_azimuth_says(azimuth, right, up):
+def test_the_eye_is_where_its_azimuth_says(azimuth, right, up):
     """From the south, east is on the right and north is further up."""
     steps = {"east": (1, 0, 0), "west": (-1, 0, 0), "north": (0, 1, 0), "south": (0, -1, 0)}
     middle = np.array([6_000.0, 4_000.0, 750.0])

@@ -53,7 +53,7 @@ def test_five_levels_from_512_triangles_to_2_share_one_tile_s_vertices():
 
 
 @each("piece", [p for p in tiles.pieces() if p[0] == "fans"], ids=str)
-def test_a_tile_is_covered_once_whatever_its_neighbours(piece):
+def test_a_tile_is_covered_once_with_any_neighbours(piece):
     faces = faces_of(piece)
     a, b = faces[:, 1, :2] - faces[:, 0, :2], faces[:, 2, :2] - faces[:, 0, :2]
     areas = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2

@@ -282,7 +282,7 @@ def test_how_many_steps_there_are_follows_time_and_keyframes(bench: Bench) -> No
     assert bench.session.repeats == {"height": 6}
 
 
-def test_values_are_kept_and_those_of_another_type_fall_back(bench: Bench) -> None:
+def test_values_stay_and_those_of_another_type_fall_back(bench: Bench) -> None:
     bench.picture()
     bench.session.drafts.set("height.level", 0.75)
     bench.change("terrain.glsl", "level * tilt", "1.0 - level * tilt")
