@@ -80,7 +80,7 @@ def main() -> None:
             drag = _ways(bare)["a value changes"]
             for frame in range(options.frames):
                 drag(frame)
-                bare.turn(1, lambda draw: profile.runcall(draw))
+                bare.run_frames(1, around=lambda draw: profile.runcall(draw))
             pstats.Stats(profile).sort_stats("tottime").print_stats(25)
         bare.close()
     Console().print(table)
@@ -106,7 +106,7 @@ def _measure(bare: Bare, frames: int, before: Callable[[int], None]) -> list[flo
 
     for frame in range(frames):
         before(frame)
-        bare.turn(1, around)
+        bare.run_frames(1, around=around)
     bare.panel.memory.filter = Filter()
     return times
 

@@ -329,7 +329,7 @@ def test_a_stage_that_comes_back_reads_what_it_read_before(any_engine, folder):
 
 def test_stages_take_the_place_of_repeat(folder):
     folder.write("fill.glsl", PLAIN_FILL)
-    wrong = (('", repeat = "4"', "leave repeat out"), (', x"', "whole numbers parted by commas"))
+    wrong = (('", repeat = "4"', "leave repeat out"), (', x"', "whole numbers separated by commas"))
     for option, message in wrong:
         folder.write("fill.comp", STAGES.replace('1"', f"1{option}", 1))
         with pytest.raises(PlaygroundError, match=message):

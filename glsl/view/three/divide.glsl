@@ -1,4 +1,4 @@
-// view/three/divide.glsl -- three pictures in one, parted by two lines.
+// view/three/divide.glsl -- three pictures in one, divided by two lines.
 //
 //   gives    frame, display-encoded
 //   needs    three frames of this size
