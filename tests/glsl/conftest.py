@@ -63,7 +63,7 @@ def on_gpu(ctx: moderngl.Context) -> Iterator[Callable[..., np.ndarray]]:
             shape = (count, width)
             data = np.ascontiguousarray(np.broadcast_to(values.reshape(-1, width), shape), LETTERS[base][2])
             buffers.append(ctx.buffer(data.tobytes()))
-            if name in program.uniforms:
+            if name in program:
                 content.append((buffers[-1], f"{width}{LETTERS[base][1]}", name))
         base, width = _scalar(result)
         target = ctx.buffer(reserve=count * width * 4)
