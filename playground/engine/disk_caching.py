@@ -13,7 +13,6 @@ from collections import OrderedDict
 from collections.abc import Callable, Collection, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
@@ -25,10 +24,7 @@ from playground.engine.plan import Plan, PlanNode, Step, needed
 from playground.gpu.textures import bytes_of, read_block
 from playground.sketch.flat import Ref
 
-if TYPE_CHECKING:
-    pass
-
-FLOOR = 20.0  # [ms] that a read must save: less is not noticeable
+FLOOR = 20.0  # [ms] that a read must save: less is not visible
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
 REST = 1.0  # [s] without another piece of terrain before one is written
 PIECE = 4 * 2**20  # [bytes] read back at once

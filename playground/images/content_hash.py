@@ -1,4 +1,4 @@
-"""Hash the contents of image and elevation files, reading each no more often than it changes."""
+"""Hash the contents of files, reading each no more often than it changes."""
 
 from __future__ import annotations
 

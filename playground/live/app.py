@@ -300,7 +300,7 @@ class Live:
         """Draw the window once; a part of it that fails is left out, and a notice says so."""
         window, bench, guard = self.window, self.bench, self.guard
         look = window.theme
-        window.set_title(title_of(self.session.path))
+        window.set_title(title_of(self.session.drafts.shown_path))
         guard.run("taking in what was dropped", lambda: self.drops.take(self.place.dropped()), None)
         window.zoom = bench.interface.size.size
         window.begin()

@@ -34,15 +34,16 @@ _LISTED = 14  # steps of the history that show without scrolling
 def draw_head(memory: Memory, bench: Bench, look: Theme) -> None:
     """Draw what is above the passes."""
     session, sketch = bench.session, bench.session.sketch
+    path = session.drafts.shown_path
     with look.font(look.bold, theme.TEXT_SIZE + 2):
-        imgui.text_wrapped((sketch.title.strip() if sketch else "") or session.path.stem)
+        imgui.text_wrapped((sketch.title.strip() if sketch else "") or path.stem)
     with look.font(look.text, theme.SMALL):
         style = imgui.get_style()
         room = imgui.get_content_region_avail().x
         wide = imgui.calc_text_size("Lessons").x + 2 * style.frame_padding.x
         start = imgui.get_cursor_pos_x()
-        imgui.text_disabled(fitting(shown(session.path), room - wide - style.item_spacing.x))
-        imgui.set_item_tooltip(str(session.path))
+        imgui.text_disabled(fitting(shown(path), room - wide - style.item_spacing.x))
+        imgui.set_item_tooltip(str(path))
         imgui.same_line(start + room - wide)
         if button("Lessons", "What there is to know of terrain, step by step (F2)", small=True):
             bench.lessons.toggle()

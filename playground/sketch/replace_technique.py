@@ -105,7 +105,7 @@ def _refilled(sketch: Sketch, spec: PassSpec, use: str, technique: Technique) ->
     overrides = [pair for pair in sketch.overrides if not pair[0].startswith(prefix)]
     overrides += [(prefix + path, value) for path, value in _values_taken(technique, own)]
     graph = replace(sketch.graph, passes=passes)
-    main = tuple(path for path in sketch.main if find_targets(graph, path))
+    main = tuple(current_path(graph, path) for path in sketch.main if find_targets(graph, path))
     result = replace(sketch, graph=graph, main=main, overrides=tuple(overrides))
     flatten(result)
     return result

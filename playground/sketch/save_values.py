@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 from playground.sketch.assign import TERRAIN_KEYS, current_path, resolve
 from playground.sketch.colour import parse_hex, to_hex
 from playground.sketch.model import Parameter, Sketch, Technique, Value
 from playground.sketch.toml_edit import text_of
 from playground.sketch.toml_places import Place, TomlPlaces
 from playground.sketch.values import is_whole, shortest
+
+_QUOTED = re.compile(r"(?<=[\"'])[\w.]+(?=[\"'])")
 
 
 def written_value(sketch: Sketch, path: str, value: Value, before: str) -> str:
@@ -55,11 +59,15 @@ def written_terrain_value(value: Value) -> str:
 
 
 def with_current_names(text: str, sketch: Sketch) -> str:
-    """Return a sketch's text with the present name of each parameter that it sets by a former one."""
+    """Return a sketch's text with the present names of what it sets, or lists in ``main``, by former ones."""
     while (span := _former_name(text, sketch)) is not None:
         start, end, name = span
         text = text[:start] + name + text[end:]
-    return text
+    main = TomlPlaces(text).pairs.get(("main",))
+    if main is None:
+        return text
+    listed = _QUOTED.sub(lambda path: current_path(sketch.graph, path.group()), text[main.value : main.end])
+    return text[: main.value] + listed + text[main.end :]
 
 
 def _former_name(text: str, sketch: Sketch) -> tuple[int, int, str] | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -55,7 +56,6 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
         file.take(file.table, "title", str, ""),
         agrees,
         line=file.line("outputs"),
-        warnings=tuple(file.warnings),
     )
     names = [("parameters", export.name) for export in graph.parameters]
     names += [("inputs", export.name) for export in graph.inputs]
@@ -63,7 +63,11 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
         if not name.isidentifier():
             raise file.error(f"'{name}': expected a name of letters, digits and _", key, name)
     wiring.check_graph(graph)
-    return graph
+    for export in graph.parameters:
+        for target in export.targets:
+            if sentence := renamed(graph, target, None):
+                file.warn(f"{export.name}: {sentence}", "parameters", export.name)
+    return replace(graph, warnings=tuple(file.warnings))
 
 
 def read_passes(file: TomlFile, read: Read) -> tuple[PassSpec, ...]:

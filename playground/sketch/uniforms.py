@@ -179,6 +179,8 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
     if "file" in calls and "input" in calls:
         raise line.error(f"'{name}' has two widgets: file and input")
     is_file = "file" in calls
+    if "was" in calls and not is_file:
+        raise line.error(f"'{name}' is an input; was is for a parameter")
     words = list(calls.get("file" if is_file else "input", []))
     path = words.pop(0) if is_file and words else ""
     if "\0" in path:

@@ -58,6 +58,7 @@ class Autosave:
         self._recalled = False  # what is shown was set in an earlier session
         self._in_file: tuple[Draft | None, tuple[tuple[str, FileValue], ...]] = (None, ())
         self._compared = Remembered().compared
+        session.before_switch = self._take_last_edits
         self._recall(found or Remembered())
 
     @property
@@ -73,7 +74,10 @@ class Autosave:
         session, path = self.session, find(sketch).absolute()
         self.write()
         if self._latest is not None and path == self._path:
-            session.drafts.stay()
+            if session.drafts.opening:  # A is that of the other
+                is_on = self.compare is not None and self.compare.on
+                self._compared = None if is_on else self._latest.compared
+            session.stay()
             return
         found, complaint = Memory(path, self._memory.path.parent).read()
         session.open(path, start=found.start)
@@ -93,7 +97,7 @@ class Autosave:
                 self._recalled = False
             if session.shown is None or self._latest is None:
                 return
-            found = replace(self._latest, **self._edits_of(session.shown))
+            found = replace(self._latest, **self._drawn_of(session.shown))
         else:
             if session.path != self._path:
                 self._switch()
@@ -134,6 +138,11 @@ class Autosave:
         self.write()
         self._memory.close()
 
+    def _take_last_edits(self) -> None:
+        """Take in what was edited since the last ``look``: another sketch is shown from now on."""
+        if self._latest is not None and self.session.shown is not None:
+            self._latest = replace(self._latest, **self._drawn_of(self.session.shown))
+
     def _switch(self) -> None:
         """Remember another sketch from now on: the one that is shown."""
         self.close()
@@ -153,28 +162,33 @@ class Autosave:
             clock.set_loop(*found.loop)
         session.restore_view(dict(found.steps), Map(found.map, found.map_values) if found.map else None)
 
-    def _edits_of(self, draft: Draft) -> dict[str, Any]:
-        """Return the fields of ``Remembered`` that hold a draft's edits."""
+    def _drawn_of(self, draft: Draft) -> dict[str, Any]:
+        """Return the fields of ``Remembered`` that hold a draft's edits, the map and the stopped repeats."""
+        view = self.session.view
         if self._in_file[0] is not draft:
             paths = [path for path, _ in draft.edits.values]
             self._in_file = draft, tuple(file_values(draft.base, paths).items())
         camera = draft.file.camera if draft.edits.camera is not None else None
-        return {"edits": draft.edits, "in_file": self._in_file[1], "camera_in_file": camera}
+        return {
+            "edits": draft.edits,
+            "in_file": self._in_file[1],
+            "camera_in_file": camera,
+            "map": view.map.ref if view.map else "",
+            "map_values": view.map.values if view.map else (),
+            "steps": tuple(sorted(view.steps.items())),
+        }
 
     def _snapshot(self, draft: Draft, window: tuple[int, int], at: tuple[int, int] | None) -> Remembered:
-        session, clock, view = self.session, self.session.clock, self.session.view
+        session, clock = self.session, self.session.clock
         return Remembered(
             time=clock.time if session.animated else 0.0,
             playing=clock.playing,
             speed=clock.speed,
-            map=view.map.ref if view.map else "",
-            map_values=view.map.values if view.map else (),
-            steps=tuple(sorted(view.steps.items())),
             window=window,
             at=at,
             loop=clock.loop,
             compared=self._compared or (self.compare.remembered() if self.compare is not None else None),
-            **self._edits_of(draft),
+            **self._drawn_of(draft),
         )
 
     def _report(self, sentence: str) -> None:

@@ -35,6 +35,10 @@ class Clock:
         """Play if it is paused, pause if it plays."""
         self.playing = not self.playing
 
+    def restore(self, other: Clock) -> None:
+        """Go on as another clock is."""
+        self.time, self.playing, self.speed, self.loop = other.time, other.playing, other.speed, other.loop
+
     def rewind(self) -> None:
         """Go back to 0, without a loop: it is another sketch's."""
         self.time, self.loop = 0.0, None

@@ -97,7 +97,7 @@ class Commands:
             return
         self.undo.history.saved(_values_in_file(draft))
         self.notices.say(f"saved a copy in {path.parent}; from here on this is the sketch")
-        self.session.drafts.open(path, keep=True)
+        self.session.open_copy(path)
 
     def save_as_preset(self, name: str) -> None:
         """Save the edited values as a preset of the sketch."""

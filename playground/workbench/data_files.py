@@ -34,20 +34,20 @@ class DataFiles:
         for path in data_files(sketch):
             now = signature(path)
             if now is None or self._known.get(path, (None, ""))[0] != now:
-                self._known[path] = now, _hash_of(path)
+                self._known[path] = now, hash_of(path)
 
     def _is_new(self, path: Path) -> bool:
         known, now = self._known.get(path), signature(path)
         if known is None or now is None or known[0] is None:
             return known is None or known[0] != now
         if known[0] != now:
-            if _hash_of(path) != known[1]:
+            if hash_of(path) != known[1]:
                 return True
             self._known[path] = now, known[1]
         return False
 
 
-def _hash_of(path: Path) -> str:
+def hash_of(path: Path) -> str:
     """Return a hash of a file's contents; empty where it cannot be read."""
     try:
         return content_hash(path)

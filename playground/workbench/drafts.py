@@ -91,6 +91,7 @@ class Drafts:
         self.plain = plain  # every technique in its canonical form
         self.draw_error: PlaygroundError | None = None  # of what is shown
         self.opening = False  # another sketch is coming than the one that is shown
+        self.opened = 0  # how often ``open`` was called
         self.started = 0.0  # when what is coming began to be read
         self.sandbox_seconds = 0.0  # [s] that the sandbox took for it
         self.reads = 0  # how often what is shown was replaced by what its files say now
@@ -110,6 +111,11 @@ class Drafts:
         self._check_error: PlaygroundError | None = None  # of what is coming
 
     # ── state ────────────────────────────────────────────────────────────────
+
+    @property
+    def shown_path(self) -> Path:
+        """The file of the sketch that is shown; before the first good one, of the one that is open."""
+        return Path(self.shown.file.file) if self.opening and self.shown is not None else self.path
 
     @property
     def sketch(self) -> Sketch | None:
@@ -214,6 +220,7 @@ class Drafts:
             self._leave_out("another sketch is opened", self._choices if self._is_checked else [])
             self._start, self._choices = start or StoredEdits(), []
         self.path, self.texts, self.opening = found, texts or {}, not keep
+        self.opened += 1
         self.reload()
 
     def stay(self) -> None:
@@ -458,6 +465,8 @@ class Drafts:
             return False
         if self.stage is ReloadStage.FAILED and not self.opening:
             if is_new or (choice.chosen and self._choices):
+                if self._saved is not None:
+                    self._load_error = self._check_error  # the files are still wrong
                 self._drop_coming()  # another is chosen in place of what has failed
                 self._check_error = coming = None
         if not is_new:

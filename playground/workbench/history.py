@@ -146,7 +146,7 @@ class History:
         self._add({("time", ""): before}, {("time", ""): after}, held=held, now=now)
 
     def record(self, before: State, after: State, name: str, *, now: float) -> None:
-        """Take in a step that is more than what is edited; ``settle`` tells the state after it."""
+        """Take in a step that is more than what is edited; ``settle`` takes in the state after it."""
         self._close()
         self._name = name
         self._add(before, after, held=False, now=now)

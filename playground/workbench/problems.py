@@ -13,8 +13,9 @@ from pathlib import Path
 from playground.engine.plan import Plan
 from playground.engine.plan_warnings import source_warnings
 from playground.errors import Diagnostic, PlaygroundError, counted
+from playground.images.content_hash import content_hash
 from playground.paths import GLSL
-from playground.sketch.allowed_files import Signature, root_of, signature
+from playground.sketch.allowed_files import root_of
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import Techniques
 from playground.sketch.warnings import former_names_used, warnings_of_kernel
@@ -132,13 +133,13 @@ def _lines_of(name: str) -> list[str]:
     """Return the lines of a file as an error names it; none where it cannot be read."""
     path = path_named(name) if name else None
     try:
-        return _lines_at(path, signature(path)) if path is not None else []
-    except OSError:
+        return _lines_at(path, content_hash(path)) if path is not None else []
+    except (OSError, PlaygroundError):
         return []
 
 
 @lru_cache(maxsize=32)
-def _lines_at(path: Path, _: Signature | None) -> list[str]:
+def _lines_at(path: Path, _: str) -> list[str]:
     text = path.read_bytes().decode("utf-8-sig", "replace")
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 

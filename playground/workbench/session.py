@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -65,6 +66,7 @@ class Session:
         self.engine = engine
         engine.plain_forms.notice = silent  # ``notes`` say it
         self.clock = Clock()
+        self._clock_before = Clock()  # of the sketch that is shown, while another is opened
         self.view = View()
         self.data = DataFiles()
         checks = Checks(
@@ -82,6 +84,7 @@ class Session:
         self.times: dict[str, float] = {}  # [ms] the last time each pass ran while profiling, by path
         self.draws = 0  # pictures drawn so far
         self.is_preview = False  # the picture is a preview, and will be drawn again in full
+        self.before_switch: Callable[[], None] = lambda: None  # called before another sketch is shown
         self._now = now
         self._is_lost = is_lost  # says whether the engine's context is lost
         self._lost_over: object = None  # what was shown when a context was lost last
@@ -166,10 +169,28 @@ class Session:
     ) -> None:
         """Open another sketch; see ``Drafts.open``. Its own view is shown once it is drawn."""
         path = find(path)
+        if not self.drafts.opening:
+            self._clock_before = replace(self.clock)
         self.clock.rewind()
         self._reported.clear()
         self.drafts.open(path, start=start, texts=texts)
         self.view.restore({}, None, later=True)
+
+    def open_copy(self, path: Path) -> None:
+        """Open a copy of the sketch that is shown; edits and view go on. Raises as ``Drafts.open``."""
+        self._take_back()
+        self.drafts.open(path, keep=True)
+
+    def stay(self) -> None:
+        """Read the sketch that is shown again, and open no other."""
+        self._take_back()
+        self.drafts.stay()
+
+    def _take_back(self) -> None:
+        """Reset the view and the clock from those of a sketch that is not opened after all."""
+        if self.drafts.opening:
+            self.view.forget_next()
+            self.clock.restore(self._clock_before)
 
     def reset_values(self) -> None:
         """Reset all that is not locked, and every pass, to what the file says; stop no repeat early."""
@@ -349,6 +370,8 @@ class Session:
         except Exception as error:
             drafts.failed(error)
             return
+        if drafts.opening:
+            self.before_switch()
         self.view.take_next()
         self.last_reload = Reload(self._now() - drafts.started, drafts.sandbox_seconds)
         drafts.drawn_well()

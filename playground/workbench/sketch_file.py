@@ -25,6 +25,12 @@ class SketchFile:
 
     def write(self, act: Callable[[], None]) -> bool:
         """Write, and read the sketch again; return whether that worked. Else offer a copy or say why."""
+        drafts = self.session.drafts
+        if drafts.opening:  # what is read again is the other
+            name, other = shown(drafts.shown_path), shown(drafts.path)
+            ways = f"open {name} again, or save a copy"
+            self.notices.say(f"{name} is not saved while {other} is being opened: {ways}")
+            return False
         try:
             act()
         except ReadOnlySketch as error:
@@ -32,14 +38,11 @@ class SketchFile:
         except PlaygroundError as error:
             self.notices.say(str(error))
         else:
-            self.session.drafts.reload()
+            drafts.reload()
             return True
         return False
 
     def write_keyframes(self, keyframes: Sequence[Keyframe]) -> bool:
         """Write keyframes into the file; return whether that worked."""
-        draft, drafts = self.session.shown, self.session.drafts
-        if drafts.opening:
-            self.notices.say(f"no keyframe is written while {shown(drafts.path)} is being opened")
-            return False
+        draft = self.session.shown
         return draft is not None and self.write(lambda: save_keyframes(draft.file, keyframes))

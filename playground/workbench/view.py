@@ -41,6 +41,10 @@ class View:
             (steps, shown), self._next = self._next, None
             self.restore(steps, shown)
 
+    def forget_next(self) -> None:
+        """Forget what was restored for a sketch that is not opened after all."""
+        self._next = None
+
     @property
     def state(self) -> tuple[dict[str, int], Map | None]:
         """What ``restore`` takes to draw the sketch that is open so again, drawn already or not."""

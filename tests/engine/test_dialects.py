@@ -149,8 +149,26 @@ def test_its_own_uniforms_are_parameters_but_for_those_no_panel_can_show(any_eng
         "void main() { gl_FragColor = vec4(level, own, twice + other, 1.0); }\n"
     )
     path = folder.write("t.frag", text)
+    shown = [p.name for p in load(path).graph.find("view").technique.parameters]
+    assert shown == ["level", "other", "both", "own"]
     np.testing.assert_allclose(drawn(any_engine, path)[0, 0], [0, 64, 255, 255], atol=1)
     np.testing.assert_allclose(drawn(any_engine, path, **{"view.own": 1.0})[0, 0], [0, 255, 255, 255], atol=1)
+
+
+def test_uniforms_of_one_statement_and_of_several_lines_are_parameters(folder):
+    text = (
+        "uniform float u_time; uniform float a = 0.5, b; uniform vec2 many[2], c = vec2(1.0, 2.0);\n"
+        "uniform vec3\n    tint;  //! colour What it is multiplied by\n"
+        "void main() { gl_FragColor = vec4(tint * a, b + c.x + many[0].x + u_time); }\n"
+    )
+    found = load(folder.write("t.frag", text)).graph.find("view").technique.parameters
+    assert {p.name: (p.default, p.line) for p in found} == {
+        "a": (0.5, 1),
+        "b": (0.0, 1),
+        "c": ((1.0, 2.0), 1),
+        "tint": ((0.0, 0.0, 0.0), 3),
+    }
+    assert found[-1].widget.kind == "colour"
 
 
 # ── channels ─────────────────────────────────────────────────────────────────

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -143,6 +144,23 @@ def test_a_keeps_its_texts_when_the_files_change(
     assert (second != old).any()
 
 
+def test_an_image_of_another_content_alone_is_another(
+    session: Session, compare: Compare, folder: Path
+) -> None:
+    before, file = draw_frame(session, compare), folder / "mask.png"
+    compare.keep()
+    draw_frame(session, compare)
+    stat = file.stat()
+    write_png(file, np.full((2, 2, 4), 254, np.uint8))
+    os.utime(file, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+    assert file.stat().st_size == stat.st_size
+    assert session.sketch is not None
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=10.0))
+    draw_frame(session, compare)
+    np.testing.assert_array_equal(first(compare), before)
+    assert any("mask.png is another file now" in note for note in session.notes)
+
+
 def test_an_image_that_is_another_now_leaves_the_picture_as_it_was(
     session: Session, compare: Compare, folder: Path
 ) -> None:
@@ -233,8 +251,16 @@ def test_another_sketch_ends_it(
     (other / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     session.open(other)
     picture = session.frame(SIZE)
-    assert picture is not None
+    assert picture is not None and session.error is not None
     compare.follow(picture)
+    assert compare.on, "the sketch that A is of is still shown"
+    compare.swap()
+    compare.follow(picture)
+    assert compare.on
+    (other / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
+    write_png(other / "mask.png", np.full((2, 2, 4), 255, np.uint8))
+    session.drafts.reload()
+    draw_frame(session, compare)
     assert not compare.on
 
 

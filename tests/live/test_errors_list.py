@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -106,6 +107,17 @@ def test_the_lines_around_are_those_of_the_file(folder: Path) -> None:
     (folder / "terrain.glsl").write_text("// nothing of it is left\n", encoding="utf-8")
     assert problems.lines_around(wrong) == [(4, lines[3])], "the line as it was, and no others"
     assert problems.lines_around(Diagnostic("no place")) == []
+
+
+def test_a_save_that_leaves_size_and_time_as_they_were_is_read(folder: Path) -> None:
+    problems, file = Problems(), folder / "terrain.glsl"
+    assert problems.lines_around(diagnostic("terrain.glsl", 4, "wrong"))
+    stat = file.stat()
+    file.write_text(TERRAIN.replace("level", "leval"), encoding="utf-8")
+    os.utime(file, ns=(stat.st_atime_ns, stat.st_mtime_ns))
+    lines = TERRAIN.replace("level", "leval").splitlines()
+    wrong = Diagnostic("wrong", file="terrain.glsl", line=4)
+    assert problems.lines_around(wrong) == [(n, lines[n - 1]) for n in range(2, 7)]
 
 
 def test_headers_that_cannot_be_read_are_listed_with_the_first(folder: Path) -> None:

@@ -285,6 +285,39 @@ def test_playing_on_opens_the_sketch_as_the_readers_own_with_what_was_set_there(
     assert desk.reader.figure.before_lesson is None and desk.bench.interface.panel_shown
 
 
+def test_a_dropped_sketch_leaves_the_figure_also_where_that_is_of_the_same_file(desk):
+    desk.bench.commands.opens = desk.autosave.open
+    desk.bench.commands.open(find("white_noise"))
+    desk.run_frames(2)
+    desk.session.drafts.set("height.seed", 41)
+    desk.run_frames(2)
+    desk.open(show=False)
+    desk.reader.show(block(desk, "rubble"))
+    desk.run_frames(3)
+    assert desk.session.path == find("white_noise") and value(desk, "height.seed") == 3
+    desk.drops.take([find("white_noise")])
+    desk.run_frames(3)
+    assert desk.reader.figure.before_lesson is None and desk.reader.figure.key is None
+    assert value(desk, "height.seed") == 41
+    desk.session.drafts.set("height.seed", 42)
+    desk.run_frames(3)
+    assert dict(desk.autosave._latest.edits.values) == {"height.seed": 42}, "it is remembered"
+
+
+def test_playing_on_with_the_sketch_that_is_open_keeps_its_undo(desk):
+    desk.bench.commands.open(find("white_noise"))
+    desk.run_frames(2)
+    desk.session.drafts.set("height.seed", 41)
+    desk.run_frames(2)
+    desk.open(show=False)
+    play_on(desk.reader)
+    desk.run_frames(3)
+    assert value(desk, "height.seed") == 41
+    desk.bench.undo.undo()
+    desk.run_frames(2)
+    assert not desk.session.shown.edits.values
+
+
 def test_turns_are_stopped_at_and_played_to_the_last(desk):
     desk.open(1)
     repeated = block(desk, "halves")

@@ -322,6 +322,28 @@ def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
     assert "picture.png is neither" in notices_of(bare)
 
 
+def test_a_sketch_that_does_not_open_leaves_the_panel_the_title_and_the_path_of_the_one_shown(
+    bare: Bare, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    other = folder / "two"
+    other.mkdir()
+    (other / "sketch.toml").write_text("format = 1\n[view", encoding="utf-8")
+    bare.drops.take([other])
+    paths: list[str] = []
+    monkeypatch.setattr(imgui, "text_disabled", lambda text: paths.append(text))
+    monkeypatch.setattr(imgui, "set_item_tooltip", lambda text: paths.append(text))
+    bare.run_frames()
+    assert bare.session.error is not None and bare.session.drafts.opening
+    assert str(folder / "sketch.toml") in paths and str(other / "sketch.toml") not in paths
+    (other / "sketch.toml").write_text(SKETCH, encoding="utf-8")
+    (other / "terrain.glsl").write_text(TERRAIN, encoding="utf-8")
+    bare.session.drafts.reload()
+    bare.run_frames()
+    paths.clear()
+    bare.run_frames()
+    assert str(other / "sketch.toml") in paths
+
+
 def test_an_image_has_no_place_where_nothing_takes_a_file(bare: Bare, folder: Path) -> None:
     write_png(folder / "white.png", np.full((4, 4, 4), 255, np.uint8))
     bare.drops.take([folder / "white.png"])

@@ -106,17 +106,23 @@ def test_a_technique_of_several_passes_may_use_it_and_has_it_itself(renamed):
     assert values_of(sketch) == {"height.inner.step_length": 2.0, "height.inner.seams": 0}
     inner = sketch.with_values({"height.inner.stride": 0.5})
     assert inner.overrides == (("height.inner.step_length", 0.5),)
-    files = [warning.file.rpartition("/")[2] for warning in former_names_used(sketch)]
-    assert files == ["s.toml", "two.toml"]
+    found = [(w.file.rpartition("/")[2], w.line, w.message) for w in former_names_used(sketch)]
+    now = "is called '{}' now; the former name is still read"
+    assert found == [
+        ("s.toml", 5, f"pass 'height': 'pace' {now.format('step_length')}"),
+        ("two.toml", 4, f"pass 'inner': 'stride' {now.format('step_length')}"),
+        ("two.toml", 6, f"step_length: 'inner.stride' {now.format('inner.step_length')}"),
+    ]
     # A name of the technique's own is no former one.
-    renamed.write("two.toml", TWO.replace("step_length = ", "stride = "))
+    renamed.write("two.toml", TWO.replace('step_length = "inner.stride"', 'stride = "inner.step_length"'))
     assert said(
         renamed.sketch(body='[[pass]]\nname = "height"\nuse = "./two"\nset = { stride = 2.0 }\n')
     ) == [(4, "pass 'inner': 'stride' is called 'step_length' now; the former name is still read")]
 
 
 def test_saving_writes_the_present_names_and_leaves_the_rest(renamed):
-    file = renamed.sketch(body=BODY, tail=TAIL + MORE)
+    head = "format = 1\nmain = [\n    \"height.stride\",  # as it was\n    'height.seams',\n]\n"
+    file = renamed.sketch(head=head, body=BODY, tail=TAIL + MORE)
     path = renamed.path / "s.toml"
     before = path.read_text(encoding="utf-8")
     save(file, file.with_values({"height.stride": 1.5}))
@@ -148,6 +154,15 @@ def test_a_technique_that_was_chosen_takes_values_by_their_former_names(renamed)
     renamed.write("other.glsl", TERRAIN.replace('was("stride", "pace")', "").replace("step_length", "stride"))
     sketch = renamed.sketch(body=BODY.replace("./terrain", "./other"))
     assert dict(with_technique(sketch, "height", "./terrain").graph.passes[0].values)["step_length"] == 2.0
+    head = 'format = 1\nmain = ["height.stride"]\n'
+    about = renamed.sketch(head=head, body=BODY.replace("./terrain", "./other"))
+    assert with_technique(about, "height", "./terrain").main == ("height.step_length",)
+
+
+def test_an_input_has_no_former_name(renamed):
+    line = 'uniform sampler2D ground;  //! input was("soil")\n'
+    renamed.write("terrain.glsl", TERRAIN.replace("float kernel", f"{line}float kernel"))
+    renamed.refused("'ground' is an input; was is for a parameter", 4, "terrain.glsl")
 
 
 @pytest.mark.parametrize(

@@ -56,6 +56,33 @@ def test_an_edit_belongs_to_the_sketch_that_is_shown(desk: Desk) -> None:
     assert desk.session.shown.edits.locked == (LEVEL,)
 
 
+def test_an_edit_of_the_frame_in_which_the_other_is_shown_is_remembered(desk: Desk) -> None:
+    desk.bench.commands.open(desk.folder / "two")
+    desk.frame()
+    desk.drafts.set(LEVEL, 0.5)
+    desk.session.stop_at("height", 2)
+    desk.answer(GOOD)
+    assert (desk.name, desk.level) == ("two", 0.25)
+    desk.close()
+    desk.start("one")
+    assert desk.level == 0.5 and desk.session.view.steps == {"height": 2}
+
+
+def test_to_stay_restores_the_map_the_stopped_repeats_and_the_clock(desk: Desk) -> None:
+    desk.session.stop_at("height", 2)
+    desk.session.show("height:height")
+    desk.session.clock.time, desk.session.clock.playing = 3.0, False
+    desk.frame()
+    desk.bench.commands.open(desk.folder / "two")
+    desk.answer(BAD)
+    desk.bench.commands.open(desk.folder / "one")
+    desk.answer(GOOD)
+    view, clock = desk.session.view, desk.session.clock
+    assert desk.name == "one" and view.steps == {"height": 2}
+    assert view.map is not None and view.map.ref == "height:height"
+    assert (clock.time, clock.playing) == (3.0, False)
+
+
 def test_an_opening_that_fails_leaves_the_sketch_its_edits_and_its_undo(desk: Desk) -> None:
     desk.session.stop_at("height", 2)
     desk.drafts.set(LEVEL, 0.5)
@@ -150,8 +177,27 @@ def test_no_keyframe_is_written_while_another_sketch_is_opened(desk: Desk) -> No
     assert (desk.name, desk.level) == ("two", 0.25)
 
 
+def test_nothing_is_saved_while_another_sketch_does_not_open_and_no_edit_is_lost(desk: Desk) -> None:
+    before = (desk.folder / "one/sketch.toml").read_bytes()
+    desk.write("two/sketch.toml", "format = 1\n[view")
+    desk.bench.commands.open(desk.folder / "two")
+    for level in (0.5, 0.75):
+        desk.drafts.set(LEVEL, level)
+        desk.frame()
+        desk.bench.commands.save_values()
+        desk.frame()
+    assert "sketch.toml is not saved while" in desk.messages and "save a copy" in desk.messages
+    assert (desk.folder / "one/sketch.toml").read_bytes() == before
+    desk.bench.commands.open(desk.folder / "one")
+    desk.answer(GOOD)
+    assert (desk.name, desk.level) == ("one", 0.75)
+    desk.bench.commands.save_values()
+    assert b"level = 0.75" in (desk.folder / "one/sketch.toml").read_bytes()
+
+
 def test_a_copy_of_what_is_shown_is_opened_instead(desk: Desk) -> None:
     desk.drafts.set(LEVEL, 0.5)
+    desk.session.stop_at("height", 2)
     desk.frame()
     desk.bench.commands.open(desk.folder / "two")
     desk.bench.commands.save_a_copy()
@@ -159,6 +205,7 @@ def test_a_copy_of_what_is_shown_is_opened_instead(desk: Desk) -> None:
     desk.answer(GOOD)
     assert desk.session.path == Path(desk.session.shown.file.file)
     assert desk.session.path.parent.name.startswith("one") and desk.level == 0.5
+    assert desk.session.view.steps == {"height": 2}
     desk.bench.undo.undo()
     desk.frame()
     assert desk.level == 0.25
@@ -210,6 +257,19 @@ def test_what_fails_is_named_and_the_rest_is_taken(desk: Desk, first: str, secon
     assert desk.size == (17 if rest == "save" else 9)
     assert desk.technique == ("./dunes" if rest == "technique" else "./hills")
     assert desk.elevation == ("b.npy" if rest == "data" else "a.npy")
+
+
+def test_a_save_that_failed_stays_an_error_when_another_technique_is_shown(desk: Desk) -> None:
+    desk.save("size = 9", "size = 17")
+    desk.answer(BAD)
+    error = desk.session.error
+    assert error is not None
+    desk.drafts.choose("height", "./dunes")
+    desk.answer(GOOD)
+    assert (desk.technique, desk.size) == ("./dunes", 9) and desk.session.error is error
+    desk.drafts.reload()
+    desk.answer(GOOD)
+    assert (desk.technique, desk.size) == ("./dunes", 17) and desk.session.error is None
 
 
 def test_a_choice_waits_for_a_file_that_cannot_be_read(desk: Desk) -> None:

@@ -15,9 +15,10 @@ from playground.gpu.textures import read_picture
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.workbench.autosave import Autosave
+from playground.workbench.edits import Edits
 from playground.workbench.framing import framed
 from playground.workbench.inspect.compare import Compare, Mode
-from playground.workbench.memory import Compared, Memory
+from playground.workbench.memory import Compared, Memory, Remembered
 from playground.workbench.session import Session
 
 SIZE = (48, 32)
@@ -144,6 +145,31 @@ def test_closed_before_the_sandbox_has_answered_it_is_still_remembered(desk: Des
         desk.frame()
         assert desk.found is not None and not desk.compare.on
         desk.close()
+
+
+def test_a_of_a_sketch_that_is_left_meanwhile_is_not_compared_with_the_other(desk: Desk) -> None:
+    compare_something(desk)
+    other = desk.folder / "other"
+    other.mkdir()
+    for name in ("sketch.toml", "terrain.glsl"):
+        (other / name).write_bytes((desk.folder / name).read_bytes())
+    memory = Memory(other / "sketch.toml", desk.folder / "state")
+    assert memory.claim()
+    memory.write(Remembered(compared=Compared(Edits((("height.level", 0.625),)))))
+    memory.close()
+    desk.open()
+    desk.frame()
+    assert desk.sandbox.requests and not desk.compare.on
+    desk.autosave.open(other)
+    desk.answer(SandboxReport(True))
+    assert desk.session.path == other / "sketch.toml" and not desk.session.drafts.opening
+    for _ in range(2):
+        desk.answer(SandboxReport(True))
+        desk.frame()
+    stored = desk.compare.stored
+    assert stored is not None and stored.path == other / "sketch.toml"
+    assert Path(stored.draft.file.file).parent == other
+    assert dict(stored.draft.edits.values) == {"height.level": 0.625}
 
 
 def test_a_save_goes_before_what_is_only_compared(desk: Desk) -> None:

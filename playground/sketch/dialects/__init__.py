@@ -30,7 +30,7 @@ _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:iChannel\d|iUniform|iKeyboard)\b", re.MULTILINE)
 _MAIN = re.compile(r"\bmain\s*\(")
-_MAIN_IMAGE = re.compile(r"\bmainImage\s*\(")
+_MAIN_IMAGE = re.compile(r"\bmainImage\b")  # a macro may stand for it
 _SOUND = re.compile(r"\bmain(Sound|VR|Cubemap)\s*\(")
 
 

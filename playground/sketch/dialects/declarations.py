@@ -26,6 +26,7 @@ _MEMBER = re.compile(
 )
 _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*(\[[^\]]*\])?")
 _DIRECTIVE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
+_QUALIFIER = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+(in|uniform)[ \t]*$", re.MULTILINE)
 _BRACKETS = re.compile(r"\([^()]*\)")
 _VECTOR = re.compile(r"vec([234])|float")
 
@@ -37,30 +38,33 @@ class Declared:
     name: str
     type: str
     is_array: bool
-    position: int  # in the text
+    line: int  # of the text, from 0
+    written: str  # the name, its array and its initial value
 
 
 def uniforms(code: str) -> dict[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
+    code = _with_qualifiers(code)
     found: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
-        for name, array, at in _names(match.group(2)):
-            found.setdefault(name, Declared(name, match.group(1), bool(array), match.start(2) + at))
+        for name, array, at, written in _names(match.group(2)):
+            line = code.count("\n", 0, match.start(2) + at)
+            found.setdefault(name, Declared(name, match.group(1), bool(array), line, written))
     return found
 
 
 def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     """Return whether a text declares a variable or a function, outside of functions or ``anywhere``."""
     for match in re.finditer(rf"\b(?!return\b|else\b)[A-Za-z_]\w*\s+{name}\b\s*[=;,)\[(]", code):
-        before = code[: match.start()]
-        if anywhere or before.count("{") == before.count("}"):
+        before = _DIRECTIVE.sub("", code[: match.start()])
+        if anywhere or all(before.count(a) == before.count(b) for a, b in ("{}", "()")):
             return True
     return False
 
 
 def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     """Return what the vertex shader gives a fragment shader: declarations, and statements that set them."""
-    code = _DIRECTIVE.sub("", code)
+    code = _DIRECTIVE.sub("", _with_qualifiers(code))
     found: dict[str, tuple[str, str]] = {}
     for block in _BLOCK.finditer(code):
         members = " ".join(block.group(2).split())
@@ -68,13 +72,13 @@ def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
         statements = [
             _set(f"{instance}.{name}" if instance else name, name, member.group(2), array)
             for member in _MEMBER.finditer(block.group(2))
-            for name, array, _ in _names(member.group(3))
+            for name, array, _, _ in _names(member.group(3))
         ]
         declaration = f"out {block.group(1)} {{ {members} }} {instance};"
         found.setdefault(block.group(1), (declaration, " ".join(statements)))
     for match in _IN.finditer(code):
         layout, before, after, kind, names = match.groups()
-        for name, array, _ in _names(names):
+        for name, array, _, _ in _names(names):
             if not name.startswith("gl_"):
                 ways = " ".join(f"{before}{after}".split())
                 declaration = " ".join(f"{layout or ''} {ways} out {kind} {name}{array};".split())
@@ -82,15 +86,24 @@ def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     return tuple(found.values())
 
 
-def _names(text: str) -> Iterator[tuple[str, str, int]]:
-    """Yield (name, array, place) of each name that a declaration lists; initialisers are left out."""
+def _with_qualifiers(code: str) -> str:
+    """Replace macros that stand for a qualifier, as texts for several versions of GLSL have them."""
+    macros = dict(_QUALIFIER.findall(code))
+    if not macros:
+        return code
+    return re.sub(rf"\b(?:{'|'.join(macros)})\b", lambda found: macros[found.group()], code)
+
+
+def _names(text: str) -> Iterator[tuple[str, str, int, str]]:
+    """Yield (name, array, place, as written with its initial value) of each name that a declaration lists."""
     flat = text
     while (inner := _BRACKETS.sub(lambda m: " " * len(m.group()), flat)) != flat:
         flat = inner
     start = 0
     for part in flat.split(","):
         if match := _NAME.match(part):
-            yield match.group(1), (match.group(2) or "").strip(), start + match.start(1)
+            written = text[start + match.start(1) : start + len(part)]
+            yield match.group(1), (match.group(2) or "").strip(), start + match.start(1), written
         start += len(part) + 1
 
 

@@ -7,7 +7,7 @@ not the longer one. ``Line.text`` stays what the author wrote.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 from playground.sketch.source import Line, SourceText
@@ -55,7 +55,6 @@ class Rewritten:
 
     source: SourceText
     prelude: tuple[str, ...]  # lines that come before it: extensions, outputs
-    names: Mapping[str, str]  # what was renamed: new name → the author's
 
 
 def version_of(source: SourceText) -> int:
@@ -72,6 +71,7 @@ def rewritten(source: SourceText) -> Rewritten:
     if version is None or int(version.group(1)) < 130:
         names = _clashing(source)
     data = "gl_FragData" in source.names
+    own = _own_functions(source) if names else ()
     rename = re.compile(rf"\b(?:{'|'.join(names)})\b") if names else None
     lines: list[Line] = []
     extensions: list[str] = []
@@ -83,9 +83,8 @@ def rewritten(source: SourceText) -> Rewritten:
             if _PRAGMA.match(code) or _EXTENSION.match(code) or (_VERSION.match(code) and not is_modern):
                 lines.append(replace(line, code=""))
                 continue
-        new = _OLD.sub(lambda found: _new(found, data=data), code)
-        if rename:
-            new = rename.sub(lambda found: _renamed(found, names), new)
+        new = rename.sub(lambda found: _renamed(found, names, own), code) if rename else code
+        new = _OLD.sub(lambda found: _new(found, data=data), new)
         lines.append(line if new == code else replace(line, code=new))
     prelude = extensions
     if data:
@@ -93,7 +92,7 @@ def rewritten(source: SourceText) -> Rewritten:
     elif "gl_FragColor" in source.names:
         prelude = [*prelude, f"layout(location = 0) out vec4 {_COLOUR};"]
     made = SourceText(source.path, tuple(lines), source.files)
-    return Rewritten(made, tuple(prelude), {new: old for old, new in names.items()})
+    return Rewritten(made, tuple(prelude))
 
 
 def _new(found: re.Match[str], *, data: bool) -> str:
@@ -109,12 +108,11 @@ def _new(found: re.Match[str], *, data: bool) -> str:
     return new if _DIRECTIVE.match(found.string) else new.ljust(len(old))
 
 
-def _renamed(found: re.Match[str], names: Mapping[str, str]) -> str:
-    """Return the new name; a function's name that is called, or in a directive, stays."""
-    name, code = found.group(), found.string
-    if name in _FUNCTIONS and (_DIRECTIVE.match(code) or code[found.end() :].lstrip().startswith("(")):
-        return name
-    return names[name]
+def _renamed(found: re.Match[str], names: Mapping[str, str], own: Collection[str]) -> str:
+    """Return the new name, but of GLSL's own function where it is called or a macro stands for it."""
+    name, after = found.group(), found.string[found.end() :].strip()
+    is_call = after.startswith("(") or (not after and _DIRECTIVE.match(found.string))
+    return name if name in _FUNCTIONS and is_call and name not in own else names[name]
 
 
 def _clashing(source: SourceText) -> dict[str, str]:
@@ -123,6 +121,7 @@ def _clashing(source: SourceText) -> dict[str, str]:
     found = sorted(source.names & _NEVER_NAMES)
     found += [name for name in sorted(source.names & _SINCE_TAKEN) if _declares(code, name)]
     found += [name for name in _FUNCTIONS if name in source.names and _declares(code, name, variable=True)]
+    found += sorted(_own_functions(source).difference(found))
     names: dict[str, str] = {}
     for name in found:
         new = f"{name}_"
@@ -130,6 +129,13 @@ def _clashing(source: SourceText) -> dict[str, str]:
             new += "1"
         names[name] = new
     return names
+
+
+def _own_functions(source: SourceText) -> set[str]:
+    """Return the functions of a text that would hide what its older lookups are rewritten as."""
+    code = source.code
+    looked_up = {_new(found, data=False).rstrip() for found in _OLD.finditer(code) if found.group("lookup")}
+    return {name for name in looked_up & source.names if _declares(code, name)}
 
 
 def _declares(code: str, name: str, *, variable: bool = False) -> bool:

@@ -41,7 +41,6 @@ Read = Callable[[str, Path, Path], Technique]
 STAND_INS = {"noise": "foreign/noise", "picture": "foreign/picture"}
 SAMPLING = Sampling("linear", "repeat", mipmap=True)
 _STAND_IN_SIZE = ("256", "256")
-_UNIFORM = re.compile(r"\buniform\b")
 _COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
 _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
 _MODEL = "MODEL_"
@@ -157,16 +156,16 @@ class _Shader:
                 yield one.name, one.type
 
     def _line(self, one: Declared) -> Line:
-        return self.source.lines[self.code.count("\n", 0, one.position)]
+        return self.source.lines[one.line]
 
     # ── parameters ───────────────────────────────────────────────────────────
 
     def _parameters(self) -> tuple[Parameter, ...]:
         """Return the text's own uniforms; one that no panel can show keeps what the text gives it."""
         found: dict[str, Parameter] = {}
-        for line in self.source.lines:
-            if not _UNIFORM.search(line.code):
-                continue
+        for declared in self.declared.values():
+            line = self._line(declared)
+            line = replace(line, code=f"uniform {declared.type} {' '.join(declared.written.split())};")
             annotated = line.comment.startswith("!")  # in our own way, so that a parameter is meant
             skip = () if annotated else self.rules.names.keys()
             try:
@@ -175,8 +174,7 @@ class _Shader:
                 if annotated:
                     raise
                 continue
-            for one in some:
-                found.setdefault(one.name, one)
+            found |= {one.name: one for one in some}
         return (*found.values(), *self.pictures.values())
 
     def _pictures(self) -> Iterator[tuple[str, Parameter]]:

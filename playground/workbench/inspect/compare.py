@@ -19,6 +19,7 @@ from playground.engine.plan import Plan
 from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
+from playground.workbench.data_files import hash_of
 from playground.workbench.edits import Draft
 from playground.workbench.inspect.blend import Blend
 from playground.workbench.last_frame import Painter, Picture
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
 
     from playground.engine.engine import Engine
 
-Stamp = tuple[int, int]
 PERIOD = 0.5
 """[s] that each of the two is shown while they flicker."""
 
@@ -53,7 +53,7 @@ class Stored:
     path: Path  # of the sketch's file
     draft: Draft
     steps: Mapping[str, int]  # repeats that are stopped early
-    files: Mapping[Path, Stamp | None]  # images and heightmaps it reads, as they were
+    files: Mapping[Path, str]  # hashes of the images and heightmaps it reads, as they were
 
 
 class Compare:
@@ -73,7 +73,7 @@ class Compare:
         self._drawn: object = None  # what A's picture shows
         self._is_preview = False  # as of ``workbench.preview``
         self._reported = False  # that A cannot be drawn
-        self._recalled: Draft | None = None  # A of an earlier session, while it is tried
+        self._recalled: tuple[Compared, Draft] | None = None  # A of an earlier session, while it is tried
 
     @property
     def on(self) -> bool:
@@ -147,9 +147,10 @@ class Compare:
         session = self.session
         if session.shown is None or session.plan is None:
             return False
-        if self._recalled is None:
-            self._recalled, _ = first_draft(session.shown.file, StoredEdits(compared.edits))
-        draft = self._recalled
+        known, file = self._recalled, session.shown.file
+        if known is None or known[0] is not compared or known[1].file is not file:
+            known = self._recalled = compared, first_draft(file, StoredEdits(compared.edits))[0]
+        draft = known[1]
         report = session.drafts.check_aside(draft.sketch)
         if report is None:
             return False
@@ -162,8 +163,8 @@ class Compare:
         except PlaygroundError as error:
             session.notes.append(f"A of the last session is left out: {error}")
             return True
-        files = {path: _stamp(path) for path in _files_of(plan)}
-        self._set(Stored(session.path, draft, dict(compared.steps), files))
+        files = {path: hash_of(path) for path in _files_of(plan)}
+        self._set(Stored(session.drafts.shown_path, draft, dict(compared.steps), files))
         self.split, self.gain = compared.split, compared.gain
         self.mode = next((mode for mode in Mode if mode.value == compared.mode), Mode.DIVIDER)
         return True
@@ -175,8 +176,8 @@ class Compare:
         session = self.session
         if session.shown is None or session.plan is None:
             return None
-        files = {path: _stamp(path) for path in _files_of(session.plan)}
-        return Stored(session.path, session.shown, dict(session.view.steps), files)
+        files = {path: hash_of(path) for path in _files_of(session.plan)}
+        return Stored(session.drafts.shown_path, session.shown, dict(session.view.steps), files)
 
     def _take(self, stored: Stored) -> None:
         session = self.session
@@ -194,7 +195,7 @@ class Compare:
         stored, session = self._stored, self.session
         if stored is None or session.awaits_data:
             return
-        if stored.path != session.path:
+        if stored.path != session.drafts.shown_path:
             self.end()  # another sketch was opened
             return
         plan = session.plan
@@ -234,7 +235,7 @@ class Compare:
         session, engine = self.session, self.session.engine
         sketch = self._seen_as(stored.draft.sketch, plan)
         chosen = as_preview(sketch) if preview else sketch
-        changed = [path for path, stamp in stored.files.items() if _stamp(path) != stamp]
+        changed = [path for path, before in stored.files.items() if hash_of(path) != before]
         try:
             if changed:
                 raise PlaygroundError(f"{changed[0].name} is another file now")
@@ -291,11 +292,3 @@ def _files_of(plan: Plan) -> list[Path]:
             if parameter.widget.kind == "file" and step.values.get(parameter.name):
                 found.append(Path(str(step.values[parameter.name])))
     return found
-
-
-def _stamp(path: Path) -> Stamp | None:
-    try:
-        found = path.stat()
-    except OSError:
-        return None
-    return found.st_mtime_ns, found.st_size

@@ -54,7 +54,7 @@ class FigureView:
         self.key: Key | None = None  # of the picture that is shown
         self.scene: Scene | None = None
         self._begins = begins  # called before the first figure is shown
-        self._path: Path | None = None
+        self._opened = 0  # the count of sketches opened, when a figure or what was open was shown
         self._set: tuple[Edits, Mapping[str, int]] = (Edits(), {})  # for the picture
         self._histories: dict[Path, tuple[History, Edits]] = {}
         self._waits = False
@@ -105,7 +105,7 @@ class FigureView:
         session.restore_view(steps, map_of(scene))
         session.view.framed_for = scene.pixels
         session.clock.time, session.clock.playing = scene.time, False
-        self.scene, self.key, self._path, self._waits = scene, key, session.path, True
+        self.scene, self.key, self._opened, self._waits = scene, key, session.drafts.opened, True
         self._set = edits, steps
 
     def set_texts(self, texts: Mapping[str, str]) -> None:
@@ -131,7 +131,7 @@ class FigureView:
         if self._compared is not None and not session.drafts.opening:
             self.compared_with.resume(self._compared)
             self._compared = None
-        if self.before_lesson is not None and session.path != self._path:
+        if self.before_lesson is not None and session.drafts.opened != self._opened:
             self.forget_figure()  # the reader opened a sketch
             return
         if self._waits and session.drafts.stage is ReloadStage.NONE and session.shown is not None:
@@ -159,7 +159,6 @@ class FigureView:
         self._waits = False
         self._histories.pop(own.path, None)
         self.before_lesson = self.scene = self.key = None
-        self._path = session.path
 
     def _begin(self) -> None:
         """Store what is open, if the reader opened it."""
@@ -174,7 +173,7 @@ class FigureView:
         self.before_lesson = BeforeLesson(
             session.path, edits, steps, shown, clock, self.undo.opened, compared
         )
-        self._path = session.path
+        self._opened = session.drafts.opened
 
     def _leave(self) -> None:
         """Store the user's edits of the sketch that is left, for when a lesson shows it again."""

@@ -56,4 +56,5 @@ def open_sketch(reader: Reader, name: str) -> None:
     bench.interface.panel_shown = True
     opens: Callable[[Path], None] = reader.play or bench.commands.open
     opens(path)
-    bench.undo.begin(History())
+    if bench.session.drafts.opening:  # else it is open already
+        bench.undo.begin(History())

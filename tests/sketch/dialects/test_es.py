@@ -55,6 +55,27 @@ def test_a_line(codes, old, new):
     assert codes(old) == [new]
 
 
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        (
+            "uniform sampler2D texture;\n#define read(p) texture2D(texture, p)",
+            ["uniform sampler2D texture_;", "#define read(p) texture(texture_, p)"],
+        ),
+        (
+            "vec2 texture;\n#define look texture\n#define call texture(s, p)",
+            ["vec2 texture_;", "#define look texture", "#define call texture(s, p)"],
+        ),
+        (
+            "vec4 texture(vec2 p) { return texture2D(s, p); }\nvec4 a = texture(p);",
+            ["vec4 texture_(vec2 p) { return texture  (s, p); }", "vec4 a = texture_(p);"],
+        ),
+    ],
+)
+def test_what_an_author_calls_texture_is_told_from_the_lookup(codes, old, new):
+    assert codes(old) == new
+
+
 def test_comments_stay_as_they_are_written(codes):
     assert codes("// varying\nfloat a; /* gl_FragColor */ float b; // filter") == [
         "",

@@ -23,6 +23,8 @@ from playground.sketch.load import load
         ('#iChannel0 "file://a.png"\nvoid mainImage(out vec4 c, vec2 p) {}', "vscode"),
         ("#iUniform float a = 1.0\nvoid main() {}", "vscode"),
         ("int main ( ) {}", "main"),
+        ("#define M mainImage\nvoid M(out vec4 c, vec2 p) {}", "shadertoy"),
+        ("#define M mainImage\nvoid main() {}", "main"),
         ("vec2 mainSound(float t) {}", "sound"),
         ("float f() { return 1.0; }", None),
         ("", None),
@@ -66,10 +68,23 @@ def test_uniforms_of_several_lines_and_names_are_found():
     }
 
 
+def test_a_macro_may_stand_for_a_qualifier():
+    code = "#ifdef A\n#define IN in\n#else\n  # define IN in\n#endif\n#define U uniform\n#define INNER in_\n"
+    code += "IN vec2 uv;\nU float a; U vec2 b;\nINNER vec2 c;\n"
+    assert {n: (d.type, d.line) for n, d in uniforms(code).items()} == {
+        "a": ("float", 8),
+        "b": ("vec2", 8),
+    }
+    assert vertex_outputs(code) == (("out vec2 uv;", "uv = k_share;"),)
+
+
 def test_a_local_name_is_no_declaration_of_the_file():
     code = "float time;\nfloat f(float iTime) { float mouse = 1.0; return mouse; }\n"
     assert is_declared(code, "time", anywhere=False) and is_declared(code, "f", anywhere=False)
-    assert not is_declared(code, "mouse", anywhere=False) and is_declared(code, "mouse", anywhere=True)
+    for name in ("mouse", "iTime"):
+        assert not is_declared(code, name, anywhere=False) and is_declared(code, name, anywhere=True)
+    code = f"#define BEGIN (\n#define OPEN {{\n{code}"
+    assert is_declared(code, "time", anywhere=False) and is_declared(code, "f", anywhere=False)
 
 
 def test_what_a_vertex_shader_gives():

@@ -1,0 +1,94 @@
+"""Random sequences of edits, checks and openings of two sketches: each keeps what was set in it."""
+
+from __future__ import annotations
+
+import random
+
+import pytest
+
+from .checked_desk import BAD, GOOD, LEVEL, Desk
+
+SHOWN, OTHER = "one", "two"
+
+
+class Player:
+    """Does one random thing after another, and knows what was set last in each sketch."""
+
+    def __init__(self, desk: Desk, seed: int) -> None:
+        self.desk, self.random, self.done = desk, random.Random(seed), list[str]()
+        self.level = dict.fromkeys((SHOWN, OTHER), 0.25)
+        self.steps: dict[str, dict[str, int]] = {SHOWN: {}, OTHER: {}}
+        self.opened = SHOWN
+        self.acts = [
+            *(self.edit, self.edit, self.stop, self.choose, self.open_one, self.open_two),
+            *(self.pass_check, self.pass_check, self.fail_check, desk.frame, desk.drafts.reload),
+        ]
+
+    def play(self, count: int) -> None:
+        for _ in range(count):
+            act = self.random.choice(self.acts)
+            act()
+            self.desk.bench.undo.record()
+            self.done.append(act.__name__)
+
+    def edit(self) -> None:
+        self.level[self.desk.name] = level = self.random.random()
+        self.desk.drafts.set(LEVEL, level)
+
+    def stop(self) -> None:
+        self.steps[self.desk.name] = {"height": (step := self.random.choice((1, 2)))}
+        self.desk.session.stop_at("height", step)
+
+    def choose(self) -> None:
+        self.desk.drafts.choose("height", self.random.choice(("./hills", "./dunes")))
+
+    def open_one(self) -> None:
+        self.open(SHOWN)
+
+    def open_two(self) -> None:
+        self.open(OTHER)
+
+    def open(self, name: str) -> None:
+        self.desk.bench.commands.open(self.desk.folder / name)
+        self.opened = name
+
+    def pass_check(self) -> None:
+        self.desk.answer(GOOD)
+
+    def fail_check(self) -> None:
+        self.desk.answer(BAD)
+
+    def check(self) -> None:
+        """Compare what is shown with what was set in it last."""
+        name = self.desk.name
+        found = self.desk.level, dict(self.desk.session.view.steps)
+        assert found == (pytest.approx(self.level[name]), self.steps[name]), self.done
+
+    def close(self) -> None:
+        """Close the window; open one on each sketch, and compare it with what was set."""
+        self.desk.close()
+        for name in (SHOWN, OTHER):
+            self.desk.start(name)
+            self.desk.frame()
+            self.check()
+            self.desk.close()
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_each_of_two_sketches_keeps_what_was_set_in_it(desk: Desk, seed: int) -> None:
+    player = Player(desk, seed)
+    player.play(player.random.choice((4, 8, 14)))
+    desk.drafts.reload()
+    for _ in range(4):
+        player.pass_check()
+    assert desk.session.error is None and desk.name == player.opened, player.done
+    player.check()
+    player.close()
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_a_window_that_is_closed_at_any_moment_has_remembered_both(desk: Desk, seed: int) -> None:
+    player = Player(desk, seed)
+    player.play(player.random.choice((2, 5, 9)))
+    desk.frame()
+    player.close()
