@@ -24,7 +24,7 @@ def map_of(shown: str, channel: str = "") -> str:
     return text + (f'set = {{ channel = "{channel}" }}\n' if channel else "")
 
 
-def map_of_height(use: str = "./land", channel: str = "") -> str:
+def map_of_height(use: str = "./terrain", channel: str = "") -> str:
     """Return a pass "height" and the view that shows it from above."""
     return passes(height=use) + map_of("height", channel)
 

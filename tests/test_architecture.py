@@ -53,7 +53,7 @@ NAMED = {
     "workbench": {"map"},  # shows any texture from above
 }
 
-# The lists of what is still to go: what is mended is taken out of its list, and nothing is added.
+# The lists of what is still to go: what is fixed is taken out of its list, and nothing is added.
 CIRCLES: tuple[set[str], ...] = ()
 UNCLEAR = ("beside", "drawn", "hasty", "kept", "lay", "mend", "pictures", "said", "same", "seen", "words")
 UNCLEAR_MODULES: set[str] = set()
@@ -113,7 +113,7 @@ def test_imports_point_down():
 
 
 def files_named(tree: ast.Module, path: Path, there: dict[str, Path]) -> set[Path]:
-    """Return the files of our own that a module takes names from, wherever its imports stand."""
+    """Return the files of our own that a module takes names from, wherever its imports are."""
     found = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -191,7 +191,7 @@ def test_importing_loads_nothing_that_is_slow():
     assert heavy == "", f"importing playground imports {heavy}"
 
 
-def test_every_public_name_comes_from_the_home_that_it_is_said_to_have():
+def test_every_public_name_comes_from_the_module_that_the_list_gives():
     """The table that is run, the imports that type checkers read, and what is there, are the same."""
     import playground
 
@@ -272,7 +272,7 @@ def shrinks(name: str, found: set[str], allowed: set[str], what: str) -> None:
 
 
 # A whole shader, or a part of one: lines of GLSL. What is put together from names (a wrapper's
-# `uniform` for each output, one `main` for each kind of kernel) has no file to stand in.
+# `uniform` for each output, one `main` for each kind of kernel) has no file to be in.
 SHADER = re.compile(
     r"^#version|^\s*(?:in|out|uniform|flat|varying|attribute) \w+ \w+.*;"
     r"|^\s*(?:void|float|[iu]?vec[234]) \w+\(.*\{",
@@ -295,7 +295,7 @@ def test_shaders_stand_in_files():
     shrinks("GLSL_IN_PYTHON", found, GLSL_IN_PYTHON, "has a shader in a string")
 
 
-def test_nothing_asks_to_be_kept_the_same():
+def test_nothing_must_be_edited_in_two_places():
     """What two places say has one home, or a test that they agree."""
     wrong = []
     asks = re.compile(r"\bmust match\b|\bkeep (?:this |these |it )?in (?:sync|step)\b|\bsame as in\b", re.I)

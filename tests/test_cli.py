@@ -110,7 +110,7 @@ def well(done: subprocess.CompletedProcess[str]) -> subprocess.CompletedProcess[
 # ── what it must not cost ────────────────────────────────────────────────────
 
 
-def test_what_only_tells_loads_no_opengl():
+def test_what_only_prints_loads_no_opengl():
     code = (
         "import sys; from playground.cli import main\n"
         "for words in sys.argv[1:]:\n"
@@ -551,7 +551,7 @@ def test_list_as_json_holds_every_sketch_and_technique(capsys: pytest.CaptureFix
     assert not [e for group in found.values() for e in group if e["error"]]
 
 
-def test_list_of_one_sketch_tells_its_parameters(
+def test_list_of_one_sketch_prints_its_parameters(
     slope: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):
     monkeypatch.chdir(slope.parent)
@@ -570,7 +570,7 @@ def test_list_of_a_folder_lists_its_techniques(capsys: pytest.CaptureFixture[str
 # ── doctor ───────────────────────────────────────────────────────────────────
 
 
-def test_doctor_tells_the_context_as_words_and_as_json(run: Run):
+def test_doctor_prints_the_context_as_text_and_as_json(run: Run):
     done = well(run("doctor"))
     assert re.search(r"^context +OpenGL \d\.\d$", done.stdout, re.MULTILINE)
     health = json.loads(well(run("doctor", "--json")).stdout)

@@ -29,7 +29,7 @@ use = "./same"
 [parameters]
 rise = "height.rise"
 """
-SKETCH = "format = 1\nsize = 33\n" + map_of_height("./terrain", channel="red")
+SKETCH = "format = 1\nsize = 33\n" + map_of_height(channel="red")
 
 
 @pytest.fixture

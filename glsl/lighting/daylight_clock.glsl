@@ -4,7 +4,7 @@
 //   needs    the time
 //   units    hours; hours a second
 //   source   none
-//   tested   tests/glsl/test_daylight.py: the sun moves with the time, and without a clock stands
+//   tested   tests/glsl/test_daylight.py: the sun moves with the time, and without a clock stays
 //            still
 //
 // It is a pass of its own because what names the time runs for every picture, and all that

@@ -33,7 +33,7 @@ float steeper(float before, float here, float after) {
 void kernel(ivec2 texel, out float texels, out float metres, out float share) {
     ivec2 grid = textureSize(visibility, 0);
     ivec2 last = grid - 1;
-    // The widths stand where the visibility's own texels stand.
+    // The widths are where the visibility's own texels are.
     ivec2 spot = ivec2(place_on(grid, texel, size) + 0.5);
     float here = part_at(spot, last);
     vec2 slope = vec2(

@@ -3,7 +3,7 @@
 //   gives    horizon: tangents of the horizon's elevation, one a texel of the terrain
 //   needs    lighting/daylight_reading.glsl, lighting/sun_sweep/lines.glsl, maths/land.glsl
 //   units    rise over run; -10000 where there is no terrain towards the sun
-//   source   see the kernel beside it
+//   source   see the kernel next to it
 //   tested   tests/glsl/test_shadows.py, against a march in NumPy
 //   agrees   exactly: k(s) of the heights up to a row is k(s) of those up to the row before it, or
 //            the row itself; so each row compares what the kernel compares, in the same order

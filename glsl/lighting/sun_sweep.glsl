@@ -29,7 +29,7 @@
 // `shape` and `spread` say how much of the sky the sun covers, and so where the slopes are. The
 // methods of shadow sample the horizon at the terrain's own size only; at any other, which they
 // ask for when they do not need it, it is -10000. Each texel looks along its lines anew;
-// sun_sweep.comp beside this follows each line once. Where there are no compute shaders the
+// sun_sweep.comp next to it follows each line once. Where there are no compute shaders the
 // methods march, which is much faster than this text.
 //
 // Against a march: hard shadows differ on at most 0.6 % of the texels of the terrains that ship,

@@ -6,7 +6,7 @@
 //   source   derived here
 //   tested   tests/glsl/test_view.py: the terrain's corners are the corner texels' middles
 //
-// The first and the last texel of a row stand on the terrain's edges, but a texture's 0 and 1
+// The first and the last texel of a row are on the terrain's edges, but a texture's 0 and 1
 // lie half a texel outside their middles. Without this, textures of two sizes drift apart.
 #ifndef MATHS_DRAPE
 #define MATHS_DRAPE

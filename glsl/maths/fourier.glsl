@@ -68,7 +68,7 @@ void level(inout vec4 v[16], int span, bool wanted) {
 }
 
 // The transforms of blocks of 2^levels numbers, side by side, levels 0 to 4. At each place
-// is then the number of its block that block_number tells.
+// is then the number of its block that block_number returns.
 void transform_blocks(inout vec4 v[16], int levels) {
     level(v, 8, levels > 3);
     level(v, 4, levels > 2);
@@ -93,7 +93,7 @@ void level_back(inout vec4 v[16], int span, bool wanted) {
     }
 }
 
-// Forward as well, but from numbers that stand as transform_blocks leaves them to numbers in
+// Forward as well, but from numbers in the order that transform_blocks leaves them in to numbers in
 // order.
 void transform_blocks_back(inout vec4 v[16], int levels) {
     level_back(v, 1, levels > 0);

@@ -6,7 +6,7 @@
 //   source   derived here
 //   tested   tests/glsl/test_maths.py: corners on corners, there and back
 //
-// Texels are nodes: the first and the last of a row stand on the terrain's edges, so n texels
+// Texels are nodes: the first and the last of a row are on the terrain's edges, so n texels
 // are n - 1 spacings long. That makes grids of different sizes share their corners.
 #ifndef MATHS_LAND
 #define MATHS_LAND

@@ -35,7 +35,7 @@ vec2 gradient_of(uint bits) {
 }
 
 // Noise in x, its slopes to the east and to the north in y and z, at the place t in a cell.
-// Slopes that nobody reads cost nothing.
+// Slopes that are not read cost nothing.
 vec3 perlin_in_cell(ivec2 cell, vec2 t, uint seed) {
     uvec2 columns = lattice_columns(cell.x, seed);
     uvec2 rows = lattice_rows(cell.y, seed);

@@ -11,7 +11,7 @@
 //
 // A sine-based hash differs from driver to driver and repeats far from the origin;
 // whole numbers do neither. The key is a lattice point and a seed, so a number does not
-// depend on the order in which numbers are asked for.
+// depend on the order in which numbers are computed.
 //
 // Whoever draws adds a salt of its own to the seed, the CRC-32 of its name:
 //     const uint SALT = 0x93e2094du;  // CRC-32 of "generation/white_noise"

@@ -15,7 +15,7 @@
 //
 // It is made of molecules, aerosol and ozone.
 //
-// Three wavelengths stand for the spectrum, and white is the sun outside the air, as with a
+// Three wavelengths represent the spectrum, and white is the sun outside the air, as with a
 // camera balanced for daylight. They, and ozone's coefficients, were fitted here: the sun's light
 // through 1 to 20 air masses, turbidity 2 to 6, has the linear sRGB colour that 81 wavelengths
 // and the eye's response give it, to 0.035 of its strongest channel.

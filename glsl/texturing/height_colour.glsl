@@ -22,8 +22,8 @@ uniform vec3 high = vec3(0.230, 0.140, 0.080);    //! colour group("Colours") At
 uniform vec3 top = vec3(0.850, 0.870, 0.900);     //! colour group("Colours")
                                                   //! At the highest level and above
 uniform vec4 levels = vec4(20.0, 95.0, 165.0, 225.0);  //! slider(0, 255) step(1) group("Heights")
-                                                       //! Where each colour stands; each at least
-                                                       //! as high as the one before
+                                                       //! The height of each colour, at least
+                                                       //! that of the one before
 uniform bool bands = false;  //! group("Heights")
                              //! One colour from each level to the next, as on a map, instead of
                              //! passing from one to the other

@@ -1,4 +1,4 @@
-// texturing/hex_tiled.glsl -- an image laid over the terrain in hexagons, without repeats.
+// texturing/hex_tiled.glsl -- an image mapped onto the terrain in hexagons, without repeats.
 //
 //   gives    colour, linear light
 //   needs    maths/angle.glsl, maths/land.glsl, texturing/hex_tiling.glsl,
@@ -20,14 +20,14 @@
 uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
 
 uniform float repeats = 24.0;    //! slider(1, 256) step(1)
-                                 //! How often the image would stand side by side from west to east
+                                 //! How often the image would repeat from west to east
 uniform float cells = 3.0;       //! slider(1, 8) step(0.1)
                                  //! Hexagons across the width of the image: the more, the smaller
                                  //! the pieces of it
 uniform float sharpness = 3.0;   //! slider(1, 16) step(0.1)
                                  //! How narrow the borders are where pieces pass into one another
 uniform float turn = 0.0;        //! angle(0, 180)
-                                 //! How far chance turns each piece, either way. For images that
+                                 //! How far each piece is rotated at random. For images that
                                  //! look alike in every direction
 uniform uint seed = 1u;          //! slider(0, 9999) Which pieces
 uniform float detail = 1.0;      //! slider(0, 1) step(0.01)

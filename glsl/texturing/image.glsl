@@ -10,7 +10,7 @@
 // detail that suits this pass's size, a smaller one is interpolated. Its alpha is left out.
 //
 // As a tile, this pass's texels divide the image evenly, so that it meets its own copy: what
-// texturing/tiled and texturing/hex_tiled lay. Over the terrain, the outermost texels stand on
+// texturing/tiled and texturing/hex_tiled repeat. Over the terrain, the outermost texels are on
 // the terrain's edges, as in every texture of the whole terrain, and so do the image's edges; an
 // image of other proportions than the terrain's is stretched.
 #include "maths/land.glsl"
@@ -21,7 +21,7 @@ uniform sampler2D image;  //! file("sketches/data/jacksboro_from_above.jpg", "li
                           //! PNG, JPEG or WebP, north on top
 uniform int fit = 0;      //! menu("tile", "land")
                           //! Whether its texels divide the image evenly, as a tile's, or the
-                          //! outermost stand on the terrain's edges
+                          //! outermost are on the terrain's edges
 
 vec4 kernel(ivec2 texel) {
     vec2 texels = vec2(textureSize(image, 0));

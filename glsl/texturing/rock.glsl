@@ -7,7 +7,7 @@
 //   tested   tests/glsl/test_base_textures.py: seamless, its mean colour, its seeds
 //
 // The place is bent by noise before anything is looked up, or the blocks' straight edges
-// would look laid by a mason. Hollows are darker than what stands out: they see less sky.
+// would look laid by a mason. Hollows are darker than what protrudes: they see less sky.
 // No light falls from a side; that is for the lighting stage.
 #include "noise/periodic.glsl"
 #pragma kernel(output = "colour:rgba16f")

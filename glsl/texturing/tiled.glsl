@@ -1,4 +1,4 @@
-// texturing/tiled.glsl -- an image laid over the terrain in tiles, without visible repeats.
+// texturing/tiled.glsl -- an image tiled over the terrain, without visible repeats.
 //
 //   gives    colour, linear light
 //   needs    maths/land.glsl; an image that repeats
@@ -8,7 +8,7 @@
 //            too fine, and less contrast about the same mean where less detail is wanted
 //
 // The thesis takes texel (i, j) of the image, modulo its size. Here the image repeats so
-// many times over the terrain, whatever the size of either, and is read at the level of
+// many times over the terrain, at any size of either, and is read at the level of
 // detail where its texels are as large as this texture's: read at level 0, a fine image
 // in a small texture is a few texels picked at random.
 //
@@ -24,7 +24,7 @@
 uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
 
 uniform float repeats = 24.0;      //! slider(1, 256) step(1)
-                                   //! How often the images stand side by side from west to east
+                                   //! How often the images repeat from west to east
 uniform float variety = 0.5;       //! slider(0, 1) step(0.01)
                                    //! How much of each image is read a second time, larger and
                                    //! turned, so that its repeats do not show

@@ -1,4 +1,4 @@
-// texturing/triplanar.glsl -- an image laid on the terrain from above and from the sides.
+// texturing/triplanar.glsl -- an image projected onto the terrain from above and from the sides.
 //
 //   gives    colour, linear light
 //   needs    lighting/sun.glsl, maths/land.glsl, terrain/heightfield.glsl,
@@ -28,7 +28,7 @@ uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
 uniform sampler2D height;  //! input
 
 uniform float repeats = 24.0;    //! slider(1, 256) step(1)
-                                 //! How often the image stands side by side from west to east
+                                 //! How often the image repeats from west to east
 uniform vec2 cliffs = vec2(30.0, 45.0);  //! slider(0, 90) step(1) unit("degrees")
                                          //! parts("seen from", "alone from")
                                          //! How steep terrain must be for its sides to be seen,

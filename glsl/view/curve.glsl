@@ -6,7 +6,7 @@
 //   source   none: a picture of numbers. A pixel is covered by how far it is from the curve
 //   tested   tests/glsl/test_curve_view.py, by where curves and axes must be in the picture
 //
-// Texel k of n is at k / (n - 1) of the picture's width. Curves above each other stand in
+// Texel k of n is at k / (n - 1) of the picture's width. Curves above each other are in
 // panels of the same height, the first row on top; the lowest number is at a panel's foot.
 #include "colour/encode.glsl"
 #include "maths/number.glsl"
@@ -29,7 +29,7 @@ uniform vec3 line_last = vec3(0.45, 0.10, 0.03);  //! colour group("Colours")
 uniform vec3 ground = vec3(1.0);              //! colour group("Colours") Behind the curves
 uniform bool axis = true;             //! group("Axis") A line across each panel
 uniform float baseline = 0.0;         //! slider(-4, 4) step(0.01) group("Axis")
-                                      //! The number it stands at
+                                      //! The number it is at
 uniform vec3 axis_colour = vec3(0.55);  //! colour group("Axis") Its colour
 
 float distance_to_segment(vec2 place, vec2 from, vec2 to) {

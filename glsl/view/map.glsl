@@ -16,8 +16,8 @@ uniform int channel = 0;              //! menu("colour", "red", "green", "blue",
                                       //! number
 uniform int ramp = 0;                 //! menu("grey", "false colour", "viridis", "cividis",
                                       //! "cool and warm")
-                                      //! How a number is shown: all but grey are told apart by
-                                      //! colour-blind eyes; the last goes away from a middle to
+                                      //! How a number is shown: colour-blind eyes distinguish
+                                      //! all but grey; the last goes away from a middle to
                                       //! both sides
 uniform int shrunk = 0;               //! menu("mean", "nearest")
                                       //! How a texture larger than the picture is shown: each

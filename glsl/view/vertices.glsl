@@ -1,4 +1,4 @@
-// view/vertices.glsl -- where the vertices of mesh "land" stand.
+// view/vertices.glsl -- where the vertices of mesh "land" are.
 //
 //   gives    vertex_of_mesh, share_of_vertex
 //   needs    view/geomipmap/tiles.glsl, view/surface.glsl; clip_from_world, eye, extent and

@@ -29,7 +29,7 @@ class Form:
     texture: str = ""  # "pass[.inner…][:output]"; "": the heights that the picture shows
     kind: str = ""  # height, colour or numbers; "": as the texture's name tells
     bits: int = 0  # of a number; 0: the format's usual
-    span: tuple[float, float] | None = None  # what 0 and the largest whole number stand for
+    span: tuple[float, float] | None = None  # what 0 and the largest whole number mean
     grid: int = 0  # vertices of a mesh's longer side; 0: as many as the terrain has texels, up to 513
     light: bool = False  # multiply a mesh's texture by the light
 

@@ -45,7 +45,7 @@ def read_sweep(sketch: Sketch, text: str, steps: int = USUAL_STEPS) -> Sweep:
     """Return what ``path=a..b``, ``path=a..b,steps`` or ``path=1,2,4`` says; raise ``ParameterError``.
 
     ``steps`` is how many values a range has that does not say. Values of a whole vector are
-    parted by semicolons, as ``light.sun=135,25;250,12``.
+    separated by semicolons, as ``light.sun=135,25;250,12``.
     """
     path, equals, given = (each.strip() for each in text.partition("="))
     if not equals or not path or not given:
@@ -157,7 +157,7 @@ def swept(sketch: Sketch, sweeps: Sequence[Sweep]) -> list[list[Swept]]:
 
 
 def columns_of(count: int) -> int:
-    """Return how many of so many pictures stand side by side: all rows full if that leaves few columns."""
+    """Return how many of so many pictures are side by side: all rows full if that leaves few columns."""
     best = math.ceil(math.sqrt(count))
     full = [columns for columns in range(best, min(count, 2 * best) + 1) if count % columns == 0]
     return full[0] if full else best

@@ -1,6 +1,6 @@
 """Encode a texture as the bytes of a file: heights, colours or other numbers.
 
-What whole numbers stand for is written where the format has a place for it (PNG's texts,
+What whole numbers mean is written where the format has a place for it (PNG's texts,
 GDAL's scale and offset in TIFF) and in a JSON next to the file where it has none (raw). TIFF carries
 GeoTIFF's tags: texels are points, the terrain's south-west corner is (0, 0), metres.
 
@@ -37,7 +37,7 @@ class Layer:
     kind: str  # height: [m] above sea level; colour: linear; numbers
     spacing: tuple[float, float]  # [m] a texel, east and north
     bits: int
-    span: tuple[float, float] | None = None  # what 0 and the largest whole number stand for
+    span: tuple[float, float] | None = None  # what 0 and the largest whole number mean
 
     @property
     def unit(self) -> str:
@@ -50,7 +50,7 @@ class Encoded:
     """The bytes of a file, and what there is to say of them."""
 
     data: bytes
-    details: tuple[str, ...] = ()  # parts of a sentence: bits, what the numbers stand for
+    details: tuple[str, ...] = ()  # parts of a sentence: bits, what the numbers mean
     warning: str = ""  # what was lost
     sidecar: bytes = b""  # of a JSON file that describes it
 
@@ -79,7 +79,7 @@ def encode(layer: Layer, ending: str) -> Encoded:
 
 
 def usual_span(layer: Layer) -> tuple[float, float]:
-    """Return what 0 and the largest number stand for unless given: of heights, the lowest and highest."""
+    """Return what 0 and the largest number mean unless given: of heights, the lowest and highest."""
     if layer.kind != HEIGHT:
         return 0.0, 1.0
     _check_finite(layer.values, "whole numbers")
@@ -229,7 +229,7 @@ def _tiff(samples: NDArray[Any], layer: Layer, span: tuple[float, float] | None 
     import tifffile
 
     (dx, dy), rows = layer.spacing, samples.shape[0]
-    citation = "metres from the south-west corner of the land|"
+    citation = "metres from the south-west corner of the terrain|"
     # Key, where its value is (0: here), how many, value.
     keys = [
         (1024, 0, 1, 1),  # GTModelType: projected

@@ -79,7 +79,7 @@ def export(
     ] = "",
     span: Annotated[
         str,
-        value("--range LOW,HIGH", "What 0 and the largest whole number stand for, in metres for heights."),
+        value("--range LOW,HIGH", "What 0 and the largest whole number mean, in metres for heights."),
     ] = "",
     grid: Annotated[
         str,

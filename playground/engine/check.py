@@ -192,7 +192,7 @@ class _Check:
         assert owner is not None
         technique = self.read(owner)
         own = next((v for v in technique.variants if Path(v.path) == self.path), None)
-        if own is None:  # a .comp with its own #version, beside a shader that can have no fast variant
+        if own is None:  # a .comp with its own #version, next to a shader that can have no fast variant
             self.shader()
             return
         check_shape(own.technique, technique)

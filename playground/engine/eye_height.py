@@ -42,7 +42,7 @@ class EyeHeight:
         """The warning about the last frame's eye; "" if it was not raised."""
         if not self.raised_by:
             return ""
-        return f"the eye stood under the terrain and was raised by {self.raised_by:.0f} m, to just above it"
+        return f"the eye was under the terrain and was raised by {self.raised_by:.0f} m, to just above it"
 
     def raised_as_before(self, plan: Plan, keys_of: Callable[[Plan], Keys]) -> Camera | None:
         """Return a camera over the terrain where the last frame's eye was raised over the same terrain.

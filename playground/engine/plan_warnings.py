@@ -72,7 +72,7 @@ def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
 
 
 def _wired(step: Step) -> set[str]:
-    """Return the inputs that something feeds; a stand-in is the pass beside the step of the input's name."""
+    """Return the inputs that something feeds; a stand-in is a pass of its name, next to the step."""
     prefix = step.path.rpartition(".")[0]
     found = {name: source.path if isinstance(source, Ref) else "" for name, source in step.inputs if source}
     return {name for name, path in found.items() if path != (f"{prefix}.{name}" if prefix else name)}

@@ -106,7 +106,7 @@ def _of_file(path: Path, picture: Path) -> Iterator[Subject]:
     """Yield the variant in a file, or those of a technique."""
     owner = canonical_of(path) if is_variant(path) else path
     if owner is None:
-        raise SketchError("there is no .glsl and no .toml beside it to verify it against", file=shown(path))
+        raise SketchError("there is no .glsl and no .toml next to it to verify it against", file=shown(path))
     technique = Techniques().read(f"./{owner.stem}", owner.parent, root_of(owner))
     for variant in technique.variants:
         if path in (owner, Path(variant.path)):

@@ -125,7 +125,7 @@ def _lifted(craft: Craft, ground: Ground) -> Craft:
     if craft.up >= floor and math.tan(craft.pitch) >= math.tan(min(rise, STEEPEST)):
         return craft
     if craft.up >= floor and rise <= 0.0:
-        return craft  # it goes down, but to no ground within reach
+        return craft  # it goes down, but to no ground near enough
     touched = craft.touched + (craft.up < floor)
     nose = craft.pitch + (min(max(rise, 0.0), STEEPEST) - craft.pitch) * (1 - math.exp(-6.0 * STEP))
     return replace(craft, up=max(craft.up, floor), pitch=max(craft.pitch, nose), touched=touched)

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 RADIUS = 5.0  # [parts] visible
 PARTS_A_STEP = 1  # of a flight without a window
 START_ABOVE = 450.0  # [m] over the ground
-CACHE_BYTES = 192 * 2**20  # of the engine, beside the flight's own textures
+CACHE_BYTES = 192 * 2**20  # of the engine, besides the flight's own textures
 
 Start = tuple[float, float, float, float]
 """Metres east, north and up, degrees from north."""

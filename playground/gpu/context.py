@@ -139,9 +139,7 @@ def _open_software(device: int | None) -> moderngl.Context:
         if context_info(ctx).software:
             return ctx
         ctx.release()
-    raise ContextError(
-        f"--software was asked for, but OpenGL gives {wanted} only; is Mesa's llvmpipe installed?"
-    )
+    raise ContextError(f"--software was given, but OpenGL gives {wanted} only; is Mesa's llvmpipe installed?")
 
 
 def _software_or_refuse(ctx: moderngl.Context) -> moderngl.Context:
@@ -149,7 +147,7 @@ def _software_or_refuse(ctx: moderngl.Context) -> moderngl.Context:
     if info.software:
         return ctx
     ctx.release()
-    raise ContextError(f"--software was asked for, but this device is {info.renderer}")
+    raise ContextError(f"--software was given, but this device is {info.renderer}")
 
 
 def adopt_context(address_of: Callable[[str], int | None] | None = None) -> moderngl.Context:

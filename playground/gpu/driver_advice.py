@@ -58,7 +58,7 @@ _MAC_SCREEN = (
 )
 _WINDOWS_DRIVER = (
     "Install the graphics driver from the maker of the graphics card (Intel, AMD or NVIDIA). Over Remote"
-    " Desktop or in a virtual machine, use the machine's own screen, or put Mesa's opengl32.dll beside"
+    " Desktop or in a virtual machine, use the machine's own screen, or put Mesa's opengl32.dll next to"
     " python.exe."
 )
 _CURRENT = (
@@ -163,7 +163,7 @@ COMPLAINTS = (
     Complaint(
         "wrong device",
         (r"requested device index \d+, but found [1-9]",),
-        "A graphics device was asked for by a number that is not there; they count from 0.",
+        "There is no graphics device of the requested number; they count from 0.",
         linux="Set GLCONTEXT_DEVICE_INDEX to a smaller number, or unset it to take the first device.",
     ),
     Complaint(
@@ -197,7 +197,7 @@ COMPLAINTS = (
             r"does not support OpenGL 3",
             r"CreateContextAttribsARB (failed|not found)",
         ),
-        "The driver offers a lower version of OpenGL than was asked for: 3.3 is the least that will do, and"
+        "The driver offers a lower version of OpenGL than was requested: 3.3 is the least that will do, and"
         " compute shaders need 4.3.",
         linux=f"Update the driver; Mesa's software renderer has 4.5. {_SOFTWARE}",
         darwin="macOS ends at OpenGL 4.1, without compute shaders: use a technique that does without them.",

@@ -303,7 +303,7 @@ _HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
         ),
         (
             r"unexpected NEW_IDENTIFIER|undeclared type|typename expected",
-            "A word that GLSL does not know stands where a type should be: check its spelling.",
+            "A word that GLSL does not know is where a type should be: check its spelling.",
         ),
         (
             r"\b(?:syntax|parse) error|Syntax error",
@@ -359,7 +359,7 @@ _HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
             rf"{_Q}(\w+){_Q} ?:? ?undeclared"
             rf"|(?:undefined variable|undeclared (?:identifier|variable)):? {_Q}?(\w+)",
             "`{0}` is not declared at this point: check its spelling, and that its declaration or `#include` "
-            "stands above.",
+            "is above.",
         ),
     )
 )

@@ -88,7 +88,7 @@ def make_framebuffer(
 
 
 def drain(ctx: moderngl.Context) -> None:
-    """Forget the OpenGL errors that stand."""
+    """Discard pending OpenGL errors."""
     for _ in range(8):  # one flag for each kind of error; a lost context answers forever
         if ctx.error == "GL_NO_ERROR":
             return

@@ -1,7 +1,7 @@
 """What lessons measure: numbers of a texture, each a pure function of its values.
 
 A function receives ``values``, float64 (ny, nx), row 0 in the south, of a texture's first
-channel, and the ``Grid`` that they stand on. Lessons name it in ``what``, and give the rest
+channel, and the ``Grid`` that they are on. Lessons name it in ``what``, and give the rest
 of its arguments in ``with``; it raises ``ValueError`` for one that does not fit the texture.
 """
 
@@ -20,7 +20,7 @@ Values = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """What the texels of a heightmap stand for."""
+    """The places and metres of a heightmap's texels."""
 
     spacing: tuple[float, float] = (1.0, 1.0)  # [m] from texel to texel, eastwards and northwards
     relief: float = 1.0  # [m] from height 0 to height 1

@@ -12,7 +12,7 @@ Markdown = str
 """Markdown with formulas between dollars, and ``{{name}}`` for the number of a measure."""
 
 
-# What the field of a block is, beside its type: a text that a translation replaces.
+# What the field of a block is, besides its type: a text that a translation replaces.
 _NEEDED: dict[str, Any] = {"translated": True, "needed": True}
 _OPTIONAL: dict[str, Any] = {"translated": True, "needed": False}
 _LISTED: dict[str, Any] = {"translated": True, "listed": True}
@@ -118,7 +118,7 @@ class Break(Named):
 
     scene: Scene | None = None  # whole
     file: str = ""  # in glsl/
-    find: str = ""  # what stands there once
+    find: str = ""  # a text that occurs there once
     put: str = ""  # the bug in its place
     ask: Markdown = field(default="", metadata=_NEEDED)
     hint: Markdown = field(default="", metadata=_NEEDED)

@@ -20,7 +20,7 @@ from playground.lessons.measuring import measured, named_in
 from playground.sketch.find import shipped_sketches
 
 MOST_WORDS = 60
-"""Words that may stand before the first picture, so that it is on the first screen."""
+"""Words that may come before the first picture, so that it is on the first screen."""
 
 EXERCISES = 3
 """Exercises that a lesson has at least."""
@@ -76,7 +76,7 @@ def _first_screen(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     for block in lesson.blocks:
         if isinstance(block, model.Figure):
             if words > MOST_WORDS:
-                yield block.line, f"{words} words stand before the first figure, at most {MOST_WORDS} may"
+                yield block.line, f"{words} words before the first figure; at most {MOST_WORDS} are allowed"
             return
         words += len(block.text.split()) if isinstance(block, model.Prose) else 0
         if isinstance(block, model.Named):
@@ -134,7 +134,7 @@ def _references(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
         for address in links(text):
             kind, _, what = address.partition(":")
             if kind in targets and what not in targets[kind]:
-                yield line, f"a link to {kind} '{what}', which there is not{nearest(what, targets[kind])}"
+                yield line, f"a link to {kind} '{what}', which does not exist{nearest(what, targets[kind])}"
             elif kind == "thesis" and not all(part.isdigit() for part in what.split(".")):
                 yield line, f"a link to section '{what}' of the thesis, which is no number"
             elif kind == "term" and address in linked:

@@ -28,7 +28,7 @@ STATE = ("sketch", "shot", "preset", "set", "steps", "camera", "time", "pixels",
 """The keys that describe a picture."""
 
 PICTURE = (640, 360)
-"""Pixels of a picture that stands alone."""
+"""Pixels of a picture by itself."""
 
 FRAME = (480, 270)
 """Pixels of one picture of a series."""

@@ -73,7 +73,7 @@ def _film(wish: Wish) -> None:
     with row("Seconds", "How long; 0: to the last keyframe, or ten where there is none"):
         _, seconds = imgui.input_float("##seconds", wish.seconds, 0.0, 0.0, "%.2f s")
         wish.seconds = max(seconds, 0.0)
-    with row("Pictures a second", "Picture n is that of the time n / so many, whatever drawing takes"):
+    with row("Pictures a second", "Picture n is that of the time n / so many, however long drawing takes"):
         _, fps = imgui.input_int("##fps", wish.fps, 0)
         wish.fps = min(max(fps, 1), 1000)
     if wish.kind == FILM:

@@ -40,8 +40,8 @@ class _View:
     editor: text_edit.TextEditor
     saved_at: int = 0  # the editor's undo index when its text was that of the file
     marked: tuple[Diagnostic, ...] = ()
-    clash: str = ""  # why it could not be saved; the user is asked
-    closing: bool = False  # the user is asked whether to save
+    clash: str = ""  # why it could not be saved; the user decides what to do
+    closing: bool = False  # a question is shown: save or discard
     focused_for: int = 0  # frames for which it has had the keys
 
     @property
@@ -67,7 +67,7 @@ def draw_code(
 def ask_to_close(editing: Editing, files: OpenFiles) -> None:
     """Close an open file; one with changes that are not saved needs an answer first."""
     view = _view_of(editing)
-    if view.changed and editing.text.kept:
+    if view.changed and editing.text.needs_saving:
         view.closing = True
     else:
         files.editing.remove(editing)
@@ -87,7 +87,7 @@ def typing(open_files: Iterable[Editing]) -> list[str]:
 
 
 def save(editing: Editing, notices: Notices, *, over: bool = False) -> bool:
-    """Save an open file; return whether that worked. Where others saved it meanwhile, the user is asked."""
+    """Save an open file; return whether that worked. Where others saved it meanwhile, the user decides."""
     view = _view_of(editing)
     try:
         if not editing.text.save(view.written(), over=over):
@@ -153,7 +153,7 @@ def _draw(editing: Editing, notices: Notices, problems: Problems, look: Theme, a
             view.editor.set_focus()
         with look.font(look.code):
             view.editor.render("##text", ImVec2(0, 0))
-        if stays is False and view.changed and editing.text.kept:
+        if stays is False and view.changed and editing.text.needs_saving:
             view.closing, stays = True, True
         stays = _ask(editing, view, notices) and stays is not False
         imgui.end()
@@ -225,7 +225,7 @@ def _ask_to_leave(files: OpenFiles, quit_window: Callable[[], None]) -> None:
     files.leaving = False
     if answer == "Quit":
         files.editing.clear()
-    open_ones = [e for e in files.editing if e.text.kept and _view_of(e).changed]
+    open_ones = [e for e in files.editing if e.text.needs_saving and _view_of(e).changed]
     if answer == "Quit" or (answer != "Stay" and all([save(e, files.notices) for e in open_ones])):
         quit_window()
 

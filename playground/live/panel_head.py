@@ -298,7 +298,7 @@ def _shown(session: Session) -> None:
 
 
 def ref_name(ref: str) -> str:
-    """Return a texture's name without what is said twice: "height:height" is "height"."""
+    """Return a texture's name without its repetition: "height:height" is "height"."""
     path, _, output = ref.partition(":")
     return path if path.rpartition(".")[2] == output else ref
 

@@ -206,7 +206,7 @@ def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
             if imgui.selectable(name, name == text)[0]:
                 chosen = name
         if not names:
-            imgui.text_disabled("no images or elevation files beside the sketch")
+            imgui.text_disabled("no images or elevation files next to the sketch")
         imgui.end_combo()
     if chosen is not None:
         return chosen

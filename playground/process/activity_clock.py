@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from playground.process.cpu_wait import Waits, worked
 
 _SHORT = 0.05  # [s] an activity so short has its waits counted in: to read them takes a millisecond
-_FRESH = 0.25  # [s] for which waits that were read may stand for those at an activity's beginning
+_FRESH = 0.25  # [s] for which waits that were read may be taken for those at an activity's beginning
 
 
 @dataclass(frozen=True, slots=True)

@@ -239,7 +239,7 @@ class Search:
     ) -> None:
         """Go through the candidates once, and take each that holds; the next are those of the smaller text.
 
-        What is before it in the order is tried again in the next round, by when lines may have gone.
+        What is before it in the order is tried again in the next round: lines may have gone by then.
         """
         begin = held = 0
         while begin >= 0:

@@ -185,7 +185,7 @@ def make_results_folder(folder: Path) -> Path:
     """Make the results folder if it is not there, with a ``.gitignore`` of everything in it."""
     if not folder.is_dir():
         with replacing(make_folder(folder) / ".gitignore") as handle:
-            handle.write(b"# Results of screenshot tests: made anew by every run.\n*\n")
+            handle.write(b"# Results of screenshot tests: written again by every run.\n*\n")
     return folder
 
 

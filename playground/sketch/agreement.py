@@ -1,7 +1,7 @@
 """How closely a fast variant agrees with the canonical form, as its text states it.
 
 ``agrees = "exact"`` is every bit; ``"1e-5"`` the most that any number of any output may differ
-by. Bounds of single outputs are parted by semicolons, and may count otherwise:
+by. Bounds of single outputs are separated by semicolons, and may count otherwise:
 
     "sky: 0.012 rms; ahead, behind: 0.9 degrees rms; exact"
 

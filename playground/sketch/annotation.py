@@ -59,7 +59,7 @@ def arguments(text: str, line: Line) -> list[Argument]:
         match = _ARGUMENT.match(text, position, end)
         if not match or not match.group(2).strip():
             rest = text[position:end].strip()
-            raise line.error(f"cannot read '{rest}'; expected values parted by commas, text in quotes")
+            raise line.error(f"cannot read '{rest}'; expected values separated by commas, text in quotes")
         raw = match.group(2).strip()
         if raw.startswith('"'):
             raw = re.sub(r"\\(.)", r"\1", raw[1:-1])

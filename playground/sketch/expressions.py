@@ -71,7 +71,7 @@ def evaluate_number(text: str, names: Mapping[str, Number]) -> float:
 
 
 def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
-    """Return the numbers of expressions parted by commas. Raises ``ExpressionError`` in a sentence."""
+    """Return the numbers of expressions separated by commas. Raises ``ExpressionError`` in a sentence."""
     return [evaluate_number(part, names) for part in _parts(text)]
 
 
@@ -79,7 +79,7 @@ def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Numbe
     """Evaluate the two integers of ``"w, h"``."""
     parts = _parts(text)
     if len(parts) != 2:
-        raise ExpressionError(f"'{text}' should be two expressions parted by a comma")
+        raise ExpressionError(f"'{text}' should be two expressions separated by a comma")
     return evaluate(parts[0], names), evaluate(parts[1], names)
 
 
@@ -87,14 +87,14 @@ def check(text: str, known: Collection[str], *, count: int = 1) -> None:
     """Raise ``ExpressionError`` where ``text`` is not ``count`` expressions of the names ``known``."""
     parts = _parts(text)
     if len(parts) != count:
-        what = "one expression" if count == 1 else f"{count} expressions parted by a comma"
+        what = "one expression" if count == 1 else f"{count} expressions separated by a comma"
         raise ExpressionError(f"'{text}' should be {what}")
     for part in parts:
         _value_of(_parse(part), part, dict.fromkeys(known, 1).__getitem__, tuple(known), dry=True)
 
 
 def names_in(text: str) -> frozenset[str]:
-    """Return the dotted names that an expression, or several parted by commas, reads."""
+    """Return the dotted names that an expression, or several separated by commas, reads."""
     found: set[str] = set()
 
     def look_up(name: str) -> int:

@@ -228,7 +228,7 @@ def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
     for part in filter(None, (p.strip() for p in options.get("buffers", "").split(";"))):
         pieces = [p.strip() for p in part.split(":", 2)]
         if len(pieces) != 3 or not re.fullmatch(r"[A-Za-z_]\w*", pieces[0], re.ASCII):
-            example = "stack:vec4:size.x * 64 (several parted by ;)"
+            example = "stack:vec4:size.x * 64 (several separated by ;)"
             raise line.error(f"buffer '{part}': expected name:type:count, as {example}")
         if pieces[1] not in _BUFFER_TYPES:
             raise line.error(
@@ -238,7 +238,7 @@ def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         buffers.append(Buffer(pieces[0], pieces[1], pieces[2]))
     stages = [part.strip() for part in filter(None, options.get("stages", "").split(","))]
     if not all(re.fullmatch(r"[0-9]{1,4}", part, re.ASCII) for part in stages):
-        raise line.error(f'stages = "{options["stages"]}": expected whole numbers parted by commas')
+        raise line.error(f'stages = "{options["stages"]}": expected whole numbers separated by commas')
     if stages and "repeat" in options:
         raise line.error("stages says how many steps there are; leave repeat out")
     if options.get("aligned", "8") not in ("4", "8"):
@@ -290,7 +290,7 @@ def _with_names_replaced(options: dict[str, str], kernel: Kernel, line: Line) ->
     for part in filter(None, (p.strip() for p in options["where"].split(";"))):
         name, equals, text = (piece.strip() for piece in part.partition("="))
         if not equals or not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
-            example = "half = size.x // 2 (several parted by ;)"
+            example = "half = size.x // 2 (several separated by ;)"
             raise line.error(f"where '{part}': expected name = expression, as {example}")
         if name in known or name in meant or name in _NOT_IN_WHERE or kernel.parameter(name):
             raise line.error(f"where: the name '{name}' is taken")

@@ -243,7 +243,7 @@ def write_over(
 
 
 def _same_text(a: Sketch, b: Sketch) -> bool:
-    """Return whether two sketches were read from the same TOML, whatever their kernels are."""
+    """Return whether two sketches were read from the same TOML; their kernels may differ."""
 
     def parts(sketch: Sketch) -> object:
         passes = [

@@ -256,7 +256,7 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
 def _compute_variant(path: Path, folder: Path, of: Technique) -> Kernel:
     found = parsed_kernel(path.stem, path, (folder,))
     if found is None or found.kind != "compute":
-        message = 'a .comp beside a kernel begins with #pragma compute(groups = "…", agrees = "…")'
+        message = 'a .comp next to a kernel begins with #pragma compute(groups = "…", agrees = "…")'
         raise SketchError(message, file=path)
     outputs = of.outputs if isinstance(of, Kernel) else outputs_with_formats(of)
     return replaced(found, outputs=outputs, accepts=_accepts(of))

@@ -270,7 +270,7 @@ def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tu
 
 
 def _former_names(name: str, calls: Calls, line: Line) -> tuple[str, ...]:
-    """Return the names that ``was("stride")`` gives; ``was("mended: repaired")`` is of a menu's choices."""
+    """Return the names that ``was("stride")`` gives; ``was("mended: removed")`` is of a menu's choices."""
     found = tuple(word for word in calls.get("was", ()) if ":" not in word)
     wrong = next((word for word in found if not word.isidentifier()), None)
     if wrong is not None or ("was" in calls and not calls["was"]):

@@ -50,7 +50,7 @@ def _check_passes(variant: Graph, of: Technique, wanted: tuple[Output, ...]) -> 
         one, other = (", ".join(f"{o.name}:{o.format}" for o in some) for some in (found, wanted))
         raise variant.error(f"gives {one}; {of.name} gives {other}")
     if isinstance(of, Graph) and of.find(INSIDE):
-        message = f"beside a fast variant no pass is named '{INSIDE}': that is where the variant's passes are"
+        message = f"with a fast variant no pass is named '{INSIDE}': that is where the variant's passes are"
         raise of.error(message)
 
 

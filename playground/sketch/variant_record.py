@@ -61,5 +61,5 @@ def _read(text: str, name: str) -> Mapping[str, Verified]:
         table = read_json(text)["variants"]
         return {key: (str(one["canonical"]), str(one["variant"])) for key, one in table.items()}
     except (ValueError, TypeError, KeyError, AttributeError):
-        message = "not a record of fast variants; remove it, then `playground variants renew` writes it anew"
+        message = "not a record of fast variants; remove it, then `playground variants renew` writes it again"
         raise SketchError(message, file=name) from None

@@ -65,7 +65,7 @@ def why_not(technique: Technique, variant: Variant) -> str:
     if variant.verified[0] == content_of(technique):
         return f"it has changed since it was verified against {canonical}; {renew}"
     what = f"{canonical}, or what it is made of," if isinstance(technique, Graph) else canonical
-    return f"{what} has changed since the two were found to agree; {renew} anew"
+    return f"{what} has changed since the two were found to agree; {renew} again"
 
 
 def trusted(technique: Technique) -> Technique:

@@ -115,7 +115,7 @@ def pan(camera: Camera, eye: Eye, right: float, up: float) -> Camera:
     """
     azimuth = math.radians(camera.azimuth)
     scale = 2 * eye.distance * math.tan(math.radians(camera.field_of_view) / 2)
-    # The picture's right is a quarter turn counter-clockwise from where the eye stands, seen from above.
+    # The picture's right is a quarter turn counter-clockwise from the eye's place, seen from above.
     east = -math.cos(azimuth) * right - math.sin(azimuth) * up
     north = math.sin(azimuth) * right - math.cos(azimuth) * up
     x, y, z = eye.target

@@ -1,7 +1,7 @@
 """Triangulate points that come one by one, each into the triangle of greatest area.
 
 After H. Belaiche 2010, section 1.3.8. Four corners make two triangles. Each further point
-stands at the barycentre of the greatest triangle, its corners weighed alike or at random,
+is at the barycentre of the greatest triangle, its corners weighted equally or at random,
 and has a random height. What it makes illegal is fixed in one of two ways, which give the
 same triangles: destruction and construction (Bowyer 1981, Watson 1981, both in The Computer
 Journal 24) or flips of edges (Lawson 1977, "Software for C1 Surface Interpolation").
@@ -17,7 +17,7 @@ amount more than all before it, so both ways leave the same edge of a tie, in an
 
 No point falls on an edge. The greatest of 2 n + 2 triangles has at least the mean area, so
 no altitude of it is shorter than 1 / (n + 1) / sqrt(2) of a square terrain's side, and a
-point stands above 1/11 of one from each edge: for ``MOST_POINTS`` over 100 spacings of the
+point is over 1/11 of one away from each edge: for ``MOST_POINTS`` over 100 spacings of the
 lattice, and over 18 on the longest terrain, where rounding moves it by less than one.
 """
 
@@ -184,7 +184,7 @@ class _Growing:
             self.replaced,
         )
 
-    # ── where the next point stands ──────────────────────────────────────────
+    # ── where the next point is ──────────────────────────────────────────
 
     def _take_greatest(self) -> tuple[int, int]:
         """Return the greatest triangle and twice its area, and take it from the heap.

@@ -1,7 +1,7 @@
 """Read real terrain from elevation files.
 
 Heights come out as float32 with row 0 in the south
-and NaN where the file has no data. Heights stand on nodes: n texels in a row
+and NaN where the file has no data. Heights are on nodes: n texels in a row
 are n - 1 spacings long, so the corners of the terrain are the corners of the grid.
 
 Each format has a reader of its own (`geotiff`, `arrays`, `raw`); this chooses one and
@@ -45,7 +45,7 @@ class Elevation:
     spacing: tuple[float, float] | None = None  # [m] a texel, east and north; None: the file is silent
     in_metres: bool = False  # heights are metres; else raw numbers, or the file is silent
     code_range: tuple[float, float] | None = None  # what raw numbers can be: (0, 255), (0, 65535),
-    # (0, 16777215) when packed, or the metres that these stand for where a PNG's texts say so;
+    # (0, 16777215) when packed, or the metres that these mean where a PNG's texts say so;
     # None for other metres and for floats
     notes: tuple[str, ...] = ()  # sentences: what was assumed, what was lost
     path: Path | None = None  # where it was read from
@@ -148,7 +148,7 @@ def read_elevation(
 
 
 def _scaled(found: Found, text: Mapping[str, str]) -> Found:
-    """Return what was found in metres, where a PNG's texts say what its numbers stand for."""
+    """Return what was found in metres, where a PNG's texts say what its numbers mean."""
     scale, offset = (_numbers(text.get(name, ""), 1) for name in ("scale_m", "offset_m"))
     if not scale or not offset or scale[0] <= 0.0 or found.code_range is None:
         return found

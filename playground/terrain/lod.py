@@ -111,7 +111,7 @@ class Chooser:
     """How a mesh is chosen from for each picture."""
 
     choose: Callable[[Mapping[str, object], Callable[[], Tables], View], Chosen]
-    parameters: tuple[str, ...]  # of the draw, that the choice reads beside those of the mesh
+    parameters: tuple[str, ...]  # of the draw, that the choice reads besides those of the mesh
     inputs: tuple[str, ...]  # of the draw, whose texels the choice reads
 
 

@@ -73,7 +73,7 @@ def pieces() -> Mapping[Piece, NDArray[np.uint32]]:
 
 @cache
 def ranges() -> Mapping[Piece, tuple[int, int]]:
-    """Return where each piece lies when all stand one after another: its first index, and how many."""
+    """Return where each piece begins when all are one after another: its first index, and how many."""
     found, first = {}, 0
     for piece, indices in pieces().items():
         found[piece] = first, len(indices)
@@ -119,6 +119,6 @@ def _wall(level: int, side: int) -> NDArray[np.uint32]:
 
 
 def rims_of(ny: int, nx: int) -> dict[int, NDArray[np.bool_]]:
-    """Return which tiles stand at each side of the terrain."""
+    """Return which tiles are at each side of the terrain."""
     j, i = np.indices((ny, nx))
     return {SOUTH: j == 0, EAST: i == nx - 1, NORTH: j == ny - 1, WEST: i == 0}

@@ -32,7 +32,7 @@ def covered(
 
     ``shape``: (ny, nx) of the mask; ``start`` and ``end`` in shares of the terrain's sides from
     the south-west; ``extent`` of the terrain [m]. Texels are nodes, as everywhere: the first and
-    the last stand on the terrain's edges.
+    the last are on the terrain's edges.
     """
     ny, nx = shape
     metres = np.array([extent[0] / max(nx - 1, 1), extent[1] / max(ny - 1, 1)])

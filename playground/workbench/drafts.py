@@ -287,7 +287,7 @@ class Drafts:
         """Check what was saved together with what the user has chosen since, if there is either."""
         draft, choices, self._choices = self._saved or self.shown, self._choices, []
         for choice in choices:
-            assert draft is not None  # who chooses sees something
+            assert draft is not None  # a user who chooses is shown something
             try:
                 draft = choice.change(draft)
                 self._choices.append(choice)

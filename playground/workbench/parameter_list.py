@@ -32,7 +32,7 @@ class Item:
 
 @dataclass(frozen=True)
 class Group:
-    """Parameters under one heading; "" for those that stand under none."""
+    """Parameters under one heading; "" for those that have none."""
 
     name: str
     items: tuple[Item, ...]
@@ -175,7 +175,7 @@ def _main(key: Identity[Sketch]) -> tuple[Item, ...]:
     sketch, made = key.object, []
     items = [item for section in _sections(key) for item in section.items]
     named = {item.path: item for item in items}
-    by_leaf = {item.leaf: item for item in items}  # an inner path may stand in the list of an outer one
+    by_leaf = {item.leaf: item for item in items}  # an inner path may be in the list of an outer one
     found = [named.get(path) or by_leaf[resolve(sketch.graph, path)[0].path] for path in sketch.main]
     titles = [_with_group(item.parameter) for item in found]
     for item, title in zip(found, titles, strict=True):

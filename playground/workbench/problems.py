@@ -75,7 +75,7 @@ class Problems:
             self.heights.clear()
 
     def by_file(self) -> list[tuple[str, list[Diagnostic]]]:
-        """Return (file, what is wrong with it), each file once; "" stands for no file."""
+        """Return (file, what is wrong with it), each file once; "" means no file."""
         found: dict[str, list[Diagnostic]] = {}
         for diagnostic in (*self.errors, *self.warnings):
             found.setdefault(diagnostic.file, []).append(diagnostic)

@@ -21,7 +21,7 @@ class StoredEdits:
     camera_in_file: Camera | None = None  # of the camera, where another is set and it is known
 
     def with_values(self, values: Mapping[str, Value]) -> StoredEdits:
-        """Return them with values set over them, whatever the files set."""
+        """Return them with values that override those of the files."""
         edits = self.edits
         for name, value in values.items():
             edits = edits.with_value(name, value)

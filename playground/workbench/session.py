@@ -326,7 +326,7 @@ class Session:
             message = "this made the graphics driver reset itself twice; it waits until something is changed"
             self.drafts.report(ContextError(message))
         self._lost_over = shown
-        self.notes.append("the graphics driver was reset; everything was built anew")
+        self.notes.append("the graphics driver was reset; everything was built again")
 
     def needs_drawing(self, sketch: Sketch) -> bool:
         """Say whether the driver would get anything that it has not drawn already.

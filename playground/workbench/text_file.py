@@ -36,8 +36,8 @@ class OpenText:
         return shown(self.path)
 
     @property
-    def kept(self) -> bool:
-        """Whether it is lost where it is not saved."""
+    def needs_saving(self) -> bool:
+        """Whether changes are lost unless they are saved."""
         return True
 
     def saved(self) -> str:
@@ -144,7 +144,9 @@ class Editing:
 
 def unsaved(open_files: Iterable[Editing]) -> list[str]:
     """Return the names of open files with changes that are not saved."""
-    return [e.text.path.name for e in open_files if e.text.kept and e.view is not None and e.view.changed]
+    return [
+        e.text.path.name for e in open_files if e.text.needs_saving and e.view is not None and e.view.changed
+    ]
 
 
 def typed_in(editing: Editing) -> str | None:

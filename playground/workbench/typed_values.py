@@ -16,7 +16,7 @@ _WORDS = ("menu", "file", "checkbox")
 
 
 def read_typed(parameter: Parameter, text: str, path: str) -> Value:
-    """Return the value that a text stands for; several numbers are parted by commas.
+    """Return the value that a text means; several numbers are separated by commas.
 
     Raises ``ParameterError`` for what is no expression, and for a value that the parameter
     does not take: one outside its range, which ``--set`` and the sketch refuse as well.

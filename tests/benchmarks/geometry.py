@@ -66,7 +66,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--sizes", type=int, nargs="+", default=[1025, 4097], help="sides of the lands")
+    parser.add_argument("--sizes", type=int, nargs="+", default=[1025, 4097], help="texels a side")
     parser.add_argument("--samples", type=int, nargs="+", default=[1, 4], help="samples of a pixel")
     parser.add_argument("--rounds", type=int, default=7, help="frames to time (default 7)")
     options = parser.parse_args()

@@ -47,7 +47,7 @@ SKETCH = """format = 1
 size = 33
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "./plain"
 inputs = { shown = "height" }
@@ -80,7 +80,7 @@ def main() -> None:
             drag = _ways(bare)["a value changes"]
             for frame in range(options.frames):
                 drag(frame)
-                bare.turn(1, lambda draw: profile.runcall(draw))
+                bare.run_frames(1, around=lambda draw: profile.runcall(draw))
             pstats.Stats(profile).sort_stats("tottime").print_stats(25)
         bare.close()
     Console().print(table)
@@ -106,7 +106,7 @@ def _measure(bare: Bare, frames: int, before: Callable[[int], None]) -> list[flo
 
     for frame in range(frames):
         before(frame)
-        bare.turn(1, around)
+        bare.run_frames(1, around=around)
     bare.panel.memory.filter = Filter()
     return times
 
@@ -114,9 +114,9 @@ def _measure(bare: Bare, frames: int, before: Callable[[int], None]) -> list[flo
 def _sketch(folder: Path) -> Path:
     """Write a sketch with that many parameters into a folder."""
     lines = [WIDGETS[n % len(WIDGETS)].format(f"p{n}") for n in range(COUNT)]
-    head = '// land.glsl -- level terrain\n#pragma kernel(output = "height:r32f")\n'
+    head = '// terrain.glsl -- level terrain\n#pragma kernel(output = "height:r32f")\n'
     terrain = head + "\n".join(lines) + "\nfloat kernel(ivec2 texel) { return p0; }\n"
-    for name, text in {"land.glsl": terrain, "plain.glsl": PLAIN, "sketch.toml": SKETCH}.items():
+    for name, text in {"terrain.glsl": terrain, "plain.glsl": PLAIN, "sketch.toml": SKETCH}.items():
         (folder / name).write_text(text, encoding="utf-8")
     return folder
 

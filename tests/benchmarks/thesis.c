@@ -3,7 +3,7 @@
  * Belaiche 2010: layers (its "Perlin"), section 1.3.9; diamond-square and the mixed model,
  * section 4.3.1; detail in tiles, sections 4.3.2 to 4.3.4. Rows are allocated one by one,
  * heights of layers are whole numbers 0..255, and numbers come from rand(), as there.
- * What is mended: the nodes' lower bound (slip 4), and the normalisation, to 255.
+ * What is fixed: the nodes' lower bound (slip 4), and the normalisation, to 255.
  *
  * Compiled by generation.py:  cc -O2 -shared -fPIC thesis.c -lm
  */

@@ -2,13 +2,13 @@
  *
  * Belaiche 2010: L·N, section 3.5.3; the ray, section 3.5.4; the cone, section 4.4.2. Heights
  * are grey levels 0..255, one texel is as long as one grey level is high, and a place's height
- * is that of the texel it is cut down to. The light map has the land's size, so the change of
+ * is that of the texel it is cut down to. The light map has the terrain's size, so the change of
  * frame at each method's beginning is left out. (lx, ly, lz) is the unit vector towards the sun,
  * along which the walks go; L·N takes its opposite, as there.
  *
- * What is mended: L·N at the border, where the thesis looks beyond the land, is that of the
+ * What is fixed: L·N at the border, where the thesis looks beyond the terrain, is that of the
  * nearest texel which has its neighbours; a cone that widens as fast as the sun climbs still ends
- * at the land's edge, as there.
+ * at the terrain's edge, as there.
  *
  * Compile with:  cc -O2 -shared -fPIC thesis_light.c -lm
  */

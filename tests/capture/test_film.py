@@ -257,15 +257,15 @@ def test_a_film_that_cannot_be_read_back_is_not_lost(
         raise error
 
     monkeypatch.setattr(video_module, "count_pictures", fails)
-    message: list[str] = []
+    messages: list[str] = []
     path = write_film(
         any_engine,
         Film(sketch=keyed, count=3, fps=Fraction(10), size=(64, 36)),
         tmp_path / "film.mp4",
-        notice=message.append,
+        notice=messages.append,
     )
     assert decoded(path).shape == (3, 36, 64, 3)
-    assert len(message) == 1 and "was written, but could not be checked" in message[0]
+    assert len(messages) == 1 and "was written, but could not be checked" in messages[0]
     assert [path.name for path in tmp_path.glob("*film*")] == ["film.mp4"]
     # Interrupted as well: then by the number of pictures that were handed over.
     with pytest.raises(Stopped) as caught, Video(tmp_path / "b.mp4", (64, 36), Fraction(10), 5) as video:

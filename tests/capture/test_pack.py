@@ -169,16 +169,16 @@ def test_a_window_opens_a_copy_next_to_it_and_leaves_edits_alone(folder: Path, t
 
 
 def test_a_zip_dropped_on_the_window_opens(folder: Path, tmp_path: Path) -> None:
-    message: list[str] = []
+    messages: list[str] = []
     opened: list[Path] = []
-    commands = SimpleNamespace(notices=SimpleNamespace(say=message.append), open=opened.append)
+    commands = SimpleNamespace(notices=SimpleNamespace(say=messages.append), open=opened.append)
     drops = Drops(commands)  # type: ignore[arg-type]
     path = pack(load(folder), tmp_path / "lesson.zip")
     drops.take([path])
-    assert opened == [tmp_path / "hills-2/sketch.toml"] and "edits go there" in message[0]
+    assert opened == [tmp_path / "hills-2/sketch.toml"] and "edits go there" in messages[0]
     path.write_bytes(b"no zip")
     drops.take([path])
-    assert len(opened) == 1 and "is no zip that can be read" in message[1]
+    assert len(opened) == 1 and "is no zip that can be read" in messages[1]
 
 
 def test_a_folder_of_somebody_else_s_is_left_alone(folder: Path, tmp_path: Path) -> None:

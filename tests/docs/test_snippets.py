@@ -76,7 +76,7 @@ def test_yaml_is_yaml(block: Block):
 
 
 def test_the_first_kernel_fits_the_sketch_that_new_writes(any_engine: Engine, tmp_path: Path):
-    """As the README tells it: save waves.glsl, use it, remove the preset of my_land, add a tilt."""
+    """As the README says: save waves.glsl, use it, remove the preset of my_land, add a tilt."""
     folder = make_sketch(tmp_path / "hills")
     write_files(tmp_path, "hills/waves.glsl")
     text = (folder / "sketch.toml").read_text("utf-8").replace('"./my_land"', '"./waves"')
@@ -114,7 +114,7 @@ def test_python_runs(block: Block, tmp_path: Path):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("block", PYTHON, ids=by_name)
-def test_python_runs_as_it_stands(block: Block, tmp_path: Path):
+def test_python_runs_as_it_is_written(block: Block, tmp_path: Path):
     runs(block.text, tmp_path)
 
 

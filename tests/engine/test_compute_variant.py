@@ -60,18 +60,18 @@ def sums(folder):
 
 @pytest.fixture
 def ran(monkeypatch):
-    """List the files whose programs are asked for."""
+    """List the files whose programs are requested."""
     from playground.engine.programs import Programs
 
-    asked: list[str] = []
+    requested: list[str] = []
     get = Programs.get
 
     def spy(self, kernel, driver, choices=()):
-        asked.append(kernel.path.rpartition("/")[2])
+        requested.append(kernel.path.rpartition("/")[2])
         return get(self, kernel, driver, choices)
 
     monkeypatch.setattr(Programs, "get", spy)
-    return asked
+    return requested
 
 
 @pytest.mark.parametrize("driver", ["auto", "compute", "fragment"])
@@ -154,7 +154,7 @@ void main() {
 """
 
 
-def test_one_beside_a_technique_stands_for_all_of_it(ctx, folder):
+def test_one_next_to_a_technique_replaces_all_of_it(ctx, folder):
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     for name, text in {"values": VALUES, "doubled": DOUBLED, "add": ADD}.items():
@@ -329,7 +329,7 @@ def test_a_stage_that_comes_back_reads_what_it_read_before(any_engine, folder):
 
 def test_stages_take_the_place_of_repeat(folder):
     folder.write("fill.glsl", PLAIN_FILL)
-    wrong = (('", repeat = "4"', "leave repeat out"), (', x"', "whole numbers parted by commas"))
+    wrong = (('", repeat = "4"', "leave repeat out"), (', x"', "whole numbers separated by commas"))
     for option, message in wrong:
         folder.write("fill.comp", STAGES.replace('1"', f"1{option}", 1))
         with pytest.raises(PlaygroundError, match=message):
@@ -367,7 +367,7 @@ def test_a_buffer_of_other_numbers_is_no_output(folder):
         folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
 
 
-def test_one_that_stands_for_a_technique_takes_the_sizes_that_the_technique_takes(any_engine, folder):
+def test_one_that_replaces_a_technique_takes_the_sizes_that_the_technique_takes(any_engine, folder):
     folder.write("values.glsl", VALUES)
     folder.write("doubled.glsl", DOUBLED)
     folder.write("add.glsl", ADD.replace('"sum:r32f"', '"sum:r32f", accepts = "2**n"'))

@@ -123,7 +123,7 @@ def test_an_earlier_draw_hands_on_each_sample(any_engine, plates):
 
 
 @pytest.mark.parametrize("samples", [1, 4])
-def test_equal_depth_draws_over_what_stands_just_there(any_engine, plates, samples):
+def test_equal_depth_draws_over_what_has_that_depth(any_engine, plates, samples):
     sketch = plates(
         ("one", "", {"right": 0.0, "depth": 0.25}, ""),
         ("near", "", {"left": 0.0, "right": 0.5, "depth": 0.0}, "one"),
@@ -166,7 +166,7 @@ def test_samples_are_resolved_to_their_mean(any_engine, plates):
     assert np.all(any_engine.read(replace(sketch, samples=1), "one")[:, 8, 0] % 1 == 0)
 
 
-def test_a_draw_on_top_is_the_same_whatever_was_drawn_before_it(ctx, plates):
+def test_a_draw_on_top_does_not_depend_on_what_was_drawn_before_it(ctx, plates):
     """The draw below keeps its samples only where one goes on from it: that is part of its key."""
     below = plates(("one", "", {}, "back"), samples=4)
     both = plates(("one", "", {}, "back"), ("two", "", {"depth": 0.5, "right": 0.3}, "one"), samples=4)

@@ -162,7 +162,7 @@ EDITS = {
 
 
 @pytest.mark.parametrize("what", EDITS)
-def test_whatever_the_plain_text_is_made_of_counts(drawing, hill, what):
+def test_all_that_the_plain_text_is_made_of_counts(drawing, hill, what):
     engine, sentences = drawing
     name, before, after = EDITS[what]
     text = (hill.path / name).read_text()

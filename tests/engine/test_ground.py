@@ -1,4 +1,4 @@
-"""The eye stays over the terrain: one that stands under it is raised, with a warning."""
+"""The eye stays over the terrain: one that is under it is raised, with a warning."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def test_the_terrain_is_read_once_for_a_place_and_made_once(any_engine, sketch, 
 
 
 def test_an_eye_that_stays_under_the_terrain_costs_one_drawing(any_engine, sketch):
-    """The first frame draws twice, and tells of both; the next ones know how high the ground is."""
+    """The first frame draws twice, and reports both; the next ones know how high the ground is."""
     seen = sketch.with_camera(UNDER)
     first = any_engine.render(seen, size=(64, 36)).array
     assert {"height", "view.land"} <= set(any_engine.ran)
@@ -154,13 +154,13 @@ def test_render_says_it_once(sketch, tmp_path, monkeypatch, capsys, ways, writte
     (tmp_path / "sketch.toml").write_text(text)
     assert cli.main(["render", "sketch.toml", "--size", "64x36", *ways]) == 0
     message = capsys.readouterr().err
-    assert message.count("the eye stood under the terrain") == 1
+    assert message.count("the eye was under the terrain") == 1
     assert (tmp_path / written).exists()
 
 
 def test_a_program_is_warned_once_of_all_frames(sketch):
     with playground.headless() as engine:
-        with pytest.warns(playground.PlaygroundWarning, match="the eye stood under the terrain") as reports:
+        with pytest.warns(playground.PlaygroundWarning, match="the eye was under the terrain") as reports:
             for seconds in range(3):
                 engine.render(sketch.with_camera(UNDER), size=(64, 36), time=seconds)
         assert len(reports) == 1

@@ -56,7 +56,7 @@ def test_time_goes_by_several_names(any_engine, folder, name):
         ("vec3 iResolution", "iResolution.xy"),
     ],
 )
-def test_the_resolution_has_as_many_components_as_are_asked_for(any_engine, folder, declared, used):
+def test_the_resolution_has_as_many_components_as_are_declared(any_engine, folder, declared, used):
     text = TOY.replace("vec3 iResolution", declared).replace("iResolution.xy", used)
     frame = any_engine.render(load(folder.write("t.frag", text)), size=(4, 4))
     np.testing.assert_allclose(frame.array[0, :, 0], [32, 96, 159, 223], atol=1)

@@ -47,7 +47,7 @@ def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
     return path
 
 
-def test_an_engine_tells_each_once_whatever_is_drawn_after(any_engine, sketch):
+def test_an_engine_reports_each_once(any_engine, sketch):
     reports: list[tuple[str, str]] = []
     any_engine.warnings.report = lambda found: reports.append((found.place, found.message))
     for size in ((8, 8), (9, 9)):
@@ -57,7 +57,7 @@ def test_an_engine_tells_each_once_whatever_is_drawn_after(any_engine, sketch):
     assert sum("#line is left out" in message for _, message in reports) == 1
 
 
-def test_a_program_is_reported_by_python_s_own_warnings(sketch):
+def test_a_program_gets_them_as_python_s_own_warnings(sketch):
     with playground.headless() as engine, pytest.warns(playground.PlaygroundWarning) as caught:
         engine.render(sketch, size=(8, 8))
         engine.render(sketch, size=(9, 9))
@@ -85,7 +85,7 @@ def test_check_shows_them_and_fails_for_none(sketch, capsys):
     assert report["ok"] and TURNED in [w["message"] for w in report["warnings"]]
 
 
-def test_a_former_name_of_a_parameter_is_told_once(folder, monkeypatch, capsys):
+def test_a_former_name_of_a_parameter_is_reported_once(folder, monkeypatch, capsys):
     renamed = KERNEL.replace("slider(0, 2)", 'slider(0, 2) was("lazy")').replace("return 1.0", "return idle")
     loaded = folder.one(renamed.replace("#line 7\n", ""), more="set = { lazy = 2.0 }")
     monkeypatch.chdir(folder.path)

@@ -84,7 +84,7 @@ def test_a_changed_terrain_runs_what_reads_it(engine, four):
     assert ran_after(engine, four.with_values({"height.bumps": 4.0})) == {"height", "slope", "light", "view"}
 
 
-def test_only_what_is_asked_for_runs(engine, four):
+def test_only_what_is_requested_runs(engine, four):
     engine.texture(four, "slope")
     assert engine.ran == ["height", "slope"]
     assert engine.texels == 2 * 17 * 17

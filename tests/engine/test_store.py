@@ -294,7 +294,7 @@ def test_any_order_of_edits_and_sessions_shows_what_an_engine_without_a_store_sh
             expected = set(engine.stale(sketch, size=(64, 36), steps=steps))
             assert picture(engine, sketch, steps) == picture(plain, sketch, steps)
             # What is read may take the place of what was still there when stale() looked.
-            assert set(engine.ran) == expected or memory < 2**20, "stale() tells what runs"
+            assert set(engine.ran) == expected or memory < 2**20, "stale() returns what runs"
         path = rng.choice(("terrain", "worn", "light"))
         np.testing.assert_array_equal(engine.read(sketch, path), plain.read(sketch, path))
     assert reads + engine.disk_caching.reads > 0, "the disk cache was used"
@@ -741,7 +741,7 @@ def test_sessions_write_read_and_clear_at_once(tmp_path):
     assert not list(tmp_path.glob("*.part"))
 
 
-def test_where_nothing_can_be_written_one_is_reported_and_nothing_more_is_tried(tmp_path):
+def test_where_nothing_can_be_written_it_is_reported_and_nothing_more_is_tried(tmp_path):
     (tmp_path / "terrain").write_text("a file where the folder should be")
     store = DiskCache(tmp_path / "terrain")
     store.write("one", some(1))
@@ -784,7 +784,7 @@ def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("message", "size"),
+    ("given", "size"),
     [
         ("", 2**30),
         ("0", 0),
@@ -795,14 +795,14 @@ def test_a_file_that_cannot_be_removed_is_no_trouble(tmp_path, monkeypatch):
         ("64kb", 2**16),
     ],
 )
-def test_the_environment_says_how_much(message, size):
-    assert limit_in({"PLAYGROUND_CACHE": message}) == size
+def test_the_environment_says_how_much(given, size):
+    assert limit_in({"PLAYGROUND_CACHE": given}) == size
 
 
-@pytest.mark.parametrize("message", ["much", "-1", "nan", "inf", "1e40", "1X", "M"])
-def test_what_is_no_size_is_refused_in_a_sentence(message):
-    with pytest.raises(ParameterError, match=f"PLAYGROUND_CACHE={message}: expected a size, as 500M"):
-        limit_in({"PLAYGROUND_CACHE": message})
+@pytest.mark.parametrize("given", ["much", "-1", "nan", "inf", "1e40", "1X", "M"])
+def test_what_is_no_size_is_refused_in_a_sentence(given):
+    with pytest.raises(ParameterError, match=f"PLAYGROUND_CACHE={given}: expected a size, as 500M"):
+        limit_in({"PLAYGROUND_CACHE": given})
 
 
 def test_a_writer_that_hangs_does_not_keep_a_session_from_ending(tmp_path, monkeypatch):

@@ -22,11 +22,11 @@ extent = 1600.0
 relief = 500.0
 [[pass]]
 name = "height"
-use = "./land"
+use = "./terrain"
 [view]
 use = "view/terrain"
 """
-TERRAIN = """// land.glsl -- a plain
+TERRAIN = """// terrain.glsl -- a plain
 #pragma kernel(output = "height:r32f")
 uniform ivec2 part = ivec2(0); //! parts("east", "north") Which
 uniform float level = 0.25; //! slider(0, 4) How high
@@ -35,7 +35,7 @@ float kernel(ivec2 texel) { return level + 0.0 * float(part.x); }
 
 
 def sketch_of(folder: Path, terrain: str = TERRAIN) -> Sketch:
-    (folder / "land.glsl").write_text(terrain, encoding="utf-8")
+    (folder / "terrain.glsl").write_text(terrain, encoding="utf-8")
     (folder / "sketch.toml").write_text(SKETCH, encoding="utf-8")
     return load(folder)
 

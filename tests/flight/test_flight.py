@@ -76,7 +76,7 @@ def test_a_file_that_is_there_is_never_written_over(tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no full device here")
-def test_a_full_disk_is_said_with_the_file_s_name():
+def test_a_full_disk_is_reported_with_the_file_s_name():
     with pytest.raises(DataError, match="/dev/full: cannot be written: No space left"):
         Recorder("/dev/full", Header("flight"))
 

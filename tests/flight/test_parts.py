@@ -53,7 +53,7 @@ def test_a_part_is_cut_out_of_what_the_sketch_makes(parts):
     np.testing.assert_allclose(slot.mean[:3], lit.mean(axis=(0, 1)), rtol=0.15)
 
 
-def test_colour_finer_than_the_height_is_cut_where_it_stands(small_engine, terrain_of, tmp_path):
+def test_colour_finer_than_the_height_is_cut_at_its_own_texels(small_engine, terrain_of, tmp_path):
     text = tmp_path / "fine.toml"
     sketch = terrain_of()
     source = Path(sketch.file).read_text("utf-8")
@@ -132,7 +132,7 @@ def test_work_for_some_time_ends_where_whole_parts_would(small_engine, terrain_o
     staged.release()
 
 
-def test_at_another_hour_all_are_lit_anew_nearest_first_and_the_terrain_is_kept(small_engine, terrain_of):
+def test_at_another_hour_all_are_lit_anew_nearest_first_and_the_terrain_stays(small_engine, terrain_of):
     plot = plot_of(terrain_of(daylight=True), small_engine)
     parts = Parts(small_engine, plot, 1.0)
     parts.look(*middle(plot, (0, 0)), 0.0)
@@ -189,7 +189,7 @@ def test_a_sketch_that_cannot_be_flown_over_says_why(small_engine, terrain_of, t
     assert message in str(caught.value) and "\n" not in str(caught.value)
 
 
-def test_every_pass_is_told_the_height_s_apron(small_engine, terrain_of):
+def test_every_pass_gets_the_height_s_apron(small_engine, terrain_of):
     """A colour made with another would not meet its neighbour's."""
     sketch = terrain_of(intervals=16, apron=8).with_values({"colour.apron": 3})
     plot = plot_of(sketch, small_engine)

@@ -1,4 +1,4 @@
-"""Terrains that several tests of light stand on."""
+"""Terrains that several tests of light share."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def sun_vector(azimuth: float, elevation: float) -> np.ndarray:
     return np.array([np.cos(e) * np.sin(a), np.cos(e) * np.cos(a), np.sin(e)])
 
 
-# Hills of four sizes, turned or mirrored when asked to.
+# Hills of four sizes, turned or mirrored on request.
 HILLS = """
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f")

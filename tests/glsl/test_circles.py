@@ -53,7 +53,7 @@ def discs(on_gpu):
 
 
 def far_from(disc, size, extent):
-    """Return how far each texel stands from a disc's middle, in its radii."""
+    """Return how far each texel is from a disc's middle, in its radii."""
     x, y = (np.linspace(0, e, n) if n > 1 else np.zeros(1) for n, e in zip(size, extent, strict=True))
     return np.hypot(x[None, :] - disc[0], y[:, None] - disc[1]) / disc[2]
 

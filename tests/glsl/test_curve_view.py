@@ -1,4 +1,4 @@
-"""view/curve: where curves, axes and what is no number stand in the picture."""
+"""view/curve: where curves, axes and what is no number are in the picture."""
 
 import numpy as np
 import pytest
@@ -38,14 +38,14 @@ def middle_of(cover):
     return (cover * up[:, None]).sum(axis=0) / cover.sum(axis=0)
 
 
-def test_a_slanted_line_stands_where_its_ends_say(engine, picture):
+def test_a_slanted_line_is_where_its_ends_say(engine, picture):
     shown = picture(engine, "0.2 + 0.6 * float(texel.x) / 8.0", (9, 1), (160, 100), width=3.0)
     expected = 20 + 60 * (np.arange(160) + 0.5) / 160
     np.testing.assert_allclose(middle_of(ink(shown))[4:-4], expected[4:-4], atol=0.05)
 
 
 @pytest.mark.parametrize("width", [1.0, 2.5, 6.0])
-def test_a_line_is_as_wide_as_asked(engine, picture, width):
+def test_a_line_is_as_wide_as_its_parameter_says(engine, picture, width):
     shown = picture(engine, "0.5", (5, 1), (64, 101), width=width)
     np.testing.assert_allclose(ink(shown).sum(axis=0), width, atol=0.03)
     steep = picture(engine, "float(texel.x) / 8.0", (9, 1), (100, 100), width=width)

@@ -332,7 +332,7 @@ def test_a_light_technique_takes_the_sun_and_the_sky_from_it(any_engine, make_sk
     assert same.mean() > 0.995  # a grazing ray may fall to either side
 
 
-def test_turbidity_is_said_once():
+def test_turbidity_is_set_once():
     """One kernel has it and all others read that: nothing can be set to another air."""
     graph = library()["lighting/daylight"]
     having = [path for path, kernel in kernels_of(graph) if kernel.parameter("turbidity")]

@@ -179,7 +179,7 @@ def test_repeated_it_is_the_same(ctx, terrain):
     np.testing.assert_array_equal(*found)
 
 
-def test_it_is_normalised_unless_asked_not_to_be(any_engine, terrain):
+def test_it_is_normalised_unless_that_is_off(any_engine, terrain):
     found = any_engine.read(terrain(points=60), "terrain")
     assert (found.min(), found.max()) == (0.0, 1.0)
     sketch = terrain(points=60, normalise="none")

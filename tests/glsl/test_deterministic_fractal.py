@@ -353,7 +353,7 @@ def test_facets_have_a_shade_each_and_edges_are_ink(engine, sketch_of, number, d
     assert len(shades) > 0.9 * count and len(set(shades)) > 0.4 * len(shades)
 
 
-def test_panels_show_the_turns_as_far_as_they_go(engine, sketch_of):
+def test_panels_show_the_iterations_as_far_as_they_go(engine, sketch_of):
     sketch = sketch_of((300, 200), "fractalised_triangle", depth=2)
     panels = engine.read(sketch, "fractal")[..., :3].copy()
     alone = []

@@ -108,7 +108,7 @@ PHASES = {
 }
 
 
-def test_the_turns_are_the_figures(engine, make_sketch, numbers):
+def test_the_iterations_are_the_figures(engine, make_sketch, numbers):
     """Figures 1.8 to 1.11: four corners, one centre, four edges, four centres, twelve edges."""
     sketch = sketch_of(make_sketch, 5, corners=CORNERS, smoothing=0.5, seed=2)
     drawn = numbers(5, 2)
@@ -127,7 +127,7 @@ def known_of(make_sketch, size):
     return make_sketch('[[pass]]\nname = "known"\nuse = "generation/diamond_square/known"\n', size=size)
 
 
-def test_the_mask_tells_the_turn_that_sets_a_point(engine, make_sketch):
+def test_the_mask_shows_the_iteration_that_sets_a_point(engine, make_sketch):
     sketch = known_of(make_sketch, 5)
     for turn, phase in engine.steps(sketch, "known"):
         assert (phase > 0).sum() == FIGURES.get(turn, 0)
@@ -149,7 +149,7 @@ def test_the_mask_marks_what_the_terrain_knows(engine, make_sketch, size):
 @pytest.mark.parametrize("size", [2, 3, 17, 129, 1025])
 @pytest.mark.parametrize("random", ["centred", "positive"])
 def test_both_drivers_give_the_same_bits(ctx, make_sketch, size, random):
-    """By fragment, by compute in place, and by whatever stands for the technique where there is compute."""
+    """By fragment, by compute in place, and by the fast variant where there is compute."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     sketch = sketch_of(make_sketch, size, smoothing=0.63, corners=CORNERS, seed=5, random=random)

@@ -1,4 +1,4 @@
-"""What stands for diamond-square where there is compute: the same bits as its passes, whatever is asked."""
+"""The compute variant of diamond-square gives the same bits as its passes, for any parameters."""
 
 import numpy as np
 import pytest
@@ -79,7 +79,7 @@ def test_level_terrain_is_level(fast, make_sketch):
             np.testing.assert_array_equal(fast.read(sketch, "terrain"), height)
 
 
-def test_a_turn_on_the_way_is_the_kernel_s(fast, make_sketch):
+def test_an_iteration_on_the_way_is_the_kernel_s(fast, make_sketch):
     sketch = sketch_of(make_sketch, 65)
     fast.read(sketch, "terrain", steps={"terrain.raw": 3})
     assert "terrain.raw" in fast.ran

@@ -172,7 +172,7 @@ def test_the_detail_is_made_once_for_all_parts(any_engine, part_of):
     assert any_engine.runs["height.shape"] == any_engine.runs["height.height"] == 6
 
 
-def test_the_detail_fits_beside_its_copy(any_engine, part_of):
+def test_the_detail_fits_next_to_its_copy(any_engine, part_of):
     """Its step from the last texel to the first is like any other; the terrain far away has the same one."""
     tile = any_engine.read(part_of((0, 0)), "height.detail").astype(float)
     for values in (tile, tile.T):

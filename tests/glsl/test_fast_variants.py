@@ -72,21 +72,21 @@ def with_edit(text):
     [("diamond_square", "generation/diamond_square/raw.glsl"), ("fourier", "generation/fourier/filter.glsl")],
 )
 def test_an_edit_of_a_shipped_kernel_shows(ctx, sketch, file):
-    told = []
+    notices = []
     path = str(GLSL / file)
     small = load(sketch).with_values({"size": 33})
     edited = with_texts(small, {path: with_edit(Path(path).read_text(encoding="utf-8"))})
-    with Engine(ctx, notice=told.append) as engine:
+    with Engine(ctx, notice=notices.append) as engine:
         before = engine.read(small, "height:height", size=(64, 36))
         engine.render(small, size=(64, 36))
-        assert told == []
+        assert notices == []
         after = engine.read(edited.with_values({"height.normalise": "none"}), "height:height", size=(64, 36))
         plain = engine.read(
             edited.with_values({"height.normalise": "none"}).plainly(), "height:height", size=(64, 36)
         )
     assert (after != before).any()
     np.testing.assert_array_equal(after, plain)
-    assert len(told) == (ctx.version_code >= 430)
+    assert len(notices) == (ctx.version_code >= 430)
 
 
 @pytest.mark.parametrize("name", sorted(SUBJECTS))

@@ -151,7 +151,7 @@ def test_the_transform_is_the_sum_that_defines_it(engine, transforms):
     assert apart(as_complex(engine.read(sketch, "there")), wanted) < 3e-7
 
 
-def test_energy_is_kept(engine, transforms):
+def test_energy_is_preserved(engine, transforms):
     """Parseval: the squares of the numbers and those of their spectrum have the same mean."""
     sketch = transforms((128, 64))
     numbers, spectrum = (as_complex(engine.read(sketch, name)) for name in ("numbers", "there"))
@@ -171,7 +171,7 @@ def test_one_wave_is_one_number(engine, make_sketch):
     np.testing.assert_allclose(spectrum, wanted, atol=1e-4)
 
 
-def test_every_turn_is_a_level(engine, transforms):
+def test_every_iteration_is_a_level(engine, transforms):
     """After t turns numbers evenly apart are transformed, 2^t at a time: rows first, then columns."""
     nx, ny = 16, 8
     sketch = transforms((nx, ny))
@@ -444,7 +444,7 @@ def test_the_fast_variant_makes_the_terrain_where_there_is_compute(any_engine, s
     any_engine.read(sketch, "terrain")
     assert (any_engine.ran == ["terrain"]) == any_engine.info.compute
     any_engine.read(sketch, "terrain", steps={"terrain.spectrum": 3})
-    assert "terrain.spectrum" in any_engine.ran, "turns are not shown by the fast variant"
+    assert "terrain.spectrum" in any_engine.ran, "iterations are not shown by the fast variant"
 
 
 @pytest.mark.parametrize("side", [2**n + more for n in range(1, 10) for more in (0, 1)])

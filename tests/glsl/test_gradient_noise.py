@@ -243,7 +243,7 @@ def test_noise_reaches_far_and_never_past_1(basis):
     assert 0.99 < total.max() < 1
 
 
-def test_simplex_noise_stands_on_triangles_of_side_1(on_gpu):
+def test_simplex_noise_is_on_triangles_of_side_1(on_gpu):
     """At a lattice point only its own plane is there: noise 0, and the slope of one gradient."""
     side = np.array([np.cos(np.radians(15)), -np.sin(np.radians(15))])  # 60 degrees from the diagonal
     points = [i * side + j * side[::-1] for i, j in RNG.integers(-30, 30, (200, 2))]
@@ -401,7 +401,7 @@ def test_tiny_terrains_are_numbers(engine, sketch_of, size):
     np.testing.assert_allclose(found, terrain(x, y, texels=texels), atol=2e-4)
 
 
-def test_it_is_normalised_by_default_and_not_when_asked(engine, sketch_of):
+def test_it_is_normalised_by_default_and_not_where_that_is_off(engine, sketch_of):
     use = "generation/gradient_noise"
     heights = engine.read(sketch_of(use=use), "terrain")
     assert heights.min() == 0 and heights.max() == 1

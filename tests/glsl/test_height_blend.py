@@ -145,7 +145,7 @@ def test_texels_of_the_image_are_taken_modulo_its_size(any_engine, make_sketch):
     np.testing.assert_allclose(colour, wanted, atol=5e-3)
 
 
-def test_a_user_s_image_stands_in_for_each_material(any_engine, make_sketch, tmp_path):
+def test_a_user_s_image_replaces_each_material(any_engine, make_sketch, tmp_path):
     for name, pixel in (("meadow", (255, 0, 0)), ("stone", (0, 255, 0)), ("ice", (0, 0, 255))):
         Image.new("RGB", (5, 3), pixel).save(tmp_path / f"{name}.png")
     text = PASSES.format("")

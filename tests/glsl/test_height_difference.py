@@ -73,7 +73,7 @@ def test_a_plane_that_rises_to_the_sun_loses_light_in_step_with_its_slope(engine
         np.testing.assert_array_equal(light[:, -1, 3], 1.0)
 
 
-def test_the_fault_of_the_method_a_slope_away_from_the_sun_is_as_bright_as_level_terrain(engine, lit):
+def test_the_defect_of_the_method_a_slope_away_from_the_sun_is_as_bright_as_level_terrain(engine, lit):
     light = engine.read(lit(rise=(0.0, -0.5), sun=(0.0, 5.0)), "light")
     np.testing.assert_array_equal(light[..., 3], 1.0)
 

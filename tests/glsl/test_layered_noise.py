@@ -273,7 +273,7 @@ def test_the_smooth_curve_is_level_at_nodes(any_engine, sketch_of):
     assert bend[node - 1] > 20 * bend[node // 2]
 
 
-def test_it_is_normalised_by_default_and_not_when_asked(engine, sketch_of):
+def test_it_is_normalised_by_default_and_not_where_that_is_off(engine, sketch_of):
     terrain = engine.read(sketch_of(), "terrain")
     assert terrain.min() == 0 and terrain.max() == 1
     sketch = sketch_of(normalise="none")

@@ -69,7 +69,7 @@ def assert_same_light(found, wanted):
 # The sun
 
 
-def test_the_sun_stands_where_the_compass_says(on_gpu):
+def test_the_sun_is_where_the_compass_says(on_gpu):
     places = {
         (0, 0): (0, 1, 0),
         (90, 0): (1, 0, 0),
@@ -89,7 +89,7 @@ def test_the_sun_is_a_unit_vector_at_its_angles(on_gpu):
     np.testing.assert_allclose(found, [sun_vector(*p) for p in places.astype(np.float64)], atol=2e-6)
 
 
-def test_a_normal_stands_square_on_its_slope(on_gpu):
+def test_a_normal_is_perpendicular_to_its_slope(on_gpu):
     slopes = np.random.default_rng(2).normal(0, 2, (300, 2))
     found = on_gpu("lighting/sun.glsl", "normal_of_slope(slope)", slope=slopes).astype(np.float64)
     np.testing.assert_allclose(np.linalg.norm(found, axis=1), 1, atol=1e-6)
@@ -443,7 +443,7 @@ float kernel(ivec2 texel) { return float(texel.x + 2 * texel.y) / 64.0; }
 
 
 def test_slopes_between_texels_are_the_texels_slopes_interpolated(engine, lit):
-    """Texels of the light on texels of the terrain stand beside others that do not."""
+    """Texels of the light on texels of the terrain are next to others that are not."""
     sun = (135, 25)
     sketch = lit(HILLS, "l_dot_n", sun, light_size="[129, 97]", relief=300.0, extent=640.0)
     heights = engine.read(sketch, "height").astype(np.float64) * 300

@@ -119,7 +119,7 @@ def test_the_distance_to_a_segment_is_that_to_the_nearest_of_its_points(on_gpu):
     np.testing.assert_allclose(found, np.linalg.norm(points - place, axis=-1).min(axis=0), atol=3e-3)
 
 
-def test_what_is_not_a_number_is_told(on_gpu):
+def test_what_is_not_a_number_is_recognised(on_gpu):
     value = np.array([0.0, -1e30, np.nan, np.inf, -np.inf], np.float32)
     found = on_gpu("maths/number.glsl", "is_number(value) ? 1 : 0", value=value)
     np.testing.assert_array_equal(found, [1, 1, 0, 0, 0])

@@ -85,7 +85,7 @@ def test_both_drivers_give_the_same_bits(same_by_both_drivers, make_sketch, size
     same_by_both_drivers(lambda engine: engine.read(sketch, "terrain.raw"))
 
 
-def test_each_turn_divides_every_square(engine, make_sketch, number):
+def test_each_iteration_divides_every_square(engine, make_sketch, number):
     sketch = sketch_of(make_sketch, 17, seed=5)
     truth = by_squares(17, 0.5, number(5, 17))
     for turn, values in engine.steps(sketch, "terrain.raw"):
@@ -94,7 +94,7 @@ def test_each_turn_divides_every_square(engine, make_sketch, number):
         known[::step, ::step] = True
         assert not values[~known].any()
         np.testing.assert_allclose(values[known], truth[known], atol=2e-6)
-        assert (values != 0).sum() == known.sum() - 4, "the land begins as 0, and its corners stay so"
+        assert (values != 0).sum() == known.sum() - 4, "the terrain begins as 0, and its corners stay so"
 
 
 def test_roughness_is_what_is_left_of_the_numbers_each_turn(engine, make_sketch):

@@ -50,7 +50,7 @@ def test_the_range_is_numpys(engine, sketch_of, size):
     np.testing.assert_array_equal(engine.read(sketch, "range"), [[[terrain.min(), terrain.max()]]])
 
 
-def test_one_extreme_texel_is_found_wherever_it_stands(engine, make_sketch):
+def test_one_extreme_texel_is_found_wherever_it_is(engine, make_sketch):
     spike = """
     #pragma kernel(output = "height:r32f")
     uniform ivec2 where = ivec2(0);

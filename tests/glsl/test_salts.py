@@ -86,7 +86,7 @@ def terrains(any_engine, make_sketch):
 
 
 def bumps(terrain):
-    """Return how far each texel stands above the mean of the four around it."""
+    """Return how far each texel is above the mean of the four around it."""
     around = terrain[1:-1, :-2] + terrain[1:-1, 2:] + terrain[:-2, 1:-1] + terrain[2:, 1:-1]
     return (terrain[1:-1, 1:-1] - around / 4).ravel()
 

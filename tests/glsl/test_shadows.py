@@ -404,7 +404,7 @@ def test_without_compute_shaders_the_sweep_is_a_march_and_one_sentence_says_so(c
             f"light does without compute shaders, which are not here: see glsl/lighting/{method}.toml"
         ]
         assert visible(swept, sweep).shape == sweep_on_grid.shape == (65, 65), (
-            "a texel for each of the land's"
+            "a texel for each of the terrain's"
         )
         assert swept.plan.step("light.horizon").size == (65, 65)
         np.testing.assert_array_equal(sweep_on_grid[::2, ::2], visible(plain, march))

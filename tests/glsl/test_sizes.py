@@ -65,7 +65,7 @@ def test_a_preview_shows_the_terrain_of_2049(terrain_of, name):
     ],
     ids=str,
 )
-def test_whatever_the_parameters(terrain_of, name, values):
+def test_with_any_parameters(terrain_of, name, values):
     assert likeness(terrain_of(name, 129, **values), terrain_of(name, 257, **values)) >= 0.95
 
 

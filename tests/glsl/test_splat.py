@@ -40,7 +40,7 @@ def test_the_means_are_those_of_the_tiles(any_engine, make_sketch):
     np.testing.assert_allclose(found, expected, rtol=2e-3)
 
 
-def test_by_heights_what_stands_higher_comes_through(engine, make_sketch):
+def test_by_heights_what_is_higher_comes_through(engine, make_sketch):
     given = 'size = 65\nset = {{ blend = "{}", contrast = 20.0, variety = 0, repeats = 1 }}\n'
     alike = WEIGHTS.format("vec4(0.5, 0.0, 0.5, 0.0)")
     make = {"size": 65, "extent": 640.0, "weights": alike, **GRAINY}

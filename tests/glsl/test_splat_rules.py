@@ -51,7 +51,7 @@ def test_by_default_a_rule_covers_everything(cover):
 
 
 @pytest.mark.parametrize("size", [[65, 65], [33, 129]])
-def test_slope_is_an_angle_in_metres_whatever_the_grid(cover, size):
+def test_slope_is_an_angle_in_metres_on_any_grid(cover, size):
     # 30 degrees towards the north-east, on 1000 m by 400 m of terrain.
     rise = np.tan(np.radians(30)) / np.sqrt(2)
     plane = f"dot(vec2(texel) / vec2(size - 1), vec2(1000.0, 400.0)) * {rise / 1000}"

@@ -59,7 +59,7 @@ def test_in_bytes_the_sum_is_255_in_every_texel_and_none_is_off_by_more_than_rou
     assert np.sort(off, axis=1)[:, :3].max() <= 0.5 + 1e-4
 
 
-def test_alphas_laid_one_over_the_other_give_the_weights_back(on_gpu, weights):
+def test_alphas_composited_one_over_the_other_give_the_weights_back(on_gpu, weights):
     alphas = np.stack([on_gpu(FILE, f"alpha_of_layer(w, {k})", w=weights) for k in range(4)])
     assert alphas.min() >= 0 and alphas.max() <= 1
     assert np.isfinite(alphas).all()

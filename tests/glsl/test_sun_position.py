@@ -89,7 +89,7 @@ def test_days_are_counted_as_the_calendar_counts_them(on_gpu):
     np.testing.assert_array_equal(found, [(d - datetime.date(2000, 1, 1)).days for d in dates])
 
 
-def test_the_sun_stands_where_the_almanac_says_for_a_hundred_years(on_gpu):
+def test_the_sun_is_where_the_almanac_says_for_a_hundred_years(on_gpu):
     cases = many()
     found = on_gpu(FILE, UNSEEN, **columns(cases)).astype(np.float64)
     truth = np.array([almanac(*case) for case in cases])

@@ -27,7 +27,7 @@ def test_swatches_stand_in_their_order_with_paper_between(engine, make_sketch, b
     np.testing.assert_array_equal(picture, wanted)
 
 
-def test_a_swatch_shows_the_whole_image_as_often_as_asked(any_engine, make_sketch):
+def test_a_swatch_repeats_the_whole_image(any_engine, make_sketch):
     stripes = PLAIN.format("vec3(float(texel.x < 16))")
     text = '[[pass]]\nname = "red"\nuse = "./red"\nsize = 32\n'
     use = '[[pass]]\nname = "p"\nuse = "texturing/swatches"\ninputs = { first = "red" }\n'

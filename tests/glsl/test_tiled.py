@@ -182,7 +182,7 @@ def test_a_removed_seam_is_like_any_other_row_of_nodes(any_engine, sketch_of, ti
     assert (ratios <= 1.1).all(), ratios
 
 
-def test_without_the_mend_terrain_tears(any_engine, sketch_of):
+def test_where_seams_are_left_the_terrain_tears(any_engine, sketch_of):
     jump, _ = seam_breaks(any_engine, sketch_of, 257, 4, "left", frequency=32, octaves=1)
     assert 20 < jump < 200, jump
 

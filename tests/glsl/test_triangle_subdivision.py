@@ -76,7 +76,7 @@ def test_both_drivers_give_the_same_bits(same_by_both_drivers, make_sketch, size
     same_by_both_drivers(lambda engine: engine.read(sketch, "terrain.raw"))
 
 
-def test_each_turn_halves_the_edges(engine, make_sketch, number):
+def test_each_iteration_halves_the_edges(engine, make_sketch, number):
     sketch = sketch_of(make_sketch, 17, seed=5)
     truth = by_triangles(17, 1.0, None, number(5, 17))
     for turn, values in engine.steps(sketch, "terrain.raw"):

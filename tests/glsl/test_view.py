@@ -1,4 +1,4 @@
-"""view/: what stands where in the picture, and what its colours are."""
+"""view/: what is where in the picture, and what its colours are."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def above(sketch, azimuth=180.0, elevation=60.0, **more):
 
 
 def pixels_of(engine, points):
-    """Where points of the terrain stand in the last picture: column and row from the top left."""
+    """Where points of the terrain are in the last picture: column and row from the top left."""
     plan = engine.plan
     clip = np.c_[points, np.ones(len(points))] @ plan.eye.clip_from_world.astype(float).T
     place = clip[:, :2] / clip[:, 3:]
@@ -54,7 +54,7 @@ SEEN = {
 
 @pytest.mark.parametrize("azimuth", SEEN)
 @pytest.mark.parametrize("corner", CORNERS)
-def test_a_marked_corner_stands_where_someone_on_that_side_sees_it(any_engine, terrain, azimuth, corner):
+def test_a_marked_corner_is_where_someone_on_that_side_sees_it(any_engine, terrain, azimuth, corner):
     east, north = CORNERS[corner]
     there = f"((texel.x > 24) == bool({east}) && (texel.y > 24) == bool({north})"
     there += f" && (texel.x < 8) != bool({east}) && (texel.y < 8) != bool({north}))"
@@ -308,7 +308,7 @@ def test_an_enlarged_map_has_squares(engine, shown):
     np.testing.assert_array_equal(picture[::8, ::8], picture[7::8, 7::8])
 
 
-def test_a_shrunk_map_shows_means_or_single_texels_as_asked(engine, shown):
+def test_a_shrunk_map_shows_means_or_single_texels(engine, shown):
     board = "float((texel.x & 3) == 0)"
     mean = engine.render(shown(board, [64, 64]), size=(16, 16)).array[..., 0]
     assert np.abs(mean.astype(int) - 64).max() <= 1

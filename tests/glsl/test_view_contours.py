@@ -80,7 +80,7 @@ def test_every_so_manieth_line_is_thick_counted_from_sea_level(any_engine, make_
         np.testing.assert_allclose(found[x - 6 : x + 7].sum(), 4 if elevation % 50 == 0 else 1, atol=0.02)
 
 
-def test_where_they_crowd_their_mean_stands_and_nothing_flickers(any_engine, cover):
+def test_where_they_crowd_their_mean_is_drawn_and_nothing_flickers(any_engine, cover):
     found = cover(any_engine, EASTWARD, "interval = 0.5, every = 0, width = 0.8", size=[101, 5], relief=50.0)
     np.testing.assert_allclose(found, min(0.8 * 50 / 100 / 0.5, 1.0), atol=2e-3)
 

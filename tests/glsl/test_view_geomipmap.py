@@ -256,7 +256,7 @@ def surfaces(levels: np.ndarray, coarser: np.ndarray, tiles: np.ndarray) -> np.n
 
 
 def in_picture(heights: np.ndarray, view: sight.View) -> np.ndarray:
-    """Return where nodes at given heights stand in the picture, NaN outside it."""
+    """Return where nodes at given heights are in the picture, NaN outside it."""
     ny, nx = heights.shape[:2]
     nodes = tiles.vertices()[:289, :2].astype(np.float64) / 16
     east = (np.arange(nx)[:, None] + nodes[:, 0]) / nx * view.extent[0]

@@ -245,7 +245,7 @@ def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
 def heights(engine, sketch, camera) -> np.ndarray:
     """Return the heights of what is drawn for a camera, from above."""
     found = engine.read(sketch.with_camera(camera), "above", size=SIZE)
-    assert (found[..., 2] == 1).all(), "the mesh covers the land"
+    assert (found[..., 2] == 1).all(), "the mesh covers the terrain"
     return found[..., 0].astype(np.float64)
 
 

@@ -173,7 +173,7 @@ def test_a_missing_library_names_the_package_that_brings_it_and_not_the_one_for_
         ("Wayland: Failed to connect to display", {"WAYLAND_DISPLAY": "wayland-0"}, "XDG_RUNTIME_DIR"),
     ],
 )
-def test_the_environment_tells_the_likelier_cause(message, environ, expected):
+def test_the_environment_shows_the_likelier_cause(message, environ, expected):
     assert expected in advice(message, "linux", environ)
     assert len(advice(message, "linux", {})) < len(advice(message, "linux", environ))
 

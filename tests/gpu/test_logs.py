@@ -313,7 +313,7 @@ WORDINGS = (
 
 
 @pytest.mark.parametrize("wording", WORDINGS)
-def test_line_numbers_survive_whatever_the_source_number(wording: str) -> None:
+def test_line_numbers_survive_any_source_number(wording: str) -> None:
     lines = [1, 2, 9, 10, 255, 4096, 65_536, 1_234_567]
     log = "\n".join(
         wording.format(source=i % 4, line=line, what=f"'name{i}' : undeclared")

@@ -46,17 +46,17 @@ def test_a_frame_is_saved_as_what_its_name_says(tmp_path: Path, ending: str, upp
 
 @pytest.mark.parametrize("ending", [".png", ".webp", ".tif"])
 def test_alpha_and_the_colours_under_it_stay(tmp_path: Path, ending: str):
-    message: list[str] = []
-    Frame(picture(alpha=0)).save(tmp_path / f"a{ending}", say=message.append)
+    messages: list[str] = []
+    Frame(picture(alpha=0)).save(tmp_path / f"a{ending}", say=messages.append)
     read = tifffile.imread if ending == ".tif" else lambda path: np.asarray(PIL.Image.open(path))
     np.testing.assert_array_equal(read(tmp_path / f"a{ending}"), picture(alpha=0))
-    assert message == []
+    assert messages == []
 
 
 def test_a_jpeg_says_that_alpha_was_dropped(tmp_path: Path):
-    message: list[str] = []
-    Frame(picture(alpha=254)).save(tmp_path / "a.jpg", say=message.append)
-    assert len(message) == 1 and "alpha was dropped; .png, .webp and .tif keep it" in message[0]
+    messages: list[str] = []
+    Frame(picture(alpha=254)).save(tmp_path / "a.jpg", say=messages.append)
+    assert len(messages) == 1 and "alpha was dropped; .png, .webp and .tif keep it" in messages[0]
     assert write_picture(tmp_path / "b.jpg", picture()) == ""
 
 

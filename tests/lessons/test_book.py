@@ -146,7 +146,7 @@ def test_its_pictures_are_the_engine_s(book, lesson, engine):
         assert np.abs(stored - drawn).mean() < (0.01 if is_diagram(drawn) else 4.0), picture.name
 
 
-def test_every_stored_picture_counts_and_one_that_cannot_be_stored_is_said(
+def test_every_stored_picture_counts_and_one_that_cannot_be_stored_is_reported(
     tmp_path, lesson, engine, monkeypatch
 ):
     """Pictures are stored aside, while the next are drawn."""
@@ -173,9 +173,9 @@ def test_a_picture_shown_twice_is_stored_once(book, lesson):
 def test_answers_are_folded_away_and_all_is_there_without_a_script(book):
     page = Page(book / "en/small.html")
     text = (book / "en/small.html").read_text(encoding="utf-8")
-    assert len(page.all("details")) == 7  # hint and mend of the fault, an answer, three solutions, a hint
+    assert len(page.all("details")) == 7  # hint and fix of the bug, an answer, three solutions, a hint
     assert not any("open" in attributes for attributes in page.all("details"))
-    assert text.count("<li") >= 6 + 3 + 2  # turns, values, variants
+    assert text.count("<li") >= 6 + 3 + 2  # iterations, values, variants
     assert "total / count" in page.text and "total / 8.0" in page.text
 
 

@@ -69,7 +69,7 @@ def test_a_button_at_the_end_of_a_series_keeps_the_keys(page):
     assert page.run("return document.activeElement.getAttribute('aria-disabled')") == "true"
 
 
-def test_a_comparison_is_swiped_by_hand_and_keys_and_laid_side_by_side(page):
+def test_a_comparison_is_swiped_by_mouse_and_keys_and_shown_side_by_side(page):
     page.run("document.querySelector('#two').scrollIntoView({block: 'center', behavior: 'instant'})")
     assert page.run(f"return {AT}") == "50"
     width = page.run("return document.querySelector('#two .variants').getBoundingClientRect().width")
@@ -103,7 +103,7 @@ def test_on_paper_everything_lies_open(page):
     assert count(page, "details[open]") == 0
 
 
-def test_a_chosen_theme_is_kept_on_every_page(page, book):
+def test_a_chosen_theme_stays_on_every_page(page, book):
     paper = "getComputedStyle(document.body).backgroundColor"
     before = page.run(f"return {paper}")
     page.click("#theme")

@@ -95,7 +95,7 @@ def test_bugs_are_visible_and_claims_hold(shipped, engine):
 
 
 @pytest.mark.slow
-def test_every_number_stands_in_its_sentence(shipped, engine):
+def test_every_number_is_in_its_sentence(shipped, engine):
     numbers = numbers_of(engine, shipped["en"])
     for language, lesson in shipped.items():
         for words in lesson.texts():

@@ -85,7 +85,7 @@ def test_a_picture_is_drawn_whichever_thread_asks(lesson):
     np.testing.assert_array_equal(pixels(widget.picture), pixels(there))
 
 
-def test_a_value_out_of_range_is_said_and_the_picture_stays(opened):
+def test_a_value_out_of_range_is_reported_and_the_picture_stays(opened):
     widget = opened.show("land")
     before = widget.picture
     widget.values = {"height.smoothing": 40.0}
@@ -187,7 +187,7 @@ def test_the_cells_are_the_lesson(lesson, french, engine):
         ("0.1 0.2 mistake drawn", [0.1, 0.2]),
     ],
 )
-def test_one_picture_is_asked_for_at_a_time(events, sent):
+def test_one_picture_is_requested_at_a_time(events, sent):
     here = Path(__file__).parent
     command = [NODE, str(here / "widget_sends.mjs"), str(WIDGET), *events.split()]
     found = subprocess.run(command, capture_output=True, text=True, check=True, timeout=120)
@@ -197,12 +197,12 @@ def test_one_picture_is_asked_for_at_a_time(events, sent):
 def test_a_picture_that_fails_ends_the_wait_as_well(lesson, opened, monkeypatch):
     """Whatever is raised: else nothing could be dragged any more."""
     widget = opened.show("land")
-    told = []
-    monkeypatch.setattr(widget, "send", told.append)
+    sent = []
+    monkeypatch.setattr(widget, "send", sent.append)
     monkeypatch.setattr(widget, "_draw", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         widget.values = {"height.smoothing": 0.2}
-    assert told == [{"drawn": True}]
+    assert sent == [{"drawn": True}]
 
 
 @pytest.mark.parametrize("text", ["#define A(x) \\", "b = '\\n';"])

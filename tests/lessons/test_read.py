@@ -145,7 +145,7 @@ def test_a_file_without_front_matter(tmp_path):
 
 
 def test_a_formula_with_a_label_is_a_formula(make_lesson):
-    """Nothing that stands in the text is lost."""
+    """Nothing of the text is lost."""
     found = make_lesson(("A picture first.", "$$\nx = 1\n$$ (one)\n\nA picture first."))
     assert "x = 1" in found.blocks[0].markdown and "(one)" in found.blocks[0].markdown
     assert found.blocks[1].markdown == "A picture first."

@@ -26,7 +26,7 @@ def test_the_small_lesson_keeps_to_all(lesson):
 @pytest.mark.parametrize(
     ("before", "after", "words"),
     [
-        ("A picture first.", "word " * 61, "61 words stand before the first figure"),
+        ("A picture first.", "word " * 61, "61 words before the first figure"),
         (
             "A picture first.",
             "```question early\nask = 'a'\nanswer = 'b'\n```",
@@ -39,7 +39,7 @@ def test_the_small_lesson_keeps_to_all(lesson):
         ("lesson:small", "lesson:smaller", "a link to lesson 'smaller'"),
         ("lesson:small", "http://example.org", "a link to 'http://example.org'"),
         ("lesson:small", "sketch:nothing", "a link to sketch 'nothing'"),
-        ("term:texel", "term:texl", "a link to term 'texl', which there is not; did you mean 'texel'?"),
+        ("term:texel", "term:texl", "a link to term 'texl', which does not exist; did you mean 'texel'?"),
         ("Turn by turn.", "[Texels](term:texel).", "a second link to term 'texel'"),
         ("lesson:small", "thesis:one", "a link to section 'one'"),
         (

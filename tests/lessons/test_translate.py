@@ -61,7 +61,7 @@ def test_broken_lines_are_not_a_change(pair, write_lesson):
     assert not stale(read_document(english), read_document(french)).any
 
 
-def test_a_new_block_stands_in_english_until_it_is_translated(pair, write_lesson):
+def test_a_new_block_is_in_english_until_it_is_translated(pair, write_lesson):
     english, french = pair
     write_lesson(("## One thing\n", "## One thing\n\nA new paragraph.\n"))
     lost = stale(read_document(english), read_document(french))
@@ -151,7 +151,7 @@ def test_the_status_of_a_folder_of_lessons(pair, write_lesson, tmp_path, monkeyp
     assert status.status_of("small", "fr").state == "missing"
 
 
-def test_a_block_that_became_one_of_another_kind_stands_in_english(pair, write_lesson):
+def test_a_block_that_became_one_of_another_kind_is_in_english(pair, write_lesson):
     """A stale translation can be read, whatever the English has become."""
     english, french = pair
     write_lesson(("A picture first.\n", "* A list\n* first\n"))
@@ -160,7 +160,7 @@ def test_a_block_that_became_one_of_another_kind_stands_in_english(pair, write_l
     assert found.named["land"].caption == "Cinq sur cinq, tout est connu."
 
 
-def test_a_block_that_got_more_parts_stands_in_english(pair, write_lesson):
+def test_a_block_that_got_more_parts_is_in_english(pair, write_lesson):
     english, french = pair
     write_lesson(
         ('labels  = ["even", "uneven"]', 'labels = ["even", "uneven", "more"]'),

@@ -103,7 +103,7 @@ find   = "total / count"
 put    = "total / (count > 3.0 ? 4.0 : 9.0)"
 ask    = "Its border sinks. Why?"
 hint   = "How many are summed?"
-mend   = "A mean divides by their count."
+fix    = "A mean divides by their count."
 alt    = "Heights that shrink"
 ```
 
@@ -198,7 +198,7 @@ labels  = ["premier", "second"]
 ```break quarter
 ask  = "Cela monte. Pourquoi ?"
 hint = "Combien en additionne-t-on ?"
-mend = "Une moyenne divise par leur nombre."
+fix = "Une moyenne divise par leur nombre."
 alt  = "Des hauteurs qui croissent"
 ```
 

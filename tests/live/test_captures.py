@@ -33,7 +33,7 @@ float kernel(ivec2 texel) { return level * float(texel.x + kind) / float(size.x)
 """
 SKETCH = (
     "format = 1\nsize = 33\n"
-    + map_of_height("./terrain", channel="red")
+    + map_of_height(channel="red")
     + """[[keyframe]]
 time = 0.0
 set = { "height.tint" = "#000000" }

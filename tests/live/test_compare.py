@@ -286,7 +286,7 @@ def test_two_pictures_are_painted_as_they_are(ctx: moderngl.Context) -> None:
         made.release()
 
 
-def test_they_take_turns_when_they_flicker(session: Session) -> None:
+def test_they_alternate_when_they_flicker(session: Session) -> None:
     see = Inspection(session)
     session.frame(SIZE)
     assert see.patience(0.1) > 1e6

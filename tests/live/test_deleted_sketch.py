@@ -16,12 +16,9 @@ from playground.errors import PlaygroundError
 from playground.workbench.problems import Problems
 from playground.workbench.session import Session
 
-from ..workbench import test_session
-from ..workbench.test_session import KERNEL, TILT, FakeSandbox
+from ..workbench.test_session import KERNEL, SKETCH, TILT, FakeSandbox
 from .desk import Bare, errors_of
 from .screen import ROOT
-
-SKETCH = test_session.SKETCH.replace("./land", "./terrain")
 
 
 def family(kind: type[PlaygroundError] = PlaygroundError) -> list[type[PlaygroundError]]:

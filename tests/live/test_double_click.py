@@ -50,7 +50,7 @@ def test_two_clicks_a_second_apart_are_two(picture: float) -> None:
     assert PictureMouse(picture, [0.05, 1.05]).doubles == [False, False]
 
 
-def test_in_slow_turns_clicks_that_cannot_have_been_one_are_two() -> None:
+def test_in_slow_frames_clicks_that_cannot_have_been_one_are_two() -> None:
     assert PictureMouse(SLOW, [0.05, 1.5]).doubles == [False, False]
 
 

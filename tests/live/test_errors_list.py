@@ -31,7 +31,7 @@ uniform float spare = 0.5; //! slider(0, 1) Nothing
 float kernel(ivec2 texel) { return level * wave(vec2(texel)); }
 """
 WAVE = "// wave.glsl -- a wave\nfloat wave(vec2 p) {\n    return 0.5 + 0.1 * sin(p.x);\n}\n"
-SKETCH = "format = 1\nsize = 17\n" + map_of_height("./terrain")
+SKETCH = "format = 1\nsize = 17\n" + map_of_height()
 
 
 @pytest.fixture

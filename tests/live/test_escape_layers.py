@@ -23,7 +23,7 @@ float kernel(ivec2 texel) { return level; }
 """
 SKETCH = (
     "format = 1\nsize = 17\n"
-    + map_of_height("./terrain")
+    + map_of_height()
     + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0 }\n'
 )
 

@@ -25,7 +25,7 @@ TERRAIN = """// terrain.glsl -- a slope from west to east
 uniform float level = 1.0; //! slider(0, 1) How high
 float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x - 1); }
 """
-SKETCH = "format = 1\nsize = [64, 8]\nrelief = 250.0\n" + map_of_height("./terrain")
+SKETCH = "format = 1\nsize = [64, 8]\nrelief = 250.0\n" + map_of_height()
 
 
 @pytest.fixture
@@ -107,7 +107,7 @@ def test_shares_of_the_numbers(ctx: moderngl.Context) -> None:
     texture.release()
 
 
-def test_a_turn_reads_no_more_than_a_piece(ctx: moderngl.Context, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_frame_reads_no_more_than_a_piece(ctx: moderngl.Context, monkeypatch: pytest.MonkeyPatch) -> None:
     real, sizes = histogram.read_texels, []
 
     def noted(texture: moderngl.Texture, corner: tuple[int, int], size: tuple[int, int]) -> object:

@@ -15,7 +15,7 @@ from .desk import Bare
 TERRAIN = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'
 
 
-FILES = {"terrain.glsl": TERRAIN, "sketch.toml": "format = 1\nsize = 17\n" + map_of_height("./terrain")}
+FILES = {"terrain.glsl": TERRAIN, "sketch.toml": "format = 1\nsize = 17\n" + map_of_height()}
 
 
 @each(

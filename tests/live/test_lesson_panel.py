@@ -56,7 +56,7 @@ def test_sliders_of_a_figure_act_on_the_session(desk):
     assert value(desk, "height.seed") == 3
 
 
-def test_a_slider_over_turns_stops_the_kernels(desk):
+def test_a_slider_over_iterations_stops_the_kernels(desk):
     desk.open(1)
     desk.drag("##steps", 0.05, 0.95)
     assert desk.reader.at["halves"] == 3 and desk.session.view.steps == {"height.raw": 4, "phase": 4}

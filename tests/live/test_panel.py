@@ -368,7 +368,7 @@ def test_a_sketch_that_cannot_be_saved_is_offered_as_a_copy(tmp_path: Path, any_
     bare.close()
 
 
-def test_keys_that_come_up_within_the_turn_are_heard(bare: Bare) -> None:
+def test_keys_that_come_up_within_the_frame_are_heard(bare: Bare) -> None:
     bare.session.drafts.set("height.level", 0.25)
     bare.run_frames(2)
     events = imgui.get_io()

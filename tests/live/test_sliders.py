@@ -27,7 +27,7 @@ uniform ivec2 part = ivec2(0); //! parts("east", "north") Which
 uniform int method = 0; //! menu("a choice whose name is longer than any closed list is wide", "b")
 float kernel(ivec2 texel) { return corners.x + float(part.x) + float(method); }
 """
-SKETCH = "format = 1\nsize = 33\n" + map_of_height("./terrain")
+SKETCH = "format = 1\nsize = 33\n" + map_of_height()
 
 
 @pytest.fixture

@@ -88,7 +88,7 @@ def is_red(pixel: NDArray[np.uint8]) -> bool:
 
 
 def soon(is_so: Callable[[], bool], seconds: float = 60.0) -> bool:
-    """Return whether something comes true: what the status tells, the screen may show a moment later."""
+    """Return whether something comes true: the screen may show a moment later what the status reports."""
     end = time.monotonic() + seconds
     while not (found := is_so()) and time.monotonic() < end:
         time.sleep(0.05)

@@ -17,7 +17,7 @@ float kernel(ivec2 texel) {
     return sin(0.3 * float(texel.x));
 }
 """
-SKETCH = "format = 1\nsize = 17\n" + map_of_height("./terrain")
+SKETCH = "format = 1\nsize = 17\n" + map_of_height()
 
 pytestmark = ON_LINUX
 

@@ -19,7 +19,7 @@ TERRAIN = """// terrain.glsl -- hills with a hole
 uniform float root = -1.0; //! slider(-1, 1)
 float kernel(ivec2 texel) { return texel / 4 == ivec2(3, 5) ? sqrt(root) : 0.5; }
 """
-SKETCH = "format = 1\nsize = 33\n" + map_of_height("./terrain")
+SKETCH = "format = 1\nsize = 33\n" + map_of_height()
 
 pytestmark = [*ON_LINUX, pytest.mark.slow]
 

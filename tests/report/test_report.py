@@ -192,17 +192,17 @@ def test_without_a_failure_it_says_so_and_holds_no_picture(leave) -> None:
 def test_every_word_has_its_own_explanation(leave) -> None:
     leave(actual=picture(1), expected=picture(2))
     (record,) = read_results(Path("results"))
-    message = set()
+    sentences = set()
     for word, found in MEANINGS.items():
         if word == "same":
             continue
         page = Page(report_html([replace(record, word=word, tier="")], Path("results")))
         assert page.text("p", class_="meaning") == found.sentence
-        message.add(found.sentence)
+        sentences.add(found.sentence)
         commands = [text for _, text in page.all("code")]
         assert bool(commands) is (word not in NEVER_ACCEPTED)
         assert found.broken is (word in NEVER_ACCEPTED)
-    assert len(message) == len(MEANINGS) - 1
+    assert len(sentences) == len(MEANINGS) - 1
     page = Page(report_html([replace(record, tier="same build", catches="Any change.")], Path("results")))
     assert page.text("p", class_="meaning").endswith(" Any change.")
     assert page.text("span", class_="tier") == "same build"

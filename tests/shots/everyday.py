@@ -137,7 +137,7 @@ class Judge:
         return render_shot(self.engine, ShotCase(shown, Shot(shot.name, size, shot.time, steps=shot.steps)))
 
     def kills(self, case: ShotCase, defect: Defect) -> bool:
-        """Say whether a shot tells of a defect; raise ``DoesNotApply`` where it has nothing of it."""
+        """Say whether a shot shows a defect; raise ``DoesNotApply`` where it has nothing of it."""
         shown = shown_by(case)
         later = defect.later if isinstance(defect, Rendering) else 0.0
         try:

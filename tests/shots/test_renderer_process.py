@@ -43,7 +43,7 @@ float kernel(ivec2 texel) {
 
 SKETCH = (
     "format = 1\nsize = 32\n"
-    + map_of_height("./terrain", channel="red")
+    + map_of_height(channel="red")
     + """[[preset]]
 name = "dim"
 set = { "height.gain" = 0.1 }
@@ -300,7 +300,7 @@ def test_a_worker_ends_with_its_parent_in_the_middle_of_a_draw(fake: RendererPro
 
 ENDING = (
     "format = 1\nsize = 32\n"
-    + map_of_height("./terrain")
+    + map_of_height()
     + '[[shot]]\nname = "crash"\n[[shot]]\nname = "hang"\n[[shot]]\nname = "next"\n'
 )
 

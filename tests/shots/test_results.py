@@ -110,7 +110,7 @@ def test_two_sketches_of_one_name_stand_side_by_side(tmp_path: Path) -> None:
     assert len({record.pictures["actual"] for record in written}) == 2
 
 
-def test_a_stamp_tells_one_result_from_the_next() -> None:
+def test_a_stamp_distinguishes_one_result_from_the_next() -> None:
     assert FULL.stamp == replace(FULL).stamp != replace(FULL, when=FULL.when + 1).stamp
 
 

@@ -184,7 +184,7 @@ def slope(folder: Path) -> ShotCase:
         "float kernel(ivec2 texel) { return float(texel.x) / 16.0; }\n"
     )
     (folder / "slope.toml").write_text(
-        "format = 1\nsize = 16\n" + map_of_height("./terrain") + '[[shot]]\nname = "one"\nsize = [16, 16]\n'
+        "format = 1\nsize = 16\n" + map_of_height() + '[[shot]]\nname = "one"\nsize = [16, 16]\n'
     )
     return shots_of([folder / "slope.toml"])[0]
 

@@ -274,7 +274,7 @@ void main() { imageStore(picture, ivec2(gl_GlobalInvocationID.xy), vec4(1.0)); }
 
 
 @pytest.mark.parametrize("name", ["terrain.comp", "sketch.comp"])
-def test_a_plain_shader_opens_itself_whatever_its_name(folder, name):
+def test_a_plain_shader_of_any_name_opens_itself(folder, name):
     folder.sketch('[[pass]]\nname = "height"\nuse = "generation/fbm"\n')
     found = load(folder.write(name, PLAIN_COMPUTE))
     assert found.file.endswith(name) and found.graph.passes[0].technique.kind == "plain_compute"

@@ -55,7 +55,7 @@ def test_points_are_where_angles_put_them(azimuth, elevation, size):
     ("azimuth", "right", "up"),
     [(180.0, "east", "north"), (0.0, "west", "south"), (90.0, "north", "west"), (270.0, "south", "east")],
 )
-def test_the_eye_stands_where_its_azimuth_says(azimuth, right, up):
+def test_the_eye_is_where_its_azimuth_says(azimuth, right, up):
     """From the south, east is on the right and north is further up."""
     steps = {"east": (1, 0, 0), "west": (-1, 0, 0), "north": (0, 1, 0), "south": (0, -1, 0)}
     middle = np.array([6_000.0, 4_000.0, 750.0])
@@ -123,7 +123,7 @@ def test_orbit_turns_and_stops_short_of_overhead():
 
 @pytest.mark.parametrize("azimuth", [0.0, 60.0, 200.0])
 def test_pan_carries_what_was_to_the_right_to_the_middle(azimuth):
-    """After a pan by half the picture's width, what stood at its right edge stands in its middle."""
+    """After a pan by half the picture's width, what was at its right edge is in its middle."""
     camera = Camera(azimuth, 30.0, 20_000.0, (6_000.0, 4_000.0, 0.0))
     eye = look(camera, EXTENT, RELIEF, WIDE)
     a = math.radians(azimuth)

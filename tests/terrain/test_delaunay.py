@@ -110,7 +110,7 @@ def test_without_a_point_there_is_a_tie():
 
 
 def test_ties_are_left_alike_by_both_methods(monkeypatch):
-    """With points on the nodes of a coarse grid alone, many stand on others' circles, exactly."""
+    """With points on the nodes of a coarse grid alone, many are on others' circles, exactly."""
     step = SIDE // 8
 
     def on_the_grid(growing, triangle, point):
@@ -174,7 +174,7 @@ def test_neighbours_share_an_edge_and_know_each_other(points):
 
 
 @pytest.mark.parametrize("rules", WAYS, ids=["equal", "random", "wide"])
-def test_each_point_stands_in_the_greatest_triangle_before_it(rules):
+def test_each_point_is_in_the_greatest_triangle_before_it(rules):
     for points in range(25):
         before, after = (triangulate(replace(rules, points=n)) for n in (points, points + 1))
         np.testing.assert_array_equal(after.places[:-1], before.places)
@@ -271,7 +271,7 @@ def test_the_same_rules_make_the_same_and_another_seed_does_not():
 
 
 @pytest.mark.parametrize("proportion", [1.0, 0.3, 3.0, 1 / LONGEST, LONGEST])
-def test_sides_are_as_asked_and_lattice_numbers_are_floats(proportion):
+def test_sides_are_as_given_and_lattice_numbers_are_floats(proportion):
     made = triangulate(Rules(points=20, proportion=proportion))
     assert max(made.sides) == SIDE and min(made.sides) % 4096 == 0
     assert made.sides[1] / made.sides[0] == pytest.approx(proportion, rel=1e-3)

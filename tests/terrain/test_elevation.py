@@ -192,7 +192,7 @@ def test_a_compression_that_nothing_here_undoes_says_which_and_what_to_install(t
 
 
 @pytest.mark.parametrize("bands", [2, 3, 5])
-def test_of_several_bands_the_first_is_read_and_said(tmp_path, bands):
+def test_of_several_bands_the_first_is_read_and_that_is_reported(tmp_path, bands):
     heightmap = np.stack([HEIGHTMAP.astype(np.float32) + 100 * k for k in range(bands)])
     tifffile.imwrite(tmp_path / "a.tif", heightmap, planarconfig="separate", photometric="minisblack")
     if bands > 4:
@@ -220,7 +220,7 @@ def test_tiff_in_tiles_and_signed(tmp_path):
     assert_heightmap(read_elevation(tmp_path / "a.tif"), heightmap)
 
 
-def test_the_first_of_several_pictures_is_read_and_said(tmp_path):
+def test_the_first_of_several_pictures_is_read_and_that_is_reported(tmp_path):
     with tifffile.TiffWriter(tmp_path / "a.tif") as tif:
         tif.write(HEIGHTMAP)
         tif.write(2 * HEIGHTMAP)
@@ -257,7 +257,7 @@ def geotiff(
     return path
 
 
-def test_a_projected_geotiff_tells_metres(tmp_path):
+def test_a_projected_geotiff_gives_metres(tmp_path):
     found = read_elevation(
         geotiff(tmp_path / "a.tif", HEIGHTMAP, {1024: 1, 3072: 32633, 3076: 9001}, (30.0, 20.0))
     )
@@ -315,7 +315,7 @@ def test_a_geographic_geotiff_has_its_middle_latitude(tmp_path, raster):
     assert found.in_metres
 
 
-def test_a_matrix_tells_the_same_as_scale_and_tie_point(tmp_path):
+def test_a_matrix_gives_the_same_as_scale_and_tie_point(tmp_path):
     matrix = (0.1, 0, 0, 10.0, 0, -0.1, 0, 61.0, 0, 0, 0, 0, 0, 0, 0, 1)
     keys = {1024: 2, 1025: 1}
     a = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, keys, matrix=matrix))
@@ -634,7 +634,7 @@ def test_monsters_are_refused_by_their_header(tmp_path):
     refused(tmp_path / "a.tif", r"60000 x 60000 texels; the most is 2\*\*28")
 
 
-def test_large_offsets_that_float32_cannot_hold_are_said(tmp_path):
+def test_large_offsets_that_float32_cannot_hold_are_reported(tmp_path):
     heightmap = 5e6 + RNG.random((6, 9))
     np.save(tmp_path / "a.npy", heightmap)
     assert read_elevation(tmp_path / "a.npy").notes == (

@@ -30,7 +30,7 @@ def random_camera(rng: np.random.Generator) -> Camera:
 
 
 def pixels(view: visibility.View, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where places stand in the picture, (n, 2), and which of them are in it."""
+    """Return where places are in the picture, (n, 2), and which of them are in it."""
     clip = places @ view.clip_from_world[:, :3].T + view.clip_from_world[:, 3]
     inside = (np.abs(clip[:, :3]) <= clip[:, 3:]).all(axis=1)
     at = clip[:, :2] / np.where(inside, clip[:, 3], 1.0)[:, None]
@@ -53,7 +53,7 @@ def test_five_levels_from_512_triangles_to_2_share_one_tile_s_vertices():
 
 
 @each("piece", [p for p in tiles.pieces() if p[0] == "fans"], ids=str)
-def test_a_tile_is_covered_once_whatever_its_neighbours(piece):
+def test_a_tile_is_covered_once_with_any_neighbours(piece):
     faces = faces_of(piece)
     a, b = faces[:, 1, :2] - faces[:, 0, :2], faces[:, 2, :2] - faces[:, 0, :2]
     areas = (a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2

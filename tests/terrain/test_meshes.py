@@ -38,7 +38,7 @@ def test_the_terrain_is_covered_once(n):
 
 
 @pytest.mark.parametrize("n", [2, 3, 5, 33])
-def test_no_triangle_stands_twice_or_is_empty(n):
+def test_no_triangle_is_there_twice_or_empty(n):
     faces = grid(n).indices.reshape(-1, 3)
     assert len({tuple(sorted(face)) for face in faces.tolist()}) == len(faces)
     sizes = np.linalg.norm(

@@ -57,7 +57,7 @@ def test_the_nearer_of_two_slopes_is_taken():
     assert abs(x - 0.5) < 0.02 and 0.45 <= y <= 0.5
 
 
-def test_in_the_sky_and_beside_the_terrain_there_is_none():
+def test_in_the_sky_and_outside_the_terrain_there_is_none():
     eye = look(Camera(20, 20), EXTENT, RELIEF, SIZE)
     assert ground_under(eye, (0.5, 0.99), hills(), EXTENT, RELIEF) is None
     assert ground_under(eye, (0.01, 0.02), hills(), EXTENT, RELIEF) is None

@@ -106,7 +106,7 @@ def test_what_cannot_be_resampled_is_a_sentence(heights, size, words):
 
 
 @pytest.mark.parametrize("size", [(200, 131), (33, 21), (65, 300)])
-def test_a_cliff_overshoots_unless_it_is_kept_within(size):
+def test_a_cliff_overshoots_unless_it_is_limited(size):
     cliff = np.zeros((40, 65), np.float32)
     cliff[10:, 20:] = 1.0
     free, limited = resample(cliff, size), resample(cliff, size, within=(0.0, 1.0))
@@ -117,7 +117,7 @@ def test_a_cliff_overshoots_unless_it_is_kept_within(size):
     assert limited.dtype == np.float32 and limited.flags.c_contiguous
 
 
-def test_tiles_kept_within_the_same_range_share_their_edge():
+def test_tiles_limited_to_the_same_range_share_their_edge():
     heightmap = (RNG.random((65, 129)) > 0.5).astype(np.float32)
     west, east = (
         resample(tile, (129, 100), within=(0, 1)) for tile in (heightmap[:, :65], heightmap[:, 64:])

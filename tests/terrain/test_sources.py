@@ -58,7 +58,7 @@ def test_the_triangulation_s_kernel_declares_what_its_source_reads():
 
 
 @pytest.mark.parametrize(("first_row", "south_first"), [(0, HEIGHTS[::-1]), (1, HEIGHTS)])
-def test_the_first_row_is_north_unless_it_is_said_to_be_south(values, first_row, south_first):
+def test_the_first_row_is_north_unless_it_is_set_to_south(values, first_row, south_first):
     made = KIND.make(values(first_row=first_row), (3, 2))["height"]
     np.testing.assert_allclose(made, (south_first - 10.0) / 50.0, atol=1e-7)
 

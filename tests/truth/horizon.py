@@ -144,7 +144,7 @@ def horizon(terrain: Land, azimuth: float, part: Place = NODE) -> Array:
     """Return the tangent of the horizon's elevation towards an azimuth [degrees], for every texel.
 
     -inf where no terrain lies that way, NaN where ``part`` of the texel's cell is off the terrain.
-    What stands above it is seen, what is below it hidden: the terrain has no overhangs.
+    What is above it is visible, what is below it hidden: the terrain has no overhangs.
     """
     result = np.full(terrain.heights.shape, np.nan)
     _, there = _sampled(terrain, part)

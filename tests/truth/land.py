@@ -1,6 +1,6 @@
 """Terrains in float64 metres, read as the shaders read them, and the terrains that methods are measured on.
 
-Texels are nodes: texel k of n stands at k · extent / (n - 1). Between them the terrain is
+Texels are nodes: texel k of n is at k · extent / (n - 1). Between them the terrain is
 bilinear, and it ends at its border. Row 0 is in the south; x is east, y north.
 """
 
@@ -78,7 +78,7 @@ def _grid(size: int, extent: float, middle: tuple[float, float] = (0.5, 0.5)) ->
 def cone(size: int = 97, extent: float = 2400.0, slope: float = 30.0) -> Land:
     """Return one mountain on a plain, a cone that rises at an angle [degrees].
 
-    It stands where the shadow of a sun in the west-south-west, 5 degrees high, ends on the terrain.
+    It is where the shadow of a sun in the west-south-west, 5 degrees high, ends on the terrain.
     """
     east, north = _grid(size, extent, (0.25, 0.375))
     heights = np.maximum(extent / 9.6 - np.hypot(east, north), 0) * np.tan(np.radians(slope))

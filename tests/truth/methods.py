@@ -88,7 +88,7 @@ METHODS = [
 ]
 """What is compared. Without shadows are: those that throw none; the filter, which smears them; the
 cylinder and the night's cone, whose sun is far wider than the sun; the horizon between two of eight
-directions, which rounds off what stands there."""
+directions, which rounds off what is between them."""
 
 
 def written(value: object) -> str:
@@ -130,7 +130,7 @@ def sketch_of(folder: Path, terrain: Land, passes: str, *, base: float = 0.0) ->
 
 
 def relief_of(terrain: Land) -> float:
-    """Return the metres that height 1 stands for; 1 where the terrain is flat."""
+    """Return the metres of height 1; 1 where the terrain is flat."""
     return float(np.ptp(terrain.heights)) or 1.0
 
 

@@ -28,7 +28,7 @@ float kernel(ivec2 texel) { return level * float(texel.x) / float(size.x) + othe
 """
 SKETCH = (
     "format = 1  # ours\nsize = 33\n"
-    + map_of_height("./terrain")
+    + map_of_height()
     + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0, "height.other" = 0.5 }\n'
 )
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 from playground.workbench.session import Session
 
 
-def test_a_press_has_four_numbers_whose_signs_say_how_it_stands():
+def test_a_press_has_four_numbers_whose_signs_are_its_state():
     runner = SimpleNamespace(hover=(0.0, 0.0), drag=(0.0, 0.0, 0.0, 0.0))
     session = SimpleNamespace(engine=SimpleNamespace(runner=runner), sketch=None)
 

@@ -276,7 +276,7 @@ def test_a_new_start_and_a_reload_judge_alike(place: Place, what: str, locked: b
 
 
 @pytest.mark.parametrize("locked", [False, True])
-def test_the_terrains_own_values_are_the_files_word(place: Place, locked: bool) -> None:
+def test_the_terrain_s_own_values_are_those_of_the_file(place: Place, locked: bool) -> None:
     session, autosave = place.start()
     session.drafts.set("relief", 500.0)
     session.drafts.lock("relief", locked)
@@ -327,7 +327,7 @@ BROKEN = {
 
 
 @pytest.mark.parametrize("name", BROKEN)
-def test_a_broken_file_is_set_aside_and_one_is_reported(place: Place, name: str) -> None:
+def test_a_broken_file_is_set_aside_and_that_is_reported(place: Place, name: str) -> None:
     memory = Memory(place.sketch / "sketch.toml", place.state)
     place.state.mkdir()
     data = BROKEN[name].encode("utf-8", "surrogatepass")

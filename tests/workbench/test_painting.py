@@ -211,7 +211,7 @@ def session(tmp_path: Path, any_engine: Engine) -> Iterator[Session]:
     made.release()
 
 
-def test_a_stroke_over_the_picture_lands_under_the_mouse(session: Session, tmp_path: Path) -> None:
+def test_a_stroke_over_the_picture_is_painted_under_the_mouse(session: Session, tmp_path: Path) -> None:
     painting = Painting(session, tmp_path)
     assert painting.target == "painted.image"
     painting.toggle()

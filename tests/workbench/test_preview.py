@@ -52,7 +52,7 @@ def test_what_draws_no_mesh_is_drawn_as_it_is(tmp_path: Path):
 
 
 def test_draws_that_must_share_a_mesh_still_do():
-    """What is drawn over at equal depth has to stand on the same triangles."""
+    """What is drawn over at equal depth has to have the same triangles."""
     sketch = load("splat_mask")
     values = values_of(as_preview(sketch))
     grids = [value for path, value in values.items() if path.endswith(".grid")]

@@ -35,7 +35,7 @@ float tilt(ivec2 texel, ivec2 size) { return float(texel.x) / float(size.x); }
 """
 SKETCH = (
     "format = 1\nsize = 33\n"
-    + map_of_height("./terrain", channel="red")
+    + map_of_height(channel="red")
     + '[[preset]]\nname = "high"\nset = { "height.level" = 1.0 }\n'
 )
 
@@ -282,7 +282,7 @@ def test_how_many_steps_there_are_follows_time_and_keyframes(bench: Bench) -> No
     assert bench.session.repeats == {"height": 6}
 
 
-def test_values_are_kept_and_those_of_another_type_fall_back(bench: Bench) -> None:
+def test_values_stay_and_those_of_another_type_fall_back(bench: Bench) -> None:
     bench.picture()
     bench.session.drafts.set("height.level", 0.75)
     bench.change("terrain.glsl", "level * tilt", "1.0 - level * tilt")

@@ -94,7 +94,7 @@ def test_everything_is_there_again_the_picture_to_the_bit(machine: Machine) -> N
     assert session.error is None and any("was reset" in note for note in session.notes)
 
 
-def test_what_is_coming_and_what_is_wrong_are_kept(machine: Machine) -> None:
+def test_what_is_coming_and_what_is_wrong_stay(machine: Machine) -> None:
     before = machine.picture()
     machine.save("* 0.5", "* undeclared")
     machine.picture()

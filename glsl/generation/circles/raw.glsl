@@ -11,7 +11,7 @@
 //     h(p) += a_i dome(|p - c_i|^2 / r_i^2)   where |p - c_i| < r_i
 //
 // Outside every disc the terrain keeps its height to the last bit. A step is a disc; one run
-// takes as many as are asked for, in their order.
+// takes as many as are requested, in their order.
 #include "generation/circles/dome.glsl"
 #pragma kernel(output = "height:r32f", repeat = "discs", at_once = "discs")
 

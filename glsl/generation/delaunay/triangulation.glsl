@@ -18,8 +18,8 @@
                output = "places:rgba32f, triangles:rgba32f, neighbours:rgba32f, last:rgba32f")
 
 uniform int points = 60;       //! slider(0, 10000) Points inserted after the four corners
-uniform int weights = 0;       //! menu("equal", "random") A point stands at its triangle's
-                               //! barycentre, the corners weighed alike or at random
+uniform int weights = 0;       //! menu("equal", "random") A point is at its triangle's
+                               //! barycentre, the corners weighted equally or at random
 uniform int method = 0;        //! menu("destruction and construction", "flips") How triangles that
                                //! a new point makes illegal are repaired; the terrain is the same
 uniform uint seed = 7u;        //! slider(0, 9999) Which terrain

@@ -53,7 +53,7 @@ float edge_in_row(vec4 neighbours, ivec2 point, Lattice lattice) {
 }
 
 // A point of an odd row: those in its column are always there. Only the first and the last of
-// several (`ends`) may stand at the border; so the others are spared the question.
+// several (`ends`) may be at the border; so the others are spared the question.
 float edge_in_column(vec4 neighbours, ivec2 point, bvec2 ends, Lattice lattice) {
     bvec4 inside = bvec4(!ends.y || point.x < lattice.side, true, !ends.x || point.x > 0, true);
     return new_height(neighbours, inside, point, lattice);

@@ -6,7 +6,7 @@
 //   source   Belaiche 2010, section 5.6: a layer of low frequency is the terrain's shape
 //   tested   tests/glsl/test_endless.py, against a twin in float64 with Python's whole numbers
 //
-// Gradient noise where the thesis has values at nodes: its hills do not stand in rows.
+// Gradient noise where the thesis has values at nodes: its hills are not in rows.
 #include "noise/gradient.glsl"
 #include "terrain/parts.glsl"
 #pragma kernel(output = "shape:r32f")

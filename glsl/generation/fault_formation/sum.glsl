@@ -11,8 +11,8 @@
 //     h(x, y) += a_i   where (x2 - x1)(y - y1) - (y2 - y1)(x - x1) > 0, to the left of the line
 //     h(x, y) -= a_i   elsewhere
 //
-// A step is a fault; one run takes as many as are asked for. Sums of whole numbers are exact, so
-// the order of faults is free: sum.comp and sum.fast.toml beside it take them in other orders.
+// A step is a fault; one run takes as many as are requested. Sums of whole numbers are exact, so
+// the order of faults is free: sum.comp and sum.fast.toml next to it take them in other orders.
 #include "generation/fault_formation/line.glsl"
 #pragma kernel(output = "height:r32f", repeat = "faults", at_once = "faults")
 

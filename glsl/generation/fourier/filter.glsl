@@ -6,7 +6,7 @@
 //   source   Belaiche 2010, section 1.3.3, step 3, after Fournier, Fussell and Carpenter 1982
 //   tested   tests/glsl/test_fourier.py, against NumPy
 //
-// f is the length of (fx, fy), both signed: at the far end of a spectrum stand slow waves
+// f is the length of (fx, fy), both signed: at the far end of a spectrum are slow waves
 // with a minus sign, not the fastest ones. Frequency 0, the mean, is left alone. The fractal's
 // H is r - 1, and its power falls as f^(-2 r).
 #include "maths/power.glsl"

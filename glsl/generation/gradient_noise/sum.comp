@@ -2,10 +2,10 @@
 //
 //   gives    height, for any terrain; not normalised
 //   needs    generation/gradient_noise/{parameters/octaves,seed}.glsl, noise/columns.glsl
-//   units    heights without unit, as in the kernel beside it
+//   units    heights without unit, as in the kernel next to it
 //   source   see noise/columns.glsl
 //   tested   tests/glsl/test_gradient_noise.py and tests/glsl/test_fast_variants.py,
-//            against the kernel beside it
+//            against the kernel next to it
 //   agrees   best at a low gain: both round places, in another order
 //
 // A thread goes along 32 rows of one column. The two finest octaves cross a lattice row every few

@@ -51,7 +51,7 @@ struct Nodes {
 
 const int RANDOM_SIDE = 32768;
 
-// Nodes stand at floor(q side / intervals), the last one at side - 1. On one of so many parts a
+// Nodes are at floor(q side / intervals), the last one at side - 1. On one of so many parts a
 // side that fit each other, the last node reads the number of the next part's first one, and all
 // parts are alike.
 // anchor: beyond

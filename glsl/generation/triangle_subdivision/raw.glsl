@@ -17,7 +17,7 @@
 // every step whatever r is, and a terrain looks alike at every size. A diagonal is sqrt(2) times
 // as long as its triangle's other edges.
 // A vertex knows two others only, so creases stay along the edges, the worst of them on the
-// main diagonal: the fault that the thesis tells of, kept here.
+// main diagonal: the defect that the thesis describes, kept here.
 #include "noise/finest.glsl"
 #include "noise/hash.glsl"
 #pragma kernel(output = "height:r32f", where = "edges = 2**iteration", \

@@ -1,4 +1,4 @@
-// lighting/daylight/air.glsl -- how hazy the air is: said once, for all that light does in it.
+// lighting/daylight/air.glsl -- how hazy the air is: set once, for all that light does in it.
 //
 //   gives    air: the turbidity
 //   needs    nothing

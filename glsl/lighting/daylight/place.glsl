@@ -11,7 +11,7 @@
 
 uniform int position = 0;             //! menu("date and hour", "free") group("Sun")
                                       //! Whether the sun follows place, date and hour
-uniform vec2 sun = vec2(135.0, 25.0); //! direction group("Sun") Where it stands if it is free
+uniform vec2 sun = vec2(135.0, 25.0); //! direction group("Sun") Where it is if it is free
 uniform float latitude = 34.85;       //! slider(-90, 90) step(0.05) unit("degrees") group("Place")
                                       //! North of the equator; Biskra's by default
 uniform float longitude = 5.73;       //! slider(-180, 180) step(0.05) unit("degrees")

@@ -43,7 +43,7 @@ vec3 cell_of(Label label, vec2 place) {
     float cell = floor(at.x / LETTER.x);
     bool outside = cell < 0.0 || cell >= float(label.length) || at.y < -1.0
             || at.y > LETTER.y + 1.0;
-    // The strokes stand in the middle of their room.
+    // The strokes are in the middle of their space.
     return vec3(outside ? -1.0 : cell, at.x - cell * LETTER.x - 1.0, at.y);
 }
 #endif

@@ -5,7 +5,7 @@
 //   units    linear
 //   source   blue and amber as in Okabe and Ito 2002, "Color Universal Design"; the rest chosen
 //            here
-//   tested   tests/glsl/test_diagrams.py, by where they stand
+//   tested   tests/glsl/test_diagrams.py, by where they are
 #ifndef LIGHTING_DIAGRAM_PAINTS
 #define LIGHTING_DIAGRAM_PAINTS
 

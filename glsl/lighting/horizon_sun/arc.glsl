@@ -12,7 +12,7 @@
 // The thesis has the sun rise in one direction, go through the zenith and set in the opposite
 // one: two horizons a texel are enough. The arc is under the sun unless an azimuth is set for it;
 // a sun that then leaves it is put on it, where it is nearest. With eight horizons the sun may
-// stand anywhere, and its horizon is taken between the two that are nearest to its azimuth, which
+// be anywhere, and its horizon is taken between the two that are nearest to its azimuth, which
 // rounds off what is between them. The sun of a daylight keeps to no arc, and no parameter
 // knows its azimuth: it takes the eight.
 #ifndef LIGHTING_HORIZON_SUN_ARC

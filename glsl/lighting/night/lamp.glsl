@@ -18,7 +18,7 @@
 uniform sampler2D height;        //! input
 uniform sampler2D block_maxima;  //! input
 uniform sampler2D moonlit;       //! input
-uniform vec2 lamp = vec2(0.5);   //! point group("Lamp") Where it stands
+uniform vec2 lamp = vec2(0.5);   //! point group("Lamp") Where it is
 uniform float lamp_height = 40.0;  //! slider(0, 2000) step(1) group("Lamp") unit("m")
                                    //! How high over the ground
 uniform float lamp_radius = 1.0;   //! slider(0, 100) step(0.5) group("Lamp") unit("m")
@@ -29,8 +29,7 @@ uniform float lamp_gain = 0.0;   //! slider(0, 8) step(0.05) group("Lamp")
 uniform float max_distance = 800.0;  //! log_slider(1, 100000) group("Lamp") unit("m")
                                      //! was("reach") How far it shines
 uniform int falloff = 0;         //! menu("inverse square", "soft") group("Lamp")
-                                 //! How its light falls off; the soft way ends at the distance
-                                 //! that it shines
+                                 //! How its light falls off; "soft" ends at the max distance
 #include "lighting/parameters/normal.glsl"
 
 const float BRIGHTEST = 1000.0;  // over its gain, close by, where the inverse square has no bound

@@ -9,7 +9,7 @@
 #define LIGHTING_PARAMETERS_ARC
 uniform int measured = 0;     //! menu("on its arc", "eight directions") group("Sun")
                               //! A sun that keeps to its arc needs two horizons; with eight it may
-                              //! stand anywhere, as that of a daylight always does
+                              //! be anywhere, as that of a daylight always does
 uniform float arc = -360.0;   //! angle follows("sun", "measured", "on its arc") group("Sun")
                               //! Azimuth of the first horizon, and of the sun's arc, which goes on
                               //! through the zenith. Unless set, the arc is under the sun, and its

@@ -8,7 +8,7 @@
 #ifndef LIGHTING_PARAMETERS_SUN_SHAPE
 #define LIGHTING_PARAMETERS_SUN_SHAPE
 uniform int shape = 0;       //! menu("point", "cone", "disc") group("Sweep")
-                             //! What stands for the sun
+                             //! What represents the sun
 uniform float spread = 0.0;  //! slider(0, 20) step(0.01) group("Sweep")
                              //! Of a cone, its radius over its length; of a disc, its diameter in
                              //! degrees

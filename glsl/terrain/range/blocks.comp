@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_fast_variants.py, against terrain/range/blocks.glsl
 //   agrees   exactly: the lowest of numbers is the same in any order
 //
-// The kernel beside it has one thread read a whole block. Here a work group shares the block:
+// The kernel next to it has one thread read a whole block. Here a work group shares the block:
 // each reader takes every eighth texel of every eighth row, so that neighbours read
 // neighbours, then pairs of readers are joined until one is left.
 #include "maths/whole.glsl"

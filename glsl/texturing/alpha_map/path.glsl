@@ -22,7 +22,7 @@ uniform float width = 60.0;              //! log_slider(0.5, 2000) unit("m") How
 uniform float verge = 30.0;              //! slider(0, 500) step(1) unit("m")
                                          //! Over how much it ends on either side
 uniform float wander = 0.0;              //! slider(0, 500) step(1) unit("m")
-                                         //! How far chance moves it aside
+                                         //! How far it is moved aside at random
 uniform float strength = 1.0;            //! slider(0, 1) step(0.01) How much it covers
 
 const uint SALT = 0x98bd00cbu;  // CRC-32 of "texturing/alpha_map/path"

@@ -51,10 +51,10 @@ uniform float curvature_distance = 60.0;  //! log_slider(1, 2000) unit("m") grou
                                       //! How far away the terrain is looked at
 uniform float strength = 1.0;         //! slider(0, 1) step(0.01) How much it covers where it does
 uniform float ragged = 0.0;           //! slider(0, 4) step(0.05) group("Chance")
-                                      //! How far chance moves the edges, in fades
+                                      //! How far the edges move at random, in fades
 uniform float grain = 80.0;           //! log_slider(1, 2000) unit("m") group("Chance")
                                       //! How wide the largest of its bays are
-uniform uint seed = 1u;               //! slider(0, 9999) group("Chance") Which chance
+uniform uint seed = 1u;               //! slider(0, 9999) group("Chance") Which random numbers
 
 const uint SALT = 0xef495a59u;  // CRC-32 of "texturing/alpha_map"
 

@@ -12,11 +12,11 @@
 uniform sampler2D height;      //! input
 
 uniform float ragged = 0.0;    //! slider(0, 80) step(1) group("Heights")
-                               //! How far chance moves a height, in grey levels, before it
+                               //! How far a height moves at random, in grey levels, before it
                                //! chooses. 0 draws contour lines, as the thesis does
 uniform float repeats = 24.0;  //! slider(1, 256) step(1)
-                               //! How fine chance is: as the images that stand so often side by
-                               //! side from west to east
+                               //! How fine the random numbers are: as images that repeat so
+                               //! often from west to east
 
 const uint SALT = 0x080b4970u;  // CRC-32 of "texturing/height_blend"
 

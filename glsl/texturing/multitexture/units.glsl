@@ -3,7 +3,7 @@
 //   gives    colour, linear light, the shadow map in it
 //   needs    maths/angle.glsl, maths/drape.glsl, maths/land.glsl; two images that repeat, and
 //            a light for the whole terrain, each of any size
-//   units    images stand so many times side by side from west to east; turns in degrees,
+//   units    images repeat so many times from west to east; turns in degrees,
 //            counter-clockwise; shifts in images
 //   source   Belaiche 2010, section 2.4
 //   tested   tests/glsl/test_texturing_multitexture.py, against bilinear sampling in NumPy
@@ -25,13 +25,13 @@ uniform int combine = 0;               //! menu("mix", "product", "sum")
 uniform float share = 0.35;            //! slider(0, 1) step(0.01)
                                        //! How much of the second: of the mixture, or of its effect
 uniform float first_repeats = 24.0;    //! slider(1, 256) step(1) group("First")
-                                       //! How often it stands side by side
+                                       //! How often it repeats from west to east
 uniform float first_turn = 0.0;        //! angle group("First") How far it is turned
 uniform vec2 first_shift = vec2(0.0);  //! slider(0, 1) step(0.01) group("First")
                                        //! parts("east", "north")
                                        //! How far it is moved, east and north
 uniform float second_repeats = 5.0;    //! slider(1, 256) step(1) group("Second")
-                                       //! How often it stands side by side
+                                       //! How often it repeats from west to east
 uniform float second_turn = 30.0;      //! angle group("Second") How far it is turned
 uniform vec2 second_shift = vec2(0.0); //! slider(0, 1) step(0.01) group("Second")
                                        //! parts("east", "north")

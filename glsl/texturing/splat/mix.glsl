@@ -10,7 +10,7 @@
 //            Terrain Texture Splatting", the formula made here
 //   tested   tests/glsl/test_splat.py, against the mixture in float64
 //
-// What stands out of a material is bright in these tiles and its cracks are dark, so its
+// What protrudes from a material is bright in these tiles and its cracks are dark, so its
 // brightness over its mean is taken for its own height.
 //
 // rgba16f: linear light in 8 bits leaves 13 steps below the grass's mean.
@@ -27,7 +27,7 @@ uniform sampler2D means;    //! input
 
 uniform int blend = 0;           //! menu("even", "by heights") group("Blend")
                                  //! How materials mix where they meet: as in a mist, or what
-                                 //! stands higher comes through
+                                 //! is higher comes through
 uniform float contrast = 6.0;    //! slider(0, 20) step(0.1) group("Blend")
                                  //! How strictly heights decide; 0 is even
 

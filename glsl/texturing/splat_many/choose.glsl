@@ -76,11 +76,11 @@ uniform float height_fade = 0.08;     //! slider(0.001, 1) step(0.001)
 uniform float slope_fade = 8.0;       //! slider(0.1, 45) step(0.1) unit("degrees")
                                       //! Over how much slope it does
 uniform float chance = 0.7;           //! slider(0, 1) step(0.01) group("Chance")
-                                      //! How much of a claim is chance: patches of materials that
+                                      //! How much of a claim is random: patches of materials that
                                       //! all would fit
 uniform float grain = 120.0;          //! log_slider(1, 2000) unit("m") group("Chance")
                                       //! How wide the largest patches are
-uniform uint seed = 1u;               //! slider(0, 9999) group("Chance") Which chance
+uniform uint seed = 1u;               //! slider(0, 9999) group("Chance") Which random numbers
 
 const uint SALT = 0xb9faabefu;  // CRC-32 of "texturing/splat_many"
 

@@ -19,7 +19,7 @@ uniform sampler2D chosen;   //! input
 uniform sampler2D weights;  //! input
 
 uniform float repeats = 48.0;  //! slider(1, 512) step(1)
-                               //! How often a tile stands side by side from west to east
+                               //! How often a tile repeats from west to east
 
 // A place in a cell of the atlas, in tiles, between the four texels around it; the cell meets
 // its own copy. `cell` is a power of two.

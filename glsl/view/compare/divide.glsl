@@ -13,7 +13,7 @@ uniform int mode = 0;          //! menu("side by side", "difference") group("Com
                                //! label("Compare")
                                //! One on each side of a line, or how far they are apart
 uniform float divider = 0.5;   //! divider step(0.005) group("Compare")
-                               //! Where the line stands, from the left
+                               //! Where the line is, from the left
 uniform float amplified = 4.0; //! log_slider(1, 64) group("Compare")
                                //! The difference is multiplied by it; grey where there is none
 

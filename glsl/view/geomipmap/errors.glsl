@@ -118,7 +118,7 @@ void kernel(ivec2 texel, out vec2 spans, out vec4 errors) {
             float found = height_of_node(height, texel * TILE + ivec2(x, y));
             bool hole = isnan(found) || isinf(found);
             broken = broken || hole;
-            // As a vertex of view/land is there.
+            // The height that a vertex of view/land has there.
             found = hole ? 0.0 : found;
             spans = x + y == 0 ? vec2(found) : vec2(min(spans.x, found), max(spans.y, found));
             nodes[y * ROW + x] = found;

@@ -1,4 +1,4 @@
-// view/geomipmap/tiles.glsl -- where the nodes of a tiled terrain stand.
+// view/geomipmap/tiles.glsl -- where the nodes of a tiled terrain are.
 //
 //   gives    TILE, cells_of_tiles, share_of_node, height_of_node
 //   needs    maths/drape.glsl

@@ -10,8 +10,7 @@
 uniform sampler2D detail_image;        //! input("linear", "repeat", "mipmap", "white")
 uniform float detail_repeats = 100.0;  //! slider(1, 2000) step(1) group("Detail image")
                                        //! label("Repeats")
-                                       //! How often the detail image stands side by side from west
-                                       //! to east
+                                       //! How often the detail image repeats from west to east
 uniform float detail_strength = 1.0;   //! slider(0, 2) step(0.01) group("Detail image")
                                        //! label("Strength")
                                        //! How much of it is seen at the eye; 1: as its own greys

@@ -10,7 +10,7 @@
 //   tested   tests/glsl/test_view_profile.py, by where curve, ticks and numbers must be
 //
 // The line begins at the disc and ends at the ring, on the map and under the section. Ticks
-// stand at 1, 2 or 5 times a power of ten.
+// are at 1, 2 or 5 times a power of ten.
 #include "colour/encode.glsl"
 #include "maths/segment.glsl"
 #include "terrain/heightfield.glsl"
@@ -170,7 +170,7 @@ vec4 kernel(ivec2 texel) {
         }
         seen = mix(seen, curve, cover(nearest, width));
     }
-    // Axes, ticks outside of them, numbers beside the ticks.
+    // Axes, ticks outside of them, numbers next to the ticks.
     if (in_plot.y >= -5.0 * s && in_plot.y < at.plot.w && in_plot.x >= -5.0 * s
         && in_plot.x < at.plot.z + s) {
         bool axis = (abs(in_plot.x) < 0.5 * s + 0.01 && in_plot.y > -s)

@@ -6,7 +6,7 @@
 //   source   Belaiche 2010, figure 2.9
 //   tested   tests/glsl/test_splat_view.py, by what is in each part
 //
-// Four tiles, their alpha maps below, the result beside them.
+// Four tiles, their alpha maps below, the result next to them.
 #include "colour/encode.glsl"
 #pragma kernel(output = "frame:rgba8")
 

@@ -22,7 +22,7 @@ uniform sampler2D colour;   //! input("linear", "repeat", "mipmap")
 uniform sampler2D light;    //! input("linear", "mipmap", "white")
 
 uniform float repeats = 48.0;         //! slider(1, 512) step(1) group("Layers")
-                                      //! How often the tile stands side by side from west to east
+                                      //! How often the tile repeats from west to east
 #include "view/parameters/haze.glsl"
 
 vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark) {

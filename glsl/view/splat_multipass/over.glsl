@@ -39,7 +39,7 @@ uniform sampler2D colour;   //! input("linear", "repeat", "mipmap")
 uniform sampler2D light;    //! input("linear", "mipmap", "white")
 
 uniform float repeats = 48.0;         //! slider(1, 512) step(1) group("Layers")
-                                      //! How often the tile stands side by side from west to east
+                                      //! How often the tile repeats from west to east
 uniform int layer = 1;                //! slider(1, 3) group("Layers")
                                       //! Which channel of the weights is its own, from 0
 uniform int alphas = 0;               //! menu("shares", "as in the map") group("Layers")

@@ -1,4 +1,4 @@
-// view/three/divide.glsl -- three pictures in one, parted by two lines.
+// view/three/divide.glsl -- three pictures in one, divided by two lines.
 //
 //   gives    frame, display-encoded
 //   needs    three frames of this size
@@ -11,9 +11,9 @@ uniform sampler2D left;        //! input
 uniform sampler2D middle;      //! input
 uniform sampler2D right;       //! input
 uniform float first = 0.3333;  //! divider step(0.005) group("Compare")
-                               //! Where the first line stands, from the left
+                               //! Where the first line is, from the left
 uniform float second = 0.6667; //! divider step(0.005) group("Compare")
-                               //! Where the second line stands; left of the first, nothing is
+                               //! Where the second line is; left of the first, nothing is
                                //! between them
 
 vec4 kernel(ivec2 texel) {

@@ -1,5 +1,5 @@
 #version 330
-// Two images over an area, parted by a line, or their difference; texels as in show_image.frag.
+// Two images over an area, divided by a line, or their difference; texels as in show_image.frag.
 uniform sampler2D first;
 uniform sampler2D second;
 uniform ivec4 area;

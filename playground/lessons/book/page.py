@@ -145,7 +145,7 @@ def door_page(languages: Sequence[str], titles: Mapping[str, str]) -> str:
 
 
 def slug(text: str) -> str:
-    """Return a text as it may stand in an address: small letters, digits and -."""
+    """Return a text as it may be in an address: small letters, digits and -."""
     letters = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode().lower()
     return re.sub(r"[^a-z0-9]+", "-", letters).strip("-")
 

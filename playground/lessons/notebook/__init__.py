@@ -4,7 +4,7 @@
 
     lesson = open_lesson("diamond_square", language="en")
     lesson.show("land")                    # a block by its name: its picture, with sliders
-    lesson.fix("fault", '''…''')          # the picture that other lines of a shader make
+    lesson.fix("without-share", '''…''')  # the picture that other lines of a shader make
 
 Pictures are drawn by the notebook's own Python, without a window. Sliders need the extra
 ``notebook`` (anywidget); without it each block is a picture, as it is in the lesson.

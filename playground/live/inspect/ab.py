@@ -1,4 +1,4 @@
-"""A and B on the screen: painted, parted by a line that the mouse moves, with a bar of buttons."""
+"""A and B on the screen: painted, divided by a line that the mouse moves, with a bar of buttons."""
 
 from __future__ import annotations
 

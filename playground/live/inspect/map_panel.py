@@ -44,7 +44,7 @@ def draw_spread(session: Session, inspection: Inspection, look: Theme) -> None:
         if not found.whole:
             imgui.text_disabled(fitting(f"of {found.read:,} texels, whole rows of it", 300 * look.scale))
         if not inspection.counter.fresh:
-            imgui.text_disabled("of a moment ago; counting anew …")
+            imgui.text_disabled("of a moment ago; counting again …")
         _ranges(found, session.view)
     imgui.tree_pop()
 

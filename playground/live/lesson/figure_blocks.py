@@ -65,7 +65,7 @@ def draw_slider(block: Slider, page: Page) -> None:
 
 
 def draw_compare(block: Compare, page: Page) -> None:
-    """Draw a choice of variants; two of them can be shown at once, parted by a line."""
+    """Draw a choice of variants; two of them can be shown at once, divided by a line."""
     reader = page.reader
     on = reader.at.get(block.name) if reader.is_on(block) else None
     with page.frame(block.name, _bar(page, block)):

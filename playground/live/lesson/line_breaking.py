@@ -84,7 +84,7 @@ def broken(runs: Runs, width: float, ruler: Ruler) -> tuple[Line, ...]:
 
 
 def _clusters(runs: Runs) -> list[list[Run]]:
-    """Return what may not be parted: words with all that touches them, and the blanks between."""
+    """Return what may not be separated: words with all that touches them, and the blanks between."""
     found: list[list[Run]] = []
     glued = False
     for run in runs:

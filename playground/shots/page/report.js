@@ -39,7 +39,7 @@ async function readAll(article) {
   return found;
 }
 
-/** A picture whose values are asked for. */
+/** A picture whose values are requested. */
 async function exactly(bytes) {
   const { width, height, data } = await readPicture(bytes);
   const canvas = make("canvas", { width, height });

@@ -173,7 +173,7 @@ def _accepting(record: Record, setting: Setting) -> Markup:
         also = f"{accept_command(record, setting.folder)} --also"
         commands.append(("accepts it in addition to those accepted so far", also))
     if record.command:
-        commands.append(("takes it anew and accepts that", record.command))
+        commands.append(("takes it again and accepts that", record.command))
     rows = [
         tag(
             "li",

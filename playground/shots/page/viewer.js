@@ -43,7 +43,7 @@ class Viewer {
     this.x = this.width / 2; // the place in the middle of each pane
     this.y = this.height / 2;
     this.zoom = 0; // [CSS pixels a picture pixel]; 0: as large as the whole picture fits
-    this.pixel = null; // the pixel that is asked for
+    this.pixel = null; // the pixel whose values are shown
     this.fingers = new Map(); // pointer → where it was
     this.dividing = false;
     this.build();

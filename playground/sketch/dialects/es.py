@@ -29,7 +29,7 @@ _NEVER_NAMES = frozenset(
     namespace using cast sizeof asm hvec2 hvec3 hvec4 fvec2 fvec3 fvec4
     """.split()
 )
-"""Reserved words of GLSL 3.30 that mean nothing there: whoever uses one means a name."""
+"""Reserved words of GLSL 3.30 that mean nothing in older versions: a text that uses one means a name."""
 
 _SINCE_TAKEN = frozenset(
     """
@@ -67,8 +67,8 @@ def rewritten(source: SourceText) -> Rewritten:
     """Rewrite a text; one of ``#version`` 330 or more keeps its version and its extensions."""
     is_modern = version_of(source) >= 330
     names: dict[str, str] = {}
-    said = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
-    if said is None or int(said.group(1)) < 130:
+    version = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
+    if version is None or int(version.group(1)) < 130:
         names = _clashing(source)
     data = "gl_FragData" in source.names
     own = _own_functions(source) if names else ()

@@ -1,4 +1,4 @@
-"""Paint two pictures over one another: parted by a line, or their difference."""
+"""Paint two pictures over one another: divided by a line, or their difference."""
 
 from __future__ import annotations
 

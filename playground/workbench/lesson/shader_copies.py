@@ -26,7 +26,7 @@ class Copy(OpenText):
         return f"{shown(self.path)} {self.label}".rstrip()
 
     @property
-    def kept(self) -> bool:
+    def needs_saving(self) -> bool:
         """Whether unsaved changes must be saved: never, a lesson stores them."""
         return False
 

@@ -1,4 +1,4 @@
-"""A text's dialect is told by its signs, in their order; what it declares is found by its statements."""
+"""A text's dialect is found by its signs, in their order; what it declares by its statements."""
 
 from __future__ import annotations
 

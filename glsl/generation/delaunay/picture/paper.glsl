@@ -1,4 +1,4 @@
-// generation/delaunay/picture/paper.glsl -- what was drawn, laid on paper or on another picture.
+// generation/delaunay/picture/paper.glsl -- what was drawn, over paper or over another picture.
 //
 //   gives    frame, linear colours
 //   needs    nothing

@@ -28,7 +28,7 @@ uniform sampler2D tests;        //! input
 uniform int second = -1;        //! slider(-1, 4096) group("Section")
                                 //! Column of a second point; -1: none
 uniform float foot = 0.25;      //! slider(0, 0.9) step(0.01) group("Section")
-                                //! Where the lowest height stands, of the picture's height
+                                //! Where the lowest height is, as a share of the picture's
 uniform bool text = true;       //! Write the numbers
 
 const int RAY = 0;

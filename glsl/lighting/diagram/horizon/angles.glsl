@@ -14,7 +14,7 @@
 //
 // The horizon is kept within the hemisphere of the normal: the effective one is the higher of
 // the terrain's and the plane's. Eq. 3.8 takes the share of the sun's diameter for the share of
-// its disc; the area is given beside it.
+// its disc; the area is given next to it.
 #include "lighting/diagram/section.glsl"
 #include "lighting/sun.glsl"
 #include "terrain/heightfield.glsl"

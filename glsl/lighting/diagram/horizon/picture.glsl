@@ -8,8 +8,8 @@
 //   source   Belaiche 2010, section 3.4, figures 3.1, 3.2 and 3.3
 //   tested   tests/glsl/test_diagrams.py, by the colours where angles say that they must be
 //
-// The thesis measures horizons as shares of a quarter circle; degrees are written beside them. The
-// sun's disc is drawn as wide as it is said to be, and may be said to be wider than it is.
+// The thesis measures horizons as shares of a quarter circle; degrees are written next to them. The
+// sun's disc is drawn as wide as its parameter says, which may be wider than the real one.
 #include "lighting/diagram/ink.glsl"
 #include "lighting/diagram/label.glsl"
 #include "lighting/diagram/paints.glsl"
@@ -24,7 +24,7 @@ uniform int shows = 0;          //! menu("horizon angle", "effective horizon",
                                 //! Which of the three
 #include "lighting/diagram/parameters/section.glsl"
 uniform float foot = 0.25;      //! slider(0, 0.9) step(0.01) group("Section")
-                                //! Where the lowest height stands, of the picture's height
+                                //! Where the lowest height is, as a share of the picture's
 #include "lighting/diagram/parameters/disc.glsl"
 uniform bool text = true;       //! Write the numbers
 

@@ -10,7 +10,7 @@
 uniform int beam = 0;            //! menu("ray", "cylinder", "cone")
                                  //! What goes from the point to the sun
 uniform float elevation = 25.0;  //! angle(0, 89) group("Sun")
-                                 //! Of the sun above the horizon; it stands in the east
+                                 //! Of the sun above the horizon; it is in the east
 uniform float radius = 0.5;      //! slider(0, 64) step(0.1) group("Beam") unit("grey levels")
                                  //! The cylinder's; 255 grey levels are the height from 0 to 1
 uniform float delta_r = 0.01;    //! slider(0, 2) step(0.001) group("Beam") label("Δr")
