@@ -148,7 +148,7 @@ def test_a_save_of_an_included_parameter_shows(bench: Bench) -> None:
         ("inc/tilt.glsl", "float(texel.x)", "float(texle.x)", "tilt.glsl:2:"),
         ("terrain.glsl", "//! slider", "//! slidder", "terrain.glsl:4"),
         ("sketch.toml", "[view]", "[view", "sketch.toml:6:"),
-        ("sketch.toml", "./terrain", "./lnad", "sketch.toml:5"),
+        ("sketch.toml", "./terrain", "./terrian", "sketch.toml:5"),
         ("terrain.glsl", "inc/tilt", "inc/tlit", "terrain.glsl:2"),
     ],
 )

@@ -85,7 +85,7 @@ VARIANTS: dict[str, list[bytes]] = {
             sketch("generation/heightmap", "size = 9", 'elevation = "terrain.npy"'),
             sketch("generation/heightmap", "", 'elevation = "terrain.npy"'),
             sketch("./terrain").replace('channel = "red"', 'channel = "red", highest = 0.5'),
-            sketch("./lnad"),
+            sketch("./terrian"),
             sketch("./terrain").replace("[view]", "[view"),
         )
     ],
