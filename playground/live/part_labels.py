@@ -18,7 +18,7 @@ from playground.live.draw import Area
 from playground.live.theme import Theme
 from playground.sketch.assign import values_of
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch
-from playground.workbench.parameter_list import in_words
+from playground.sketch.parameter import label_of
 
 _LEAST = 48.0  # [units of scale 1] a part that is narrower has no room for a name
 _WIDEST = 260.0
@@ -82,7 +82,7 @@ def _named(sketch: Sketch, view: PassSpec, graph: Graph, divide: PassSpec) -> tu
     differing = [name for name in own[0] if name in shared and len({sources[name] for sources in own}) > 1]
     if not differing:
         return [], []
-    names = [" and ".join(in_words(sources[name].partition(".")[0]) for name in differing) for sources in own]
+    names = [" and ".join(label_of(sources[name].partition(".")[0]) for name in differing) for sources in own]
     return names, _methods(sketch, [sources[differing[0]] for sources in own], differing[0])
 
 

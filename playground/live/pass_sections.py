@@ -17,13 +17,14 @@ from playground.live.parameter_row import Rows
 from playground.live.sliders import slide_whole
 from playground.live.theme import Theme
 from playground.sketch.model import PassSpec, Sketch, kernels_of
+from playground.sketch.parameter import label_of
 from playground.sketch.replace_technique import choices
 from playground.workbench.bench import Bench
 from playground.workbench.commands import Commands
 from playground.workbench.edits import Draft
 from playground.workbench.inspect.pass_graph import cost_of
 from playground.workbench.open_files import OpenFiles, editor_name
-from playground.workbench.parameter_list import Group, Item, Section, in_words
+from playground.workbench.parameter_list import Group, Item, Section
 from playground.workbench.session import Session
 
 _TALL = imgui.ComboFlags_.height_large.value
@@ -128,7 +129,7 @@ class _Drawing:
         flags = imgui.TreeNodeFlags_.allow_overlap
         if opened:
             flags |= imgui.TreeNodeFlags_.default_open
-        unfolded = header(f"{in_words(spec.name)}###pass", look, flags)
+        unfolded = header(f"{label_of(spec.name)}###pass", look, flags)
         low, high = imgui.get_item_rect_min(), imgui.get_item_rect_max()
         text, ran, spent = cost_of(session, spec.name)
         if session.engine.profiling and spent is not None:

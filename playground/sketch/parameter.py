@@ -44,6 +44,11 @@ class Follows:
     choice: int = 0  # of the menu, while it follows
 
 
+def label_of(name: str) -> str:
+    """Return a name as a panel writes it: ``rock_from`` as "Rock from"; one in mixed case as it is."""
+    return name.replace("_", " ").capitalize() if name.islower() else name
+
+
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """A uniform with its ``//!`` annotation."""
@@ -68,4 +73,4 @@ class Parameter:
     @property
     def title(self) -> str:
         """Its label in a panel."""
-        return self.label or self.name.replace("_", " ").capitalize()
+        return self.label or label_of(self.name)

@@ -13,6 +13,7 @@ from itertools import groupby
 from playground.sketch.assign import Shown, resolve, shown_parameters, values_of
 from playground.sketch.identity import Identity
 from playground.sketch.model import Parameter, Sketch, Value
+from playground.sketch.parameter import label_of
 from playground.sketch.values import write
 from playground.workbench.edits import Draft
 
@@ -180,7 +181,7 @@ def _main(key: Identity[Sketch]) -> tuple[Item, ...]:
     titles = [_with_group(item.parameter) for item in found]
     for item, title in zip(found, titles, strict=True):
         if titles.count(title) > 1:
-            title = _under(in_words(item.path.partition(".")[0]), title)
+            title = _under(label_of(item.path.partition(".")[0]), title)
         made.append(replace(item, label=f"##main {item.path}", title=title))
     return tuple(made)
 
@@ -194,11 +195,6 @@ def _with_group(parameter: Parameter) -> str:
 
 def _under(heading: str, title: str) -> str:
     return f"{heading}: {title[0].lower()}{title[1:]}"
-
-
-def in_words(name: str) -> str:
-    """Return a pass's name as the panel writes it."""
-    return name.replace("_", " ").capitalize()
 
 
 def _groups(items: list[Item]) -> tuple[Group, ...]:

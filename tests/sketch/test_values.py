@@ -12,6 +12,7 @@ import pytest
 from playground.errors import ParameterError
 from playground.sketch.colour import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
 from playground.sketch.model import Parameter, Widget
+from playground.sketch.parameter import label_of
 from playground.sketch.values import coerce, expected, spell, write
 
 from ..cases import each
@@ -170,3 +171,12 @@ def test_one_colour_and_many_follow_the_same_curve():
         assert parse_hex(text) == pytest.approx((decoded[byte],) * 3, rel=1e-14)
         assert to_hex(parse_hex(text)) == text
     np.testing.assert_allclose(linear_to_srgb(decoded), encoded, atol=1e-7)
+
+
+def test_a_label_is_the_name_in_words_and_another_tool_s_name_stays():
+    assert [label_of(n) for n in ("rock_from", "seed2", "iChannel0", "u_lightColor")] == [
+        "Rock from",
+        "Seed2",
+        "iChannel0",
+        "u_lightColor",
+    ]
