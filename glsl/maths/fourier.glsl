@@ -93,8 +93,8 @@ void level_back(inout vec4 v[16], int span, bool wanted) {
     }
 }
 
-// Forward as well, but from numbers in the order that transform_blocks leaves them in to numbers in
-// order.
+// Forward as well, but from numbers in the order that transform_blocks leaves them in
+// to numbers in order.
 void transform_blocks_back(inout vec4 v[16], int levels) {
     level_back(v, 1, levels > 0);
     level_back(v, 2, levels > 1);

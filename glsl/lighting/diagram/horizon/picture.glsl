@@ -8,8 +8,8 @@
 //   source   Belaiche 2010, section 3.4, figures 3.1, 3.2 and 3.3
 //   tested   tests/glsl/test_diagrams.py, by the colours where angles say that they must be
 //
-// The thesis measures horizons as shares of a quarter circle; degrees are written next to them. The
-// sun's disc is drawn as wide as its parameter says, which may be wider than the real one.
+// The thesis measures horizons as shares of a quarter circle; degrees are written next to them.
+// The sun's disc is drawn as wide as its parameter says, which may be wider than the real one.
 #include "lighting/diagram/ink.glsl"
 #include "lighting/diagram/label.glsl"
 #include "lighting/diagram/paints.glsl"
