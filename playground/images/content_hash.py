@@ -1,4 +1,4 @@
-"""Tell whether a file has changed, and hash its contents, reading it no more often than it changes."""
+"""Tell one state of a file from another, reading it no more often than it changes."""
 
 from __future__ import annotations
 
@@ -11,39 +11,39 @@ from playground.errors import DataError
 from playground.paths import shown
 
 _TICK = 50_000_000  # [ns] more than a file system's clock takes to move on
+_LARGE = 2**26  # [bytes] takes longer to read than a tick lasts
 
 
-def version_of(path: Path) -> tuple[int, ...]:
-    """Return what changes whenever a file does, without reading it: its times, size and identity.
-
-    A file that was written only now has another version at each call, for two saves may fall into one
-    tick of a file system's clock. Raises ``DataError`` for a file that is not there.
-    """
-    try:
-        stat = path.stat()
-    except OSError as error:
-        raise _unreadable(path, error) from None
-    now = time.time_ns()
-    version = (stat.st_mtime_ns, stat.st_ctime_ns, stat.st_size, stat.st_ino)
-    return (*version, now) if abs(now - stat.st_mtime_ns) < _TICK else version
-
-
-def content_hash(path: Path) -> str:
-    """Return a hash of a file's contents, worked out anew when its version changes.
+def content_key(path: Path) -> str:
+    """Return what changes whenever a file's contents do: their hash, or of a large file its times and size.
 
     Raises ``DataError`` for a file that cannot be read.
     """
     try:
-        return _hash(str(path), version_of(path))
+        stat = path.stat()
     except OSError as error:
-        raise _unreadable(path, error) from None
+        raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
+    if stat.st_size < _LARGE:
+        return content_hash(path)
+    return f"{stat.st_mtime_ns} {stat.st_ctime_ns} {stat.st_size} {stat.st_ino}"
 
 
-def _unreadable(path: Path, error: OSError) -> DataError:
-    return DataError(f"cannot be read: {error.strerror}", file=shown(path))
+def content_hash(path: Path) -> str:
+    """Return a hash of a file's contents, worked out anew when its times, size or identity change.
+
+    Raises ``DataError`` for a file that cannot be read.
+    """
+    try:
+        stat = path.stat()
+        # Two saves may fall into one tick of a file system's clock: what is so new is not remembered.
+        is_new = abs(time.time_ns() - stat.st_mtime_ns) < _TICK
+        work_out = _hash.__wrapped__ if is_new else _hash
+        return work_out(str(path), stat.st_mtime_ns, stat.st_ctime_ns, stat.st_size, stat.st_ino)
+    except OSError as error:
+        raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
 
 
 @lru_cache(maxsize=256)
-def _hash(path: str, version: tuple[int, ...]) -> str:
+def _hash(path: str, modified: int, changed: int, size: int, inode: int) -> str:
     with Path(path).open("rb") as file:
         return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=16)).hexdigest()

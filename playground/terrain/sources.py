@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, SketchError, nearest
-from playground.images.content_hash import version_of
+from playground.images.content_hash import content_key
 from playground.paths import shown
 from playground.sketch.model import Value
 from playground.terrain.delaunay import Rules, tables, triangulate
@@ -60,7 +60,7 @@ def source_kind(name: str) -> SourceKind:
 @lru_cache(maxsize=4)
 def _read(
     path: str,
-    version: tuple[int, ...],
+    content: str,  # changes whenever the file does
     raw_size: tuple[int, int] | None,
     packing: Packing,
     voids: Voids,
@@ -86,7 +86,7 @@ def _elevation(values: Mapping[str, Value]) -> Elevation:
     voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
     first_row: Edge = "south" if values["first_row"] == 1 else "north"
     with _memory_explained(path):
-        return _read(str(path), version_of(path), size, packing, voids, first_row)
+        return _read(str(path), content_key(path), size, packing, voids, first_row)
 
 
 def _describe_elevation(values: Mapping[str, Value]) -> Terrain:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from playground.errors import DataError, SketchError
+from playground.images.content_hash import content_key
 from playground.paths import GLSL
 from playground.sketch.techniques import read_technique
 from playground.terrain.sources import SOURCES, Terrain, source_kind
@@ -111,8 +112,10 @@ def rewritten(path):
     np.save(path, np.flip(HEIGHTS).astype(np.float32))
 
 
+@pytest.mark.parametrize("large", [2**26, 1])
 @pytest.mark.parametrize("change", [replaced, rewritten])
-def test_a_file_of_the_same_size_and_time_is_read_anew(values, tmp_path, change):
+def test_a_file_of_the_same_size_and_time_is_read_anew(values, tmp_path, monkeypatch, change, large):
+    monkeypatch.setattr("playground.images.content_hash._LARGE", large)
     file = tmp_path / "a.npy"
     an_hour_ago = file.stat().st_mtime_ns - 3600 * 10**9
     os.utime(file, ns=(an_hour_ago, an_hour_ago))
@@ -129,6 +132,16 @@ def test_a_file_that_does_not_change_is_read_once(values, tmp_path, monkeypatch)
     first = KIND.make(given, (3, 2))["height"]
     monkeypatch.setattr(Path, "open", None)
     np.testing.assert_array_equal(KIND.make(given, (3, 2))["height"], first)
+
+
+def test_a_large_file_is_not_read_to_be_known(tmp_path, monkeypatch):
+    file = tmp_path / "holes.npy"
+    with file.open("wb") as handle:
+        handle.truncate(2**31)
+    monkeypatch.setattr("playground.images.content_hash.content_hash", None)
+    known = content_key(file)
+    os.utime(file, ns=(0, 0))
+    assert content_key(file) != known
 
 
 def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
