@@ -2,36 +2,26 @@
 
 from __future__ import annotations
 
-import random
-from collections.abc import Callable
-
 import pytest
 
 from playground.workbench.reload_stages import ReloadStage
 
-from .checked_desk import BAD, ELEVATION, GOOD, LEVEL, Desk
+from .checked_desk import ELEVATION, LEVEL, Desk, RandomPlayer
 
 TECHNIQUES = ("./hills", "./dunes", "generation/white_noise")
 
 
-class Player:
+class Player(RandomPlayer):
     """Does one random thing after another, and knows what was chosen last."""
 
     def __init__(self, desk: Desk, seed: int) -> None:
-        self.desk, self.random, self.done = desk, random.Random(seed), list[str]()
+        super().__init__(desk, seed)
         self.size, self.technique, self.elevation = 9, TECHNIQUES[0], "a.npy"
-        self.acts: list[Callable[[], object]] = [
+        self.acts = [
             *(self.save, self.choose, self.choose_file, self.edit, self.desk.frame, self.preset),
             *(desk.drafts.reload, self.unset, desk.bench.undo.undo, desk.bench.undo.redo),
             *(self.pass_check, self.fail_check),
         ]
-
-    def play(self, count: int) -> None:
-        for _ in range(count):
-            act = self.random.choice(self.acts)
-            act()
-            self.desk.bench.undo.record()
-            self.done.append(act.__name__)
 
     def save(self) -> None:
         before, self.size = self.size, self.random.choice((9, 17, 33))
@@ -53,12 +43,6 @@ class Player:
 
     def unset(self) -> None:
         self.desk.drafts.unset(LEVEL)
-
-    def pass_check(self) -> None:
-        self.desk.answer(GOOD)
-
-    def fail_check(self) -> None:
-        self.desk.answer(BAD)
 
     def settle(self) -> None:
         """Let every check pass until nothing is coming."""

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import random
-
 import pytest
 
-from .checked_desk import BAD, GOOD, LEVEL, Desk
+from .checked_desk import LEVEL, Desk, RandomPlayer
 
 SHOWN, OTHER = "one", "two"
 
 
-class Player:
+class Player(RandomPlayer):
     """Does one random thing after another, and knows what was set last in each sketch."""
 
     def __init__(self, desk: Desk, seed: int) -> None:
-        self.desk, self.random, self.done = desk, random.Random(seed), list[str]()
+        super().__init__(desk, seed)
         self.level = dict.fromkeys((SHOWN, OTHER), 0.25)
         self.steps: dict[str, dict[str, int]] = {SHOWN: {}, OTHER: {}}
         self.opened = SHOWN
@@ -23,13 +21,6 @@ class Player:
             *(self.edit, self.edit, self.stop, self.choose, self.open_one, self.open_two),
             *(self.pass_check, self.pass_check, self.fail_check, desk.frame, desk.drafts.reload),
         ]
-
-    def play(self, count: int) -> None:
-        for _ in range(count):
-            act = self.random.choice(self.acts)
-            act()
-            self.desk.bench.undo.record()
-            self.done.append(act.__name__)
 
     def edit(self) -> None:
         self.level[self.desk.name] = level = self.random.random()
@@ -51,12 +42,6 @@ class Player:
     def open(self, name: str) -> None:
         self.desk.bench.commands.open(self.desk.folder / name)
         self.opened = name
-
-    def pass_check(self) -> None:
-        self.desk.answer(GOOD)
-
-    def fail_check(self) -> None:
-        self.desk.answer(BAD)
 
     def check(self) -> None:
         """Compare what is shown with what was set in it last."""
