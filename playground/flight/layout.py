@@ -134,11 +134,11 @@ def _apron(sketch: Sketch, leaves: dict[str, Value]) -> int:
     """Return the apron of the height [texels]; raise ``SketchError`` where shadows reach beyond it."""
     found = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
     apron = found if isinstance(found, int) else 0
-    reach = _value(sketch, f"{_LIGHT}.{_MAX_DISTANCE}", leaves)
-    if isinstance(reach, int | float) and reach > apron > 0:
+    distance = _value(sketch, f"{_LIGHT}.{_MAX_DISTANCE}", leaves)
+    if isinstance(distance, int | float) and distance > apron > 0:
         raise _refused(
             sketch,
-            f"shadows reach {reach:g} texels ({_LIGHT}.{_MAX_DISTANCE}), and there are only {apron} "
+            f"shadows reach {distance:g} texels ({_LIGHT}.{_MAX_DISTANCE}), and there are only {apron} "
             f"around a part ({_HEIGHT}.{_APRON}); set {_LIGHT}.{_MAX_DISTANCE}={apron}",
         )
     return apron
