@@ -14,11 +14,11 @@ from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, walk
 from playground.engine.results import UNWIRED, Result, Wired
 from playground.engine.runner import Runner
-from playground.sketch.expressions import names_in
+from playground.sketch.expressions import follows_time
 from playground.sketch.flat import Fed, Ref, Source
 
 Compute = Callable[[Step, Mapping[str, Wired], LoopIteration | None, Result | None], Result]
-"""Runs a step: its inputs, the iteration of the loop around it, the same step after fewer to go on from."""
+"""Runs a step: its inputs, where it is in the loops around it, the same step after fewer to go on from."""
 
 Timed = Callable[[str, str], AbstractContextManager[None]]
 """Measures what the step or the loop of that path and that key takes."""
@@ -38,6 +38,8 @@ class Execution:
         self.timed: Timed | None = None
         self.results: dict[str, Result] = {}  # by the step's path; valid until the next frame
         self._done: set[int] = set()  # identities of nodes that change with no loop, and have run
+        self._fed_from: dict[Fed, tuple[Step, str]] = {}  # the output that a loop feeds back
+        self._zeros: dict[Fed, Result] = {}  # what is fed back before a loop's first iteration
 
     def run(self, nodes: Iterable[PlanNode]) -> None:
         """Run nodes in order: those that change with no loop, and loops from their first iteration on."""
@@ -85,7 +87,7 @@ class Execution:
     def _computed(self, step: Step) -> Result:
         """Run a step, from where its earlier iterations are cached, and cache its result."""
         key, unfinished = self.keys.raw[step.path], self.keys.unfinished[step.path]
-        goes_on = step.path in self.stopped or "time" in names_in(step.kernel.repeat)
+        goes_on = step.path in self.stopped or follows_time(step.kernel.repeat)
         earlier = self.cache.take_earlier(step.path, unfinished, step.repeat) if goes_on else None
         inputs = {name: self._wired(source, {}) for name, source in step.inputs}
         with self.timed(step.path, key) if self.timed else nullcontext():
@@ -117,22 +119,31 @@ class Execution:
         self.cache.grew(key)
 
     def _run_loop(
-        self, loop: LoopStep, state: Cached, around: Mapping[Fed, Wired], owned: dict[str, Result]
+        self,
+        loop: LoopStep,
+        state: Cached,
+        around: Mapping[Fed, Wired],
+        owned: dict[str, Result],
+        frame: int | None = None,
     ) -> None:
         """Run a loop's iterations after ``state``, which each replaces.
 
-        What changes with a loop around it only goes into ``owned``.
+        What changes with a loop around it only goes into ``owned``; ``frame`` is that of the loop around
+        it that counts frames.
         """
         self.run(loop.body)
-        fed = dict(around)
-        for name, first, _ in loop.feedback:
-            fed[Fed(loop.path, name)] = self._wired(first, around)
+        fed, steps = dict(around), {step.path: step for step in walk(loop.body)}
+        for name, first, ref in loop.feedback:
+            own = Fed(loop.path, name)
+            fed[own] = self._wired(first, around)
+            outer = self._fed_from.get(first) if isinstance(first, Fed) else None
+            self._fed_from[own] = outer or (steps[ref.path], ref.output)
         changing = []
         for node in loop.body:
             if loop.path in self.keys.changes[id(node)]:
                 changing.append(node)
             else:
-                self._run_inside(node, around, None, owned)
+                self._run_inside(node, around, LoopIteration(frame=frame), owned)
         if loop.repeat == 0 and not state.results:
             state.results = self._initial(loop, changing, fed)
         self.results |= state.results
@@ -140,13 +151,18 @@ class Execution:
             if iteration > 0:
                 for name, _, ref in loop.feedback:
                     fed[Fed(loop.path, name)] = self._wired(ref, fed)
+            at = LoopIteration(iteration, loop.whole, iteration if loop.counts_frames else frame)
             computed: dict[str, Result] = {}
             try:
                 for node in changing:
-                    self._run_inside(node, fed, (iteration, loop.whole), computed)
+                    self._run_inside(node, fed, at, computed)
             except BaseException:
                 Cached(computed).release_to(self.runner.pool)
                 raise
+            finally:
+                for name, _, _ in loop.feedback:
+                    if zeros := self._zeros.pop(Fed(loop.path, name), None):
+                        self.runner.pool.give(zeros)
             Cached(state.results).release_to(self.runner.pool)
             state.results, state.iterations = computed, iteration + 1
             self.results |= computed
@@ -155,7 +171,7 @@ class Execution:
         self,
         node: PlanNode,
         fed: Mapping[Fed, Wired],
-        iteration: LoopIteration | None,
+        iteration: LoopIteration,
         owned: dict[str, Result],
     ) -> None:
         """Run a node of a loop's body; what the cache does not hold goes into ``owned``."""
@@ -163,11 +179,28 @@ class Execution:
             self._run_once(node)
         elif isinstance(node, LoopStep):
             state = Cached({})
-            self._run_loop(node, state, fed, owned)
+            self._run_loop(node, state, fed, owned, iteration.frame)
             owned |= state.results
         else:
-            inputs = {name: self._wired(source, fed) for name, source in node.inputs}
+            inputs = {name: self._input(node, name, source, fed) for name, source in node.inputs}
             owned[node.path] = self.results[node.path] = self.compute(node, inputs, iteration, None)
+
+    def _input(self, step: Step, name: str, source: Source | None, fed: Mapping[Fed, Wired]) -> Wired:
+        """Return what an input reads; of what is fed back, before the first iteration, perhaps zeros.
+
+        Zeros of the size of what is fed back are for other tools' shaders, and for an input that says so.
+        """
+        found = self._wired(source, fed)
+        if found.texture is not None or not isinstance(source, Fed):
+            return found
+        declared = next((each for each in step.kernel.inputs if each.name == name), None)
+        if declared is None or not (step.kernel.dialect or declared.fallback == "zero"):
+            return found
+        origin, output = self._fed_from[source]
+        if source not in self._zeros:
+            self._zeros[source] = self.runner.kernels.empty(origin)
+        zeros = self._zeros[source]
+        return Wired(zeros, zeros.textures[output], output)
 
     def _initial(
         self, loop: LoopStep, changing: list[PlanNode], fed: Mapping[Fed, Wired]

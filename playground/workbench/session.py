@@ -398,7 +398,6 @@ class Session:
         """Draw; on a software renderer a preview first: see ``workbench.preview``."""
         engine, now, view, traits = self.engine, self.clock.time, self.view, traits_of(sketch)
         chosen = as_preview(sketch) if engine.info.software and traits.draws and not in_full else sketch
-        engine.runner.frame = self.draws
         texture = engine.draw(
             framed(chosen, now, view.framed_for, size) if traits.camera else chosen,
             size=size,
