@@ -108,15 +108,47 @@ class Execution:
     # ── loops ────────────────────────────────────────────────────────────────
 
     def _run_cached_loop(self, loop: LoopStep) -> None:
-        """Run a loop from the iteration that is cached, or from the start where that lies further on."""
+        """Run a loop from the iteration that is cached, or from an earlier one where that lies further on."""
         key = self.keys.loops[loop.path]
         state = self.cache.get(key)
-        if state is None or state.iterations > loop.repeat:
+        if state is None:
             state = Cached({})
             self.cache.put(key, state)
+        taken = self._go_back(loop, state)
         with self.timed(loop.path, key) if self.timed and state.iterations < loop.repeat else nullcontext():
-            self._run_loop(loop, state, {}, {})
+            try:
+                self._run_loop(loop, state, {}, {})
+            except BaseException:
+                if taken and state.iterations == taken:  # it is what is fed back only
+                    self._set_aside(loop, state)
+                raise
         self.cache.grew(key)
+
+    def _go_back(self, loop: LoopStep, state: Cached) -> int:
+        """Set a loop back where it is too far, or on to a later state that was kept.
+
+        Return the iterations of what was taken from the kept states, 0 for nothing.
+        """
+        if state.iterations == loop.repeat:
+            return 0
+        key, states = self.keys.loops[loop.path], self.cache.states
+        latest = states.latest(loop.path, key, loop.repeat - 1)
+        if latest <= state.iterations < loop.repeat:
+            return 0
+        self._set_aside(loop, state)
+        if latest:
+            state.results, state.iterations = states.take(loop.path, key, latest), latest
+        return latest
+
+    def _set_aside(self, loop: LoopStep, state: Cached) -> None:
+        """Keep what a state of a loop that follows the time feeds back, release the rest, and empty it."""
+        if state.iterations and follows_time(loop.spec.repeat):
+            paths = {ref.path for _, _, ref in loop.feedback} & state.results.keys()
+            fed = {path: state.results.pop(path) for path in paths}
+            key = self.keys.loops[loop.path]
+            self.cache.states.keep(loop.path, key, state.iterations, fed, loop.repeat)
+        state.release_to(self.runner.pool)
+        state.iterations = 0
 
     def _run_loop(
         self,
@@ -163,7 +195,10 @@ class Execution:
                 for name, _, _ in loop.feedback:
                     if zeros := self._zeros.pop(Fed(loop.path, name), None):
                         self.runner.pool.give(zeros)
-            Cached(state.results).release_to(self.runner.pool)
+            if self.keys.changes[id(loop)]:
+                state.release_to(self.runner.pool)
+            else:
+                self._set_aside(loop, state)
             state.results, state.iterations = computed, iteration + 1
             self.results |= computed
 
