@@ -14,6 +14,7 @@ from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, walk
 from playground.engine.results import UNWIRED, Result, Wired
 from playground.engine.runner import Runner
+from playground.engine.unfinished import Deadline
 from playground.sketch.expressions import follows_time
 from playground.sketch.flat import Fed, Ref, Source
 
@@ -36,6 +37,7 @@ class Execution:
         self.compute = compute
         self.stopped = stopped  # repeats that are stopped early, by path
         self.timed: Timed | None = None
+        self.deadline: Deadline | None = None  # of loops that follow the time
         self.results: dict[str, Result] = {}  # by the step's path; valid until the next frame
         self._done: set[int] = set()  # identities of nodes that change with no loop, and have run
         self._fed_from: dict[Fed, tuple[Step, str]] = {}  # the output that a loop feeds back
@@ -179,6 +181,7 @@ class Execution:
         if loop.repeat == 0 and not state.results:
             state.results = self._initial(loop, changing, fed)
         self.results |= state.results
+        first_run = state.iterations
         for iteration in range(state.iterations, loop.repeat):
             if iteration > 0:
                 for name, _, ref in loop.feedback:
@@ -201,6 +204,12 @@ class Execution:
                 self._set_aside(loop, state)
             state.results, state.iterations = computed, iteration + 1
             self.results |= computed
+            if (
+                self.deadline is not None
+                and follows_time(loop.spec.repeat)
+                and not self.keys.changes[id(loop)]
+            ):
+                self.deadline.check(iteration + 1 - first_run, iteration + 1, loop.repeat)
 
     def _run_inside(
         self,
