@@ -22,7 +22,7 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.model import Kernel, Sampling
-from playground.sketch.reserved_names import MATCHES, PART, SIZES, UNWIRED, WINDOW, WIRED
+from playground.sketch.reserved_names import MATCHES, PART, PRESSED, SIZES, UNWIRED, WINDOW, WIRED
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
@@ -96,7 +96,7 @@ class Kernels:
         choices = [
             (p.name, int(values[p.name]))  # type: ignore[arg-type]
             for p in kernel.parameters
-            if p.type == "bool" or p.widget.kind == "menu"
+            if (p.type == "bool" or p.widget.kind == "menu") and p.widget.kind != "button"
         ]
         for declared in kernel.inputs:
             name, texture = declared.name, job.inputs.get(declared.name, NOT_WIRED).texture
@@ -150,7 +150,7 @@ class Kernels:
         for parameter in kernel.parameters:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
-                program.set(parameter.name, value)
+                program.set(parameter.name, job.given.get(f"{PRESSED}{parameter.name}", value))
             elif parameter.name in program.uniforms or kernel.dialect:
                 texture = self.binder.file_texture(parameter, value, encoded=True)
                 sizes[parameter.name] = texture.size

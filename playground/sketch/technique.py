@@ -125,6 +125,11 @@ class Kernel:
         """Those of its parameters that name files."""
         return tuple(p for p in self.parameters if p.widget.kind == "file")
 
+    @cached_property
+    def valued_menus(self) -> tuple[Parameter, ...]:
+        """Those of its parameters that are menus with values of their own."""
+        return tuple(p for p in self.parameters if p.widget.values)
+
     def error(self, message: str) -> ShaderError:
         """Return an error that points at its header."""
         line = self.pragma
