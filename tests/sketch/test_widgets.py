@@ -21,10 +21,16 @@ uniform vec2 even = vec2(0.5);        //! point(-2, 2)
 uniform bool go;            //! button label("Go!") Begins anew
 vec4 kernel(ivec2 texel) { return vec4(float(mode), place, go ? 1.0 : 0.0) + 0.0 * vec4(even.x); }
 """
-SKETCH = (
-    '[[pass]]\nname = "a"\nuse = "./a"\nsize = 2\n{}\n'
-SKETCH += '[view]\nuse = "view/map"\ninputs = {{ shown = "a" }}\n'
-)
+SKETCH = """[[pass]]
+name = "a"
+use = "./a"
+size = 2
+{}
+
+[view]
+use = "view/map"
+inputs = {{ shown = "a" }}
+"""
 
 
 @pytest.fixture
