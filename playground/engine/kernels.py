@@ -182,7 +182,7 @@ class Kernels:
             program.run(-(-step.size[0] // kernel.local[0]), -(-step.size[1] // kernel.local[1]))
             return result
         result.framebuffer(self.ctx).use()
-        program.fill()
+        program.fill(6 if kernel.vertex_source else 3)
         return result
 
     # ── iterations ───────────────────────────────────────────────────────────

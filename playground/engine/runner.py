@@ -184,6 +184,7 @@ class Runner:
             "frame": (float(self.frame),),
             "delta": (self.delta,),
             "date": self.date,
+            "date_from_1": (self.date[0], self.date[1] + 1.0, *self.date[2:]),
             "frame_of_time": (math.floor(self._given["time"] * 60 + 1e-6),),
             "hover": self.hover,
             "hover_share": (self.hover[0] / width, self.hover[1] / height),
