@@ -14,7 +14,7 @@ from pathlib import Path
 
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.sketch.dialects import main, shadertoy
+from playground.sketch.dialects import isf, main, shadertoy
 from playground.sketch.dialects.passes import Read, graph_of_shaders
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.shader import Shader
@@ -25,7 +25,9 @@ OWN = "own"
 _MOST = 64
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
-_ISF = re.compile(r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES)"', re.DOTALL)
+_ISF = re.compile(
+    r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS)"', re.DOTALL
+)
 _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:iChannel\d|iUniform|iKeyboard)\b", re.MULTILINE)
@@ -46,7 +48,7 @@ class Dialect:
 
 
 DIALECTS = (
-    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text)),
+    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text), isf.shaders),
     Dialect("export", "a Shadertoy export (JSON)", lambda text, code: _EXPORT.match(text)),
     Dialect(OWN, "a kernel", lambda text, code: _OWN_PRAGMA.search(code)),
     Dialect(

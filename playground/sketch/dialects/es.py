@@ -64,9 +64,7 @@ def version_of(source: SourceText) -> int:
     return int(found.group(1)) if found and found.group(2) != "es" and found.group(1) != "100" else 0
 
 
-def rewritten(
-    source: SourceText, *, is_vertex: bool = False, declared: Collection[str] = ()
-) -> Rewritten:
+def rewritten(source: SourceText, *, is_vertex: bool = False, declared: Collection[str] = ()) -> Rewritten:
     """Rewrite a text; one of ``#version`` 330 or more keeps its version and its extensions.
 
     ``declared`` are names that its tool declares for it: they are renamed where GLSL 3.30 has taken them.

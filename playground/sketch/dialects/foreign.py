@@ -63,15 +63,15 @@ class ForeignKernel:
             (Output("frame", shader.format),),
             parameters,
             tuple(Input(n, c.sampling, "zero" if c.target else "black") for n, c in self.channels.items()),
-            title=title_of(self.source),
+            title=shader.title or title_of(self.source),
             dialect=self.rules.name,
-            prelude=tuple(self._prelude(shader.text, self.missing)),
+            prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
             epilogue=self.rules.epilogue,
             helpers=self.rules.helpers,
-            vertex=vertex_outputs(self.code) if ours else (),
+            vertex=vertex_outputs("\n".join([self.code, *self._varyings()])) if ours else (),
             vertex_source=self.vertex,
             vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
-            vertex_helpers=self.rules.vertex_helpers if shader.vertex else "",
+            vertex_helpers=self.rules.vertex_helpers if shader.vertex else (),
             meanings=tuple(meanings),
             unfed=tuple(self._unfed(own)),
         )
@@ -82,6 +82,11 @@ class ForeignKernel:
         yield from (f"uniform {_declaration(self.rules.names[name][0], name)};" for name in missing)
         declared = uniforms(text.source.code)
         yield from (f"uniform {p.type} {p.name};" for p in self.shader.parameters if p.name not in declared)
+
+    def _varyings(self) -> list[str]:
+        """Return the dialect's own that a text reads and does not declare itself."""
+        known = [declaration for declaration, _ in vertex_outputs(self.code)]
+        return [one for one in self.rules.varyings if one.replace("in ", "out ", 1) not in known]
 
     def _channel(self, sampler: str) -> Channel:
         """Return what feeds a sampler; by the rules where the shader does not say."""
@@ -101,15 +106,19 @@ class ForeignKernel:
         return [
             name
             for name in self.rules.names
-            if name in source.names
-            and name not in declared
-            and re.search(rf"(?<![.\w]){name}\b", code)
+            if name not in declared
+            and (name in self.shader.named or name in source.names)
+            and (name in self.shader.named or re.search(rf"(?<![.\w]){name}\b", code))
             and not is_declared(code, name, anywhere=anywhere)
         ]
 
     def _is_read(self, name: str) -> bool:
         """Return whether a text names a sampler besides declaring it."""
-        return name in self.missing or name in self.vertex_missing or len(re.findall(rf"\b{name}\b", self.code)) > 1
+        return (
+            name in self.missing
+            or name in self.vertex_missing
+            or len(re.findall(rf"\b{name}\b", self.code)) > 1
+        )
 
     def _kinds(self) -> Iterator[tuple[str, str]]:
         """Yield each sampler that a wire may feed, with its type."""
