@@ -18,6 +18,7 @@ from playground.sketch.dialects.declarations import Declared, is_declared, unifo
 from playground.sketch.dialects.es import Rewritten
 from playground.sketch.header import title_of
 from playground.sketch.model import (
+    SHAPES,
     Export,
     Graph,
     Input,
@@ -38,9 +39,15 @@ Names = Mapping[str, tuple[str, str]]
 Read = Callable[[str, Path, Path], Technique]
 """Return the technique that ``use`` names: see ``Techniques.read``."""
 
-STAND_INS = {"noise": "foreign/noise", "picture": "foreign/picture"}
+STAND_INS = {
+    "noise": ("foreign/noise", ("256", "256")),
+    "picture": ("foreign/picture", ("256", "256")),
+    "sky": ("foreign/sky_box", ("128", "768")),
+    "volume": ("foreign/noise", ("32", "1024")),
+}
+"""What a channel reads that nothing feeds: the technique, and its size."""
 SAMPLING = Sampling("linear", "repeat", mipmap=True)
-_STAND_IN_SIZE = ("256", "256")
+_OF_SHAPE = {"cube": "sky", "volume": "volume"}
 _COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
 _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
 _MODEL = "MODEL_"
@@ -68,10 +75,10 @@ def graph_of(name: str, text: Rewritten, rules: Rules, read: Read, root: Path) -
     passes = [
         PassSpec(
             channel,
-            STAND_INS[kind],
-            read(STAND_INS[kind], GLSL, GLSL),
+            STAND_INS[kind][0],
+            read(STAND_INS[kind][0], GLSL, GLSL),
             values=(("number", int(number)),),
-            size=_STAND_IN_SIZE,
+            size=STAND_INS[kind][1],
         )
         for channel, (kind, number) in shader.stand_ins.items()
     ]
@@ -100,12 +107,12 @@ class _Shader:
         self.missing = [name for name in rules.names if self._lacks(name)]
         self.commented = {(line.file, line.number): file for line, file in commented_files(self.source)}
         self.pictures = dict(self._pictures())
-        self.samplers = [name for name, kind in self._kinds() if kind == "sampler2D"]
+        self.samplers = {name: SHAPES[kind] for name, kind in self._kinds() if kind in SHAPES}
         self.stand_ins: dict[str, tuple[str, str]] = {}  # channel → kind, number
         for sampler in self.samplers:
             kind, _, number = rules.names.get(sampler, ("", ""))[1].partition(" ")
             if kind in STAND_INS and self._is_read(sampler):
-                self.stand_ins[sampler] = kind, number
+                self.stand_ins[sampler] = _OF_SHAPE.get(self.samplers[sampler], kind), number
 
     def kernel(self, name: str) -> Kernel:
         parameters = self._parameters()
@@ -123,7 +130,7 @@ class _Shader:
             self.source,
             (Output("frame", "rgba8"),),
             parameters,
-            tuple(Input(n, SAMPLING, "black") for n in self.samplers if self._is_read(n)),
+            tuple(Input(n, SAMPLING, "black", shape=s) for n, s in self.samplers.items() if self._is_read(n)),
             title=title_of(self.source),
             dialect=self.rules.name,
             prelude=tuple(prelude),
