@@ -100,7 +100,7 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
     if kernel.kind == "compute":
         counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
     header: list[Any] = [*(getattr(kernel, name) for name in _HEADER), counts]
-    header += [(i.name, i.sampling, i.fallback) for i in kernel.inputs]
+    header += [(i.name, i.sampling, i.fallback, i.shape) for i in kernel.inputs]
     if kernel.dialect:
         header += [kernel.prelude, kernel.epilogue, kernel.vertex, kernel.meanings]
     used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}

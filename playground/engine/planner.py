@@ -18,6 +18,7 @@ from playground.engine.accepted_sizes import sizes_of_variant
 from playground.engine.between import between_of
 from playground.engine.error_place import placed
 from playground.engine.files import find_file
+from playground.engine.input_shapes import check_shapes
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node
 from playground.engine.plan_request import (
     DEFAULT_EXTENT,
@@ -275,6 +276,7 @@ class _Planning:
         size = self._size_of_leaf(node)
         values = self._values[node.path]
         self._refuse(node, size)
+        check_shapes(node, self.flat, self.size_of)
         numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], **self._clocks()}
         numbers |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         if kernel.repeat != "1" or kernel.stride:

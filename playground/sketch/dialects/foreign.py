@@ -14,9 +14,16 @@ from pathlib import Path
 from playground.errors import Diagnostic, ShaderError
 from playground.sketch.allowed_files import is_file, leads_outside
 from playground.sketch.dialects.declarations import Declared, is_declared, uniforms, vertex_outputs
-from playground.sketch.dialects.shader import SAMPLING, STAND_INS, Channel, Shader
+from playground.sketch.dialects.shader import (
+    SAMPLING,
+    STAND_INS,
+    STAND_INS_OF_SHAPES,
+    Channel,
+    Shader,
+    stand_in,
+)
 from playground.sketch.header import title_of
-from playground.sketch.model import Input, Kernel, Output, Parameter, Widget
+from playground.sketch.model import SHAPES, Input, Kernel, Output, Parameter, Widget
 from playground.sketch.source import Line, SourceText
 from playground.sketch.uniforms import read_uniforms
 
@@ -39,8 +46,8 @@ class ForeignKernel:
         self.missing = [name for name in self.rules.names if self._lacks(name)]
         self.commented = {(line.file, line.number): file for line, file in commented_files(self.source)}
         self.pictures = dict(self._pictures())
-        samplers = [name for name, kind in self._kinds() if kind == "sampler2D" and self._is_read(name)]
-        self.channels = {name: self._channel(name) for name in samplers}
+        self.shapes = {n: SHAPES[kind] for n, kind in self._kinds() if kind in SHAPES and self._is_read(n)}
+        self.channels = {name: self._channel(name) for name in self.shapes}
 
     def kernel(self, name: str) -> Kernel:
         """Return the kernel as a technique called ``name``."""
@@ -60,7 +67,10 @@ class ForeignKernel:
             self.source,
             (Output("frame", shader.format),),
             parameters,
-            tuple(Input(n, c.sampling, "zero" if c.target else "black") for n, c in self.channels.items()),
+            tuple(
+                Input(n, c.sampling, "zero" if c.target else "black", shape=self.shapes[n])
+                for n, c in self.channels.items()
+            ),
             title=title_of(self.source),
             dialect=self.rules.name,
             prelude=tuple(prelude),
@@ -79,7 +89,8 @@ class ForeignKernel:
             return Channel()
         file = self._commented(self.declared[sampler]) if sampler in self.declared else ""
         unfed = f"there is no file '{file}', so a stand-in is drawn" if file else _STANDS_IN
-        return Channel(use=STAND_INS[kind], values=(("number", int(number)),), unfed=unfed)
+        kind = STAND_INS_OF_SHAPES.get(self.shapes[sampler], kind)
+        return stand_in(kind, int(number), unfed)
 
     def _lacks(self, name: str) -> bool:
         if name not in self.source.names or name in self.declared:
