@@ -103,10 +103,14 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
     header += [(i.name, i.sampling, i.fallback, i.shape) for i in kernel.inputs]
     if kernel.dialect:
         header += [kernel.prelude, kernel.epilogue, kernel.vertex, kernel.meanings]
+        header += [kernel.helpers, kernel.vertex_prelude, kernel.vertex_helpers]
+        header.append(kernel.vertex_source.canonical if kernel.vertex_source else "")
     used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}
     used |= set(_IDENTIFIER.findall(" ".join(counts)))
     used |= kernel.source.names & {"iterations"}
     used |= {p.name for p in kernel.parameters if kernel.reads(f"{TOWARDS}{p.name}")}
+    if kernel.dialect:  # what its tool declares is not in its text
+        used |= {p.name for p in kernel.parameters if kernel.reads(p.name)}
     if kernel.kind == "source":
         used |= {p.name for p in kernel.parameters}
     if kernel.kind == "draw":

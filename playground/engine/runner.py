@@ -22,7 +22,7 @@ from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
 from playground.sketch.expressions import FRAME_RATE, last_frame_at
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import NEUTRAL
+from playground.sketch.reserved_names import NEUTRAL, PRESSED
 from playground.terrain.sources import SourceKind, source_kind
 
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ class Runner:
         self.mouse = (0.0, 0.0, 0.0, 0.0)  # pixels from the lower left, then where it was pressed
         self.hover = (0.0, 0.0)  # pixels from the lower left, pressed or not
         self.drag = (0.0, 0.0, 0.0, 0.0)  # as ShaderToy's iMouse
+        self.pressed: frozenset[str] = frozenset()  # paths of the buttons that are pressed in this frame
         self.delta = 1 / 60  # [s] since the last one
         self.date = (1970.0, 0.0, 1.0, 0.0)  # year, month from 0, day, seconds
         self.programs = Programs(ctx)
@@ -95,9 +96,12 @@ class Runner:
         ``frame`` is that of the loop around it that counts frames: the time is that frame's.
         """
         kernel = step.kernel
-        if kernel.kind.startswith("plain"):
-            return dict(usual_of(kernel, self._usual(step, frame)))
         found: dict[str, Any] = {}
+        if self.pressed:
+            names = (p.name for p in kernel.parameters if p.widget.kind == "button")
+            found |= {f"{PRESSED}{name}": True for name in names if f"{step.path}.{name}" in self.pressed}
+        if kernel.kind.startswith("plain"):
+            return found | dict(usual_of(kernel, self._usual(step, frame)))
         for name in kernel.given:
             if name == "spacing":
                 (width, height), (wide, tall) = self._given["extent"], step.whole_size
@@ -186,6 +190,7 @@ class Runner:
             "mouse": self.mouse,
             "delta": (self.delta if frame is None else 1 / FRAME_RATE,),
             "date": self.date,
+            "date_from_1": (self.date[0], self.date[1] + 1.0, *self.date[2:]),
             "frame": (last_frame_at(time),),
             "frame_of_time": (last_frame_at(time),),
             "hover": self.hover,
