@@ -205,6 +205,11 @@ class Graph:
         parts = (*(spec.technique for spec in self.passes), *self.variants)
         return tuple(dict.fromkeys([self.path, *(file for part in parts for file in part.files)]))
 
+    @property
+    def dialect(self) -> str:
+        """Of another tool's shader the name of a row of sketch/dialects, of a TOML none."""
+        return "" if self.path.endswith(".toml") else self.kernels[-1][1].dialect
+
     @cached_property
     def kernels(self) -> tuple[tuple[str, Kernel], ...]:
         """Every kernel inside, by its path."""

@@ -17,7 +17,9 @@ from playground.paths import shown
 from playground.sketch.allowed_files import is_file
 from playground.sketch.dialects import main, shadertoy
 from playground.sketch.dialects.es import rewritten, version_of
-from playground.sketch.dialects.foreign import Read, Rules, commented_files, graph_of, places_of
+from playground.sketch.dialects.foreign import commented_files, places_of
+from playground.sketch.dialects.passes import VIEW, Read, graph_of_shaders
+from playground.sketch.dialects.shader import Rules, Shader
 from playground.sketch.model import Graph
 from playground.sketch.source import Origin, read_source_and_origin, read_text
 
@@ -142,7 +144,8 @@ def read_foreign(
     if chosen.rules is main.RULES:
         main.refuse_passes(source)
     if chosen.rules is not main.RULES or dialect or version_of(source) < 330 or main.needs_dialect(source):
-        graph = graph_of(name, rewritten(source), chosen.rules, read, root)
+        shader = Shader(VIEW, rewritten(source), chosen.rules)
+        graph = graph_of_shaders(name, (shader,), read, root)
     if not instead:
         places = [place for line, file in commented_files(source) for place in places_of(file, line, root)]
         _known[key] = _Known(graph, origin, tuple((place, is_file(place)) for place in places))

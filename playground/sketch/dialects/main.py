@@ -9,7 +9,7 @@ import re
 
 from playground.sketch.dialects import shadertoy
 from playground.sketch.dialects.declarations import uniforms, vertex_outputs
-from playground.sketch.dialects.foreign import Names, Rules
+from playground.sketch.dialects.shader import Names, Rules
 from playground.sketch.reserved_names import PLAIN_UNIFORMS, SIZES
 from playground.sketch.source import SourceText
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from playground.sketch.dialects.foreign import Names, Rules
+from playground.sketch.dialects.shader import Names, Rules
 from playground.sketch.reserved_names import SIZES
 
 CHANNELS = tuple(f"iChannel{number}" for number in range(4))
