@@ -65,7 +65,7 @@ class ForeignKernel:
             dialect=self.rules.name,
             prelude=tuple(prelude),
             epilogue=self.rules.epilogue,
-            vertex=vertex_outputs(self.code),
+            vertex=vertex_outputs("\n".join([*shader.text.prelude, self.code])),
             meanings=tuple(meanings),
             unfed=tuple(self._unfed(own)),
         )
