@@ -48,7 +48,7 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
             else:
                 kernel = _parsed_again(technique, texts, Path(sketch.folder))
                 known[id(technique)] = replace(kernel, variants=variants)
-        return known[id(technique)]
+        return cast(Technique, known[id(technique)])
 
     return replace(sketch, graph=cast(Graph, reread(sketch.graph)))
 
