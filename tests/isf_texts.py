@@ -56,7 +56,8 @@ void main() {
 }
 """
 
-_FILTER = """/*{"ISFVSN": "2", "CATEGORIES": ["Filter"], "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}*/
+_FILTER = """/*{"ISFVSN": "2", "CATEGORIES": ["Filter"],
+  "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}*/
 void main() {
     vec4 a = IMG_PIXEL(inputImage, gl_FragCoord.xy), b = IMG_NORM_PIXEL(inputImage, isf_FragNormCoord);
     vec4 c = IMG_THIS_PIXEL(inputImage), d = IMG_THIS_NORM_PIXEL(inputImage);

@@ -16,14 +16,25 @@ VARIANTS = ("compute", "passes")
 """The kinds of fast variants: a ``.comp`` needs compute shaders, a ``.fast.toml`` does not."""
 
 
+SHAPES = {
+    "sampler2D": "",
+    "samplerCube": "cube",
+    "sampler3D": "volume",
+    "sampler2DArray": "layers",
+    "sampler1D": "line",
+}
+"""GLSL type of a sampler → the shape of what it reads."""
+
+
 @dataclass(frozen=True, slots=True)
 class Input:
     """A texture that a kernel reads."""
 
     name: str
     sampling: Sampling = AS_IT_IS
-    fallback: str = ""  # "white" or "black": what it reads when nothing is wired; "": must be wired
+    fallback: str = ""  # "white", "black", "zero": what it reads when nothing is wired; "": must be wired
     line: int = 0
+    shape: str = ""  # of another tool's shader: a value of ``SHAPES``; "": two dimensions
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,7 +95,7 @@ def test_the_driver_gets_no_deprecated_name(isf, name):
             assert not [word for line in stage.text.split("\n") for word in DEPRECATED.findall(line)]
 
 
-@pytest.mark.parametrize("name", ["given", "filter", "with_vertex", "properties", "inputs", "passes"])
+@pytest.mark.parametrize("name", ["given", "inputs", "with_vertex_1"])
 def test_a_picture_drawn_in_parts_is_the_picture_drawn_whole(any_engine, isf, name):
     sketch = load(isf(name))
     whole = any_engine.render(sketch, size=SIZE, time=1.0).array
@@ -295,7 +295,8 @@ def test_a_vertex_file_is_followed_and_one_that_comes_is_read(any_engine, isf, f
 
 
 def test_a_clamp_at_the_corners_of_a_vertex_shader_changes_nothing(any_engine, isf):
-    text = '/*{"ISFVSN": "2", "INPUTS": []}*/\nvarying vec2 at;\nvoid main() { gl_FragColor = vec4(at, 0, 1); }\n'
+    text = '/*{"ISFVSN": "2", "INPUTS": []}*/\nvarying vec2 at;\n'
+    text += "void main() { gl_FragColor = vec4(at, 0, 1); }\n"
     vertex = (
         "varying vec2 at;\nvoid main() { isf_vertShaderInit(); at = clamp(isf_FragNormCoord, 0.0, 1.0); }\n"
     )

@@ -15,9 +15,16 @@ from playground.errors import Diagnostic, ShaderError
 from playground.sketch.allowed_files import is_file, leads_outside
 from playground.sketch.dialects.declarations import Declared, is_declared, uniforms, vertex_outputs
 from playground.sketch.dialects.es import Rewritten
-from playground.sketch.dialects.shader import SAMPLING, STAND_INS, Channel, Shader
+from playground.sketch.dialects.shader import (
+    SAMPLING,
+    STAND_INS,
+    STAND_INS_OF_SHAPES,
+    Channel,
+    Shader,
+    stand_in,
+)
 from playground.sketch.header import title_of
-from playground.sketch.model import Input, Kernel, Output, Parameter, Widget
+from playground.sketch.model import SHAPES, Input, Kernel, Output, Parameter, Widget
 from playground.sketch.source import Line, SourceText
 from playground.sketch.uniforms import read_uniforms
 
@@ -42,8 +49,8 @@ class ForeignKernel:
         self.vertex_missing = self._missing(self.vertex) if self.vertex else []
         self.commented = {(line.file, line.number): file for line, file in commented_files(self.source)}
         self.pictures = dict(self._pictures())
-        samplers = [name for name, kind in self._kinds() if kind == "sampler2D" and self._is_read(name)]
-        self.channels = {name: self._channel(name) for name in samplers}
+        self.shapes = {n: SHAPES[kind] for n, kind in self._kinds() if kind in SHAPES and self._is_read(n)}
+        self.channels = {name: self._channel(name) for name in self.shapes}
 
     def kernel(self, name: str) -> Kernel:
         """Return the kernel as a technique called ``name``."""
@@ -62,13 +69,18 @@ class ForeignKernel:
             self.source,
             (Output("frame", shader.format),),
             parameters,
-            tuple(Input(n, c.sampling, "zero" if c.target else "black") for n, c in self.channels.items()),
+            tuple(
+                Input(n, c.sampling, "zero" if c.target else "black", shape=self.shapes[n])
+                for n, c in self.channels.items()
+            ),
             title=shader.title or title_of(self.source),
             dialect=self.rules.name,
             prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
             epilogue=self.rules.epilogue,
             helpers=self.rules.helpers,
-            vertex=vertex_outputs("\n".join([self.code, *self._varyings()])) if ours else (),
+            vertex=vertex_outputs("\n".join([*shader.text.prelude, *self._varyings(), self.code]))
+            if ours
+            else (),
             vertex_source=self.vertex,
             vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
             vertex_helpers=self.rules.vertex_helpers if shader.vertex else (),
@@ -97,7 +109,8 @@ class ForeignKernel:
             return Channel()
         file = self._commented(self.declared[sampler]) if sampler in self.declared else ""
         unfed = f"there is no file '{file}', so a stand-in is drawn" if file else _STANDS_IN
-        return Channel(use=STAND_INS[kind], values=(("number", int(number)),), unfed=unfed)
+        kind = STAND_INS_OF_SHAPES.get(self.shapes[sampler], kind)
+        return stand_in(kind, int(number), unfed)
 
     def _missing(self, source: SourceText) -> list[str]:
         """Return the names of the dialect that a text reads and does not declare."""

@@ -12,7 +12,7 @@ from playground.errors import Diagnostic, nearest
 from playground.sketch.allowed_files import leads_outside
 from playground.sketch.dialects.isf_header import Header, is_true, number_of, numbers_of
 from playground.sketch.dialects.reading import Files
-from playground.sketch.dialects.shader import STAND_INS, Channel
+from playground.sketch.dialects.shader import STAND_INS, Channel, stand_in
 from playground.sketch.model import Parameter, Sampling, Widget
 from playground.sketch.source import Line
 from playground.sketch.uniforms import with_axes
@@ -34,13 +34,13 @@ class Inputs:
 
     parameters: list[Parameter] = field(default_factory=list)
     channels: dict[str, Channel] = field(default_factory=dict)  # by sampler
-    cubes: list[str] = field(default_factory=list)  # samplers that are cube maps
+    cubes: list[str] = field(default_factory=list)  # those of the channels that are cube maps
     notes: list[Diagnostic] = field(default_factory=list)
 
     @property
     def names(self) -> list[str]:
         """Every name that is taken."""
-        return [*(p.name for p in self.parameters), *self.channels, *self.cubes]
+        return [*(p.name for p in self.parameters), *self.channels]
 
 
 def read_inputs(header: Header, files: Files, taken: Callable[[str], str]) -> Inputs:
@@ -78,8 +78,8 @@ class _Declared:
     def parameter(self, kind: str, default: Any, widget: Widget) -> Parameter:
         """Return a parameter of a GLSL type."""
         label, tooltip = (str(self.table.get(key) or "").strip() for key in ("LABEL", "DESCRIPTION"))
-        place = {"file": self.line.file, "line": self.line.number}
-        return Parameter(self.name, kind, default, widget, label=label, tooltip=tooltip, **place)
+        found = Parameter(self.name, kind, default, widget, label=label, tooltip=tooltip)
+        return replace(found, file=self.line.file, line=self.line.number)
 
     def number(self, key: str) -> float | None:
         return number_of(self.table.get(key))
@@ -167,11 +167,16 @@ def _color(declared: _Declared, found: Inputs) -> None:
 
 def _image(declared: _Declared, found: Inputs) -> None:
     number = sum(channel.use == STAND_INS["picture"] for channel in found.channels.values())
-    found.channels[declared.name] = stand_in(number)
+    found.channels[declared.name] = _card(number)
 
 
 def _cube(declared: _Declared, found: Inputs) -> None:
-    found.cubes.append(declared.name)
+    _add_cube(declared.name, found, "a sky stands in for it")
+
+
+def _add_cube(name: str, found: Inputs, unfed: str) -> None:
+    found.cubes.append(name)
+    found.channels[name] = replace(stand_in("sky", 0, unfed), sampling=IMAGE)
 
 
 def _sound(content: int) -> Callable[[_Declared, Inputs], None]:
@@ -189,15 +194,9 @@ def _sound(content: int) -> Callable[[_Declared, Inputs], None]:
     return read
 
 
-def stand_in(number: int, unfed: str = "a stand-in is drawn; a sketch may wire an image to it") -> Channel:
+def _card(number: int, unfed: str = "a stand-in is drawn; a sketch may wire an image to it") -> Channel:
     """Return the channel of an image that nothing feeds."""
-    return Channel(
-        use=STAND_INS["picture"],
-        values=(("number", number),),
-        size=OF_PICTURE,
-        sampling=IMAGE,
-        unfed=unfed,
-    )
+    return replace(stand_in("picture", number, unfed), size=OF_PICTURE, sampling=IMAGE)
 
 
 _READERS: dict[str, Callable[[_Declared, Inputs], None]] = {
@@ -218,18 +217,16 @@ _READERS: dict[str, Callable[[_Declared, Inputs], None]] = {
 def _import(name: str, one: Mapping[str, Any], line: Line, files: Files, found: Inputs) -> None:
     path = one.get("PATH")
     if str(one.get("TYPE", "")).lower() == "cube" or isinstance(path, list):
-        found.cubes.append(name)
+        _add_cube(name, found, "six pictures of a cube are not read, so a sky stands in for them")
         return
     if not isinstance(path, str) or not path.strip() or "\0" in path:
         raise line.error(f'image \'{name}\' needs the path of its file, as "PATH": "moon.jpg"')
     path = path.strip().replace("\\", "/")
     place = Path(line.file).parent / path
     if leads_outside(path, files.root, line.file):
-        found.channels[name] = stand_in(
-            0, f"'{path}' lies outside the sketch's folder, so a stand-in is drawn"
-        )
+        found.channels[name] = _card(0, f"'{path}' lies outside the sketch's folder, so a stand-in is drawn")
     elif not any([files.is_there(place), files.is_there(files.root / path)]):
-        found.channels[name] = stand_in(0, f"there is no file '{path}', so a stand-in is drawn")
+        found.channels[name] = _card(0, f"there is no file '{path}', so a stand-in is drawn")
     else:
         declared = _Declared(name, one, line)
         parameter = declared.parameter("sampler2D", path, Widget("file"))

@@ -13,11 +13,20 @@ from playground.sketch.source import SourceText
 Names = Mapping[str, tuple[str, str]]
 """Name → GLSL type and meaning: a key of ``Runner``'s values; of a sampler "noise 0", "picture 3", "none"."""
 
-STAND_INS = {"noise": "foreign/noise", "picture": "foreign/picture"}
+STAND_INS = {
+    "noise": "foreign/noise",
+    "picture": "foreign/picture",
+    "sky": "foreign/sky_box",
+    "volume": "foreign/noise",
+}
 """What is drawn where nothing feeds a channel: the first word of its meaning → a technique of ``glsl/``."""
+
+STAND_INS_OF_SHAPES = {"cube": "sky", "volume": "volume"}
+"""Likewise, by a channel's shape, where it has one of its own."""
 
 SAMPLING = Sampling("linear", "repeat", mipmap=True)
 STAND_IN_SIZE = ("256", "256")
+_SIZES = {"sky": ("128", "768"), "volume": ("32", "1024")}
 
 
 @dataclass(frozen=True)
@@ -44,6 +53,12 @@ class Channel:
     size: tuple[str, str] = STAND_IN_SIZE  # [texels] likewise, expressions
     sampling: Sampling = SAMPLING
     unfed: str = ""  # what is drawn instead, where the technique is a stand-in: the end of a sentence
+
+
+def stand_in(kind: str, number: int, unfed: str) -> Channel:
+    """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
+    size = _SIZES.get(kind, STAND_IN_SIZE)
+    return Channel(use=STAND_INS[kind], values=(("number", number),), size=size, unfed=unfed)
 
 
 @dataclass(frozen=True)
