@@ -396,6 +396,43 @@ void main() {
 }
 """
 
+_VERSIONS = """/*{"CREDIT": "by the tests", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}*/
+#if __VERSION__ <= 120
+varying vec2 around[2];
+#else
+in vec2 around[2];
+#endif
+void main() {
+    // here
+    gl_FragColor = IMG_NORM_PIXEL(inputImage, around[0]) * 0.5 + IMG_NORM_PIXEL(inputImage, around[1]) * 0.5;
+}
+"""
+
+_VERSIONS_VERTEX = """#if __VERSION__ <= 120
+varying vec2 around[2];
+#else
+out vec2 around[2];
+#endif
+void main(void) {
+    vv_vertShaderInit();
+    // here
+    around[0] = vv_FragNormCoord;
+    around[1] = 1.0 - vv_FragNormCoord + 4.0 / IMG_SIZE(inputImage);
+}
+"""
+
+_CONVERTED = """/*{"ISFVSN": "2", "CATEGORIES": ["Converted"],
+  "INPUTS": [{"NAME": "iChannel0", "TYPE": "image"}, {"NAME": "iMouse", "TYPE": "point2D"}]}*/
+#define iTime TIME
+vec3 iResolution = vec3(RENDERSIZE, 1.0);
+void mainImage(out vec4 fragColor, in vec2 fragCoord) {
+    vec2 uv = fragCoord / iResolution.xy;
+    // here
+    fragColor = texture(iChannel0, uv + iMouse) * 0.5 + vec4(uv, fract(iTime), 1.0) * 0.5;
+}
+void main(void) { mainImage(gl_FragColor, gl_FragCoord.xy); }
+"""
+
 TEXTS: dict[str, str] = {
     "given": _GIVEN,
     "tabs": _TABS,
@@ -428,9 +465,11 @@ TEXTS: dict[str, str] = {
     "pixels_1": _PIXELS_1,
     "self_read": _SELF_READ,
     "game": _GAME,
+    "versions": _VERSIONS,
+    "converted": _CONVERTED,
 }
 
-VERTEX = {"with_vertex": _VERTEX, "with_vertex_1": _VERTEX_1}
+VERTEX = {"versions": _VERSIONS_VERTEX, "with_vertex": _VERTEX, "with_vertex_1": _VERTEX_1}
 
 STATEFUL = ("version_1", "buffers_1", "persistent", "one_kept", "game")
 """Those whose picture depends on the frames before."""

@@ -71,7 +71,7 @@ class Header:
         strange = [key for key in found if key not in known]
         if not strange:
             return None
-        hint = nearest(strange[0], known)
+        hint = nearest(strange[0].upper(), known)
         hint = hint if "did you mean" in hint else ""
         message = f"{', '.join(strange)} of {what} means nothing here, and is left out{hint}"
         return self.line_of(strange[0]).diagnostic(message, severity="warning")

@@ -53,11 +53,12 @@ def read_inputs(header: Header, files: Files, taken: Callable[[str], str]) -> In
     for one in header.items("INPUTS"):
         name = _name(one, header, "an input", found, taken)
         line = header.line_of_input(name)
-        kind = str(one.get("TYPE", ""))
-        if kind not in _READERS:
-            raise line.error(
-                f"input '{name}' has the type '{kind}', which ISF has not{nearest(kind, _READERS)}"
-            )
+        kind = _BY_LOWER.get(str(one.get("TYPE", "")).lower(), "")
+        if not kind:
+            given = str(one.get("TYPE", ""))
+            message = f"input '{name}' is left out: ISF has no type '{given}'{nearest(given, _READERS)}"
+            found.notes.append(line.diagnostic(message, severity="warning"))
+            continue
         note = header.unknown(one.keys(), _KEYS, f"input '{name}'")
         found.notes += [note] if note else []
         _READERS[kind](_Declared(name, one, line), found)
@@ -212,6 +213,8 @@ _READERS: dict[str, Callable[[_Declared, Inputs], None]] = {
     "audioFFT": _sound(0),
 }
 """By the type of an input."""
+
+_BY_LOWER = {kind.lower(): kind for kind in _READERS}
 
 
 def _import(name: str, one: Mapping[str, Any], line: Line, files: Files, found: Inputs) -> None:
