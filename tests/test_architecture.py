@@ -40,6 +40,7 @@ LAYERS = (
     ("process",),
     ("gpu",),
     ("terrain",),
+    ("media",),
     ("images",),
     ("sketch",),
     ("errors", "folders", "json_text", "markup", "partial", "paths", "_version"),

@@ -8,7 +8,7 @@ size or a count names a changed value or the time, or where the terrain's file i
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import zip_longest
@@ -57,6 +57,7 @@ class _LastPlan:
     named: frozenset[str]  # paths of the values that a size or a count names
     by_time: bool  # one of them names the time
     refusals: Mapping[str, str]  # why a fast variant does not take its size: a sentence, by its technique
+    own: Mapping[str, tuple[int, int]]  # texels that sources have by themselves, by the path of the leaf
 
 
 class Planner:
@@ -186,6 +187,7 @@ class _Planning:
                 values = values if values == now else now
             self._values[leaf.path] = values
         self.terrain = self._described()
+        self.own = dict(self._own_sizes())
 
     def renewed(self) -> _LastPlan | None:
         """Return the known plan with the values of now; None where it has to be made whole."""
@@ -193,6 +195,7 @@ class _Planning:
         if (
             known is None
             or known.plan.terrain != self.terrain
+            or known.own != self.own
             or (known.by_time and known.plan.time != self.time)
         ):
             return None
@@ -237,7 +240,7 @@ class _Planning:
             lacking=(*lacking, *refused.values()),
         )
         named = frozenset(self.named & self.flat.values.keys())
-        return _LastPlan(plan, self._values, named, self.by_time, refused)
+        return _LastPlan(plan, self._values, named, self.by_time, refused, self.own)
 
     def refusals(self, before: Collection[str]) -> dict[str, str]:
         """Return a sentence for each technique whose fast variant does not take its size, by its path.
@@ -355,6 +358,17 @@ class _Planning:
         base = self.sketch.base_elevation if self.sketch.base_elevation is not None else known.base_elevation
         return Terrain(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
 
+    def _own_sizes(self) -> Iterator[tuple[str, tuple[int, int]]]:
+        """Yield the texels that sources have by themselves, such as a film, where their passes say none."""
+        for leaf in self.flat.leaves:
+            if leaf.kernel.kind == "source" and leaf.spec.size is None and leaf.path != "view":
+                try:
+                    size = source_kind(leaf.kernel.registry).size(self._values[leaf.path])
+                except DataError as error:
+                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
+                if size is not None:
+                    yield leaf.path, size
+
     def _check_source(self, leaf: Leaf) -> None:
         try:
             kind = source_kind(leaf.kernel.registry)
@@ -401,20 +415,25 @@ class _Planning:
         self._open.append(path)
         base = self._size_around(path, prefix)
         size = base
-        if spec.size is not None:
+        if path in self.own:
+            size = self.own[path]
+            self._check_sides(spec, size)
+        elif spec.size is not None:
             try:
                 names = partial(self._number, prefix, spec)
                 size = (expressions.evaluate(spec.size[0], names), expressions.evaluate(spec.size[1], names))
             except ExpressionError as error:
                 raise spec.error(f"pass '{spec.name}': size {error}") from None
-            if not all(1 <= side <= LARGEST_SIDE for side in size):
-                raise spec.error(
-                    f"pass '{spec.name}': size {size[0]} x {size[1]}; "
-                    f"1 to {LARGEST_SIDE} a side were expected"
-                )
+            self._check_sides(spec, size)
         self._open.pop()
         self._sizes[path] = size
         return size
+
+    def _check_sides(self, spec: PassSpec, size: tuple[int, int]) -> None:
+        if not all(1 <= side <= LARGEST_SIDE for side in size):
+            raise spec.error(
+                f"pass '{spec.name}': size {size[0]} x {size[1]}; 1 to {LARGEST_SIDE} a side were expected"
+            )
 
     def _size_around(self, path: str, prefix: str) -> tuple[int, int]:
         """Return the size that a pass has unless it says another: that of the technique around it."""

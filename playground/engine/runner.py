@@ -6,7 +6,8 @@ Programs, meshes and file textures stay here; results are the caller's.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.binder import Binder
@@ -21,6 +22,7 @@ from playground.engine.results import Pool, Result, Wired
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
+from playground.media.now import Now
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import NEUTRAL
 from playground.terrain.sources import SourceKind, source_kind
@@ -95,6 +97,8 @@ class Runner:
         kernel = step.kernel
         if kernel.kind.startswith("plain"):
             return dict(usual_of(kernel, self._usual(step)))
+        if kernel.kind == "source":
+            return self._moment(step)
         found: dict[str, Any] = {}
         for name in kernel.given:
             if name == "spacing":
@@ -136,10 +140,25 @@ class Runner:
         job = Job(step, given, inputs, iteration, start, samples, keeps_surface)
         self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
         other = self._other_kinds.get(step.kernel.kind)
-        try:
+        with self._placed(step):
             return other(job) if other else self.kernels.run(job, driver)
+
+    @contextmanager
+    def _placed(self, step: Step) -> Iterator[None]:
+        """Raise an error of a data file at the pass that names it."""
+        assert self._plan is not None, "look_at() comes first"
+        try:
+            yield
         except DataError as error:
             raise placed(error, self._plan.sketch, self._plan.flat.user(step.path)) from error
+
+    def _moment(self, step: Step) -> dict[str, Any]:
+        """Return what a source depends on besides its parameters, as ``moment``."""
+        moment = source_kind(step.kernel.registry).moment
+        if moment is None:
+            return {}
+        with self._placed(step):
+            return {"moment": moment(step.values, Now(self._given["time"]))}
 
     def _plain(self, job: Job) -> Result:
         return self.kernels.plain(job, self._usual(job.step))
@@ -154,7 +173,7 @@ class Runner:
                 result.textures[output.name], self.paint.texture_of(painted, output.format)
             )
             return result
-        arrays = kind.make(step.values, step.size)
+        arrays = kind.make(step.values, step.size, job.given.get("moment"))
         for output in step.kernel.outputs:
             if output.name not in arrays:
                 given = ", ".join(arrays)
