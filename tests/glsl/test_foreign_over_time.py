@@ -160,7 +160,7 @@ def test_a_film_moves_the_picture_and_is_not_cached_on_disk(any_engine, sketch, 
 
 def test_a_misspelt_film_has_its_nearest_name(any_engine, sketch, tmp_path):
     own_film(tmp_path / "waves.mp4", count=2)
-    with pytest.raises(DataError, match="no such file; did you mean 'waves.mp4'"):
+    with pytest.raises(DataError, match=r"no such file; did you mean 'waves.mp4'"):
         any_engine.read(sketch("video", 'video = "wave.mp4"'), "a")
 
 
