@@ -23,7 +23,7 @@ from playground.images.content_hash import content_hash
 from playground.sketch.expressions import counts_frames
 from playground.sketch.flat import Fed, Source
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import CLOCKED, TOWARDS
+from playground.sketch.reserved_names import CLOCKED, PRESSED, TOWARDS
 from playground.terrain.meshes import mesh_parameters
 
 _MAX_TEXTS = 512
@@ -271,7 +271,7 @@ class _KeyComputation:
 def _clocked(step: Step, given: Mapping[str, Any]) -> frozenset[str]:
     """Return what a step reads that belongs to one frame: given names, and buttons among its parameters."""
     buttons = [p.name for p in step.kernel.parameters if p.widget.kind == "button"]
-    return (CLOCKED & given.keys()) | frozenset(buttons)
+    return (CLOCKED & given.keys()) | frozenset([*buttons, *(f"{PRESSED}{name}" for name in buttons)])
 
 
 def _loops_in(loop: LoopStep) -> set[str]:

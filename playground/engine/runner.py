@@ -18,6 +18,8 @@ from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextu
 from playground.engine.plan import LoopIteration, Plan, Step
 from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
+from playground.engine.scene import MEANINGS as OF_THE_SCENE
+from playground.engine.scene import scene_of
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
@@ -220,4 +222,11 @@ class Runner:
             "hover_share": (self.hover[0] / width, self.hover[1] / height),
             "drag": self.drag,
             **NEUTRAL,
+            **self._scene(step),
         }
+
+    def _scene(self, step: Step) -> dict[str, tuple[float, ...]]:
+        """Return the sketch's camera and sun, where a step's shader asks for one of them."""
+        assert self._plan is not None, "look_at() comes first"
+        wanted = any(meaning in OF_THE_SCENE for _, meaning in step.kernel.usual)
+        return scene_of(self._plan) if wanted else {}

@@ -78,7 +78,7 @@ class ForeignKernel:
             prelude=tuple(self._prelude(shader.text, self.missing)),
             epilogue=self.rules.epilogue,
             helpers=self.rules.helpers,
-            vertex=vertex_outputs(self.code) if ours else (),
+            vertex=vertex_outputs("\n".join([*shader.text.prelude, self.code])) if ours else (),
             vertex_source=self.vertex,
             vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
             vertex_helpers=self.rules.vertex_helpers if shader.vertex else "",
