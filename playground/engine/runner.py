@@ -176,6 +176,8 @@ class Runner:
         return {
             "time": (float(self._given["time"]),),
             "resolution": (float(width), float(height), 1.0),
+            "square_resolution": (float(width), float(width), 1.0),  # of a face of a cube map
+            "buttons": (float(self.drag[2] > 0), 0.0, 0.0, 0.0),
             "mouse": self.mouse,
             "frame": (float(self.frame),),
             "delta": (self.delta,),

@@ -7,7 +7,7 @@ from pathlib import Path
 from playground.errors import SketchError, nearest
 from playground.paths import GLSL, SKETCHES
 from playground.sketch.allowed_files import SHADERS, TECHNIQUES, TEXTS, exists, is_file, is_inside, is_variant
-from playground.sketch.dialects import refuse_export
+from playground.sketch.dialects import EXPORT, is_export
 from playground.sketch.unpack import is_pack, unpacked
 
 
@@ -28,7 +28,11 @@ def find(name: str | Path) -> Path:
         if is_pack(path):
             return unpacked(path)
         if path.suffix not in TEXTS:
-            refuse_export(path)
+            if is_export(path):
+                return path
+            if path.suffix == EXPORT:
+                message = "a sketch is a .toml, and a .json a Shadertoy export; this holds no renderpass"
+                raise SketchError(message, file=path)
             raise SketchError(f"a sketch is a .toml, a shader ends in {', '.join(SHADERS)}", file=path)
         return path
     text = str(name)

@@ -104,12 +104,14 @@ class ForeignKernel:
 
     def _kinds(self) -> Iterator[tuple[str, str]]:
         """Yield each sampler that a wire may feed, with its type."""
+        fed = {one.name for one in self.shader.parameters}
         for name in self.missing:
             yield name, self.rules.names[name][0]
         for one in self.declared.values():
             if (
                 not one.is_array
                 and one.name not in self.pictures
+                and one.name not in fed
                 and not self._line(one).comment.startswith("!")
             ):
                 yield one.name, one.type
