@@ -20,7 +20,7 @@ from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
-from playground.sketch.expressions import ExpressionError, Number
+from playground.sketch.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
 from playground.sketch.model import Kernel, Sampling
 from playground.sketch.reserved_names import MATCHES, PART, SIZES, UNWIRED, WINDOW, WIRED
 from playground.sketch.wiring import initial_names
@@ -44,16 +44,20 @@ class Job:
     step: Step
     given: Mapping[str, Any]  # what the engine gives, by name
     inputs: Mapping[str, Wired]
-    loop_iteration: LoopIteration | None = None  # of the loop around it
+    loop_iteration: LoopIteration | None = None  # where it is in the loops around it
     start: Result | None = None  # the same step after fewer iterations, to go on from; it is used up
     samples: int = 1  # of a draw
     keeps_surface: bool = False  # a later draw goes on from this one
 
     def count(self, program: Program, iteration: int, repeat: str, whole: int, at_once: int = 1) -> None:
         """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""
-        own, around = (iteration, whole), self.loop_iteration
-        now, total = own if repeat != "1" or around is None else around
-        program.set_all({"iteration": now, "iterations": total, "until": now + at_once})
+        now, total, around = iteration, whole, self.loop_iteration
+        if repeat == "1" and around is not None and around.whole:
+            now, total = around.number, around.whole
+        counted: dict[str, Any] = {"iteration": now, "iterations": total, "until": now + at_once}
+        if counts_frames(repeat):
+            counted["time"] = now / FRAME_RATE
+        program.set_all(counted)
 
     def numbers(self, **more: Number) -> dict[str, Number]:
         """Return what the expressions of a header may name."""

@@ -277,7 +277,7 @@ class _Planning:
         values = self._values[node.path]
         self._refuse(node, size)
         check_shapes(node, self.flat, self.size_of)
-        numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
+        numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], **self._clocks()}
         numbers |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         if kernel.repeat != "1" or kernel.stride:
             self._note_names(node)
@@ -298,18 +298,21 @@ class _Planning:
             between=between,
         )
 
+    def _clocks(self) -> dict[str, Number]:
+        return {"time": self.time, "frames": expressions.frames_at(self.time)}
+
     def _note_names(self, leaf: Leaf) -> None:
         """Note what a kernel's own counts name."""
         names = frozenset[str]()
         for text in (leaf.kernel.repeat, leaf.kernel.stride):
             names |= expressions.names_in(text) if text else names
-        self.by_time |= "time" in names
+        self.by_time |= not names.isdisjoint(expressions.CLOCKS)
         self.named |= {path for name, path in self.flat.shape.paths[leaf.path] if name in names}
 
     def _stopped(self, path: str, whole: int, repeat: str) -> int:
         """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
         steps = self.stopped.get(path, whole)
-        if steps > whole and not self.request.varies and "time" not in expressions.names_in(repeat):
+        if steps > whole and not self.request.varies and not expressions.follows_time(repeat):
             raise ParameterError(f"steps: '{path}' stops after {steps} steps, but it has {whole} in all")
         return min(steps, whole)
 
@@ -430,9 +433,9 @@ class _Planning:
 
         Raises ``KeyError`` for any other name.
         """
-        if name == "time":
+        if name in expressions.CLOCKS:
             self.by_time = True
-            return self.time
+            return self._clocks()[name]
         head, _, axis = name.rpartition(".")
         if axis in _AXES and head == "size":
             return self._size_around(_inside(prefix, spec.name), prefix)[_AXES[axis]]

@@ -63,6 +63,12 @@ PLAIN_UNIFORMS: dict[str, tuple[str, ...]] = {
 _IDENTITY_3 = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 _IDENTITY_4 = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
+CLOCKED = frozenset(
+    {"time", "frame", "frame_of_time", "delta", "date", "mouse", "hover", "hover_share", "drag", "keys"}
+)
+"""What belongs to one frame: given names and meanings that, in a loop that counts ``frames``, are those
+of its iteration, so that what is computed of the frames before stays."""
+
 SIZES = "sizes: "
 """What begins the meaning of a uniform that is given the sizes of samplers, whose names follow."""
 

@@ -32,7 +32,7 @@ class Input:
 
     name: str
     sampling: Sampling = AS_IT_IS
-    fallback: str = ""  # "white" or "black": what it reads when nothing is wired; "": must be wired
+    fallback: str = ""  # "white", "black", "zero": what it reads when nothing is wired; "": must be wired
     line: int = 0
     shape: str = ""  # of another tool's shader: a value of ``SHAPES``; "": two dimensions
 

@@ -33,6 +33,9 @@ from playground.sketch.reserved_names import (
 from playground.sketch.source import Line, SourceText
 from playground.sketch.widgets import SCALARS, VECTORS, WIDGETS
 
+_FALLBACKS = ("white", "black", "zero")
+"""What an input reads where nothing is wired: "zero" is black with alpha 0, and a loop's first iteration
+reads zeros of the size of what is fed back."""
 _UNIFORM = re.compile(
     r"^\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*(?:=([^;]*))?;"
 )
@@ -191,21 +194,21 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         "clamp",
         "repeat",
         "mipmap",
-        *(["paint"] if is_file else ["white", "black"]),
+        *(["paint"] if is_file else _FALLBACKS),
     ]
     for word in words:
         if word not in valid:
             raise line.error(f"'{word}' is not a way to read a texture{nearest(word, valid)}")
-    for pair in (("nearest", "linear"), ("clamp", "repeat"), ("white", "black")):
-        if set(pair) <= set(words):
-            raise line.error(f"'{name}' is both {pair[0]} and {pair[1]}")
+    for pair in (("nearest", "linear"), ("clamp", "repeat"), _FALLBACKS):
+        if len(both := [word for word in pair if word in words]) > 1:
+            raise line.error(f"'{name}' is both {both[0]} and {both[1]}")
     sampling = Sampling(
         "linear" if "linear" in words else "nearest",
         "repeat" if "repeat" in words else "clamp",
         "mipmap" in words,
     )
     if not is_file:
-        fallback = next((word for word in ("white", "black") if word in words), "")
+        fallback = next((word for word in _FALLBACKS if word in words), "")
         return Input(name, sampling, fallback, line.number)
     return Parameter(
         name,
