@@ -8,6 +8,7 @@ from playground.errors import SketchError, nearest
 from playground.paths import GLSL, SKETCHES
 from playground.sketch.allowed_files import SHADERS, TECHNIQUES, TEXTS, exists, is_file, is_inside, is_variant
 from playground.sketch.dialects import EXPORT, is_export
+from playground.sketch.dialects.shadertoy_folder import image_of
 from playground.sketch.unpack import is_pack, unpacked
 
 
@@ -24,6 +25,8 @@ def find(name: str | Path) -> Path:
         is_folder = False
     if is_folder and is_file(path / "sketch.toml"):
         return path / "sketch.toml"
+    if is_folder and (image := image_of(path)) is not None:
+        return image
     if is_file(path):
         if is_pack(path):
             return unpacked(path)
@@ -42,7 +45,7 @@ def find(name: str | Path) -> Path:
         if candidate.suffix in TEXTS and is_file(candidate) and is_inside(candidate, (GLSL,)):
             return candidate
     if is_folder:
-        raise SketchError("this folder holds no sketch.toml", file=path)
+        raise SketchError("this folder holds no sketch.toml, and no Image of Shadertoy", file=path)
     if exists(path):
         raise SketchError("this is a pipe, a socket or a device; a file was expected", file=path)
     raise SketchError(f"there is no file and no shipped sketch '{text}'{nearest(text, shipped_sketches())}")

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.sketch.dialects import main, shadertoy, shadertoy_export
+from playground.sketch.dialects import main, shadertoy, shadertoy_export, shadertoy_folder, vscode
 from playground.sketch.dialects.passes import Read, graph_of_shaders
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.shader import Shader
@@ -46,6 +46,17 @@ class Dialect:
     # No shader: the file runs as it is, as a plain shader.
 
 
+def _shadertoy(files: Files) -> Sequence[Shader]:
+    """Return the passes of a file, and of the folder where it is one of several."""
+    if shadertoy_folder.has_more(files.path):
+        return shadertoy_folder.shaders(files)
+    return shadertoy.shaders(files)
+
+
+def _vscode(files: Files) -> Sequence[Shader]:
+    return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else vscode.shaders(files)
+
+
 DIALECTS = (
     Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text)),
     Dialect(
@@ -59,12 +70,13 @@ DIALECTS = (
         "vscode",
         "a VS Code Shadertoy file (#iChannel, #iUniform)",
         lambda text, code: _DIRECTIVE.search(code),
+        _vscode,
     ),
     Dialect(
         "shadertoy",
         "a Shadertoy shader",
         lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code),
-        shadertoy.shaders,
+        _shadertoy,
     ),
     Dialect("main", "a shader with its own main", lambda text, code: _MAIN.search(code), main.shaders),
     Dialect("sound", "Shadertoy's sound, VR or cube map", lambda text, code: _SOUND.search(code)),

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from playground.errors import ShaderError
 from playground.sketch.dialects.es import rewritten
 from playground.sketch.dialects.shader import Channel, Rules, Shader
-from playground.sketch.dialects.shadertoy import NAMES
+from playground.sketch.dialects.shadertoy import MORE_NAMES, NAMES
 from playground.sketch.model import Parameter, Sampling, Widget
 from playground.sketch.source import SourceText
 
@@ -45,11 +45,12 @@ class ToyPass:
     source: SourceText  # what they have in common before it
     inputs: Mapping[str, ToyInput] = field(default_factory=dict)  # by sampler; others are noise
     epilogue: bool = True  # it has no main of its own
+    called: str = ""  # its name, where that is not made of the label
 
     @property
     def name(self) -> str:
         """Its name as a pass, and as what others read."""
-        return pass_name(self.label)
+        return self.called or pass_name(self.label)
 
 
 def pass_name(label: str) -> str:
@@ -68,6 +69,8 @@ def with_common(common: SourceText | None, source: SourceText) -> SourceText:
 def shaders_of(passes: Sequence[ToyPass], dialect: str = "shadertoy") -> tuple[Shader, ...]:
     """Return the shaders of some passes in the order in which they are drawn, the image last.
 
+    ``dialect`` is the name of their row.
+
     Buffers and cube maps come in the order given. Raises ``ShaderError`` for one without its function.
     """
     ordered = sorted(passes, key=lambda one: _ORDER.index(one.kind))
@@ -82,7 +85,7 @@ def _shader(one: ToyPass, dialect: str) -> Shader:
         others = next((f for f in ("mainImage", "mainCubemap", "mainSound") if f in one.source.names), "")
         hint = f", but a {others}" if others else ""
         raise ShaderError(diagnostics=[place.diagnostic(f"{one.label} has no {function}{hint}")])
-    names = dict(NAMES)
+    names = dict(MORE_NAMES if dialect == "vscode" else NAMES)
     parameters = []
     for sampler, feeds in one.inputs.items():
         if feeds.file:
@@ -112,9 +115,14 @@ def _shader(one: ToyPass, dialect: str) -> Shader:
         parameters=tuple(parameters),
         size=(str(CUBE_SIDE), str(6 * CUBE_SIDE)) if one.kind == CUBE else None,
         format=_FORMATS[one.kind],
-        prelude=(f"const float k_side = {CUBE_SIDE}.0;",) if one.kind == CUBE else (),
+        prelude=_prelude(one.kind, dialect),
         keeps=one.kind != IMAGE,
     )
+
+
+def _prelude(kind: str, dialect: str) -> tuple[str, ...]:
+    found = (f"const float k_side = {CUBE_SIDE}.0;",) if kind == CUBE else ()
+    return ("#define SHADER_TOY", *found) if dialect == "vscode" else found
 
 
 def reading(target: str, sampling: Sampling = OF_BUFFERS) -> Channel:
