@@ -25,7 +25,7 @@ from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
 from playground.sketch.model import Input, Kernel, Parameter, Sampling, Value
-from playground.sketch.reserved_names import MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED
+from playground.sketch.reserved_names import MATCHES, PRESSED, TOWARDS, UNWIRED, WINDOW, WIRED
 from playground.terrain.directions import unit_vector
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ class Binder:
         for parameter in kernel.parameters:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
-                uniforms[parameter.name] = value
+                uniforms[parameter.name] = given.get(f"{PRESSED}{parameter.name}", value)
                 if parameter.widget.kind == "direction":
                     uniforms[f"{TOWARDS}{parameter.name}"] = unit_vector(value)  # type: ignore[arg-type]
             elif parameter.name in program.uniforms:

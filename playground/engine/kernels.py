@@ -22,7 +22,7 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
 from playground.sketch.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
 from playground.sketch.model import Kernel, Sampling
-from playground.sketch.reserved_names import MATCHES, PART, SIZES, UNWIRED, WINDOW, WIRED
+from playground.sketch.reserved_names import MATCHES, PART, PRESSED, SIZES, UNWIRED, WINDOW, WIRED
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ class Kernels:
         choices = [
             (p.name, int(values[p.name]))  # type: ignore[arg-type]
             for p in kernel.parameters
-            if p.type == "bool" or p.widget.kind == "menu"
+            if (p.type == "bool" or p.widget.kind == "menu") and p.widget.kind != "button"
         ]
         for declared in kernel.inputs:
             name, texture = declared.name, job.inputs.get(declared.name, NOT_WIRED).texture
@@ -156,7 +156,7 @@ class Kernels:
         for parameter in kernel.parameters:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
-                program.set(parameter.name, value)
+                program.set(parameter.name, job.given.get(f"{PRESSED}{parameter.name}", value))
             elif parameter.name in program.uniforms or kernel.dialect:
                 texture = self.binder.file_texture(parameter, value, encoded=True)
                 sizes[parameter.name] = (*texture.size, 1)
@@ -189,7 +189,7 @@ class Kernels:
             program.run(-(-step.size[0] // kernel.local[0]), -(-step.size[1] // kernel.local[1]))
             return result
         result.framebuffer(self.ctx).use()
-        program.fill()
+        program.fill(6 if kernel.vertex_source else 3)
         return result
 
     # ── iterations ───────────────────────────────────────────────────────────

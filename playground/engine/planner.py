@@ -372,7 +372,10 @@ class _Planning:
             )
 
     def _with_files(self, leaf: Leaf) -> dict[str, Value]:
+        """Return a leaf's values as its kernel gets them: files by absolute path, of menus their values."""
         values = dict(leaf.values)
+        for parameter in leaf.kernel.valued_menus:
+            values[parameter.name] = parameter.widget.given(values[parameter.name])
         for parameter in leaf.kernel.parameters if leaf.kernel.file_parameters else ():
             if parameter.widget.kind == "file":
                 text = str(values[parameter.name])
@@ -451,7 +454,7 @@ class _Planning:
             return int(self.request.compute)
         path = _inside(prefix, target)
         self.named.add(path)
-        value = self.flat.values[path]
+        value = resolve(self.flat.graphs[prefix], name)[0].parameter.widget.given(self.flat.values[path])
         if not isinstance(value, int | float):
             raise KeyError(name)
         return value

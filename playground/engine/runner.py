@@ -17,12 +17,14 @@ from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextu
 from playground.engine.plan import LoopIteration, Plan, Step
 from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
+from playground.engine.scene import MEANINGS as OF_THE_SCENE
+from playground.engine.scene import scene_of
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
 from playground.sketch.expressions import FRAME_RATE, last_frame_at
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import NEUTRAL
+from playground.sketch.reserved_names import NEUTRAL, PRESSED
 from playground.terrain.sources import SourceKind, source_kind
 
 if TYPE_CHECKING:
@@ -42,6 +44,7 @@ class Runner:
         self.mouse = (0.0, 0.0, 0.0, 0.0)  # pixels from the lower left, then where it was pressed
         self.hover = (0.0, 0.0)  # pixels from the lower left, pressed or not
         self.drag = (0.0, 0.0, 0.0, 0.0)  # as ShaderToy's iMouse
+        self.pressed: frozenset[str] = frozenset()  # paths of the buttons that are pressed in this frame
         self.delta = 1 / 60  # [s] since the last one
         self.date = (1970.0, 0.0, 1.0, 0.0)  # year, month from 0, day, seconds
         self.programs = Programs(ctx)
@@ -95,9 +98,12 @@ class Runner:
         ``frame`` is that of the loop around it that counts frames: the time is that frame's.
         """
         kernel = step.kernel
-        if kernel.kind.startswith("plain"):
-            return dict(usual_of(kernel, self._usual(step, frame)))
         found: dict[str, Any] = {}
+        if self.pressed:
+            names = (p.name for p in kernel.parameters if p.widget.kind == "button")
+            found |= {f"{PRESSED}{name}": True for name in names if f"{step.path}.{name}" in self.pressed}
+        if kernel.kind.startswith("plain"):
+            return found | dict(usual_of(kernel, self._usual(step, frame)))
         for name in kernel.given:
             if name == "spacing":
                 (width, height), (wide, tall) = self._given["extent"], step.whole_size
@@ -188,10 +194,18 @@ class Runner:
             "mouse": self.mouse,
             "delta": (self.delta if frame is None else 1 / FRAME_RATE,),
             "date": self.date,
+            "date_from_1": (self.date[0], self.date[1] + 1.0, *self.date[2:]),
             "frame": (last_frame_at(time),),
             "frame_of_time": (last_frame_at(time),),
             "hover": self.hover,
             "hover_share": (self.hover[0] / width, self.hover[1] / height),
             "drag": self.drag,
             **NEUTRAL,
+            **self._scene(step),
         }
+
+    def _scene(self, step: Step) -> dict[str, tuple[float, ...]]:
+        """Return the sketch's camera and sun, where a step's shader asks for one of them."""
+        assert self._plan is not None, "look_at() comes first"
+        wanted = any(meaning in OF_THE_SCENE for _, meaning in step.kernel.usual)
+        return scene_of(self._plan) if wanted else {}

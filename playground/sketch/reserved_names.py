@@ -41,6 +41,9 @@ FETCHES = {"texelFetch": "k_fetch_in", "texelFetchOffset": "k_fetch_in_shift"}
 """What replaces GLSL's own functions, as long as these, where an input may stay unwired: the one
 texel of its white or black answers for every place."""
 
+PRESSED = "pressed "
+"""What begins the name of a button among what a step is given, while the button is pressed."""
+
 WINDOW = "k_window"
 """Where the window that is drawn lies in the whole picture, an ivec2 in pixels."""
 

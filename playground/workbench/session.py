@@ -22,6 +22,7 @@ from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan
 from playground.errors import ContextError, PlaygroundError
+from playground.sketch.assign import resolve
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Sketch, Value
@@ -89,6 +90,7 @@ class Session:
         self._now = now
         self.catch_up = CatchUp(now)
         self._is_lost = is_lost  # says whether the engine's context is lost
+        self._pressed: frozenset[str] = frozenset()  # buttons pressed since the last frame, by leaf
         self._lost_over: object = None  # what was shown when a context was lost last
         self._painter = Painter(engine.ctx)
         self._picture = Picture(self._painter)
@@ -228,6 +230,19 @@ class Session:
             if self.sketch is not None and traits_of(self.sketch).mouse:
                 self.redraw()
 
+    def press(self, path: str) -> None:
+        """Press a button, by its path: the next frame alone sees it pressed."""
+        if self.sketch is not None:
+            self._pressed |= {target.path for target in resolve(self.sketch.graph, path)}
+
+    def _press(self) -> None:
+        """Pass the buttons pressed since the last frame to the engine, and let go of those before."""
+        runner = self.engine.runner
+        if runner.pressed != self._pressed:
+            runner.pressed = self._pressed
+            self.redraw()
+        self._pressed = frozenset()
+
     def advance(self, seconds: float, date: datetime) -> None:
         """Advance the clock by seconds of real time, unless it is paused; plain shaders get the date.
 
@@ -289,6 +304,7 @@ class Session:
         for a mistake in the sketch: it is in ``error``, and the last good picture stays.
         """
         drafts, self._size = self.drafts, size
+        self._press()
         if drafts.stage is ReloadStage.SANDBOX:
             drafts.take_report()
         if drafts.stage is ReloadStage.DRAW:

@@ -10,7 +10,7 @@ from playground.sketch.expressions import follows_time
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, kernels_of
 
-_MOVING = frozenset({"time", "frame", "frame_of_time", "delta", "date"})
+_MOVING = frozenset({"time", "frame", "frame_of_time", "delta", "date", "date_from_1"})
 _MOUSE = frozenset({"mouse", "hover", "hover_share", "drag"})
 _CAMERA = ("clip_from_world", "world_from_clip", "eye")
 

@@ -297,7 +297,7 @@ def test_a_pass_that_comes_or_changes_is_read(any_engine, opened, folder):
 
 
 def test_a_folder_that_is_none_is_one_sentence(folder):
-    with pytest.raises(PlaygroundError, match="no sketch.toml, and no Image"):
+    with pytest.raises(PlaygroundError, match=r"no sketch\.toml, and no Image"):
         load(folder.path)
     folder.write("Image.glsl", PLAIN)
     folder.write("Buffer A.glsl", PLAIN)

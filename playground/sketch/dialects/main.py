@@ -36,8 +36,8 @@ _ELSEWHERE: Names = {
     # glslViewer
     **{f"u_tex{n}": ("sampler2D", f"picture {n}") for n in _PICTURES},
     **{f"u_tex{n}Resolution": ("vec2", f"{SIZES}u_tex{n}") for n in _PICTURES},
-    "u_camera": ("vec3", "forward"),
-    "u_light": ("vec3", "forward"),
+    "u_camera": ("vec3", "camera"),
+    "u_light": ("vec3", "light"),
     "u_lightColor": ("vec3", "one"),
     "u_view2d": ("mat3", "identity3"),
     "u_normalMatrix": ("mat3", "identity3"),

@@ -36,6 +36,8 @@ class Rules:
     names: Names
     declared_anywhere: bool = False  # a name declared in any function counts as declared
     epilogue: str = ""  # of gpu/shaders
+    helpers: str = ""  # likewise, between what is declared and the text
+    vertex_helpers: str = ""  # likewise, of a vertex shader of the author's own
     defines: Callable[[SourceText], tuple[str, ...]] = lambda source: ()  # lines of the prelude
 
 
@@ -70,4 +72,5 @@ class Shader:
     size: tuple[str, str] | None = None  # expressions; None: the size of the picture
     format: str = "rgba8"
     prelude: tuple[str, ...] = ()  # lines besides those that the rules give
+    vertex: Rewritten | None = None  # the author's own vertex shader
     keeps: bool = False  # what it wrote in the last frame may be read
