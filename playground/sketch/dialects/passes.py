@@ -133,11 +133,15 @@ class _Passes:
         return PassSpec(VIEW, use, several, repeat=_FRAMES if feedback else "", feedback=feedback, file=file)
 
     def _parameters(self) -> Iterator[Export]:
-        """Yield one parameter for those of one name and type; where types differ, one for each shader."""
-        found: dict[str, list[tuple[str, str]]] = {}
+        """Yield one parameter for those of one name and type; where types differ, one for each shader.
+
+        Two that name different files differ as well.
+        """
+        found: dict[str, list[tuple[str, object]]] = {}
         for shader, kernel in zip(self.shaders, self.kernels, strict=True):
-            for parameter in kernel.parameters:
-                found.setdefault(parameter.name, []).append((shader.name, parameter.type))
+            for p in kernel.parameters:
+                kind = (p.type, p.default) if p.widget.kind == "file" else p.type
+                found.setdefault(p.name, []).append((shader.name, kind))
         for name, owners in found.items():
             if len({kind for _, kind in owners}) == 1:
                 yield Export(name, tuple(f"{owner}.{name}" for owner, _ in owners))
