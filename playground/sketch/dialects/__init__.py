@@ -14,7 +14,7 @@ from pathlib import Path
 
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.sketch.dialects import main, shadertoy, shadertoy_export, shadertoy_folder, vscode
+from playground.sketch.dialects import isf, main, shadertoy, shadertoy_export, shadertoy_folder, vscode
 from playground.sketch.dialects.passes import Read, graph_of_shaders
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.shader import Shader
@@ -26,7 +26,9 @@ EXPORT = ".json"
 _MOST = 64
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
-_ISF = re.compile(r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES)"', re.DOTALL)
+_ISF = re.compile(
+    r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS)"', re.DOTALL
+)
 _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:iChannel\d|iUniform|iKeyboard)\b", re.MULTILINE)
@@ -58,7 +60,7 @@ def _vscode(files: Files) -> Sequence[Shader]:
 
 
 DIALECTS = (
-    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text)),
+    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text), isf.shaders),
     Dialect(
         "export",
         "a Shadertoy export (JSON)",

@@ -104,6 +104,7 @@ class _Passes:
             parameters=tuple(_inside(VIEW, name) for name in _parameters_of(view.technique)),
             inputs=tuple(_inside(VIEW, name) for name in self.inputs),
             title=next((kernel.title for kernel in self.kernels if kernel.title), ""),
+            warnings=tuple(dict.fromkeys(note for shader in self.shaders for note in shader.notes)),
         )
 
     def _view(self) -> PassSpec:
