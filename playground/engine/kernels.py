@@ -22,7 +22,7 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.model import Kernel, Sampling
-from playground.sketch.reserved_names import MATCHES, PART, SIZES, UNWIRED, WINDOW, WIRED
+from playground.sketch.reserved_names import DEPTH, MATCHES, PART, SIZES, UNWIRED, VALUE, WINDOW, WIRED
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
@@ -32,6 +32,7 @@ _SAMPLERS = frozenset(
     {*range(0x8B5D, 0x8B65), *range(0x8DC0, 0x8DC6), *range(0x8DC9, 0x8DD9), *range(0x9108, 0x910E)}
 )
 """GL_SAMPLER_1D to GL_UNSIGNED_INT_SAMPLER_2D_MULTISAMPLE_ARRAY."""
+_MOST_LEVELS = 12  # of a pyramid of another tool
 _COLOR_LOGIC_OP = 0x0BF2
 
 
@@ -165,7 +166,7 @@ class Kernels:
         program.set(PART, _shares(step.whole_size, origin, step.size))
         for name, meaning in kernel.usual:
             if name in program.uniforms:
-                _set_fitting(program, name, usual[meaning] if meaning in usual else _size(meaning, sizes))
+                _set_fitting(program, name, usual.get(meaning) or _numbers(meaning, job, sizes))
         fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}
         fed |= {declared.name for declared in kernel.inputs}
         for name, uniform in program.uniforms.items():
@@ -325,6 +326,19 @@ def _shares(whole: tuple[int, int], *pairs: tuple[int, int]) -> tuple[float, ...
     return tuple(number / side for pair in pairs for number, side in zip(pair, whole, strict=True))
 
 
+def _numbers(meaning: str, job: Job, sizes: Mapping[str, tuple[int, int]]) -> tuple[float, ...]:
+    """Return what a uniform is given whose meaning depends on its own step: see ``reserved_names``."""
+    if meaning.startswith(VALUE):
+        return (float(meaning.removeprefix(VALUE)),)
+    if meaning.startswith(DEPTH):
+        halved = int(meaning.removeprefix(DEPTH))
+        return (float(min(max(min(job.step.whole_size).bit_length() + halved - 2, 0), _MOST_LEVELS)),)
+    if meaning in ("iteration", "iterations"):
+        number, whole = (job.loop_iteration or (0, 1))[:2]
+        return (float(number if meaning == "iteration" else whole),)
+    return _size(meaning, sizes)
+
+
 def _size(meaning: str, sizes: Mapping[str, tuple[int, int]]) -> tuple[float, ...]:
     """Return the sizes [texels] of the samplers that a meaning lists, three numbers each; 0 for none."""
     found = [sizes.get(name, (0, 0)) for name in meaning.removeprefix(SIZES).split()]
@@ -347,5 +361,5 @@ def _set_fitting(program: Program, name: str, values: tuple[float, ...]) -> None
     uniform.value = elements[0] if length == 1 else elements
 
 
-_WHOLE = frozenset({0x1404, 0x1405, *range(0x8B53, 0x8B56), *range(0x8DC6, 0x8DC9)})
-"""GL_INT, GL_UNSIGNED_INT, GL_INT_VEC2 to 4, GL_UNSIGNED_INT_VEC2 to 4."""
+_WHOLE = frozenset({0x1404, 0x1405, *range(0x8B53, 0x8B5A), *range(0x8DC6, 0x8DC9)})
+"""GL_INT, GL_UNSIGNED_INT, GL_INT_VEC2 to 4, GL_BOOL, GL_BOOL_VEC2 to 4, GL_UNSIGNED_INT_VEC2 to 4."""

@@ -66,6 +66,13 @@ _IDENTITY_4 = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 
 SIZES = "sizes: "
 """What begins the meaning of a uniform that is given the sizes of samplers, whose names follow."""
 
+VALUE = "value: "
+"""What begins the meaning of a uniform that is given a number, which follows."""
+
+DEPTH = "depth: "
+"""What begins the meaning of a uniform that is given the levels of a pyramid; how often the foot was halved
+for this pass follows."""
+
 NEUTRAL: dict[str, tuple[float, ...]] = {
     "frame_rate": (60.0,),
     "sample_rate": (44_100.0,),
