@@ -7,21 +7,32 @@ declare is declared before it; where the text declares one, its own type counts.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import Diagnostic, ShaderError
 from playground.sketch.allowed_files import is_file, leads_outside
 from playground.sketch.dialects.declarations import Declared, is_declared, uniforms, vertex_outputs
-from playground.sketch.dialects.shader import SAMPLING, STAND_INS, Channel, Shader
+from playground.sketch.dialects.es import Rewritten
+from playground.sketch.dialects.shader import (
+    SAMPLING,
+    STAND_INS,
+    STAND_INS_OF_SHAPES,
+    Channel,
+    Shader,
+    stand_in,
+)
 from playground.sketch.header import title_of
-from playground.sketch.model import Input, Kernel, Output, Parameter, Widget
+from playground.sketch.model import SHAPES, Input, Kernel, Output, Parameter, Widget
+from playground.sketch.reserved_names import ELEMENT
 from playground.sketch.source import Line, SourceText
 from playground.sketch.uniforms import read_uniforms
 
 _COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
 _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
+_COUNT = re.compile(r"\[\s*(\d+)\s*\]")
+_MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
 _MODEL = "MODEL_"
 _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
 
@@ -36,39 +47,55 @@ class ForeignKernel:
         self.rules = shader.rules
         self.root = root
         self.declared = uniforms(self.code)
-        self.missing = [name for name in self.rules.names if self._lacks(name)]
+        self.missing = self._missing(self.source)
+        self.vertex = shader.vertex.source if shader.vertex else None
+        self.vertex_missing = self._missing(self.vertex) if self.vertex else []
         self.commented = {(line.file, line.number): file for line, file in commented_files(self.source)}
         self.pictures = dict(self._pictures())
-        samplers = [name for name, kind in self._kinds() if kind == "sampler2D" and self._is_read(name)]
-        self.channels = {name: self._channel(name) for name in samplers}
+        self.shapes = {n: SHAPES[kind] for n, kind in self._kinds() if kind in SHAPES and self._is_read(n)}
+        self.shapes |= {element: SHAPES[one.type] for element, one in self._elements()}
+        self.channels = {name: self._channel(name) for name in self.shapes}
 
     def kernel(self, name: str) -> Kernel:
         """Return the kernel as a technique called ``name``."""
         shader, parameters = self.shader, self._parameters()
-        prelude = [*shader.text.prelude, *shader.prelude, *self.rules.defines(self.source)]
-        prelude += [f"uniform {_declaration(self.rules.names[n][0], n)};" for n in self.missing]
-        prelude += [f"uniform {p.type} {p.name};" for p in shader.parameters if p.name not in self.declared]
         own = {p.name for p in parameters}
+        given = {*self.declared, *self.missing, *self.vertex_missing}
         meanings = [
             (n, meaning)
             for n, (kind, meaning) in self.rules.names.items()
-            if (n in self.declared or n in self.missing) and n not in own and "sampler" not in kind
+            if n in given and n not in own and "sampler" not in kind
         ]
+        ours = not shader.vertex
         return Kernel(
             name,
             "plain_fragment",
             self.source,
             (Output("frame", shader.format),),
             parameters,
-            tuple(Input(n, c.sampling, "zero" if c.target else "black") for n, c in self.channels.items()),
+            tuple(
+                Input(n, c.sampling, "zero" if c.target else "black", shape=self.shapes[n])
+                for n, c in self.channels.items()
+            ),
             title=title_of(self.source),
             dialect=self.rules.name,
-            prelude=tuple(prelude),
+            prelude=tuple(self._prelude(shader.text, self.missing)),
             epilogue=self.rules.epilogue,
-            vertex=vertex_outputs("\n".join([*shader.text.prelude, self.code])),
+            helpers=self.rules.helpers,
+            vertex=vertex_outputs("\n".join([*shader.text.prelude, self.code])) if ours else (),
+            vertex_source=self.vertex,
+            vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
+            vertex_helpers=self.rules.vertex_helpers if shader.vertex else "",
             meanings=tuple(meanings),
             unfed=tuple(self._unfed(own)),
         )
+
+    def _prelude(self, text: Rewritten, missing: Sequence[str]) -> Iterator[str]:
+        """Yield the lines that come before a text: what is declared for it."""
+        yield from (*text.prelude, *self.shader.prelude, *self.rules.defines(text.source))
+        yield from (f"uniform {_declaration(self.rules.names[name][0], name)};" for name in missing)
+        declared = uniforms(text.source.code)
+        yield from (f"uniform {p.type} {p.name};" for p in self.shader.parameters if p.name not in declared)
 
     def _channel(self, sampler: str) -> Channel:
         """Return what feeds a sampler; by the rules where the shader does not say."""
@@ -79,29 +106,53 @@ class ForeignKernel:
             return Channel()
         file = self._commented(self.declared[sampler]) if sampler in self.declared else ""
         unfed = f"there is no file '{file}', so a stand-in is drawn" if file else _STANDS_IN
-        return Channel(use=STAND_INS[kind], values=(("number", int(number)),), unfed=unfed)
+        kind = STAND_INS_OF_SHAPES.get(self.shapes[sampler], kind)
+        return stand_in(kind, int(number), unfed)
 
-    def _lacks(self, name: str) -> bool:
-        if name not in self.source.names or name in self.declared:
-            return False
-        read = re.search(rf"(?<![.\w]){name}\b", self.code)
-        return bool(read) and not is_declared(self.code, name, anywhere=self.rules.declared_anywhere)
+    def _missing(self, source: SourceText) -> list[str]:
+        """Return the names of the dialect that a text reads and does not declare."""
+        code, declared = source.code, uniforms(source.code)
+        anywhere = self.rules.declared_anywhere
+        return [
+            name
+            for name in self.rules.names
+            if name in source.names
+            and name not in declared
+            and re.search(rf"(?<![.\w]){name}\b", code)
+            and not is_declared(code, name, anywhere=anywhere)
+        ]
 
     def _is_read(self, name: str) -> bool:
         """Return whether a text names a sampler besides declaring it."""
-        return name in self.missing or len(re.findall(rf"\b{name}\b", self.code)) > 1
+        return (
+            name in self.missing
+            or name in self.vertex_missing
+            or len(re.findall(rf"\b{name}\b", self.code)) > 1
+        )
 
     def _kinds(self) -> Iterator[tuple[str, str]]:
         """Yield each sampler that a wire may feed, with its type."""
-        for name in self.missing:
+        for name in dict.fromkeys([*self.missing, *self.vertex_missing]):
             yield name, self.rules.names[name][0]
+        files = {p.name for p in self.shader.parameters}
         for one in self.declared.values():
             if (
                 not one.is_array
                 and one.name not in self.pictures
+                and one.name not in files
                 and not self._line(one).comment.startswith("!")
             ):
                 yield one.name, one.type
+
+    def _elements(self) -> Iterator[tuple[str, Declared]]:
+        """Yield what a wire feeds of the arrays of samplers: ``maps_0`` is the first of ``maps[4]``."""
+        for one in self.declared.values():
+            count = _COUNT.search(one.written) if one.is_array and one.type in SHAPES else None
+            if count and self._is_read(one.name):
+                elements = (
+                    f"{one.name}{ELEMENT}{number}" for number in range(min(int(count[1]), _MOST_ELEMENTS))
+                )
+                yield from ((element, one) for element in elements if element not in self.source.names)
 
     def _line(self, one: Declared) -> Line:
         return self.source.lines[one.line]
@@ -152,8 +203,11 @@ class ForeignKernel:
 
     def _unfed(self, fed: Collection[str]) -> Iterator[tuple[str, str]]:
         """Yield what the picture lacks where nothing is wired: each name, and what is drawn instead."""
-        own = {one.name: one.type for one in self.declared.values()}
-        own |= {name: self.rules.names[name][0] for name in self.missing}
+        arrays = {one.name for _, one in self._elements()}
+        own = {one.name: one.type for one in self.declared.values() if one.name not in arrays}
+        for element, _ in self._elements():
+            yield element, "it reads black"
+        own |= {name: self.rules.names[name][0] for name in (*self.missing, *self.vertex_missing)}
         for name, kind in own.items():
             channel = self.channels.get(name, Channel())
             if channel.unfed:
@@ -174,7 +228,9 @@ def unfed_warnings(kernel: Kernel, wired: Collection[str]) -> tuple[Diagnostic, 
     lines = kernel.source.lines
     found = []
     for instead, some in names.items():
-        first = re.compile(rf"\b(?:{'|'.join(some)})\b")
+        first = re.compile(
+            rf"\b(?:{'|'.join([*some, *(name.rpartition(ELEMENT)[0] or name for name in some)])})\b"
+        )
         line = next((line for line in lines if first.search(line.code)), lines[0])
         found.append(line.diagnostic(f"nothing feeds {', '.join(some)}: {instead}", severity="warning"))
     return tuple(found)

@@ -46,7 +46,7 @@ _ELSEWHERE: Names = {
     "u_normalMatrix": ("mat3", "identity3"),
     **{name: ("mat4", "identity4") for name in _MATRICES},
     "u_SH": ("vec3[9]", "none"),
-    "u_cubeMap": ("samplerCube", "none"),
+    "u_cubeMap": ("samplerCube", "sky 0"),
     "u_scene": ("sampler2D", "none"),
     # Bonzomatic
     "fGlobalTime": ("float", "time"),

@@ -12,11 +12,20 @@ from playground.sketch.source import SourceText
 Names = Mapping[str, tuple[str, str]]
 """Name → GLSL type and meaning: a key of ``Runner``'s values; of a sampler "noise 0", "picture 3", "none"."""
 
-STAND_INS = {"noise": "foreign/noise", "picture": "foreign/picture"}
+STAND_INS = {
+    "noise": "foreign/noise",
+    "picture": "foreign/picture",
+    "sky": "foreign/sky_box",
+    "volume": "foreign/noise",
+}
 """What is drawn where nothing feeds a channel: the first word of its meaning → a technique of ``glsl/``."""
+
+STAND_INS_OF_SHAPES = {"cube": "sky", "volume": "volume"}
+"""Likewise, by a channel's shape, where it has one of its own."""
 
 SAMPLING = Sampling("linear", "repeat", mipmap=True)
 STAND_IN_SIZE = ("256", "256")
+_SIZES = {"sky": ("128", "768"), "volume": ("32", "1024")}
 
 
 @dataclass(frozen=True)
@@ -27,6 +36,8 @@ class Rules:
     names: Names
     declared_anywhere: bool = False  # a name declared in any function counts as declared
     epilogue: str = ""  # of gpu/shaders
+    helpers: str = ""  # likewise, between what is declared and the text
+    vertex_helpers: str = ""  # likewise, of a vertex shader of the author's own
     defines: Callable[[SourceText], tuple[str, ...]] = lambda source: ()  # lines of the prelude
 
 
@@ -42,6 +53,12 @@ class Channel:
     unfed: str = ""  # what is drawn instead, where the technique is a stand-in: the end of a sentence
 
 
+def stand_in(kind: str, number: int, unfed: str) -> Channel:
+    """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
+    size = _SIZES.get(kind, STAND_IN_SIZE)
+    return Channel(use=STAND_INS[kind], values=(("number", number),), size=size, unfed=unfed)
+
+
 @dataclass(frozen=True)
 class Shader:
     """One pass of another tool's file."""
@@ -55,6 +72,7 @@ class Shader:
     size: tuple[str, str] | None = None  # expressions; None: the size of the picture
     format: str = "rgba8"
     prelude: tuple[str, ...] = ()  # lines besides those that the rules give
+    vertex: Rewritten | None = None  # the author's own vertex shader
     keeps: bool = False  # what it wrote in the last frame may be read
     repeat: str = ""  # an expression: it is drawn so often, and reads what it wrote before by ``feeds``
     feeds: str = ""  # a sampler
