@@ -1,6 +1,6 @@
 // foreign/jump_flood.glsl -- of each texel the nearest seed, found by jumps that halve.
 //
-//   gives    frame: the place of the nearest seed in xy, 0..1 of the picture; what it carries in zw
+//   gives    frame: the nearest seed's place in xy, 0..1 of the picture; what it carries in zw
 //   needs    initial: seeds, their own place in xy; a texel whose xy is 0 is none
 //   units    shares of the picture: x and y count alike, whatever its proportions
 //   source   Rong and Tan 2006, "Jump flooding in GPU with applications to Voronoi diagram and

@@ -1,10 +1,10 @@
-// foreign/pyramid_down.glsl -- a level of a convolution pyramid, half as fine as the one it is made of.
+// foreign/pyramid_down.glsl -- a level of a convolution pyramid, of one twice as fine.
 //
 //   gives    frame: mean of the colours there are; alpha 1, or 0 where there are none near
 //   needs    finer: colours times alpha, and alpha
 //   units    none
 //   source   Farbman, Fattal and Lischinski 2011, "Convolution pyramids", section 5 (h1 of the
-//            filters for boundary interpolation); divided by alpha at each level, as glslViewer does
+//            filters for boundary interpolation); divided by alpha, as glslViewer does
 //   tested   tests/engine/test_viewer_passes.py, against NumPy
 #pragma kernel(output = "frame:rgba32f")
 

@@ -1,4 +1,4 @@
-// foreign/pyramid_up.glsl -- a level of a convolution pyramid on its way up: itself, and what is coarser.
+// foreign/pyramid_up.glsl -- a level of a convolution pyramid, filled from a coarser one.
 //
 //   gives    frame: the level's colours, and where there are none those of the coarser level
 //   needs    level: this level on its way down; coarser: the result of the level half as fine
