@@ -17,7 +17,7 @@ from playground.paths import shown
 from playground.sketch.dialects import isf, main, shadertoy, shadertoy_export, shadertoy_folder, vscode
 from playground.sketch.dialects.passes import Read, graph_of_shaders
 from playground.sketch.dialects.reading import Files
-from playground.sketch.dialects.shader import Shader
+from playground.sketch.dialects.shader import Made, Shader
 from playground.sketch.model import Graph
 from playground.sketch.source import read_text
 
@@ -44,7 +44,7 @@ class Dialect:
     name: str  # as --dialect takes it
     label: str  # in a sentence
     sign: Callable[[str, str], object]  # of the text, and of the text without comments
-    shaders: Callable[[Files], Sequence[Shader]] | None = None  # None: not read yet, or our own
+    shaders: Callable[[Files], Sequence[Shader | Made]] | None = None  # None: not read yet, or our own
     # No shader: the file runs as it is, as a plain shader.
 
 
