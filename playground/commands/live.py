@@ -19,12 +19,15 @@ from playground.commands.arguments import (
     with_whole_paths,
 )
 from playground.commands.options import complete_lesson, flag, value
+from playground.commands.standard_input import kept
 from playground.errors import ContextError, PlaygroundError
 from playground.terminal import complain
 
 HELP = help_text(
     "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters."
-    " Your edits, the camera and the time are restored the next time.",
+    " Your edits, the camera and the time are restored the next time. As SKETCH, - opens a"
+    " shader's text from standard input, or from the clipboard where that is the terminal: it is kept as a"
+    " new file in this folder.",
     "playground live",
     "playground live jacksboro --size 1600x900",
     "playground live my-land --set height.seed=3",
@@ -32,6 +35,7 @@ HELP = help_text(
     "playground live --lesson diamond_square --lang fr",
     "playground live my-land --no-cache",
     "playground live shader.frag",
+    "playground live - < shader.frag",
 )
 
 
@@ -59,7 +63,7 @@ def live(
     pixels, values = read_pixels(size), read_values(settings)
     check_display(renderer)
     open_window(
-        sketch,
+        kept(sketch, "live", _clipboard),
         pixels,
         renderer,
         driver=read_driver(driver),
@@ -71,6 +75,12 @@ def live(
         language=lang,
         no_cache=no_cache,
     )
+
+
+def _clipboard() -> str:
+    from playground.live.clipboard import clipboard_text
+
+    return clipboard_text()
 
 
 def check_display(renderer: Renderer) -> None:

@@ -178,7 +178,7 @@ class _Check:
         elif isinstance(kernel, Graph) or kernel.kind.startswith("plain"):
             sketch = with_pictures(plain_sketch(self.path, kernel, self.root), self.picture)
             if isinstance(kernel, Graph):
-                self.notes = tuple(f"read as {k.dialect}" for _, k in kernel.kernels if k.dialect)
+                self.notes = (f"read as {kernel.dialect}",)
                 self.warnings |= dict.fromkeys(source_warnings(Planner().plan(sketch, frame_size=_FRAME)))
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif kernel.kind == "compute":

@@ -10,6 +10,7 @@ from playground.engine.plan import Plan, Step
 from playground.errors import DataError, Diagnostic
 from playground.paths import GLSL, shown
 from playground.sketch.dialects.foreign import unfed_warnings
+from playground.sketch.dialects.passes import stand_in_paths
 from playground.sketch.flat import Ref
 from playground.sketch.model import Graph, Kernel, kernels_of
 from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
@@ -72,7 +73,6 @@ def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
 
 
 def _wired(step: Step) -> set[str]:
-    """Return the inputs that something feeds; a stand-in is a pass of its name, next to the step."""
-    prefix = step.path.rpartition(".")[0]
+    """Return the inputs that something feeds besides the stand-ins that another tool's shader comes with."""
     found = {name: source.path if isinstance(source, Ref) else "" for name, source in step.inputs if source}
-    return {name for name, path in found.items() if path != (f"{prefix}.{name}" if prefix else name)}
+    return {name for name, path in found.items() if path not in stand_in_paths(step.path, name)}

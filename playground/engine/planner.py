@@ -18,6 +18,7 @@ from playground.engine.accepted_sizes import sizes_of_variant
 from playground.engine.between import between_of
 from playground.engine.error_place import placed
 from playground.engine.files import find_file
+from playground.engine.input_shapes import check_shapes
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node
 from playground.engine.plan_request import (
     DEFAULT_EXTENT,
@@ -275,7 +276,8 @@ class _Planning:
         size = self._size_of_leaf(node)
         values = self._values[node.path]
         self._refuse(node, size)
-        numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
+        check_shapes(node, self.flat, self.size_of)
+        numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], **self._clocks()}
         numbers |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         if kernel.repeat != "1" or kernel.stride:
             self._note_names(node)
@@ -296,18 +298,21 @@ class _Planning:
             between=between,
         )
 
+    def _clocks(self) -> dict[str, Number]:
+        return {"time": self.time, "frames": expressions.frames_at(self.time)}
+
     def _note_names(self, leaf: Leaf) -> None:
         """Note what a kernel's own counts name."""
         names = frozenset[str]()
         for text in (leaf.kernel.repeat, leaf.kernel.stride):
             names |= expressions.names_in(text) if text else names
-        self.by_time |= "time" in names
+        self.by_time |= not names.isdisjoint(expressions.CLOCKS)
         self.named |= {path for name, path in self.flat.shape.paths[leaf.path] if name in names}
 
     def _stopped(self, path: str, whole: int, repeat: str) -> int:
         """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
         steps = self.stopped.get(path, whole)
-        if steps > whole and not self.request.varies and "time" not in expressions.names_in(repeat):
+        if steps > whole and not self.request.varies and not expressions.follows_time(repeat):
             raise ParameterError(f"steps: '{path}' stops after {steps} steps, but it has {whole} in all")
         return min(steps, whole)
 
@@ -367,7 +372,10 @@ class _Planning:
             )
 
     def _with_files(self, leaf: Leaf) -> dict[str, Value]:
+        """Return a leaf's values as its kernel gets them: files by absolute path, of menus their values."""
         values = dict(leaf.values)
+        for parameter in leaf.kernel.valued_menus:
+            values[parameter.name] = parameter.widget.given(values[parameter.name])
         for parameter in leaf.kernel.parameters if leaf.kernel.file_parameters else ():
             if parameter.widget.kind == "file":
                 text = str(values[parameter.name])
@@ -428,9 +436,9 @@ class _Planning:
 
         Raises ``KeyError`` for any other name.
         """
-        if name == "time":
+        if name in expressions.CLOCKS:
             self.by_time = True
-            return self.time
+            return self._clocks()[name]
         head, _, axis = name.rpartition(".")
         if axis in _AXES and head == "size":
             return self._size_around(_inside(prefix, spec.name), prefix)[_AXES[axis]]
@@ -446,7 +454,7 @@ class _Planning:
             return int(self.request.compute)
         path = _inside(prefix, target)
         self.named.add(path)
-        value = self.flat.values[path]
+        value = resolve(self.flat.graphs[prefix], name)[0].parameter.widget.given(self.flat.values[path])
         if not isinstance(value, int | float):
             raise KeyError(name)
         return value

@@ -37,7 +37,7 @@ from playground.live.keys import act_on_keys
 from playground.live.lesson.host import Lessons
 from playground.live.mouse import PictureMouse
 from playground.live.non_finite import draw_not_finite
-from playground.live.overlay import checking_text, draw_checking, draw_notices, draw_waiting
+from playground.live.overlay import checking_text, draw_behind, draw_checking, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.part_labels import draw_part_labels
 from playground.live.status import Status
@@ -268,6 +268,8 @@ class Live:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
         if self._settling > 0:
             return 0.0
+        if self.session.catch_up.behind is not None:
+            return 0.0
         if self.session.drafts.testing:
             return _SANDBOX
         if self.warnings.waiting:
@@ -363,6 +365,7 @@ class Live:
             draw_waiting(checking_text(subject, seconds), area)
         else:
             draw_checking(session, look, area)
+            draw_behind(session, look, area)
         if picture is not None and session.sketch is not None and session.view.map is None:
             parted, free = session.sketch, below_bar(bench.inspection.compare, look, area)
             draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)

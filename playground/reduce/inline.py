@@ -116,7 +116,7 @@ class _Inliner:
     def _value(self, kernel: Kernel, name: str, value: Value) -> Value:
         parameter = kernel.parameter(name)
         if parameter is None or parameter.widget.kind != "file":
-            return value
+            return value if parameter is None else parameter.widget.chosen(value)
         place = Path(str(value))
         known = {source: short for short, source in self.files.items()}
         if str(place) in known:

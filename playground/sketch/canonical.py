@@ -60,7 +60,8 @@ def _of_kernel(kernel: Kernel) -> list[Any]:
 
 def _parameter(parameter: Parameter) -> tuple[Any, ...]:
     widget = parameter.widget
-    what = (widget.kind, widget.low, widget.high, widget.choices)
+    what: tuple[Any, ...] = (widget.kind, widget.low, widget.high, widget.choices)
+    what += (widget.values, widget.axes) if widget.values or widget.axes else ()  # as in ``_of_kernel``
     return parameter.name, parameter.type, parameter.default, what, _sampling(parameter)
 
 

@@ -101,7 +101,9 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
         return replace(kernel, registry=options["name"])
     numbers = _numbers(kernel)
     repeat = options.get("repeat", "1")
-    _check("repeat", repeat, (*_SIZE, "time", *numbers), line)
+    _check("repeat", repeat, (*_SIZE, *expressions.CLOCKS, *numbers), line)
+    if expressions.counts_frames(repeat) and "frames" in numbers:
+        raise line.error(f"repeat '{repeat}': 'frames' {expressions.TWO_FRAMES}")
     if kind == "draw":
         return _draw(kernel, options, line)
     _refuse_driver_bound(source)
@@ -285,7 +287,7 @@ def _options(kind: str, text: str, line: Line) -> dict[str, str]:
 
 def _with_names_replaced(options: dict[str, str], kernel: Kernel, line: Line) -> dict[str, str]:
     """Replace the names that ``where`` gives to expressions, in the options that are expressions."""
-    known = (*_SIZE, "iteration", "iterations", "time", *_numbers(kernel))
+    known = (*_SIZE, "iteration", "iterations", *expressions.CLOCKS, *_numbers(kernel))
     meant: dict[str, str] = {}
     for part in filter(None, (p.strip() for p in options["where"].split(";"))):
         name, equals, text = (piece.strip() for piece in part.partition("="))

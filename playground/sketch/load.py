@@ -111,7 +111,7 @@ def plain_sketch(path: Path, found: Technique, folder: Path) -> Sketch:
     """Return the sketch of a shader that is the whole picture; its files stay in ``folder``."""
     title = found.title
     if isinstance(found, Graph):
-        title = f"{title or path.stem} ({found.passes[-1].technique.dialect})"  # type: ignore[union-attr]
+        title = f"{title or path.stem} ({found.dialect})"
         graph = replace(found, inputs=(), parameters=())  # of a sketch all are at view
     else:
         view = PassSpec("view", f"./{path.stem}", found, file=shown(path))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
@@ -14,6 +14,7 @@ from playground.sketch.save import save, save_copy, save_preset, saved_text
 from playground.workbench.edits import Draft
 from playground.workbench.history import History, Key
 from playground.workbench.notices import Notices
+from playground.workbench.pasted import keep_text
 from playground.workbench.session import Session
 from playground.workbench.sketch_file import SketchFile
 from playground.workbench.undo import Undo
@@ -29,16 +30,49 @@ class Commands:
     file: SketchFile
     folder: Path
     opens: Callable[[Path], None] | None = None  # opens a sketch with its remembered edits
+    _visited: list[Path] = field(default_factory=list)  # the sketches that were opened, in order
+    _at: int = 0  # which of them is open now
 
-    def open(self, path: Path) -> None:
-        """Open another sketch, with a history of its own; the one that is shown is read again."""
+    def open(self, path: Path) -> bool:
+        """Open another sketch, with a history of its own; the one that is shown is read again.
+
+        Returns False, with a notice, where that cannot be.
+        """
+        before = self.session.path
+        if not self._open(path):
+            return False
+        if self.session.path != before:
+            self._visited = [*(self._visited or [before])[: self._at + 1], self.session.path]
+            self._at = len(self._visited) - 1
+        return True
+
+    def visit(self, by: int) -> None:
+        """Open the sketch again that was open before this one (-1), or after it (1), with its edits."""
+        if 0 <= self._at + by < len(self._visited):
+            if self._open(self._visited[self._at + by]):
+                self._at += by
+        else:
+            self.notices.say(f"no other sketch was opened {'before' if by < 0 else 'after'} this one")
+
+    def _open(self, path: Path) -> bool:
         try:
             (self.opens or self.session.open)(path)
         except PlaygroundError as error:
             self.notices.say(str(error))
-        else:
-            if self.session.drafts.opening:
-                self.undo.begin(History())
+            return False
+        if self.session.drafts.opening:
+            self.undo.begin(History())
+        return True
+
+    def paste(self, text: str) -> None:
+        """Open a shader's text as a new sketch: a new file in the folder, which a notice names."""
+        try:
+            path = keep_text(text, self.folder)
+        except PlaygroundError as error:
+            self.notices.say(f"the clipboard: {error}")
+            return
+        if self.open(path):
+            self.notices.say(f"pasted as {path.name} in {path.parent}; Backspace goes back")
 
     # ── many values at once ──────────────────────────────────────────────────
 

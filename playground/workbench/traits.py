@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
-from playground.sketch.expressions import names_in
+from playground.sketch.expressions import follows_time
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, kernels_of
 
-_MOVING = frozenset({"time", "frame", "frame_of_time", "delta", "date"})
+_MOVING = frozenset({"time", "frame", "frame_of_time", "delta", "date", "date_from_1"})
 _MOUSE = frozenset({"mouse", "hover", "hover_share", "drag"})
 _CAMERA = ("clip_from_world", "world_from_clip", "eye")
 
@@ -48,7 +48,7 @@ def _traits(key: Identity[Graph]) -> Traits:
     kernels = list(kernels_of(key.object))
     plain = {id(kernel) for _, kernel in kernels if kernel.kind.startswith("plain")}
     files = [(f"{at}.{p.name}", p) for at, k in kernels for p in k.parameters if p.widget.kind == "file"]
-    counts = any("time" in text and "time" in names_in(text) for text in _counts_of(key.object))
+    counts = any(follows_time(text) for text in _counts_of(key.object))
     return Traits(
         moves=counts
         or any(k.reads("time") for _, k in kernels if id(k) not in plain)

@@ -7,6 +7,7 @@ import pytest
 
 from playground.images.files import write_png
 from playground.sketch.load import load
+from tests.cube_maps import directions
 
 SKETCH = """format = 1
 size = 8
@@ -51,3 +52,22 @@ def test_an_image_has_the_bytes_of_its_file(texels, tmp_path):
     write_png(tmp_path / "x.png", pixels)
     found = texels("image", (8, 6), 'image = "x.png"')
     np.testing.assert_allclose(found[::-1] * 255, pixels, atol=1)
+
+
+def test_a_sky_has_its_horizon_its_sun_and_its_ground_where_the_cube_map_says(texels):
+    side = 32
+    ways = directions(side)
+    ways /= np.linalg.norm(ways, axis=2, keepdims=True)
+    ground, suns = ways[..., 1] < 0, []
+    for number in range(6):
+        sky = texels("sky_box", (side, 6 * side), f"number = {number}")
+        np.testing.assert_array_less(sky[ground][:, 2], 0.4)
+        np.testing.assert_array_less(0.4, sky[~ground][:, 2])
+        assert np.corrcoef(sky[ground][:, 0], ways[ground][:, 0])[0, 1] > 0.99
+        assert np.corrcoef(sky[ground][:, 1], ways[ground][:, 2])[0, 1] > 0.99
+        bright = (sky[..., :3] > 0.995).all(2)
+        sun = ways[bright].mean(0)
+        sun /= np.linalg.norm(sun)
+        assert (ways[bright] @ sun > 0.97).all() and abs(sun[1] - 0.6) < 0.05
+        suns.append(sun)
+    assert max(a @ b for i, a in enumerate(suns) for b in suns[:i]) < 0.95

@@ -8,18 +8,18 @@ from __future__ import annotations
 
 import re
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.sketch.allowed_files import is_file
 from playground.sketch.dialects import main, shadertoy
-from playground.sketch.dialects.es import rewritten, version_of
-from playground.sketch.dialects.foreign import Read, Rules, commented_files, graph_of, places_of
+from playground.sketch.dialects.passes import Read, graph_of_shaders
+from playground.sketch.dialects.reading import Files
+from playground.sketch.dialects.shader import Shader
 from playground.sketch.model import Graph
-from playground.sketch.source import Origin, read_source_and_origin, read_text
+from playground.sketch.source import read_text
 
 OWN = "own"
 _MOST = 64
@@ -41,19 +41,8 @@ class Dialect:
     name: str  # as --dialect takes it
     label: str  # in a sentence
     sign: Callable[[str, str], object]  # of the text, and of the text without comments
-    rules: Rules | None = None  # None: not read yet, or our own
-
-
-@dataclass(frozen=True)
-class _Known:
-    """What was read, and what it was made of."""
-
-    graph: Graph | None
-    origin: Origin
-    pictures: tuple[tuple[Path, bool], ...]  # where a comment's file was looked for, and whether it was there
-
-    def holds(self) -> bool:
-        return self.origin.holds() and all(is_file(place) == there for place, there in self.pictures)
+    shaders: Callable[[Files], Sequence[Shader]] | None = None  # None: not read yet, or our own
+    # No shader: the file runs as it is, as a plain shader.
 
 
 DIALECTS = (
@@ -69,19 +58,19 @@ DIALECTS = (
         "shadertoy",
         "a Shadertoy shader",
         lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code),
-        shadertoy.RULES,
+        shadertoy.shaders,
     ),
-    Dialect("main", "a shader with its own main", lambda text, code: _MAIN.search(code), main.RULES),
+    Dialect("main", "a shader with its own main", lambda text, code: _MAIN.search(code), main.shaders),
     Dialect("sound", "Shadertoy's sound, VR or cube map", lambda text, code: _SOUND.search(code)),
 )
 """The dialects, in the order in which a text is looked at."""
 
-_known: OrderedDict[tuple[Path, Path, str], _Known] = OrderedDict()
+_known: OrderedDict[tuple[Path, Path, str], tuple[Graph | None, Files]] = OrderedDict()
 
 
 def names() -> tuple[str, ...]:
     """Return what ``--dialect`` takes."""
-    return tuple(d.name for d in DIALECTS if d.rules is not None or d.name == OWN)
+    return tuple(d.name for d in DIALECTS if d.shaders is not None or d.name == OWN)
 
 
 def check_name(name: str) -> str:
@@ -128,24 +117,20 @@ def read_foreign(
     """
     key = (path, root, dialect)
     known = _known.get(key) if not instead else None
-    if known is not None and known.holds():
+    if known is not None and known[1].hold():
         _known.move_to_end(key)
-        return known.graph
-    text = (instead or {}).get(str(path)) or read_text(path)
+        return known[0]
+    files = Files(path, root, instead or {}, named=bool(dialect))
+    text = files.text()
     chosen = next((d for d in DIALECTS if d.name == dialect), None) if dialect else dialect_of(text)
-    if chosen is None or chosen.name == OWN or (is_plain and chosen.rules is None):
+    if chosen is None or chosen.name == OWN or (is_plain and chosen.shaders is None):
         return None
-    if chosen.rules is None:
+    if chosen.shaders is None:
         raise _unread(chosen, path)
-    source, origin = read_source_and_origin(path, (root,), instead, foreign=True)
-    graph = None
-    if chosen.rules is main.RULES:
-        main.refuse_passes(source)
-    if chosen.rules is not main.RULES or dialect or version_of(source) < 330 or main.needs_dialect(source):
-        graph = graph_of(name, rewritten(source), chosen.rules, read, root)
+    shaders = chosen.shaders(files)
+    graph = graph_of_shaders(name, shaders, read, root) if shaders else None
     if not instead:
-        places = [place for line, file in commented_files(source) for place in places_of(file, line, root)]
-        _known[key] = _Known(graph, origin, tuple((place, is_file(place)) for place in places))
+        _known[key] = graph, files
         while len(_known) > _MOST:
             _known.popitem(last=False)
     return graph

@@ -6,10 +6,14 @@ The names are those of glslCanvas, glslViewer, KodeLife, Bonzomatic and glslsand
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 
 from playground.sketch.dialects import shadertoy
 from playground.sketch.dialects.declarations import uniforms, vertex_outputs
-from playground.sketch.dialects.foreign import Names, Rules
+from playground.sketch.dialects.es import rewritten, version_of
+from playground.sketch.dialects.passes import VIEW
+from playground.sketch.dialects.reading import Files
+from playground.sketch.dialects.shader import Names, Rules, Shader
 from playground.sketch.reserved_names import PLAIN_UNIFORMS, SIZES
 from playground.sketch.source import SourceText
 
@@ -32,14 +36,14 @@ _ELSEWHERE: Names = {
     # glslViewer
     **{f"u_tex{n}": ("sampler2D", f"picture {n}") for n in _PICTURES},
     **{f"u_tex{n}Resolution": ("vec2", f"{SIZES}u_tex{n}") for n in _PICTURES},
-    "u_camera": ("vec3", "forward"),
-    "u_light": ("vec3", "forward"),
+    "u_camera": ("vec3", "camera"),
+    "u_light": ("vec3", "light"),
     "u_lightColor": ("vec3", "one"),
     "u_view2d": ("mat3", "identity3"),
     "u_normalMatrix": ("mat3", "identity3"),
     **{name: ("mat4", "identity4") for name in _MATRICES},
     "u_SH": ("vec3[9]", "none"),
-    "u_cubeMap": ("samplerCube", "none"),
+    "u_cubeMap": ("samplerCube", "sky 0"),
     "u_scene": ("sampler2D", "none"),
     # Bonzomatic
     "fGlobalTime": ("float", "time"),
@@ -72,7 +76,7 @@ _PASS = re.compile(
 )
 
 
-def refuse_passes(source: SourceText) -> None:
+def _refuse_passes(source: SourceText) -> None:
     """Raise ``ShaderError`` at the first pass that glslViewer would make of the text by a define."""
     for line in source.lines:
         if not line.chain and (match := _PASS.search(line.code)):
@@ -80,7 +84,7 @@ def refuse_passes(source: SourceText) -> None:
             raise line.error(message, match.start(1) + 1)
 
 
-def needs_dialect(source: SourceText) -> bool:
+def _needs_dialect(source: SourceText) -> bool:
     """Return whether a text of ``#version`` 330 or more needs what a plain shader is not given.
 
     That is what a vertex shader gives it, and names that it declares or lacks of tools other than those
@@ -103,3 +107,12 @@ def _defines(source: SourceText) -> tuple[str, ...]:
 
 
 RULES = Rules("main", NAMES, declared_anywhere=True, defines=_defines)
+
+
+def shaders(files: Files) -> Sequence[Shader]:
+    """Return the passes of a file, none where it lacks nothing that a plain shader is given."""
+    source = files.source()
+    _refuse_passes(source)
+    if not files.named and version_of(source) >= 330 and not _needs_dialect(source):
+        return ()
+    return (Shader(VIEW, rewritten(source), RULES),)

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from playground.sketch.dialects.foreign import Names, Rules
+from collections.abc import Sequence
+
+from playground.sketch.dialects.es import rewritten
+from playground.sketch.dialects.passes import VIEW
+from playground.sketch.dialects.reading import Files
+from playground.sketch.dialects.shader import Names, Rules, Shader
 from playground.sketch.reserved_names import SIZES
 
 CHANNELS = tuple(f"iChannel{number}" for number in range(4))
@@ -23,3 +28,8 @@ NAMES: Names = {
 }
 
 RULES = Rules("shadertoy", NAMES, epilogue="main_image.glsl")
+
+
+def shaders(files: Files) -> Sequence[Shader]:
+    """Return the passes of a file."""
+    return (Shader(VIEW, rewritten(files.source()), RULES),)

@@ -1,0 +1,166 @@
+"""Wire the passes of another tool's file into an ordinary technique.
+
+Its last pass is ``view``: the shader itself, or a technique of several shaders where there are more.
+Before it come the passes that feed its channels, each named like its channel, so that what a user wires
+to the channel takes its place. Where a shader reads what it or a later one writes, that is what was
+written in the frame before, and the whole of ``view`` is a loop over the frames.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from playground.errors import ShaderError, nearest
+from playground.paths import GLSL, shown
+from playground.sketch.dialects.foreign import ForeignKernel
+from playground.sketch.dialects.shader import Channel, Shader
+from playground.sketch.model import Export, Graph, PassSpec, Technique
+
+Read = Callable[[str, Path, Path], Technique]
+"""Return the technique that ``use`` names: see ``Techniques.read``."""
+
+VIEW = "view"
+_BEFORE = "before_"  # begins the input that has a target's content of the frame before
+_FRAMES = "frames"
+
+
+def graph_of_shaders(name: str, shaders: Sequence[Shader], read: Read, root: Path) -> Graph:
+    """Return a technique called ``name``, whose picture is that of the last of its shaders.
+
+    Its channels are inputs, and its shaders' own uniforms parameters: one for those of the same name.
+    ``root`` is the folder that its files stay in. Raises ``ShaderError`` for a sampler of a target that
+    no shader writes.
+    """
+    return _Passes(name, shaders, root).graph(read)
+
+
+class _Passes:
+    """The shaders of one file, as kernels, and what wires them."""
+
+    def __init__(self, name: str, shaders: Sequence[Shader], root: Path) -> None:
+        self.name = name
+        self.shaders = shaders
+        made = [ForeignKernel(shader, root) for shader in shaders]
+        self.kernels = [kernel.kernel(name) for kernel in made]
+        self.channels = [kernel.channels for kernel in made]
+        self.wires: list[list[tuple[str, str]]] = [
+            [] for _ in shaders
+        ]  # of each: sampler, pass of this frame
+        self.state: dict[str, list[str]] = {}  # target → the samplers that read it as it was, as paths
+        for index, channels in enumerate(self.channels):
+            for sampler, channel in channels.items():
+                if channel.target:
+                    self._wire(index, sampler, channel.target)
+        self.inputs = dict(self._inputs())
+
+    def _wire(self, index: int, sampler: str, target: str) -> None:
+        writers = [i for i, shader in enumerate(self.shaders) if shader.target == target]
+        if not writers:
+            raise self._unwritten(index, sampler, target)
+        earlier = [i for i in writers if i < index]
+        if earlier:
+            self.wires[index].append((sampler, self.shaders[earlier[-1]].name))
+        elif self.shaders[writers[-1]].keeps:
+            self.state.setdefault(target, []).append(f"{self.shaders[index].name}.{sampler}")
+
+    def _unwritten(self, index: int, sampler: str, target: str) -> ShaderError:
+        lines = self.kernels[index].source.lines
+        named = re.compile(rf"\b{sampler}\b")
+        line = next((line for line in lines if named.search(line.code)), lines[0])
+        hint = nearest(target, [shader.target for shader in self.shaders if shader.target])
+        return line.error(f"{sampler} reads '{target}', which no pass writes{hint}")
+
+    def _inputs(self) -> Iterator[tuple[str, tuple[Channel, list[str]]]]:
+        """Yield what may be wired from outside: a name, what feeds it, the samplers that read it, as paths.
+
+        Samplers of one name that are fed alike are one input.
+        """
+        found: dict[str, list[tuple[str, Channel]]] = {}
+        for shader, channels in zip(self.shaders, self.channels, strict=True):
+            for sampler, channel in channels.items():
+                if not channel.target:
+                    found.setdefault(sampler, []).append((shader.name, channel))
+        for sampler, readers in found.items():
+            if all(channel == readers[0][1] for _, channel in readers):
+                yield sampler, (readers[0][1], [f"{shader}.{sampler}" for shader, _ in readers])
+                continue
+            for shader_name, channel in readers:
+                yield _own_name(shader_name, sampler), (channel, [f"{shader_name}.{sampler}"])
+
+    def graph(self, read: Read) -> Graph:
+        """Return the whole; ``read`` returns what feeds a channel."""
+        view = self._view()
+        passes = [
+            PassSpec(name, c.use, read(c.use, GLSL, GLSL), values=c.values, size=c.size)
+            for name, (c, _) in self.inputs.items()
+            if c.use
+        ]
+        return Graph(
+            self.name,
+            self.kernels[-1].path,
+            (*passes, view),
+            parameters=tuple(_inside(VIEW, name) for name in _parameters_of(view.technique)),
+            inputs=tuple(_inside(VIEW, name) for name in self.inputs),
+            title=next((kernel.title for kernel in self.kernels if kernel.title), ""),
+        )
+
+    def _view(self) -> PassSpec:
+        path = self.kernels[-1].path
+        use, file = f"./{Path(path).stem}", shown(path)
+        if len(self.shaders) == 1 and not self.state:
+            return PassSpec(VIEW, use, self.kernels[0], size=self.shaders[0].size, file=file)
+        passes = tuple(
+            PassSpec(shader.name, use, kernel, inputs=tuple(wires), size=shader.size, file=file)
+            for shader, kernel, wires in zip(self.shaders, self.kernels, self.wires, strict=True)
+        )
+        last = {shader.target: shader.name for shader in self.shaders}
+        inputs = [Export(name, tuple(readers)) for name, (_, readers) in self.inputs.items()]
+        inputs += [Export(f"{_BEFORE}{target}", tuple(readers)) for target, readers in self.state.items()]
+        several = Graph(
+            self.name,
+            path,
+            passes,
+            parameters=tuple(self._parameters()),
+            inputs=tuple(inputs),
+            outputs=(
+                ("frame", f"{passes[-1].name}:frame"),
+                *((target, f"{last[target]}:frame") for target in self.state),
+            ),
+        )
+        feedback = tuple((f"{_BEFORE}{target}", target) for target in self.state)
+        return PassSpec(VIEW, use, several, repeat=_FRAMES if feedback else "", feedback=feedback, file=file)
+
+    def _parameters(self) -> Iterator[Export]:
+        """Yield one parameter for those of one name and type; where types differ, one for each shader."""
+        found: dict[str, list[tuple[str, str]]] = {}
+        for shader, kernel in zip(self.shaders, self.kernels, strict=True):
+            for parameter in kernel.parameters:
+                found.setdefault(parameter.name, []).append((shader.name, parameter.type))
+        for name, owners in found.items():
+            if len({kind for _, kind in owners}) == 1:
+                yield Export(name, tuple(f"{owner}.{name}" for owner, _ in owners))
+            else:
+                yield from (Export(_own_name(owner, name), (f"{owner}.{name}",)) for owner, _ in owners)
+
+
+def stand_in_paths(path: str, sampler: str) -> set[str]:
+    """Return the paths that a channel's own stand-in may have; ``path`` is that of the shader's pass."""
+    around, _, name = path.rpartition(".")
+    outer = around.rpartition(".")[0]
+    inside = {(around, sampler), (outer, sampler), (outer, _own_name(name, sampler))}
+    return {f"{where}.{called}" if where else called for where, called in inside}
+
+
+def _own_name(shader: str, name: str) -> str:
+    """Return the name of one shader's channel or parameter where another shader's is not the same."""
+    return f"{shader}_{name}"
+
+
+def _parameters_of(technique: Technique) -> tuple[str, ...]:
+    return tuple(parameter.name for parameter in technique.parameters)
+
+
+def _inside(where: str, name: str) -> Export:
+    return Export(name, (f"{where}.{name}",))

@@ -1,0 +1,57 @@
+"""Read the files of another tool's shader, and know what they were: readers get their texts from here."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from playground.sketch.allowed_files import is_file
+from playground.sketch.dialects.foreign import commented_files, places_of
+from playground.sketch.source import Origin, SourceText, read_source_and_origin, read_text
+
+
+@dataclass
+class Files:
+    """The files of one shader, inside ``root``.
+
+    ``instead`` has texts, by absolute path, in place of files'; ``named``: a user has named the dialect.
+    """
+
+    path: Path
+    root: Path
+    instead: Mapping[str, str] = field(default_factory=dict)
+    named: bool = False
+    _origins: list[Origin] = field(default_factory=list)
+    _texts: dict[str, str] = field(default_factory=dict)
+    _there: dict[Path, bool] = field(default_factory=dict)
+
+    def text(self, path: Path | None = None) -> str:
+        """Return a file's text, by default the shader's; raise ``SketchError`` where it cannot be read."""
+        path = path or self.path
+        found = self.instead.get(str(path))
+        found = read_text(path) if found is None else found
+        self._texts[str(path)] = found
+        return found
+
+    def source(self, path: Path | None = None) -> SourceText:
+        """Return a file with its includes, by default the shader's; raise as ``read_source`` does."""
+        source, origin = read_source_and_origin(path or self.path, (self.root,), self.instead, foreign=True)
+        self._origins.append(origin)
+        for line, file in commented_files(source):
+            for place in places_of(file, line, self.root):
+                self.is_there(place)
+        return source
+
+    def is_there(self, place: Path) -> bool:
+        """Return whether there is a file at a place, in the folder or not."""
+        found = self._there[place] = str(place) in self.instead or is_file(place)
+        return found
+
+    def hold(self) -> bool:
+        """Return whether all that was read and looked for is still the same."""
+        return (
+            all(is_file(place) == there for place, there in self._there.items())
+            and Origin(tuple(self._texts.items()), ()).holds()
+            and all(origin.holds() for origin in self._origins)
+        )
