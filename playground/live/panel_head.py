@@ -197,7 +197,7 @@ def _resets(commands: Commands) -> None:
         if not opened:
             return
         edits = session.shown.edits if session.shown else Edits()
-        touched = bool(edits.values or edits.techniques or session.view.steps)
+        touched = bool(edits.values or edits.techniques or edits.channels or session.view.steps)
         if imgui.menu_item_simple("View", "R", False, edits.camera is not None):
             session.drafts.set_camera(None)
         if imgui.menu_item_simple("All values and techniques", "", False, touched):

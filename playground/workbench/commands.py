@@ -9,6 +9,7 @@ from pathlib import Path
 from playground.errors import PlaygroundError, counted
 from playground.paths import shown
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
+from playground.sketch.channels import source_of
 from playground.sketch.model import Camera, Value
 from playground.sketch.save import save, save_copy, save_preset, saved_text
 from playground.workbench.edits import Draft
@@ -194,6 +195,8 @@ def _values_in_file(draft: Draft) -> dict[Key, object]:
     for name, _ in draft.edits.techniques:
         spec = draft.file.graph.find(name)
         found["technique", name] = spec.use if spec else None
+    for channel, _ in draft.edits.channels:
+        found["channel", channel] = source_of(draft.file, channel)
     found["camera", ""] = draft.file.camera
     return {key: value for key, value in found.items() if value is not None}
 
@@ -201,5 +204,6 @@ def _values_in_file(draft: Draft) -> dict[Key, object]:
 def _summary(draft: Draft) -> str:
     parts = [counted(len(draft.applied), "value")] if draft.applied else []
     parts += [counted(len(draft.edits.techniques), "technique")] if draft.edits.techniques else []
+    parts += [counted(len(draft.edits.channels), "channel")] if draft.edits.channels else []
     parts += ["the camera"] if draft.edits.camera is not None else []
     return " and ".join([", ".join(parts[:-1]), parts[-1]] if parts[1:] else parts)

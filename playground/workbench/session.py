@@ -25,9 +25,10 @@ from playground.errors import ContextError, PlaygroundError
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Sketch, Value
+from playground.workbench.checks import Checks
 from playground.workbench.clock import Clock
 from playground.workbench.data_files import DataFiles
-from playground.workbench.drafts import Checks, Drafts
+from playground.workbench.drafts import Drafts
 from playground.workbench.edits import Draft
 from playground.workbench.framing import framed
 from playground.workbench.last_frame import Painter, Picture
