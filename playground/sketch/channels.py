@@ -50,6 +50,10 @@ class Channel:
         """Its name in that pass."""
         return self.path.partition(".")[2]
 
+    def is_fed_by(self, source: str) -> bool:
+        """Say whether a source feeds it now: a pass by its name, or by the technique that fills it."""
+        return source in (self.source, self.feeder) if source else not self.source
+
 
 def channels(sketch: Sketch) -> tuple[Channel, ...]:
     """Return every channel of a sketch, pass by pass, in the order of their shaders."""
@@ -100,9 +104,15 @@ def channel_of(sketch: Sketch, path: str) -> Channel:
     return known[path]
 
 
+def find_channel(sketch: Sketch, path: str) -> Channel | None:
+    """Return a channel by its path; None where there is none."""
+    return next((channel for channel in channels(sketch) if channel.path == path), None)
+
+
 def source_of(sketch: Sketch, path: str) -> str | None:
     """Return what feeds a channel; None where there is no such channel."""
-    return next((channel.source for channel in channels(sketch) if channel.path == path), None)
+    found = find_channel(sketch, path)
+    return found.source if found is not None else None
 
 
 def sources(sketch: Sketch, path: str) -> list[str]:
@@ -163,7 +173,7 @@ def with_source(sketch: Sketch, path: str, source: str) -> Sketch:
     read each other in a circle.
     """
     now = channel_of(sketch, path)
-    if source == now.source:
+    if now.is_fed_by(source):
         return sketch
     if not is_technique(source):
         return _wired(sketch, now, source, sketch.graph.passes)

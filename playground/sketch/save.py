@@ -168,7 +168,7 @@ def _with_pass(text: str, wanted: Sketch, spec: PassSpec) -> str:
     """Return the text with a pass more: one that feeds a channel."""
     lines = ["[[pass]]", f"name = {text_of(spec.name)}", f"use  = {text_of(spec.use)}"]
     if spec.size is not None:
-        lines.append(f"size = {_written_size(spec.size)}")
+        lines.append(f"size = {written_size(spec.size)}")
     if spec.values:
         own = [(path, written_value(wanted, f"{spec.name}.{path}", value, "")) for path, value in spec.values]
         pairs = [f"{key_text(path)} = {value}" for path, value in own]
@@ -185,7 +185,7 @@ def _with_feed(text: str, file: Sketch, wanted: Sketch, was: PassSpec, now: Pass
                 _view(text, file, was.name), (*_table(file, was.name), "inputs"), name, text_of(source)
             )
     if now.size != was.size and now.size is not None:
-        text = put(text, _table(file, was.name), "size", _written_size(now.size))
+        text = put(text, _table(file, was.name), "size", written_size(now.size))
     for path, value in now.values:
         if (path, value) not in was.values:
             written = written_value(wanted, f"{now.name}.{path}", value, "")
@@ -193,7 +193,7 @@ def _with_feed(text: str, file: Sketch, wanted: Sketch, was: PassSpec, now: Pass
     return text
 
 
-def _written_size(size: tuple[str, str]) -> str:
+def written_size(size: tuple[str, str]) -> str:
     """Return a size as TOML writes it."""
     x, y = (side if side.isdecimal() else text_of(side) for side in size)
     return f"[{x}, {y}]"

@@ -31,7 +31,7 @@ from functools import cached_property
 
 from playground.errors import ParameterError, PlaygroundError
 from playground.sketch.assign import TERRAIN_KEYS, check_value, current_path, resolve, values_of
-from playground.sketch.channels import channels, in_order, source_of, with_source
+from playground.sketch.channels import channels, find_channel, in_order, with_source
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.values import is_whole, write
@@ -125,11 +125,11 @@ class Draft:
 
     def feed(self, channel: str, source: str) -> Draft:
         """Return the draft with another source for a channel; raise ``SketchError`` if it cannot be there."""
-        in_file = next((c for c in channels(self.file) if c.path == channel), None)
+        in_file = find_channel(self.file, channel)
         own = in_file.feeder if in_file is not None and in_file.alone else ""
         techniques = tuple(t for t in self.edits.techniques if t[0] != own)
         others = tuple(c for c in self.edits.channels if c[0] != channel)
-        chosen = () if in_file is not None and in_file.source == source else ((channel, source),)
+        chosen = () if in_file is not None and in_file.is_fed_by(source) else ((channel, source),)
         return self.with_choices(techniques, (*others, *chosen))
 
     def with_choices(
@@ -215,10 +215,10 @@ def _with_sources(
     """Return the sketch with the sources that still can feed their channels, and which they are."""
     stay = []
     for channel, source in in_order(chosen):
-        was, now = source_of(before, channel), source_of(loaded, channel)
-        if now == source:
+        was, now = find_channel(before, channel), find_channel(loaded, channel)
+        if now is not None and now.is_fed_by(source):
             continue  # it has become the file's own
-        if now is None or (was is not None and was != now):
+        if now is None or (was is not None and was.source != now.source):
             notes.append(f"{channel}: what was chosen to feed it here gave way to the file's")
             continue
         try:

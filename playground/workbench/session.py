@@ -177,9 +177,15 @@ class Session:
         self.drafts.open(path, start=start, texts=texts)
         self.view.restore({}, None, later=True)
 
-    def open_copy(self, path: Path) -> None:
-        """Open a copy of the sketch that is shown; edits and view go on. Raises as ``Drafts.open``."""
+    def open_copy(self, path: Path, saved: Draft | None = None) -> None:
+        """Open a copy of the sketch that is shown; edits and view go on. Raises as ``Drafts.open``.
+
+        ``saved`` is the same picture as the copy says it, where its paths are not those of the one shown.
+        """
         self._take_back()
+        if saved is not None:
+            self.drafts.show(saved)
+            self.drafts.reads, self.drafts.read_edits = self.drafts.reads + 1, saved.edits
         self.drafts.open(path, keep=True)
 
     def stay(self) -> None:
