@@ -6,11 +6,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from imgui_bundle import imgui
+
 from playground.live.draw import choose
-from playground.live.panel_rows import fitting_choice, row
+from playground.live.panel_rows import cross, fitting_choice, row, slot
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
-from playground.sketch.channels import Channel, channels, sources
+from playground.sketch.channels import Channel, channels, source_of, sources
 from playground.sketch.model import PassSpec, Sketch
 from playground.workbench.channel_list import file_of, in_words, note_of
 from playground.workbench.edits import Draft
@@ -35,7 +37,7 @@ class ChannelRows:
                 self._file(channel, draft, session, look)
 
     def _row(self, channel: Channel, draft: Draft, session: Session, *, edited: bool) -> None:
-        base = draft.base
+        base, end = draft.base, imgui.get_cursor_pos_x() + imgui.get_content_region_avail().x
         with row(channel.name, lambda: note_of(base, channel), edited=edited):
             # The options are computed in an open list only: that tries each of them.
             shown = fitting_choice(in_words(base, channel.source))
@@ -43,6 +45,11 @@ class ChannelRows:
             source = choose(
                 f"##feeds {channel.path}", shown, options, channel.source, name=lambda s: in_words(base, s)
             )
+        in_file = source_of(draft.file, channel.path)
+        if edited and in_file:
+            imgui.same_line(end - slot())
+            if cross(f"##reset {channel.path}", "Back to what the file feeds it"):
+                source = in_file
         if source is not None and source != channel.source:
             session.drafts.feed(channel.path, source)
 

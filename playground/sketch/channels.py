@@ -56,14 +56,14 @@ class Channel:
 
 
 def channels(sketch: Sketch) -> tuple[Channel, ...]:
-    """Return every channel of a sketch, pass by pass, in the order of their shaders."""
+    """Return every channel of a sketch, pass by pass, by name."""
     return _channels(Identity(sketch.graph))
 
 
 @lru_cache(maxsize=16)
 def _channels(key: Identity[Graph]) -> tuple[Channel, ...]:
     graph = key.object
-    names = [(spec, name) for spec in graph.passes for name in _names(spec.technique)]
+    names = [(spec, name) for spec in graph.passes for name in sorted(_names(spec.technique), key=_by_number)]
     if not names:
         return ()
     flat = flatten(_bare(graph))
@@ -83,6 +83,12 @@ def _channels(key: Identity[Graph]) -> tuple[Channel, ...]:
         elif source is None:
             found.append(Channel(f"{spec.name}.{name}", ""))
     return tuple(found)
+
+
+def _by_number(name: str) -> list[str | int]:
+    """Return a key that sorts u_tex2 before u_tex10."""
+    parts = re.split(r"(\d+)", name)
+    return [int(part) if part.isdigit() else part for part in parts]
 
 
 def _fed(graph: Graph, path: str, source: Ref, readers: int, specs: dict[str, PassSpec]) -> Channel:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from dataclasses import dataclass
 
 from playground.paths import GLSL
 from playground.sketch.channels import Channel, channels, is_technique, sources
@@ -38,13 +38,25 @@ def file_of(sketch: Sketch, channel: Channel) -> tuple[str, Parameter] | None:
     return (f"{channel.feeder}.{parameter.name}", parameter) if parameter is not None else None
 
 
-def takers(sketch: Sketch) -> Iterator[tuple[Channel, str, str]]:
-    """Yield each channel that a file may feed, the technique that reads it, and its file's parameter."""
+@dataclass(frozen=True, slots=True)
+class Taker:
+    """A channel that an image file may feed."""
+
+    channel: Channel
+    source: str  # the technique that reads the file
+    parameter: str  # of the technique: names the file
+
+
+def takers(sketch: Sketch) -> tuple[Taker, ...]:
+    """Return the channels that an image file may feed."""
+    found = []
     for channel in channels(sketch):
-        for source in sources(sketch, channel.path):
-            parameter = _file_parameter(_technique(sketch, source)) if is_technique(source) else None
-            if parameter is not None:
-                yield channel, source, parameter.name
+        for source in [s for s in sources(sketch, channel.path) if is_technique(s)]:
+            parameter = _file_parameter(_technique(sketch, source))
+            if parameter is not None and parameter.type == "sampler2D":
+                found.append(Taker(channel, source, parameter.name))
+                break
+    return tuple(found)
 
 
 def _technique(sketch: Sketch, source: str) -> Technique:

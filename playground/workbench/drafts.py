@@ -224,16 +224,9 @@ class Drafts:
         """Fill a pass with another technique, once that has proved good."""
         self._change(lambda draft: draft.choose(pass_name, use))
 
-    def feed(self, channel: str, source: str, values: Mapping[str, Value] | None = None) -> None:
-        """Feed a channel from another source, with ``values`` for it by path, once that has proved good."""
-
-        def change(draft: Draft) -> Draft:
-            draft = draft.feed(channel, source)
-            for path, value in (values or {}).items():
-                draft = draft.with_value(path, value)
-            return draft
-
-        self._change(change)
+    def feed(self, channel: str, source: str, /, **values: Value) -> None:
+        """Feed a channel from another source, with ``values`` of its parameters, once it has proved good."""
+        self._change(lambda draft: draft.feed(channel, source, **values))
 
     def show(self, draft: Draft) -> None:
         """Show a draft of this sketch that was drawn before; what is saved since goes on being checked."""

@@ -123,14 +123,21 @@ class Draft:
         chosen = () if in_file is not None and in_file.use == use else ((pass_name, use),)
         return self.with_choices((*others, *chosen), self.edits.channels)
 
-    def feed(self, channel: str, source: str) -> Draft:
-        """Return the draft with another source for a channel; raise ``SketchError`` if it cannot be there."""
+    def feed(self, channel: str, source: str, /, **values: Value) -> Draft:
+        """Return the draft with another source for a channel, and ``values`` of the parameters of that.
+
+        Raises ``SketchError`` if it cannot be there.
+        """
         in_file = find_channel(self.file, channel)
         own = in_file.feeder if in_file is not None and in_file.alone else ""
         techniques = tuple(t for t in self.edits.techniques if t[0] != own)
         others = tuple(c for c in self.edits.channels if c[0] != channel)
         chosen = () if in_file is not None and in_file.is_fed_by(source) else ((channel, source),)
-        return self.with_choices(techniques, (*others, *chosen))
+        made = self.with_choices(techniques, (*others, *chosen))
+        feeder = found.feeder if (found := find_channel(made.base, channel)) is not None else ""
+        for name, value in values.items():
+            made = made.with_value(f"{feeder}.{name}", value)
+        return made
 
     def with_choices(
         self, techniques: tuple[tuple[str, str], ...], sources: tuple[tuple[str, str], ...]

@@ -231,6 +231,9 @@ def in_words(step: Step, name_of: Callable[[str], str], write: Callable[[str, ob
     if step.name:
         return step.name
     kinds = {kind for kind, _ in step.after}
+    if "channel" in kinds:  # what else changed belongs to what feeds it
+        fed = next((path, source) for (kind, path), source in step.after.items() if kind == "channel")
+        return f"{fed[0]}: {fed[1] if fed[1] is not None else 'what the file feeds it'}"
     if len(step.after) != 1:
         return f"{len(step.after)} parameters" if kinds == {"value"} else f"{len(step.after)} things"
     ((kind, path), after), before = next(iter(step.after.items())), next(iter(step.before.values()))
@@ -240,8 +243,6 @@ def in_words(step: Step, name_of: Callable[[str], str], write: Callable[[str, ob
         return f"Time {_seconds(before)} to {_seconds(after)}"
     if kind == "technique":
         return f"{path}: {after}" if after is not None else f"{path}: the file's technique"
-    if kind == "channel":
-        return f"{path}: {after or 'black'}" if after is not None else f"{path}: what the file feeds it"
     if kind == "lock":
         return f"{'Lock' if after else 'Unlock'} {name_of(path)}"
     if kind == "step":

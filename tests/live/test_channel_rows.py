@@ -81,6 +81,37 @@ def test_the_warning_goes_once_something_feeds_the_channel(alone: Bare) -> None:
     alone.close()
 
 
+def test_a_dropped_image_is_put_into_the_channel_that_is_chosen(alone: Bare, folder: Path) -> None:
+    alone.drops.take([folder / "green.png"])
+    alone.run_frames(3)
+    offered = [label for label in alone.places if "##channel" in label]
+    assert offered == ["view.iChannel0##channel view.iChannel0", "view.iChannel3##channel view.iChannel3"]
+    alone.click(offered[1])
+    alone.run_frames(3)
+    assert alone.session.error is None and alone.drops.waiting == []
+    assert sources(alone) == {"view.iChannel3": "foreign/image"}
+    assert alone.session.shown is not None
+    assert dict(alone.session.shown.edits.values) == {
+        "iChannel3.image": str((folder / "green.png").resolve())
+    }
+    alone.drops.take([folder / "green.png"])
+    alone.run_frames(3)
+    offered = [label for label in alone.places if "iChannel3" in label and "##" in label]
+    assert [label for label in offered if label.startswith("Image")] == [], "it is offered once, as a channel"
+    alone.bench.undo.undo()
+    alone.run_frames(3)
+    assert sources(alone) == {}
+    alone.close()
+
+
+def test_a_source_is_reset_by_its_cross(alone: Bare) -> None:
+    choose(alone, "iChannel0", "picture")
+    alone.click("##reset view.iChannel0")
+    alone.run_frames(3)
+    assert sources(alone) == {}
+    alone.close()
+
+
 def test_the_graph_and_the_history_name_what_was_chosen(alone: Bare) -> None:
     choose(alone, "iChannel0", "picture")
     alone.click("History")

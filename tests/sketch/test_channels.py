@@ -55,6 +55,12 @@ def test_a_shader_opened_alone_has_its_channels(folder: Path) -> None:
     assert channels(load(folder / "none.frag")) == () and channels(load()) == ()
 
 
+def test_channels_are_in_the_order_of_their_numbers(folder: Path) -> None:
+    text = "void main() { gl_FragColor = texture2D(u_tex2, vec2(0)) + texture2D(u_tex0, vec2(0)); }\n"
+    (folder / "main.frag").write_text("uniform sampler2D u_tex2;\n" + text, "utf-8")
+    assert [c.name for c in channels(load(folder / "main.frag"))] == ["u_tex0", "u_tex2"]
+
+
 def test_what_may_feed_a_channel_is_every_stand_in_and_every_other_pass(folder: Path) -> None:
     assert sources(load(folder / "two.frag"), "view.iChannel0") == STAND_INS
     wired = sketch(folder, 'use = "./two"\ninputs = { iChannel0 = "photo" }', LAND, PHOTO)

@@ -56,7 +56,7 @@ class Window:
         self.autosave.write()
 
     def feed(self, source: str, channel: str = CHANNEL, **values: str) -> None:
-        self.session.drafts.feed(channel, source, {k.replace("__", "."): v for k, v in values.items()})
+        self.session.drafts.feed(channel, source, **values)
         self.frame()
 
     @property
@@ -96,7 +96,7 @@ def window(request: pytest.FixtureRequest, folder: Path, any_engine: Engine) -> 
 
 def test_an_image_is_fed_undone_and_done_again(window: Window, folder: Path) -> None:
     before = window.colour
-    window.feed("foreign/image", iChannel0__image=str(folder / "green.png"))
+    window.feed("foreign/image", image=str(folder / "green.png"))
     assert window.colour == GREEN and window.sources[0] == "foreign/image"
     window.bench.undo.undo()
     window.frame()
@@ -109,7 +109,7 @@ def test_an_image_is_fed_undone_and_done_again(window: Window, folder: Path) -> 
 def test_what_was_chosen_is_there_in_the_next_session(
     window: Window, folder: Path, any_engine: Engine
 ) -> None:
-    window.feed("foreign/image", iChannel0__image=str(folder / "green.png"))
+    window.feed("foreign/image", image=str(folder / "green.png"))
     path = window.session.path
     window.close()
     again = Window(any_engine, path, folder)
@@ -137,7 +137,7 @@ def test_the_technique_of_a_stand_in_is_the_same_edit(folder: Path, any_engine: 
 
 
 def test_a_save_of_the_shader_leaves_what_was_chosen(window: Window, folder: Path) -> None:
-    window.feed("foreign/image", iChannel0__image=str(folder / "green.png"))
+    window.feed("foreign/image", image=str(folder / "green.png"))
     assert window.session.shown is not None
     shader = Path(window.session.shown.file.folder) / "first.frag"
     shader.write_text(FIRST.replace("gain *", "0.5 * gain *"), "utf-8")
@@ -164,7 +164,7 @@ def test_a_file_that_feeds_the_channel_otherwise_wins(folder: Path, any_engine: 
 
 def test_it_is_saved_into_the_sketch(folder: Path, any_engine: Engine) -> None:
     window = Window(any_engine, folder / "home", folder)
-    window.feed("foreign/image", iChannel0__image=str(folder / "green.png"))
+    window.feed("foreign/image", image=str(folder / "green.png"))
     window.feed("land", "view.iChannel1")
     window.bench.commands.save_values()
     window.frame()
@@ -184,7 +184,7 @@ def test_it_is_saved_into_the_sketch(folder: Path, any_engine: Engine) -> None:
 def test_a_shader_alone_is_saved_as_a_sketch_next_to_it(folder: Path, any_engine: Engine) -> None:
     home = folder / "alone"
     window = Window(any_engine, home / "first.frag", folder)
-    window.feed("foreign/image", iChannel0__image=str(folder / "green.png"))
+    window.feed("foreign/image", image=str(folder / "green.png"))
     window.session.drafts.set("view.gain", 0.5)
     window.session.drafts.set("iChannel1.number", 7)
     window.frame()
