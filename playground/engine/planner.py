@@ -30,9 +30,10 @@ from playground.engine.plan_request import (
     checked_steps,
 )
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
+from playground.images.picture_size import picture_size
 from playground.paths import shown
 from playground.sketch import expressions
-from playground.sketch.assign import resolve
+from playground.sketch.assign import find_targets, resolve
 from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
@@ -57,6 +58,7 @@ class _LastPlan:
     values: Mapping[str, Mapping[str, Value]]  # of each leaf, by its path
     named: frozenset[str]  # paths of the values that a size or a count names
     by_time: bool  # one of them names the time
+    pictures: Mapping[Path, tuple[int, int]]  # files whose sizes one of them names
     refusals: Mapping[str, str]  # why a fast variant does not take its size: a sentence, by its technique
     own: Mapping[str, tuple[int, int]]  # texels that sources have by themselves, by the path of the leaf
 
@@ -176,6 +178,7 @@ class _Planning:
         copied = after.flat.shape.copied if after else {}
         self.named: set[str] = {copied.get(path, path) for path in after.named} if after else set()
         self.by_time: bool = after is not None and after.by_time
+        self.pictures: dict[Path, tuple[int, int]] = {}
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
         self._values: dict[str, Mapping[str, Value]] = {}
@@ -202,6 +205,8 @@ class _Planning:
             return None
         plan, now, before = known.plan, self.flat.values, known.plan.flat.values
         if [path for path in known.named if now[path] is not before[path]]:
+            return None
+        if any(picture_size(file) != size for file, size in known.pictures.items()):
             return None
         eye = plan.eye if plan.sketch.camera == self.sketch.camera else self._eye()
         nodes = tuple([self._renewed(node) for node in plan.nodes])
@@ -241,7 +246,7 @@ class _Planning:
             lacking=(*lacking, *refused.values()),
         )
         named = frozenset(self.named & self.flat.values.keys())
-        return _LastPlan(plan, self._values, named, self.by_time, refused, self.own)
+        return _LastPlan(plan, self._values, named, self.by_time, self.pictures, refused, self.own)
 
     def refusals(self, before: Collection[str]) -> dict[str, str]:
         """Return a sentence for each technique whose fast variant does not take its size, by its path.
@@ -462,7 +467,9 @@ class _Planning:
         if axis in _AXES and head == "size":
             return self._size_around(_inside(prefix, spec.name), prefix)[_AXES[axis]]
         if axis in _AXES and head.endswith(".size"):
-            return self.size_of(self._path_of(prefix, head.removesuffix(".size")))[_AXES[axis]]
+            named = head.removesuffix(".size")
+            size = self._picture_size(prefix, named) or self.size_of(self._path_of(prefix, named))
+            return size[_AXES[axis]]
         try:
             target = resolve(self.flat.graphs[prefix], name)[0].path
         except PlaygroundError:
@@ -477,6 +484,21 @@ class _Planning:
         if not isinstance(value, int | float):
             raise KeyError(name)
         return value
+
+    def _picture_size(self, prefix: str, name: str) -> tuple[int, int] | None:
+        """Return the size of the picture that a parameter of a name reads; None where there is none."""
+        target = next(iter(find_targets(self.flat.graphs[prefix], name)), None)
+        if target is None or target.parameter.widget.kind != "file":
+            return None
+        path = _inside(prefix, target.path)
+        self.named.add(path)
+        leaf, _, parameter = path.rpartition(".")
+        file = Path(str(self._values[leaf][parameter]))
+        try:
+            self.pictures[file] = picture_size(file)
+        except DataError as error:
+            raise placed(error, self.sketch, self.flat.user(leaf)) from error
+        return self.pictures[file]
 
     def _path_of(self, prefix: str, name: str) -> str:
         """Return the path of the pass of a name, or of what feeds the technique's input of that name."""
