@@ -8,19 +8,25 @@ from contextlib import suppress
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
 from playground.commands import options
 from playground.commands.arguments import (
     Renderer,
     help_text,
     read_driver,
+    read_option,
     read_pixels,
     read_values,
     with_whole_paths,
+    within,
 )
 from playground.commands.options import complete_lesson, flag, value
-from playground.errors import ContextError, PlaygroundError
-from playground.terminal import complain
+from playground.errors import ContextError, ParameterError, PlaygroundError
+from playground.terminal import complain, note
+
+REMOTE_PORT = 8765
+"""Of ``--remote`` without a port."""
 
 HELP = help_text(
     "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters."
@@ -32,7 +38,22 @@ HELP = help_text(
     "playground live --lesson diamond_square --lang fr",
     "playground live my-land --no-cache",
     "playground live shader.frag",
+    "playground live jacksboro --remote",
 )
+
+
+class LiveCommand(TyperCommand):
+    """Takes ``--remote`` with or without a port."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the arguments; a ``--remote`` without a port gets the usual one."""
+        given = list(args)
+        for at, word in enumerate(given):
+            if word == "--":
+                break
+            if word == "--remote" and not "".join(given[at + 1 : at + 2]).isdecimal():
+                given[at] = f"--remote={REMOTE_PORT}"
+        return super().parse_args(ctx, given)
 
 
 def live(
@@ -51,12 +72,25 @@ def live(
         bool,
         flag("--no-cache", "Compute all terrain again, and cache none on disk (see playground cache)."),
     ] = False,
+    remote: Annotated[
+        str,
+        value(
+            "--remote [PORT]",
+            "Let programs and a browser on this machine drive the window, by HTTP and WebSocket;"
+            f" port {REMOTE_PORT} where none is given, 0 for a free one.",
+        ),
+    ] = "",
+    token: Annotated[
+        str,
+        value("--token TEXT", "The remote's token, 16 to 128 letters, digits, - and _; else a random one."),
+    ] = "",
 ) -> None:
     """Open a sketch in a window."""
     from playground.sketch.dialects import check_name
 
     renderer: Renderer = ctx.obj.or_else(software)
     pixels, values = read_pixels(size), read_values(settings)
+    remotes = read_remotes(remote, token)
     check_display(renderer)
     open_window(
         sketch,
@@ -70,7 +104,19 @@ def live(
         lesson=lesson,
         language=lang,
         no_cache=no_cache,
+        remotes=remotes,
     )
+
+
+def read_remotes(remote: str, token: str) -> dict[str, Any]:
+    """Return what ``Remotes`` is to open; raise ``ParameterError``."""
+    from playground.remote.access import check_token
+
+    expected = "a port from 1 to 65535, or 0 for a free one"
+    port = read_option("--remote", remote, within(0, 65535), expected)
+    if token and port is None:
+        raise ParameterError("--token is that of --remote, which is not given")
+    return {"port": port, "token": check_token(token) if token else ""}
 
 
 def check_display(renderer: Renderer) -> None:
@@ -92,6 +138,7 @@ def open_window(
     *,
     values: dict[str, object] | None = None,
     no_cache: bool = False,
+    remotes: dict[str, Any] | None = None,
     **options: Any,
 ) -> None:
     """Open a window and stay until it is closed; ``options`` are those of ``playground.live.app.run``."""
@@ -101,6 +148,7 @@ def open_window(
         0 if no_cache else limit_in()
     )  # a wrong value in the environment is an error before a window opens
     from playground.live.app import run
+    from playground.remote.remotes import RemoteOptions, Remotes
 
     if values:
         from playground.sketch.load import load
@@ -108,6 +156,10 @@ def open_window(
         with suppress(PlaygroundError):  # the window shows what is wrong with the sketch
             values = with_whole_paths(load(sketch, dialect=options.get("dialect", "")), values)
     options |= {"cache_limit": limit, "report": complain}
-    status = run(sketch, size=size, software=renderer.software, values=values, **options)
+    with Remotes(RemoteOptions(**(remotes or {}))) as opened:
+        for sentence in opened.sentences:
+            note(sentence)
+        options["remotes"] = opened
+        status = run(sketch, size=size, software=renderer.software, values=values, **options)
     if status:
         raise typer.Exit(status)
