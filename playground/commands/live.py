@@ -39,6 +39,7 @@ HELP = help_text(
     "playground live my-land --no-cache",
     "playground live shader.frag",
     "playground live jacksboro --remote",
+    "playground live jacksboro --osc 9000 --osc-to 127.0.0.1:9001",
 )
 
 
@@ -84,13 +85,18 @@ def live(
         str,
         value("--token TEXT", "The remote's token, 16 to 128 letters, digits, - and _; else a random one."),
     ] = "",
+    osc: Annotated[
+        str,
+        value("--osc PORT", "Receive OSC at this port, from this machine; at another address as HOST:PORT."),
+    ] = "",
+    osc_to: Annotated[str, value("--osc-to HOST:PORT", "Send each new value there by OSC.")] = "",
 ) -> None:
     """Open a sketch in a window."""
     from playground.sketch.dialects import check_name
 
     renderer: Renderer = ctx.obj.or_else(software)
     pixels, values = read_pixels(size), read_values(settings)
-    remotes = read_remotes(remote, token)
+    remotes = read_remotes(remote, token, osc, osc_to)
     check_display(renderer)
     open_window(
         sketch,
@@ -108,15 +114,26 @@ def live(
     )
 
 
-def read_remotes(remote: str, token: str) -> dict[str, Any]:
-    """Return what ``Remotes`` is to open; raise ``ParameterError``."""
+def read_remotes(remote: str = "", token: str = "", osc: str = "", osc_to: str = "") -> dict[str, Any]:
+    """Return the fields of ``RemoteOptions``; raise ``ParameterError``."""
     from playground.remote.access import check_token
 
     expected = "a port from 1 to 65535, or 0 for a free one"
     port = read_option("--remote", remote, within(0, 65535), expected)
     if token and port is None:
         raise ParameterError("--token is that of --remote, which is not given")
-    return {"port": port, "token": check_token(token) if token else ""}
+    return {
+        "port": port,
+        "token": check_token(token) if token else "",
+        "osc": read_option("--osc", osc, _address, "a port, as 9000, or HOST:PORT, as 0.0.0.0:9000"),
+        "osc_to": read_option("--osc-to", osc_to, _address, "HOST:PORT, as 127.0.0.1:9001"),
+    }
+
+
+def _address(text: str) -> tuple[str, int] | None:
+    host, colon, port = text.rpartition(":")
+    number = within(1, 65535)(port)
+    return None if number is None or bool(colon) != bool(host) else (host or "127.0.0.1", number)
 
 
 def check_display(renderer: Renderer) -> None:

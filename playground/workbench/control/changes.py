@@ -26,13 +26,14 @@ class Changes:
         self._at = 0.0
         self._reload: object = None
         self._errors: object = None
-        self._begun = False
+        self.begun = False  # whether there was a look before the last
+        self._looked = False
 
     def look(self) -> list[dict[str, Any]]:
         """Return what is new, as events for JSON; ``changed`` has the new values."""
         events = [*self._sketch_or_values(), *self._time_events(), *self._saves()]
-        begun, self._begun = self._begun, True
-        return events if begun else []
+        self.begun, self._looked = self._looked, True
+        return events if self.begun else []
 
     def _sketch_or_values(self) -> list[dict[str, Any]]:
         session = self._bench.session

@@ -14,7 +14,7 @@ from typing import Any
 
 from playground.engine.frame import Frame
 from playground.errors import ContextError, ParameterError, PlaygroundError, SketchError, nearest
-from playground.sketch.assign import check_value, current_paths, find_targets
+from playground.sketch.assign import check_value, current_paths, find_targets, value_of, values_of
 from playground.sketch.model import Sketch, Value
 from playground.sketch.values import spell
 from playground.workbench.bench import Bench
@@ -79,6 +79,13 @@ class Controls:
         for path, value in found.items():
             self._waiting.pop(path, None)  # what is set last comes last, and wins
             self._waiting[path] = value
+
+    def value(self, path: str) -> Value:
+        """Return what a parameter is set to, or will be by ``flush``; raise ``ParameterError``."""
+        if path in self._waiting:
+            return self._waiting[path]
+        sketch = self._shown().sketch
+        return value_of(sketch, path, values_of(sketch))
 
     def flush(self) -> None:
         """Do what was set."""
