@@ -28,6 +28,7 @@ LAYERS = (
     ("terminal",),
     ("signals", "streams"),
     ("live",),
+    ("remote",),
     ("workbench",),
     ("lessons",),
     ("reduce",),
