@@ -193,6 +193,8 @@ def _wrap_foreign(kernel: Kernel, version_code: int) -> Wrapped:
         )
         vertex = ShaderStage(triangle + "\n", 0, kernel.source, "")
     expected = "void mainImage(out vec4, in vec2)" if kernel.epilogue else "void main()"
+    if "mainCubemap" in kernel.source.names and "cubemap" in kernel.epilogue:
+        expected = "void mainCubemap(out vec4, in vec2, in vec3, in vec3)"
     return Wrapped(
         kernel,
         FRAGMENT,

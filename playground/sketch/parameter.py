@@ -44,6 +44,7 @@ class Sampling:
     filter: str = "nearest"  # nearest | linear
     wrap: str = "clamp"  # clamp | repeat
     mipmap: bool = False
+    magnify: str = ""  # how where a texel is larger than a pixel; "": as ``filter``
 
 
 AS_IT_IS = Sampling()

@@ -47,6 +47,10 @@ def test_pictures_differ_and_show_which_way_is_up(texels):
         assert (one[-8:, :, 1].mean() - one[:8, :, 1].mean()) > 0.3  # green in the north
 
 
+def test_black_is_black_and_opaque(texels):
+    assert (texels("black", (3, 2)) == [0.0, 0.0, 0.0, 1.0]).all()
+
+
 def test_an_image_has_the_bytes_of_its_file(texels, tmp_path):
     pixels = np.random.default_rng(3).integers(0, 256, (6, 8, 4), dtype=np.uint8)
     write_png(tmp_path / "x.png", pixels)

@@ -25,11 +25,14 @@ from playground.sketch.dialects.shader import (
 )
 from playground.sketch.header import title_of
 from playground.sketch.model import SHAPES, Input, Kernel, Output, Parameter, Widget
+from playground.sketch.reserved_names import ELEMENT
 from playground.sketch.source import Line, SourceText
 from playground.sketch.uniforms import read_uniforms
 
 _COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
 _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
+_COUNT = re.compile(r"\[\s*(\d+)\s*\]")
+_MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
 _MODEL = "MODEL_"
 _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
 
@@ -50,6 +53,7 @@ class ForeignKernel:
         self.commented = {(line.file, line.number): file for line, file in commented_files(self.source)}
         self.pictures = dict(self._pictures())
         self.shapes = {n: SHAPES[kind] for n, kind in self._kinds() if kind in SHAPES and self._is_read(n)}
+        self.shapes |= {element: SHAPES[one.type] for element, one in self._elements()}
         self.channels = {name: self._channel(name) for name in self.shapes}
 
     def kernel(self, name: str) -> Kernel:
@@ -147,6 +151,16 @@ class ForeignKernel:
             ):
                 yield one.name, one.type
 
+    def _elements(self) -> Iterator[tuple[str, Declared]]:
+        """Yield what a wire feeds of the arrays of samplers: ``maps_0`` is the first of ``maps[4]``."""
+        for one in self.declared.values():
+            count = _COUNT.search(one.written) if one.is_array and one.type in SHAPES else None
+            if count and self._is_read(one.name):
+                elements = (
+                    f"{one.name}{ELEMENT}{number}" for number in range(min(int(count[1]), _MOST_ELEMENTS))
+                )
+                yield from ((element, one) for element in elements if element not in self.source.names)
+
     def _line(self, one: Declared) -> Line:
         return self.source.lines[one.line]
 
@@ -196,7 +210,10 @@ class ForeignKernel:
 
     def _unfed(self, fed: Collection[str]) -> Iterator[tuple[str, str]]:
         """Yield what the picture lacks where nothing is wired: each name, and what is drawn instead."""
-        own = {one.name: one.type for one in self.declared.values()}
+        arrays = {one.name for _, one in self._elements()}
+        own = {one.name: one.type for one in self.declared.values() if one.name not in arrays}
+        for element, _ in self._elements():
+            yield element, "it reads black"
         own |= {name: self.rules.names[name][0] for name in (*self.missing, *self.vertex_missing)}
         for name, kind in own.items():
             channel = self.channels.get(name, Channel())
@@ -218,7 +235,9 @@ def unfed_warnings(kernel: Kernel, wired: Collection[str]) -> tuple[Diagnostic, 
     lines = kernel.source.lines
     found = []
     for instead, some in names.items():
-        first = re.compile(rf"\b(?:{'|'.join(some)})\b")
+        first = re.compile(
+            rf"\b(?:{'|'.join([*some, *(name.rpartition(ELEMENT)[0] or name for name in some)])})\b"
+        )
         line = next((line for line in lines if first.search(line.code)), lines[0])
         found.append(line.diagnostic(f"nothing feeds {', '.join(some)}: {instead}", severity="warning"))
     return tuple(found)

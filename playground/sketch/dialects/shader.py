@@ -79,3 +79,19 @@ class Shader:
     title: str = ""  # of the whole; "": the comment that the text begins with
     notes: tuple[Diagnostic, ...] = ()  # warnings of the whole
     keeps: bool = False  # what it wrote in the last frame may be read
+    repeat: str = ""  # an expression: it is drawn so often, and reads what it wrote before by ``feeds``
+    feeds: str = ""  # a sampler
+
+
+@dataclass(frozen=True)
+class Made:
+    """A pass that a technique of ``glsl/`` makes of what others wrote; its output is ``frame``."""
+
+    name: str
+    use: str
+    reads: Mapping[str, str]  # input → target
+    target: str = ""
+    size: tuple[str, str] | None = None
+    repeat: str = ""
+    feeds: str = ""  # an input
+    keeps: bool = True
