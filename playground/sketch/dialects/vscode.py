@@ -13,6 +13,7 @@ from playground.sketch.allowed_files import SHADERS, is_inside, names_below
 from playground.sketch.dialects import directives
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.shader import Channel, Shader, stand_in
+from playground.sketch.dialects.shadertoy import note_not_drawn
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
     CUBE,
@@ -84,7 +85,8 @@ class Reader:
         self._names[path] = name
         read = directives.read_directives(self.files.source(path))
         for line, message in read.notes:
-            self.files.note(message, line.number, Path(line.file))
+            self.files.note_at(line, message)
+        note_not_drawn(self.files, read.source)
         feeds = dict(self.inputs.get(path, {}))
         for number, channel in read.channels.items():
             feeds[f"iChannel{number}"] = self._feed(path, number, channel)
