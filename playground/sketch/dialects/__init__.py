@@ -14,10 +14,10 @@ from pathlib import Path
 
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.sketch.dialects import main, shadertoy, shadertoy_export, shadertoy_folder, vscode
+from playground.sketch.dialects import isf, main, shadertoy, shadertoy_export, shadertoy_folder, vscode
 from playground.sketch.dialects.passes import Read, graph_of_shaders
 from playground.sketch.dialects.reading import Files
-from playground.sketch.dialects.shader import Shader
+from playground.sketch.dialects.shader import Made, Shader
 from playground.sketch.model import Graph
 from playground.sketch.source import read_text
 
@@ -27,7 +27,9 @@ _REFUSED = "sound"
 _MOST = 64
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
-_ISF = re.compile(r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES)"', re.DOTALL)
+_ISF = re.compile(
+    r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS)"', re.DOTALL
+)
 _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:iChannel\d|iUniform|iKeyboard)\b", re.MULTILINE)
@@ -43,7 +45,7 @@ class Dialect:
     name: str  # as --dialect takes it
     label: str  # in a sentence
     sign: Callable[[str, str], object]  # of the text, and of the text without comments
-    shaders: Callable[[Files], Sequence[Shader]] | None = None  # None: not read yet, or our own
+    shaders: Callable[[Files], Sequence[Shader | Made]] | None = None  # None: not read yet, or our own
     # No shader: the file runs as it is, as a plain shader.
 
 
@@ -66,7 +68,7 @@ def _without_picture(files: Files) -> Sequence[Shader]:
 
 
 DIALECTS = (
-    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text)),
+    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text), isf.shaders),
     Dialect(
         "export",
         "a Shadertoy export (JSON)",
@@ -91,7 +93,7 @@ DIALECTS = (
         _REFUSED,
         "Shadertoy's sound, VR or cube map",
         lambda text, code: _SOUND.search(code),
-        shadertoy.refused,
+        _without_picture,
     ),
 )
 """The dialects, in the order in which a text is looked at."""
@@ -159,7 +161,7 @@ def read_foreign(
     shaders = chosen.shaders(files)
     graph = graph_of_shaders(name, shaders, read, root) if shaders else None
     if graph is not None:
-        graph = replace(graph, title=files.title or graph.title, warnings=tuple(files.notes))
+        graph = replace(graph, warnings=(*graph.warnings, *files.notes))
     if not instead:
         _known[key] = graph, files
         while len(_known) > _MOST:

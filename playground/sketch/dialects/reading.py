@@ -24,7 +24,6 @@ class Files:
     root: Path
     instead: Mapping[str, str] = field(default_factory=dict)
     named: bool = False
-    title: str = ""  # of the whole, where the file says it
     notes: list[Diagnostic] = field(default_factory=list)  # of what is not as in the other tool
     _origins: list[Origin] = field(default_factory=list)
     _texts: dict[str, str] = field(default_factory=dict)

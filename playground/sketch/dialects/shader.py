@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from playground.errors import Diagnostic
 from playground.sketch.dialects.es import Rewritten
 from playground.sketch.model import Parameter, Sampling, Value
 from playground.sketch.source import SourceText
@@ -17,6 +18,7 @@ STAND_INS = {
     "picture": "foreign/picture",
     "sky": "foreign/sky_box",
     "volume": "foreign/noise",
+    "sound": "foreign/spectrum",
 }
 """What is drawn where nothing feeds a channel: the first word of its meaning → a technique of ``glsl/``."""
 
@@ -25,7 +27,8 @@ STAND_INS_OF_SHAPES = {"cube": "sky", "volume": "volume"}
 
 SAMPLING = Sampling("linear", "repeat", mipmap=True)
 STAND_IN_SIZE = ("256", "256")
-_SIZES = {"sky": ("128", "768"), "volume": ("32", "1024")}
+_SIZES = {"sky": ("128", "768"), "volume": ("32", "1024"), "sound": ("512", "2")}
+_NUMBERS = {"sound": "content"}
 
 
 @dataclass(frozen=True)
@@ -36,8 +39,9 @@ class Rules:
     names: Names
     declared_anywhere: bool = False  # a name declared in any function counts as declared
     epilogue: str = ""  # of gpu/shaders
-    helpers: str = ""  # likewise, between what is declared and the text
-    vertex_helpers: str = ""  # likewise, of a vertex shader of the author's own
+    varyings: tuple[str, ...] = ()  # declarations of what every text may take from its vertex shader
+    helpers: tuple[str, ...] = ()  # of gpu/shaders, between what is declared and the text
+    vertex_helpers: tuple[str, ...] = ()  # likewise, of a vertex shader of the author's own
     defines: Callable[[SourceText], tuple[str, ...]] = lambda source: ()  # lines of the prelude
 
 
@@ -54,9 +58,12 @@ class Channel:
 
 
 def stand_in(kind: str, number: int, unfed: str) -> Channel:
-    """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
-    size = _SIZES.get(kind, STAND_IN_SIZE)
-    return Channel(use=STAND_INS[kind], values=(("number", number),), size=size, unfed=unfed)
+    """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``.
+
+    ``number`` tells stand-ins apart; of "sound" it is the content, 2 for Shadertoy's.
+    """
+    size, values = _SIZES.get(kind, STAND_IN_SIZE), ((_NUMBERS.get(kind, "number"), number),)
+    return Channel(use=STAND_INS[kind], values=values, size=size, unfed=unfed)
 
 
 @dataclass(frozen=True)
@@ -71,6 +78,25 @@ class Shader:
     parameters: tuple[Parameter, ...] = ()  # besides the uniforms that the text declares
     size: tuple[str, str] | None = None  # expressions; None: the size of the picture
     format: str = "rgba8"
+    named: frozenset[str] = frozenset()  # names of the rules that the prelude names
     prelude: tuple[str, ...] = ()  # lines besides those that the rules give
     vertex: Rewritten | None = None  # the author's own vertex shader
+    title: str = ""  # of the whole; "": the comment that the text begins with
+    notes: tuple[Diagnostic, ...] = ()  # warnings of the whole
     keeps: bool = False  # what it wrote in the last frame may be read
+    repeat: str = ""  # an expression: it is drawn so often, and reads what it wrote before by ``feeds``
+    feeds: str = ""  # a sampler
+
+
+@dataclass(frozen=True)
+class Made:
+    """A pass that a technique of ``glsl/`` makes of what others wrote; its output is ``frame``."""
+
+    name: str
+    use: str
+    reads: Mapping[str, str]  # input → target
+    target: str = ""
+    size: tuple[str, str] | None = None
+    repeat: str = ""
+    feeds: str = ""  # an input
+    keeps: bool = True
