@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 _PRECISION = r"(?:(?:lowp|mediump|highp)\s+)?"
 _BEGINS = r"(?:^|[;{}\n])[ \t]*"
@@ -29,6 +30,7 @@ _DIRECTIVE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
 _QUALIFIER = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+(in|uniform)[ \t]*$", re.MULTILINE)
 _BRACKETS = re.compile(r"\([^()]*\)")
 _VECTOR = re.compile(r"vec([234])|float")
+_KNOWN = 16  # texts: the passes of a file often have the same one
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +46,11 @@ class Declared:
 
 def uniforms(code: str) -> dict[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
+    return dict(_uniforms(code))
+
+
+@lru_cache(maxsize=_KNOWN)
+def _uniforms(code: str) -> dict[str, Declared]:
     code = _with_qualifiers(code)
     found: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
@@ -53,6 +60,7 @@ def uniforms(code: str) -> dict[str, Declared]:
     return found
 
 
+@lru_cache(maxsize=8 * _KNOWN)
 def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     """Return whether a text declares a variable or a function, outside of functions or ``anywhere``."""
     for match in re.finditer(rf"\b(?!return\b|else\b)[A-Za-z_]\w*\s+{name}\b\s*[=;,)\[(]", code):
@@ -62,6 +70,7 @@ def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     return False
 
 
+@lru_cache(maxsize=_KNOWN)
 def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     """Return what the vertex shader gives a fragment shader: declarations, and statements that set them."""
     code = _DIRECTIVE.sub("", _with_qualifiers(code))

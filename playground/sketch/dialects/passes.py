@@ -9,7 +9,6 @@ written in the frame before, and the whole of ``view`` is a loop over the frames
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -181,8 +180,7 @@ class _Passes:
 
 def _names_read(kernel: Kernel) -> set[str]:
     """Return the parameters that a text names besides declaring them."""
-    count = Counter(re.findall(r"[A-Za-z_]\w*", kernel.source.code)) if kernel.parameters else Counter()
-    return {p.name for p in kernel.parameters if count[p.name] > 1 or kernel.vertex_source}
+    return {p.name for p in kernel.parameters if kernel.source.counts[p.name] > 1 or kernel.vertex_source}
 
 
 def stand_in_paths(path: str, sampler: str) -> set[str]:
