@@ -12,14 +12,11 @@ from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
 from playground.sketch.annotation import note_at
 from playground.sketch.flat import Ref, Source
+from playground.sketch.include_guards import without_guards
 from playground.sketch.model import Kernel, Sketch, Value
 from playground.sketch.reserved_names import MATCHES, WIRED
 from playground.sketch.source import SourceText
 from playground.sketch.variants import active_variant
-
-_IFNDEF = re.compile(r"\s*#\s*ifndef\s+(\w+)\s*$")
-_DEFINE = re.compile(r"\s*#\s*define\s+(\w+)\s*$")
-_CONDITION = re.compile(r"\s*#\s*(if|ifdef|ifndef|else|elif|endif)\b")
 
 
 def inline_sketch(
@@ -131,7 +128,8 @@ class _Inliner:
 
 def written(kernel: Kernel) -> str:
     """Return a kernel's text, tidy: its includes in place, without comments but for annotations."""
-    return tidy("\n".join(_without_guards(_lines(kernel.source))))
+    lines = _lines(kernel.source)
+    return tidy("\n".join([lines[index] for index in without_guards(lines)]))
 
 
 def _lines(source: SourceText) -> list[str]:
@@ -145,39 +143,6 @@ def _lines(source: SourceText) -> list[str]:
                 note_at(source.lines, index).text.strip() if line.code.lstrip().startswith("uniform") else ""
             )
             found.append(f"{line.code}  //! {note}" if note else line.code)
-    return found
-
-
-def _without_guards(lines: list[str]) -> list[str]:
-    """Remove include guards, and what they keep from being there twice."""
-    found: list[str] = []
-    guards: set[str] = set()
-    stack: list[str] = []  # of each open condition: "guard", "twice" or "other"
-    skip_define = ""
-    for index, line in enumerate(lines):
-        if skip_define and _DEFINE.match(line):
-            skip_define = ""
-            continue
-        condition = _CONDITION.match(line)
-        word = condition.group(1) if condition else ""
-        guard = _IFNDEF.match(line)
-        following = _DEFINE.match(lines[index + 1]) if index + 1 < len(lines) else None
-        if word.startswith("if"):
-            if guard and guard.group(1) in guards:
-                stack.append("twice")
-                continue
-            if guard and following and following.group(1) == guard.group(1):
-                stack.append("guard")
-                guards.add(guard.group(1))
-                skip_define = guard.group(1)
-                continue
-            stack.append("other")
-        elif word == "endif" and stack:
-            kind = stack.pop()
-            if kind != "other":
-                continue
-        if "twice" not in stack:
-            found.append(line)
     return found
 
 

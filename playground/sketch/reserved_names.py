@@ -66,8 +66,11 @@ PLAIN_UNIFORMS: dict[str, tuple[str, ...]] = {
 _IDENTITY_3 = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 _IDENTITY_4 = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
+MOMENT = "moment"
+"""What a source depends on besides its parameters, such as a frame of a film, among what a step is given."""
+
 CLOCKED = frozenset(
-    {"time", "frame", "frame_of_time", "delta", "date", "mouse", "hover", "hover_share", "drag", "keys"}
+    {"time", "frame", "frame_of_time", "delta", "date", "mouse", "hover", "hover_share", "drag", MOMENT}
 )
 """What belongs to one frame: given names and meanings that, in a loop that counts ``frames``, are those
 of its iteration, so that what is computed of the frames before stays."""

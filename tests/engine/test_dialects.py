@@ -277,9 +277,6 @@ def test_a_dialect_may_be_named(any_engine, folder):
 
 def test_what_is_not_read_yet_is_one_sentence(folder):
     cases = {
-        '/*{"ISFVSN": "2", "INPUTS": []}*/\nvoid main() {}': "an ISF shader, which is not read yet",
-        '{"Shader": {"renderpass": []}}': "a Shadertoy export .JSON., which is not read yet",
-        '#iChannel0 "self"\nvoid mainImage(out vec4 c, vec2 p) {}': "VS Code .* not read yet",
         "vec2 mainSound(int s, float t) { return vec2(0.0); }": "sound, .* not read yet",
         "float x;": "nothing to run: no main, mainImage or #pragma",
     }

@@ -6,7 +6,7 @@ Text only, by statements: comments are blanked already, and preprocessor conditi
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -30,7 +30,6 @@ _DIRECTIVE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
 _QUALIFIER = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+(in|uniform)[ \t]*$", re.MULTILINE)
 _BRACKETS = re.compile(r"\([^()]*\)")
 _VECTOR = re.compile(r"vec([234])|float")
-_KNOWN = 16  # texts: the passes of a file often have the same one
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,13 +43,9 @@ class Declared:
     written: str  # the name, its array and its initial value
 
 
-def uniforms(code: str) -> dict[str, Declared]:
+@lru_cache(maxsize=32)  # passes of one file share a text
+def uniforms(code: str) -> Mapping[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
-    return dict(_uniforms(code))
-
-
-@lru_cache(maxsize=_KNOWN)
-def _uniforms(code: str) -> dict[str, Declared]:
     code = _with_qualifiers(code)
     found: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
@@ -60,7 +55,7 @@ def _uniforms(code: str) -> dict[str, Declared]:
     return found
 
 
-@lru_cache(maxsize=8 * _KNOWN)
+@lru_cache(maxsize=512)
 def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     """Return whether a text declares a variable or a function, outside of functions or ``anywhere``."""
     for match in re.finditer(rf"\b(?!return\b|else\b)[A-Za-z_]\w*\s+{name}\b\s*[=;,)\[(]", code):
@@ -70,7 +65,7 @@ def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     return False
 
 
-@lru_cache(maxsize=_KNOWN)
+@lru_cache(maxsize=32)
 def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     """Return what the vertex shader gives a fragment shader: declarations, and statements that set them."""
     code = _DIRECTIVE.sub("", _with_qualifiers(code))

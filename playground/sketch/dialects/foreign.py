@@ -77,15 +77,17 @@ class ForeignKernel:
                 Input(n, c.sampling, "zero" if c.target else "black", shape=self.shapes[n])
                 for n, c in self.channels.items()
             ),
-            title=title_of(self.source),
+            title=shader.title or title_of(self.source),
             dialect=self.rules.name,
-            prelude=tuple(self._prelude(shader.text, self.missing)),
+            prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
             epilogue=self.rules.epilogue,
             helpers=self.rules.helpers,
-            vertex=vertex_outputs("\n".join([*shader.text.prelude, self.code])) if ours else (),
+            vertex=vertex_outputs("\n".join([*shader.text.prelude, *self._varyings(), self.code]))
+            if ours
+            else (),
             vertex_source=self.vertex,
             vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
-            vertex_helpers=self.rules.vertex_helpers if shader.vertex else "",
+            vertex_helpers=self.rules.vertex_helpers if shader.vertex else (),
             meanings=tuple(meanings),
             unfed=tuple(self._unfed(own)),
         )
@@ -96,6 +98,11 @@ class ForeignKernel:
         yield from (f"uniform {_declaration(self.rules.names[name][0], name)};" for name in missing)
         declared = uniforms(text.source.code)
         yield from (f"uniform {p.type} {p.name};" for p in self.shader.parameters if p.name not in declared)
+
+    def _varyings(self) -> list[str]:
+        """Return the dialect's own that a text reads and does not declare itself."""
+        known = [declaration for declaration, _ in vertex_outputs(self.code)]
+        return [one for one in self.rules.varyings if one.replace("in ", "out ", 1) not in known]
 
     def _channel(self, sampler: str) -> Channel:
         """Return what feeds a sampler; by the rules where the shader does not say."""
@@ -116,9 +123,9 @@ class ForeignKernel:
         return [
             name
             for name in self.rules.names
-            if name in source.names
-            and name not in declared
-            and re.search(rf"(?<![.\w]){name}\b", code)
+            if name not in declared
+            and (name in self.shader.named or name in source.names)
+            and (name in self.shader.named or re.search(rf"(?<![.\w]){name}\b", code))
             and not is_declared(code, name, anywhere=anywhere)
         ]
 

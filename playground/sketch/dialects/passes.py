@@ -126,6 +126,9 @@ class _Passes:
             parameters=tuple(_inside(VIEW, name) for name in _parameters_of(view.technique)),
             inputs=tuple(_inside(VIEW, name) for name in self.inputs),
             title=next((kernel.title for kernel in self.kernels if kernel.title), ""),
+            warnings=tuple(
+                dict.fromkeys(note for s in self.shaders if isinstance(s, Shader) for note in s.notes)
+            ),
         )
 
     def _view(self) -> PassSpec:
@@ -164,13 +167,17 @@ class _Passes:
         return PassSpec(VIEW, use, several, repeat=_FRAMES if feedback else "", feedback=feedback, file=file)
 
     def _parameters(self) -> Iterator[Export]:
-        """Yield one parameter for those of one name and type; where types differ, one for each shader."""
-        found: dict[str, list[tuple[str, str]]] = {}
+        """Yield one parameter for those of one name and type; where types differ, one for each shader.
+
+        Two that name different files differ as well.
+        """
+        found: dict[str, list[tuple[str, object]]] = {}
         for shader, technique in zip(self.shaders, self.techniques, strict=True):
             if isinstance(shader, Made) or not isinstance(technique, Kernel):
                 continue
-            for parameter in technique.parameters:
-                found.setdefault(parameter.name, []).append((shader.name, parameter.type))
+            for p in technique.parameters:
+                kind = (p.type, p.default) if p.widget.kind == "file" else p.type
+                found.setdefault(p.name, []).append((shader.name, kind))
         for name, owners in found.items():
             if len({kind for _, kind in owners}) == 1:
                 yield Export(name, tuple(f"{owner}.{name}" for owner, _ in owners))
