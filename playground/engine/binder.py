@@ -198,7 +198,8 @@ class Binder:
         if sampling.mipmap:
             shrink = self.ctx.LINEAR_MIPMAP_LINEAR if linear else self.ctx.NEAREST_MIPMAP_NEAREST
         sampler = self.ctx.sampler(repeat_x=around, repeat_y=around, repeat_z=around)
-        sampler.filter = (shrink, self.ctx.LINEAR if linear else self.ctx.NEAREST)
+        near = (sampling.magnify or sampling.filter) == "linear"
+        sampler.filter = (shrink, self.ctx.LINEAR if near else self.ctx.NEAREST)
         if linear and sampling.mipmap and self._anisotropy > 1:
             sampler.anisotropy = self._anisotropy
         return sampler

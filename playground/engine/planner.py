@@ -8,7 +8,7 @@ size or a count names a changed value or the time, or where the terrain's file i
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import zip_longest
@@ -30,9 +30,10 @@ from playground.engine.plan_request import (
     checked_steps,
 )
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
+from playground.images.picture_size import picture_size
 from playground.paths import shown
 from playground.sketch import expressions
-from playground.sketch.assign import resolve
+from playground.sketch.assign import find_targets, resolve
 from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
@@ -57,7 +58,9 @@ class _LastPlan:
     values: Mapping[str, Mapping[str, Value]]  # of each leaf, by its path
     named: frozenset[str]  # paths of the values that a size or a count names
     by_time: bool  # one of them names the time
+    pictures: Mapping[Path, tuple[int, int]]  # files whose sizes one of them names
     refusals: Mapping[str, str]  # why a fast variant does not take its size: a sentence, by its technique
+    own: Mapping[str, tuple[int, int]]  # texels that sources have by themselves, by the path of the leaf
 
 
 class Planner:
@@ -175,6 +178,7 @@ class _Planning:
         copied = after.flat.shape.copied if after else {}
         self.named: set[str] = {copied.get(path, path) for path in after.named} if after else set()
         self.by_time: bool = after is not None and after.by_time
+        self.pictures: dict[Path, tuple[int, int]] = {}
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
         self._values: dict[str, Mapping[str, Value]] = {}
@@ -187,6 +191,7 @@ class _Planning:
                 values = values if values == now else now
             self._values[leaf.path] = values
         self.terrain = self._described()
+        self.own = dict(self._own_sizes())
 
     def renewed(self) -> _LastPlan | None:
         """Return the known plan with the values of now; None where it has to be made whole."""
@@ -194,11 +199,14 @@ class _Planning:
         if (
             known is None
             or known.plan.terrain != self.terrain
+            or known.own != self.own
             or (known.by_time and known.plan.time != self.time)
         ):
             return None
         plan, now, before = known.plan, self.flat.values, known.plan.flat.values
         if [path for path in known.named if now[path] is not before[path]]:
+            return None
+        if any(picture_size(file) != size for file, size in known.pictures.items()):
             return None
         eye = plan.eye if plan.sketch.camera == self.sketch.camera else self._eye()
         nodes = tuple([self._renewed(node) for node in plan.nodes])
@@ -238,7 +246,7 @@ class _Planning:
             lacking=(*lacking, *refused.values()),
         )
         named = frozenset(self.named & self.flat.values.keys())
-        return _LastPlan(plan, self._values, named, self.by_time, refused)
+        return _LastPlan(plan, self._values, named, self.by_time, self.pictures, refused, self.own)
 
     def refusals(self, before: Collection[str]) -> dict[str, str]:
         """Return a sentence for each technique whose fast variant does not take its size, by its path.
@@ -360,6 +368,17 @@ class _Planning:
         base = self.sketch.base_elevation if self.sketch.base_elevation is not None else known.base_elevation
         return Terrain(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
 
+    def _own_sizes(self) -> Iterator[tuple[str, tuple[int, int]]]:
+        """Yield the texels that sources have by themselves, such as a film, where their passes say none."""
+        for leaf in self.flat.leaves:
+            if leaf.kernel.kind == "source" and leaf.spec.size is None and leaf.path != "view":
+                try:
+                    size = source_kind(leaf.kernel.registry).size(self._values[leaf.path])
+                except DataError as error:
+                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
+                if size is not None:
+                    yield leaf.path, size
+
     def _check_source(self, leaf: Leaf) -> None:
         try:
             kind = source_kind(leaf.kernel.registry)
@@ -409,20 +428,25 @@ class _Planning:
         self._open.append(path)
         base = self._size_around(path, prefix)
         size = base
-        if spec.size is not None:
+        if path in self.own:
+            size = self.own[path]
+            self._check_sides(spec, size)
+        elif spec.size is not None:
             try:
                 names = partial(self._number, prefix, spec)
                 size = (expressions.evaluate(spec.size[0], names), expressions.evaluate(spec.size[1], names))
             except ExpressionError as error:
                 raise spec.error(f"pass '{spec.name}': size {error}") from None
-            if not all(1 <= side <= LARGEST_SIDE for side in size):
-                raise spec.error(
-                    f"pass '{spec.name}': size {size[0]} x {size[1]}; "
-                    f"1 to {LARGEST_SIDE} a side were expected"
-                )
+            self._check_sides(spec, size)
         self._open.pop()
         self._sizes[path] = size
         return size
+
+    def _check_sides(self, spec: PassSpec, size: tuple[int, int]) -> None:
+        if not all(1 <= side <= LARGEST_SIDE for side in size):
+            raise spec.error(
+                f"pass '{spec.name}': size {size[0]} x {size[1]}; 1 to {LARGEST_SIDE} a side were expected"
+            )
 
     def _size_around(self, path: str, prefix: str) -> tuple[int, int]:
         """Return the size that a pass has unless it says another: that of the technique around it."""
@@ -443,7 +467,9 @@ class _Planning:
         if axis in _AXES and head == "size":
             return self._size_around(_inside(prefix, spec.name), prefix)[_AXES[axis]]
         if axis in _AXES and head.endswith(".size"):
-            return self.size_of(self._path_of(prefix, head.removesuffix(".size")))[_AXES[axis]]
+            named = head.removesuffix(".size")
+            size = self._picture_size(prefix, named) or self.size_of(self._path_of(prefix, named))
+            return size[_AXES[axis]]
         try:
             target = resolve(self.flat.graphs[prefix], name)[0].path
         except PlaygroundError:
@@ -458,6 +484,21 @@ class _Planning:
         if not isinstance(value, int | float):
             raise KeyError(name)
         return value
+
+    def _picture_size(self, prefix: str, name: str) -> tuple[int, int] | None:
+        """Return the size of the picture that a parameter of a name reads; None where there is none."""
+        target = next(iter(find_targets(self.flat.graphs[prefix], name)), None)
+        if target is None or target.parameter.widget.kind != "file":
+            return None
+        path = _inside(prefix, target.path)
+        self.named.add(path)
+        leaf, _, parameter = path.rpartition(".")
+        file = Path(str(self._values[leaf][parameter]))
+        try:
+            self.pictures[file] = picture_size(file)
+        except DataError as error:
+            raise placed(error, self.sketch, self.flat.user(leaf)) from error
+        return self.pictures[file]
 
     def _path_of(self, prefix: str, name: str) -> str:
         """Return the path of the pass of a name, or of what feeds the technique's input of that name."""

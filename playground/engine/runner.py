@@ -5,7 +5,8 @@ Programs, meshes and file textures stay here; results are the caller's.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.binder import Binder
@@ -22,9 +23,10 @@ from playground.engine.scene import scene_of
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
+from playground.media.now import Now
 from playground.sketch.expressions import FRAME_RATE, last_frame_at
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import NEUTRAL, PRESSED
+from playground.sketch.reserved_names import MOMENT, NEUTRAL, PRESSED
 from playground.terrain.sources import SourceKind, source_kind
 
 if TYPE_CHECKING:
@@ -98,6 +100,8 @@ class Runner:
         ``frame`` is that of the loop around it that counts frames: the time is that frame's.
         """
         kernel = step.kernel
+        if kernel.kind == "source":
+            return self._moment(step, frame)
         found: dict[str, Any] = {}
         if self.pressed:
             names = (p.name for p in kernel.parameters if p.widget.kind == "button")
@@ -147,10 +151,29 @@ class Runner:
         job = Job(step, given, inputs, iteration, start, samples, keeps_surface)
         self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
         other = self._other_kinds.get(step.kernel.kind)
-        try:
+        with self._placed(step):
             return other(job) if other else self.kernels.run(job, driver)
+
+    @contextmanager
+    def _placed(self, step: Step) -> Iterator[None]:
+        """Raise an error of a data file at the pass that names it."""
+        assert self._plan is not None, "look_at() comes first"
+        try:
+            yield
         except DataError as error:
             raise placed(error, self._plan.sketch, self._plan.flat.user(step.path)) from error
+
+    def _moment(self, step: Step, frame: int | None) -> dict[str, Any]:
+        """Return what a source depends on besides its parameters, as ``moment``."""
+        moment = source_kind(step.kernel.registry).moment
+        if moment is None:
+            return {}
+        with self._placed(step):
+            return {MOMENT: moment(step.values, Now(self._time_at(frame)))}
+
+    def _time_at(self, frame: int | None) -> float:
+        """Return the time of the frame that a loop is at, else of the picture."""
+        return float(self._given["time"]) if frame is None else frame / FRAME_RATE
 
     def _plain(self, job: Job) -> Result:
         around = job.loop_iteration
@@ -166,7 +189,7 @@ class Runner:
                 result.textures[output.name], self.paint.texture_of(painted, output.format)
             )
             return result
-        arrays = kind.make(step.values, step.size)
+        arrays = kind.make(step.values, step.size, job.given.get(MOMENT))
         for output in step.kernel.outputs:
             if output.name not in arrays:
                 given = ", ".join(arrays)
@@ -185,10 +208,12 @@ class Runner:
 
     def _usual(self, step: Step, frame: int | None) -> dict[str, tuple[float, ...]]:
         width, height = step.whole_size
-        time = float(self._given["time"]) if frame is None else frame / FRAME_RATE
+        time = self._time_at(frame)
         return {
             "time": (time,),
             "resolution": (float(width), float(height), 1.0),
+            "square_resolution": (float(width), float(width), 1.0),  # of a face of a cube map
+            "buttons": (float(self.drag[2] > 0), 0.0, 0.0, 0.0),
             "mouse": self.mouse,
             "delta": (self.delta if frame is None else 1 / FRAME_RATE,),
             "date": self.date,

@@ -82,6 +82,7 @@ class Kernel:
     between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
     at_once: str = "1"  # steps that one run may take
     registry: str = ""  # of a source or a draw: the name of the source or mesh
+    depends: tuple[str, ...] = ()  # of a source: what its texels depend on besides its parameters, as time
     blend: str = "none"
     depth: str = "less"
     count: str = ""  # of a draw: elements of a mesh that has no size of its own
@@ -98,11 +99,11 @@ class Kernel:
     dialect: str = ""  # of another tool's shader: the name of a row of sketch/dialects
     prelude: tuple[str, ...] = ()  # likewise: lines that the driver gets before the file's
     epilogue: str = ""  # likewise: the file of gpu/shaders that follows the file's lines
-    helpers: str = ""  # likewise: the file of gpu/shaders between the prelude and the file's lines
+    helpers: tuple[str, ...] = ()  # likewise: files of gpu/shaders between the prelude and its lines
     vertex: tuple[tuple[str, str], ...] = ()  # what its vertex shader gives it: declaration, statements
     vertex_source: SourceText | None = None  # the author's own vertex shader, in place of ``vertex``
     vertex_prelude: tuple[str, ...] = ()  # of that
-    vertex_helpers: str = ""  # likewise
+    vertex_helpers: tuple[str, ...] = ()  # likewise
     meanings: tuple[tuple[str, str], ...] = ()  # uniform → what it is given: see ``usual``
     unfed: tuple[tuple[str, str], ...] = ()  # likewise: what it lacks where nothing is wired, what is instead
 
@@ -167,9 +168,11 @@ class Kernel:
         return {parameter.name: parameter for parameter in reversed(self.parameters)}
 
     def reads(self, given: str) -> bool:
-        """Return whether the text names something that the engine gives."""
-        return given in self.source.names or (
-            self.vertex_source is not None and given in self.vertex_source.names
+        """Return whether the text names something that the engine gives, or depends on it all the same."""
+        return (
+            given in self.source.names
+            or given in self.depends
+            or (self.vertex_source is not None and given in self.vertex_source.names)
         )
 
     @property

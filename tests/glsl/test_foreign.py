@@ -47,6 +47,10 @@ def test_pictures_differ_and_show_which_way_is_up(texels):
         assert (one[-8:, :, 1].mean() - one[:8, :, 1].mean()) > 0.3  # green in the north
 
 
+def test_black_is_black_and_opaque(texels):
+    assert (texels("black", (3, 2)) == [0.0, 0.0, 0.0, 1.0]).all()
+
+
 def test_an_image_has_the_bytes_of_its_file(texels, tmp_path):
     pixels = np.random.default_rng(3).integers(0, 256, (6, 8, 4), dtype=np.uint8)
     write_png(tmp_path / "x.png", pixels)
@@ -71,3 +75,12 @@ def test_a_sky_has_its_horizon_its_sun_and_its_ground_where_the_cube_map_says(te
         assert (ways[bright] @ sun > 0.97).all() and abs(sun[1] - 0.6) < 0.05
         suns.append(sun)
     assert max(a @ b for i, a in enumerate(suns) for b in suns[:i]) < 0.95
+
+
+def test_a_made_up_sound_is_bounded_and_its_waves_are_around_one_half(texels):
+    spectrum, waves = texels("spectrum", (64, 1)), texels("spectrum", (512, 1), 'content = "waves"')
+    assert 0.0 <= spectrum[..., :3].min() and 0.3 < spectrum[..., :3].max() <= 1.0
+    assert spectrum[0, :32, 0].mean() > spectrum[0, 32:, 0].mean()  # low frequencies are the stronger
+    # Whole periods of two sines of amplitude 0.22: mean 1/2, mean square 2 * 0.22^2 / 2; half floats.
+    np.testing.assert_allclose(waves[0, :, 0].mean(), 0.5, atol=2e-3)
+    np.testing.assert_allclose(waves[0, :, 0].var(), 0.22**2, rtol=0.02)

@@ -27,6 +27,18 @@ NAMES: Names = {
     **{name: ("sampler2D", f"noise {number}") for number, name in enumerate(CHANNELS)},
 }
 
+_MORE_CHANNELS = tuple(f"iChannel{number}" for number in range(10))
+
+MORE_NAMES: Names = {
+    **NAMES,
+    "iGlobalFrame": ("int", "frame_of_time"),
+    "iMouseButton": ("vec4", "buttons"),
+    "iViewMatrix": ("mat4", "identity4"),
+    "iChannelResolution": ("vec3[10]", f"{SIZES}{' '.join(_MORE_CHANNELS)}"),
+    **{name: ("sampler2D", f"noise {number}") for number, name in enumerate(_MORE_CHANNELS)},
+}
+"""Those of the VS Code extension."""
+
 RULES = Rules("shadertoy", NAMES, epilogue="main_image.glsl")
 
 
