@@ -18,6 +18,7 @@ from playground.live.parameter_row import Rows
 from playground.live.sliders import slide_whole
 from playground.live.theme import Theme
 from playground.sketch.channels import channels
+from playground.sketch.composed import parts_of
 from playground.sketch.model import PassSpec, Sketch, kernels_of
 from playground.sketch.parameter import label_of
 from playground.sketch.replace_technique import choices
@@ -259,4 +260,8 @@ def _steps(spec: PassSpec, session: Session) -> None:
 
 def _use_name(use: str) -> str:
     """Return a technique's name without its folder where a closed list has no room for that."""
-    return use if fitting_choice(use) == use else fitting_choice(use.rpartition("/")[2])
+    if fitting_choice(use) == use:
+        return use
+    parts = parts_of(use)
+    names = [name.rpartition("/")[2] for name in parts or (use,)]
+    return fitting_choice(f"{names[0]}({names[1]})" if parts else names[0])
