@@ -23,7 +23,7 @@ from playground.images.content_hash import content_hash
 from playground.sketch.expressions import counts_frames
 from playground.sketch.flat import Fed, Source
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import CLOCKED, TOWARDS
+from playground.sketch.reserved_names import CLOCKED, PRESSED, TOWARDS
 from playground.terrain.meshes import mesh_parameters
 
 _MAX_TEXTS = 512
@@ -100,13 +100,17 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
     if kernel.kind == "compute":
         counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
     header: list[Any] = [*(getattr(kernel, name) for name in _HEADER), counts]
-    header += [(i.name, i.sampling, i.fallback) for i in kernel.inputs]
+    header += [(i.name, i.sampling, i.fallback, i.shape) for i in kernel.inputs]
     if kernel.dialect:
         header += [kernel.prelude, kernel.epilogue, kernel.vertex, kernel.meanings]
+        header += [kernel.helpers, kernel.vertex_prelude, kernel.vertex_helpers]
+        header.append(kernel.vertex_source.canonical if kernel.vertex_source else "")
     used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}
     used |= set(_IDENTIFIER.findall(" ".join(counts)))
     used |= kernel.source.names & {"iterations"}
     used |= {p.name for p in kernel.parameters if kernel.reads(f"{TOWARDS}{p.name}")}
+    if kernel.dialect:  # what its tool declares is not in its text
+        used |= {p.name for p in kernel.parameters if kernel.reads(p.name)}
     if kernel.kind == "source":
         used |= {p.name for p in kernel.parameters}
     if kernel.kind == "draw":
@@ -267,7 +271,7 @@ class _KeyComputation:
 def _clocked(step: Step, given: Mapping[str, Any]) -> frozenset[str]:
     """Return what a step reads that belongs to one frame: given names, and buttons among its parameters."""
     buttons = [p.name for p in step.kernel.parameters if p.widget.kind == "button"]
-    return (CLOCKED & given.keys()) | frozenset(buttons)
+    return (CLOCKED & given.keys()) | frozenset([*buttons, *(f"{PRESSED}{name}" for name in buttons)])
 
 
 def _loops_in(loop: LoopStep) -> set[str]:

@@ -34,7 +34,7 @@ _IMAGE = re.compile(
 )
 _KEYS = {
     "kernel": ("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once"),
-    "source": ("name", "output"),
+    "source": ("name", "output", "reads"),
     "draw": ("where", "mesh", "count", "output", "blend", "depth", "samples", "repeat"),
     "compute": (
         *("where", "accepts", "groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned"),
@@ -50,6 +50,7 @@ _EXAMPLES = {
     "compute": '(groups = "size.y, 1", agrees = "exact")',
 }
 _SIZE = ("size.x", "size.y")
+_SOURCE_READS = ("time", "keys")
 _NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?![\w.]|\s*:)")
 _NOT_IN_WHERE = ("size", "if", "else", "and", "or", "not", "log2", "min", "max", "abs", "floor", "ceil")
 _BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()
@@ -98,7 +99,7 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
         if not options.get("name"):
             raise line.error(f"#pragma source needs its name, as #pragma source{_EXAMPLES[kind]}")
         _refuse_code(source)
-        return replace(kernel, registry=options["name"])
+        return replace(kernel, registry=options["name"], depends=_depends(options.get("reads", ""), line))
     numbers = _numbers(kernel)
     repeat = options.get("repeat", "1")
     _check("repeat", repeat, (*_SIZE, *expressions.CLOCKS, *numbers), line)
@@ -114,6 +115,16 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     _check_steps(kernel, numbers, line)
     _check_accepts(kernel.accepts, line)
     return kernel
+
+
+def _depends(text: str, line: Line) -> tuple[str, ...]:
+    """Return what a source depends on besides its parameters."""
+    found = tuple(filter(None, (part.strip() for part in text.split(","))))
+    for name in found:
+        if name not in _SOURCE_READS:
+            hint = nearest(name, _SOURCE_READS)
+            raise line.error(f"reads = '{text}': a source cannot read '{name}'{hint}")
+    return found
 
 
 def _check_accepts(accepts: str, line: Line) -> None:

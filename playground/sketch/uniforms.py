@@ -51,7 +51,7 @@ _LONGEST_LITERAL = 64
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
 _BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
-_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "follows", "was"})
+_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "values", "follows", "was"})
 
 Calls = dict[str, list[str]]
 
@@ -239,6 +239,7 @@ def _parameter(
     if step is not None and step <= 0:
         raise line.error(f"step of '{name}': expected a number above 0")
     widget = _widget(name, kind, calls.get(kind, []), line)
+    widget = replace(widget, values=_menu_values(name, widget, calls, line))
     parameter = Parameter(
         name,
         glsl_type,
@@ -251,6 +252,13 @@ def _parameter(
         former=_former_names(name, calls, line),
     )
     default = _literal(name, glsl_type, initial, line)
+    if widget.values:
+        if default not in widget.values:
+            listed = ", ".join(map(str, widget.values))
+            raise line.error(f"the default of '{name}' is {default}; its menu's values are {listed}")
+        default = widget.values.index(default)
+    if kind == "button" and default:
+        raise line.error(f"the default of '{name}' must be false: a button is true while it is pressed")
     try:
         return replace(parameter, default=values.coerce(parameter, default))
     except ParameterError as error:
@@ -270,6 +278,18 @@ def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tu
         wanted = f"{count} different names, as parts({example})" if count > 1 else "a vector"
         raise line.error(f"parts of '{name}', a {glsl_type}: expected {wanted}")
     return found
+
+
+def _menu_values(name: str, widget: Widget, calls: Calls, line: Line) -> tuple[int, ...]:
+    """Return what the uniform gets for each choice of a menu; nothing where that is the choice's number."""
+    if "values" not in calls:
+        return ()
+    found = [_number(word, fractions=False) for word in calls["values"]]
+    numbers = tuple(n for n in found if isinstance(n, int) and -(2**31) <= n < 2**31)
+    if widget.kind != "menu" or len(numbers) != len(widget.choices) or len(found) != len(numbers):
+        wanted = f"{len(widget.choices)} whole numbers" if widget.choices else "a menu before it"
+        raise line.error(f'values of \'{name}\': expected {wanted}, as menu("soft", "hard") values(1, 4)')
+    return numbers
 
 
 def _former_names(name: str, calls: Calls, line: Line) -> tuple[str, ...]:
@@ -312,6 +332,15 @@ def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
         if kind == "log_slider" and low <= 0:
             raise line.error(f"log_slider of '{name}': its range must lie above 0")
         return Widget(kind, low, high)
+    if facts.takes == "ranges" and arguments:
+        pairs = [arguments[:2], arguments[2:]] if len(arguments) > 2 else [arguments]
+        axes = [_numbers(name, kind, pair, 2, line) for pair in pairs]
+        return with_axes(kind, [(low, high) for low, high in axes])
+    if facts.takes == "raw or nothing" and arguments:
+        if arguments != ["raw"]:
+            example = f'as {kind}("raw") for one that is not linear, or {kind}'
+            raise line.error(f"{kind} of '{name}' takes only raw in brackets, {example}")
+        return Widget(kind, raw=True)
     if facts.takes == "choices":
         if len(arguments) < 2:
             raise line.error(f'the {kind} of \'{name}\' needs its choices, as {kind}("linear", "smooth")')
@@ -321,6 +350,12 @@ def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
     if arguments:
         raise line.error(f"{kind} of '{name}' takes nothing in brackets")
     return Widget(kind, *(facts.range or (None, None)))
+
+
+def with_axes(kind: str, axes: Sequence[tuple[float, float]]) -> Widget:
+    """Return a widget of a vector whose numbers have these ranges: one for all, or one each."""
+    low, high = min(low for low, _ in axes), max(high for _, high in axes)
+    return Widget(kind, low, high, axes=tuple(axes) if len(set(axes)) > 1 else ())
 
 
 def _numbers(name: str, word: str, arguments: list[str], count: int, line: Line) -> tuple[float, ...]:

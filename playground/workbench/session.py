@@ -11,7 +11,7 @@ No window and no keys: ``frame(size)`` returns the texture to show.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -22,13 +22,15 @@ from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan
 from playground.errors import ContextError, PlaygroundError
+from playground.sketch.assign import resolve
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Sketch, Value
 from playground.workbench.catch_up import CatchUp
+from playground.workbench.checks import Checks
 from playground.workbench.clock import Clock
 from playground.workbench.data_files import DataFiles
-from playground.workbench.drafts import Checks, Drafts
+from playground.workbench.drafts import Drafts
 from playground.workbench.edits import Draft
 from playground.workbench.framing import framed
 from playground.workbench.last_frame import Painter, Picture
@@ -89,6 +91,7 @@ class Session:
         self._now = now
         self.catch_up = CatchUp(now)
         self._is_lost = is_lost  # says whether the engine's context is lost
+        self._pressed: frozenset[str] = frozenset()  # buttons pressed since the last frame, by leaf
         self._lost_over: object = None  # what was shown when a context was lost last
         self._painter = Painter(engine.ctx)
         self._picture = Picture(self._painter)
@@ -179,9 +182,15 @@ class Session:
         self.drafts.open(path, start=start, texts=texts)
         self.view.restore({}, None, later=True)
 
-    def open_copy(self, path: Path) -> None:
-        """Open a copy of the sketch that is shown; edits and view go on. Raises as ``Drafts.open``."""
+    def open_copy(self, path: Path, saved: Draft | None = None) -> None:
+        """Open a copy of the sketch that is shown; edits and view go on. Raises as ``Drafts.open``.
+
+        ``saved`` is the same picture as the copy says it, where its paths are not those of the one shown.
+        """
         self._take_back()
+        if saved is not None:
+            self.drafts.show(saved)
+            self.drafts.reads, self.drafts.read_edits = self.drafts.reads + 1, saved.edits
         self.drafts.open(path, keep=True)
 
     def stay(self) -> None:
@@ -227,6 +236,24 @@ class Session:
             runner.hover, runner.drag = place, drag
             if self.sketch is not None and traits_of(self.sketch).mouse:
                 self.redraw()
+
+    def press(self, path: str) -> None:
+        """Press a button, by its path: the next frame alone sees it pressed."""
+        if self.sketch is not None:
+            self._pressed |= {target.path for target in resolve(self.sketch.graph, path)}
+
+    def _press(self) -> None:
+        """Pass the buttons pressed since the last frame to the engine, and let go of those before."""
+        runner = self.engine.runner
+        if runner.pressed != self._pressed:
+            runner.pressed = self._pressed
+            self.redraw()
+        self._pressed = frozenset()
+
+    def hold_keys(self, codes: Collection[int]) -> None:
+        """Begin a frame in which the picture's keys are down, by their codes in JavaScript."""
+        if self.engine.runner.inputs.keyboard.hold(codes) and self.sketch and traits_of(self.sketch).keys:
+            self.redraw()
 
     def advance(self, seconds: float, date: datetime) -> None:
         """Advance the clock by seconds of real time, unless it is paused; plain shaders get the date.
@@ -289,6 +316,7 @@ class Session:
         for a mistake in the sketch: it is in ``error``, and the last good picture stays.
         """
         drafts, self._size = self.drafts, size
+        self._press()
         if drafts.stage is ReloadStage.SANDBOX:
             drafts.take_report()
         if drafts.stage is ReloadStage.DRAW:
@@ -322,6 +350,7 @@ class Session:
         something is changed.
         """
         engine.runner.mouse = self.engine.runner.mouse
+        engine.runner.inputs = self.engine.runner.inputs
         engine.runner.hover, engine.runner.drag = self.engine.runner.hover, self.engine.runner.drag
         engine.plain_forms.notice = silent
         engine.painted.update(self.engine.painted)

@@ -91,7 +91,7 @@ def _reads_time(graph: Graph) -> bool:
     given = {meaning for kernel in kernels for _, meaning in kernel.usual}
     return (
         bool({"time", "frame", "frame_of_time"} & given)
-        or any(names & kernel.source.names for kernel in kernels)
+        or any(kernel.reads(name) for kernel in kernels for name in names)
         or any(follows_time(text) for text in repeats)
     )
 
