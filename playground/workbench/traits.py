@@ -11,7 +11,7 @@ from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, kernels_of
 
 _MOVING = frozenset({"time", "bands", "frame", "frame_of_time", "delta", "date", "date_from_1"})
-_MOUSE = frozenset({"mouse", "hover", "hover_share", "drag"})
+_MOUSE = frozenset({"mouse", "hover", "hover_share", "drag", "buttons"})
 _CAMERA = ("clip_from_world", "world_from_clip", "eye")
 
 
