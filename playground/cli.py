@@ -190,7 +190,7 @@ def _no_command(name: str, ctx: Any) -> str:
     return f"no command '{name}'{hint}"
 
 
-app.command("live", help=live.HELP)(live.live)
+app.command("live", cls=live.LiveCommand, help=live.HELP)(live.live)
 app.command("render", help=render.HELP)(render.render)
 app.command("fly", help=fly.HELP)(fly.fly)
 app.command("export", help=export.HELP)(export.export)

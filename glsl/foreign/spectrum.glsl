@@ -1,18 +1,19 @@
 // foreign/spectrum.glsl -- the sound of a small band, where nothing feeds a sound's channel.
 //
-//   gives    channel_texels: red, 0..1
+//   gives    channel_texels, grey, 0..1: one column a frequency, or one a sample
 //   needs    noise/hash.glsl
 //   units    seconds; the width is 11025 Hz, and as many samples of 44100 a second
 //   source   made here
 //   tested   tests/glsl/test_foreign.py: its beat, its tones, and that numbers differ
 //
-// The lower half of the rows is the spectrum, the upper half the wave, as Shadertoy has them in
-// 512 x 2 texels; a single row is the spectrum. A drum strikes on each beat and three voices
-// change their tones with it: all of it is a function of the time.
+// A channel's lower half of the rows is the spectrum, its upper half the wave, as Shadertoy has
+// them in 512 x 2 texels. A drum strikes on each beat and three voices change their tones with
+// it: all of it is a function of the time.
 #include "noise/hash.glsl"
-#pragma kernel(output = "channel_texels:r8")
+#pragma kernel(output = "channel_texels:rgba16f")
 
-uniform int number = 0;  //! slider(0, 99) Which band: each has a tempo and tones of its own
+uniform int content = 2;  //! menu("spectrum", "waves", "channel") What the texels are
+uniform int number = 0;   //! slider(0, 99) Which band: each has a tempo and tones of its own
 
 const uint SALT = 0x4c0d55f1u;  // CRC-32 of "foreign/spectrum"
 const float HIGHEST = 11025.0;  // [Hz] at the east edge
@@ -58,14 +59,16 @@ float wave_at(float seconds, int beat, float since) {
     return found;
 }
 
-float kernel(ivec2 texel) {
+float spectrum_or_wave(ivec2 texel) {
     float beats = time * tempo();
     int beat = int(floor(beats));
     float since = beats - floor(beats);
-    if (2 * texel.y < size.y || size.y == 1) {
+    if (content == 0 || (content == 2 && 2 * texel.y < size.y)) {
         float hertz = (float(texel.x) + 0.5) / float(size.x) * HIGHEST;
         return clamp(spectrum_at(hertz, beat, since), 0.0, 1.0);
     }
     float seconds = fract(time) + float(texel.x) / RATE;
     return clamp(0.5 + 0.25 * wave_at(seconds, beat, since), 0.0, 1.0);
 }
+
+vec4 kernel(ivec2 texel) { return vec4(vec3(spectrum_or_wave(texel)), 1.0); }

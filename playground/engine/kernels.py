@@ -22,7 +22,18 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
 from playground.sketch.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
 from playground.sketch.model import Kernel, Sampling
-from playground.sketch.reserved_names import MATCHES, PART, PRESSED, SIZES, UNWIRED, WINDOW, WIRED
+from playground.sketch.reserved_names import (
+    DEPTH,
+    ELEMENT,
+    MATCHES,
+    PART,
+    PRESSED,
+    SIZES,
+    UNWIRED,
+    VALUE,
+    WINDOW,
+    WIRED,
+)
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
@@ -32,6 +43,7 @@ _SAMPLERS = frozenset(
     {*range(0x8B5D, 0x8B65), *range(0x8DC0, 0x8DC6), *range(0x8DC9, 0x8DD9), *range(0x9108, 0x910E)}
 )
 """GL_SAMPLER_1D to GL_UNSIGNED_INT_SAMPLER_2D_MULTISAMPLE_ARRAY."""
+_MOST_LEVELS = 12  # of a pyramid of another tool
 _SHAPES = {0x8B5D: "line", 0x8B5F: "volume", 0x8B60: "cube", 0x8DC1: "layers"}
 """GL_SAMPLER_1D, 3D, CUBE and 2D_ARRAY, with the shapes of what they read."""
 _COLOR_LOGIC_OP = 0x0BF2
@@ -170,9 +182,10 @@ class Kernels:
         program.set(PART, _shares(step.whole_size, origin, step.size))
         for name, meaning in kernel.usual:
             if name in program.uniforms:
-                _set_fitting(program, name, usual[meaning] if meaning in usual else _size(meaning, sizes))
+                _set_fitting(program, name, usual.get(meaning) or _numbers(meaning, job, sizes))
         fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}
-        fed |= {declared.name for declared in kernel.inputs}
+        inputs = {declared.name: declared for declared in kernel.inputs}
+        fed |= inputs.keys()
         for name, uniform in program.uniforms.items():
             kind = getattr(uniform, "gl_type", 0)
             if name in fed or kind not in _SAMPLERS:
@@ -180,9 +193,12 @@ class Kernels:
             # A channel that nothing feeds. Two kinds of samplers may not share a unit, used or not.
             count = int(getattr(uniform, "array_length", 1))
             uniform.value = unit if count == 1 else [*range(unit, unit + count)]
-            for _ in range(count):
-                black = self.binder.shaped_constant("black", _SHAPES.get(kind, ""))
-                unit = self.binder.unit(unit, black, Sampling())
+            elements = [inputs.get(f"{name}{ELEMENT}{number}") for number in range(count)]
+            for element in elements if count > 1 else [None]:
+                readable = self.binder.shaped_constant("black", _SHAPES.get(kind, ""))
+                if element is not None:
+                    readable, _ = self.binder.shaped(element, job.inputs)
+                unit = self.binder.unit(unit, readable, element.sampling if element else Sampling())
         result = self.empty(step)
         if driver == COMPUTE:
             self.images(result, read=True)
@@ -332,6 +348,20 @@ def _shares(whole: tuple[int, int], *pairs: tuple[int, int]) -> tuple[float, ...
     return tuple(number / side for pair in pairs for number, side in zip(pair, whole, strict=True))
 
 
+def _numbers(meaning: str, job: Job, sizes: Mapping[str, tuple[int, int, int]]) -> tuple[float, ...]:
+    """Return what a uniform is given whose meaning depends on its own step: see ``reserved_names``."""
+    if meaning.startswith(VALUE):
+        return (float(meaning.removeprefix(VALUE)),)
+    if meaning.startswith(DEPTH):
+        halved = int(meaning.removeprefix(DEPTH))
+        return (float(min(max(min(job.step.whole_size).bit_length() + halved - 2, 0), _MOST_LEVELS)),)
+    if meaning in ("iteration", "iterations"):
+        around = job.loop_iteration
+        number, whole = (around.number, around.whole) if around is not None else (0, 1)
+        return (float(number if meaning == "iteration" else whole),)
+    return _size(meaning, sizes)
+
+
 def _size(meaning: str, sizes: Mapping[str, tuple[int, int, int]]) -> tuple[float, ...]:
     """Return the sizes [texels] of the samplers that a meaning lists, three numbers each; 0 for none."""
     found = [sizes.get(name, (0, 0, 0)) for name in meaning.removeprefix(SIZES).split()]
@@ -354,5 +384,5 @@ def _set_fitting(program: Program, name: str, values: tuple[float, ...]) -> None
     uniform.value = elements[0] if length == 1 else elements
 
 
-_WHOLE = frozenset({0x1404, 0x1405, *range(0x8B53, 0x8B56), *range(0x8DC6, 0x8DC9)})
-"""GL_INT, GL_UNSIGNED_INT, GL_INT_VEC2 to 4, GL_UNSIGNED_INT_VEC2 to 4."""
+_WHOLE = frozenset({0x1404, 0x1405, *range(0x8B53, 0x8B5A), *range(0x8DC6, 0x8DC9)})
+"""GL_INT, GL_UNSIGNED_INT, GL_INT_VEC2 to 4, GL_BOOL, GL_BOOL_VEC2 to 4, GL_UNSIGNED_INT_VEC2 to 4."""

@@ -215,6 +215,8 @@ class Runner:
         return {
             "time": (time,),
             "resolution": (float(width), float(height), 1.0),
+            "square_resolution": (float(width), float(width), 1.0),  # of a face of a cube map
+            "buttons": (float(self.drag[2] > 0), 0.0, 0.0, 0.0),
             "mouse": self.mouse,
             "delta": (self.delta if frame is None else 1 / FRAME_RATE,),
             "date": self.date,

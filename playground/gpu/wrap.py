@@ -174,7 +174,7 @@ def _wrap_foreign(kernel: Kernel, version_code: int) -> Wrapped:
         "#extension GL_ARB_shading_language_420pack : enable",
         *kernel.prelude,
         f"uniform ivec2 {WINDOW};",
-        *([own_part(kernel.helpers)] if kernel.helpers else []),
+        *map(own_part, kernel.helpers),
     ]
     lines = ["" if line is own else line.code for line in kernel.source.lines]
     after = [own_part(kernel.epilogue, window=WINDOW)] if kernel.epilogue else []
@@ -193,6 +193,8 @@ def _wrap_foreign(kernel: Kernel, version_code: int) -> Wrapped:
         )
         vertex = ShaderStage(triangle + "\n", 0, kernel.source, "")
     expected = "void mainImage(out vec4, in vec2)" if kernel.epilogue else "void main()"
+    if "mainCubemap" in kernel.source.names and "cubemap" in kernel.epilogue:
+        expected = "void mainCubemap(out vec4, in vec2, in vec3, in vec3)"
     return Wrapped(
         kernel,
         FRAGMENT,
@@ -206,7 +208,7 @@ def _wrap_foreign(kernel: Kernel, version_code: int) -> Wrapped:
 def _own_vertex(kernel: Kernel, source: SourceText, begins: Sequence[str]) -> ShaderStage:
     """Return the vertex stage of another tool's shader whose author wrote one."""
     before = [*begins, *kernel.vertex_prelude]
-    before += [own_part(kernel.vertex_helpers, shares=PART)] if kernel.vertex_helpers else []
+    before += [own_part(part, shares=PART) for part in kernel.vertex_helpers]
     own = version_line(source)
     lines = ["" if line is own else line.code for line in source.lines]
     first = len("\n".join(before).split("\n")) + 1

@@ -45,6 +45,7 @@ from playground.live.status import Status
 from playground.live.window import Window, wake
 from playground.live.window_place import Place
 from playground.paths import DEFAULT_SKETCH
+from playground.remote.remotes import Remotes
 from playground.sketch.allowed_files import TEXTS
 from playground.sketch.assign import current_paths
 from playground.sketch.find import find
@@ -91,6 +92,7 @@ def run(
     cache_limit: int = 0,
     time_limit: float | None = None,
     report: Callable[[str], None] = to_log,
+    remotes: Remotes | None = None,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
@@ -99,7 +101,7 @@ def run(
     ``language`` by code; ``show_lessons`` opens the one read last, or the first, next to the sketch,
     unless the reader has closed the lessons. Expensive terrain is cached on disk, in at most
     ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
-    ``report`` receives each error, for the terminal.
+    ``report`` receives each error, for the terminal. ``remotes`` are closed by who opened them.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -132,6 +134,8 @@ def run(
         autosave = Autosave(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher, autosave, SessionCaching(session, cache_limit), report)
+        live.remotes = remotes or stack.enter_context(Remotes())
+        live.remotes.attach(live.bench, wake)
         if found.at is not None:
             live.place.move_to(found.at)
         live.lessons.begin(lesson, language, show_lessons=show_lessons)
@@ -210,6 +214,7 @@ class Live:
         session.engine.runner.inputs.is_live = True
         self.finite = FiniteWatch()
         self.lessons = Lessons(self.bench, autosave, self._remember)
+        self.remotes = Remotes()
 
     def run(self, time_limit: float | None = None) -> None:
         """Run frames until the window is closed, or for a limited time [s]."""
@@ -226,6 +231,7 @@ class Live:
                 patience = min(patience, left)
             self._sleep(patience)
             self.guard.run("reading what was saved", self._take_saved, None)
+            self.guard.run("what a remote asks for", self.remotes.take, None)
             if self.window.pixels != (0, 0):
                 self._draw_frame()
             if self.window.lost:
@@ -270,7 +276,7 @@ class Live:
         """Return how long nothing needs to be done [s]."""
         if self.session.listens or (self.session.animated and self.session.clock.playing):
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
-        if self._settling > 0:
+        if self._settling > 0 or self.remotes.waits:
             return 0.0
         if self.session.catch_up.behind is not None:
             return 0.0
@@ -404,6 +410,7 @@ class Live:
         if rests:
             self.warnings.look()
         self.status.write(self.bench, self.finite.found)
+        self.remotes.tell()
         self.lessons.update(idle=rests and not imgui.is_mouse_down(0))
 
     def _remember(self) -> None:

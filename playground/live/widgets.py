@@ -93,17 +93,20 @@ def _menu(parameter: Parameter, value: Value, place: Place) -> Value | None:
 
 
 def _colour(parameter: Parameter, value: Value, place: Place) -> Value | None:
-    # Linear inside, display-encoded for the eye; alpha is not a light and stays as it is.
-    linear = _as_list(value)
+    # Linear inside unless it is raw, display-encoded for the eye; alpha is not a light and stays as it is.
+    linear, raw_one = _as_list(value), parameter.widget.raw
     flags = imgui.ColorEditFlags_.display_hex | imgui.ColorEditFlags_.picker_hue_wheel
-    seen = [*linear_to_srgb([min(max(c, 0.0), 1.0) for c in linear[:3]]).tolist(), *linear[3:]]
+    held = [min(max(c, 0.0), 1.0) for c in linear[:3]]
+    seen = [*(held if raw_one else linear_to_srgb(held).tolist()), *linear[3:]]
     if len(linear) == 4:
         changed, raw = imgui.color_edit4(place.label, seen, flags | imgui.ColorEditFlags_.alpha_bar)
     else:
         changed, raw = imgui.color_edit3(place.label, seen, flags)
     # Eight bits a channel, as the field shows it and a file can say it.
     picked = [round(c * 255) / 255 for c in _as_list(raw)]
-    return (*srgb_to_linear(picked[:3]).tolist(), *picked[3:]) if changed else None
+    if not changed:
+        return None
+    return tuple(picked) if raw_one else (*srgb_to_linear(picked[:3]).tolist(), *picked[3:])
 
 
 def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None:

@@ -61,7 +61,8 @@ def _of_kernel(kernel: Kernel) -> list[Any]:
 def _parameter(parameter: Parameter) -> tuple[Any, ...]:
     widget = parameter.widget
     what: tuple[Any, ...] = (widget.kind, widget.low, widget.high, widget.choices)
-    what += (widget.values, widget.axes) if widget.values or widget.axes else ()  # as in ``_of_kernel``
+    more = (widget.values, widget.axes, widget.raw)
+    what += more if any(more) else ()  # as in ``_of_kernel``
     return parameter.name, parameter.type, parameter.default, what, _sampling(parameter)
 
 

@@ -21,6 +21,7 @@ class Widget:
     choices: tuple[str, ...] = ()  # of a menu
     renamed: tuple[tuple[str, str], ...] = ()  # former choice → choice; a former one is still read
     values: tuple[int, ...] = ()  # of a menu: what the uniform gets for each choice; (): its number, from 0
+    raw: bool = False  # of a colour: as it is shown, not linear
     axes: tuple[tuple[float, float], ...] = ()  # of a point: each number's range, where they differ
 
     def ends(self, axis: int = 0) -> tuple[float | None, float | None]:
@@ -41,8 +42,11 @@ class Sampling:
     """How a texture is read."""
 
     filter: str = "nearest"  # nearest | linear
-    wrap: str = "clamp"  # clamp | repeat
+    wrap: str = "clamp"  # clamp | repeat | mirror
     mipmap: bool = False
+    magnify: str = ""  # how where a texel is larger than a pixel; "": as ``filter``
+    flip: bool = False  # an image file's upper row is below
+    decode: bool = False  # an image file's colours become linear, where they would stay encoded
 
 
 AS_IT_IS = Sampling()

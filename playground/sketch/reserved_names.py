@@ -79,6 +79,16 @@ of its iteration, so that what is computed of the frames before stays."""
 SIZES = "sizes: "
 """What begins the meaning of a uniform that is given the sizes of samplers, whose names follow."""
 
+ELEMENT = "_"
+"""What is between the name of an array of samplers and the number of one, in the name of what feeds it."""
+
+VALUE = "value: "
+"""What begins the meaning of a uniform that is given a number, which follows."""
+
+DEPTH = "depth: "
+"""What begins the meaning of a uniform that is given the levels of a pyramid; how often the foot was halved
+for this pass follows."""
+
 NEUTRAL: dict[str, tuple[float, ...]] = {
     "frame_rate": (60.0,),
     "sample_rate": (44_100.0,),

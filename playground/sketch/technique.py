@@ -99,11 +99,11 @@ class Kernel:
     dialect: str = ""  # of another tool's shader: the name of a row of sketch/dialects
     prelude: tuple[str, ...] = ()  # likewise: lines that the driver gets before the file's
     epilogue: str = ""  # likewise: the file of gpu/shaders that follows the file's lines
-    helpers: str = ""  # likewise: the file of gpu/shaders between the prelude and the file's lines
+    helpers: tuple[str, ...] = ()  # likewise: files of gpu/shaders between the prelude and its lines
     vertex: tuple[tuple[str, str], ...] = ()  # what its vertex shader gives it: declaration, statements
     vertex_source: SourceText | None = None  # the author's own vertex shader, in place of ``vertex``
     vertex_prelude: tuple[str, ...] = ()  # of that
-    vertex_helpers: str = ""  # likewise
+    vertex_helpers: tuple[str, ...] = ()  # likewise
     meanings: tuple[tuple[str, str], ...] = ()  # uniform → what it is given: see ``usual``
     unfed: tuple[tuple[str, str], ...] = ()  # likewise: what it lacks where nothing is wired, what is instead
 

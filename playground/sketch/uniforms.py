@@ -336,6 +336,11 @@ def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
         pairs = [arguments[:2], arguments[2:]] if len(arguments) > 2 else [arguments]
         axes = [_numbers(name, kind, pair, 2, line) for pair in pairs]
         return with_axes(kind, [(low, high) for low, high in axes])
+    if facts.takes == "raw or nothing" and arguments:
+        if arguments != ["raw"]:
+            example = f'as {kind}("raw") for one that is not linear, or {kind}'
+            raise line.error(f"{kind} of '{name}' takes only raw in brackets, {example}")
+        return Widget(kind, raw=True)
     if facts.takes == "choices":
         if len(arguments) < 2:
             raise line.error(f'the {kind} of \'{name}\' needs its choices, as {kind}("linear", "smooth")')

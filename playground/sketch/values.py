@@ -69,7 +69,7 @@ def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
         given = _direction(given, name)
     if kind == "colour" and isinstance(given, str) and given.strip().startswith("#"):
         try:
-            given = (*parse_hex(given.strip()), 1.0)[: length_of(parameter.type)]
+            given = (*parse_hex(given.strip(), raw=parameter.widget.raw), 1.0)[: length_of(parameter.type)]
         except DataError as error:
             raise ParameterError(f"{name}: {error}") from None
     if isinstance(given, str):
@@ -125,8 +125,9 @@ def write(parameter: Parameter, value: Value) -> str:
     if parameter.widget.kind == "menu" and isinstance(value, int):
         return parameter.widget.choices[value]
     if parameter.widget.kind == "colour" and isinstance(value, tuple):
-        text = to_hex(value)
-        there = (*parse_hex(text), 1.0)[: len(value)]
+        raw = parameter.widget.raw
+        text = to_hex(value, raw=raw)
+        there = (*parse_hex(text, raw=raw), 1.0)[: len(value)]
         if all(math.isclose(a, b, rel_tol=0.0, abs_tol=1e-7) for a, b in zip(there, value, strict=True)):
             return text
     if isinstance(value, tuple):

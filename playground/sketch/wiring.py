@@ -142,6 +142,8 @@ def _is_number(graph: Graph, name: str) -> bool:
         sized = head.removesuffix(".size")
         if inner(graph, sized) is not None or sized in input_names(graph):
             return True
+        if any(target.parameter.widget.kind == "file" for target in find_targets(graph, sized)[:1]):
+            return True
     return any(target.parameter.type in SCALARS for target in find_targets(graph, name)[:1])
 
 

@@ -74,7 +74,8 @@ def _near(parameter: Parameter, value: Value, randoms: Random, strength: float) 
         elevation = numbers[1] + 90 * randoms.gauss(0, strength)
         return round(azimuth, 1), round(min(max(elevation, HEIGHTS[0]), HEIGHTS[1]), 1)
     if kind == "colour":
-        seen = linear_to_srgb([min(max(n, 0.0), 1.0) for n in numbers[:3]]).tolist()
+        held = [min(max(n, 0.0), 1.0) for n in numbers[:3]]
+        seen = held if parameter.widget.raw else linear_to_srgb(held).tolist()
         return _colour(parameter, [c + randoms.gauss(0, strength) for c in seen], numbers[3:])
     if low is None or high is None:
         return _number(parameter, [n * math.exp(randoms.gauss(0, strength)) for n in numbers])
@@ -120,4 +121,5 @@ def _colour(parameter: Parameter, seen: list[float], alpha: list[float] | None =
     """Return a colour of eight bits a channel, so that it can be written as it is; alpha stays."""
     steps = [round(min(max(c, 0.0), 1.0) * 255) / 255 for c in seen]
     assert isinstance(parameter.default, tuple)
-    return (*srgb_to_linear(steps).tolist(), *(alpha or parameter.default[3:]))
+    found = steps if parameter.widget.raw else srgb_to_linear(steps).tolist()
+    return (*found, *(alpha or parameter.default[3:]))

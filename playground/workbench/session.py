@@ -27,9 +27,10 @@ from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Sketch, Value
 from playground.workbench.catch_up import CatchUp
+from playground.workbench.checks import Checks
 from playground.workbench.clock import Clock
 from playground.workbench.data_files import DataFiles
-from playground.workbench.drafts import Checks, Drafts
+from playground.workbench.drafts import Drafts
 from playground.workbench.edits import Draft
 from playground.workbench.framing import framed
 from playground.workbench.last_frame import Painter, Picture
@@ -181,9 +182,15 @@ class Session:
         self.drafts.open(path, start=start, texts=texts)
         self.view.restore({}, None, later=True)
 
-    def open_copy(self, path: Path) -> None:
-        """Open a copy of the sketch that is shown; edits and view go on. Raises as ``Drafts.open``."""
+    def open_copy(self, path: Path, saved: Draft | None = None) -> None:
+        """Open a copy of the sketch that is shown; edits and view go on. Raises as ``Drafts.open``.
+
+        ``saved`` is the same picture as the copy says it, where its paths are not those of the one shown.
+        """
         self._take_back()
+        if saved is not None:
+            self.drafts.show(saved)
+            self.drafts.reads, self.drafts.read_edits = self.drafts.reads + 1, saved.edits
         self.drafts.open(path, keep=True)
 
     def stay(self) -> None:

@@ -49,6 +49,10 @@ def test_pictures_differ_and_show_which_way_is_up(texels):
         assert (one[-8:, :, 1].mean() - one[:8, :, 1].mean()) > 0.3  # green in the north
 
 
+def test_black_is_black_and_opaque(texels):
+    assert (texels("black", (3, 2)) == [0.0, 0.0, 0.0, 1.0]).all()
+
+
 def test_an_image_has_the_bytes_of_its_file(texels, tmp_path):
     pixels = np.random.default_rng(3).integers(0, 256, (6, 8, 4), dtype=np.uint8)
     write_png(tmp_path / "x.png", pixels)
@@ -75,9 +79,11 @@ def test_a_sky_has_its_horizon_its_sun_and_its_ground_where_the_cube_map_says(te
     assert max(a @ b for i, a in enumerate(suns) for b in suns[:i]) < 0.95
 
 
-def music(texels, time: float, size: tuple[int, int] = (512, 2), number: int = 0) -> np.ndarray:
+def music(
+    texels, time: float, size: tuple[int, int] = (512, 2), number: int = 0, content: str = ""
+) -> np.ndarray:
     """Return rows 0..1 of the stand-in of a sound at a time."""
-    return texels("spectrum", size, f"number = {number}", time=time)
+    return texels("spectrum", size, f"number = {number}{content}", time=time)[..., 0]
 
 
 def test_a_made_up_sound_has_tones_a_beat_and_a_wave(texels):
@@ -108,4 +114,6 @@ def test_made_up_sounds_differ_by_number_and_go_by_time_alone(texels):
     made = [music(texels, 2.0, number=number) for number in range(4)]
     assert min(np.abs(a - b).max() for i, a in enumerate(made) for b in made[:i]) > 0.2
     np.testing.assert_array_equal(music(texels, 2.0), made[0])
-    assert music(texels, 2.0, (1024, 1)).max() > 0.3, "one row is the spectrum"
+    whole = music(texels, 2.0, (512, 4))
+    alone = {c: music(texels, 2.0, content=f', content = "{c}"') for c in ("spectrum", "waves")}
+    np.testing.assert_array_equal(whole, [*alone["spectrum"], *alone["waves"]])

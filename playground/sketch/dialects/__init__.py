@@ -9,23 +9,27 @@ from __future__ import annotations
 import re
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.sketch.dialects import main, shadertoy
+from playground.sketch.dialects import isf, main, shadertoy, shadertoy_export, shadertoy_folder, vscode
 from playground.sketch.dialects.passes import Read, graph_of_shaders
 from playground.sketch.dialects.reading import Files
-from playground.sketch.dialects.shader import Shader
+from playground.sketch.dialects.shader import Made, Shader
 from playground.sketch.model import Graph
 from playground.sketch.source import read_text
 
 OWN = "own"
+EXPORT = ".json"
+_REFUSED = "sound"
 _MOST = 64
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
-_ISF = re.compile(r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES)"', re.DOTALL)
+_ISF = re.compile(
+    r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS)"', re.DOTALL
+)
 _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:iChannel\d|iUniform|iKeyboard)\b", re.MULTILINE)
@@ -41,27 +45,56 @@ class Dialect:
     name: str  # as --dialect takes it
     label: str  # in a sentence
     sign: Callable[[str, str], object]  # of the text, and of the text without comments
-    shaders: Callable[[Files], Sequence[Shader]] | None = None  # None: not read yet, or our own
+    shaders: Callable[[Files], Sequence[Shader | Made]] | None = None  # None: not read yet, or our own
     # No shader: the file runs as it is, as a plain shader.
 
 
+def _shadertoy(files: Files) -> Sequence[Shader]:
+    """Return the passes of a file, and of the folder where it is one of several."""
+    if shadertoy_folder.has_more(files.path):
+        return shadertoy_folder.shaders(files)
+    return shadertoy.shaders(files)
+
+
+def _vscode(files: Files) -> Sequence[Shader]:
+    return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else vscode.shaders(files)
+
+
+def _without_picture(files: Files) -> Sequence[Shader]:
+    """Return the passes of the folder that a file is one of; raise ``ShaderError`` for one alone."""
+    return (
+        shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else shadertoy.refused(files)
+    )
+
+
 DIALECTS = (
-    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text)),
-    Dialect("export", "a Shadertoy export (JSON)", lambda text, code: _EXPORT.match(text)),
+    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text), isf.shaders),
+    Dialect(
+        "export",
+        "a Shadertoy export (JSON)",
+        lambda text, code: _EXPORT.match(text),
+        shadertoy_export.shaders,
+    ),
     Dialect(OWN, "a kernel", lambda text, code: _OWN_PRAGMA.search(code)),
     Dialect(
         "vscode",
         "a VS Code Shadertoy file (#iChannel, #iUniform)",
         lambda text, code: _DIRECTIVE.search(code),
+        _vscode,
     ),
     Dialect(
         "shadertoy",
         "a Shadertoy shader",
         lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code),
-        shadertoy.shaders,
+        _shadertoy,
     ),
     Dialect("main", "a shader with its own main", lambda text, code: _MAIN.search(code), main.shaders),
-    Dialect("sound", "Shadertoy's sound, VR or cube map", lambda text, code: _SOUND.search(code)),
+    Dialect(
+        _REFUSED,
+        "Shadertoy's sound, VR or cube map",
+        lambda text, code: _SOUND.search(code),
+        _without_picture,
+    ),
 )
 """The dialects, in the order in which a text is looked at."""
 
@@ -70,7 +103,7 @@ _known: OrderedDict[tuple[Path, Path, str], tuple[Graph | None, Files]] = Ordere
 
 def names() -> tuple[str, ...]:
     """Return what ``--dialect`` takes."""
-    return tuple(d.name for d in DIALECTS if d.shaders is not None or d.name == OWN)
+    return tuple(d.name for d in DIALECTS if d.name != _REFUSED and (d.shaders or d.name == OWN))
 
 
 def check_name(name: str) -> str:
@@ -86,11 +119,9 @@ def dialect_of(text: str) -> Dialect | None:
     return next((dialect for dialect in DIALECTS if dialect.sign(text, code)), None)
 
 
-def refuse_export(path: Path) -> None:
-    """Raise ``SketchError`` for a JSON file that Shadertoy wrote."""
-    found = dialect_of(read_text(path)) if path.suffix == ".json" else None
-    if found is not None and found.name == "export":
-        raise _unread(found, path)
+def is_export(path: Path) -> bool:
+    """Return whether a file is a JSON that Shadertoy, or a tool in its place, wrote."""
+    return path.suffix == EXPORT and _EXPORT.match(read_text(path)) is not None
 
 
 def _unread(dialect: Dialect, path: Path) -> SketchError:
@@ -129,6 +160,9 @@ def read_foreign(
         raise _unread(chosen, path)
     shaders = chosen.shaders(files)
     graph = graph_of_shaders(name, shaders, read, root) if shaders else None
+    if graph is not None:
+        title = files.title or graph.title
+        graph = replace(graph, title=title, warnings=(*graph.warnings, *files.notes))
     if not instead:
         _known[key] = graph, files
         while len(_known) > _MOST:

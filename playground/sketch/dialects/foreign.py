@@ -25,11 +25,14 @@ from playground.sketch.dialects.shader import (
 )
 from playground.sketch.header import title_of
 from playground.sketch.model import SHAPES, Input, Kernel, Output, Parameter, Widget
+from playground.sketch.reserved_names import ELEMENT
 from playground.sketch.source import Line, SourceText
 from playground.sketch.uniforms import read_uniforms
 
 _COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
 _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
+_COUNT = re.compile(r"\[\s*(\d+)\s*\]")
+_MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
 _MODEL = "MODEL_"
 _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
 _SOUNDS = "a made-up sound stands in; a sketch may wire foreign/sound to it"
@@ -52,6 +55,7 @@ class ForeignKernel:
         self.commented = {(line.file, line.number): file for line, file in commented_files(self.source)}
         self.pictures = dict(self._pictures())
         self.shapes = {n: SHAPES[kind] for n, kind in self._kinds() if kind in SHAPES and self._is_read(n)}
+        self.shapes |= {element: SHAPES[one.type] for element, one in self._elements()}
         self.channels = {name: self._channel(name) for name in self.shapes}
 
     def kernel(self, name: str) -> Kernel:
@@ -77,13 +81,15 @@ class ForeignKernel:
             ),
             title=title_of(self.source),
             dialect=self.rules.name,
-            prelude=tuple(self._prelude(shader.text, self.missing)),
+            prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
             epilogue=self.rules.epilogue,
             helpers=self.rules.helpers,
-            vertex=vertex_outputs("\n".join([*shader.text.prelude, self.code])) if ours else (),
+            vertex=vertex_outputs("\n".join([*shader.text.prelude, *self._varyings(), self.code]))
+            if ours
+            else (),
             vertex_source=self.vertex,
             vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
-            vertex_helpers=self.rules.vertex_helpers if shader.vertex else "",
+            vertex_helpers=self.rules.vertex_helpers if shader.vertex else (),
             meanings=tuple(meanings),
             unfed=tuple(self._unfed(own)),
         )
@@ -94,6 +100,11 @@ class ForeignKernel:
         yield from (f"uniform {_declaration(self.rules.names[name][0], name)};" for name in missing)
         declared = uniforms(text.source.code)
         yield from (f"uniform {p.type} {p.name};" for p in self.shader.parameters if p.name not in declared)
+
+    def _varyings(self) -> list[str]:
+        """Return the dialect's own that a text reads and does not declare itself."""
+        known = [declaration for declaration, _ in vertex_outputs(self.code)]
+        return [one for one in self.rules.varyings if one.replace("in ", "out ", 1) not in known]
 
     def _channel(self, sampler: str) -> Channel:
         """Return what feeds a sampler; by the rules where the shader does not say."""
@@ -115,19 +126,15 @@ class ForeignKernel:
         return [
             name
             for name in self.rules.names
-            if name in source.names
-            and name not in declared
-            and re.search(rf"(?<![.\w]){name}\b", code)
+            if name not in declared
+            and (name in self.shader.named or name in source.names)
+            and (name in self.shader.named or re.search(rf"(?<![.\w]){name}\b", code))
             and not is_declared(code, name, anywhere=anywhere)
         ]
 
     def _is_read(self, name: str) -> bool:
         """Return whether a text names a sampler besides declaring it."""
-        return (
-            name in self.missing
-            or name in self.vertex_missing
-            or len(re.findall(rf"\b{name}\b", self.code)) > 1
-        )
+        return name in self.missing or name in self.vertex_missing or self.source.counts[name] > 1
 
     def _kinds(self) -> Iterator[tuple[str, str]]:
         """Yield each sampler that a wire may feed, with its type."""
@@ -142,6 +149,16 @@ class ForeignKernel:
                 and not self._line(one).comment.startswith("!")
             ):
                 yield one.name, one.type
+
+    def _elements(self) -> Iterator[tuple[str, Declared]]:
+        """Yield what a wire feeds of the arrays of samplers: ``maps_0`` is the first of ``maps[4]``."""
+        for one in self.declared.values():
+            count = _COUNT.search(one.written) if one.is_array and one.type in SHAPES else None
+            if count and self._is_read(one.name):
+                elements = (
+                    f"{one.name}{ELEMENT}{number}" for number in range(min(int(count[1]), _MOST_ELEMENTS))
+                )
+                yield from ((element, one) for element in elements if element not in self.source.names)
 
     def _line(self, one: Declared) -> Line:
         return self.source.lines[one.line]
@@ -192,7 +209,10 @@ class ForeignKernel:
 
     def _unfed(self, fed: Collection[str]) -> Iterator[tuple[str, str]]:
         """Yield what the picture lacks where nothing is wired: each name, and what is drawn instead."""
-        own = {one.name: one.type for one in self.declared.values()}
+        arrays = {one.name for _, one in self._elements()}
+        own = {one.name: one.type for one in self.declared.values() if one.name not in arrays}
+        for element, _ in self._elements():
+            yield element, "it reads black"
         own |= {name: self.rules.names[name][0] for name in (*self.missing, *self.vertex_missing)}
         for name, kind in own.items():
             channel = self.channels.get(name, Channel())
@@ -216,7 +236,9 @@ def unfed_warnings(kernel: Kernel, wired: Collection[str]) -> tuple[Diagnostic, 
     lines = kernel.source.lines
     found = []
     for instead, some in names.items():
-        first = re.compile(rf"\b(?:{'|'.join(some)})\b")
+        first = re.compile(
+            rf"\b(?:{'|'.join([*some, *(name.rpartition(ELEMENT)[0] or name for name in some)])})\b"
+        )
         line = next((line for line in lines if first.search(line.code)), lines[0])
         found.append(line.diagnostic(f"nothing feeds {', '.join(some)}: {instead}", severity="warning"))
     return tuple(found)

@@ -5,7 +5,6 @@ The names are those of glslCanvas, glslViewer, KodeLife, Bonzomatic and glslsand
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 
 from playground.sketch.dialects import shadertoy
@@ -13,7 +12,9 @@ from playground.sketch.dialects.declarations import uniforms, vertex_outputs
 from playground.sketch.dialects.es import rewritten, version_of
 from playground.sketch.dialects.passes import VIEW
 from playground.sketch.dialects.reading import Files
-from playground.sketch.dialects.shader import Names, Rules, Shader
+from playground.sketch.dialects.shader import Channel, Made, Names, Rules, Shader
+from playground.sketch.dialects.viewer import shaders_of
+from playground.sketch.model import Sampling
 from playground.sketch.reserved_names import PLAIN_UNIFORMS, SIZES
 from playground.sketch.source import SourceText
 
@@ -31,6 +32,8 @@ _MATRICES = (
     "u_modelMatrix u_viewMatrix u_projectionMatrix u_modelViewMatrix u_modelViewProjectionMatrix".split()
 )
 _PICTURES = range(_MOST_PICTURES)
+_BEFORE = ("backbuffer", "u_backbuffer", "prevFrame", "prevPass", "texPreviousFrame")
+"""Samplers that read the picture of the frame before: 8 bits a channel, as the tools have it."""
 
 _ELSEWHERE: Names = {
     # glslViewer
@@ -50,7 +53,6 @@ _ELSEWHERE: Names = {
     "fFrameTime": ("float", "delta"),
     "v2Resolution": ("vec2", "resolution"),
     **{name: ("sampler1D", "sound 0") for name in ("texFFT", "texFFTSmoothed", "texFFTIntegrated")},
-    "texPreviousFrame": ("sampler2D", "none"),
     "texChecker": ("sampler2D", "picture 0"),
     "texNoise": ("sampler2D", "noise 0"),
     **{f"texTex{n}": ("sampler2D", f"picture {n}") for n in range(1, 5)},
@@ -58,7 +60,7 @@ _ELSEWHERE: Names = {
     "mouse": ("vec2", "hover_share"),
     "spectrum": ("vec3", "bands"),
     **{f"texture{n}": ("sampler2D", f"picture {n}") for n in range(4)},
-    **{name: ("sampler2D", "none") for name in ("prevFrame", "prevPass", "backbuffer")},
+    **{name: ("sampler2D", "none") for name in _BEFORE},
 }
 
 NAMES: Names = {
@@ -70,18 +72,6 @@ NAMES: Names = {
     **shadertoy.NAMES,
     **_ELSEWHERE,
 }
-
-_PASS = re.compile(
-    r"#\s*(?:if|ifdef|elif)\b.*\b((?:DOUBLE_)?BUFFER_\d+|(?:CONVOLUTION_)?PYRAMID_\w+|FLOOD_\w+)\b"
-)
-
-
-def _refuse_passes(source: SourceText) -> None:
-    """Raise ``ShaderError`` at the first pass that glslViewer would make of the text by a define."""
-    for line in source.lines:
-        if not line.chain and (match := _PASS.search(line.code)):
-            message = f"glslViewer's {match.group(1)} is a pass of its own, which is not drawn yet"
-            raise line.error(message, match.start(1) + 1)
 
 
 def _needs_dialect(source: SourceText) -> bool:
@@ -109,10 +99,13 @@ def _defines(source: SourceText) -> tuple[str, ...]:
 RULES = Rules("main", NAMES, declared_anywhere=True, defines=_defines)
 
 
-def shaders(files: Files) -> Sequence[Shader]:
+def shaders(files: Files) -> Sequence[Shader | Made]:
     """Return the passes of a file, none where it lacks nothing that a plain shader is given."""
     source = files.source()
-    _refuse_passes(source)
+    text = rewritten(source)
+    if found := shaders_of(text, RULES):
+        return found
     if not files.named and version_of(source) >= 330 and not _needs_dialect(source):
         return ()
-    return (Shader(VIEW, rewritten(source), RULES),)
+    before = dict.fromkeys(_BEFORE, Channel(target=VIEW, sampling=Sampling("linear", "clamp")))
+    return (Shader(VIEW, text, RULES, target=VIEW, channels=before, keeps=True),)

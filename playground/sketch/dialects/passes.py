@@ -9,14 +9,15 @@ written in the frame before, and the whole of ``view`` is a loop over the frames
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import ShaderError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.dialects.foreign import ForeignKernel
-from playground.sketch.dialects.shader import Channel, Shader
-from playground.sketch.model import Export, Graph, PassSpec, Technique
+from playground.sketch.dialects.shader import Channel, Made, Shader
+from playground.sketch.model import Export, Graph, Kernel, PassSpec, Technique
 
 Read = Callable[[str, Path, Path], Technique]
 """Return the technique that ``use`` names: see ``Techniques.read``."""
@@ -26,25 +27,34 @@ _BEFORE = "before_"  # begins the input that has a target's content of the frame
 _FRAMES = "frames"
 
 
-def graph_of_shaders(name: str, shaders: Sequence[Shader], read: Read, root: Path) -> Graph:
+def graph_of_shaders(name: str, shaders: Sequence[Shader | Made], read: Read, root: Path) -> Graph:
     """Return a technique called ``name``, whose picture is that of the last of its shaders.
 
     Its channels are inputs, and its shaders' own uniforms parameters: one for those of the same name.
     ``root`` is the folder that its files stay in. Raises ``ShaderError`` for a sampler of a target that
     no shader writes.
     """
-    return _Passes(name, shaders, root).graph(read)
+    return _Passes(name, shaders, read, root).graph(read)
 
 
 class _Passes:
     """The shaders of one file, as kernels, and what wires them."""
 
-    def __init__(self, name: str, shaders: Sequence[Shader], root: Path) -> None:
+    def __init__(self, name: str, shaders: Sequence[Shader | Made], read: Read, root: Path) -> None:
         self.name = name
         self.shaders = shaders
-        made = [ForeignKernel(shader, root) for shader in shaders]
-        self.kernels = [kernel.kernel(name) for kernel in made]
-        self.channels = [kernel.channels for kernel in made]
+        self.techniques: list[Technique] = []
+        self.channels: list[Mapping[str, Channel]] = []
+        for shader in shaders:
+            if isinstance(shader, Made):
+                self.techniques.append(read(shader.use, GLSL, GLSL))
+                self.channels.append({name: Channel(target) for name, target in shader.reads.items()})
+            else:
+                foreign = ForeignKernel(shader, root)
+                self.techniques.append(foreign.kernel(name))
+                self.channels.append(foreign.channels)
+        self._drop_unread()
+        self.kernels = [kernel for kernel in self.techniques if isinstance(kernel, Kernel) and kernel.dialect]
         self.wires: list[list[tuple[str, str]]] = [
             [] for _ in shaders
         ]  # of each: sampler, pass of this frame
@@ -54,6 +64,17 @@ class _Passes:
                 if channel.target:
                     self._wire(index, sampler, channel.target)
         self.inputs = dict(self._inputs())
+
+    def _drop_unread(self) -> None:
+        """Drop the parameters that a pass declares and only other passes read."""
+        kernels = [one for one in self.techniques if isinstance(one, Kernel) and one.dialect]
+        reads = {id(one): _names_read(one) for one in kernels}
+        anywhere = set().union(*reads.values())
+        for index, one in enumerate(self.techniques):
+            if isinstance(one, Kernel) and id(one) in reads:
+                kept = [p for p in one.parameters if p.name in reads[id(one)] or p.name not in anywhere]
+                if len(kept) < len(one.parameters):
+                    self.techniques[index] = replace(one, parameters=tuple(kept))
 
     def _wire(self, index: int, sampler: str, target: str) -> None:
         writers = [i for i, shader in enumerate(self.shaders) if shader.target == target]
@@ -66,7 +87,8 @@ class _Passes:
             self.state.setdefault(target, []).append(f"{self.shaders[index].name}.{sampler}")
 
     def _unwritten(self, index: int, sampler: str, target: str) -> ShaderError:
-        lines = self.kernels[index].source.lines
+        made = self.techniques[index]
+        lines = (made if isinstance(made, Kernel) else self.kernels[-1]).source.lines
         named = re.compile(rf"\b{sampler}\b")
         line = next((line for line in lines if named.search(line.code)), lines[0])
         hint = nearest(target, [shader.target for shader in self.shaders if shader.target])
@@ -112,8 +134,17 @@ class _Passes:
         if len(self.shaders) == 1 and not self.state:
             return PassSpec(VIEW, use, self.kernels[0], size=self.shaders[0].size, file=file)
         passes = tuple(
-            PassSpec(shader.name, use, kernel, inputs=tuple(wires), size=shader.size, file=file)
-            for shader, kernel, wires in zip(self.shaders, self.kernels, self.wires, strict=True)
+            PassSpec(
+                shader.name,
+                shader.use if isinstance(shader, Made) else use,
+                technique,
+                inputs=tuple(wires),
+                size=shader.size,
+                repeat=shader.repeat,
+                feedback=((shader.feeds, "frame"),) if shader.feeds else (),
+                file=file,
+            )
+            for shader, technique, wires in zip(self.shaders, self.techniques, self.wires, strict=True)
         )
         last = {shader.target: shader.name for shader in self.shaders}
         inputs = [Export(name, tuple(readers)) for name, (_, readers) in self.inputs.items()]
@@ -133,16 +164,27 @@ class _Passes:
         return PassSpec(VIEW, use, several, repeat=_FRAMES if feedback else "", feedback=feedback, file=file)
 
     def _parameters(self) -> Iterator[Export]:
-        """Yield one parameter for those of one name and type; where types differ, one for each shader."""
-        found: dict[str, list[tuple[str, str]]] = {}
-        for shader, kernel in zip(self.shaders, self.kernels, strict=True):
-            for parameter in kernel.parameters:
-                found.setdefault(parameter.name, []).append((shader.name, parameter.type))
+        """Yield one parameter for those of one name and type; where types differ, one for each shader.
+
+        Two that name different files differ as well.
+        """
+        found: dict[str, list[tuple[str, object]]] = {}
+        for shader, technique in zip(self.shaders, self.techniques, strict=True):
+            if isinstance(shader, Made) or not isinstance(technique, Kernel):
+                continue
+            for p in technique.parameters:
+                kind = (p.type, p.default) if p.widget.kind == "file" else p.type
+                found.setdefault(p.name, []).append((shader.name, kind))
         for name, owners in found.items():
             if len({kind for _, kind in owners}) == 1:
                 yield Export(name, tuple(f"{owner}.{name}" for owner, _ in owners))
             else:
                 yield from (Export(_own_name(owner, name), (f"{owner}.{name}",)) for owner, _ in owners)
+
+
+def _names_read(kernel: Kernel) -> set[str]:
+    """Return the parameters that a text names besides declaring them."""
+    return {p.name for p in kernel.parameters if kernel.source.counts[p.name] > 1 or kernel.vertex_source}
 
 
 def stand_in_paths(path: str, sampler: str) -> set[str]:

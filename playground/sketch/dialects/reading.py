@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from playground.errors import Diagnostic
+from playground.paths import PART_OF_FILE, shown
 from playground.sketch.allowed_files import is_file
 from playground.sketch.dialects.foreign import commented_files, places_of
-from playground.sketch.source import Origin, SourceText, read_source_and_origin, read_text
+from playground.sketch.source import Line, Origin, SourceText, read_source_and_origin, read_text
 
 
 @dataclass
@@ -22,6 +24,8 @@ class Files:
     root: Path
     instead: Mapping[str, str] = field(default_factory=dict)
     named: bool = False
+    title: str = ""  # that the other tool gives it
+    notes: list[Diagnostic] = field(default_factory=list)  # of what is not as in the other tool
     _origins: list[Origin] = field(default_factory=list)
     _texts: dict[str, str] = field(default_factory=dict)
     _there: dict[Path, bool] = field(default_factory=dict)
@@ -42,6 +46,27 @@ class Files:
             for place in places_of(file, line, self.root):
                 self.is_there(place)
         return source
+
+    def part(self, label: str, text: str) -> SourceText:
+        """Return a text that is a part of the file: its lines are those of "file:label", from 1."""
+        named = self.path.with_name(f"{self.path.name}{PART_OF_FILE}{label}")
+        instead = {**self.instead, str(named): text}
+        source, origin = read_source_and_origin(named, (self.root,), instead, foreign=True)
+        self._origins.append(Origin(tuple(t for t in origin.texts if t[0] != str(named)), origin.places))
+        files = (str(self.path), *(name for name in source.files if name != str(named)))
+        return SourceText(str(self.path), source.lines, files)
+
+    def note(self, message: str, line: int = 0, path: Path | None = None) -> None:
+        """Note what a user is told of the file, at one of its lines."""
+        self._note(Diagnostic(message, shown(path or self.path), line, severity="warning"))
+
+    def note_at(self, line: Line, message: str) -> None:
+        """Note what a user is told of a line."""
+        self._note(line.diagnostic(message, severity="warning"))
+
+    def _note(self, found: Diagnostic) -> None:
+        if found not in self.notes:
+            self.notes.append(found)
 
     def is_there(self, place: Path) -> bool:
         """Return whether there is a file at a place, in the folder or not."""

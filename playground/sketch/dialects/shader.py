@@ -45,8 +45,9 @@ class Rules:
     names: Names
     declared_anywhere: bool = False  # a name declared in any function counts as declared
     epilogue: str = ""  # of gpu/shaders
-    helpers: str = ""  # likewise, between what is declared and the text
-    vertex_helpers: str = ""  # likewise, of a vertex shader of the author's own
+    varyings: tuple[str, ...] = ()  # declarations of what every text may take from its vertex shader
+    helpers: tuple[str, ...] = ()  # of gpu/shaders, between what is declared and the text
+    vertex_helpers: tuple[str, ...] = ()  # likewise, of a vertex shader of the author's own
     defines: Callable[[SourceText], tuple[str, ...]] = lambda source: ()  # lines of the prelude
 
 
@@ -82,6 +83,23 @@ class Shader:
     parameters: tuple[Parameter, ...] = ()  # besides the uniforms that the text declares
     size: tuple[str, str] | None = None  # expressions; None: the size of the picture
     format: str = "rgba8"
+    named: frozenset[str] = frozenset()  # names of the rules that the prelude names
     prelude: tuple[str, ...] = ()  # lines besides those that the rules give
     vertex: Rewritten | None = None  # the author's own vertex shader
     keeps: bool = False  # what it wrote in the last frame may be read
+    repeat: str = ""  # an expression: it is drawn so often, and reads what it wrote before by ``feeds``
+    feeds: str = ""  # a sampler
+
+
+@dataclass(frozen=True)
+class Made:
+    """A pass that a technique of ``glsl/`` makes of what others wrote; its output is ``frame``."""
+
+    name: str
+    use: str
+    reads: Mapping[str, str]  # input → target
+    target: str = ""
+    size: tuple[str, str] | None = None
+    repeat: str = ""
+    feeds: str = ""  # an input
+    keeps: bool = True
