@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 import threading
 import time
@@ -9,10 +10,12 @@ import time
 import numpy as np
 import pytest
 
+from playground.engine.plan_warnings import source_warnings
 from playground.media.camera import camera
 from playground.media.live_inputs import Keyboard, KeysNow
 from playground.media.microphone import microphone
 from playground.sketch.load import load
+from playground.workbench.traits import traits_of
 
 SPACE, A, LEFT = 32, 65, 37
 SKETCH = """format = 1
@@ -237,3 +240,33 @@ def test_without_sounddevice_the_extra_is_named(inputs, monkeypatch):
     monkeypatch.setitem(sys.modules, "sounddevice", None)
     wait_for(lambda: inputs.device("microphone").problem)
     assert r"[microphone]" in inputs.problem("microphone")
+
+
+# ── keys of Shadertoy ────────────────────────────────────────────────────────
+
+DOWN = "void mainImage(out vec4 c, vec2 p) {{ c = vec4({}, 0.0, 0.0, 1.0); }}\n"
+
+
+def exported(code: str) -> str:
+    channel = {"channel": 0, "ctype": "keyboard", "src": "/presets/tex00.jpg", "id": "33"}
+    image = {"name": "Image", "type": "image", "code": code, "inputs": [channel], "outputs": []}
+    return json.dumps({"Shader": {"ver": "0.1", "info": {"name": "keys"}, "renderpass": [image]}})
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("vscode.frag", "#iKeyboard\n" + DOWN.format("isKeyToggled(Key_A) ? 1.0 : 0.0")),
+        ("export.json", exported(DOWN.format("texelFetch(iChannel0, ivec2(65, 2), 0).x"))),
+    ],
+)
+def test_a_shadertoy_that_reads_the_keyboard_gets_it(any_engine, tmp_path, name, text):
+    (tmp_path / name).write_text(text)
+    sketch, keyboard = load(tmp_path / name), any_engine.runner.inputs.keyboard
+    assert traits_of(sketch).keys
+    red = []
+    for codes in ([], [A], [], [A]):
+        keyboard.hold(codes)
+        red.append(int(any_engine.render(sketch, size=(2, 2)).array[0, 0, 0]))
+    assert red == [0, 255, 255, 0]
+    assert source_warnings(any_engine.plan_for(sketch, (2, 2))) == (), "it is fed"
