@@ -92,7 +92,7 @@ class Reader:
         for number, channel in read.channels.items():
             feeds[f"iChannel{number}"] = self._feed(path, number, channel)
         if directives.KEYBOARD in read.source.names:
-            feeds[directives.KEYBOARD] = ToyInput(Channel(unfed="no key is pressed"))
+            feeds[directives.KEYBOARD] = ToyInput(stand_in("keys", 0, ""))
         source = read.source
         if self.common is not None:
             source = replace(source, lines=(*self.common.lines, *source.lines))
