@@ -7,6 +7,7 @@ import json
 import numpy as np
 import pytest
 
+from playground.capture.large import strips
 from playground.engine.engine import Engine
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
@@ -219,8 +220,48 @@ def test_what_is_not_there_is_named_once_with_its_channel(opened):
             assert found.count(words) == 1, found
 
 
-def test_the_title_is_the_export_s(opened):
+def test_the_title_is_the_export_s_or_the_folder_s(opened, folder):
     assert opened(TOYS["buffer"].files, "shader.json").title == "Made here (export)"
+    assert opened(TOYS["folder"].files).title == f"{folder.path.name} (shadertoy)"
+    titled = {"Image.glsl": f"// waves on a pond.\n{PLAIN}"}
+    assert opened({**TOYS["folder"].files, **titled}).title == "Waves on a pond (shadertoy)"
+
+
+def test_line_ends_of_any_system_and_what_is_beyond_ascii(any_engine, opened):
+    code = PLAIN.replace(") {", ") { // größer → und\r\n").replace(";", ";\r\n")
+    sketch = opened({"a.json": export(one("Image", code))}, "a.json")
+    plain = opened({"b.json": export(one("Image", PLAIN))}, "b.json")
+    np.testing.assert_array_equal(drawn(any_engine, sketch), drawn(any_engine, plain))
+    wrong = code.replace("c = ", "c = not_declared + ")
+    with pytest.raises(ShaderError) as caught:
+        drawn(any_engine, opened({"a.json": export(one("Image", wrong))}, "a.json"))
+    assert caught.value.diagnostics[0].line == 2
+
+
+@pytest.mark.parametrize("name", ["common", "cube", "code_uniforms"])
+def test_a_picture_drawn_in_parts_is_the_picture_drawn_whole(any_engine, opened, name):
+    sketch = opened(TOYS[name].files, TOYS[name].opens)
+    whole = drawn(any_engine, sketch, 0.25)
+    parts = np.concatenate(list(strips(any_engine, sketch, SIZE, tile=(20, 8), time=0.25)))
+    np.testing.assert_allclose(parts.astype(int), whole, atol=1)
+
+
+@pytest.mark.parametrize("name", ["buffer", "feedback"])
+def test_what_cannot_be_drawn_in_parts_says_so(any_engine, opened, name):
+    with pytest.raises(PlaygroundError, match="cannot be drawn in parts: .*; choose a smaller picture"):
+        list(strips(any_engine, opened(TOYS[name].files, TOYS[name].opens), SIZE, tile=(20, 8)))
+
+
+def test_a_sketch_may_use_an_export_or_a_folder_and_feed_its_channels(any_engine, folder):
+    folder.write("toy.json", export(one("Image", IMAGE, {"id": "a", "src": "/media/a.jpg", "channel": 0}), A))
+    folder.write("Image.glsl", IMAGE)
+    folder.write("Common.glsl", "float nothing;\n")
+    for use in ("./toy", "./Image"):
+        wired = 'inputs = { iChannel0 = "data" }'
+        body = f'[[pass]]\nname = "data"\nuse = "foreign/black"\nsize = 4\n[view]\nuse = "{use}"\n{wired}\n'
+        assert drawn(any_engine, folder.sketch(body))[..., :3].max() == 0
+        assert notes(folder.sketch(body)) == []
+        assert drawn(any_engine, folder.sketch(body.replace(wired, "")))[..., :3].max() > 0
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import SketchError
@@ -26,6 +27,7 @@ from playground.sketch.dialects.toy_passes import (
     shaders_of,
 )
 from playground.sketch.dialects.vscode import Reader
+from playground.sketch.header import title_of
 from playground.sketch.source import SourceText
 
 _COMMON, _SOUND = "Common", "Sound"
@@ -85,7 +87,9 @@ def shaders(files: Files) -> Sequence[Shader]:
     )
     for label, path in there.items():
         reader.add(path, kinds[label])
-    return shaders_of(sorted(reader.passes(), key=lambda one: one.label))
+    title = title_of(files.source(there[_IMAGE])) or folder.name
+    made = shaders_of(sorted(reader.passes(), key=lambda one: one.label))
+    return tuple(replace(one, title=title) for one in made)
 
 
 def _inputs(files: Files, path: Path, source: SourceText, there: dict[str, Path]) -> dict[str, ToyInput]:
