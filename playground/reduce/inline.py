@@ -18,6 +18,8 @@ from playground.sketch.reserved_names import MATCHES, WIRED
 from playground.sketch.source import SourceText
 from playground.sketch.variants import active_variant
 
+_OF_SHADERS = (".fs", ".fragment", ".glsl", ".json")
+
 
 def inline_sketch(
     sketch: Sketch, *, frame: tuple[int, int], time: float = 0.0, steps: dict[str, int] | None = None
@@ -30,6 +32,12 @@ def inline_sketch(
     plan = Planner().plan(sketch, frame_size=frame, time=time, steps=steps)
     leaves = list(plan.walk())
     alone = len(leaves) == 1 or Path(sketch.file).suffix != ".toml"  # the rest stands in for its channels
+    foreign = [leaf.path for leaf in leaves if leaf.kernel.dialect]
+    if alone and len(foreign) > 1:
+        raise SketchError(
+            f"{len(foreign)} passes of another tool's shader cannot be inlined; reduce a file of one of them",
+            file=Path(sketch.file),
+        )
     if alone and leaves[-1].kernel.kind.startswith("plain"):
         return _plain(leaves[-1], plan)
     inliner = _Inliner(plan, leaves[-1].path)
@@ -58,7 +66,7 @@ def _plain(step: Step, plan: Plan) -> Case:
     # Of another tool's shader the author's words, which its reader rewrites again.
     text = "\n".join(line.text if step.kernel.dialect else line.code for line in lines) + "\n"
     name = "shader" if step.kernel.kind == "plain_fragment" else "compute"
-    one = Pass(name=name, text=text, suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix)
+    one = Pass(name=name, text=text, suffix=".frag" if suffix in _OF_SHADERS else suffix)
     return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1)
 
 

@@ -13,6 +13,7 @@ from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError, ShaderError
 from playground.images.files import write_png
+from playground.reduce.inline import inline_sketch
 from playground.sketch.load import load
 from playground.sketch.warnings import former_names_used
 from tests.toy_texts import (
@@ -246,9 +247,17 @@ def test_a_picture_drawn_in_parts_is_the_picture_drawn_whole(any_engine, opened,
     np.testing.assert_allclose(parts.astype(int), whole, atol=1)
 
 
+def test_one_pass_is_reduced_and_of_several_a_sentence_says_why_not(opened):
+    files, _ = TOYS["one_pass"].with_mistake()
+    (one_pass,) = inline_sketch(opened(files, "shader.json"), frame=SIZE).passes
+    assert one_pass.suffix == ".frag" and "not_declared" in one_pass.text
+    with pytest.raises(PlaygroundError, match="2 passes of another tool's shader cannot be inlined"):
+        inline_sketch(opened(TOYS["buffer"].files, "shader.json"), frame=SIZE)
+
+
 @pytest.mark.parametrize("name", ["buffer", "feedback"])
 def test_what_cannot_be_drawn_in_parts_says_so(any_engine, opened, name):
-    with pytest.raises(PlaygroundError, match="cannot be drawn in parts: .*; choose a smaller picture"):
+    with pytest.raises(PlaygroundError, match=r"cannot be drawn in parts: .*; choose a smaller picture"):
         list(strips(any_engine, opened(TOYS[name].files, TOYS[name].opens), SIZE, tile=(20, 8)))
 
 
