@@ -138,3 +138,19 @@ def test_what_is_no_channel_or_no_source_is_named(folder: Path) -> None:
         with_source(shown, "view.iChannel0", "foreign/nois")
     with pytest.raises(PlaygroundError, match="no pass 'photo'"):
         with_source(shown, "view.iChannel0", "photo")
+
+
+SOUND = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "heard", "TYPE": "audioFFT", "MAX": 32},
+  {"NAME": "waves", "TYPE": "audio"}]}*/
+void main() { gl_FragColor = texelFetch(heard, ivec2(0), 0) + texelFetch(waves, ivec2(0), 0); }
+"""
+
+
+def test_a_sound_takes_the_place_of_a_made_up_one(folder: Path) -> None:
+    (folder / "a.fs").write_text(SOUND, "utf-8")
+    found = load(folder / "a.fs")
+    for name, content, size in (("heard", "spectrum", ("32", "1")), ("waves", "waves", ("256", "1"))):
+        fed = with_source(found, f"view.{name}", "foreign/sound").graph.find(name)
+        assert fed is not None and fed.size == size
+        menu = fed.technique.parameter("content").widget.choices
+        assert menu[dict(fed.values)["content"]] == content

@@ -77,7 +77,7 @@ class ForeignKernel:
                 Input(n, c.sampling, "zero" if c.target else "black", shape=self.shapes[n])
                 for n, c in self.channels.items()
             ),
-            title=shader.title or title_of(self.source),
+            title=title_of(self.source),
             dialect=self.rules.name,
             prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
             epilogue=self.rules.epilogue,
@@ -131,11 +131,7 @@ class ForeignKernel:
 
     def _is_read(self, name: str) -> bool:
         """Return whether a text names a sampler besides declaring it."""
-        return (
-            name in self.missing
-            or name in self.vertex_missing
-            or len(re.findall(rf"\b{name}\b", self.code)) > 1
-        )
+        return name in self.missing or name in self.vertex_missing or self.source.counts[name] > 1
 
     def _kinds(self) -> Iterator[tuple[str, str]]:
         """Yield each sampler that a wire may feed, with its type."""

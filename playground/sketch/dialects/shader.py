@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from playground.errors import Diagnostic
 from playground.sketch.dialects.es import Rewritten
 from playground.sketch.model import Parameter, Sampling, Value
 from playground.sketch.source import SourceText
@@ -81,8 +80,6 @@ class Shader:
     named: frozenset[str] = frozenset()  # names of the rules that the prelude names
     prelude: tuple[str, ...] = ()  # lines besides those that the rules give
     vertex: Rewritten | None = None  # the author's own vertex shader
-    title: str = ""  # of the whole; "": the comment that the text begins with
-    notes: tuple[Diagnostic, ...] = ()  # warnings of the whole
     keeps: bool = False  # what it wrote in the last frame may be read
     repeat: str = ""  # an expression: it is drawn so often, and reads what it wrote before by ``feeds``
     feeds: str = ""  # a sampler

@@ -93,8 +93,8 @@ def shaders(files: Files) -> Sequence[Shader]:
         inputs = dict(_inputs(files, one, written, drawn))
         made.append(ToyPass(one.label, one.kind, with_common(common, source), inputs))
     info = shader.get("info")
-    title = str(info.get("name") or "") if isinstance(info, dict) else ""
-    return tuple(replace(one, title=title) for one in shaders_of(made, "export"))
+    files.title = str(info.get("name") or "") if isinstance(info, dict) else ""
+    return shaders_of(made, "export")
 
 
 def _table(files: Files) -> Mapping[str, Any]:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import SketchError
@@ -87,9 +86,8 @@ def shaders(files: Files) -> Sequence[Shader]:
     )
     for label, path in there.items():
         reader.add(path, kinds[label])
-    title = title_of(files.source(there[_IMAGE])) or folder.name
-    made = shaders_of(sorted(reader.passes(), key=lambda one: one.label))
-    return tuple(replace(one, title=title) for one in made)
+    files.title = title_of(files.source(there[_IMAGE])) or folder.name
+    return shaders_of(sorted(reader.passes(), key=lambda one: one.label))
 
 
 def _inputs(files: Files, path: Path, source: SourceText, there: dict[str, Path]) -> dict[str, ToyInput]:
