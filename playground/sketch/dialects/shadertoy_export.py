@@ -189,7 +189,7 @@ def _input(
         return ToyInput(Channel(unfed="no key is pressed"))
     if kind in _SOUNDS:
         unfed = f"it is {_NOT_FED[kind]}, so a made-up sound stands in for it"
-        return ToyInput(replace(stand_in("sound", 2, unfed), sampling=sampling or OF_BUFFERS))
+        return ToyInput(replace(stand_in("sound", 0, unfed), sampling=sampling or OF_BUFFERS))
     glsl, form = _TYPES.get(kind, ("sampler2D", "picture" if _PHOTO.search(source) else "noise"))
     if kind in _NOT_FED:
         unfed = f"it is {_NOT_FED[kind]}, so a stand-in is drawn"
