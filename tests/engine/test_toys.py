@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import wave
 
 import numpy as np
 import pytest
@@ -504,6 +505,40 @@ def test_a_cube_of_six_files_has_each_where_it_belongs_and_the_right_way_up(any_
         )
         found = first_texel(any_engine, opened({"a.glsl": text}, "a.glsl"))
         np.testing.assert_allclose(found[:2], [levels[face], 255], atol=1)
+
+
+@pytest.mark.parametrize("row", range(3))
+def test_keys_are_those_of_the_window(any_engine, opened, row):
+    name = ("isKeyDown", "isKeyPressed", "isKeyToggled")[row]
+    text = (
+        f"void mainImage(out vec4 c, in vec2 p) {{ c = vec4({name}(Key_A), {name}(Key_Space), 0.0, 1.0); }}"
+    )
+    toy = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(65, ROW), 0); }"
+    keyboard = {"id": "a", "src": "/presets/tex00.jpg", "ctype": "keyboard", "channel": 0}
+    code = opened({"a.glsl": f"#iKeyboard\n{text}"}, "a.glsl")
+    site = opened({"a.json": export(one("Image", toy.replace("ROW", str(row)), keyboard))}, "a.json")
+    assert first_texel(any_engine, code)[0] == first_texel(any_engine, site)[0] == 0
+    any_engine.runner.inputs.keyboard.hold([65])
+    assert list(first_texel(any_engine, code)[:2]) == [255, 0]
+    assert first_texel(any_engine, site)[0] == 255
+
+
+def test_a_sound_file_of_a_channel_is_read(any_engine, opened, folder):
+    path = folder.path / "tone.wav"
+    with wave.open(str(path), "wb") as file:
+        file.setparams((1, 2, 44100, 0, "NONE", ""))
+        samples = np.round(12000 * np.sin(2 * np.pi * 2000 * np.arange(44100) / 44100)).astype("<i2")
+        file.writeframes(samples.tobytes())
+    text = (
+        "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec2((p.x + 0.5) / 512.0, 0.25)); }"
+    )
+    sketch = opened({"a.glsl": f'#iChannel0 "file://tone.wav"\n{text}'}, "a.glsl")
+    row = drawn(any_engine, sketch, 0.5, (256, 1))[0, :, 0].astype(int)
+    made = {"id": "a", "src": "tone.wav", "ctype": "music", "channel": 0}
+    same = opened({"a.json": export(one("Image", text, made))}, "a.json")
+    np.testing.assert_array_equal(drawn(any_engine, same, 0.5, (256, 1))[0, :, 0], row)
+    assert abs(int(row.argmax()) - 2000 / (44100 / 2048)) < 3 and row.max() > 100
+    assert notes(sketch) == []
 
 
 def test_files_that_read_each_other_are_each_drawn_once_a_frame(any_engine, opened):
