@@ -211,7 +211,6 @@ def test_what_is_not_there_is_named_once_with_its_channel(opened):
         "site": ["iChannel0: '/media/a/1.jpg' is a file of the site", "iChannel3: it is a video"],
         "devices": [
             "iChannel0: it is music",
-            "iChannel1: no key",
             "iChannel2: it is a camera",
             "a microphone",
         ],
