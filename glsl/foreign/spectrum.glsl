@@ -8,10 +8,11 @@
 //
 // Frequencies go from 0 in the west to the highest in the east. Eight bands swell and fade, each in
 // a time of its own, and high ones are weaker than low ones, as in music. The waves are two tones
-// that beat. Rows are channels of a sound: all are the same.
+// that beat. Rows are channels of a sound: all are the same; `channel` is Shadertoy's, the spectrum in
+// the lower half, the waves in the upper one.
 #pragma kernel(output = "channel_texels:rgba16f")
 
-uniform int content = 0;  //! menu("spectrum", "waves") What the texels are
+uniform int content = 0;  //! menu("spectrum", "waves", "channel") What the texels are
 
 float spectrum(float place) {
     float band = floor(place * 8.0);
@@ -27,5 +28,6 @@ float wave(float place) {
 
 vec4 kernel(ivec2 texel) {
     float place = (float(texel.x) + 0.5) / float(size.x);
-    return vec4(vec3(content == 0 ? spectrum(place) : wave(place)), 1.0);
+    bool is_spectrum = content == 0 || (content == 2 && texel.y * 2 < size.y);
+    return vec4(vec3(is_spectrum ? spectrum(place) : wave(place)), 1.0);
 }

@@ -131,11 +131,7 @@ class ForeignKernel:
 
     def _is_read(self, name: str) -> bool:
         """Return whether a text names a sampler besides declaring it."""
-        return (
-            name in self.missing
-            or name in self.vertex_missing
-            or len(re.findall(rf"\b{name}\b", self.code)) > 1
-        )
+        return name in self.missing or name in self.vertex_missing or self.source.counts[name] > 1
 
     def _kinds(self) -> Iterator[tuple[str, str]]:
         """Yield each sampler that a wire may feed, with its type."""

@@ -17,6 +17,7 @@ STAND_INS = {
     "picture": "foreign/picture",
     "sky": "foreign/sky_box",
     "volume": "foreign/noise",
+    "sound": "foreign/spectrum",
 }
 """What is drawn where nothing feeds a channel: the first word of its meaning → a technique of ``glsl/``."""
 
@@ -25,7 +26,8 @@ STAND_INS_OF_SHAPES = {"cube": "sky", "volume": "volume"}
 
 SAMPLING = Sampling("linear", "repeat", mipmap=True)
 STAND_IN_SIZE = ("256", "256")
-_SIZES = {"sky": ("128", "768"), "volume": ("32", "1024")}
+_SIZES = {"sky": ("128", "768"), "volume": ("32", "1024"), "sound": ("512", "2")}
+_NUMBERS = {"sound": "content"}
 
 
 @dataclass(frozen=True)
@@ -55,9 +57,12 @@ class Channel:
 
 
 def stand_in(kind: str, number: int, unfed: str) -> Channel:
-    """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
-    size = _SIZES.get(kind, STAND_IN_SIZE)
-    return Channel(use=STAND_INS[kind], values=(("number", number),), size=size, unfed=unfed)
+    """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``.
+
+    ``number`` tells stand-ins apart; of "sound" it is the content, 2 for Shadertoy's.
+    """
+    size, values = _SIZES.get(kind, STAND_IN_SIZE), ((_NUMBERS.get(kind, "number"), number),)
+    return Channel(use=STAND_INS[kind], values=values, size=size, unfed=unfed)
 
 
 @dataclass(frozen=True)
