@@ -19,8 +19,8 @@ COUNTING = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "again", "TYPE": "event", "L
 void main() {
     float now = IMG_PIXEL(count, vec2(0.5)).r;
     if (PASSINDEX == 0) gl_FragColor = vec4(again ? 0.0 : now + 1.0);
-    else gl_FragColor = vec4(now / 255.0, 0.0, 0.0, 1.0);
-    gl_FragColor += 0.0 * (tint + vec4(at, float(mode), on ? 1.0 : 0.0));
+    vec4 others = tint + vec4(at, float(mode), on ? 1.0 : 0.0);
+    if (PASSINDEX != 0) gl_FragColor = vec4(now / 255.0, 0.0, 0.0, 1.0) + 0.0 * others;
 }
 """
 

@@ -163,7 +163,8 @@ def read_foreign(
     shaders = chosen.shaders(files)
     graph = graph_of_shaders(name, shaders, read, root) if shaders else None
     if graph is not None:
-        graph = replace(graph, warnings=(*graph.warnings, *files.notes))
+        title = files.title or graph.title
+        graph = replace(graph, title=title, warnings=(*graph.warnings, *files.notes))
     if not instead:
         _known[key] = graph, files
         while len(_known) > _MOST:

@@ -24,6 +24,7 @@ class Files:
     root: Path
     instead: Mapping[str, str] = field(default_factory=dict)
     named: bool = False
+    title: str = ""  # that the other tool gives it
     notes: list[Diagnostic] = field(default_factory=list)  # of what is not as in the other tool
     _origins: list[Origin] = field(default_factory=list)
     _texts: dict[str, str] = field(default_factory=dict)

@@ -18,6 +18,7 @@ STAND_INS = {
     "sky": "foreign/sky_box",
     "volume": "foreign/noise",
     "sound": "foreign/spectrum",
+    "keys": "foreign/keys",
 }
 """What is drawn where nothing feeds a channel: the first word of its meaning → a technique of ``glsl/``."""
 
@@ -26,8 +27,14 @@ STAND_INS_OF_SHAPES = {"cube": "sky", "volume": "volume"}
 
 SAMPLING = Sampling("linear", "repeat", mipmap=True)
 STAND_IN_SIZE = ("256", "256")
-_SIZES = {"sky": ("128", "768"), "volume": ("32", "1024"), "sound": ("512", "2")}
-_NUMBERS = {"sound": "content"}
+_SIZES = {
+    "sky": ("128", "768"),
+    "volume": ("32", "1024"),
+    "sound": ("512", "2"),
+    "keys": ("256", "3"),
+}
+_SAMPLINGS = {"sound": Sampling("linear", "clamp"), "keys": Sampling("nearest", "clamp")}
+_ALIKE = ("keys",)  # stand-ins that have no numbers
 
 
 @dataclass(frozen=True)
@@ -57,12 +64,11 @@ class Channel:
 
 
 def stand_in(kind: str, number: int, unfed: str) -> Channel:
-    """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``.
-
-    ``number`` tells stand-ins apart; of "sound" it is the content, 2 for Shadertoy's.
-    """
-    size, values = _SIZES.get(kind, STAND_IN_SIZE), ((_NUMBERS.get(kind, "number"), number),)
-    return Channel(use=STAND_INS[kind], values=values, size=size, unfed=unfed)
+    """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
+    size = _SIZES.get(kind, STAND_IN_SIZE)
+    values = () if kind in _ALIKE else (("number", number),)
+    sampling = _SAMPLINGS.get(kind, SAMPLING)
+    return Channel(use=STAND_INS[kind], values=values, size=size, sampling=sampling, unfed=unfed)
 
 
 @dataclass(frozen=True)

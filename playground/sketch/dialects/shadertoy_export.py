@@ -93,8 +93,8 @@ def shaders(files: Files) -> Sequence[Shader]:
         inputs = dict(_inputs(files, one, written, drawn))
         made.append(ToyPass(one.label, one.kind, with_common(common, source), inputs))
     info = shader.get("info")
-    title = str(info.get("name") or "") if isinstance(info, dict) else ""
-    return tuple(replace(one, title=title) for one in shaders_of(made, "export"))
+    files.title = str(info.get("name") or "") if isinstance(info, dict) else ""
+    return shaders_of(made, "export")
 
 
 def _table(files: Files) -> Mapping[str, Any]:
@@ -189,7 +189,7 @@ def _input(
         return ToyInput(Channel(unfed="no key is pressed"))
     if kind in _SOUNDS:
         unfed = f"it is {_NOT_FED[kind]}, so a made-up sound stands in for it"
-        return ToyInput(replace(stand_in("sound", 2, unfed), sampling=sampling or OF_BUFFERS))
+        return ToyInput(replace(stand_in("sound", 0, unfed), sampling=sampling or OF_BUFFERS))
     glsl, form = _TYPES.get(kind, ("sampler2D", "picture" if _PHOTO.search(source) else "noise"))
     if kind in _NOT_FED:
         unfed = f"it is {_NOT_FED[kind]}, so a stand-in is drawn"

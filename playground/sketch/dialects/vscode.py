@@ -154,7 +154,7 @@ class Reader:
             file = found.relative_to(self.files.root.resolve()).as_posix()
             return Channel("", "foreign/sound", (("sound", file),), _SOUND_SIZE, sampling)
         unfed = f"there is no file '{text}' in this folder, so a made-up sound stands in for it"
-        return replace(stand_in("sound", 2, unfed), sampling=sampling)
+        return replace(stand_in("sound", 0, unfed), sampling=sampling)
 
     def _cube(self, text: str, channel: directives.Channel, number: int) -> ToyInput:
         """Return a cube map of six files, or a sky."""
