@@ -148,7 +148,8 @@ def read_foreign(
     shaders = chosen.shaders(files)
     graph = graph_of_shaders(name, shaders, read, root) if shaders else None
     if graph is not None:
-        graph = replace(graph, title=files.title or graph.title, warnings=tuple(files.notes))
+        notes = dict.fromkeys([*graph.warnings, *files.notes])
+        graph = replace(graph, title=files.title or graph.title, warnings=tuple(notes))
     if not instead:
         _known[key] = graph, files
         while len(_known) > _MOST:
