@@ -15,7 +15,7 @@ from playground.sketch.flat import Ref, Source
 from playground.sketch.include_guards import without_guards
 from playground.sketch.model import Kernel, Sketch, Value
 from playground.sketch.reserved_names import MATCHES, WIRED
-from playground.sketch.source import SourceText
+from playground.sketch.source import SourceText, read_source_and_origin
 from playground.sketch.variants import active_variant
 
 
@@ -54,7 +54,11 @@ def inline_sketch(
 
 def _plain(step: Step, plan: Plan) -> Case:
     suffix = Path(step.kernel.path).suffix
-    lines = [line for line in step.kernel.source.lines if line.code.strip()]
+    source = step.kernel.source
+    # Of several passes of one text each has but some of its lines.
+    if sum(other.kernel.path == source.path for other in plan.walk()) > 1:
+        source = read_source_and_origin(Path(source.path), (Path(plan.sketch.folder),), foreign=True)[0]
+    lines = [line for line in source.lines if line.code.strip()]
     # Of another tool's shader the author's words, which its reader rewrites again.
     text = "\n".join(line.text if step.kernel.dialect else line.code for line in lines) + "\n"
     name = "shader" if step.kernel.kind == "plain_fragment" else "compute"

@@ -10,6 +10,7 @@ from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
 from playground.errors import ShaderError
 from playground.gpu.wrap import FRAGMENT, wrap
+from playground.reduce.inline import inline_sketch
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 from playground.sketch.text_overrides import with_texts
@@ -202,7 +203,14 @@ camera = { azimuth = 90.0, elevation = 0.0, distance = 500000.0, target = [0.0, 
     np.testing.assert_allclose(eye, [0.75, 0.5, 0.625], atol=1 / 255)  # 500 km east, 250 km up
 
 
-def test_a_state_whose_picture_is_drawn_in_parts(any_engine, folder):
+@pytest.mark.parametrize("name", ["viewer_ripples", "viewer_pyramid", "viewer_conditions", "viewer_flood"])
+def test_what_is_reduced_is_the_whole_text_in_its_author_s_words(folder, name):
+    text, _ = with_mistake(MAIN_TEXTS[name])
+    (one,) = inline_sketch(load(folder.write("t.frag", text)), frame=SIZE).passes
+    assert one.text.splitlines() == [line for line in text.splitlines() if line.strip()]
+
+
+def test_a_picture_of_several_passes_is_drawn_in_parts(any_engine, folder):
     from playground.capture.large import strips
 
     sketch = load(folder.write("t.frag", MAIN_TEXTS["viewer_buffers"]))
