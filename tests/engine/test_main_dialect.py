@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.capture.large import strips
 from playground.engine.engine import Engine
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
-from playground.errors import ShaderError
+from playground.errors import ShaderError, SketchError
 from playground.gpu.wrap import FRAGMENT, wrap
 from playground.reduce.inline import inline_sketch
 from playground.sketch.load import load
@@ -210,10 +211,15 @@ def test_what_is_reduced_is_the_whole_text_in_its_author_s_words(folder, name):
     assert one.text.splitlines() == [line for line in text.splitlines() if line.strip()]
 
 
-def test_a_picture_of_several_passes_is_drawn_in_parts(any_engine, folder):
-    from playground.capture.large import strips
-
+def test_a_picture_that_reads_smaller_ones_is_drawn_in_parts(any_engine, folder):
     sketch = load(folder.write("t.frag", MAIN_TEXTS["viewer_buffers"]))
     whole = any_engine.render(sketch, size=SIZE, time=0.1).array
     parts = np.concatenate(list(strips(any_engine, sketch, SIZE, tile=(20, 8), time=0.1)))
     np.testing.assert_allclose(parts.astype(int), whole, atol=1)
+
+
+@pytest.mark.parametrize("name", ["viewer_flood", "viewer_pyramid", "viewer_post", "sandbox_trails"])
+def test_what_needs_the_whole_picture_says_so(any_engine, folder, name):
+    sketch = load(folder.write("t.frag", MAIN_TEXTS[name]))
+    with pytest.raises(SketchError, match=r"cannot be drawn in parts: it .*; choose a smaller picture"):
+        list(strips(any_engine, sketch, SIZE, tile=(20, 8), time=0.1))

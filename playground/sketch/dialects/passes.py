@@ -147,14 +147,7 @@ class _Passes:
             parameters=tuple(_inside(VIEW, name) for name in _parameters_of(view.technique)),
             inputs=tuple(_inside(VIEW, name) for name in self.inputs),
             title=next((kernel.title for kernel in self.kernels if kernel.title), ""),
-            warnings=tuple(
-                dict.fromkeys(
-                    [
-                        *(note for s in self.shaders if isinstance(s, Shader) for note in s.notes),
-                        *self._unread(),
-                    ]
-                )
-            ),
+            warnings=tuple(self._unread()),
         )
 
     def _view(self) -> PassSpec:
