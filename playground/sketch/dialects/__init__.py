@@ -162,7 +162,7 @@ def read_foreign(
     graph = graph_of_shaders(name, shaders, read, root) if shaders else None
     if graph is not None:
         title = files.title or graph.title
-        graph = replace(graph, title=title, warnings=(*graph.warnings, *files.notes))
+        graph = replace(graph, title=title, warnings=(*files.notes, *graph.warnings))
     if not instead:
         _known[key] = graph, files
         while len(_known) > _MOST:
