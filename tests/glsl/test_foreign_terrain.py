@@ -108,6 +108,37 @@ def test_other_tools_files_are_in_the_chooser(folder: Path) -> None:
     assert "./plain" in view, "a whole picture by itself, as before"
 
 
+ISF = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"},
+ {"NAME": "share", "TYPE": "float", "MIN": 0.0, "MAX": 1.0, "DEFAULT": 1.0}]}*/
+void main() {
+    vec4 c = IMG_THIS_PIXEL(inputImage);
+    gl_FragColor = vec4(mix(c.rgb, 1.0 - c.rgb, share), 1.0);
+}
+"""
+
+
+def test_an_isf_filter_takes_the_frame(folder: Path, any_engine: Engine) -> None:
+    (folder / "negative.fs").write_text(ISF)
+    sketch = load(folder)
+    assert "./negative(view/map)" in choices(sketch, "view")
+    filtered = with_technique(sketch, "view", "./negative(view/map)")
+    plain = any_engine.render(sketch, size=(64, 40)).array[..., :3]
+    np.testing.assert_array_equal(any_engine.render(filtered, size=(64, 40)).array[..., :3], 255 - plain)
+    off = any_engine.render(filtered.with_values({"view.share": 0.0}), size=(64, 40)).array[..., :3]
+    np.testing.assert_array_equal(off, plain)
+
+
+def test_an_isf_generator_is_a_terrain(folder: Path, any_engine: Engine) -> None:
+    text = "void main() { gl_FragColor = vec4(isf_FragNormCoord.x / 300.0); }\n"
+    text = "/*{\"ISFVSN\": \"2\", \"INPUTS\": []}*/\n" + text
+    (folder / "slope.fs").write_text(text)
+    sketch = load(folder)
+    assert "foreign/height(./slope)" in choices(sketch, "height")
+    found = any_engine.read(with_technique(sketch, "height", "foreign/height(./slope)"), "height")
+    wanted = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / SIZE[0] / 300.0, SIZE[::-1])
+    np.testing.assert_allclose(found, wanted, rtol=1e-5)
+
+
 def test_a_filter_is_replaced_and_taken_off_again(folder: Path) -> None:
     (folder / "soft.frag").write_text(INVERT.replace("1.0 -", "0.5 *"))
     sketch = with_technique(load(folder), "view", "./invert(view/map)")
