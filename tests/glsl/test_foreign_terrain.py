@@ -14,6 +14,7 @@ from playground.sketch.colour import srgb_to_linear
 from playground.sketch.load import load
 from playground.sketch.replace_technique import choices, with_technique
 from playground.sketch.save import save, save_copy
+from playground.sketch.text_overrides import with_texts
 
 from ..sketch_texts import map_of, passes
 
@@ -130,13 +131,46 @@ def test_an_isf_filter_takes_the_frame(folder: Path, any_engine: Engine) -> None
 
 def test_an_isf_generator_is_a_terrain(folder: Path, any_engine: Engine) -> None:
     text = "void main() { gl_FragColor = vec4(isf_FragNormCoord.x / 300.0); }\n"
-    text = "/*{\"ISFVSN\": \"2\", \"INPUTS\": []}*/\n" + text
+    text = '/*{"ISFVSN": "2", "INPUTS": []}*/\n' + text
     (folder / "slope.fs").write_text(text)
     sketch = load(folder)
     assert "foreign/height(./slope)" in choices(sketch, "height")
     found = any_engine.read(with_technique(sketch, "height", "foreign/height(./slope)"), "height")
     wanted = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / SIZE[0] / 300.0, SIZE[::-1])
     np.testing.assert_allclose(found, wanted, rtol=1e-5)
+
+
+BUFFERED = """/*{"ISFVSN": "2", "INPUTS": [],
+ "PASSES": [{"TARGET": "first", "FLOAT": true}, {}]}*/
+void main() {
+    if (PASSINDEX == 0) gl_FragColor = vec4(gl_FragCoord.x / 70000.0);
+    else gl_FragColor = IMG_THIS_PIXEL(first);
+}
+"""
+
+
+def test_several_passes_of_one_file_keep_their_numbers(folder: Path, any_engine: Engine) -> None:
+    (folder / "buffered.fs").write_text(BUFFERED)
+    sketch = load(folder)
+    assert "foreign/height(./buffered)" in choices(sketch, "height")
+    found = any_engine.read(with_technique(sketch, "height", "foreign/height(./buffered)"), "height")
+    wanted = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / 70000.0, SIZE[::-1])
+    np.testing.assert_allclose(found, wanted, rtol=1e-5)
+
+
+def test_a_text_that_is_typed_takes_the_file_s_place(folder: Path, any_engine: Engine) -> None:
+    texts = {str(folder / "fine.frag"): FINE.replace("0.5 + x", "0.25 + x")}
+    sketch = with_texts(load(folder / "placed.toml"), texts)
+    found = any_engine.read(sketch, "height")
+    x, y = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
+    np.testing.assert_allclose(found, 0.25 + (x + SIZE[0] * y) / 65536.0, rtol=0, atol=2**-23)
+
+
+def test_all_files_of_both_parts_are_watched(folder: Path) -> None:
+    (folder / "twice.toml").write_text(passes(flat="./plain"))
+    (folder / "placed.toml").write_text(SKETCH.replace("./own", "foreign/height(./twice)"))
+    names = {Path(file).name for file in load(folder / "placed.toml").files}
+    assert {"twice.toml", "plain.glsl", "height.glsl"} <= names
 
 
 def test_a_filter_is_replaced_and_taken_off_again(folder: Path) -> None:
