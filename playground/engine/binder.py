@@ -18,6 +18,7 @@ from playground.engine.programs import Program
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Wired
 from playground.errors import ContextError
+from playground.gpu.gl_calls import mirror
 from playground.gpu.shapes import FACES, Shaped, copied, shaped_size
 from playground.gpu.textures import check_size, drain
 from playground.images.content_hash import content_hash
@@ -48,7 +49,7 @@ class Binder:
         self._samplers: dict[Sampling, moderngl.Sampler] = {}
         self._constants: dict[str, moderngl.Texture] = {}
         self._shaped: dict[tuple[str, str], Shaped] = {}  # constants, by name and shape
-        self._files: OrderedDict[tuple[str, bool, bool], moderngl.Texture] = OrderedDict()
+        self._files: OrderedDict[tuple[str, bool, bool, bool], moderngl.Texture] = OrderedDict()
         self._units = 0  # texture units used in this frame
 
     def release(self) -> None:
@@ -159,11 +160,12 @@ class Binder:
 
     def file_texture(self, parameter: Parameter, value: Value, *, encoded: bool = False) -> moderngl.Texture:
         """Return an image file's texture: decoded to linear light, or as it is ``encoded`` in the file."""
-        path = Path(str(value))
-        key = (content_hash(path), parameter.sampling.mipmap, encoded)
+        path, sampling = Path(str(value)), parameter.sampling
+        encoded = encoded and not sampling.decode
+        key = (content_hash(path), sampling.mipmap, encoded, sampling.flip)
         if key not in self._files:
-            texture = self._read(path, encoded=encoded)
-            if parameter.sampling.mipmap:
+            texture = self._read(path, encoded=encoded, flip=sampling.flip)
+            if sampling.mipmap:
                 texture.build_mipmaps()
             self._files[key] = texture
             while len(self._files) > _MAX_FILES:
@@ -193,7 +195,7 @@ class Binder:
         return self._shaped[name, shape]
 
     def _new_sampler(self, sampling: Sampling) -> moderngl.Sampler:
-        linear, around = sampling.filter == "linear", sampling.wrap == "repeat"
+        linear, around = sampling.filter == "linear", sampling.wrap != "clamp"
         shrink = self.ctx.LINEAR if linear else self.ctx.NEAREST
         if sampling.mipmap:
             shrink = self.ctx.LINEAR_MIPMAP_LINEAR if linear else self.ctx.NEAREST_MIPMAP_NEAREST
@@ -202,11 +204,13 @@ class Binder:
         sampler.filter = (shrink, self.ctx.LINEAR if near else self.ctx.NEAREST)
         if linear and sampling.mipmap and self._anisotropy > 1:
             sampler.anisotropy = self._anisotropy
+        if sampling.wrap == "mirror":
+            mirror(self.ctx, sampler)
         return sampler
 
-    def _read(self, path: Path, *, encoded: bool) -> moderngl.Texture:
-        """Make a texture of an image file, row 0 south: in linear light, or as it is encoded."""
-        pixels = read_image(path).pixels[::-1]
+    def _read(self, path: Path, *, encoded: bool, flip: bool) -> moderngl.Texture:
+        """Make a texture of an image file, row 0 south unless ``flip``: in linear light, or as encoded."""
+        pixels = read_image(path).pixels[:: 1 if flip else -1]
         size = (pixels.shape[1], pixels.shape[0])
         try:
             check_size(self.ctx, size, "an image")

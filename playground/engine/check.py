@@ -182,6 +182,7 @@ class _Check:
             sketch = with_pictures(plain_sketch(self.path, kernel, self.root), self.picture)
             if isinstance(kernel, Graph):
                 self.notes = (f"read as {kernel.dialect}",)
+                self.warnings |= dict.fromkeys(former_names_used(sketch))
                 self.warnings |= dict.fromkeys(source_warnings(Planner().plan(sketch, frame_size=_FRAME)))
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif kernel.kind == "compute":

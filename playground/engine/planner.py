@@ -8,7 +8,7 @@ size or a count names a changed value or the time, or where the terrain's file i
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import zip_longest
@@ -17,18 +17,15 @@ from pathlib import Path
 from playground.engine.accepted_sizes import sizes_of_variant
 from playground.engine.between import between_of
 from playground.engine.error_place import placed
-from playground.engine.files import find_file
 from playground.engine.input_shapes import check_shapes
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node
 from playground.engine.plan_request import (
-    DEFAULT_EXTENT,
-    DEFAULT_RELIEF,
-    DEFAULT_SIZE,
     PlanRequest,
     checked_pixels,
     checked_seconds,
     checked_steps,
 )
+from playground.engine.source_facts import described, given_values, own_sizes
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
 from playground.images.picture_size import picture_size
 from playground.paths import shown
@@ -41,7 +38,7 @@ from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
-from playground.terrain.sources import Terrain, source_kind
+from playground.terrain.sources import Terrain
 
 MAX_REPEAT = 1_000_000
 _AXES = {"x": 0, "y": 1}
@@ -187,11 +184,11 @@ class _Planning:
         for leaf, earlier in zip_longest(flat.leaves, same):
             values = before[leaf.path] if leaf is earlier else {}
             if leaf is not earlier or leaf.kernel.file_parameters:
-                now = self._with_files(leaf)  # a file may have come that is found first
+                now = given_values(leaf, sketch, flat)  # a file may have come that is found first
                 values = values if values == now else now
             self._values[leaf.path] = values
-        self.terrain = self._described()
-        self.own = dict(self._own_sizes())
+        self.terrain = described(sketch, flat, self._values)
+        self.own = dict(own_sizes(sketch, flat, self._values))
 
     def renewed(self) -> _LastPlan | None:
         """Return the known plan with the values of now; None where it has to be made whole."""
@@ -346,64 +343,6 @@ class _Planning:
             f"pass '{leaf.path}' ({leaf.kernel.name}) takes {leaf.kernel.accepts} texels a side, "
             f"not {size[0]} x {size[1]}; the nearest it takes: {listed}"
         )
-
-    def _described(self) -> Terrain:
-        known = Terrain()
-        for leaf in self.flat.leaves:
-            if leaf.kernel.kind == "source":
-                self._check_source(leaf)
-                try:
-                    known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
-                except DataError as error:
-                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
-                if known != Terrain():
-                    break
-        size = self.sketch.size or self.flat.accepted(known.size or DEFAULT_SIZE)
-        extent = self.sketch.extent or known.extent
-        if extent is None:
-            shape = known.size or size
-            ratio = (shape[1] - 1) / max(shape[0] - 1, 1) or 1.0
-            extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
-        relief = self.sketch.relief if self.sketch.relief is not None else known.relief
-        base = self.sketch.base_elevation if self.sketch.base_elevation is not None else known.base_elevation
-        return Terrain(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
-
-    def _own_sizes(self) -> Iterator[tuple[str, tuple[int, int]]]:
-        """Yield the texels that sources have by themselves, such as a film, where their passes say none."""
-        for leaf in self.flat.leaves:
-            if leaf.kernel.kind == "source" and leaf.spec.size is None and leaf.path != "view":
-                try:
-                    size = source_kind(leaf.kernel.registry).size(self._values[leaf.path])
-                except DataError as error:
-                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
-                if size is not None:
-                    yield leaf.path, size
-
-    def _check_source(self, leaf: Leaf) -> None:
-        try:
-            kind = source_kind(leaf.kernel.registry)
-        except PlaygroundError as error:
-            raise leaf.spec.error(str(error)) from None
-        missing = [name for name in kind.parameters if leaf.kernel.parameter(name) is None]
-        if missing:
-            raise leaf.spec.error(
-                f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}"
-            )
-
-    def _with_files(self, leaf: Leaf) -> dict[str, Value]:
-        """Return a leaf's values as its kernel gets them: files by absolute path, of menus their values."""
-        values = dict(leaf.values)
-        for parameter in leaf.kernel.valued_menus:
-            values[parameter.name] = parameter.widget.given(values[parameter.name])
-        for parameter in leaf.kernel.parameters if leaf.kernel.file_parameters else ():
-            if parameter.widget.kind == "file":
-                text = str(values[parameter.name])
-                try:
-                    path = find_file(text, leaf.folder, parameter.file, f"{leaf.path}.{parameter.name}")
-                except DataError as error:
-                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
-                values[parameter.name] = str(path)
-        return values
 
     def _size_of_leaf(self, leaf: Leaf) -> tuple[int, int]:
         """Return a leaf's size; a compute variant's is that of the pass whose output it gives."""

@@ -23,6 +23,8 @@ from playground.engine.scene import scene_of
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
+from playground.media.bands import bands_at
+from playground.media.live_inputs import LiveInputs
 from playground.media.now import Now
 from playground.sketch.expressions import FRAME_RATE, last_frame_at
 from playground.sketch.model import Kernel
@@ -47,6 +49,7 @@ class Runner:
         self.hover = (0.0, 0.0)  # pixels from the lower left, pressed or not
         self.drag = (0.0, 0.0, 0.0, 0.0)  # as ShaderToy's iMouse
         self.pressed: frozenset[str] = frozenset()  # paths of the buttons that are pressed in this frame
+        self.inputs = LiveInputs()
         self.delta = 1 / 60  # [s] since the last one
         self.date = (1970.0, 0.0, 1.0, 0.0)  # year, month from 0, day, seconds
         self.programs = Programs(ctx)
@@ -169,7 +172,7 @@ class Runner:
         if moment is None:
             return {}
         with self._placed(step):
-            return {MOMENT: moment(step.values, Now(self._time_at(frame)))}
+            return {MOMENT: moment(step.values, Now(self._time_at(frame), self.inputs))}
 
     def _time_at(self, frame: int | None) -> float:
         """Return the time of the frame that a loop is at, else of the picture."""
@@ -220,6 +223,7 @@ class Runner:
             "date_from_1": (self.date[0], self.date[1] + 1.0, *self.date[2:]),
             "frame": (last_frame_at(time),),
             "frame_of_time": (last_frame_at(time),),
+            "bands": bands_at(time),
             "hover": self.hover,
             "hover_share": (self.hover[0] / width, self.hover[1] / height),
             "drag": self.drag,

@@ -15,6 +15,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from playground.errors import ContextError
+from playground.gpu.gl_calls import Calls
 from playground.gpu.textures import bytes_of, drain, make_framebuffer
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
 FACES = 6
 _SEAMLESS = 0x884F  # GL_TEXTURE_CUBE_MAP_SEAMLESS
-_TEXTURE_1D, _TEXTURE0 = 0x0DE0, 0x84C0
+_TEXTURE_1D = 0x0DE0
 _LETTERS = {1: "r", 2: "rg", 4: "rgba"}
 _BITS = {"f1": "8", "nu2": "16", "f2": "16f", "f4": "32f"}
 _LAYOUT = {1: 0x1903, 2: 0x8227, 4: 0x1908}  # GL_RED GL_RG GL_RGBA
@@ -145,7 +146,7 @@ class _Line:
     """A texture of one dimension, of row 0 of another."""
 
     def __init__(self, ctx: moderngl.Context, texture: moderngl.Texture) -> None:
-        self._call = _Calls(ctx)
+        self._call = Calls(ctx)
         name = ctypes.c_uint()
         self._call("glGenTextures", (ctypes.c_int, ctypes.c_void_p), 1, ctypes.addressof(name))
         self._name = name.value
@@ -165,7 +166,7 @@ class _Line:
             source.release()
 
     def use(self, unit: int) -> None:
-        self._call("glActiveTexture", (ctypes.c_int,), _TEXTURE0 + unit)
+        self._call.activate(unit)
         self._call("glBindTexture", (ctypes.c_int, ctypes.c_uint), _TEXTURE_1D, self._name)
 
     def build_mipmaps(self) -> None:
@@ -176,16 +177,3 @@ class _Line:
         name, self._name = ctypes.c_uint(self._name), 0
         if name.value:
             self._call("glDeleteTextures", (ctypes.c_int, ctypes.c_void_p), 1, ctypes.addressof(name))
-
-
-class _Calls:
-    """OpenGL's own functions, by name, of the library that a context came from."""
-
-    def __init__(self, ctx: moderngl.Context) -> None:
-        self._load = ctx.mglo._context.load_opengl_function
-
-    def __call__(self, name: str, kinds: tuple[Any, ...], *arguments: Any) -> None:
-        address = self._load(name)
-        if not address:
-            raise ContextError(f"this driver has no {name}")
-        ctypes.CFUNCTYPE(None, *kinds)(address)(*arguments)

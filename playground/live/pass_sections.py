@@ -53,7 +53,7 @@ class Sections:
         values, found = memory.listing.values(draft), memory.listing.filtered(draft, memory.filter)
         if memory.filter and not found:
             imgui.text_disabled("no parameter is like that")
-        rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, look)
+        rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, look, bench.controllers)
         drawing = _Drawing(Path(sketch.folder), rows, bench.commands, bench.files)
         main = memory.listing.main(draft) if not memory.filter else ()
         if main:

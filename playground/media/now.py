@@ -1,8 +1,10 @@
-"""What a picture may depend on besides its sketch and its size: the time."""
+"""What a picture may depend on besides its sketch and its size: the time, and live inputs."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+
+from playground.media.live_inputs import LiveInputs
 
 
 @dataclass(frozen=True)
@@ -10,3 +12,4 @@ class Now:
     """The moment that a picture shows."""
 
     time: float = 0.0  # [s]
+    inputs: LiveInputs = field(default_factory=LiveInputs)

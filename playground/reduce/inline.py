@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from playground.errors import SketchError
 from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
 from playground.sketch.annotation import note_at
+from playground.sketch.dialects.isf_header import read_header
 from playground.sketch.flat import Ref, Source
 from playground.sketch.include_guards import without_guards
 from playground.sketch.model import Kernel, Sketch, Value
@@ -53,13 +55,25 @@ def inline_sketch(
 
 
 def _plain(step: Step, plan: Plan) -> Case:
-    suffix = Path(step.kernel.path).suffix
-    lines = [line for line in step.kernel.source.lines if line.code.strip()]
-    # Of another tool's shader the author's words, which its reader rewrites again.
-    text = "\n".join(line.text if step.kernel.dialect else line.code for line in lines) + "\n"
-    name = "shader" if step.kernel.kind == "plain_fragment" else "compute"
-    one = Pass(name=name, text=text, suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix)
-    return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1)
+    kernel, suffix = step.kernel, Path(step.kernel.path).suffix
+    name = "shader" if kernel.kind == "plain_fragment" else "compute"
+    vertex = kernel.vertex_source
+    one = Pass(
+        name=name,
+        text=_words(kernel.source, as_written=bool(kernel.dialect)),
+        suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix,
+        head=f"/*{json.dumps(read_header(kernel.source).table)}*/\n" if kernel.dialect == "isf" else "",
+        beside=((Path(vertex.path).suffix, _words(vertex, as_written=True)),) if vertex else (),
+    )
+    named = [(p.default, step.values[p.name]) for p in kernel.file_parameters]
+    files = tuple((str(written), str(found)) for written, found in named if kernel.dialect)
+    return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1, files=files)
+
+
+def _words(source: SourceText, *, as_written: bool) -> str:
+    """Return a text without blank lines: of another tool's shader the author's words, for its reader."""
+    lines = [line for line in source.lines if line.code.strip()]
+    return "\n".join(line.text if as_written else line.code for line in lines) + "\n"
 
 
 class _Inliner:

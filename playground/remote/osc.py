@@ -9,7 +9,6 @@ from __future__ import annotations
 import socket
 import threading
 from collections.abc import Callable, Mapping
-from typing import Any
 
 from pythonosc.osc_message_builder import OscMessageBuilder
 from pythonosc.osc_packet import OscPacket
@@ -21,8 +20,11 @@ from playground.workbench.control.addresses import OWN, Addresses, Message
 MOST = 1024
 """Addresses that may wait for the window, and as many messages that are no parameter's."""
 _LARGEST = 2**16  # [bytes] no datagram is larger
+_OWN = OWN.encode()
 
 Address = tuple[str, int]
+Datagram = bytes | Message
+"""As it came, or a message of a bundle."""
 
 
 class Osc:
@@ -36,8 +38,8 @@ class Osc:
         if self._out is not None:
             self._out.setblocking(False)
         self._lock = threading.Lock()
-        self._waiting: dict[str, list[Any]] = {}  # the last arguments of each address
-        self._acts: list[Message] = []  # undo and its like: each counts
+        self._waiting: dict[bytes, Datagram] = {}  # the last of each address
+        self._acts: list[Datagram] = []  # undo and its like: each counts
         self._lost = 0  # messages that there was no room for
         self._unread = 0  # datagrams that are no OSC
         self._closed = False
@@ -70,8 +72,11 @@ class Osc:
             waiting, self._waiting = self._waiting, {}
             acts, self._acts = self._acts, []
             lost, unread, self._lost, self._unread = self._lost, self._unread, 0, 0
-        for address, arguments in (*waiting.items(), *acts):
-            self.send(self._addresses.receive(address, arguments))
+        for datagram in (*waiting.values(), *acts):
+            messages = messages_of(datagram)
+            unread += not messages
+            for address, arguments in messages:
+                self.send(self._addresses.receive(address, arguments))
         if unread:
             self._addresses.report_once("unread", "OSC: a packet came in that is no OSC")
         if lost:
@@ -122,26 +127,37 @@ class Osc:
                 self._put(data)
 
     def _put(self, data: bytes) -> None:
-        try:
-            found = [(timed.message.address, timed.message.params) for timed in OscPacket(data).messages]
-        except Exception:  # what the package raises for what is no OSC is of many kinds
-            found = []
+        """Keep a datagram; of a single message only its address is read here."""
+        end = data.find(b"\0")
+        found: list[tuple[bytes, Datagram]] = [(data[:end], data)]
+        if end < 0 or not data.startswith(b"/"):
+            found = [(message[0].encode("utf-8", "replace"), message) for message in messages_of(data)]
         with self._lock:
             first = not self.waits
             self._unread += not found
-            for address, arguments in found:
-                if address.startswith(OWN):
+            for address, message in found:
+                if address.startswith(_OWN):
                     if len(self._acts) < MOST:
-                        self._acts.append((address, list(arguments)))
+                        self._acts.append(message)
                     else:
                         self._lost += 1
                 elif address in self._waiting or len(self._waiting) < MOST:
                     self._waiting.pop(address, None)  # what came last is done last
-                    self._waiting[address] = list(arguments)
+                    self._waiting[address] = message
                 else:
                     self._lost += 1
         if first:
             self._wake()
+
+
+def messages_of(data: Datagram) -> list[Message]:
+    """Return the messages of a datagram, in the order of their times; none where it is no OSC."""
+    if isinstance(data, tuple):
+        return [data]
+    try:
+        return [(timed.message.address, list(timed.message.params)) for timed in OscPacket(data).messages]
+    except Exception:  # what the package raises for what is no OSC is of many kinds
+        return []
 
 
 def _bound(source: Address) -> socket.socket:

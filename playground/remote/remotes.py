@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from types import TracebackType
 from typing import TYPE_CHECKING, TypeVar
 
-from playground.errors import ContextError
+from playground.errors import ContextError, PlaygroundError
 from playground.remote.access import check_token, new_token
 from playground.remote.calls import Calls
 from playground.workbench.bench import Bench
@@ -16,6 +16,7 @@ from playground.workbench.control.changes import Changes
 from playground.workbench.control.controls import Controls
 
 if TYPE_CHECKING:
+    from playground.remote.midi import Midi
     from playground.remote.osc import Osc
     from playground.remote.server import Server
 
@@ -46,7 +47,9 @@ class Remotes:
         self.server: Server | None = None
         self.osc: Osc | None = None
         self.calls = Calls()
+        self.midi: Midi | None = None  # once something is to be received
         self._controls: Controls | None = None
+        self._listened: object = None  # the bindings for which devices were asked for
         if options.port is not None:
             self.server = _server(options.port, check_token(options.token) if options.token else new_token())
         if options.osc is not None or options.osc_to is not None:
@@ -71,12 +74,15 @@ class Remotes:
     @property
     def waits(self) -> bool:
         """Whether there is something to ``take``."""
-        return len(self.calls) > 0 or (self.osc is not None and self.osc.waits)
+        asked = len(self.calls) > 0 or (self.osc is not None and self.osc.waits)
+        return asked or (self.midi is not None and self.midi.waits) or self._settles
 
     def attach(self, bench: Bench, wake: Callable[[], None]) -> None:
         """Drive a session from now on; ``wake`` ends the window's sleep, from any thread."""
         self.calls.wake = wake
         self._controls, self._changes = Controls(bench), Changes(bench)
+        self._controllers = bench.controllers
+        bench.controllers.listen, self._say = self._listen, bench.notices.say
         if self.server is not None:
             self.server.start(self.calls, self._controls)
         if self.osc is not None:
@@ -89,6 +95,7 @@ class Remotes:
             if self.osc is not None:
                 self.osc.take()
             self._controls.flush()
+            self._take_moves()
 
     def tell(self) -> None:
         """Tell those who listen what has changed."""
@@ -108,6 +115,33 @@ class Remotes:
             self.server.close()
         if self.osc is not None:
             self.osc.close()
+        if self.midi is not None:
+            self.midi.close()
+
+    @property
+    def _settles(self) -> bool:
+        return self._controls is not None and self._controllers.settles
+
+    def _take_moves(self) -> None:
+        """Have MIDI controllers set what they are bound to; the first binding opens the devices."""
+        controllers = self._controllers
+        if controllers.bindings and controllers.bindings is not self._listened:
+            self._listened = controllers.bindings
+            if self.midi is None and (why := self._listen()):
+                self._say(why)
+        if self.midi is not None:
+            controllers.take(self.midi.take())
+        controllers.update()
+
+    def _listen(self) -> str:
+        """Receive from MIDI devices; return why that cannot be done, or ""."""
+        try:
+            if self.midi is None:
+                self.midi = _midi(self.calls.wake)
+            self.midi.open()
+        except PlaygroundError as error:
+            return str(error)
+        return ""
 
     def _closing(self, opened: Callable[[], Opened]) -> Opened:
         """Open another remote; where that fails, close those that are open."""
@@ -116,6 +150,14 @@ class Remotes:
         except BaseException:
             self.close()
             raise
+
+
+def _midi(wake: Callable[[], None]) -> Midi:
+    try:
+        from playground.remote.midi import Midi
+    except ImportError:
+        raise missing_extra("MIDI", "mido", "midi") from None
+    return Midi(wake)
 
 
 def _osc(source: Address | None, target: Address | None) -> Osc:

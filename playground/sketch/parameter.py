@@ -42,9 +42,11 @@ class Sampling:
     """How a texture is read."""
 
     filter: str = "nearest"  # nearest | linear
-    wrap: str = "clamp"  # clamp | repeat
+    wrap: str = "clamp"  # clamp | repeat | mirror
     mipmap: bool = False
     magnify: str = ""  # how where a texel is larger than a pixel; "": as ``filter``
+    flip: bool = False  # an image file's upper row is below
+    decode: bool = False  # an image file's colours become linear, where they would stay encoded
 
 
 AS_IT_IS = Sampling()

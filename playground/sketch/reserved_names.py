@@ -70,7 +70,8 @@ MOMENT = "moment"
 """What a source depends on besides its parameters, such as a frame of a film, among what a step is given."""
 
 CLOCKED = frozenset(
-    {"time", "frame", "frame_of_time", "delta", "date", "mouse", "hover", "hover_share", "drag", MOMENT}
+    {"time", "frame", "frame_of_time", "delta", "date", "date_from_1"}
+    | {"mouse", "hover", "hover_share", "drag", "bands", MOMENT}
 )
 """What belongs to one frame: given names and meanings that, in a loop that counts ``frames``, are those
 of its iteration, so that what is computed of the frames before stays."""

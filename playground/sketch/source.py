@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import re
 import stat
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -89,7 +90,12 @@ class SourceText:
     @cached_property
     def names(self) -> frozenset[str]:
         """Every identifier that the code names."""
-        return frozenset(re.findall(r"[A-Za-z_]\w*", self.code))
+        return frozenset(self.counts)
+
+    @cached_property
+    def counts(self) -> Counter[str]:
+        """How often the code names each identifier."""
+        return Counter(re.findall(r"[A-Za-z_]\w*", self.code))
 
 
 @dataclass(frozen=True, slots=True)

@@ -27,6 +27,7 @@ from playground.terrain.delaunay import Rules, tables, triangulate
 from playground.terrain.elevation import Edge, Elevation, read_elevation
 from playground.terrain.gaps import Voids, fill_no_data
 from playground.terrain.grid import Packing
+from playground.terrain.live_sources import make_keys, moment_of_keys, size_of_keys
 from playground.terrain.masks import read_mask
 from playground.terrain.over_time import (
     make_sound,
@@ -217,5 +218,6 @@ SOURCES: dict[str, SourceKind] = {
         moment=moment_of_sound,
         size=size_of_sound,
     ),
+    "keyboard": SourceKind(lambda _: Terrain(), make_keys, (), (), moment=moment_of_keys, size=size_of_keys),
 }
 """Name → what it does."""

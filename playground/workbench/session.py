@@ -11,7 +11,7 @@ No window and no keys: ``frame(size)`` returns the texture to show.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -250,6 +250,11 @@ class Session:
             self.redraw()
         self._pressed = frozenset()
 
+    def hold_keys(self, codes: Collection[int]) -> None:
+        """Begin a frame in which the picture's keys are down, by their codes in JavaScript."""
+        if self.engine.runner.inputs.keyboard.hold(codes) and self.sketch and traits_of(self.sketch).keys:
+            self.redraw()
+
     def advance(self, seconds: float, date: datetime) -> None:
         """Advance the clock by seconds of real time, unless it is paused; plain shaders get the date.
 
@@ -345,6 +350,7 @@ class Session:
         something is changed.
         """
         engine.runner.mouse = self.engine.runner.mouse
+        engine.runner.inputs = self.engine.runner.inputs
         engine.runner.hover, engine.runner.drag = self.engine.runner.hover, self.engine.runner.drag
         engine.plain_forms.notice = silent
         engine.painted.update(self.engine.painted)

@@ -21,6 +21,7 @@ from tests.toy_texts import (
     GROWS,
     IMAGE,
     PLAIN,
+    SOUND,
     VSCODE,
     A,
     Toy,
@@ -169,6 +170,37 @@ def test_pixels_of_a_cube_map_pass_are_those_of_its_face(any_engine, opened):
         text = export(one("Image", image.format(way), wire), cube(where))
         found = first_texel(any_engine, opened({"a.json": text}, "a.json"))
         np.testing.assert_allclose(found[:2], 255 * np.array(expected), atol=2)
+
+
+def test_an_image_next_to_an_export_is_read_as_its_sampler_says(any_engine, opened, folder):
+    pixels = np.full((4, 4, 4), 255, np.uint8)
+    pixels[:2, :, :3] = 128  # its upper half
+    write_png(folder.path / "x.png", pixels)
+    image = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec2(0.5, 0.875)); }"
+    for sampler, level in [
+        ({}, 128),
+        ({"vflip": "false"}, 255),
+        ({"vflip": False}, 255),
+        ({"vflip": "true", "srgb": "true"}, 255 * ((128 / 255 + 0.055) / 1.055) ** 2.4),
+    ]:
+        given = {"id": "a", "src": "x.png", "ctype": "texture", "channel": 0, "sampler": sampler}
+        sketch = opened({"a.json": export(one("Image", image, given))}, "a.json")
+        np.testing.assert_allclose(first_texel(any_engine, sketch)[0], level, atol=1)
+        assert notes(sketch) == []
+
+
+def test_what_makes_no_picture_is_named(opened):
+    text = f"{PLAIN}{SOUND}\nvoid mainVR(out vec4 c, vec2 p) {{}}\n"
+    for files, opens in [
+        ({"a.frag": text}, "a.frag"),
+        ({"a.json": export(one("Image", text))}, "a.json"),
+        ({"a.frag": f"#iKeyboard\n{text}"}, "a.frag"),
+    ]:
+        found = notes(opened(files, opens))
+        assert [note.split(",")[0] for note in found if "not drawn" in note] == [
+            "mainSound is sound",
+            "mainVR is for VR",
+        ]
 
 
 def test_what_is_not_there_is_named_once_with_its_channel(opened):
@@ -375,6 +407,7 @@ def test_an_image_of_a_channel_has_its_own_size_and_filters(any_engine, opened, 
         ),
         ('#iChannel0::WrapMode "Clamp"\n', "vec2(1.5, 1.5)", [255, 255]),
         ('#iChannel0::WrapMode "Repeat"\n', "vec2(1.125, 1.25)", [0, 0]),
+        ('#iChannel0::WrapMode "Mirror"\n', "vec2(1.125, 1.25)", [255, 255]),
     ]:
         sketch = opened({"a.glsl": f'#iChannel0 "file://x.png"\n{more}{read_it.format(place)}'}, "a.glsl")
         np.testing.assert_allclose(first_texel(any_engine, sketch)[:2], expected, atol=1)

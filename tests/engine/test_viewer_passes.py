@@ -8,6 +8,7 @@ from scipy.ndimage import distance_transform_edt
 
 from playground.errors import ShaderError
 from playground.sketch.load import load
+from playground.sketch.warnings import warnings_of_kernel
 
 HEAD = "uniform vec2 u_resolution;\n"
 PASSES = """void main() {{
@@ -132,6 +133,12 @@ def test_a_buffer_that_no_pass_writes_reads_black_and_is_named(read, picture):
 def test_a_parameter_of_several_passes_is_one(read):
     text = text_of("BUFFER_0", "vec4(gain)", "texture2D(u_buffer0, st) * gain", "uniform float gain = 0.5;\n")
     assert [p.name for p in read(text, "").graph.find("view").technique.parameters] == ["gain"]
+    alone = text.replace("* gain", "* 2.0")  # one pass reads it, all declare it
+    found = read(alone, "")
+    assert [p.name for p in found.graph.find("view").technique.parameters] == ["gain"]
+    assert not [w.message for _, kernel in found.graph.kernels for w in warnings_of_kernel(kernel)]
+    none = read(alone.replace("vec4(gain)", "vec4(1.0)"), "").graph.kernels
+    assert any("nothing reads 'gain'" in w.message for _, kernel in none for w in warnings_of_kernel(kernel))
 
 
 @pytest.mark.parametrize("define", ["BUFFER_0", "PYRAMID_0", "FLOOD_0", "POSTPROCESSING"])

@@ -21,10 +21,12 @@ set = {{ {} }}
 
 @pytest.fixture
 def texels(any_engine, tmp_path):
-    def read(kernel: str, size: tuple[int, int] = (64, 64), setting: str = "") -> np.ndarray:
+    def read(
+        kernel: str, size: tuple[int, int] = (64, 64), setting: str = "", time: float = 0.0
+    ) -> np.ndarray:
         path = tmp_path / "s.toml"
         path.write_text(SKETCH.format(kernel, *size, setting))
-        return any_engine.read(load(path), "a").astype(float)
+        return any_engine.read(load(path), "a", time=time).astype(float)
 
     return read
 
@@ -77,10 +79,41 @@ def test_a_sky_has_its_horizon_its_sun_and_its_ground_where_the_cube_map_says(te
     assert max(a @ b for i, a in enumerate(suns) for b in suns[:i]) < 0.95
 
 
-def test_a_made_up_sound_is_bounded_and_its_waves_are_around_one_half(texels):
-    spectrum, waves = texels("spectrum", (64, 1)), texels("spectrum", (512, 1), 'content = "waves"')
-    assert 0.0 <= spectrum[..., :3].min() and 0.3 < spectrum[..., :3].max() <= 1.0
-    assert spectrum[0, :32, 0].mean() > spectrum[0, 32:, 0].mean()  # low frequencies are the stronger
-    # Whole periods of two sines of amplitude 0.22: mean 1/2, mean square 2 * 0.22^2 / 2; half floats.
-    np.testing.assert_allclose(waves[0, :, 0].mean(), 0.5, atol=2e-3)
-    np.testing.assert_allclose(waves[0, :, 0].var(), 0.22**2, rtol=0.02)
+def music(
+    texels, time: float, size: tuple[int, int] = (512, 2), number: int = 0, content: str = ""
+) -> np.ndarray:
+    """Return rows 0..1 of the stand-in of a sound at a time."""
+    return texels("spectrum", size, f"number = {number}{content}", time=time)[..., 0]
+
+
+def test_a_made_up_sound_has_tones_a_beat_and_a_wave(texels):
+    times = np.arange(0.0, 6.0, 0.05)
+    found = np.stack([music(texels, time) for time in times])
+    spectra, waves = found[:, 0], found[:, 1]
+    drum = spectra[:, :4].mean(1)  # up to 86 Hz
+    struck = np.flatnonzero(np.diff(drum) > 0.25)
+    assert 8 <= len(struck) <= 15, "1.6 to 2.4 beats a second for six seconds"
+    assert np.ptp(np.diff(times[struck])) < 0.11, "evenly, as far as a twentieth of a second shows"
+    assert spectra[:, 10:].max(1).min() > 0.3 and spectra[:, -10:].max() < 0.3, "tones, few of them high"
+    np.testing.assert_allclose(waves.mean(), 0.5, atol=0.02)
+    assert waves.std(1).min() > 0.02 and 0.0 < waves.min() and waves.max() < 1.0
+
+
+def test_a_made_up_wave_has_the_tones_of_its_spectrum(texels):
+    """The strongest tone of a transform of the wave stands in the spectrum, too."""
+    time = 10.3
+    wave = music(texels, time)[1] - 0.5
+    strengths = np.abs(np.fft.rfft(wave * np.hanning(512), 4096))
+    hertz = np.argmax(strengths) * 44100 / 4096
+    row = music(texels, time)[0]
+    near = row[max(int(hertz / 11025 * 512) - 4, 0) :][:9]
+    assert near.max() > 0.4
+
+
+def test_made_up_sounds_differ_by_number_and_go_by_time_alone(texels):
+    made = [music(texels, 2.0, number=number) for number in range(4)]
+    assert min(np.abs(a - b).max() for i, a in enumerate(made) for b in made[:i]) > 0.2
+    np.testing.assert_array_equal(music(texels, 2.0), made[0])
+    whole = music(texels, 2.0, (512, 4))
+    alone = {c: music(texels, 2.0, content=f', content = "{c}"') for c in ("spectrum", "waves")}
+    np.testing.assert_array_equal(whole, [*alone["spectrum"], *alone["waves"]])

@@ -17,7 +17,7 @@ from pythonosc.udp_client import SimpleUDPClient
 
 from playground import cli
 from playground.errors import ContextError, DataError
-from playground.remote.osc import MOST, Osc
+from playground.remote.osc import MOST, Osc, messages_of
 from playground.remote.remotes import RemoteOptions, Remotes
 
 from .desk import Desk
@@ -232,7 +232,7 @@ def test_what_waits_is_bounded():
         osc._put(message("/playground/undo"))
         osc._put(message("/a/0", float(n)))
     assert len(osc._waiting) == MOST and len(osc._acts) == MOST and osc._lost == 4 * MOST
-    assert osc._waiting["/a/0"] == [3 * MOST - 1.0]
+    assert osc._waiting[b"/a/0"] == message("/a/0", 3 * MOST - 1.0)
 
 
 def message(address: str, *arguments: Any) -> bytes:
@@ -247,9 +247,11 @@ def test_bytes_that_are_no_osc_raise_nothing():
     deep = b""
     for _ in range(2000):
         deep = b"#bundle\0" + struct.pack(">Q", 1) + struct.pack(">i", len(deep)) + deep
-    for data in (b"/", b"/a\0\0\0,f\0\0", b"\0" * 64, b"#bundle\0", deep, bytes(range(256)) * 8):
+    wrong = (b"/", b"/a\0\0\0,f\0\0", b"\0" * 64, b"#bundle\0", deep, bytes(range(256)) * 8)
+    for data in wrong:
         osc._put(data)
-    assert osc._unread >= 4
+        assert all(isinstance(given, bytes) for given in osc._waiting.values())
+        assert [m for given in osc._waiting.values() for m in messages_of(given)] == []
 
 
 def test_a_taken_port_an_unknown_host_and_a_missing_package_are_one_sentence(monkeypatch: pytest.MonkeyPatch):

@@ -23,6 +23,7 @@ from playground.sketch.source import read_text
 
 OWN = "own"
 EXPORT = ".json"
+_REFUSED = "sound"
 _MOST = 64
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
@@ -59,6 +60,13 @@ def _vscode(files: Files) -> Sequence[Shader]:
     return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else vscode.shaders(files)
 
 
+def _without_picture(files: Files) -> Sequence[Shader]:
+    """Return the passes of the folder that a file is one of; raise ``ShaderError`` for one alone."""
+    return (
+        shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else shadertoy.refused(files)
+    )
+
+
 DIALECTS = (
     Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text), isf.shaders),
     Dialect(
@@ -81,7 +89,12 @@ DIALECTS = (
         _shadertoy,
     ),
     Dialect("main", "a shader with its own main", lambda text, code: _MAIN.search(code), main.shaders),
-    Dialect("sound", "Shadertoy's sound, VR or cube map", lambda text, code: _SOUND.search(code)),
+    Dialect(
+        _REFUSED,
+        "Shadertoy's sound, VR or cube map",
+        lambda text, code: _SOUND.search(code),
+        _without_picture,
+    ),
 )
 """The dialects, in the order in which a text is looked at."""
 
@@ -90,7 +103,7 @@ _known: OrderedDict[tuple[Path, Path, str], tuple[Graph | None, Files]] = Ordere
 
 def names() -> tuple[str, ...]:
     """Return what ``--dialect`` takes."""
-    return tuple(d.name for d in DIALECTS if d.shaders is not None or d.name == OWN)
+    return tuple(d.name for d in DIALECTS if d.name != _REFUSED and (d.shaders or d.name == OWN))
 
 
 def check_name(name: str) -> str:
@@ -148,7 +161,8 @@ def read_foreign(
     shaders = chosen.shaders(files)
     graph = graph_of_shaders(name, shaders, read, root) if shaders else None
     if graph is not None:
-        graph = replace(graph, title=files.title or graph.title, warnings=tuple(files.notes))
+        title = files.title or graph.title
+        graph = replace(graph, title=title, warnings=(*graph.warnings, *files.notes))
     if not instead:
         _known[key] = graph, files
         while len(_known) > _MOST:

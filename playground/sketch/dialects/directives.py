@@ -6,7 +6,6 @@ A driver is given what they mean in GLSL, in their own place: a uniform, functio
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
 from playground.errors import nearest
@@ -68,7 +67,7 @@ class Channel:
         """Return how it is read; what no line says is as ``usual``."""
         least, most = self.settings.get("MinFilter", ""), self.settings.get("MagFilter", "")
         wrap = self.settings.get("WrapMode", "")
-        found = usual if not wrap else replace(usual, wrap={"Clamp": "clamp"}.get(wrap, "repeat"))
+        found = replace(usual, wrap=wrap.lower()) if wrap else usual
         if least:
             form = "nearest" if least.startswith("Nearest") else "linear"
             found = replace(found, filter=form, mipmap="MipMap" in least)
@@ -94,7 +93,7 @@ def read_directives(source: SourceText) -> Read:
         if match is None:
             lines.append(line)
         elif match.group(1).startswith("iChannel"):
-            notes += _channel(line, channels)
+            _channel(line, channels)
             lines.append(replace(line, code=""))
         elif match.group(1) == "iUniform":
             lines.append(_uniform(line, match.group(2)))
@@ -107,7 +106,7 @@ def read_directives(source: SourceText) -> Read:
     return Read(SourceText(source.path, tuple(lines), source.files), channels, tuple(notes))
 
 
-def _channel(line: Line, channels: dict[int, Channel]) -> Iterator[tuple[Line, str]]:
+def _channel(line: Line, channels: dict[int, Channel]) -> None:
     match = _CHANNEL.match(line.text)
     if match is None:
         raise line.error('expected #iChannel0 "file://picture.png", or #iChannel0::WrapMode "Repeat"')
@@ -125,8 +124,6 @@ def _channel(line: Line, channels: dict[int, Channel]) -> Iterator[tuple[Line, s
     if value is None:
         wrong = f"{setting} of #iChannel{number}: no '{text}'{nearest(text, _CHOICES[setting])}"
         raise line.error(wrong, line.text.find(text) + 1)
-    if value == "Mirror":
-        yield line, f"#iChannel{number} is repeated, not mirrored"
     channel.settings[setting] = value
 
 

@@ -35,6 +35,8 @@ _COUNT = re.compile(r"\[\s*(\d+)\s*\]")
 _MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
 _MODEL = "MODEL_"
 _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
+_SOUNDS = "a made-up sound stands in; a sketch may wire foreign/sound to it"
+_BANDS = "a made-up sound stands in"
 
 
 class ForeignKernel:
@@ -77,7 +79,7 @@ class ForeignKernel:
                 Input(n, c.sampling, "zero" if c.target else "black", shape=self.shapes[n])
                 for n, c in self.channels.items()
             ),
-            title=shader.title or title_of(self.source),
+            title=title_of(self.source),
             dialect=self.rules.name,
             prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
             epilogue=self.rules.epilogue,
@@ -113,6 +115,7 @@ class ForeignKernel:
             return Channel()
         file = self._commented(self.declared[sampler]) if sampler in self.declared else ""
         unfed = f"there is no file '{file}', so a stand-in is drawn" if file else _STANDS_IN
+        unfed = _SOUNDS if kind == "sound" else unfed
         kind = STAND_INS_OF_SHAPES.get(self.shapes[sampler], kind)
         return stand_in(kind, int(number), unfed)
 
@@ -131,11 +134,7 @@ class ForeignKernel:
 
     def _is_read(self, name: str) -> bool:
         """Return whether a text names a sampler besides declaring it."""
-        return (
-            name in self.missing
-            or name in self.vertex_missing
-            or len(re.findall(rf"\b{name}\b", self.code)) > 1
-        )
+        return name in self.missing or name in self.vertex_missing or self.source.counts[name] > 1
 
     def _kinds(self) -> Iterator[tuple[str, str]]:
         """Yield each sampler that a wire may feed, with its type."""
@@ -219,6 +218,8 @@ class ForeignKernel:
             channel = self.channels.get(name, Channel())
             if channel.unfed:
                 yield name, channel.unfed
+            elif self.rules.names.get(name, ("", ""))[1] == "bands":
+                yield name, _BANDS
             elif "sampler" in kind and channel == Channel() and name not in fed and self._is_read(name):
                 yield name, "it reads black"
         for name in sorted(self.source.names):

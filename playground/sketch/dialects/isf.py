@@ -123,7 +123,9 @@ class _Reader:
                     keeps=target is not None and target.keeps,
                 )
             )
-        return [replace(one, title=self._title(), notes=tuple(self.notes)) for one in found]
+        self.files.title = self._title()
+        self.files.notes += dict.fromkeys(self.notes)
+        return found
 
     # ── what the description says ────────────────────────────────────────────
 

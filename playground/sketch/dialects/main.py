@@ -52,13 +52,13 @@ _ELSEWHERE: Names = {
     "fGlobalTime": ("float", "time"),
     "fFrameTime": ("float", "delta"),
     "v2Resolution": ("vec2", "resolution"),
-    **{name: ("sampler1D", "none") for name in ("texFFT", "texFFTSmoothed", "texFFTIntegrated")},
+    **{name: ("sampler1D", "sound 0") for name in ("texFFT", "texFFTSmoothed", "texFFTIntegrated")},
     "texChecker": ("sampler2D", "picture 0"),
     "texNoise": ("sampler2D", "noise 0"),
     **{f"texTex{n}": ("sampler2D", f"picture {n}") for n in range(1, 5)},
     # KodeLife and glslsandbox
     "mouse": ("vec2", "hover_share"),
-    "spectrum": ("vec3", "none"),
+    "spectrum": ("vec3", "bands"),
     **{f"texture{n}": ("sampler2D", f"picture {n}") for n in range(4)},
     **{name: ("sampler2D", "none") for name in _BEFORE},
 }

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import ShaderError, nearest
@@ -52,6 +53,7 @@ class _Passes:
                 foreign = ForeignKernel(shader, root)
                 self.techniques.append(foreign.kernel(name))
                 self.channels.append(foreign.channels)
+        self._drop_unread()
         self.kernels = [kernel for kernel in self.techniques if isinstance(kernel, Kernel) and kernel.dialect]
         self.wires: list[list[tuple[str, str]]] = [
             [] for _ in shaders
@@ -62,6 +64,17 @@ class _Passes:
                 if channel.target:
                     self._wire(index, sampler, channel.target)
         self.inputs = dict(self._inputs())
+
+    def _drop_unread(self) -> None:
+        """Drop the parameters that a pass declares and only other passes read."""
+        kernels = [one for one in self.techniques if isinstance(one, Kernel) and one.dialect]
+        reads = {id(one): _names_read(one) for one in kernels}
+        anywhere = set().union(*reads.values())
+        for index, one in enumerate(self.techniques):
+            if isinstance(one, Kernel) and id(one) in reads:
+                kept = [p for p in one.parameters if p.name in reads[id(one)] or p.name not in anywhere]
+                if len(kept) < len(one.parameters):
+                    self.techniques[index] = replace(one, parameters=tuple(kept))
 
     def _wire(self, index: int, sampler: str, target: str) -> None:
         writers = [i for i, shader in enumerate(self.shaders) if shader.target == target]
@@ -113,9 +126,6 @@ class _Passes:
             parameters=tuple(_inside(VIEW, name) for name in _parameters_of(view.technique)),
             inputs=tuple(_inside(VIEW, name) for name in self.inputs),
             title=next((kernel.title for kernel in self.kernels if kernel.title), ""),
-            warnings=tuple(
-                dict.fromkeys(note for s in self.shaders if isinstance(s, Shader) for note in s.notes)
-            ),
         )
 
     def _view(self) -> PassSpec:
@@ -170,6 +180,11 @@ class _Passes:
                 yield Export(name, tuple(f"{owner}.{name}" for owner, _ in owners))
             else:
                 yield from (Export(_own_name(owner, name), (f"{owner}.{name}",)) for owner, _ in owners)
+
+
+def _names_read(kernel: Kernel) -> set[str]:
+    """Return the parameters that a text names besides declaring them."""
+    return {p.name for p in kernel.parameters if kernel.source.counts[p.name] > 1 or kernel.vertex_source}
 
 
 def stand_in_paths(path: str, sampler: str) -> set[str]:

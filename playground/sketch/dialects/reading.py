@@ -10,7 +10,7 @@ from playground.errors import Diagnostic
 from playground.paths import PART_OF_FILE, shown
 from playground.sketch.allowed_files import is_file
 from playground.sketch.dialects.foreign import commented_files, places_of
-from playground.sketch.source import Origin, SourceText, read_source_and_origin, read_text
+from playground.sketch.source import Line, Origin, SourceText, read_source_and_origin, read_text
 
 
 @dataclass
@@ -24,7 +24,7 @@ class Files:
     root: Path
     instead: Mapping[str, str] = field(default_factory=dict)
     named: bool = False
-    title: str = ""  # of the whole, where the file says it
+    title: str = ""  # that the other tool gives it
     notes: list[Diagnostic] = field(default_factory=list)  # of what is not as in the other tool
     _origins: list[Origin] = field(default_factory=list)
     _texts: dict[str, str] = field(default_factory=dict)
@@ -58,7 +58,13 @@ class Files:
 
     def note(self, message: str, line: int = 0, path: Path | None = None) -> None:
         """Note what a user is told of the file, at one of its lines."""
-        found = Diagnostic(message, shown(path or self.path), line, severity="warning")
+        self._note(Diagnostic(message, shown(path or self.path), line, severity="warning"))
+
+    def note_at(self, line: Line, message: str) -> None:
+        """Note what a user is told of a line."""
+        self._note(line.diagnostic(message, severity="warning"))
+
+    def _note(self, found: Diagnostic) -> None:
         if found not in self.notes:
             self.notes.append(found)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
-from playground.errors import Diagnostic
 from playground.sketch.dialects.es import Rewritten
 from playground.sketch.model import Parameter, Sampling, Value
 from playground.sketch.source import SourceText
@@ -18,6 +17,8 @@ STAND_INS = {
     "picture": "foreign/picture",
     "sky": "foreign/sky_box",
     "volume": "foreign/noise",
+    "sound": "foreign/spectrum",
+    "keys": "foreign/keys",
 }
 """What is drawn where nothing feeds a channel: the first word of its meaning → a technique of ``glsl/``."""
 
@@ -26,7 +27,14 @@ STAND_INS_OF_SHAPES = {"cube": "sky", "volume": "volume"}
 
 SAMPLING = Sampling("linear", "repeat", mipmap=True)
 STAND_IN_SIZE = ("256", "256")
-_SIZES = {"sky": ("128", "768"), "volume": ("32", "1024")}
+_SIZES = {
+    "sky": ("128", "768"),
+    "volume": ("32", "1024"),
+    "sound": ("512", "2"),
+    "keys": ("256", "3"),
+}
+_SAMPLINGS = {"sound": Sampling("linear", "clamp"), "keys": Sampling("nearest", "clamp")}
+_ALIKE = ("keys",)  # stand-ins that have no numbers
 
 
 @dataclass(frozen=True)
@@ -58,7 +66,9 @@ class Channel:
 def stand_in(kind: str, number: int, unfed: str) -> Channel:
     """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
     size = _SIZES.get(kind, STAND_IN_SIZE)
-    return Channel(use=STAND_INS[kind], values=(("number", number),), size=size, unfed=unfed)
+    values = () if kind in _ALIKE else (("number", number),)
+    sampling = _SAMPLINGS.get(kind, SAMPLING)
+    return Channel(use=STAND_INS[kind], values=values, size=size, sampling=sampling, unfed=unfed)
 
 
 @dataclass(frozen=True)
@@ -76,8 +86,6 @@ class Shader:
     named: frozenset[str] = frozenset()  # names of the rules that the prelude names
     prelude: tuple[str, ...] = ()  # lines besides those that the rules give
     vertex: Rewritten | None = None  # the author's own vertex shader
-    title: str = ""  # of the whole; "": the comment that the text begins with
-    notes: tuple[Diagnostic, ...] = ()  # warnings of the whole
     keeps: bool = False  # what it wrote in the last frame may be read
     repeat: str = ""  # an expression: it is drawn so often, and reads what it wrote before by ``feeds``
     feeds: str = ""  # a sampler

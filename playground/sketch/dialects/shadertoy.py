@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from playground.sketch.dialects.es import rewritten
@@ -9,6 +10,7 @@ from playground.sketch.dialects.passes import VIEW
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.shader import Names, Rules, Shader
 from playground.sketch.reserved_names import SIZES
+from playground.sketch.source import Line, SourceText
 
 CHANNELS = tuple(f"iChannel{number}" for number in range(4))
 
@@ -42,6 +44,35 @@ MORE_NAMES: Names = {
 RULES = Rules("shadertoy", NAMES, epilogue="main_image.glsl")
 
 
+_NOT_DRAWN = {"mainSound": "sound", "mainVR": "for VR"}
+
+
 def shaders(files: Files) -> Sequence[Shader]:
     """Return the passes of a file."""
-    return (Shader(VIEW, rewritten(files.source()), RULES),)
+    source = files.source()
+    note_not_drawn(files, source)
+    return (Shader(VIEW, rewritten(source), RULES),)
+
+
+def note_not_drawn(files: Files, source: SourceText) -> None:
+    """Note each function of a text that makes no picture here."""
+    for function, what in _NOT_DRAWN.items():
+        if line := _defines(source, function):
+            files.note_at(line, f"{function} is {what}, which is not drawn")
+
+
+def refused(files: Files) -> Sequence[Shader]:
+    """Raise ``ShaderError`` for a text that has no picture of its own, at the function that it has."""
+    source = files.source()
+    for function, what in _NOT_DRAWN.items():
+        if line := _defines(source, function):
+            raise line.error(f"{function} is {what}, which is not drawn, and there is no mainImage")
+    line = _defines(source, "mainCubemap") or source.lines[0]
+    raise line.error(
+        "a cube map alone is not drawn: as 'Cube A.glsl' it is, next to an Image.glsl that reads it"
+    )
+
+
+def _defines(source: SourceText, function: str) -> Line | None:
+    sign = re.compile(rf"\b{function}\s*\(")
+    return next((line for line in source.lines if sign.search(line.code)), None)

@@ -16,6 +16,7 @@ from playground.paths import shown
 from playground.sketch.allowed_files import leads_outside
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.shader import Channel, Shader, stand_in
+from playground.sketch.dialects.shadertoy import note_not_drawn
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
     CUBE,
@@ -51,6 +52,7 @@ _TYPES = {
     "video": ("sampler2D", "picture"),
     "webcam": ("sampler2D", "picture"),
 }
+_SOUNDS = ("music", "musicstream", "mic")
 _NOT_FED = {
     "video": "a video",
     "webcam": "a camera",
@@ -84,15 +86,12 @@ def shaders(files: Files) -> Sequence[Shader]:
         there = ", ".join(one.label for one in passes) or "nothing"
         raise _wrong(files, f"there is no Image pass to draw; there is {there}")
     written = {output: one for one in drawn for output in one.outputs}
-    made = [
-        ToyPass(
-            one.label,
-            one.kind,
-            with_common(common, files.part(one.label, one.code)),
-            dict(_inputs(files, one, written, drawn)),
-        )
-        for one in sorted(drawn, key=lambda one: one.label)
-    ]
+    made = []
+    for one in sorted(drawn, key=lambda one: one.label):
+        source = files.part(one.label, one.code)
+        note_not_drawn(files, source)
+        inputs = dict(_inputs(files, one, written, drawn))
+        made.append(ToyPass(one.label, one.kind, with_common(common, source), inputs))
     info = shader.get("info")
     files.title = str(info.get("name") or "") if isinstance(info, dict) else ""
     return shaders_of(made, "export")
@@ -188,6 +187,9 @@ def _input(
         return ToyInput(Channel(sampling=sampling or _OF_PICTURES), file=source)
     if kind == "keyboard":
         return ToyInput(Channel(unfed="no key is pressed"))
+    if kind in _SOUNDS:
+        unfed = f"it is {_NOT_FED[kind]}, so a made-up sound stands in for it"
+        return ToyInput(replace(stand_in("sound", 0, unfed), sampling=sampling or OF_BUFFERS))
     glsl, form = _TYPES.get(kind, ("sampler2D", "picture" if _PHOTO.search(source) else "noise"))
     if kind in _NOT_FED:
         unfed = f"it is {_NOT_FED[kind]}, so a stand-in is drawn"
@@ -226,7 +228,14 @@ def _sampling(given: object) -> Sampling | None:
         return None
     form = str(given.get("filter", "linear"))
     wrap = "repeat" if str(given.get("wrap", "repeat")) == "repeat" else "clamp"
-    return Sampling("nearest" if form == "nearest" else "linear", wrap, form == "mipmap")
+    flip, decode = (str(given.get(word, usual)).lower() for word, usual in (("vflip", True), ("srgb", False)))
+    return Sampling(
+        "nearest" if form == "nearest" else "linear",
+        wrap,
+        form == "mipmap",
+        flip=flip == "false",
+        decode=decode == "true",
+    )
 
 
 def _wrong(files: Files, message: str) -> SketchError:

@@ -73,11 +73,15 @@ class _Viewer:
         self.conditions = Conditions([line.code for line in text.source.lines])
         given = [line for line in rules.defines(text.source) if not line.endswith("BACKGROUND")]
         self.given = {words[1]: " ".join(words[2:]) for words in map(str.split, given)}
+        self._live: dict[tuple[str, ...], tuple[str, ...]] = {}
         self.bare = self.live()
+        self.sources: dict[tuple[str, ...], SourceText] = {}
 
     def live(self, *macros: str) -> tuple[str, ...]:
         """Return the lines that there are where some passes' macros are defined."""
-        return self.conditions.live({**self.given, **dict.fromkeys(macros, "")})
+        if macros not in self._live:
+            self._live[macros] = self.conditions.live({**self.given, **dict.fromkeys(macros, "")})
+        return self._live[macros]
 
     def changes(self, macro: str) -> bool:
         """Return whether the text has other lines where a macro is defined."""
@@ -129,12 +133,7 @@ class _Viewer:
         feeds: str = "",
     ) -> Shader:
         """Return the text with some macros defined, as a pass; ``own`` is the pass that it is the text of."""
-        source = self.text.source
-        lines = tuple(
-            line if line.code == code else replace(line, code=code)
-            for line, code in zip(source.lines, self.live(*macros), strict=True)
-        )
-        made = Rewritten(SourceText(source.path, lines, source.files), self.text.prelude)
+        made = Rewritten(self._source(macros), self.text.prelude)
         before = tuple(
             f"#define {n} {v}".rstrip() for n, v in {**self.given, **dict.fromkeys(macros, "")}.items()
         )
@@ -154,6 +153,17 @@ class _Viewer:
             repeat=repeat,
             feeds=feeds,
         )
+
+    def _source(self, macros: tuple[str, ...]) -> SourceText:
+        """Return the text where some macros are defined: the same object for the same lines."""
+        codes, source = self.live(*macros), self.text.source
+        if codes not in self.sources:
+            lines = tuple(
+                line if line.code == code else replace(line, code=code)
+                for line, code in zip(source.lines, codes, strict=True)
+            )
+            self.sources[codes] = SourceText(source.path, lines, source.files)
+        return self.sources[codes]
 
     def _buffers(self, own: _Pass | None) -> dict[str, Channel]:
         """Return what reads the passes; only double buffers and floods read themselves."""

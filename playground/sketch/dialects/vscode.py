@@ -13,6 +13,7 @@ from playground.sketch.allowed_files import SHADERS, is_inside, names_below
 from playground.sketch.dialects import directives
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.shader import Channel, Shader, stand_in
+from playground.sketch.dialects.shadertoy import note_not_drawn
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
     CUBE,
@@ -42,6 +43,7 @@ _FACES = (
 )
 _FACE_NAMES = ("right", "left", "top", "bottom", "front", "back")
 _CUBE_SIZE = ("512", "3072")
+_SOUND_SIZE = ("512", "2")
 _MOST_PASSES = 32
 
 
@@ -84,7 +86,8 @@ class Reader:
         self._names[path] = name
         read = directives.read_directives(self.files.source(path))
         for line, message in read.notes:
-            self.files.note(message, line.number, Path(line.file))
+            self.files.note_at(line, message)
+        note_not_drawn(self.files, read.source)
         feeds = dict(self.inputs.get(path, {}))
         for number, channel in read.channels.items():
             feeds[f"iChannel{number}"] = self._feed(path, number, channel)
@@ -134,7 +137,7 @@ class Reader:
         elif _WEB.match(text):
             unfed = f"'{text}' is on the web, where nothing is read, so a stand-in is drawn"
         elif ending in _SOUND:
-            form, unfed = "noise", f"'{text}' is sound, so a stand-in is drawn"
+            return ToyInput(self._sound(text, channel))
         elif ending not in _PICTURES:
             unfed = f"'{text}' is no image that can be read, so a stand-in is drawn"
         elif (found := self._found(text, channel.line)) is not None:
@@ -143,6 +146,15 @@ class Reader:
         else:
             unfed = f"there is no file '{text}' in this folder, so a stand-in is drawn"
         return ToyInput(replace(stand_in(form, number, unfed), sampling=of_pictures))
+
+    def _sound(self, text: str, channel: directives.Channel) -> Channel:
+        """Return a sound file's spectrum and wave, or those of a made-up one."""
+        sampling, found = channel.sampling(OF_BUFFERS), self._found(text, channel.line)
+        if found is not None:
+            file = found.relative_to(self.files.root.resolve()).as_posix()
+            return Channel("", "foreign/sound", (("sound", file),), _SOUND_SIZE, sampling)
+        unfed = f"there is no file '{text}' in this folder, so a made-up sound stands in for it"
+        return replace(stand_in("sound", 0, unfed), sampling=sampling)
 
     def _cube(self, text: str, channel: directives.Channel, number: int) -> ToyInput:
         """Return a cube map of six files, or a sky."""
