@@ -28,6 +28,7 @@ from playground.commands import (
     export,
     fly,
     lesson,
+    library,
     listing,
     live,
     new,
@@ -189,7 +190,7 @@ def _no_command(name: str, ctx: Any) -> str:
     return f"no command '{name}'{hint}"
 
 
-app.command("live", help=live.HELP)(live.live)
+app.command("live", cls=live.LiveCommand, help=live.HELP)(live.live)
 app.command("render", help=render.HELP)(render.render)
 app.command("fly", help=fly.HELP)(fly.fly)
 app.command("export", help=export.HELP)(export.export)
@@ -199,7 +200,7 @@ app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
-for _group in (shots.app, lesson.app, cache.app, variants.app):
+for _group in (shots.app, lesson.app, cache.app, variants.app, library.app):
     app.add_typer(_group)
 
 

@@ -9,20 +9,26 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperCommand
 
 from playground.commands import options
 from playground.commands.arguments import (
     Renderer,
     help_text,
     read_driver,
+    read_option,
     read_pixels,
     read_values,
     with_whole_paths,
+    within,
 )
 from playground.commands.options import complete_lesson, flag, value
 from playground.commands.standard_input import kept
-from playground.errors import ContextError, PlaygroundError
-from playground.terminal import complain
+from playground.errors import ContextError, ParameterError, PlaygroundError
+from playground.terminal import complain, note
+
+REMOTE_PORT = 8765
+"""Of ``--remote`` without a port."""
 
 HELP = help_text(
     "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters."
@@ -37,7 +43,23 @@ HELP = help_text(
     "playground live my-land --no-cache",
     "playground live shader.frag",
     "playground live - < shader.frag",
+    "playground live jacksboro --remote",
+    "playground live jacksboro --osc 9000 --osc-to 127.0.0.1:9001",
 )
+
+
+class LiveCommand(TyperCommand):
+    """Takes ``--remote`` with or without a port."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        """Read the arguments; a ``--remote`` without a port gets the usual one."""
+        given = list(args)
+        for at, word in enumerate(given):
+            if word == "--":
+                break
+            if word == "--remote" and not "".join(given[at + 1 : at + 2]).isdecimal():
+                given[at] = f"--remote={REMOTE_PORT}"
+        return super().parse_args(ctx, given)
 
 
 def live(
@@ -56,12 +78,30 @@ def live(
         bool,
         flag("--no-cache", "Compute all terrain again, and cache none on disk (see playground cache)."),
     ] = False,
+    remote: Annotated[
+        str,
+        value(
+            "--remote [PORT]",
+            "Let programs and a browser on this machine drive the window, by HTTP and WebSocket;"
+            f" port {REMOTE_PORT} where none is given, 0 for a free one.",
+        ),
+    ] = "",
+    token: Annotated[
+        str,
+        value("--token TEXT", "The remote's token, 16 to 128 letters, digits, - and _; else a random one."),
+    ] = "",
+    osc: Annotated[
+        str,
+        value("--osc PORT", "Receive OSC at this port, from this machine; at another address as HOST:PORT."),
+    ] = "",
+    osc_to: Annotated[str, value("--osc-to HOST:PORT", "Send each new value there by OSC.")] = "",
 ) -> None:
     """Open a sketch in a window."""
     from playground.sketch.dialects import check_name
 
     renderer: Renderer = ctx.obj.or_else(software)
     pixels, values = read_pixels(size), read_values(settings)
+    remotes = read_remotes(remote, token, osc, osc_to)
     check_display(renderer)
     open_window(
         kept(sketch, "live", _clipboard),
@@ -75,6 +115,7 @@ def live(
         lesson=lesson,
         language=lang,
         no_cache=no_cache,
+        remotes=remotes,
     )
 
 
@@ -82,6 +123,28 @@ def _clipboard() -> str:
     from playground.live.clipboard import clipboard_text
 
     return clipboard_text()
+
+
+def read_remotes(remote: str = "", token: str = "", osc: str = "", osc_to: str = "") -> dict[str, Any]:
+    """Return the fields of ``RemoteOptions``; raise ``ParameterError``."""
+    from playground.remote.access import check_token
+
+    expected = "a port from 1 to 65535, or 0 for a free one"
+    port = read_option("--remote", remote, within(0, 65535), expected)
+    if token and port is None:
+        raise ParameterError("--token is that of --remote, which is not given")
+    return {
+        "port": port,
+        "token": check_token(token) if token else "",
+        "osc": read_option("--osc", osc, _address, "a port, as 9000, or HOST:PORT, as 0.0.0.0:9000"),
+        "osc_to": read_option("--osc-to", osc_to, _address, "HOST:PORT, as 127.0.0.1:9001"),
+    }
+
+
+def _address(text: str) -> tuple[str, int] | None:
+    host, colon, port = text.rpartition(":")
+    number = within(1, 65535)(port)
+    return None if number is None or bool(colon) != bool(host) else (host or "127.0.0.1", number)
 
 
 def check_display(renderer: Renderer) -> None:
@@ -103,6 +166,7 @@ def open_window(
     *,
     values: dict[str, object] | None = None,
     no_cache: bool = False,
+    remotes: dict[str, Any] | None = None,
     **options: Any,
 ) -> None:
     """Open a window and stay until it is closed; ``options`` are those of ``playground.live.app.run``."""
@@ -112,6 +176,7 @@ def open_window(
         0 if no_cache else limit_in()
     )  # a wrong value in the environment is an error before a window opens
     from playground.engine.sandbox import Sandbox
+    from playground.remote.remotes import RemoteOptions, Remotes
     from playground.sketch.find import find
     from playground.sketch.load import load
     from playground.sketch.unpack import is_pack
@@ -121,11 +186,13 @@ def open_window(
     if values:
         with suppress(PlaygroundError):  # the window shows what is wrong with the sketch
             values = with_whole_paths(load(sketch, dialect=options.get("dialect", "")), values)
-    with Sandbox(software=renderer.software) as sandbox:
+    with Sandbox(software=renderer.software) as sandbox, Remotes(RemoteOptions(**(remotes or {}))) as opened:
+        for sentence in opened.sentences:
+            note(sentence)
         sandbox.start()  # it is warm by the time that the window, whose parts take long to read, is there
         from playground.live.app import run
 
-        options |= {"cache_limit": limit, "report": complain, "sandbox": sandbox}
+        options |= {"cache_limit": limit, "report": complain, "sandbox": sandbox, "remotes": opened}
         status = run(sketch, size=size, software=renderer.software, values=values, **options)
     if status:
         raise typer.Exit(status)

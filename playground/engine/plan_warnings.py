@@ -9,7 +9,9 @@ from pathlib import Path
 from playground.engine.plan import Plan, Step
 from playground.errors import DataError, Diagnostic
 from playground.paths import GLSL, shown
-from playground.sketch.dialects.foreign import STAND_INS, unfed_warnings
+from playground.sketch.dialects.foreign import unfed_warnings
+from playground.sketch.dialects.passes import stand_in_paths
+from playground.sketch.dialects.shader import STAND_INS
 from playground.sketch.flat import Ref, Source
 from playground.sketch.model import Graph, Kernel, kernels_of
 from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
@@ -72,11 +74,10 @@ def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
 
 
 def _wired(plan: Plan, step: Step) -> set[str]:
-    """Return the inputs that something feeds; a stand-in is a pass of its name, next to the step."""
-    prefix = step.path.rpartition(".")[0]
+    """Return the inputs that something feeds besides the stand-ins that another tool's shader comes with."""
 
     def is_stand_in(name: str, source: Source) -> bool:
-        if not isinstance(source, Ref) or source.path != (f"{prefix}.{name}" if prefix else name):
+        if not isinstance(source, Ref) or source.path not in stand_in_paths(step.path, name):
             return False
         return plan.flat.specs[source.path].use in STAND_INS.values()
 

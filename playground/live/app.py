@@ -37,13 +37,15 @@ from playground.live.keys import act_on_keys
 from playground.live.lesson.host import Lessons
 from playground.live.mouse import PictureMouse
 from playground.live.non_finite import draw_not_finite
-from playground.live.overlay import checking_text, draw_checking, draw_notices, draw_waiting
+from playground.live.overlay import checking_text, draw_behind, draw_checking, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.part_labels import draw_part_labels
+from playground.live.picture_keys import PictureKeys
 from playground.live.status import Status
 from playground.live.window import Window, wake
 from playground.live.window_place import Place
 from playground.paths import DEFAULT_SKETCH
+from playground.remote.remotes import Remotes
 from playground.sketch.allowed_files import TEXTS
 from playground.sketch.assign import current_paths
 from playground.sketch.find import find
@@ -91,6 +93,7 @@ def run(
     time_limit: float | None = None,
     sandbox: Sandbox | None = None,
     report: Callable[[str], None] = to_log,
+    remotes: Remotes | None = None,
 ) -> int:
     """Show a sketch in a window until it is closed; return the exit status.
 
@@ -100,7 +103,7 @@ def run(
     unless the reader has closed the lessons. Expensive terrain is cached on disk, in at most
     ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
     ``sandbox``: one that has been started already, and is its owner's. ``report`` receives each error,
-    for the terminal.
+    for the terminal. ``remotes`` are closed by who opened them.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -135,6 +138,8 @@ def run(
         autosave = Autosave(session, memory, found)
         watcher = stack.enter_context(Watcher(wake, TEXTS))
         live = Live(window, session, watcher, autosave, SessionCaching(session, cache_limit), report)
+        live.remotes = remotes or stack.enter_context(Remotes())
+        live.remotes.attach(live.bench, wake)
         if found.at is not None:
             live.place.move_to(found.at)
         live.lessons.begin(lesson, language, show_lessons=show_lessons)
@@ -209,8 +214,10 @@ class Live:
         self._last = time.perf_counter()
         self._reloads = session.last_reload
         self.mouse = PictureMouse(session, self.bench.painting)
+        self.keys = PictureKeys(self.bench)
         self.finite = FiniteWatch()
         self.lessons = Lessons(self.bench, autosave, self._remember)
+        self.remotes = Remotes()
 
     def run(self, time_limit: float | None = None) -> None:
         """Run frames until the window is closed, or for a limited time [s]."""
@@ -227,6 +234,7 @@ class Live:
                 patience = min(patience, left)
             self._sleep(patience)
             self.guard.run("reading what was saved", self._take_saved, None)
+            self.guard.run("what a remote asks for", self.remotes.take, None)
             if self.window.pixels != (0, 0):
                 self._draw_frame()
             if self.window.lost:
@@ -270,7 +278,9 @@ class Live:
         """Return how long nothing needs to be done [s]."""
         if self.session.animated and self.session.clock.playing:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
-        if self._settling > 0:
+        if self._settling > 0 or self.remotes.waits:
+            return 0.0
+        if self.session.catch_up.behind is not None:
             return 0.0
         if self.session.drafts.testing:
             return _SANDBOX
@@ -318,7 +328,7 @@ class Live:
         guard.draw(
             "the editor", lambda: draw_code(bench.files, bench.problems, quit_window, look, area), None
         )
-        guard.draw("what a key asks for", lambda: act_on_keys(bench), None)
+        guard.draw("what a key asks for", self._act_on_keys, None)
         guard.draw("the mouse over the picture", lambda: self._act(area), None)
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
@@ -329,6 +339,10 @@ class Live:
         guard.run("showing the picture", lambda: self._show(picture, room_left), None)
         window.end()
         guard.run("what follows a picture", self._follow_up, None)
+
+    def _act_on_keys(self) -> None:
+        if not self.keys.act():
+            act_on_keys(self.bench)
 
     def _act(self, area: Area) -> None:
         if not drag_line(self.bench.inspection.compare, area):
@@ -367,6 +381,7 @@ class Live:
             draw_waiting(checking_text(subject, seconds), area)
         else:
             draw_checking(session, look, area)
+            draw_behind(session, look, area)
         if picture is not None and session.sketch is not None and session.view.map is None:
             parted, free = session.sketch, below_bar(bench.inspection.compare, look, area)
             draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)
@@ -394,6 +409,7 @@ class Live:
         if rests:
             self.warnings.look()
         self.status.write(self.bench, self.finite.found)
+        self.remotes.tell()
         self.lessons.update(idle=rests and not imgui.is_mouse_down(0))
 
     def _remember(self) -> None:

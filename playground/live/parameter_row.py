@@ -9,12 +9,14 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import ParameterError
 from playground.live import theme
+from playground.live.controller_menu import draw_controllers
 from playground.live.panel_memory import Memory
 from playground.live.panel_rows import cross, row, slot, slot_button
 from playground.live.text_field import await_field, letters, with_typed_ahead
 from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
 from playground.sketch.values import write
+from playground.workbench.control.controllers import Controllers
 from playground.workbench.interface import TypedAhead
 from playground.workbench.notices import Notices
 from playground.workbench.parameter_list import Item, Values
@@ -38,6 +40,7 @@ class Rows:
     ahead: TypedAhead
     values: Values
     look: Theme
+    controllers: Controllers | None = None  # that may be learned
 
     def draw(self, item: Item, folder: Path) -> None:
         """Draw a parameter, and set what the user makes of it; ``folder`` is the sketch's own."""
@@ -53,11 +56,14 @@ class Rows:
                 clicked = imgui.is_item_hovered() and imgui.is_mouse_clicked(0)
                 if parameter.widget.kind in TYPED and clicked and self._is_typing(item):
                     new = None
-                if new is not None:
+                if new is not None and parameter.widget.kind == "button":
+                    self.session.press(path)
+                elif new is not None:
                     drafts.set(path, new)
         locked = path in self.values.locked
         mouse = imgui.get_mouse_pos()
-        here = top.y <= mouse.y < top.y + imgui.get_frame_height() and imgui.is_window_hovered(_PRESSED)
+        inside = top.y <= mouse.y < imgui.get_cursor_screen_pos().y and imgui.is_window_hovered(_PRESSED)
+        here = inside and mouse.y < top.y + imgui.get_frame_height()
         if locked or here:
             imgui.same_line(end - 2 * slot() - 2)
             if _lock(path, locked, self.look):
@@ -66,7 +72,7 @@ class Rows:
             imgui.same_line(end - slot())
             if cross(f"{item.label}-reset", "Back to the file's value"):
                 drafts.unset(path)
-        if here and imgui.is_mouse_clicked(1):
+        if inside and imgui.is_mouse_clicked(1):
             self.memory.menu, self.memory.menu_opens = item.label, True
 
     def draw_menu(self, items: dict[str, Item]) -> None:
@@ -91,6 +97,8 @@ class Rows:
                 text = f"--set {path}={write(item.parameter, self.values.of[path])}"
                 imgui.set_clipboard_text(text)
                 self.notices.say(f"copied {text}")
+            if self.controllers is not None:
+                draw_controllers(self.controllers, item)
         imgui.end_popup()
 
     def open_entry(self, item: Item) -> None:

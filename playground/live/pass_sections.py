@@ -18,6 +18,7 @@ from playground.live.parameter_row import Rows
 from playground.live.sliders import slide_whole
 from playground.live.theme import Theme
 from playground.sketch.channels import channels
+from playground.sketch.composed import parts_of
 from playground.sketch.model import PassSpec, Sketch, kernels_of
 from playground.sketch.parameter import label_of
 from playground.sketch.replace_technique import choices
@@ -52,7 +53,7 @@ class Sections:
         values, found = memory.listing.values(draft), memory.listing.filtered(draft, memory.filter)
         if memory.filter and not found:
             imgui.text_disabled("no parameter is like that")
-        rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, look)
+        rows = Rows(session, bench.notices, memory, bench.interface.ahead, values, look, bench.controllers)
         drawing = _Drawing(Path(sketch.folder), rows, bench.commands, bench.files)
         main = memory.listing.main(draft) if not memory.filter else ()
         if main:
@@ -259,4 +260,8 @@ def _steps(spec: PassSpec, session: Session) -> None:
 
 def _use_name(use: str) -> str:
     """Return a technique's name without its folder where a closed list has no room for that."""
-    return use if fitting_choice(use) == use else fitting_choice(use.rpartition("/")[2])
+    if fitting_choice(use) == use:
+        return use
+    parts = parts_of(use)
+    names = [name.rpartition("/")[2] for name in parts or (use,)]
+    return fitting_choice(f"{names[0]}({names[1]})" if parts else names[0])

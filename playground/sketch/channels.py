@@ -186,12 +186,13 @@ def with_source(sketch: Sketch, path: str, source: str) -> Sketch:
     technique = read_technique(source, GLSL, GLSL)
     passes = sketch.graph.passes
     name = now.feeder if now.alone else _new_name(sketch, now)
+    before = sketch.graph.find(name)
     spec = PassSpec(
         name,
         source,
         technique,
-        values=_values(technique, now),
-        size=_size(technique, name),
+        values=(*_values(technique, now), *_same_choices(technique, before)),
+        size=_size(technique, name, before),
         file=shown(sketch.file),
     )
     if not now.alone:
@@ -238,8 +239,25 @@ def _values(technique: Technique, channel: Channel) -> tuple[tuple[str, Value], 
     return (("number", int(number.group())),) if number and find_targets(technique, "number") else ()
 
 
-def _size(technique: Technique, name: str) -> tuple[str, str]:
-    """Return the size of a pass that feeds a channel: that of its picture, if it reads one."""
+def _same_choices(technique: Technique, before: PassSpec | None) -> Iterator[tuple[str, Value]]:
+    """Yield the choices that a stand-in has and what takes its place has too: a spectrum stays one."""
+    if before is None or not isinstance(technique, Kernel) or not isinstance(before.technique, Kernel):
+        return
+    for name, value in before.values:
+        was, parameter = before.technique.parameter(name), technique.parameter(name)
+        if was is None or parameter is None or not isinstance(value, int) or not was.widget.choices:
+            continue
+        if was.widget.choices[value] in parameter.widget.choices:
+            yield name, parameter.widget.choices.index(was.widget.choices[value])
+
+
+def _size(technique: Technique, name: str, before: PassSpec | None) -> tuple[str, str]:
+    """Return the size of a pass that feeds a channel: that of its picture, if it reads one.
+
+    A sound has no size: its texels are as many as those of the stand-in ``before``.
+    """
+    if isinstance(technique, Kernel) and technique.registry == "sound_file":
+        return before.size if before is not None and before.size is not None else _SIZE
     if isinstance(technique, Kernel):
         for parameter in technique.parameters:
             if parameter.widget.kind == "file" and parameter.type == "sampler2D":

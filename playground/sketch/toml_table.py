@@ -24,6 +24,7 @@ _NOUNS = {
     list: "a list",
     int: "a whole number",
     float: "a finite number",
+    bool: "true or false",
 }
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from playground.workbench.captures import Captures
 from playground.workbench.commands import Commands
+from playground.workbench.control.controllers import Controllers
 from playground.workbench.editors import Opener
 from playground.workbench.inspect.toggles import Inspection
 from playground.workbench.interface import Interface, InterfaceSize, LessonControls, WindowControls
@@ -49,6 +50,7 @@ class Bench:
         self.files = OpenFiles(self.notices, opener or Opener())
         self.interface = Interface(size=size or InterfaceSize())
         self.lessons = LessonControls()
+        self.controllers = Controllers(session, self.notices)
 
     def take_notes(self) -> None:
         """Show what the session and the editors report, and remove notices that are over."""

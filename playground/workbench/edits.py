@@ -303,7 +303,8 @@ def _moved(was: Parameter, now: Parameter, value: Value, path: str, base: Sketch
 
 def _clamped(parameter: Parameter, value: Value, low: float, high: float) -> Value:
     numbers = value if isinstance(value, tuple) else (value,)
-    held = [min(max(float(n), low), high) for n in numbers]
+    axes = parameter.widget.axes or ((low, high),) * len(numbers)
+    held = [min(max(float(n), least), most) for n, (least, most) in zip(numbers, axes, strict=True)]
     found = tuple(round(n) for n in held) if is_whole(parameter.type) else tuple(held)
     return found if isinstance(value, tuple) else found[0]
 

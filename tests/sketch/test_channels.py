@@ -26,7 +26,10 @@ PART = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(
 NONE = "void main() { gl_FragColor = vec4(1.0); }\n"
 LAND = '[[pass]]\nname = "land"\nuse = "generation/white_noise"\nsize = 16\n'
 PHOTO = '[[pass]]\nname = "photo"\nuse = "foreign/image"\nsize = [8, 4]\nset = { image = "a.png" }\n'
-STAND_INS = ["foreign/black", "foreign/image", "foreign/noise", "foreign/picture"]
+STAND_INS = [
+    f"foreign/{name}"
+    for name in "black cube_faces image keys noise picture sky_box sound spectrum video".split()
+]
 
 
 @pytest.fixture
@@ -144,3 +147,19 @@ def test_what_is_no_channel_or_no_source_is_named(folder: Path) -> None:
         with_source(shown, "view.iChannel0", "foreign/nois")
     with pytest.raises(PlaygroundError, match="no pass 'photo'"):
         with_source(shown, "view.iChannel0", "photo")
+
+
+SOUND = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "heard", "TYPE": "audioFFT", "MAX": 32},
+  {"NAME": "waves", "TYPE": "audio"}]}*/
+void main() { gl_FragColor = texelFetch(heard, ivec2(0), 0) + texelFetch(waves, ivec2(0), 0); }
+"""
+
+
+def test_a_sound_takes_the_place_of_a_made_up_one(folder: Path) -> None:
+    (folder / "a.fs").write_text(SOUND, "utf-8")
+    found = load(folder / "a.fs")
+    for name, content, size in (("heard", "spectrum", ("32", "1")), ("waves", "waves", ("256", "1"))):
+        fed = with_source(found, f"view.{name}", "foreign/sound").graph.find(name)
+        assert fed is not None and fed.size == size
+        menu = fed.technique.parameter("content").widget.choices
+        assert menu[dict(fed.values)["content"]] == content

@@ -1,0 +1,88 @@
+"""Describe a session's parameters and its state as plain data, for JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from playground.sketch.model import Parameter, Value
+from playground.sketch.values import expected, shortest, write
+from playground.sketch.widgets import WIDGETS
+from playground.workbench.bench import Bench
+from playground.workbench.control.items import items_of, values_of
+from playground.workbench.control.shares import part_names, range_of
+from playground.workbench.parameter_list import Item, Values
+from playground.workbench.problems import Problems
+from playground.workbench.session import Session
+
+
+def parameters_of(session: Session) -> list[dict[str, Any]]:
+    """Return every parameter with its value, range, unit and group, in the panel's order."""
+    values = values_of(session)
+    if values is None:
+        return []
+    return [_described(item, values) for item in items_of(session).values()]
+
+
+def plain(parameter: Parameter, value: Value) -> Any:
+    """Return a value for JSON: a menu's choice by its name, a colour as ``#rrggbb`` where that is exact."""
+    if parameter.widget.kind in ("menu", "colour"):
+        text = write(parameter, value)
+        if parameter.widget.kind == "menu" or text.startswith("#"):
+            return text
+    found = shortest(value)
+    return list(found) if isinstance(found, tuple) else found
+
+
+def state_of(bench: Bench) -> dict[str, Any]:
+    """Return what is shown, its time, its presets and what is wrong with it."""
+    session, clock = bench.session, bench.session.clock
+    sketch = session.sketch
+    return {
+        "sketch": session.drafts.shown_path.name,
+        "title": sketch.title if sketch is not None else "",
+        "time": clock.time,
+        "playing": clock.playing,
+        "speed": clock.speed,
+        "moves": session.animated,
+        "presets": [preset.name for preset in sketch.presets] if sketch is not None else [],
+        "can_undo": bench.undo.history.can_undo,
+        "can_redo": bench.undo.history.can_redo,
+        "errors": errors_of(bench.problems),
+    }
+
+
+def errors_of(problems: Problems) -> list[dict[str, Any]]:
+    """Return what is wrong with the files just now, each with its place."""
+    return [
+        {"file": d.file, "line": d.line, "column": d.column, "message": d.message} for d in problems.errors
+    ]
+
+
+def _described(item: Item, values: Values) -> dict[str, Any]:
+    parameter = item.parameter
+    widget, kind = parameter.widget, WIDGETS[parameter.widget.kind]
+    value = values.of[item.path]
+    ends = range_of(parameter)
+    return {
+        "path": item.path,
+        "label": item.title,
+        "pass": item.path.partition(".")[0],
+        "group": parameter.group,
+        "description": parameter.tooltip,
+        "widget": widget.kind,
+        "type": parameter.type,
+        "value": plain(parameter, value),
+        "text": write(parameter, value),
+        "default": plain(parameter, parameter.default),
+        "file": plain(parameter, values.in_file[item.path]),
+        "low": ends[0] if ends else None,
+        "high": ends[1] if ends else None,
+        "step": parameter.step,
+        "unit": parameter.unit or kind.unit,
+        "choices": list(widget.choices),
+        "parts": list(part_names(parameter)),
+        "takes": expected(parameter),
+        "exported": item.exported,
+        "changed": item.path in values.changed,
+        "locked": item.path in values.locked,
+    }

@@ -1,0 +1,115 @@
+"""Map a share of a widget's range, from 0 to 1, to a value and back: what a knob or a fader says.
+
+Linear over the range, logarithmic for a ``log_slider``, in equal stretches for a menu, from the
+half on for a checkbox. A colour's channels are display-encoded, as the panel shows them. A
+vector has one share for each part.
+"""
+
+from __future__ import annotations
+
+import math
+
+from playground.errors import ParameterError
+from playground.sketch.colour import linear_to_srgb, srgb_to_linear
+from playground.sketch.model import Parameter, Value
+from playground.sketch.values import is_whole, length_of, tidied
+from playground.sketch.widgets import WIDGETS
+
+_DIRECTION = ((0.0, 360.0), (0.0, 90.0))  # [degrees] azimuth, elevation: the sky
+
+
+def part_names(parameter: Parameter) -> tuple[str, ...]:
+    """Return what the parts of a vector are called; nothing for a scalar."""
+    if length_of(parameter.type) == 1 or parameter.widget.kind == "file":
+        return ()
+    if parameter.parts:
+        return parameter.parts
+    if parameter.widget.kind == "direction":
+        return ("azimuth", "elevation")
+    return tuple(("rgba" if parameter.widget.kind == "colour" else "xyzw")[: length_of(parameter.type)])
+
+
+def range_of(parameter: Parameter) -> tuple[float, float] | None:
+    """Return the range of each number of a parameter; None where it has none."""
+    low, high = parameter.widget.low, parameter.widget.high
+    if low is not None and high is not None:
+        return low, high
+    return WIDGETS[parameter.widget.kind].range
+
+
+def check_shares(parameter: Parameter, path: str) -> None:
+    """Raise ``ParameterError`` for a parameter that has no range to share out."""
+    kind = parameter.widget.kind
+    if kind == "file":
+        raise ParameterError(f"{path} names a file, so no knob can set it")
+    if kind not in ("direction", "colour", "menu", "checkbox") and range_of(parameter) is None:
+        raise ParameterError(f"{path} has no range: no knob can set it without a slider(low, high)")
+
+
+def is_switch(parameter: Parameter) -> bool:
+    """Say whether a parameter has a few choices rather than a range: a knob takes it over at once."""
+    return parameter.widget.kind in ("menu", "checkbox")
+
+
+def share_of(parameter: Parameter, value: Value, part: int = 0) -> float:
+    """Return which share of its range a value, or a part of it, is at: 0 to 1."""
+    widget = parameter.widget
+    if widget.kind == "checkbox":
+        return 1.0 if value else 0.0
+    number = _numbers(value)[part]
+    if widget.kind == "menu":
+        return (number + 0.5) / max(len(widget.choices), 1)
+    if widget.kind == "colour" and part < 3:
+        number = float(linear_to_srgb([min(max(number, 0.0), 1.0)])[0])
+    low, high = _ends(parameter, part)
+    if widget.kind == "direction" and part == 0:
+        number = number if number == high else number % 360.0
+    if high <= low:
+        return 0.0
+    if widget.kind == "log_slider":
+        share = math.log(max(number, low) / low) / math.log(high / low)
+    else:
+        share = (number - low) / (high - low)
+    return min(max(share, 0.0), 1.0)
+
+
+def with_share(parameter: Parameter, value: Value, share: float, part: int = 0) -> Value:
+    """Return a value with one part, or all of a scalar, at a share of its range: 0 to 1."""
+    widget, share = parameter.widget, min(max(share, 0.0), 1.0)
+    if widget.kind == "checkbox":
+        return share >= 64 / 127
+    if widget.kind == "menu":
+        return min(int(share * len(widget.choices)), len(widget.choices) - 1)
+    low, high = _ends(parameter, part)
+    number = low * (high / low) ** share if widget.kind == "log_slider" else low + share * (high - low)
+    if widget.kind == "colour" and part < 3:
+        number = float(srgb_to_linear([number])[0])
+    else:
+        number = _stepped(parameter, number, low, high)
+    numbers = list(_numbers(value))
+    numbers[part] = number
+    if is_whole(parameter.type):
+        whole = tuple(round(n) for n in numbers)
+        return whole if isinstance(value, tuple) else whole[0]
+    return tuple(numbers) if isinstance(value, tuple) else numbers[0]
+
+
+def _stepped(parameter: Parameter, number: float, low: float, high: float) -> float:
+    if is_whole(parameter.type):
+        number = round(number)
+    if parameter.step:
+        number = low + round((number - low) / parameter.step) * parameter.step
+    number = min(max(number, low), high)
+    return number if is_whole(parameter.type) else tidied(number)
+
+
+def _ends(parameter: Parameter, part: int) -> tuple[float, float]:
+    if parameter.widget.kind == "direction":
+        return _DIRECTION[part]
+    return range_of(parameter) or (0.0, 1.0)
+
+
+def _numbers(value: Value) -> tuple[float, ...]:
+    if isinstance(value, tuple):
+        return tuple(float(n) for n in value)
+    return (float(value),)

@@ -1,0 +1,451 @@
+"""The remote by HTTP and WebSocket: who may ask, what is answered, and that nothing is lost in a flood."""
+
+from __future__ import annotations
+
+import asyncio
+import io
+import json
+import socket
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import aiohttp
+import numpy as np
+import pytest
+from PIL import Image
+
+from playground import cli
+from playground.errors import ContextError, DataError, ParameterError
+from playground.remote.access import check_token, new_token, refusal
+from playground.remote.calls import MOST, Busy, Calls
+from playground.remote.remotes import RemoteOptions, Remotes
+
+from .desk import KERNEL, SIZE, TOKEN, Desk
+
+
+def fetched(url: str, body: Any = None, **headers: str) -> tuple[int, bytes]:
+    """Return the status and the body of one request."""
+
+    async def go() -> tuple[int, bytes]:
+        async with aiohttp.ClientSession() as client:
+            data = body if isinstance(body, bytes | None) else json.dumps(body).encode()
+            method = "GET" if body is None else "POST"
+            async with client.request(method, url, data=data, headers=headers) as answer:
+                return answer.status, await answer.read()
+
+    return asyncio.run(go())
+
+
+def opened(desk: Desk) -> str:
+    server = desk.open(port=0, token=TOKEN).server
+    assert server is not None
+    return server.url
+
+
+def get(desk: Desk, path: str) -> Any:
+    assert desk.remotes.server is not None
+    status, text = desk.during(lambda: fetched(desk.remotes.server.url + path))
+    assert status == 200, text
+    return json.loads(text)
+
+
+def do(desk: Desk, **wishes: Any) -> Any:
+    assert desk.remotes.server is not None
+    status, text = desk.during(lambda: fetched(desk.remotes.server.url + "do", wishes))
+    answer = json.loads(text)
+    assert (status == 200) == ("error" not in answer)
+    return answer
+
+
+# ── who may ask ──────────────────────────────────────────────────────────────
+
+
+def test_only_this_machine_with_the_token_and_no_foreign_origin_may_ask():
+    def why(host: str | None, origin: str | None, token: str) -> str:
+        return refusal(host, origin, token, wanted="secret", port=80)
+
+    assert why("127.0.0.1:80", None, "secret") == ""
+    assert why("localhost:80", "http://127.0.0.1:80", "secret") == ""
+    assert "token" in why("127.0.0.1:80", None, "")
+    assert "token" in why("127.0.0.1:80", None, "secre\u0301t")
+    for host in (None, "127.0.0.1", "127.0.0.1:81", "evil.example:80", "127.0.0.1:80.evil.example"):
+        assert "Host" in why(host, None, "secret")
+    for origin in ("null", "http://evil.example", "https://127.0.0.1:80", "http://127.0.0.1:81"):
+        assert "origin" in why("127.0.0.1:80", origin, "secret")
+
+
+def test_tokens_are_random_and_long_unless_they_are_given():
+    made = {new_token() for _ in range(50)}
+    assert len(made) == 50 and all(check_token(token) == token and len(token) >= 32 for token in made)
+    for token in ("", "short", "a" * 129, "with spaces in the text", "a/../../../../b/c/d"):
+        with pytest.raises(ParameterError, match="16 to 128"):
+            check_token(token)
+
+
+def test_requests_that_may_not_ask_are_refused_and_do_nothing(desk: Desk):
+    url = opened(desk)
+    bare = url.removesuffix(f"{TOKEN}/")
+    body = {"set": {"height.level": 0.9}}
+    wishes = json.dumps(body).encode()
+    refused: list[Callable[[], tuple[int, bytes]]] = [
+        lambda: fetched(bare),
+        lambda: fetched(f"{bare}state"),
+        lambda: fetched(f"{bare}wrong-token-of-a-test/do", wishes),
+        lambda: fetched(f"{bare}do", wishes),
+        lambda: fetched(f"{url}do", wishes, Host="evil.example"),
+        lambda: fetched(f"{url}do", wishes, Origin="http://evil.example"),
+    ]
+    for request in refused:
+        status, text = desk.during(request)
+        assert status == 403 and json.loads(text)["error"].count("\n") == 0
+    assert desk.value("height.level") == 0.25
+
+    def handshake() -> int:
+        async def go() -> int:
+            async with aiohttp.ClientSession() as client:
+                with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+                    await client.ws_connect(f"{url}events", origin="http://evil.example")
+                return int(caught.value.status)
+
+        return asyncio.run(go())
+
+    assert desk.during(handshake) == 403
+
+
+def test_it_listens_on_this_machine_alone(desk: Desk):
+    opened(desk)
+    server = desk.remotes.server
+    assert server is not None and server._socket.getsockname()[0] == "127.0.0.1"
+
+
+# ── what is answered ─────────────────────────────────────────────────────────
+
+
+def test_parameters_are_listed_with_their_ranges_units_and_groups(desk: Desk):
+    opened(desk)
+    found = {one["path"]: one for one in get(desk, "parameters")}
+    level = found["height.level"]
+    assert (level["low"], level["high"], level["value"], level["group"]) == (0.0, 1.0, 0.25, "Shape")
+    assert level["description"] == "How high" and level["pass"] == "height" and not level["changed"]
+    assert found["height.scale"]["unit"] == "m" and found["height.scale"]["widget"] == "log_slider"
+    assert found["height.kind"]["value"] == "round" and found["height.kind"]["choices"][-1] == "flat"
+    assert found["height.sun"]["parts"] == ["azimuth", "elevation"]
+    assert found["height.rocks"]["value"] is True and found["height.free"]["low"] is None
+    assert found["height.tint"]["parts"] == ["r", "g", "b"]
+
+
+def test_each_value_that_is_listed_can_be_set_again(desk: Desk):
+    opened(desk)
+    before = get(desk, "parameters")
+    for key in ("value", "text"):
+        values = {one["path"]: one[key] for one in before}
+        assert "error" not in do(desk, set=values)
+        assert [one["value"] for one in get(desk, "parameters")] == [one["value"] for one in before]
+
+
+def test_values_are_set_with_the_checks_and_sentences_of_set(desk: Desk):
+    opened(desk)
+    assert desk.session.sketch is not None
+    good = {"height.level": 0.5, "height.sun": [90, 10], "height.kind": "sharp", "height.tint": "#ffffff"}
+    do(desk, set=good)
+    assert desk.value("height.level") == 0.5 and desk.value("height.sun") == (90.0, 10.0)
+    assert desk.value("height.kind") == 1 and desk.value("height.tint") == (1.0, 1.0, 1.0)
+    wrong = {"height.level": 2, "height.levle": 0.5, "height.kind": "shrp", "height.sun": "x", "size": -1}
+    for path, given in wrong.items():
+        with pytest.raises(ParameterError) as caught:
+            desk.session.sketch.with_values({path: given})
+        assert do(desk, set={"height.count": 7, path: given})["error"] == str(caught.value)
+    assert desk.value("height.count") == 3, "all or none"
+    assert "own folder" in do(desk, set={"height.grass": "/etc/passwd"})["error"]
+    assert "own folder" in do(desk, set={"height.grass": "../../x.png"})["error"]
+    desk.session.drafts.lock("height.level", True)
+    assert "locked" in do(desk, set={"height.level": 0.1})["error"]
+    assert "locked" in do(desk, reset="height.level")["error"]
+
+
+def test_what_a_remote_sets_is_a_step_that_can_be_undone(desk: Desk):
+    opened(desk)
+    assert do(desk, set={"height.level": 0.5})["can_undo"]
+    do(desk, set={"height.count": 9})
+    assert len(desk.bench.undo.history.steps) == 2
+    assert do(desk, undo=True)["can_redo"] and desk.value("height.count") == 3
+    desk.bench.undo.undo()  # by a key of the window
+    assert desk.value("height.level") == 0.25
+    do(desk, redo=True)
+    assert desk.value("height.level") == 0.5
+    do(desk, reset=["height.level"])
+    assert desk.value("height.level") == 0.25
+
+
+def test_time_and_presets(desk: Desk):
+    opened(desk)
+    state = do(desk, time=2.5, playing=False, speed=2.0)
+    assert (state["time"], state["playing"], state["speed"]) == (2.5, False, 2.0)
+    assert state["moves"] and state["presets"] == ["high"]
+    do(desk, preset="high")
+    assert desk.value("height.level") == 0.75 and desk.value("height.kind") == 2
+    do(desk, undo=True)
+    assert desk.value("height.level") == 0.25, "a preset is one step"
+    assert "did you mean 'high'?" in do(desk, preset="hihg")["error"]
+    assert "from 0 to" in do(desk, time=-1)["error"] and "from 0 to" in do(desk, time="now")["error"]
+    assert "true or false" in do(desk, playing=1)["error"]
+    assert "did you mean 'speed'?" in do(desk, sped=1)["error"]
+
+
+def test_the_picture_is_the_windows_or_one_of_a_size(desk: Desk):
+    opened(desk)
+
+    def picture(query: str = "") -> Any:
+        status, data = desk.during(lambda: fetched(f"{desk.remotes.server.url}picture.png{query}"))  # type: ignore
+        return np.asarray(Image.open(io.BytesIO(data))) if status == 200 else json.loads(data)["error"]
+
+    own = desk.session.read()
+    assert own is not None
+    np.testing.assert_array_equal(picture(), own.array)
+    assert picture("?width=24").shape[:2] == (SIZE[1] // 2, 24)
+    assert picture("?width=4000").shape[:2] == SIZE[::-1], "it is not enlarged"
+    drawn = picture("?size=64x40")
+    sketch, now = desk.session.sketch, desk.session.clock.time
+    assert sketch is not None
+    expected = desk.session.engine.render(sketch, size=(64, 40), time=now).array
+    np.testing.assert_array_equal(drawn, expected)
+    np.testing.assert_array_equal(picture(), own.array)
+    for query in ("?size=0x9", "?size=9", "?size=5000x5000", "?width=-1", "?width=a", "?size=axb"):
+        assert "expected" in picture(query)
+
+
+def test_what_is_no_request_of_it_is_answered_in_a_sentence(desk: Desk):
+    url = opened(desk)
+    for path, body, status in (
+        ("nothing", None, 404),
+        ("do", b"{", 400),
+        ("do", b"[1]", 400),
+        ("do", b'{"time": NaN}', 400),
+        ("do", b"[" * 5000, 400),
+        ("do", b"\xff\xfe", 400),
+        ("do", b'{"set": 3}', 400),
+        ("do", b'{"set": {"height.level": {"a": 1}}}', 400),
+        ("do", b'"' + b"a" * 100_000 + b'"', 413),
+        ("state", b"{}", 405),
+    ):
+        found, text = desk.during(lambda path=path, body=body: fetched(url + path, body))
+        assert found == status and json.loads(text)["error"], (path, body, text)
+    assert desk.value("height.level") == 0.25
+
+
+def test_the_page_is_served_and_loads_nothing_from_elsewhere(desk: Desk):
+    url = opened(desk)
+
+    def page() -> tuple[str, str, str]:
+        async def go() -> tuple[str, str, str]:
+            async with aiohttp.ClientSession() as client, client.get(url) as answer:
+                text, policy = await answer.text(), answer.headers["Content-Security-Policy"]
+                async with client.get(f"{url}remote.js") as script:
+                    return text, policy, await script.text()
+
+        return asyncio.run(go())
+
+    text, policy, script = desk.during(page)
+    assert '<script src="remote.js"' in text and "default-src 'none'" in policy
+    assert "http:" not in text + script and "https:" not in text + script
+    assert TOKEN not in text + script
+
+
+# ── events, and floods ───────────────────────────────────────────────────────
+
+
+async def until(client: aiohttp.ClientWebSocketResponse, kind: str) -> dict[str, Any]:
+    while True:
+        message = json.loads((await client.receive(timeout=20)).data)
+        if kind in (message.get("event"), *message):
+            return dict(message)
+
+
+async def both(client: aiohttp.ClientWebSocketResponse, *kinds: str) -> list[dict[str, Any]]:
+    """Return a message of each of two kinds, whichever comes first."""
+    found: dict[str, dict[str, Any]] = {}
+    while len(found) < 2:
+        message = json.loads((await client.receive(timeout=20)).data)
+        found |= {kind: message for kind in kinds if kind in (message.get("event"), *message)}
+    return [found[kind] for kind in kinds]
+
+
+def test_events_tell_of_values_saves_and_errors(desk: Desk, tmp_path: Path):
+    url = opened(desk)
+    file = tmp_path / "hills" / "hills.glsl"
+
+    def listen() -> list[dict[str, Any]]:
+        async def go() -> list[dict[str, Any]]:
+            async with aiohttp.ClientSession() as client, client.ws_connect(f"{url}events") as events:
+                found = [await until(events, "state")]
+                await events.send_str(json.dumps({"id": 7, "set": {"height.level": 0.5}}))
+                found += await both(events, "values", "ok")
+                await events.send_str(json.dumps({"set": {"height.level": 5}}))
+                found.append(await until(events, "error"))
+                await events.send_str(json.dumps({"playing": False}))
+                found.append(await until(events, "time"))
+                file.write_text(KERNEL.replace("level *", "level + nothing *"), encoding="utf-8")
+                desk.remotes.calls.ask(desk.session.drafts.reload)
+                found.append(await until(events, "errors"))
+                file.write_text(KERNEL.replace("level *", "0.5 * level *"), encoding="utf-8")
+                desk.remotes.calls.ask(desk.session.drafts.reload)
+                found += await both(events, "reloaded", "errors")
+                return found
+
+        return asyncio.run(go())
+
+    state, values, ok, refused, paused, wrong, reloaded, fixed = desk.during(listen)
+    assert state["title"] == "Hills" and values["values"] == {"height.level": 0.5}
+    assert ok == {"ok": True, "id": 7} and "outside its range 0 to 1" in refused["error"]
+    assert paused["playing"] is False
+    assert wrong["errors"][0]["file"].endswith("hills.glsl") and "nothing" in wrong["errors"][0]["message"]
+    assert reloaded["milliseconds"] > 0 and fixed["errors"] == []
+
+
+def test_ten_thousand_values_lose_neither_the_last_nor_an_error(desk: Desk):
+    url = opened(desk)
+    count, frames = 10_000, 0
+    draw = desk.frame
+
+    def counting() -> None:
+        nonlocal frames
+        frames += 1
+        draw()
+
+    desk.frame = counting  # type: ignore
+
+    def flood() -> list[str]:
+        async def go() -> list[str]:
+            refused = []
+            async with aiohttp.ClientSession() as client, client.ws_connect(f"{url}events") as events:
+                for n in range(count):
+                    await events.send_str(json.dumps({"set": {"height.level": n / count}}))
+                await events.send_str(json.dumps({"set": {"height.count": 99}}))
+                await events.send_str(json.dumps({"id": "last", "set": {"height.level": 0.875}}))
+                while True:
+                    message = json.loads((await events.receive(timeout=30)).data)
+                    refused += [message["error"]] if "error" in message else []
+                    if message.get("id") == "last":
+                        return refused
+
+        return asyncio.run(go())
+
+    refused = desk.during(flood)
+    desk.frame()
+    assert desk.value("height.level") == 0.875 and desk.value("height.count") == 3
+    assert len(refused) == 1 and "height.count" in refused[0]
+    assert frames > 20, "frames went on meanwhile"
+    assert desk.bench.undo.history.steps[-1].after == {("value", "height.level"): 0.875}
+
+
+def test_a_reader_that_does_not_read_costs_no_memory(desk: Desk):
+    from playground.remote.server import IN_FLIGHT, _Client
+
+    class Socket:
+        closed = False
+
+    async def go() -> _Client:
+        client = _Client(Socket())  # type: ignore
+        for n in range(5000):
+            client.tell(
+                [{"event": "values", "values": {"a": n, f"b{n % 3}": n}}, {"event": "time", "time": n}]
+            )
+        return client
+
+    client = asyncio.run(go())
+    assert len(client._events) == 2 and client._events["time"]["time"] == 4999
+    assert client._events["values"]["values"] == {"a": 4999, "b0": 4998, "b1": 4999, "b2": 4997}
+    assert client.room._value == IN_FLIGHT
+
+
+def test_more_clients_than_may_listen_are_refused(desk: Desk):
+    from playground.remote.server import MOST_CLIENTS
+
+    url = opened(desk)
+
+    def crowd() -> int:
+        async def go() -> int:
+            async with aiohttp.ClientSession() as client:
+                open_ones = [await client.ws_connect(f"{url}events") for _ in range(MOST_CLIENTS)]
+                with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
+                    await client.ws_connect(f"{url}events")
+                assert not any(one.closed for one in open_ones)
+                return int(caught.value.status)
+
+        return asyncio.run(go())
+
+    assert desk.during(crowd) == 503
+
+
+def test_calls_are_bounded_run_in_order_and_refused_once_closed():
+    calls, done = Calls(), list[int]()
+    futures = [calls.ask(lambda n=n: done.append(n)) for n in range(MOST)]
+    with pytest.raises(Busy, match="wait for the window"):
+        calls.ask(lambda: None)
+    calls.run(0.0)
+    assert done == [0], "at least one in each frame, and no more than the budget allows"
+    while calls.run():
+        pass
+    assert done == list(range(MOST)) and all(future.done() for future in futures)
+    late = calls.ask(lambda: None)
+    calls.close()
+    assert isinstance(late.exception(), Busy)
+    with pytest.raises(Busy, match="closed"):
+        calls.ask(lambda: None)
+
+
+# ── opening and closing ──────────────────────────────────────────────────────
+
+
+def test_a_port_that_is_taken_is_one_sentence(capfd: pytest.CaptureFixture[str]):
+    with closing(socket.socket()) as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        with pytest.raises(DataError) as caught:
+            Remotes(RemoteOptions(port=port))
+    assert f"port {port}" in str(caught.value) and "--remote 0" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_missing_package_is_one_sentence(monkeypatch: pytest.MonkeyPatch):
+    import sys
+
+    monkeypatch.delitem(sys.modules, "playground.remote.server", raising=False)
+    monkeypatch.setitem(sys.modules, "aiohttp", None)
+    with pytest.raises(ContextError) as caught:
+        Remotes(RemoteOptions(port=0))
+    assert str(caught.value).endswith('python -m pip install "terrain-shader-playground[remote]"')
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["--remote", "70000"], ["--remote", "0", "--token", "short"], ["--token", "long-enough-for-a-token"]],
+)
+def test_wrong_options_are_one_sentence(words: list[str], capfd: pytest.CaptureFixture[str]):
+    assert cli.main(["live", *words]) == 2
+    complaint = capfd.readouterr().err
+    assert complaint.startswith("error: ") and complaint.count("\n") == 1
+
+
+def test_closing_frees_the_port_and_ends_the_thread(desk: Desk):
+    server = desk.open(port=0).server
+    assert server is not None
+    desk.remotes.close()
+    assert not server._thread.is_alive()
+    with closing(socket.socket()) as again:
+        again.bind(("127.0.0.1", server.port))
+
+
+def test_importing_the_playground_imports_no_server():
+    import subprocess
+    import sys
+
+    code = (
+        "import playground, playground.remote.remotes, sys;"
+        "print(sorted({'aiohttp', 'mido', 'pythonosc'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
