@@ -280,7 +280,7 @@ _HEADERS = {
 
 def _policy(port: int) -> str:
     sockets = f"ws://127.0.0.1:{port} ws://localhost:{port}"
-    own = f"script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self' {sockets}"
+    own = f"script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' {sockets}"
     return f"default-src 'none'; {own}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 
 
