@@ -28,6 +28,7 @@ from playground.commands import (
     export,
     fly,
     lesson,
+    library,
     listing,
     live,
     new,
@@ -199,7 +200,7 @@ app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
-for _group in (shots.app, lesson.app, cache.app, variants.app):
+for _group in (shots.app, lesson.app, cache.app, variants.app, library.app):
     app.add_typer(_group)
 
 

@@ -21,6 +21,16 @@ CHECKOUT: Path | None = (
 """The repository's root where the package runs from one (so that its own shots are found), else None."""
 
 
+PART_OF_FILE = ":"
+"""What comes between a file and its part in a diagnostic's place, as "shader.json:Buffer A"."""
+
+
+def without_part(name: str) -> str:
+    """Return the file that a name is of: of "shader.json:Buffer A" the first."""
+    whole, colon, _ = name.rpartition(PART_OF_FILE)
+    return whole if colon and whole.endswith(".json") else name
+
+
 _current = Path("/")
 
 

@@ -19,6 +19,9 @@ pytest_plugins = ["pytester"]
 ROOT = Path(__file__).resolve().parent.parent
 OBJECTS = (
     moderngl.Texture,
+    moderngl.TextureCube,
+    moderngl.Texture3D,
+    moderngl.TextureArray,
     moderngl.Framebuffer,
     moderngl.Renderbuffer,
     moderngl.Buffer,
@@ -92,6 +95,7 @@ def alive(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     count: Counter[str] = Counter()
     names = {"texture": "Texture", "framebuffer": "Framebuffer", "renderbuffer": "Renderbuffer"}
     names |= {"depth_renderbuffer": "Renderbuffer", "buffer": "Buffer", "vertex_array": "VertexArray"}
+    names |= {"texture_cube": "TextureCube", "texture3d": "Texture3D", "texture_array": "TextureArray"}
     names |= {"program": "Program", "compute_shader": "ComputeShader", "sampler": "Sampler"}
     for function, kind in names.items():
         real = getattr(moderngl.Context, function)

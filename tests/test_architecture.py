@@ -41,6 +41,7 @@ LAYERS = (
     ("process",),
     ("gpu",),
     ("terrain",),
+    ("media",),
     ("images",),
     ("sketch",),
     ("errors", "folders", "json_text", "markup", "partial", "paths", "_version"),
@@ -211,7 +212,7 @@ def test_every_public_name_comes_from_the_module_that_the_list_gives():
 def techniques() -> set[str]:
     """Return the names that techniques go by: their files' stems, long enough to be no accident."""
     found: set[str] = set()
-    for folder in ("generation", "texturing", "lighting", "view"):
+    for folder in ("generation", "simulation", "texturing", "lighting", "view"):
         found |= {
             p.stem for p in (ROOT / "glsl" / folder).glob("*") if p.suffix in (".glsl", ".toml", ".comp")
         }

@@ -36,6 +36,7 @@ from .sketch_texts import map_of_height
 ROOT = Path(__file__).resolve().parent.parent
 COMMANDS = ["live", "render", "fly", "export", "check", "list", "doctor", "new"]
 COMMANDS += ["shots", "shots list", "shots mutants", "cache", "cache show", "cache clear"]
+COMMANDS += ["library", "library add", "library list", "library remove"]
 
 PLAIN_FRAGMENT = """#version 330
 uniform vec3 iResolution;

@@ -2,8 +2,8 @@
 
 The ending and the texture determine what a file holds: heights become metres above sea level,
 colours and light are encoded as sRGB where a format expects it, other numbers stay as they
-are; the terrain itself becomes a mesh with its texture. Whatever can be refused is refused
-before a texel is computed.
+are; the terrain itself becomes a mesh with its texture, the picture a shader's text. Whatever can
+be refused is refused before a texel is computed.
 """
 
 from __future__ import annotations
@@ -20,10 +20,12 @@ from playground.api import headless
 from playground.capture.atomic_group import write_together
 from playground.capture.export_options import Form, bits_for, check, sidecar_paths
 from playground.capture.export_textures import height_of, kind_of
-from playground.capture.extensions import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, USUAL_GRID
+from playground.capture.extensions import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, SHADERS, USUAL_GRID
 from playground.capture.gltf import encode_glb
 from playground.capture.mesh import grid_of, sampled, terrain_mesh
 from playground.capture.obj import encode_mtl, encode_obj
+from playground.capture.shader_export.es_check import check_es
+from playground.capture.shader_export.export import ShaderFiles, shader_files
 from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode, encode_picture
 from playground.engine.engine import Engine, opened
 from playground.engine.plan import Plan
@@ -58,6 +60,7 @@ class ExportJob:
     kind: str
     height: str = ""  # of a mesh
     light: str = ""  # to bake in
+    shader: ShaderFiles | None = None  # its text, where it is a shader
 
     @property
     def ending(self) -> str:
@@ -83,9 +86,10 @@ def export(
 
     ``.png``, ``.r16``, ``.r32``, ``.tif``, ``.exr`` and ``.npy`` hold the heights, in metres, or
     the ``texture`` named; ``.webp`` and ``.jpg`` colours; ``.glb`` and ``.obj`` the terrain with its
-    texture. Rows come from the north. The other arguments are those of ``Form``; ``time``, in
-    seconds, and ``steps`` are as in ``Engine.render``. A file of that name is replaced, whole
-    or not at all. Without an ``engine`` one is opened.
+    texture; ``.fs``, ``.frag``, ``.json`` and ``.glsl`` the picture, or a texture, as a shader. Rows come
+    from the north. The other arguments are those of ``Form``; ``time``, in seconds, and ``steps`` are as
+    in ``Engine.render``. A file of that name is replaced, whole or not at all. Without an ``engine`` one
+    is opened.
 
     Raises ``PlaygroundError`` for any mistake in the arguments, or a file that cannot be written.
     """
@@ -107,6 +111,8 @@ def prepare(
 ) -> ExportJob:
     """Resolve the textures that an export needs; raise ``PlaygroundError`` where there are none."""
     check(path, form)
+    if path.suffix.lower() in SHADERS:
+        return _prepare_shader(engine, sketch, path, form, time, steps)
     plan = engine.plan_for(sketch, DEFAULT_PICTURE, time, steps)
     if path.suffix.lower() in MESHES:
         return _prepare_mesh(sketch, path, form, plan)
@@ -123,6 +129,24 @@ def prepare(
         plan=plan,
         texture=texture,
         kind=kind,
+    )
+
+
+def _prepare_shader(
+    engine: Engine, sketch: Sketch, path: Path, form: Form, time: float, steps: Mapping[str, int] | None
+) -> ExportJob:
+    if steps:
+        raise DataError("a shader's text has all steps of a repeat; leave --steps out", file=path)
+    made = shader_files(sketch, path, texture=form.texture, kind=form.kind, time=time)
+    check_es(engine.ctx, path, made.files[path].decode())
+    return ExportJob(
+        sketch=sketch,
+        path=path,
+        form=form,
+        plan=made.plan,
+        texture=form.texture,
+        kind=form.kind,
+        shader=made,
     )
 
 
@@ -144,6 +168,10 @@ def _prepare_mesh(sketch: Sketch, path: Path, form: Form, plan: Plan) -> ExportJ
 
 def run(engine: Engine, job: ExportJob) -> Exported:
     """Make the textures that a job needs and write its files, all of them or none."""
+    if job.shader is not None:
+        write_together(job.shader.files)
+        sidecars = tuple(path for path in job.shader.files if path != job.path)
+        return Exported(job.path, job.shader.summary, sidecars, job.shader.warnings)
     return _write_mesh(engine, job) if job.ending in MESHES else _write_values(engine, job)
 
 

@@ -15,6 +15,7 @@ from playground.capture.extensions import (
     MESHES,
     NUMBERS,
     RAW,
+    SHADERS,
     VALUES,
     whole_numbers,
 )
@@ -49,7 +50,9 @@ def check(path: Path, form: Form) -> None:
         low, high = form.span
         if not (math.isfinite(low) and math.isfinite(high) and low < high):
             raise ParameterError(f"a range from {low:g} to {high:g}; expected two numbers, the lower first")
-    if ending in MESHES:
+    if ending in SHADERS:
+        _check_shader(path, form)
+    elif ending in MESHES:
         _check_mesh(path, form)
     else:
         _check_values(path, form)
@@ -60,7 +63,8 @@ def _no_ending(ending: str) -> str:
     listed = f"; expected one of {', '.join(ENDINGS)}"
     if not ending:
         return f"the name has no ending{listed}"
-    near = "; did you mean '.glb'?" if ending == ".gltf" else nearest(ending, ENDINGS)
+    usual = {".gltf": ".glb", ".isf": ".fs", ".shadertoy": ".json", ".fragment": ".frag"}.get(ending)
+    near = f"; did you mean '{usual}'?" if usual else nearest(ending, ENDINGS)
     return f"nothing is exported as '{ending}'{near if 'did you mean' in near else listed}"
 
 
@@ -71,6 +75,15 @@ def _check_mesh(path: Path, form: Form) -> None:
         raise ParameterError(f"a grid of {form.grid} vertices a side: {ending} takes 2 to {most}")
     if form.bits or form.span:
         raise DataError("a mesh has no bits and no range to choose; its heights are floats", file=path)
+
+
+def _check_shader(path: Path, form: Form) -> None:
+    if form.grid or form.light or form.bits or form.span:
+        given = {"a grid": form.grid, "light baked in": form.light, "bits": form.bits, "a range": form.span}
+        what = next(name for name, value in given.items() if value)
+        raise DataError(f"{what} is nothing that a shader's text has", file=path)
+    if form.kind and not form.texture:
+        raise DataError("what a texture holds is told with --texture; a picture is shown as it is", file=path)
 
 
 def _check_values(path: Path, form: Form) -> None:

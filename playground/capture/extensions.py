@@ -34,7 +34,10 @@ MESHES: dict[str, int] = {".glb": 2049, ".obj": 1025}
 USUAL_GRID = 513
 """Vertices of the longer side unless another number is given."""
 
-ENDINGS = (*VALUES, *MESHES)
+ISF, SHADERTOY_TEXT, SHADERTOY_EXPORT, STANDALONE = SHADERS = (".fs", ".frag", ".json", ".glsl")
+"""Shaders of other tools: ISF, one Shadertoy pass, a Shadertoy export, a fragment shader of its own."""
+
+ENDINGS = (*VALUES, *MESHES, *SHADERS)
 
 
 def whole_numbers(ending: str, bits: int) -> bool:

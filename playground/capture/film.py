@@ -76,20 +76,20 @@ def film_of(
 
 
 @contextmanager
-def frame_uniforms(engine: Engine, film: Film, number: int) -> Iterator[None]:
-    """Set the picture's number and the time between two pictures for plain shaders, in the block."""
-    before = engine.runner.frame, engine.runner.delta
-    engine.runner.frame, engine.runner.delta = number, float(1 / film.fps)
+def frame_uniforms(engine: Engine, film: Film) -> Iterator[None]:
+    """Set the time between two pictures for plain shaders, in the block."""
+    before = engine.runner.delta
+    engine.runner.delta = float(1 / film.fps)
     try:
         yield
     finally:
-        engine.runner.frame, engine.runner.delta = before
+        engine.runner.delta = before
 
 
 def frames(engine: Engine, film: Film) -> Iterator[NDArray[np.uint8]]:
     """Yield the pictures of a film, each (height, width, 4), top row first, sRGB and alpha."""
     for number in range(film.count):
-        with frame_uniforms(engine, film, number):
+        with frame_uniforms(engine, film):
             frame = engine.render(film.sketch, size=film.size, time=film.time(number), steps=film.steps)
         engine.forget_unused()
         yield frame.array

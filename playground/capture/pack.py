@@ -2,7 +2,8 @@
 
 In it are the sketch's own texts, the images and elevation files that its values, presets,
 shots and keyframes name, references, and a README and a licence of its folder. Of what ships
-with the playground there are the names, and the version that it was packed with.
+with the playground there are the names, and the version that it was packed with; of libraries
+that the user named, the names alone: their licences may forbid to pass them on.
 
 The same files give the same bytes: names are sorted, dates are fixed, nothing says who
 packed it or when. (Deflate is zlib's: another version of it may write other bytes.)
@@ -23,6 +24,7 @@ from playground.images.files import reason, replacing
 from playground.paths import GLSL, SKETCHES, shown
 from playground.sketch.allowed_files import is_inside
 from playground.sketch.assign import resolve, values_of
+from playground.sketch.libraries import libraries, libraries_of, library_around
 from playground.sketch.load import is_technique
 from playground.sketch.model import Sketch, Value, kernels_of
 from playground.sketch.unpack import FORMAT, MANIFEST, MOST_BYTES, MOST_FILES
@@ -44,6 +46,8 @@ def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] =
     for file, name in further:
         files.setdefault(f"{_folder_of(sketch)}/{name}", file)
     manifest = {"format": FORMAT, "sketch": main, "version": __version__, "shipped": shipped}
+    if left_out := sorted(libraries_of(sketch.files)):
+        manifest["libraries"] = left_out
     if len(files) >= MOST_FILES:
         raise DataError(f"has {len(files)} files; a pack holds at most {MOST_FILES}", file=shown(sketch.file))
     try:
@@ -66,7 +70,7 @@ def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] =
 def contents(sketch: Sketch) -> tuple[dict[str, Path], str, list[str]]:
     """Return the files to pack by their name in the zip, the name of the one to open, what ships.
 
-    The last are files of ``glsl/``, named from there.
+    The last are files of ``glsl/``, named from there. Files of libraries that the user named are left out.
     """
     main, folder, top = Path(sketch.file), Path(sketch.folder), _folder_of(sketch)
     alone = main.suffix != ".toml" or is_technique(main)
@@ -83,7 +87,7 @@ def contents(sketch: Sketch) -> tuple[dict[str, Path], str, list[str]]:
             files[f"{top}/{file.relative_to(folder).as_posix()}"] = file
         elif is_inside(file, (GLSL,)):
             shipped.add(file.resolve().relative_to(GLSL.resolve()).as_posix())
-        else:
+        elif not library_around(file, libraries()):
             message = f"lies outside the sketch's folder, {shown(folder)}; copy it there to pack the sketch"
             raise DataError(message, file=shown(file))
     if not folder.is_relative_to(GLSL):

@@ -84,7 +84,7 @@ def write_sequence(
 
 def _write(engine: Engine, film: Film, number: int, path: Path, made_of: str) -> None:
     text, time = {MADE_OF: made_of}, film.time(number)
-    with frame_uniforms(engine, film, number):
+    with frame_uniforms(engine, film):
         if is_large(engine, film.sketch, film.size):
             write_large(engine, film.sketch, path, film.size, time=time, steps=film.steps, text=text)
         else:

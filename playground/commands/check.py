@@ -12,6 +12,7 @@ import typer
 from playground.commands import options
 from playground.commands.arguments import FAILED, Renderer, help_text
 from playground.commands.options import flag
+from playground.commands.standard_input import kept_path
 from playground.errors import Diagnostic, counted
 from playground.terminal import painted, print_json, progress
 
@@ -25,9 +26,11 @@ HELP = help_text(
     " searched for .glsl, .comp, .frag and .toml. What hangs or crashes the driver is stopped and"
     " reported, and so are NaN and infinity: any in a sketch; in a technique, which is drawn on"
     " stand-ins, a texture of nothing else. Where there are no compute shaders, they are skipped. Exit"
-    " status 1 when anything fails.",
+    " status 1 when anything fails. As PATH, - checks a shader's text from standard input, which is kept as"
+    " a new file in this folder.",
     "playground check my-land",
     "playground check land.glsl sketch.toml",
+    "playground check - < shader.frag",
     "playground check --json glsl | jq 'select(.ok | not)'",
 )
 
@@ -47,7 +50,7 @@ def check(
     from playground.sketch.dialects import check_name
 
     renderer: Renderer = ctx.obj.or_else(software, device)
-    files = find_files(paths)
+    files = find_files([kept_path(path, "check") for path in paths])
     failed, skipped = 0, False
     reported: set[Diagnostic] = set()  # a warning of a kernel is one of the sketch that uses it, too
     with (

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.capture.extensions import KINDS, MESHES, USUAL_GRID, VALUES
+from playground.capture.extensions import KINDS, MESHES, SHADERS, USUAL_GRID, VALUES
 from playground.commands import options
 from playground.commands.arguments import (
     Moment,
@@ -32,19 +32,24 @@ if TYPE_CHECKING:
 
 
 HELP = help_text(
-    "Export a sketch's terrain for other programs, and print the paths of the files.\n\n"
+    "Export a sketch's terrain, or its shader, for other programs, and print the paths of the files.\n\n"
     "Without --texture, .png, .tif, .r16, .raw, .r32, .exr and .npy hold the heights: metres above sea"
     " level as floats, or 16-bit numbers from the lowest to the highest, and a note says which heights those"
     " are. With it, they hold that texture; .png, .webp and .jpg encode colours as sRGB. The first row is"
     " the north's.\n\n"
     ".glb (glTF) and .obj hold the terrain as a mesh with its texture, in metres: x east, y up, z south,"
-    " the terrain's middle at x = z = 0, sea level at y = 0.",
+    " the terrain's middle at x = z = 0, sea level at y = 0.\n\n"
+    ".fs (ISF), .frag (a Shadertoy text of one pass), .json (a Shadertoy export: up to four buffers, an Image"
+    " and what they share) and .glsl (a fragment shader of its own) hold the picture as a shader, or with"
+    " --texture one texture. What cannot leave is named, and nothing is written.",
     "playground export jacksboro",
     "playground export jacksboro --to terrain.png --to terrain.tif",
     "playground export diamond_square --set size=1025 --to terrain.r16",
     "playground export jacksboro --texture colour --to ground.webp",
     "playground export jacksboro --to terrain.glb --light --grid 257",
     "playground export jacksboro --preset evening --light --to terrain.obj",
+    "playground export fbm --texture height --to hills.json",
+    "playground export deterministic_fractal --to fractal.fs",
 )
 
 
@@ -55,7 +60,7 @@ def export(
         list[str] | None,
         value(
             "-o --to FILE",
-            f"A file to write, ending in {either([*VALUES, *MESHES])}. May be repeated."
+            f"A file to write, ending in {either([*VALUES, *MESHES, *SHADERS])}. May be repeated."
             " Without it, a .glb of a new name in this folder.",
         ),
     ] = None,

@@ -22,6 +22,7 @@ from playground.commands.arguments import (
     within,
 )
 from playground.commands.options import complete_lesson, flag, value
+from playground.commands.standard_input import kept
 from playground.errors import ContextError, ParameterError, PlaygroundError
 from playground.terminal import complain, note
 
@@ -30,7 +31,9 @@ REMOTE_PORT = 8765
 
 HELP = help_text(
     "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters."
-    " Your edits, the camera and the time are restored the next time.",
+    " Your edits, the camera and the time are restored the next time. As SKETCH, - opens a"
+    " shader's text from standard input, or from the clipboard where that is the terminal: it is kept as a"
+    " new file in this folder.",
     "playground live",
     "playground live jacksboro --size 1600x900",
     "playground live my-land --set height.seed=3",
@@ -38,6 +41,7 @@ HELP = help_text(
     "playground live --lesson diamond_square --lang fr",
     "playground live my-land --no-cache",
     "playground live shader.frag",
+    "playground live - < shader.frag",
     "playground live jacksboro --remote",
     "playground live jacksboro --osc 9000 --osc-to 127.0.0.1:9001",
 )
@@ -99,7 +103,7 @@ def live(
     remotes = read_remotes(remote, token, osc, osc_to)
     check_display(renderer)
     open_window(
-        sketch,
+        kept(sketch, "live", _clipboard),
         pixels,
         renderer,
         driver=read_driver(driver),
@@ -112,6 +116,12 @@ def live(
         no_cache=no_cache,
         remotes=remotes,
     )
+
+
+def _clipboard() -> str:
+    from playground.live.clipboard import clipboard_text
+
+    return clipboard_text()
 
 
 def read_remotes(remote: str = "", token: str = "", osc: str = "", osc_to: str = "") -> dict[str, Any]:

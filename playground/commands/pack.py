@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 from playground.commands import options
 from playground.commands.arguments import help_text, output_file
 from playground.commands.options import value
-from playground.errors import DataError
+from playground.errors import DataError, counted
 from playground.terminal import busy, note
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ HELP = help_text(
     "Put a sketch with all that it needs into one zip, and print its path.\n\n"
     "In it are the sketch, its kernels and includes, its images and elevation files, its references, and a"
     " README and a licence. What ships with the playground is not: only its names and the version."
+    " Nor is a library of your own (playground library): its licence may forbid to pass it on."
     " The zip opens wherever a sketch does. A window opens a copy in its folder, for edits; the zip stays.",
     "playground pack my-land",
     "playground pack my-land -o lesson-3.zip",
@@ -35,6 +36,7 @@ def pack(
 ) -> None:
     """Pack a sketch into one zip."""
     from playground.capture import pack as packing
+    from playground.sketch.libraries import how_to_name, libraries_of
     from playground.sketch.load import load
     from playground.sketch.unpack import ENDING, read_pack, summary
 
@@ -43,7 +45,14 @@ def pack(
     with output_file(output, usual, (ENDING,), "a pack is") as path, busy(f"packing {loaded.name}"):
         packing.pack(loaded, path, _references(loaded))
     print(path)
-    note(summary(read_pack(path)))
+    packed = read_pack(path)
+    note(summary(packed))
+    for name in packed.manifest.libraries:
+        files = len(libraries_of(loaded.files)[name])
+        note(
+            f"without {counted(files, 'file')} of the library {name}, whose licence may forbid to pass it on:"
+            f" who opens the pack names a folder of it, as {how_to_name(name)}"
+        )
 
 
 def _references(sketch: Sketch) -> Iterator[tuple[Path, str]]:

@@ -28,6 +28,7 @@ from playground.commands.arguments import (
 )
 from playground.commands.film import Series, SeriesJob, make_series, read_fps, read_frames
 from playground.commands.options import flag, value
+from playground.commands.standard_input import kept
 from playground.errors import DataError, ParameterError, counted
 from playground.images.extensions import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
@@ -46,7 +47,8 @@ HELP = help_text(
     "A picture may have up to 65536 pixels a side; a large one is drawn part by part. Time in a video"
     " and in numbered pictures is that of the picture's number: keyframes of the sketch, if it has any,"
     " say what changes. --sweep takes a range or values, of two parameters for a grid; a part of a vector"
-    " is named, as .azimuth, .r or .x.\n\n"
+    " is named, as .azimuth, .r or .x. As SKETCH, - renders a shader's text from standard input, which is"
+    " kept as a new file in this folder.\n\n"
     "With --texture, write the values of one pass instead: "
     + either([f"{ending} ({what})" for ending, what in VALUE_ENDINGS.items()])
     + ".",
@@ -58,6 +60,7 @@ HELP = help_text(
     "playground render diamond_square --steps height=9",
     "playground render my-land/my_land.glsl --profile",
     "playground render shader.frag --time 2.5 -o - > frame.png",
+    "playground render - < shader.frag",
     "playground render jacksboro --size 20000x12000 -o poster.png",
     "playground render sun_flight --video flight.mp4 --size 1920x1080",
     "playground render jacksboro --shot evening --video still.webm --seconds 2 --fps 25",
@@ -150,7 +153,7 @@ def render(
     pixels, seconds_in, values = read_pixels(size, LARGEST_PICTURE), read_seconds(time), read_values(settings)
     runs_by, stops = read_driver(driver), read_steps(steps)
     moment = moment_of(
-        load(sketch, dialect=dialect).plainly(plain),
+        load(kept(sketch, "render"), dialect=dialect).plainly(plain),
         shot=shot,
         preset=preset,
         values=values,

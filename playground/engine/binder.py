@@ -18,17 +18,21 @@ from playground.engine.programs import Program
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Wired
 from playground.errors import ContextError
+from playground.gpu.gl_calls import mirror
+from playground.gpu.shapes import FACES, Shaped, copied, shaped_size
 from playground.gpu.textures import check_size, drain
 from playground.images.content_hash import content_hash
 from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
 from playground.sketch.model import Input, Kernel, Parameter, Sampling, Value
-from playground.sketch.reserved_names import MATCHES, TOWARDS, UNWIRED, WINDOW, WIRED
+from playground.sketch.reserved_names import MATCHES, PRESSED, TOWARDS, UNWIRED, WINDOW, WIRED
 from playground.terrain.directions import unit_vector
 
 if TYPE_CHECKING:
     import moderngl
+
+    Readable = moderngl.Texture | Shaped
 
 _SRGB8_ALPHA8 = 0x8C43  # GL_SRGB8_ALPHA8: the sampler decodes, before it filters
 _MAX_FILES = 32
@@ -44,17 +48,21 @@ class Binder:
         self._anisotropy = 1.0 if software else min(_ANISOTROPY, float(ctx.max_anisotropy or 1.0))
         self._samplers: dict[Sampling, moderngl.Sampler] = {}
         self._constants: dict[str, moderngl.Texture] = {}
-        self._files: OrderedDict[tuple[str, bool, bool], moderngl.Texture] = OrderedDict()
+        self._shaped: dict[tuple[str, str], Shaped] = {}  # constants, by name and shape
+        self._files: OrderedDict[tuple[str, bool, bool, bool], moderngl.Texture] = OrderedDict()
         self._units = 0  # texture units used in this frame
 
     def release(self) -> None:
         """Release every texture and sampler."""
         for texture in (*self._constants.values(), *self._files.values()):
             texture.release()
+        for shaped in self._shaped.values():
+            shaped.release()
         for sampler in self._samplers.values():
             sampler.release()
         self._samplers.clear()
         self._constants.clear()
+        self._shaped.clear()
         self._files.clear()
 
     def tidy(self) -> None:
@@ -73,7 +81,7 @@ class Binder:
         for parameter in kernel.parameters:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
-                uniforms[parameter.name] = value
+                uniforms[parameter.name] = given.get(f"{PRESSED}{parameter.name}", value)
                 if parameter.widget.kind == "direction":
                     uniforms[f"{TOWARDS}{parameter.name}"] = unit_vector(value)  # type: ignore[arg-type]
             elif parameter.name in program.uniforms:
@@ -101,6 +109,25 @@ class Binder:
                 result.mipmapped.add(output)
         return texture
 
+    def shaped(self, declared: Input, inputs: Mapping[str, Wired]) -> tuple[Readable, tuple[int, int, int]]:
+        """Return what an input reads, in its own shape, and the size of that in texels.
+
+        The copy belongs to the result that it is of; one texel a side where nothing is wired.
+        """
+        shape, (result, texture, output) = declared.shape, inputs.get(declared.name, NOT_WIRED)
+        if not shape:
+            texture = self.wired(declared, inputs)
+            return texture, shaped_size(shape, texture.size)
+        if texture is None:
+            return self.shaped_constant(declared.fallback or "black", shape), (1, 1, 1)
+        assert result is not None, "what is wired is part of a result"
+        copy = result.shaped.get((output, shape))
+        if copy is None:
+            copy = result.shaped[output, shape] = copied(self.ctx, shape, texture)
+        if declared.sampling.mipmap:
+            copy.build_mipmaps()
+        return copy, shaped_size(shape, texture.size)
+
     def previous(
         self, program: Program, kernel: Kernel, state: Mapping[str, moderngl.Texture], unit: int
     ) -> None:
@@ -111,14 +138,12 @@ class Binder:
                 texture = state.get(output.name) or self.constant("zero")
                 unit = self.texture(program, name, unit, texture, Sampling())
 
-    def texture(
-        self, program: Program, name: str, unit: int, texture: moderngl.Texture, sampling: Sampling
-    ) -> int:
+    def texture(self, program: Program, name: str, unit: int, texture: Readable, sampling: Sampling) -> int:
         """Bind one texture to a sampler; return the next free unit."""
         program.set(name, unit)
         return self.unit(unit, texture, sampling)
 
-    def unit(self, unit: int, texture: moderngl.Texture, sampling: Sampling) -> int:
+    def unit(self, unit: int, texture: Readable, sampling: Sampling) -> int:
         """Bind one texture to a unit; return the next free one."""
         texture.use(unit)
         sampler = self._samplers.get(sampling)
@@ -135,11 +160,12 @@ class Binder:
 
     def file_texture(self, parameter: Parameter, value: Value, *, encoded: bool = False) -> moderngl.Texture:
         """Return an image file's texture: decoded to linear light, or as it is ``encoded`` in the file."""
-        path = Path(str(value))
-        key = (content_hash(path), parameter.sampling.mipmap, encoded)
+        path, sampling = Path(str(value)), parameter.sampling
+        encoded = encoded and not sampling.decode
+        key = (content_hash(path), sampling.mipmap, encoded, sampling.flip)
         if key not in self._files:
-            texture = self._read(path, encoded=encoded)
-            if parameter.sampling.mipmap:
+            texture = self._read(path, encoded=encoded, flip=sampling.flip)
+            if sampling.mipmap:
                 texture.build_mipmaps()
             self._files[key] = texture
             while len(self._files) > _MAX_FILES:
@@ -154,20 +180,37 @@ class Binder:
             self._constants[name] = self.ctx.texture((1, 1), 4, texel, dtype="f4")
         return self._constants[name]
 
+    def shaped_constant(self, name: str, shape: str) -> Readable:
+        """Return a texture of a shape, one texel a side, as ``constant`` does."""
+        if not shape:
+            return self.constant(name)
+        if (name, shape) not in self._shaped:
+            size = (1, FACES if shape == "cube" else 1)
+            texels = np.tile(np.array(_CONSTANTS[name], np.float32), size[1]).tobytes()
+            source = self.ctx.texture(size, 4, texels, dtype="f4")
+            try:
+                self._shaped[name, shape] = copied(self.ctx, shape, source)
+            finally:
+                source.release()
+        return self._shaped[name, shape]
+
     def _new_sampler(self, sampling: Sampling) -> moderngl.Sampler:
-        linear, around = sampling.filter == "linear", sampling.wrap == "repeat"
+        linear, around = sampling.filter == "linear", sampling.wrap != "clamp"
         shrink = self.ctx.LINEAR if linear else self.ctx.NEAREST
         if sampling.mipmap:
             shrink = self.ctx.LINEAR_MIPMAP_LINEAR if linear else self.ctx.NEAREST_MIPMAP_NEAREST
-        sampler = self.ctx.sampler(repeat_x=around, repeat_y=around)
-        sampler.filter = (shrink, self.ctx.LINEAR if linear else self.ctx.NEAREST)
+        sampler = self.ctx.sampler(repeat_x=around, repeat_y=around, repeat_z=around)
+        near = (sampling.magnify or sampling.filter) == "linear"
+        sampler.filter = (shrink, self.ctx.LINEAR if near else self.ctx.NEAREST)
         if linear and sampling.mipmap and self._anisotropy > 1:
             sampler.anisotropy = self._anisotropy
+        if sampling.wrap == "mirror":
+            mirror(self.ctx, sampler)
         return sampler
 
-    def _read(self, path: Path, *, encoded: bool) -> moderngl.Texture:
-        """Make a texture of an image file, row 0 south: in linear light, or as it is encoded."""
-        pixels = read_image(path).pixels[::-1]
+    def _read(self, path: Path, *, encoded: bool, flip: bool) -> moderngl.Texture:
+        """Make a texture of an image file, row 0 south unless ``flip``: in linear light, or as encoded."""
+        pixels = read_image(path).pixels[:: 1 if flip else -1]
         size = (pixels.shape[1], pixels.shape[0])
         try:
             check_size(self.ctx, size, "an image")

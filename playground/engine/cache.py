@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections import OrderedDict
 from dataclasses import dataclass
 
+from playground.engine.kept_states import KeptStates
 from playground.engine.results import Pool, Result
 
 # Results of any size: a driver spends memory on each texture besides its texels, so that thousands
 # of small ones, one for each save of a small sketch, would grow past any bound in bytes.
 MOST = 512
+_SHARE_OF_STATES = 4  # a quarter of the bytes may be earlier states of loops that follow the time
 
 
 @dataclass(eq=False)
@@ -41,6 +43,7 @@ class Cache:
 
     def __init__(self, limit: int, pool: Pool) -> None:
         self.limit = limit  # [bytes]
+        self.states = KeptStates(limit // _SHARE_OF_STATES, pool)
         self._pool = pool
         self._cached: OrderedDict[str, Cached] = OrderedDict()
         self._in_use: set[str] = set()
@@ -53,7 +56,7 @@ class Cache:
     def bytes(self) -> int:
         """Bytes held."""
         self._weigh_used()
-        return self._total
+        return self._total + self.states.bytes
 
     def __len__(self) -> int:
         return len(self._cached)
@@ -129,20 +132,30 @@ class Cache:
         """Drop what the current frame does not use."""
         for key in [key for key in self._cached if key not in self._in_use]:
             self.drop(key)
+        self.states.retain(self._in_use)
 
     def trim(self) -> None:
-        """Drop what was used least recently until the bounds hold or all that is left is in use."""
-        if self._total <= self.limit and len(self._cached) <= MOST:
+        """Drop what was used least recently, then earlier states, until the bounds hold.
+
+        What is in use stays.
+        """
+        if self._holds():
             return
         for key in [key for key in self._cached if key not in self._in_use]:
             self.drop(key)
-            if self._total <= self.limit and len(self._cached) <= MOST:
+            if self._holds():
                 return
+        while not self._holds() and self.states.thin():
+            pass
+
+    def _holds(self) -> bool:
+        return self._total + self.states.bytes <= self.limit and len(self._cached) <= MOST
 
     def clear(self) -> None:
         """Drop everything."""
         for cached in self._cached.values():
             cached.release_to(self._pool)
+        self.states.clear()
         self._cached.clear()
         self._in_use.clear()
         self._may_grow.clear()

@@ -4,7 +4,8 @@ A pass is stale when its key changes. The key holds its text without comments, t
 and given names that the text uses, its size and count of iterations, its driver, its files by
 their contents, and the keys of what it reads. Inside a loop, what is fed back has a name
 in place of a key: a loop's key is the same at every iteration, so a loop can go on from the
-iteration that is cached.
+iteration that is cached. Likewise the time, the mouse and all else that belongs to a frame are in no key
+where a loop counts frames: they are those of its iterations.
 """
 
 from __future__ import annotations
@@ -19,9 +20,10 @@ from typing import Any, NamedTuple
 
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, sources_of, walk
 from playground.images.content_hash import content_hash
+from playground.sketch.expressions import counts_frames
 from playground.sketch.flat import Fed, Source
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import TOWARDS
+from playground.sketch.reserved_names import CLOCKED, PRESSED, TOWARDS
 from playground.terrain.meshes import mesh_parameters
 
 _MAX_TEXTS = 512
@@ -69,7 +71,7 @@ class KeyMaker:
         """
         computation = _KeyComputation(self.text_of, self._content, driver, given, plan.continued, self._last)
         for node in plan.nodes:
-            computation.add(node, "", {}, {})
+            computation.add(node, _NO_LOOP, {}, {})
         self._last = computation.found
         return computation.keys
 
@@ -98,18 +100,32 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
     if kernel.kind == "compute":
         counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
     header: list[Any] = [*(getattr(kernel, name) for name in _HEADER), counts]
-    header += [(i.name, i.sampling, i.fallback) for i in kernel.inputs]
+    header += [(i.name, i.sampling, i.fallback, i.shape) for i in kernel.inputs]
     if kernel.dialect:
         header += [kernel.prelude, kernel.epilogue, kernel.vertex, kernel.meanings]
+        header += [kernel.helpers, kernel.vertex_prelude, kernel.vertex_helpers]
+        header.append(kernel.vertex_source.canonical if kernel.vertex_source else "")
     used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}
     used |= set(_IDENTIFIER.findall(" ".join(counts)))
     used |= kernel.source.names & {"iterations"}
     used |= {p.name for p in kernel.parameters if kernel.reads(f"{TOWARDS}{p.name}")}
+    if kernel.dialect:  # what its tool declares is not in its text
+        used |= {p.name for p in kernel.parameters if kernel.reads(p.name)}
     if kernel.kind == "source":
         used |= {p.name for p in kernel.parameters}
     if kernel.kind == "draw":
         used |= set(mesh_parameters(kernel.registry))
     return _Text(_digest([header, text]), frozenset(used))
+
+
+class _Loops(NamedTuple):
+    """The loops around a node, by their paths; "" for none."""
+
+    innermost: str
+    frames: str  # the innermost that counts frames
+
+
+_NO_LOOP = _Loops("", "")
 
 
 class _Reads(NamedTuple):
@@ -120,6 +136,7 @@ class _Reads(NamedTuple):
     sources: list[tuple[str, str]]  # input → key of what it reads
     given: Mapping[str, Any]
     is_continued: bool  # by a later draw
+    clocked: frozenset[str]  # what is in no key, since it is that of the frame that a loop is at
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,17 +173,21 @@ class _KeyComputation:
         self.continued = continued
 
     def add(
-        self, node: PlanNode, loop: str, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]
+        self, node: PlanNode, loops: _Loops, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]
     ) -> None:
-        """Add a node; ``loop`` is the innermost loop around it, ``fed`` names what loops feed back."""
+        """Add a node with the ``loops`` around it; ``fed`` names what they feed back."""
         if isinstance(node, LoopStep):
-            self._loop(node, fed, varying)
+            self._loop(node, loops, fed, varying)
             return
         kernel, path = node.kernel, node.path
         sources = [(name, self._source(source, fed) if source else "") for name, source in node.inputs]
         named = kernel.file_parameters
         files = [self.content(Path(str(node.values[p.name]))) for p in named] if named else []
-        reads = _Reads(self.driver(node), files, sources, self.given(node), path in self.continued)
+        given, clocked = self.given(node), frozenset[str]()
+        if loops.frames or counts_frames(kernel.repeat):
+            clocked = _clocked(node, given)
+            given = {name: value for name, value in given.items() if name not in clocked}
+        reads = _Reads(self.driver(node), files, sources, given, path in self.continued, clocked)
         known, written = self.before.get(path), repr(reads)
         if known is None or known.step is not node or known.reads != written:
             known = self._keys_of(node, reads, written)
@@ -176,8 +197,10 @@ class _KeyComputation:
         varies = frozenset[str]()
         for _, source in node.inputs:
             varies |= self._varies(source, varying) if source else varies
-        if loop and kernel.repeat == "1" and kernel.reads("iteration"):
-            varies |= {loop}
+        if loops.innermost and kernel.repeat == "1" and kernel.reads("iteration"):
+            varies |= {loops.innermost}
+        if loops.frames and clocked and not counts_frames(kernel.repeat):
+            varies |= {loops.frames}
         self.varies[path] = self.keys.changes[id(node)] = varies
 
     def _keys_of(self, step: Step, reads: _Reads, written: str) -> _StepKeys:
@@ -190,7 +213,7 @@ class _KeyComputation:
             if parameter.widget.kind == "file":
                 suffix = Path(str(value)).suffix
                 parts.append((parameter.name, parameter.sampling, suffix, next(contents)))
-            elif parameter.name in text.used:
+            elif parameter.name in text.used and parameter.name not in reads.clocked:
                 parts.append((parameter.name, value))
         parts += [*reads.sources, *reads.given.items()]
         if "iterations" in text.used:
@@ -202,7 +225,13 @@ class _KeyComputation:
             shown = _digest([raw, *step.between])
         return _StepKeys(step, written, _digest([step.path, parts]), raw, shown)
 
-    def _loop(self, loop: LoopStep, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]) -> None:
+    def _loop(
+        self,
+        loop: LoopStep,
+        loops: _Loops,
+        fed: Mapping[Fed, str],
+        varying: Mapping[Fed, frozenset[str]],
+    ) -> None:
         inside = sorted({step.path for step in walk(loop.body)})
         own = _loops_in(loop)
         outer: frozenset[str] = frozenset()
@@ -214,8 +243,9 @@ class _KeyComputation:
         for name, _, _ in loop.feedback:
             names[Fed(loop.path, name)] = f"fed back: {loop.path} {name}"
             changes[Fed(loop.path, name)] = outer | {loop.path}
+        around = _Loops(loop.path, loop.path if loop.counts_frames else loops.frames)
         for node in loop.body:
-            self.add(node, loop.path, names, changes)
+            self.add(node, around, names, changes)
         parts: list[Any] = [loop.path, *(self.keys.steps[path] for path in inside)]
         parts += [(name, self._source(first, fed), str(ref)) for name, first, ref in loop.feedback]
         if any("iterations" in self.text_of(step.kernel).used for step in walk(loop.body)):
@@ -236,6 +266,12 @@ class _KeyComputation:
         if source is None:
             return ""
         return fed[source] if isinstance(source, Fed) else f"{self.keys.steps[source.path]}:{source.output}"
+
+
+def _clocked(step: Step, given: Mapping[str, Any]) -> frozenset[str]:
+    """Return what a step reads that belongs to one frame: given names, and buttons among its parameters."""
+    buttons = [p.name for p in step.kernel.parameters if p.widget.kind == "button"]
+    return (CLOCKED & given.keys()) | frozenset([*buttons, *(f"{PRESSED}{name}" for name in buttons)])
 
 
 def _loops_in(loop: LoopStep) -> set[str]:

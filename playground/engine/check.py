@@ -14,6 +14,7 @@ from __future__ import annotations
 import re
 import tomllib
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -28,6 +29,8 @@ from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
 from playground.sketch.allowed_files import TEXTS, is_variant, root_of
 from playground.sketch.assign import values_of
+from playground.sketch.dialects import EXPORT, is_export
+from playground.sketch.dialects.shadertoy_folder import is_of_folder
 from playground.sketch.load import is_technique, load, plain_sketch
 from playground.sketch.model import Graph, Sketch, Technique, kernels_of
 from playground.sketch.shadowed import shadowed_by_files
@@ -99,7 +102,7 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
                 for file in _inside(sketch.parent):
                     found.setdefault(file.resolve(), sketch.parent.resolve())
                 continue
-            if path.suffix not in TEXTS:
+            if path.suffix not in TEXTS and not is_export(path):
                 wanted = ", ".join((*TEXTS, ENDING))
                 raise DataError(f"cannot be checked; expected a folder or {wanted}", file=shown(path))
             found.setdefault(path.resolve(), root_of(path.resolve()))
@@ -178,7 +181,8 @@ class _Check:
         elif isinstance(kernel, Graph) or kernel.kind.startswith("plain"):
             sketch = with_pictures(plain_sketch(self.path, kernel, self.root), self.picture)
             if isinstance(kernel, Graph):
-                self.notes = tuple(f"read as {k.dialect}" for _, k in kernel.kernels if k.dialect)
+                self.notes = (f"read as {kernel.dialect}",)
+                self.warnings |= dict.fromkeys(former_names_used(sketch))
                 self.warnings |= dict.fromkeys(source_warnings(Planner().plan(sketch, frame_size=_FRAME)))
             self.attempt(TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="all"))
         elif kernel.kind == "compute":
@@ -282,7 +286,17 @@ def _inside(folder: Path) -> Iterator[Path]:
             if not (path / "pyvenv.cfg").exists() and not path.is_symlink():
                 yield from _inside(path)
         elif path.suffix in TEXTS and (path.suffix != ".toml" or _is_ours(path)):
+            if path.stem == "Image" or not is_of_folder(path):  # the Image is checked with all of its passes
+                yield path
+        elif path.suffix == EXPORT and _holds_passes(path):
             yield path
+
+
+def _holds_passes(path: Path) -> bool:
+    """Return whether a JSON is an export; one that cannot be read is somebody else's."""
+    with suppress(SketchError):
+        return is_export(path)
+    return False
 
 
 def _is_ours(path: Path) -> bool:

@@ -29,7 +29,7 @@ from playground.engine.plan import (
 )
 from playground.engine.results import Result
 from playground.gpu.textures import bytes_of
-from playground.sketch.expressions import names_in
+from playground.sketch.expressions import follows_time
 from playground.sketch.flat import Ref
 
 _PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
@@ -59,8 +59,7 @@ def _reads_one(step: Step, files: Collection[Path]) -> bool:
 
 
 def _stops(loop: LoopStep) -> bool:
-    by_time = "time" in loop.spec.repeat and "time" in names_in(loop.spec.repeat)
-    return by_time or loop.repeat != loop.whole
+    return follows_time(loop.spec.repeat) or loop.repeat != loop.whole
 
 
 def _passes(step: Step, plan: Plan) -> bool:
@@ -69,7 +68,7 @@ def _passes(step: Step, plan: Plan) -> bool:
         return True
     if step.size == plan.frame_size or step.repeat != step.whole:
         return True
-    if "time" in kernel.repeat and "time" in names_in(kernel.repeat):
+    if follows_time(kernel.repeat):
         return True
     return any(kernel.reads(name) for name in _PASSING)
 

@@ -34,6 +34,7 @@ from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.planner import Planner, repeated_in
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
+from playground.engine.unfinished import Deadline
 from playground.engine.window import windowed
 from playground.errors import ContextError, Diagnostic, OpenGLFault
 from playground.gpu.context import ContextInfo, context_info
@@ -81,6 +82,7 @@ class Engine(Recorded):
         self.runs: Counter[str] = Counter()  # how often each pass ran, by path
         super().__init__()
         self.profiling = False
+        self.patience: float | None = None  # [s] after which loops that follow the time raise ``Unfinished``
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
         self.painted = PaintedFiles()  # painted in this process, in place of their files
@@ -380,6 +382,7 @@ class Engine(Recorded):
         self.runner.programs.frame += 1
         record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
         execution = Execution(record.keys, self.cache, self.runner, self._compute, plan.steps)
+        execution.deadline = Deadline(self.patience, self.ctx.finish)
         with self.borrowed():
             if self.disk_caching is not None:
                 execution.run(self.disk_caching.begin(execution, plan, ref))

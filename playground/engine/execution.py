@@ -14,11 +14,12 @@ from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, walk
 from playground.engine.results import UNWIRED, Result, Wired
 from playground.engine.runner import Runner
-from playground.sketch.expressions import names_in
+from playground.engine.unfinished import Deadline
+from playground.sketch.expressions import follows_time
 from playground.sketch.flat import Fed, Ref, Source
 
 Compute = Callable[[Step, Mapping[str, Wired], LoopIteration | None, Result | None], Result]
-"""Runs a step: its inputs, the iteration of the loop around it, the same step after fewer to go on from."""
+"""Runs a step: its inputs, where it is in the loops around it, the same step after fewer to go on from."""
 
 Timed = Callable[[str, str], AbstractContextManager[None]]
 """Measures what the step or the loop of that path and that key takes."""
@@ -36,8 +37,11 @@ class Execution:
         self.compute = compute
         self.stopped = stopped  # repeats that are stopped early, by path
         self.timed: Timed | None = None
+        self.deadline: Deadline | None = None  # of loops that follow the time
         self.results: dict[str, Result] = {}  # by the step's path; valid until the next frame
         self._done: set[int] = set()  # identities of nodes that change with no loop, and have run
+        self._fed_from: dict[Fed, tuple[Step, str]] = {}  # the output that a loop feeds back
+        self._zeros: dict[Fed, Result] = {}  # what is fed back before a loop's first iteration
 
     def run(self, nodes: Iterable[PlanNode]) -> None:
         """Run nodes in order: those that change with no loop, and loops from their first iteration on."""
@@ -85,7 +89,7 @@ class Execution:
     def _computed(self, step: Step) -> Result:
         """Run a step, from where its earlier iterations are cached, and cache its result."""
         key, unfinished = self.keys.raw[step.path], self.keys.unfinished[step.path]
-        goes_on = step.path in self.stopped or "time" in names_in(step.kernel.repeat)
+        goes_on = step.path in self.stopped or follows_time(step.kernel.repeat)
         earlier = self.cache.take_earlier(step.path, unfinished, step.repeat) if goes_on else None
         inputs = {name: self._wired(source, {}) for name, source in step.inputs}
         with self.timed(step.path, key) if self.timed else nullcontext():
@@ -106,56 +110,112 @@ class Execution:
     # ── loops ────────────────────────────────────────────────────────────────
 
     def _run_cached_loop(self, loop: LoopStep) -> None:
-        """Run a loop from the iteration that is cached, or from the start where that lies further on."""
+        """Run a loop from the iteration that is cached, or from an earlier one where that lies further on."""
         key = self.keys.loops[loop.path]
         state = self.cache.get(key)
-        if state is None or state.iterations > loop.repeat:
+        if state is None:
             state = Cached({})
             self.cache.put(key, state)
+        taken = self._go_back(loop, state)
         with self.timed(loop.path, key) if self.timed and state.iterations < loop.repeat else nullcontext():
-            self._run_loop(loop, state, {}, {})
+            try:
+                self._run_loop(loop, state, {}, {})
+            except BaseException:
+                if taken and state.iterations == taken:  # it is what is fed back only
+                    self._set_aside(loop, state)
+                raise
         self.cache.grew(key)
 
+    def _go_back(self, loop: LoopStep, state: Cached) -> int:
+        """Set a loop back where it is too far, or on to a later state that was kept.
+
+        Return the iterations of what was taken from the kept states, 0 for nothing.
+        """
+        if state.iterations == loop.repeat:
+            return 0
+        key, states = self.keys.loops[loop.path], self.cache.states
+        latest = states.latest(loop.path, key, loop.repeat - 1)
+        if latest <= state.iterations < loop.repeat:
+            return 0
+        self._set_aside(loop, state)
+        if latest:
+            state.results, state.iterations = states.take(loop.path, key, latest), latest
+        return latest
+
+    def _set_aside(self, loop: LoopStep, state: Cached) -> None:
+        """Keep what a state of a loop that follows the time feeds back, release the rest, and empty it."""
+        if state.iterations and follows_time(loop.spec.repeat):
+            paths = {ref.path for _, _, ref in loop.feedback} & state.results.keys()
+            fed = {path: state.results.pop(path) for path in paths}
+            key = self.keys.loops[loop.path]
+            self.cache.states.keep(loop.path, key, state.iterations, fed, loop.repeat)
+        state.release_to(self.runner.pool)
+        state.iterations = 0
+
     def _run_loop(
-        self, loop: LoopStep, state: Cached, around: Mapping[Fed, Wired], owned: dict[str, Result]
+        self,
+        loop: LoopStep,
+        state: Cached,
+        around: Mapping[Fed, Wired],
+        owned: dict[str, Result],
+        frame: int | None = None,
     ) -> None:
         """Run a loop's iterations after ``state``, which each replaces.
 
-        What changes with a loop around it only goes into ``owned``.
+        What changes with a loop around it only goes into ``owned``; ``frame`` is that of the loop around
+        it that counts frames.
         """
         self.run(loop.body)
-        fed = dict(around)
-        for name, first, _ in loop.feedback:
-            fed[Fed(loop.path, name)] = self._wired(first, around)
+        fed, steps = dict(around), {step.path: step for step in walk(loop.body)}
+        for name, first, ref in loop.feedback:
+            own = Fed(loop.path, name)
+            fed[own] = self._wired(first, around)
+            outer = self._fed_from.get(first) if isinstance(first, Fed) else None
+            self._fed_from[own] = outer or (steps[ref.path], ref.output)
         changing = []
         for node in loop.body:
             if loop.path in self.keys.changes[id(node)]:
                 changing.append(node)
             else:
-                self._run_inside(node, around, None, owned)
+                self._run_inside(node, around, LoopIteration(frame=frame), owned)
         if loop.repeat == 0 and not state.results:
             state.results = self._initial(loop, changing, fed)
         self.results |= state.results
+        first_run = state.iterations
         for iteration in range(state.iterations, loop.repeat):
             if iteration > 0:
                 for name, _, ref in loop.feedback:
                     fed[Fed(loop.path, name)] = self._wired(ref, fed)
+            at = LoopIteration(iteration, loop.whole, iteration if loop.counts_frames else frame)
             computed: dict[str, Result] = {}
             try:
                 for node in changing:
-                    self._run_inside(node, fed, (iteration, loop.whole), computed)
+                    self._run_inside(node, fed, at, computed)
             except BaseException:
                 Cached(computed).release_to(self.runner.pool)
                 raise
-            Cached(state.results).release_to(self.runner.pool)
+            finally:
+                for name, _, _ in loop.feedback:
+                    if zeros := self._zeros.pop(Fed(loop.path, name), None):
+                        self.runner.pool.give(zeros)
+            if self.keys.changes[id(loop)]:
+                state.release_to(self.runner.pool)
+            else:
+                self._set_aside(loop, state)
             state.results, state.iterations = computed, iteration + 1
             self.results |= computed
+            if (
+                self.deadline is not None
+                and follows_time(loop.spec.repeat)
+                and not self.keys.changes[id(loop)]
+            ):
+                self.deadline.check(iteration + 1 - first_run, iteration + 1, loop.repeat)
 
     def _run_inside(
         self,
         node: PlanNode,
         fed: Mapping[Fed, Wired],
-        iteration: LoopIteration | None,
+        iteration: LoopIteration,
         owned: dict[str, Result],
     ) -> None:
         """Run a node of a loop's body; what the cache does not hold goes into ``owned``."""
@@ -163,11 +223,28 @@ class Execution:
             self._run_once(node)
         elif isinstance(node, LoopStep):
             state = Cached({})
-            self._run_loop(node, state, fed, owned)
+            self._run_loop(node, state, fed, owned, iteration.frame)
             owned |= state.results
         else:
-            inputs = {name: self._wired(source, fed) for name, source in node.inputs}
+            inputs = {name: self._input(node, name, source, fed) for name, source in node.inputs}
             owned[node.path] = self.results[node.path] = self.compute(node, inputs, iteration, None)
+
+    def _input(self, step: Step, name: str, source: Source | None, fed: Mapping[Fed, Wired]) -> Wired:
+        """Return what an input reads; of what is fed back, before the first iteration, perhaps zeros.
+
+        Zeros of the size of what is fed back are for other tools' shaders, and for an input that says so.
+        """
+        found = self._wired(source, fed)
+        if found.texture is not None or not isinstance(source, Fed):
+            return found
+        declared = next((each for each in step.kernel.inputs if each.name == name), None)
+        if declared is None or not (step.kernel.dialect or declared.fallback == "zero"):
+            return found
+        origin, output = self._fed_from[source]
+        if source not in self._zeros:
+            self._zeros[source] = self.runner.kernels.empty(origin)
+        zeros = self._zeros[source]
+        return Wired(zeros, zeros.textures[output], output)
 
     def _initial(
         self, loop: LoopStep, changing: list[PlanNode], fed: Mapping[Fed, Wired]

@@ -5,9 +5,11 @@ from __future__ import annotations
 from pathlib import Path
 
 from playground.errors import DataError, nearest
+from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL, shown
 
 _IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
+_DATA = {*_IMAGES, *VIDEO_FILES, *SOUND_FILES}
 
 
 def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
@@ -33,7 +35,7 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
             return candidate
     folders = [(place / path).parent for place in places] or [path.parent]
     near = sorted(
-        {p.name for folder in folders if folder.is_dir() for p in folder.iterdir() if p.suffix in _IMAGES}
+        {p.name for folder in folders if folder.is_dir() for p in folder.iterdir() if p.suffix in _DATA}
     )
     what = "this is a folder, not a file" if path.is_dir() else "there is no such file"
     raise DataError(f"{parameter}: {what}{nearest(path.name, near)}", file=shown(path))

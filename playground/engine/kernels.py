@@ -20,9 +20,20 @@ from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
-from playground.sketch.expressions import ExpressionError, Number
+from playground.sketch.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
 from playground.sketch.model import Kernel, Sampling
-from playground.sketch.reserved_names import MATCHES, PART, SIZES, UNWIRED, WINDOW, WIRED
+from playground.sketch.reserved_names import (
+    DEPTH,
+    ELEMENT,
+    MATCHES,
+    PART,
+    PRESSED,
+    SIZES,
+    UNWIRED,
+    VALUE,
+    WINDOW,
+    WIRED,
+)
 from playground.sketch.wiring import initial_names
 
 if TYPE_CHECKING:
@@ -32,6 +43,9 @@ _SAMPLERS = frozenset(
     {*range(0x8B5D, 0x8B65), *range(0x8DC0, 0x8DC6), *range(0x8DC9, 0x8DD9), *range(0x9108, 0x910E)}
 )
 """GL_SAMPLER_1D to GL_UNSIGNED_INT_SAMPLER_2D_MULTISAMPLE_ARRAY."""
+_MOST_LEVELS = 12  # of a pyramid of another tool
+_SHAPES = {0x8B5D: "line", 0x8B5F: "volume", 0x8B60: "cube", 0x8DC1: "layers"}
+"""GL_SAMPLER_1D, 3D, CUBE and 2D_ARRAY, with the shapes of what they read."""
 _COLOR_LOGIC_OP = 0x0BF2
 
 
@@ -42,16 +56,20 @@ class Job:
     step: Step
     given: Mapping[str, Any]  # what the engine gives, by name
     inputs: Mapping[str, Wired]
-    loop_iteration: LoopIteration | None = None  # of the loop around it
+    loop_iteration: LoopIteration | None = None  # where it is in the loops around it
     start: Result | None = None  # the same step after fewer iterations, to go on from; it is used up
     samples: int = 1  # of a draw
     keeps_surface: bool = False  # a later draw goes on from this one
 
     def count(self, program: Program, iteration: int, repeat: str, whole: int, at_once: int = 1) -> None:
         """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""
-        own, around = (iteration, whole), self.loop_iteration
-        now, total = own if repeat != "1" or around is None else around
-        program.set_all({"iteration": now, "iterations": total, "until": now + at_once})
+        now, total, around = iteration, whole, self.loop_iteration
+        if repeat == "1" and around is not None and around.whole:
+            now, total = around.number, around.whole
+        counted: dict[str, Any] = {"iteration": now, "iterations": total, "until": now + at_once}
+        if counts_frames(repeat):
+            counted["time"] = now / FRAME_RATE
+        program.set_all(counted)
 
     def numbers(self, **more: Number) -> dict[str, Number]:
         """Return what the expressions of a header may name."""
@@ -96,7 +114,7 @@ class Kernels:
         choices = [
             (p.name, int(values[p.name]))  # type: ignore[arg-type]
             for p in kernel.parameters
-            if p.type == "bool" or p.widget.kind == "menu"
+            if (p.type == "bool" or p.widget.kind == "menu") and p.widget.kind != "button"
         ]
         for declared in kernel.inputs:
             name, texture = declared.name, job.inputs.get(declared.name, NOT_WIRED).texture
@@ -146,43 +164,48 @@ class Kernels:
         driver = COMPUTE if kernel.kind == "plain_compute" else FRAGMENT
         program = self.programs.get(kernel, driver)
         unit = 0
-        sizes: dict[str, tuple[int, int]] = {}  # [texels] of what each sampler reads
+        sizes: dict[str, tuple[int, int, int]] = {}  # [texels] of what each sampler reads
         for parameter in kernel.parameters:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
-                program.set(parameter.name, value)
+                program.set(parameter.name, job.given.get(f"{PRESSED}{parameter.name}", value))
             elif parameter.name in program.uniforms or kernel.dialect:
                 texture = self.binder.file_texture(parameter, value, encoded=True)
-                sizes[parameter.name] = texture.size
+                sizes[parameter.name] = (*texture.size, 1)
                 unit = self.binder.texture(program, parameter.name, unit, texture, parameter.sampling)
         for declared in kernel.inputs:
-            texture = self.binder.wired(declared, job.inputs)
-            sizes[declared.name] = texture.size
+            readable, sizes[declared.name] = self.binder.shaped(declared, job.inputs)
             if declared.name in program.uniforms:
-                unit = self.binder.texture(program, declared.name, unit, texture, declared.sampling)
+                unit = self.binder.texture(program, declared.name, unit, readable, declared.sampling)
         origin = step.window.origin if step.window is not None else (0, 0)
         program.set(WINDOW, origin)
         program.set(PART, _shares(step.whole_size, origin, step.size))
         for name, meaning in kernel.usual:
             if name in program.uniforms:
-                _set_fitting(program, name, usual[meaning] if meaning in usual else _size(meaning, sizes))
+                _set_fitting(program, name, usual.get(meaning) or _numbers(meaning, job, sizes))
         fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}
-        fed |= {declared.name for declared in kernel.inputs}
+        inputs = {declared.name: declared for declared in kernel.inputs}
+        fed |= inputs.keys()
         for name, uniform in program.uniforms.items():
-            if name in fed or getattr(uniform, "gl_type", 0) not in _SAMPLERS:
+            kind = getattr(uniform, "gl_type", 0)
+            if name in fed or kind not in _SAMPLERS:
                 continue
             # A channel that nothing feeds. Two kinds of samplers may not share a unit, used or not.
             count = int(getattr(uniform, "array_length", 1))
             uniform.value = unit if count == 1 else [*range(unit, unit + count)]
-            for _ in range(count):
-                unit = self.binder.unit(unit, self.binder.constant("black"), Sampling())
+            elements = [inputs.get(f"{name}{ELEMENT}{number}") for number in range(count)]
+            for element in elements if count > 1 else [None]:
+                readable = self.binder.shaped_constant("black", _SHAPES.get(kind, ""))
+                if element is not None:
+                    readable, _ = self.binder.shaped(element, job.inputs)
+                unit = self.binder.unit(unit, readable, element.sampling if element else Sampling())
         result = self.empty(step)
         if driver == COMPUTE:
             self.images(result, read=True)
             program.run(-(-step.size[0] // kernel.local[0]), -(-step.size[1] // kernel.local[1]))
             return result
         result.framebuffer(self.ctx).use()
-        program.fill()
+        program.fill(6 if kernel.vertex_source else 3)
         return result
 
     # ── iterations ───────────────────────────────────────────────────────────
@@ -325,10 +348,24 @@ def _shares(whole: tuple[int, int], *pairs: tuple[int, int]) -> tuple[float, ...
     return tuple(number / side for pair in pairs for number, side in zip(pair, whole, strict=True))
 
 
-def _size(meaning: str, sizes: Mapping[str, tuple[int, int]]) -> tuple[float, ...]:
+def _numbers(meaning: str, job: Job, sizes: Mapping[str, tuple[int, int, int]]) -> tuple[float, ...]:
+    """Return what a uniform is given whose meaning depends on its own step: see ``reserved_names``."""
+    if meaning.startswith(VALUE):
+        return (float(meaning.removeprefix(VALUE)),)
+    if meaning.startswith(DEPTH):
+        halved = int(meaning.removeprefix(DEPTH))
+        return (float(min(max(min(job.step.whole_size).bit_length() + halved - 2, 0), _MOST_LEVELS)),)
+    if meaning in ("iteration", "iterations"):
+        around = job.loop_iteration
+        number, whole = (around.number, around.whole) if around is not None else (0, 1)
+        return (float(number if meaning == "iteration" else whole),)
+    return _size(meaning, sizes)
+
+
+def _size(meaning: str, sizes: Mapping[str, tuple[int, int, int]]) -> tuple[float, ...]:
     """Return the sizes [texels] of the samplers that a meaning lists, three numbers each; 0 for none."""
-    found = [sizes.get(name, (0, 0)) for name in meaning.removeprefix(SIZES).split()]
-    return tuple(float(number) for width, height in found for number in (width, height, 1 if width else 0))
+    found = [sizes.get(name, (0, 0, 0)) for name in meaning.removeprefix(SIZES).split()]
+    return tuple(float(number) for size in found for number in size)
 
 
 def _set_fitting(program: Program, name: str, values: tuple[float, ...]) -> None:
@@ -347,5 +384,5 @@ def _set_fitting(program: Program, name: str, values: tuple[float, ...]) -> None
     uniform.value = elements[0] if length == 1 else elements
 
 
-_WHOLE = frozenset({0x1404, 0x1405, *range(0x8B53, 0x8B56), *range(0x8DC6, 0x8DC9)})
-"""GL_INT, GL_UNSIGNED_INT, GL_INT_VEC2 to 4, GL_UNSIGNED_INT_VEC2 to 4."""
+_WHOLE = frozenset({0x1404, 0x1405, *range(0x8B53, 0x8B5A), *range(0x8DC6, 0x8DC9)})
+"""GL_INT, GL_UNSIGNED_INT, GL_INT_VEC2 to 4, GL_BOOL, GL_BOOL_VEC2 to 4, GL_UNSIGNED_INT_VEC2 to 4."""

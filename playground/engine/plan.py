@@ -5,15 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import NamedTuple
 
 from playground.engine.between import Between
+from playground.sketch.expressions import counts_frames
 from playground.sketch.flat import Flat, Ref, Source
 from playground.sketch.model import Kernel, PassSpec, Sketch, Value
 from playground.terrain.camera import Eye
 from playground.terrain.sources import Terrain
 
-LoopIteration = tuple[int, int]
-"""An iteration of a loop, from 0, and its iterations in all."""
+
+class LoopIteration(NamedTuple):
+    """Where a step is in the loops around it."""
+
+    number: int = 0  # of the innermost loop's iteration, from 0
+    whole: int = 0  # its iterations in all; 0: the step does not change with it
+    frame: int | None = None  # of the innermost loop that counts frames
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,6 +63,11 @@ class LoopStep:
     body: tuple[Step | LoopStep, ...]
     feedback: tuple[tuple[str, Source | None, Ref], ...]
     spec: PassSpec
+
+    @property
+    def counts_frames(self) -> bool:
+        """Whether each iteration is a frame, 1/60 s after the one before."""
+        return counts_frames(self.spec.repeat)
 
 
 PlanNode = Step | LoopStep

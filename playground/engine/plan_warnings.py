@@ -10,7 +10,9 @@ from playground.engine.plan import Plan, Step
 from playground.errors import DataError, Diagnostic
 from playground.paths import GLSL, shown
 from playground.sketch.dialects.foreign import unfed_warnings
-from playground.sketch.flat import Ref
+from playground.sketch.dialects.passes import stand_in_paths
+from playground.sketch.dialects.shader import STAND_INS
+from playground.sketch.flat import Ref, Source
 from playground.sketch.model import Graph, Kernel, kernels_of
 from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
 from playground.terrain.sources import source_kind
@@ -58,7 +60,7 @@ def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
     found: dict[str, Diagnostic] = {}
     for step in plan.walk():
         if step.kernel.dialect:
-            for warning in unfed_warnings(step.kernel, _wired(step)):
+            for warning in unfed_warnings(step.kernel, _wired(plan, step)):
                 found.setdefault(f"{step.kernel.path} {warning.message}", warning)
         if step.kernel.kind == "source":
             spec = plan.flat.user(step.path)
@@ -71,8 +73,12 @@ def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
     return tuple(found.values())
 
 
-def _wired(step: Step) -> set[str]:
-    """Return the inputs that something feeds; a stand-in is a pass of its name, next to the step."""
-    prefix = step.path.rpartition(".")[0]
-    found = {name: source.path if isinstance(source, Ref) else "" for name, source in step.inputs if source}
-    return {name for name, path in found.items() if path != (f"{prefix}.{name}" if prefix else name)}
+def _wired(plan: Plan, step: Step) -> set[str]:
+    """Return the inputs that something feeds besides the stand-ins that another tool's shader comes with."""
+
+    def is_stand_in(name: str, source: Source) -> bool:
+        if not isinstance(source, Ref) or source.path not in stand_in_paths(step.path, name):
+            return False
+        return plan.flat.specs[source.path].use in STAND_INS.values()
+
+    return {name for name, source in step.inputs if source is not None and not is_stand_in(name, source)}

@@ -17,21 +17,20 @@ from pathlib import Path
 from playground.engine.accepted_sizes import sizes_of_variant
 from playground.engine.between import between_of
 from playground.engine.error_place import placed
-from playground.engine.files import find_file
+from playground.engine.input_shapes import check_shapes
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node
 from playground.engine.plan_request import (
-    DEFAULT_EXTENT,
-    DEFAULT_RELIEF,
-    DEFAULT_SIZE,
     PlanRequest,
     checked_pixels,
     checked_seconds,
     checked_steps,
 )
+from playground.engine.source_facts import described, given_values, own_sizes
 from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
+from playground.images.picture_size import picture_size
 from playground.paths import shown
 from playground.sketch import expressions
-from playground.sketch.assign import resolve
+from playground.sketch.assign import find_targets, resolve
 from playground.sketch.expressions import ExpressionError, Number
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
@@ -39,7 +38,7 @@ from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
-from playground.terrain.sources import Terrain, source_kind
+from playground.terrain.sources import Terrain
 
 MAX_REPEAT = 1_000_000
 _AXES = {"x": 0, "y": 1}
@@ -56,7 +55,9 @@ class _LastPlan:
     values: Mapping[str, Mapping[str, Value]]  # of each leaf, by its path
     named: frozenset[str]  # paths of the values that a size or a count names
     by_time: bool  # one of them names the time
+    pictures: Mapping[Path, tuple[int, int]]  # files whose sizes one of them names
     refusals: Mapping[str, str]  # why a fast variant does not take its size: a sentence, by its technique
+    own: Mapping[str, tuple[int, int]]  # texels that sources have by themselves, by the path of the leaf
 
 
 class Planner:
@@ -174,6 +175,7 @@ class _Planning:
         copied = after.flat.shape.copied if after else {}
         self.named: set[str] = {copied.get(path, path) for path in after.named} if after else set()
         self.by_time: bool = after is not None and after.by_time
+        self.pictures: dict[Path, tuple[int, int]] = {}
         self._sizes: dict[str, tuple[int, int]] = {}
         self._open: list[str] = []
         self._values: dict[str, Mapping[str, Value]] = {}
@@ -182,10 +184,11 @@ class _Planning:
         for leaf, earlier in zip_longest(flat.leaves, same):
             values = before[leaf.path] if leaf is earlier else {}
             if leaf is not earlier or leaf.kernel.file_parameters:
-                now = self._with_files(leaf)  # a file may have come that is found first
+                now = given_values(leaf, sketch, flat)  # a file may have come that is found first
                 values = values if values == now else now
             self._values[leaf.path] = values
-        self.terrain = self._described()
+        self.terrain = described(sketch, flat, self._values)
+        self.own = dict(own_sizes(sketch, flat, self._values))
 
     def renewed(self) -> _LastPlan | None:
         """Return the known plan with the values of now; None where it has to be made whole."""
@@ -193,11 +196,14 @@ class _Planning:
         if (
             known is None
             or known.plan.terrain != self.terrain
+            or known.own != self.own
             or (known.by_time and known.plan.time != self.time)
         ):
             return None
         plan, now, before = known.plan, self.flat.values, known.plan.flat.values
         if [path for path in known.named if now[path] is not before[path]]:
+            return None
+        if any(picture_size(file) != size for file, size in known.pictures.items()):
             return None
         eye = plan.eye if plan.sketch.camera == self.sketch.camera else self._eye()
         nodes = tuple([self._renewed(node) for node in plan.nodes])
@@ -237,7 +243,7 @@ class _Planning:
             lacking=(*lacking, *refused.values()),
         )
         named = frozenset(self.named & self.flat.values.keys())
-        return _LastPlan(plan, self._values, named, self.by_time, refused)
+        return _LastPlan(plan, self._values, named, self.by_time, self.pictures, refused, self.own)
 
     def refusals(self, before: Collection[str]) -> dict[str, str]:
         """Return a sentence for each technique whose fast variant does not take its size, by its path.
@@ -275,7 +281,8 @@ class _Planning:
         size = self._size_of_leaf(node)
         values = self._values[node.path]
         self._refuse(node, size)
-        numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], "time": self.time}
+        check_shapes(node, self.flat, self.size_of)
+        numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], **self._clocks()}
         numbers |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         if kernel.repeat != "1" or kernel.stride:
             self._note_names(node)
@@ -296,18 +303,21 @@ class _Planning:
             between=between,
         )
 
+    def _clocks(self) -> dict[str, Number]:
+        return {"time": self.time, "frames": expressions.frames_at(self.time)}
+
     def _note_names(self, leaf: Leaf) -> None:
         """Note what a kernel's own counts name."""
         names = frozenset[str]()
         for text in (leaf.kernel.repeat, leaf.kernel.stride):
             names |= expressions.names_in(text) if text else names
-        self.by_time |= "time" in names
+        self.by_time |= not names.isdisjoint(expressions.CLOCKS)
         self.named |= {path for name, path in self.flat.shape.paths[leaf.path] if name in names}
 
     def _stopped(self, path: str, whole: int, repeat: str) -> int:
         """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
         steps = self.stopped.get(path, whole)
-        if steps > whole and not self.request.varies and "time" not in expressions.names_in(repeat):
+        if steps > whole and not self.request.varies and not expressions.follows_time(repeat):
             raise ParameterError(f"steps: '{path}' stops after {steps} steps, but it has {whole} in all")
         return min(steps, whole)
 
@@ -334,50 +344,6 @@ class _Planning:
             f"not {size[0]} x {size[1]}; the nearest it takes: {listed}"
         )
 
-    def _described(self) -> Terrain:
-        known = Terrain()
-        for leaf in self.flat.leaves:
-            if leaf.kernel.kind == "source":
-                self._check_source(leaf)
-                try:
-                    known = source_kind(leaf.kernel.registry).describe(self._values[leaf.path])
-                except DataError as error:
-                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
-                if known != Terrain():
-                    break
-        size = self.sketch.size or self.flat.accepted(known.size or DEFAULT_SIZE)
-        extent = self.sketch.extent or known.extent
-        if extent is None:
-            shape = known.size or size
-            ratio = (shape[1] - 1) / max(shape[0] - 1, 1) or 1.0
-            extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
-        relief = self.sketch.relief if self.sketch.relief is not None else known.relief
-        base = self.sketch.base_elevation if self.sketch.base_elevation is not None else known.base_elevation
-        return Terrain(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
-
-    def _check_source(self, leaf: Leaf) -> None:
-        try:
-            kind = source_kind(leaf.kernel.registry)
-        except PlaygroundError as error:
-            raise leaf.spec.error(str(error)) from None
-        missing = [name for name in kind.parameters if leaf.kernel.parameter(name) is None]
-        if missing:
-            raise leaf.spec.error(
-                f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}"
-            )
-
-    def _with_files(self, leaf: Leaf) -> dict[str, Value]:
-        values = dict(leaf.values)
-        for parameter in leaf.kernel.parameters if leaf.kernel.file_parameters else ():
-            if parameter.widget.kind == "file":
-                text = str(values[parameter.name])
-                try:
-                    path = find_file(text, leaf.folder, parameter.file, f"{leaf.path}.{parameter.name}")
-                except DataError as error:
-                    raise placed(error, self.sketch, self.flat.user(leaf.path)) from error
-                values[parameter.name] = str(path)
-        return values
-
     def _size_of_leaf(self, leaf: Leaf) -> tuple[int, int]:
         """Return a leaf's size; a compute variant's is that of the pass whose output it gives."""
         path = leaf.path
@@ -401,20 +367,25 @@ class _Planning:
         self._open.append(path)
         base = self._size_around(path, prefix)
         size = base
-        if spec.size is not None:
+        if path in self.own:
+            size = self.own[path]
+            self._check_sides(spec, size)
+        elif spec.size is not None:
             try:
                 names = partial(self._number, prefix, spec)
                 size = (expressions.evaluate(spec.size[0], names), expressions.evaluate(spec.size[1], names))
             except ExpressionError as error:
                 raise spec.error(f"pass '{spec.name}': size {error}") from None
-            if not all(1 <= side <= LARGEST_SIDE for side in size):
-                raise spec.error(
-                    f"pass '{spec.name}': size {size[0]} x {size[1]}; "
-                    f"1 to {LARGEST_SIDE} a side were expected"
-                )
+            self._check_sides(spec, size)
         self._open.pop()
         self._sizes[path] = size
         return size
+
+    def _check_sides(self, spec: PassSpec, size: tuple[int, int]) -> None:
+        if not all(1 <= side <= LARGEST_SIDE for side in size):
+            raise spec.error(
+                f"pass '{spec.name}': size {size[0]} x {size[1]}; 1 to {LARGEST_SIDE} a side were expected"
+            )
 
     def _size_around(self, path: str, prefix: str) -> tuple[int, int]:
         """Return the size that a pass has unless it says another: that of the technique around it."""
@@ -428,14 +399,16 @@ class _Planning:
 
         Raises ``KeyError`` for any other name.
         """
-        if name == "time":
+        if name in expressions.CLOCKS:
             self.by_time = True
-            return self.time
+            return self._clocks()[name]
         head, _, axis = name.rpartition(".")
         if axis in _AXES and head == "size":
             return self._size_around(_inside(prefix, spec.name), prefix)[_AXES[axis]]
         if axis in _AXES and head.endswith(".size"):
-            return self.size_of(self._path_of(prefix, head.removesuffix(".size")))[_AXES[axis]]
+            named = head.removesuffix(".size")
+            size = self._picture_size(prefix, named) or self.size_of(self._path_of(prefix, named))
+            return size[_AXES[axis]]
         try:
             target = resolve(self.flat.graphs[prefix], name)[0].path
         except PlaygroundError:
@@ -446,10 +419,25 @@ class _Planning:
             return int(self.request.compute)
         path = _inside(prefix, target)
         self.named.add(path)
-        value = self.flat.values[path]
+        value = resolve(self.flat.graphs[prefix], name)[0].parameter.widget.given(self.flat.values[path])
         if not isinstance(value, int | float):
             raise KeyError(name)
         return value
+
+    def _picture_size(self, prefix: str, name: str) -> tuple[int, int] | None:
+        """Return the size of the picture that a parameter of a name reads; None where there is none."""
+        target = next(iter(find_targets(self.flat.graphs[prefix], name)), None)
+        if target is None or target.parameter.widget.kind != "file":
+            return None
+        path = _inside(prefix, target.path)
+        self.named.add(path)
+        leaf, _, parameter = path.rpartition(".")
+        file = Path(str(self._values[leaf][parameter]))
+        try:
+            self.pictures[file] = picture_size(file)
+        except DataError as error:
+            raise placed(error, self.sketch, self.flat.user(leaf)) from error
+        return self.pictures[file]
 
     def _path_of(self, prefix: str, name: str) -> str:
         """Return the path of the pass of a name, or of what feeds the technique's input of that name."""

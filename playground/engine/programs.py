@@ -51,8 +51,8 @@ class Program:
             if uniform is not None:
                 uniform.value = value
 
-    def fill(self) -> None:
-        """Draw one triangle over the whole of the bound framebuffer."""
+    def fill(self, vertices: int = 3) -> None:
+        """Draw one triangle over the whole of the bound framebuffer, or two of 6 vertices in all."""
         array = self.arrays.get(None)
         if array is None:
             content: list[tuple[Any, ...]] = []
@@ -60,7 +60,7 @@ class Program:
                 self._corners = self.ctx.buffer(_CORNERS)
                 content = [(self._corners, "2f", CORNER)]
             array = self.arrays[None] = self.ctx.vertex_array(self.compiled, content)
-        array.render(self.ctx.TRIANGLES, vertices=3)
+        array.render(self.ctx.TRIANGLES, vertices=vertices)
 
     def run(self, x: int, y: int) -> None:
         """Dispatch so many work groups, and make what they wrote visible."""

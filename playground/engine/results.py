@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
+from playground.gpu.shapes import Shaped
 from playground.gpu.textures import bytes_of, make_framebuffer, make_texture
 from playground.sketch.model import Output
 
@@ -46,6 +47,7 @@ class Result:
     number: int = 0  # of all that its pool has handed out: textures are used again, it is not
     surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
+    shaped: dict[tuple[str, str], Shaped] = field(default_factory=dict)  # copies, by output and shape
     _framebuffer: moderngl.Framebuffer | None = None
 
     @property
@@ -55,6 +57,7 @@ class Result:
         for output in self.outputs:
             each = bytes_of(self.size, output.format)
             total += each + (each // 3 if output.name in self.mipmapped else 0)
+        total += sum([copy.bytes for copy in self.shaped.values()])
         if (surface := self.surface) is not None:
             width, height = surface.size
             total += (bytes_of(surface.size, surface.format) + 4 * width * height) * surface.samples
@@ -66,8 +69,15 @@ class Result:
             self._framebuffer = make_framebuffer(ctx, [self.textures[o.name] for o in self.outputs])
         return self._framebuffer
 
+    def release_copies(self) -> None:
+        """Release what was copied into other shapes."""
+        for copy in self.shaped.values():
+            copy.release()
+        self.shaped.clear()
+
     def release(self) -> None:
         """Release its textures and what draws to them."""
+        self.release_copies()
         if self._framebuffer is not None:
             self._framebuffer.release()
             self._framebuffer = None
@@ -136,6 +146,7 @@ class Pool:
         if result.surface is not None:
             result.surface.release()
             result.surface = None
+        result.release_copies()
         if result.mipmapped or result.bytes > self.limit:
             result.release()  # levels would go stale unseen
             return

@@ -5,8 +5,8 @@ Programs, meshes and file textures stay here; results are the caller's.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.binder import Binder
@@ -18,11 +18,17 @@ from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextu
 from playground.engine.plan import LoopIteration, Plan, Step
 from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
+from playground.engine.scene import MEANINGS as OF_THE_SCENE
+from playground.engine.scene import scene_of
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import split_format, write_texture
+from playground.media.bands import bands_at
+from playground.media.live_inputs import LiveInputs
+from playground.media.now import Now
+from playground.sketch.expressions import FRAME_RATE, last_frame_at
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import NEUTRAL
+from playground.sketch.reserved_names import MOMENT, NEUTRAL, PRESSED
 from playground.terrain.sources import SourceKind, source_kind
 
 if TYPE_CHECKING:
@@ -42,7 +48,8 @@ class Runner:
         self.mouse = (0.0, 0.0, 0.0, 0.0)  # pixels from the lower left, then where it was pressed
         self.hover = (0.0, 0.0)  # pixels from the lower left, pressed or not
         self.drag = (0.0, 0.0, 0.0, 0.0)  # as ShaderToy's iMouse
-        self.frame = 0  # pictures shown so far
+        self.pressed: frozenset[str] = frozenset()  # paths of the buttons that are pressed in this frame
+        self.inputs = LiveInputs()
         self.delta = 1 / 60  # [s] since the last one
         self.date = (1970.0, 0.0, 1.0, 0.0)  # year, month from 0, day, seconds
         self.programs = Programs(ctx)
@@ -90,16 +97,26 @@ class Runner:
         self.binder.release()
         self.programs.release()
 
-    def given_for(self, step: Step) -> dict[str, Any]:
-        """Return what the engine gives besides the parameters and the iteration, where the text names it."""
+    def given_for(self, step: Step, frame: int | None = None) -> dict[str, Any]:
+        """Return what the engine gives besides the parameters and the iteration, where the text names it.
+
+        ``frame`` is that of the loop around it that counts frames: the time is that frame's.
+        """
         kernel = step.kernel
-        if kernel.kind.startswith("plain"):
-            return dict(usual_of(kernel, self._usual(step)))
+        if kernel.kind == "source":
+            return self._moment(step, frame)
         found: dict[str, Any] = {}
+        if self.pressed:
+            names = (p.name for p in kernel.parameters if p.widget.kind == "button")
+            found |= {f"{PRESSED}{name}": True for name in names if f"{step.path}.{name}" in self.pressed}
+        if kernel.kind.startswith("plain"):
+            return found | dict(usual_of(kernel, self._usual(step, frame)))
         for name in kernel.given:
             if name == "spacing":
                 (width, height), (wide, tall) = self._given["extent"], step.whole_size
                 found[name] = width / max(wide - 1, 1), height / max(tall - 1, 1)
+            elif name == "time" and frame is not None:
+                found[name] = frame / FRAME_RATE
             elif name in self._given:
                 found[name] = self._given[name]
         return found
@@ -126,23 +143,44 @@ class Runner:
     ) -> Result:
         """Run a step and return its textures, which are the caller's.
 
-        ``iteration`` is that of the loop around it; ``start`` the same step after fewer iterations, which
-        is used up; ``keeps_surface`` says that a later draw goes on from this one.
+        ``iteration`` is where it is in the loops around it; ``start`` the same step after fewer iterations,
+        which is used up; ``keeps_surface`` says that a later draw goes on from this one.
         """
         assert self._plan is not None, "look_at() comes first"
         if self.before_step is not None:
             self.before_step(step)
-        given, samples = self.given_for(step), self._samples_for(step.kernel)
+        frame = iteration.frame if iteration is not None else None
+        given, samples = self.given_for(step, frame), self._samples_for(step.kernel)
         job = Job(step, given, inputs, iteration, start, samples, keeps_surface)
         self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
         other = self._other_kinds.get(step.kernel.kind)
-        try:
+        with self._placed(step):
             return other(job) if other else self.kernels.run(job, driver)
+
+    @contextmanager
+    def _placed(self, step: Step) -> Iterator[None]:
+        """Raise an error of a data file at the pass that names it."""
+        assert self._plan is not None, "look_at() comes first"
+        try:
+            yield
         except DataError as error:
             raise placed(error, self._plan.sketch, self._plan.flat.user(step.path)) from error
 
+    def _moment(self, step: Step, frame: int | None) -> dict[str, Any]:
+        """Return what a source depends on besides its parameters, as ``moment``."""
+        moment = source_kind(step.kernel.registry).moment
+        if moment is None:
+            return {}
+        with self._placed(step):
+            return {MOMENT: moment(step.values, Now(self._time_at(frame), self.inputs))}
+
+    def _time_at(self, frame: int | None) -> float:
+        """Return the time of the frame that a loop is at, else of the picture."""
+        return float(self._given["time"]) if frame is None else frame / FRAME_RATE
+
     def _plain(self, job: Job) -> Result:
-        return self.kernels.plain(job, self._usual(job.step))
+        around = job.loop_iteration
+        return self.kernels.plain(job, self._usual(job.step, around.frame if around else None))
 
     def _source(self, job: Job) -> Result:
         step, kind = job.step, source_kind(job.step.kernel.registry)
@@ -154,7 +192,7 @@ class Runner:
                 result.textures[output.name], self.paint.texture_of(painted, output.format)
             )
             return result
-        arrays = kind.make(step.values, step.size)
+        arrays = kind.make(step.values, step.size, job.given.get(MOMENT))
         for output in step.kernel.outputs:
             if output.name not in arrays:
                 given = ", ".join(arrays)
@@ -171,18 +209,30 @@ class Runner:
             return None
         return painted if painted.pixels.shape[1::-1] == step.size else None
 
-    def _usual(self, step: Step) -> dict[str, tuple[float, ...]]:
+    def _usual(self, step: Step, frame: int | None) -> dict[str, tuple[float, ...]]:
         width, height = step.whole_size
+        time = self._time_at(frame)
         return {
-            "time": (float(self._given["time"]),),
+            "time": (time,),
             "resolution": (float(width), float(height), 1.0),
+            "square_resolution": (float(width), float(width), 1.0),  # of a face of a cube map
+            "buttons": (float(self.drag[2] > 0), 0.0, 0.0, 0.0),
             "mouse": self.mouse,
-            "frame": (float(self.frame),),
-            "delta": (self.delta,),
+            "delta": (self.delta if frame is None else 1 / FRAME_RATE,),
             "date": self.date,
-            "frame_of_time": (math.floor(self._given["time"] * 60 + 1e-6),),
+            "date_from_1": (self.date[0], self.date[1] + 1.0, *self.date[2:]),
+            "frame": (last_frame_at(time),),
+            "frame_of_time": (last_frame_at(time),),
+            "bands": bands_at(time),
             "hover": self.hover,
             "hover_share": (self.hover[0] / width, self.hover[1] / height),
             "drag": self.drag,
             **NEUTRAL,
+            **self._scene(step),
         }
+
+    def _scene(self, step: Step) -> dict[str, tuple[float, ...]]:
+        """Return the sketch's camera and sun, where a step's shader asks for one of them."""
+        assert self._plan is not None, "look_at() comes first"
+        wanted = any(meaning in OF_THE_SCENE for _, meaning in step.kernel.usual)
+        return scene_of(self._plan) if wanted else {}

@@ -247,10 +247,10 @@ def _ends(parameter: Parameter) -> Iterator[Value]:
     elif widget.kind == "direction":
         yield from ((0.0, 20.0), (45.0, 8.0), (200.0, 3.0), (275.5, 50.0))
     elif isinstance(parameter.default, tuple):
-        low, high = (1.0 if end is None else end for end in (widget.low, widget.high))
         count = len(parameter.default)
         kind = float if parameter.type.startswith("vec") else int
-        apart = (low + (high - low) * (i + 1) / (count + 1) for i in range(count))  # no two alike
+        ends = [[1.0 if end is None else end for end in widget.ends(i)] for i in range(count)]
+        apart = (low + (high - low) * (i + 1) / (count + 1) for i, (low, high) in enumerate(ends))
         yield tuple(kind(value) for value in apart)
     elif parameter.type in ("int", "uint", "float") and None not in (widget.low, widget.high):
         for end in (widget.low, widget.high):

@@ -174,28 +174,45 @@ def _wrap_foreign(kernel: Kernel, version_code: int) -> Wrapped:
         "#extension GL_ARB_shading_language_420pack : enable",
         *kernel.prelude,
         f"uniform ivec2 {WINDOW};",
+        *map(own_part, kernel.helpers),
     ]
     lines = ["" if line is own else line.code for line in kernel.source.lines]
     after = [own_part(kernel.epilogue, window=WINDOW)] if kernel.epilogue else []
     text = "\n".join([*before, *lines, *after]) + "\n"
     first = len("\n".join(before).split("\n")) + 1
     extensions = [line for line in kernel.prelude if line.startswith("#extension")]
-    vertex = own_part(
-        "triangle_with_outputs.vert",
-        version="\n".join([version, *extensions]),
-        shares=PART,
-        declarations="\n".join(declaration for declaration, _ in kernel.vertex),
-        statements="\n    ".join(statements for _, statements in kernel.vertex),
-    )
+    if kernel.vertex_source is not None:
+        vertex = _own_vertex(kernel, kernel.vertex_source, before[:2])
+    else:
+        triangle = own_part(
+            "triangle_with_outputs.vert",
+            version="\n".join([version, *extensions]),
+            shares=PART,
+            declarations="\n".join(declaration for declaration, _ in kernel.vertex),
+            statements="\n    ".join(statements for _, statements in kernel.vertex),
+        )
+        vertex = ShaderStage(triangle + "\n", 0, kernel.source, "")
     expected = "void mainImage(out vec4, in vec2)" if kernel.epilogue else "void main()"
+    if "mainCubemap" in kernel.source.names and "cubemap" in kernel.epilogue:
+        expected = "void mainCubemap(out vec4, in vec2, in vec3, in vec3)"
     return Wrapped(
         kernel,
         FRAGMENT,
         {
-            "vertex": ShaderStage(vertex + "\n", 0, kernel.source, ""),
+            "vertex": vertex,
             "fragment": ShaderStage(text, first, kernel.source, expected),
         },
     )
+
+
+def _own_vertex(kernel: Kernel, source: SourceText, begins: Sequence[str]) -> ShaderStage:
+    """Return the vertex stage of another tool's shader whose author wrote one."""
+    before = [*begins, *kernel.vertex_prelude]
+    before += [own_part(part, shares=PART) for part in kernel.vertex_helpers]
+    own = version_line(source)
+    lines = ["" if line is own else line.code for line in source.lines]
+    first = len("\n".join(before).split("\n")) + 1
+    return ShaderStage("\n".join([*before, *lines]) + "\n", first, source, "void main()")
 
 
 def version_line(source: SourceText) -> Line | None:

@@ -79,7 +79,7 @@ def read_image(path: str | Path) -> Image:
         DataError: missing, not a picture, damaged or too large.
     """
     path = checked_file(path)
-    with _reading(path) as handle:
+    with reading(path) as handle:
         depth, _ = _png_header(handle)
         if depth == 16:
             samples = _png_samples(handle, path)
@@ -87,7 +87,7 @@ def read_image(path: str | Path) -> Image:
             pixels = _four_channels(samples).astype(np.float32) / np.float32(65535.0)
             has_alpha = samples.shape[-1] in (2, 4)
         else:
-            picture = _open(handle, path)
+            picture = open_picture(handle, path)
             has_alpha = picture.mode in _WITH_ALPHA or "transparency" in picture.info
             pixels = _eight_bit(picture)
     return Image(pixels, path.name, has_alpha)
@@ -102,11 +102,11 @@ def read_png(path: str | Path) -> tuple[NDArray[np.uint8], dict[str, str]]:
         DataError: missing, not a PNG, damaged or too large.
     """
     path = checked_file(path)
-    with _reading(path) as handle:
+    with reading(path) as handle:
         depth, _ = _png_header(handle)
         if not depth:
             raise DataError("not a PNG file; expected one, as write_png makes them", file=path)
-        picture = _open(handle, path)
+        picture = open_picture(handle, path)
         picture.load()
         text = {str(k): str(v) for k, v in getattr(picture, "text", {}).items()}
         if depth == 16:
@@ -124,7 +124,7 @@ def read_samples(path: str | Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
         DataError: missing, not a PNG, damaged or too large.
     """
     path = checked_file(path)
-    with _reading(path) as handle:
+    with reading(path) as handle:
         if not _png_header(handle)[0]:
             raise DataError("not a PNG file, despite its name; expected one", file=path)
         return _png_samples(handle, path)
@@ -137,8 +137,8 @@ def read_texts(path: str | Path) -> dict[str, str]:
         DataError: missing, not a PNG, damaged or too large.
     """
     path = checked_file(path)
-    with _reading(path) as handle:
-        return {str(k): v for k, v in _open(handle, path).info.items() if isinstance(v, str)}
+    with reading(path) as handle:
+        return {str(k): v for k, v in open_picture(handle, path).info.items() if isinstance(v, str)}
 
 
 def checked_file(path: str | Path) -> Path:
@@ -171,7 +171,8 @@ def reason(error: BaseException) -> str:
 
 
 @contextmanager
-def _reading(path: Path) -> Iterator[BinaryIO]:
+def reading(path: Path) -> Iterator[BinaryIO]:
+    """Open a file; what a decoder raises in the block becomes a ``DataError``."""
     # Pillow's decoders raise half a dozen kinds of exception on damaged files (OSError,
     # SyntaxError, ValueError, struct.error, zlib.error …), and warn about odd metadata.
     try:
@@ -193,7 +194,8 @@ def _png_header(handle: BinaryIO) -> tuple[int, int]:
     return (start[24], start[25]) if start.startswith(PNG_START) and len(start) == 26 else (0, 0)
 
 
-def _open(handle: BinaryIO, path: Path) -> _Picture:
+def open_picture(handle: BinaryIO, path: Path) -> _Picture:
+    """Open a picture that is being read, and judge its size; its pixels are not decoded yet."""
     import PIL.Image
 
     depth = _png_header(handle)[0]
@@ -225,7 +227,7 @@ def _eight_bit(picture: _Picture) -> NDArray[np.uint8]:
 
 def _png_samples(handle: BinaryIO, path: Path) -> NDArray[np.uint8] | NDArray[np.uint16]:
     depth, kind = _png_header(handle)
-    picture = _open(handle, path)
+    picture = open_picture(handle, path)
     if depth == 16:
         return _sixteen_bit(handle, path, picture, kind)
     if picture.mode == "P":
@@ -246,7 +248,7 @@ def _sixteen_bit(handle: BinaryIO, path: Path, picture: _Picture, kind: int) -> 
     # Unpackers made for the two byte orders: on the same file they give either byte.
     high = _decoded(picture, mode, f"{mode};16B").astype(np.uint16)
     handle.seek(0)
-    low = _decoded(_open(handle, path), mode, f"{mode};16L")
+    low = _decoded(open_picture(handle, path), mode, f"{mode};16L")
     return np.asarray((high << 8) | low, dtype=np.uint16)
 
 

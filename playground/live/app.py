@@ -37,9 +37,10 @@ from playground.live.keys import act_on_keys
 from playground.live.lesson.host import Lessons
 from playground.live.mouse import PictureMouse
 from playground.live.non_finite import draw_not_finite
-from playground.live.overlay import checking_text, draw_checking, draw_notices, draw_waiting
+from playground.live.overlay import checking_text, draw_behind, draw_checking, draw_notices, draw_waiting
 from playground.live.panel import Panel
 from playground.live.part_labels import draw_part_labels
+from playground.live.picture_keys import PictureKeys
 from playground.live.status import Status
 from playground.live.window import Window, wake
 from playground.live.window_place import Place
@@ -209,6 +210,7 @@ class Live:
         self._last = time.perf_counter()
         self._reloads = session.last_reload
         self.mouse = PictureMouse(session, self.bench.painting)
+        self.keys = PictureKeys(self.bench)
         self.finite = FiniteWatch()
         self.lessons = Lessons(self.bench, autosave, self._remember)
         self.remotes = Remotes()
@@ -274,6 +276,8 @@ class Live:
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
         if self._settling > 0 or self.remotes.waits:
             return 0.0
+        if self.session.catch_up.behind is not None:
+            return 0.0
         if self.session.drafts.testing:
             return _SANDBOX
         if self.warnings.waiting:
@@ -320,7 +324,7 @@ class Live:
         guard.draw(
             "the editor", lambda: draw_code(bench.files, bench.problems, quit_window, look, area), None
         )
-        guard.draw("what a key asks for", lambda: act_on_keys(bench), None)
+        guard.draw("what a key asks for", self._act_on_keys, None)
         guard.draw("the mouse over the picture", lambda: self._act(area), None)
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
@@ -331,6 +335,10 @@ class Live:
         guard.run("showing the picture", lambda: self._show(picture, room_left), None)
         window.end()
         guard.run("what follows a picture", self._follow_up, None)
+
+    def _act_on_keys(self) -> None:
+        if not self.keys.act():
+            act_on_keys(self.bench)
 
     def _act(self, area: Area) -> None:
         if not drag_line(self.bench.inspection.compare, area):
@@ -369,6 +377,7 @@ class Live:
             draw_waiting(checking_text(subject, seconds), area)
         else:
             draw_checking(session, look, area)
+            draw_behind(session, look, area)
         if picture is not None and session.sketch is not None and session.view.map is None:
             parted, free = session.sketch, below_bar(bench.inspection.compare, look, area)
             draw("the names of the parts", lambda: draw_part_labels(parted, look, free), None)

@@ -1,4 +1,4 @@
-"""Files dropped on the window: a sketch opens, an image is put into a parameter that takes one."""
+"""Files dropped on the window: a sketch opens, an image goes to a parameter or a channel that takes one."""
 
 from __future__ import annotations
 
@@ -12,8 +12,9 @@ from playground.live.theme import Theme
 from playground.live.widgets import IMAGES
 from playground.sketch.allowed_files import SHADERS
 from playground.sketch.find import find
-from playground.sketch.model import Parameter, Value
+from playground.sketch.model import Parameter, Sketch, Value
 from playground.sketch.unpack import is_pack, unpacked_beside
+from playground.workbench.channel_list import Taker, in_words, takers
 from playground.workbench.commands import Commands
 from playground.workbench.parameter_list import Listing
 
@@ -34,8 +35,9 @@ class Drops:
     """The files that were dropped on one window."""
 
     commands: Commands
-    waiting: list[Path] = field(default_factory=list)  # images that the user is to choose a parameter for
+    waiting: list[Path] = field(default_factory=list)  # images that the user is to choose a place for
     _asks: bool = False  # the choice is still to be shown
+    _takers: tuple[Sketch | None, tuple[Taker, ...]] = (None, ())  # of the sketch
 
     def take(self, paths: list[Path]) -> None:
         """Take in dropped files: the first sketch opens, images wait for a choice."""
@@ -51,13 +53,13 @@ class Drops:
         for path in paths:
             if path not in images:
                 say(f"{path.name} is neither a sketch, a shader nor an image")
-        if images and not self.parameters():
+        if images and not self.parameters() and not self.channels():
             say(f"no parameter of this sketch takes a file, so {images[0].name} has no place in it")
         elif images:
             self.waiting, self._asks = images, True
 
     def parameters(self) -> list[tuple[str, Parameter, Value]]:
-        """Return the parameters that take a file, those a technique exports first.
+        """Return the parameters that take a file, those a technique exports first; those of channels not.
 
         Each with its path and the file that it has now.
         """
@@ -68,13 +70,33 @@ class Drops:
         items = [item for section in listing.sections(draft) for item in section.items]
         values = listing.values(draft).of
         found = [item for item in items if item.parameter.widget.kind == "file"]
+        feeders = {taker.channel.feeder for taker in self.channels() if taker.channel.alone}
+        found = [item for item in found if item.path.partition(".")[0] not in feeders]
         found.sort(key=lambda item: not item.exported)
         return [(item.path, item.parameter, values[item.path]) for item in found]
 
-    def put(self, path: str) -> None:
-        """Put the file that waits into a parameter."""
+    def channels(self) -> tuple[Taker, ...]:
+        """Return the channels of other tools' shaders that take a file."""
+        draft = self.commands.session.shown
+        if draft is None:
+            return ()
+        if self._takers[0] is not draft.base:
+            self._takers = draft.base, takers(draft.base)
+        return self._takers[1]
+
+    def feed(self, taker: Taker) -> None:
+        """Feed a channel from the file that waits."""
+        file = str(self._next().resolve())
+        self.commands.session.drafts.feed(taker.channel.path, taker.source, **{taker.parameter: file})
+
+    def _next(self) -> Path:
         file, *self.waiting = self.waiting
         self._asks = bool(self.waiting)
+        return file
+
+    def put(self, path: str) -> None:
+        """Put the file that waits into a parameter."""
+        file = self._next()
         self.commands.set_all(f"{file.name} into {path}", {path: str(file.resolve())})
 
     def draw(self, look: Theme) -> None:
@@ -91,6 +113,14 @@ class Drops:
             return
         with look.font(look.bold):
             imgui.text_unformatted(f"Put {self.waiting[0].name} where?")
+        draft = self.commands.session.shown
+        for taker in self.channels():
+            if imgui.selectable(f"{taker.channel.path}##channel {taker.channel.path}", False)[0]:
+                self.feed(taker)
+                break
+            if draft is not None:
+                imgui.same_line(0, 2 * imgui.get_style().item_spacing.x)
+                imgui.text_disabled(f"now {in_words(draft.base, taker.channel.source)}")
         for path, parameter, now in self.parameters():
             if imgui.selectable(f"{parameter.title}   {path}##{path}", False)[0]:
                 self.put(path)

@@ -31,6 +31,7 @@ class Key:
 _K = imgui.Key
 _INSPECT = "every pass's number at a pixel; Shift: of those inside, too"
 _HELP = "show or hide these keys"
+_VISITS = "the sketch that was open before, and forward again"
 _SIZE_KEYS = "text and panels larger, smaller, at their first size"
 
 KEYS: tuple[Key, ...] = (
@@ -61,12 +62,18 @@ KEYS: tuple[Key, ...] = (
     Key(_K.z, "Ctrl+Shift+Z", "redo", lambda b: b.undo.redo(), ctrl=True, shift=True),
     Key(_K.y, "Ctrl+Y", "redo", lambda b: b.undo.redo(), ctrl=True),
     Key(_K.s, "Ctrl+S", "save values into the sketch", lambda b: b.commands.save_values(), ctrl=True),
+    Key(_K.v, "Ctrl+V", "open the shader's text on the clipboard", lambda b: _paste(b), ctrl=True),
+    Key(_K.backspace, "Backspace, Shift+Backspace", _VISITS, lambda b: _visit(b)),
     Key(_K.none, "Ctrl++", _SIZE_KEYS, lambda b: _resize(b, 1), ctrl=True, sign="+"),
     Key(_K.none, "Ctrl+-", _SIZE_KEYS, lambda b: _resize(b, -1), ctrl=True, sign="-"),
     Key(_K._0, "Ctrl+0", _SIZE_KEYS, lambda b: _resize(b, 0), ctrl=True),
     Key(_K.escape, "Esc", "close what is open, one thing at a time", close_one),
     Key(_K.q, "Ctrl+Q", "quit", lambda b: b.window.quit(), ctrl=True, brief="quit"),
 )
+
+
+_ONCE = (_K.s, _K.v)
+"""With Ctrl, keys that do not repeat while they are held."""
 
 
 def pressed_sign(sign_held: Callable[[], str]) -> str:
@@ -100,6 +107,14 @@ def _step(bench: Bench) -> None:
     bench.problems.step(-1 if _shift_held() else 1)
 
 
+def _paste(bench: Bench) -> None:
+    bench.commands.paste(imgui.get_clipboard_text() or "")
+
+
+def _visit(bench: Bench) -> None:
+    bench.commands.visit(1 if _shift_held() else -1)
+
+
 def _shift_held() -> bool:
     return imgui.get_io().key_shift or imgui.is_key_released(imgui.Key.mod_shift)
 
@@ -131,6 +146,6 @@ def act_on_keys(bench: Bench) -> None:
             pressed = key.letter in typed and not ctrl
         else:
             fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
-            pressed = fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key != imgui.Key.s)
+            pressed = fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key not in _ONCE)
         if pressed:
             key.act(bench)

@@ -31,6 +31,19 @@ def draw_checking(session: Session, look: Theme, area: Area) -> None:
         _plate(checking_text(*checking), (area[0] + margin, area[1] + margin), look, ink=theme.WARM)
 
 
+def draw_behind(session: Session, look: Theme, area: Area) -> None:
+    """Show how far the frames before the wanted one have come, after ``PATIENCE``."""
+    behind = session.catch_up.behind
+    if behind is not None and session.catch_up.seconds >= PATIENCE:
+        margin = 14 * look.scale
+        _plate(behind_text(*behind), (area[0] + margin, area[1] + margin), look, ink=theme.WARM)
+
+
+def behind_text(done: int, wanted: int) -> str:
+    """Return "computing frame 1,200 of 36,000 …"."""
+    return f"computing frame {done:,} of {wanted:,} …"
+
+
 def checking_text(subject: str, seconds: float) -> str:
     """Return "checking terrain.glsl … 3 s"."""
     return f"checking {subject} …" + (f" {int(seconds)} s" if seconds >= 1 else "")

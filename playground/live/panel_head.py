@@ -197,7 +197,7 @@ def _resets(commands: Commands) -> None:
         if not opened:
             return
         edits = session.shown.edits if session.shown else Edits()
-        touched = bool(edits.values or edits.techniques or session.view.steps)
+        touched = bool(edits.values or edits.techniques or edits.channels or session.view.steps)
         if imgui.menu_item_simple("View", "R", False, edits.camera is not None):
             session.drafts.set_camera(None)
         if imgui.menu_item_simple("All values and techniques", "", False, touched):
@@ -225,7 +225,8 @@ def _saves(memory: Memory, commands: Commands) -> None:
         if opened:
             if imgui.menu_item_simple("Into the sketch", "Ctrl+S"):
                 commands.save_values()
-            if imgui.menu_item_simple("As a copy in the current folder"):
+            is_copy = commands.copy_is[0] == "Save a copy"
+            if imgui.menu_item_simple("As a copy in the current folder" if is_copy else "As a new sketch"):
                 commands.save_a_copy()
             imgui.separator()
             _preset_to_save(memory, commands)
@@ -234,7 +235,7 @@ def _saves(memory: Memory, commands: Commands) -> None:
         imgui.open_popup("offer")
     if imgui.begin_popup("offer"):
         imgui.text_unformatted(commands.file.offer)
-        done = button("Save a copy", f"A new folder in {commands.folder}")
+        done = button(*commands.copy_is)
         if done:
             commands.save_a_copy()
         imgui.same_line()

@@ -56,7 +56,9 @@ class Rows:
                 clicked = imgui.is_item_hovered() and imgui.is_mouse_clicked(0)
                 if parameter.widget.kind in TYPED and clicked and self._is_typing(item):
                     new = None
-                if new is not None:
+                if new is not None and parameter.widget.kind == "button":
+                    self.session.press(path)
+                elif new is not None:
                     drafts.set(path, new)
         locked = path in self.values.locked
         mouse = imgui.get_mouse_pos()

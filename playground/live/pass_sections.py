@@ -10,12 +10,15 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import counted
 from playground.live import theme
+from playground.live.channel_rows import ChannelRows
 from playground.live.draw import choose, header, inked, pushed_id
 from playground.live.panel_memory import Memory
 from playground.live.panel_rows import cross, fitting_choice, row, slot
 from playground.live.parameter_row import Rows
 from playground.live.sliders import slide_whole
 from playground.live.theme import Theme
+from playground.sketch.channels import channels
+from playground.sketch.composed import parts_of
 from playground.sketch.model import PassSpec, Sketch, kernels_of
 from playground.sketch.parameter import label_of
 from playground.sketch.replace_technique import choices
@@ -38,6 +41,9 @@ class Sections:
     _choices: dict[str, list[str]] = field(default_factory=dict)
     _choices_of: Sketch | None = None
 
+    def __post_init__(self) -> None:
+        self._channels = ChannelRows(self.memory.listing)
+
     def draw(self, sketch: Sketch, bench: Bench, look: Theme) -> None:
         """Draw every pass, or what a search has found of them."""
         session, memory = bench.session, self.memory
@@ -52,6 +58,7 @@ class Sections:
         main = memory.listing.main(draft) if not memory.filter else ()
         if main:
             drawing.main(main)
+        feeders = {channel.feeder for channel in channels(draft.base) if channel.alone}
         for spec in sketch.graph.passes:
             section = found.get(spec.name)
             if memory.filter and section is None:
@@ -64,9 +71,11 @@ class Sections:
                     imgui.set_scroll_here_y(0.0)
                 if memory.filter or revealed:
                     imgui.set_next_item_open(True)
-                if drawing.header(spec, section, opened=not sketch.main):
+                opened = not sketch.main and spec.name not in feeders  # its channel's row has the same
+                if drawing.header(spec, section, opened=opened):
                     if not memory.filter:
                         self._technique(spec, draft, session)
+                        self._channels.draw(spec, draft, session, look)
                         _steps(spec, session)
                     if section is not None:
                         drawing.section(section)
@@ -75,7 +84,9 @@ class Sections:
             rows.draw_menu(items | {item.label: item for item in main})
 
     def _technique(self, spec: PassSpec, draft: Draft, session: Session) -> None:
+        mine = {channel.path for channel in channels(draft.base) if channel.feeder == spec.name}
         chosen = any(name == spec.name for name, _ in draft.edits.techniques)
+        chosen = chosen or any(path in mine for path, _ in draft.edits.channels)
         title = spec.technique.title
         note = f"What fills this pass\n{title}" if title else "What fills this pass"
         with row("Technique", note, edited=chosen):
@@ -249,4 +260,8 @@ def _steps(spec: PassSpec, session: Session) -> None:
 
 def _use_name(use: str) -> str:
     """Return a technique's name without its folder where a closed list has no room for that."""
-    return use if fitting_choice(use) == use else fitting_choice(use.rpartition("/")[2])
+    if fitting_choice(use) == use:
+        return use
+    parts = parts_of(use)
+    names = [name.rpartition("/")[2] for name in parts or (use,)]
+    return fitting_choice(f"{names[0]}({names[1]})" if parts else names[0])

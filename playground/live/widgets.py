@@ -6,6 +6,7 @@ and a row of ``sketch/widgets.py``. Each returns the new value, or None while no
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -75,6 +76,11 @@ def _checkbox(parameter: Parameter, value: Value, place: Place) -> Value | None:
     return on if changed else None
 
 
+def _button(parameter: Parameter, value: Value, place: Place) -> Value | None:
+    pressed = imgui.button(f"{parameter.title}{place.label}", ImVec2(imgui.calc_item_width(), 0))
+    return True if pressed else None
+
+
 def _menu(parameter: Parameter, value: Value, place: Place) -> Value | None:
     choices = parameter.widget.choices
     now = int(value) if isinstance(value, int) and 0 <= value < len(choices) else 0
@@ -87,17 +93,20 @@ def _menu(parameter: Parameter, value: Value, place: Place) -> Value | None:
 
 
 def _colour(parameter: Parameter, value: Value, place: Place) -> Value | None:
-    # Linear inside, display-encoded for the eye; alpha is not a light and stays as it is.
-    linear = _as_list(value)
+    # Linear inside unless it is raw, display-encoded for the eye; alpha is not a light and stays as it is.
+    linear, raw_one = _as_list(value), parameter.widget.raw
     flags = imgui.ColorEditFlags_.display_hex | imgui.ColorEditFlags_.picker_hue_wheel
-    seen = [*linear_to_srgb([min(max(c, 0.0), 1.0) for c in linear[:3]]).tolist(), *linear[3:]]
+    held = [min(max(c, 0.0), 1.0) for c in linear[:3]]
+    seen = [*(held if raw_one else linear_to_srgb(held).tolist()), *linear[3:]]
     if len(linear) == 4:
         changed, raw = imgui.color_edit4(place.label, seen, flags | imgui.ColorEditFlags_.alpha_bar)
     else:
         changed, raw = imgui.color_edit3(place.label, seen, flags)
     # Eight bits a channel, as the field shows it and a file can say it.
     picked = [round(c * 255) / 255 for c in _as_list(raw)]
-    return (*srgb_to_linear(picked[:3]).tolist(), *picked[3:]) if changed else None
+    if not changed:
+        return None
+    return tuple(picked) if raw_one else (*srgb_to_linear(picked[:3]).tolist(), *picked[3:])
 
 
 def _direction(parameter: Parameter, value: Value, place: Place) -> Value | None:
@@ -147,25 +156,45 @@ def _name(text: str) -> None:
 
 def _point(parameter: Parameter, value: Value, place: Place) -> Value | None:
     x, y = _as_list(value)
+    axes = [(low or 0.0, 1.0 if high is None else high) for low, high in map(parameter.widget.ends, range(2))]
+    (west, east), (south, north) = axes
+    across, up = (x - west) / (east - west), (y - south) / (north - south)
     origin, side, field, dragged = _pad(place)
     draw = imgui.get_window_draw_list()
     corner = ImVec2(origin.x + side, origin.y + side)
     draw.add_rect_filled(origin, corner, theme.packed(theme.FIELD), 5 * place.scale)
-    dot = ImVec2(origin.x + x * side, origin.y + (1 - y) * side)
+    dot = ImVec2(origin.x + across * side, origin.y + (1 - up) * side)
     draw.add_line(ImVec2(dot.x, origin.y), ImVec2(dot.x, corner.y), theme.packed(theme.LINE), place.scale)
     draw.add_line(ImVec2(origin.x, dot.y), ImVec2(corner.x, dot.y), theme.packed(theme.LINE), place.scale)
     draw.add_circle_filled(dot, 5 * place.scale, theme.packed(theme.WARM))
     result: Value | None = None
     if dragged is not None:
-        result = (round(dragged[0], 4), round(1 - dragged[1], 4))
+        shares = (dragged[0], 1 - dragged[1])
+        found = [low + (high - low) * part for (low, high), part in zip(axes, shares, strict=True)]
+        result = (_rounded(found[0], axes[0]), _rounded(found[1], axes[1]))
     imgui.same_line()
     imgui.begin_group()
-    imgui.set_next_item_width(field)
-    east, x = imgui.drag_float(f"{place.label}-x", x, 0.002, 0, 1, "%.3f E", _CLAMP)
-    imgui.set_next_item_width(field)
-    north, y = imgui.drag_float(f"{place.label}-y", y, 0.002, 0, 1, "%.3f N", _CLAMP)
+    changed = False
+    for name, unit, number, (low, high) in (("x", "E", x, axes[0]), ("y", "N", y, axes[1])):
+        imgui.set_next_item_width(field)
+        speed, digits = (high - low) / 500, max(_places(axes[0]), _places(axes[1])) - 1
+        moved, number = imgui.drag_float(
+            f"{place.label}-{name}", number, speed, low, high, f"%.{digits}f {unit}", _CLAMP
+        )
+        changed = changed or moved
+        x, y = (number, y) if name == "x" else (x, number)
     imgui.end_group()
-    return (tidied(x), tidied(y)) if east or north else result
+    return (tidied(x), tidied(y)) if changed else result
+
+
+def _places(axis: tuple[float, float]) -> int:
+    """Return the places after the point that tell a ten-thousandth of a range from the next."""
+    return min(max(4 - math.floor(math.log10(axis[1] - axis[0]) + 1e-9), 1), 9)
+
+
+def _rounded(number: float, axis: tuple[float, float]) -> float:
+    """Return a number within its range in as many places as a pad can be pointed to."""
+    return min(max(round(number, _places(axis)), axis[0]), axis[1])
 
 
 def _pad(place: Place) -> tuple[ImVec2, float, float, tuple[float, float] | None]:
@@ -242,6 +271,7 @@ CONTROLS: dict[str, Draw] = {
     "colour": _colour,
     "menu": _menu,
     "checkbox": _checkbox,
+    "button": _button,
     "point": _point,
     "file": _file,
 }

@@ -39,6 +39,8 @@ class Pass:
     repeat: int = 0  # steps of a pass that feeds itself; 0: it does not
     feedback: tuple[tuple[str, str], ...] = ()  # input → own output
     suffix: str = ".glsl"
+    head: str = ""  # what another tool's file has to begin with; none of it is taken out
+    beside: tuple[tuple[str, str], ...] = ()  # suffix → text of a file that goes with it, likewise
 
     @cached_property
     def declared(self) -> frozenset[str]:
@@ -116,7 +118,8 @@ class Case:
         """Return the files of the sketch by name: ``sketch.toml`` and one or two for each pass."""
         found: dict[str, str] = {}
         for one in self.live:
-            found[f"{one.name}{one.suffix}"] = one.text
+            found[f"{one.name}{one.suffix}"] = one.head + one.text
+            found |= {f"{one.name}{suffix}": text for suffix, text in one.beside}
             if one.variant:
                 found[f"{one.name}.comp"] = one.variant
         variants = {f"{one.name}.comp": (one.text, one.variant) for one in self.live if one.variant}
@@ -203,5 +206,5 @@ def glsl_of(kind: str, value: Value) -> str:
 
 def copied(files: tuple[tuple[str, str], ...], texts: Mapping[str, str]) -> list[tuple[str, Path]]:
     """Return the data files that the texts still name, each with where it comes from."""
-    together = "\n".join(text for name, text in texts.items() if name.endswith(".toml"))
+    together = "\n".join(text for name, text in texts.items() if name.endswith((".toml", ".frag")))
     return [(name, Path(source)) for name, source in files if json.dumps(name) in together]

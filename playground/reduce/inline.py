@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -11,15 +12,13 @@ from playground.errors import SketchError
 from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
 from playground.sketch.annotation import note_at
+from playground.sketch.dialects.isf_header import read_header
 from playground.sketch.flat import Ref, Source
+from playground.sketch.include_guards import without_guards
 from playground.sketch.model import Kernel, Sketch, Value
 from playground.sketch.reserved_names import MATCHES, WIRED
 from playground.sketch.source import SourceText
 from playground.sketch.variants import active_variant
-
-_IFNDEF = re.compile(r"\s*#\s*ifndef\s+(\w+)\s*$")
-_DEFINE = re.compile(r"\s*#\s*define\s+(\w+)\s*$")
-_CONDITION = re.compile(r"\s*#\s*(if|ifdef|ifndef|else|elif|endif)\b")
 
 
 def inline_sketch(
@@ -56,13 +55,25 @@ def inline_sketch(
 
 
 def _plain(step: Step, plan: Plan) -> Case:
-    suffix = Path(step.kernel.path).suffix
-    lines = [line for line in step.kernel.source.lines if line.code.strip()]
-    # Of another tool's shader the author's words, which its reader rewrites again.
-    text = "\n".join(line.text if step.kernel.dialect else line.code for line in lines) + "\n"
-    name = "shader" if step.kernel.kind == "plain_fragment" else "compute"
-    one = Pass(name=name, text=text, suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix)
-    return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1)
+    kernel, suffix = step.kernel, Path(step.kernel.path).suffix
+    name = "shader" if kernel.kind == "plain_fragment" else "compute"
+    vertex = kernel.vertex_source
+    one = Pass(
+        name=name,
+        text=_words(kernel.source, as_written=bool(kernel.dialect)),
+        suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix,
+        head=f"/*{json.dumps(read_header(kernel.source).table)}*/\n" if kernel.dialect == "isf" else "",
+        beside=((Path(vertex.path).suffix, _words(vertex, as_written=True)),) if vertex else (),
+    )
+    named = [(p.default, step.values[p.name]) for p in kernel.file_parameters]
+    files = tuple((str(written), str(found)) for written, found in named if kernel.dialect)
+    return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1, files=files)
+
+
+def _words(source: SourceText, *, as_written: bool) -> str:
+    """Return a text without blank lines: of another tool's shader the author's words, for its reader."""
+    lines = [line for line in source.lines if line.code.strip()]
+    return "\n".join(line.text if as_written else line.code for line in lines) + "\n"
 
 
 class _Inliner:
@@ -119,7 +130,7 @@ class _Inliner:
     def _value(self, kernel: Kernel, name: str, value: Value) -> Value:
         parameter = kernel.parameter(name)
         if parameter is None or parameter.widget.kind != "file":
-            return value
+            return value if parameter is None else parameter.widget.chosen(value)
         place = Path(str(value))
         known = {source: short for short, source in self.files.items()}
         if str(place) in known:
@@ -131,7 +142,8 @@ class _Inliner:
 
 def written(kernel: Kernel) -> str:
     """Return a kernel's text, tidy: its includes in place, without comments but for annotations."""
-    return tidy("\n".join(_without_guards(_lines(kernel.source))))
+    lines = _lines(kernel.source)
+    return tidy("\n".join([lines[index] for index in without_guards(lines)]))
 
 
 def _lines(source: SourceText) -> list[str]:
@@ -145,39 +157,6 @@ def _lines(source: SourceText) -> list[str]:
                 note_at(source.lines, index).text.strip() if line.code.lstrip().startswith("uniform") else ""
             )
             found.append(f"{line.code}  //! {note}" if note else line.code)
-    return found
-
-
-def _without_guards(lines: list[str]) -> list[str]:
-    """Remove include guards, and what they keep from being there twice."""
-    found: list[str] = []
-    guards: set[str] = set()
-    stack: list[str] = []  # of each open condition: "guard", "twice" or "other"
-    skip_define = ""
-    for index, line in enumerate(lines):
-        if skip_define and _DEFINE.match(line):
-            skip_define = ""
-            continue
-        condition = _CONDITION.match(line)
-        word = condition.group(1) if condition else ""
-        guard = _IFNDEF.match(line)
-        following = _DEFINE.match(lines[index + 1]) if index + 1 < len(lines) else None
-        if word.startswith("if"):
-            if guard and guard.group(1) in guards:
-                stack.append("twice")
-                continue
-            if guard and following and following.group(1) == guard.group(1):
-                stack.append("guard")
-                guards.add(guard.group(1))
-                skip_define = guard.group(1)
-                continue
-            stack.append("other")
-        elif word == "endif" and stack:
-            kind = stack.pop()
-            if kind != "other":
-                continue
-        if "twice" not in stack:
-            found.append(line)
     return found
 
 

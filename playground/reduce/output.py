@@ -75,6 +75,7 @@ def write_folder(folder: Path, account: Account, more: Mapping[str, str]) -> lis
             with replacing(folder / name) as handle:
                 handle.write(text.encode())
         for name, source in data:
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(source, folder / name)
     return [folder / name for name in names]
 

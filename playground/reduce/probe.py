@@ -61,6 +61,7 @@ class Probe:
                 (self.folder / name).write_text(text, encoding="utf-8")
         for name, source in copied(case.files, texts):
             if not (self.folder / name).exists():
+                (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
                 shutil.copyfile(source, self.folder / name)
         self._written = texts
 

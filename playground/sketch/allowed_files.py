@@ -18,7 +18,7 @@ from playground.paths import GLSL
 SHADERS = (".glsl", ".frag", ".comp", ".fs", ".fragment")
 """Endings of what is a shader, and so may be opened alone."""
 
-TECHNIQUES = (".toml", ".glsl", ".frag")
+TECHNIQUES = (".toml", ".glsl", ".frag", ".fs")
 """Endings of what ``use`` may name; it leaves them out."""
 
 TEXTS = (*SHADERS, ".toml")

@@ -60,7 +60,9 @@ def _of_kernel(kernel: Kernel) -> list[Any]:
 
 def _parameter(parameter: Parameter) -> tuple[Any, ...]:
     widget = parameter.widget
-    what = (widget.kind, widget.low, widget.high, widget.choices)
+    what: tuple[Any, ...] = (widget.kind, widget.low, widget.high, widget.choices)
+    more = (widget.values, widget.axes, widget.raw)
+    what += more if any(more) else ()  # as in ``_of_kernel``
     return parameter.name, parameter.type, parameter.default, what, _sampling(parameter)
 
 

@@ -43,7 +43,8 @@ class Choice:
             return words
         if widget.low is None or widget.high is None:
             return ""
-        return f"{widget.low:g} to {widget.high:g}"
+        axes = widget.axes or ((widget.low, widget.high),)
+        return ", ".join(f"{low:g} to {high:g}" for low, high in axes)
 
     def as_json(self) -> dict[str, object]:
         """Return it as JSON takes it; a menu's values are names, a colour's linear numbers."""

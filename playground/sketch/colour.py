@@ -49,8 +49,8 @@ def linear_to_srgb(linear: ArrayLike) -> NDArray[np.float64]:
     return np.asarray(np.where(c <= 0.0031308, 12.92 * c, curve))
 
 
-def parse_hex(text: str) -> tuple[float, ...]:
-    """Read `"#rgb"`, `"#rrggbb"` or `"#rrggbbaa"` as linear floats, 0..1.
+def parse_hex(text: str, *, raw: bool = False) -> tuple[float, ...]:
+    """Read `"#rgb"`, `"#rrggbb"` or `"#rrggbbaa"` as linear floats, 0..1; `raw`: not decoded.
 
     Returns three numbers, or four where an alpha was written (it is not decoded:
     alpha is a coverage, not a light).
@@ -65,11 +65,11 @@ def parse_hex(text: str) -> tuple[float, ...]:
     if len(digits) == 3:
         digits = "".join(2 * d for d in digits)
     values = [byte / 255.0 for byte in bytes.fromhex(digits)]
-    return (*map(_decoded, values[:3]), *values[3:])
+    return tuple(values) if raw else (*map(_decoded, values[:3]), *values[3:])
 
 
-def to_hex(linear: Sequence[float]) -> str:
-    """Write a linear colour of three or four numbers as `"#rrggbb"` or `"#rrggbbaa"`.
+def to_hex(linear: Sequence[float], *, raw: bool = False) -> str:
+    """Write a linear colour of three or four numbers as `"#rrggbb"` or `"#rrggbbaa"`; `raw`: not encoded.
 
     Components outside 0..1 are clamped. `to_hex(parse_hex(text))` is `text` in
     lower case and full length.
@@ -81,7 +81,8 @@ def to_hex(linear: Sequence[float]) -> str:
     if len(values) not in (3, 4) or not all(map(math.isfinite, values)):
         raise DataError(f"{tuple(values)} is not a colour; expected three or four finite numbers from 0 to 1")
     clamped = [min(max(v, 0.0), 1.0) for v in values]
-    return "#" + bytes(round(255.0 * v) for v in (*map(_encoded, clamped[:3]), *clamped[3:])).hex()
+    shown = clamped if raw else [*map(_encoded, clamped[:3]), *clamped[3:]]
+    return "#" + bytes(round(255.0 * v) for v in shown).hex()
 
 
 def _decoded(c: float) -> float:

@@ -24,7 +24,11 @@ from playground.sketch.model import LARGEST_SIDE
 Number = int | float | Fraction
 _LIMIT = 2**62
 _LONGEST = 500
+FRAME_RATE = 60  # frames of a sketch's state in a second
+CLOCKS = ("time", "frames")
+"""Names that follow the time: seconds, and the frames that are to run: see ``frames_at``."""
 _DEEPEST = 100
+TWO_FRAMES = "is the number of frames at a time; give the parameter of that name another one"
 
 
 class ExpressionError(ValueError):
@@ -104,6 +108,28 @@ def names_in(text: str) -> frozenset[str]:
     for part in _parts(text):
         _value_of(_parse(part), part, look_up, (), dry=True)
     return frozenset(found)
+
+
+@lru_cache(maxsize=1024)
+def follows_time(text: str) -> bool:
+    """Return whether an expression, or "", names the time or the frames."""
+    return bool(text) and not names_in(text).isdisjoint(CLOCKS)
+
+
+@lru_cache(maxsize=1024)
+def counts_frames(text: str) -> bool:
+    """Return whether an expression, or "", names the frames: its iteration n is at n / 60 seconds."""
+    return bool(text) and "frames" in names_in(text)
+
+
+def frames_at(time: float) -> int:
+    """Return ``frames``: how many frames have run at a time [s], that of second 0 included."""
+    return last_frame_at(time) + 1
+
+
+def last_frame_at(time: float) -> int:
+    """Return the number of the frame that shows at a time [s], from 0."""
+    return math.floor(FRAME_RATE * time + 1e-6)  # n / 60 is frame n, however it was rounded
 
 
 def accepted_sizes(accepts: str, limit: int = LARGEST_SIDE) -> tuple[tuple[int, ...], tuple[int, ...]]:

@@ -7,7 +7,8 @@ from pathlib import Path
 from playground.errors import SketchError, nearest
 from playground.paths import GLSL, SKETCHES
 from playground.sketch.allowed_files import SHADERS, TECHNIQUES, TEXTS, exists, is_file, is_inside, is_variant
-from playground.sketch.dialects import refuse_export
+from playground.sketch.dialects import EXPORT, is_export
+from playground.sketch.dialects.shadertoy_folder import image_of
 from playground.sketch.unpack import is_pack, unpacked
 
 
@@ -24,11 +25,17 @@ def find(name: str | Path) -> Path:
         is_folder = False
     if is_folder and is_file(path / "sketch.toml"):
         return path / "sketch.toml"
+    if is_folder and (image := image_of(path)) is not None:
+        return image
     if is_file(path):
         if is_pack(path):
             return unpacked(path)
         if path.suffix not in TEXTS:
-            refuse_export(path)
+            if is_export(path):
+                return path
+            if path.suffix == EXPORT:
+                message = "a sketch is a .toml, and a .json a Shadertoy export; this holds no renderpass"
+                raise SketchError(message, file=path)
             raise SketchError(f"a sketch is a .toml, a shader ends in {', '.join(SHADERS)}", file=path)
         return path
     text = str(name)
@@ -38,7 +45,7 @@ def find(name: str | Path) -> Path:
         if candidate.suffix in TEXTS and is_file(candidate) and is_inside(candidate, (GLSL,)):
             return candidate
     if is_folder:
-        raise SketchError("this folder holds no sketch.toml", file=path)
+        raise SketchError("this folder holds no sketch.toml, and no Image of Shadertoy", file=path)
     if exists(path):
         raise SketchError("this is a pipe, a socket or a device; a file was expected", file=path)
     raise SketchError(f"there is no file and no shipped sketch '{text}'{nearest(text, shipped_sketches())}")

@@ -23,6 +23,7 @@ from typing import Any
 from playground.errors import SketchError, nearest
 from playground.paths import shown
 from playground.sketch.assign import effective_values, find_targets, resolve
+from playground.sketch.clocked import with_clocked_inside
 from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Source, leaves_of
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.identity import Identity
@@ -96,7 +97,7 @@ def _shape(
     overrides: tuple[str, ...],
 ) -> Shape:
     maker = _Flattener(key.object, kinds, opened, stopped, refused, overrides)
-    nodes = tuple(maker.expand(key.object, "", {}))
+    nodes = tuple(with_clocked_inside(maker.expand(key.object, "", {})))
     outputs = {
         path: {name: maker.real(ref) for name, ref in found.items()}
         for path, found in maker.outputs.items()

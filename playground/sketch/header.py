@@ -34,7 +34,7 @@ _IMAGE = re.compile(
 )
 _KEYS = {
     "kernel": ("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once"),
-    "source": ("name", "output"),
+    "source": ("name", "output", "reads"),
     "draw": ("where", "mesh", "count", "output", "blend", "depth", "samples", "repeat"),
     "compute": (
         *("where", "accepts", "groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned"),
@@ -50,6 +50,7 @@ _EXAMPLES = {
     "compute": '(groups = "size.y, 1", agrees = "exact")',
 }
 _SIZE = ("size.x", "size.y")
+_SOURCE_READS = ("time", "keys")
 _NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?![\w.]|\s*:)")
 _NOT_IN_WHERE = ("size", "if", "else", "and", "or", "not", "log2", "min", "max", "abs", "floor", "ceil")
 _BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()
@@ -98,10 +99,12 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
         if not options.get("name"):
             raise line.error(f"#pragma source needs its name, as #pragma source{_EXAMPLES[kind]}")
         _refuse_code(source)
-        return replace(kernel, registry=options["name"])
+        return replace(kernel, registry=options["name"], depends=_depends(options.get("reads", ""), line))
     numbers = _numbers(kernel)
     repeat = options.get("repeat", "1")
-    _check("repeat", repeat, (*_SIZE, "time", *numbers), line)
+    _check("repeat", repeat, (*_SIZE, *expressions.CLOCKS, *numbers), line)
+    if expressions.counts_frames(repeat) and "frames" in numbers:
+        raise line.error(f"repeat '{repeat}': 'frames' {expressions.TWO_FRAMES}")
     if kind == "draw":
         return _draw(kernel, options, line)
     _refuse_driver_bound(source)
@@ -112,6 +115,16 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     _check_steps(kernel, numbers, line)
     _check_accepts(kernel.accepts, line)
     return kernel
+
+
+def _depends(text: str, line: Line) -> tuple[str, ...]:
+    """Return what a source depends on besides its parameters."""
+    found = tuple(filter(None, (part.strip() for part in text.split(","))))
+    for name in found:
+        if name not in _SOURCE_READS:
+            hint = nearest(name, _SOURCE_READS)
+            raise line.error(f"reads = '{text}': a source cannot read '{name}'{hint}")
+    return found
 
 
 def _check_accepts(accepts: str, line: Line) -> None:
@@ -285,7 +298,7 @@ def _options(kind: str, text: str, line: Line) -> dict[str, str]:
 
 def _with_names_replaced(options: dict[str, str], kernel: Kernel, line: Line) -> dict[str, str]:
     """Replace the names that ``where`` gives to expressions, in the options that are expressions."""
-    known = (*_SIZE, "iteration", "iterations", "time", *_numbers(kernel))
+    known = (*_SIZE, "iteration", "iterations", *expressions.CLOCKS, *_numbers(kernel))
     meant: dict[str, str] = {}
     for part in filter(None, (p.strip() for p in options["where"].split(";"))):
         name, equals, text = (piece.strip() for piece in part.partition("="))

@@ -20,7 +20,7 @@ from playground.sketch.allowed_files import (
     root_of,
 )
 from playground.sketch.assign import effective_values, shown_parameters
-from playground.sketch.dialects import check_name
+from playground.sketch.dialects import EXPORT, check_name
 from playground.sketch.find import find
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
@@ -62,7 +62,7 @@ def load_with(techniques: Techniques, name: str | Path = "", text: str | None = 
     path = find(name or DEFAULT_SKETCH).resolve()
     path = technique_beside(path) or path
     try:
-        if path.suffix in SHADERS:
+        if path.suffix in (*SHADERS, EXPORT):
             return _shader_alone(path, techniques)
         if techniques.dialect:
             raise SketchError("--dialect is for a shader file", file=path)
@@ -111,7 +111,7 @@ def plain_sketch(path: Path, found: Technique, folder: Path) -> Sketch:
     """Return the sketch of a shader that is the whole picture; its files stay in ``folder``."""
     title = found.title
     if isinstance(found, Graph):
-        title = f"{title or path.stem} ({found.passes[-1].technique.dialect})"  # type: ignore[union-attr]
+        title = f"{title or path.stem} ({found.dialect})"
         graph = replace(found, inputs=(), parameters=())  # of a sketch all are at view
     else:
         view = PassSpec("view", f"./{path.stem}", found, file=shown(path))

@@ -14,6 +14,7 @@ from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, r
 from playground.sketch.keyframes import Keyframe, at
 from playground.sketch.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
 from playground.sketch.technique import (
+    SHAPES,
     VARIANTS,
     Buffer,
     Export,
@@ -32,6 +33,7 @@ __all__ = [
     "DRIVERS",
     "LARGEST_PICTURE",
     "LARGEST_SIDE",
+    "SHAPES",
     "VARIANTS",
     "Buffer",
     "Camera",

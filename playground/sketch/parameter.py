@@ -20,6 +20,21 @@ class Widget:
     high: float | None = None
     choices: tuple[str, ...] = ()  # of a menu
     renamed: tuple[tuple[str, str], ...] = ()  # former choice → choice; a former one is still read
+    values: tuple[int, ...] = ()  # of a menu: what the uniform gets for each choice; (): its number, from 0
+    raw: bool = False  # of a colour: as it is shown, not linear
+    axes: tuple[tuple[float, float], ...] = ()  # of a point: each number's range, where they differ
+
+    def ends(self, axis: int = 0) -> tuple[float | None, float | None]:
+        """Return the range of one of a vector's numbers; None where it is unbounded."""
+        return self.axes[axis] if self.axes else (self.low, self.high)
+
+    def given(self, value: Value) -> Value:
+        """Return what the uniform gets: of a menu with values the chosen one."""
+        return self.values[value] if self.values and isinstance(value, int) else value
+
+    def chosen(self, given: Value) -> Value:
+        """Return the value that gives a uniform what it has: the inverse of ``given``."""
+        return self.values.index(given) if self.values and isinstance(given, int) else given
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,8 +42,11 @@ class Sampling:
     """How a texture is read."""
 
     filter: str = "nearest"  # nearest | linear
-    wrap: str = "clamp"  # clamp | repeat
+    wrap: str = "clamp"  # clamp | repeat | mirror
     mipmap: bool = False
+    magnify: str = ""  # how where a texel is larger than a pixel; "": as ``filter``
+    flip: bool = False  # an image file's upper row is below
+    decode: bool = False  # an image file's colours become linear, where they would stay encoded
 
 
 AS_IT_IS = Sampling()

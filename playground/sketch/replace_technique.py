@@ -7,7 +7,7 @@ found out by drawing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -15,12 +15,16 @@ from pathlib import Path
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch.allowed_files import TECHNIQUES
 from playground.sketch.assign import current_path, find_targets, resolve
+from playground.sketch.composed import first_input, is_foreign, parts_of
 from playground.sketch.find import is_part, shipped_names
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Kernel, PassSpec, Sketch, Technique, Value
 from playground.sketch.techniques import read_technique
 from playground.sketch.values import coerce
 from playground.sketch.wiring import output_names, outputs_with_formats, takes_input
+
+_ADAPTERS = "foreign/"
+"""The folder of ``glsl/`` whose techniques with an input make something of another tool's picture."""
 
 
 def choices(sketch: Sketch, pass_name: str) -> list[str]:
@@ -32,7 +36,8 @@ def choices(sketch: Sketch, pass_name: str) -> list[str]:
     spec = _pass(sketch, pass_name)
     outputs = set(output_names(spec.technique))
     whole = [name for name in shipped_names() if not is_part(name)]
-    uses = dict.fromkeys([*whole, *_own_names(sketch), spec.use])
+    own = _own_names(sketch)
+    uses = dict.fromkeys([*whole, *own, *_adapted(sketch, spec, own, whole), spec.use])
     return [use for use in uses if use == spec.use or _fits(sketch, spec, use, outputs)]
 
 
@@ -66,6 +71,30 @@ def _own_names(sketch: Sketch) -> list[str]:
     """Name the files in the sketch's folder that could be techniques; library files and sketches as well."""
     files = [p for p in Path(sketch.folder).glob("*.*") if p.suffix in TECHNIQUES and str(p) != sketch.file]
     return sorted({f"./{p.stem}" for p in files if p.is_file()})
+
+
+def _adapted(sketch: Sketch, spec: PassSpec, own: Sequence[str], whole: Sequence[str]) -> Iterator[str]:
+    """Yield other tools' shaders in the sketch's folder as they could fill a pass.
+
+    In the view each is laid over what is there now, as a filter; elsewhere a technique of the library
+    makes of its picture what the pass gives.
+    """
+    foreign = [use for use in own if (found := _found(sketch, use)) is not None and is_foreign(found)]
+    if spec.name == "view":
+        parts = parts_of(spec.use)
+        under = parts[1] if parts and is_foreign(_read(sketch, parts[0])) else spec.use
+        yield under
+        yield from (f"{use}({under})" for use in foreign if use != under and first_input(_read(sketch, use)))
+        return
+    adapters = [use for use in whole if use.startswith(_ADAPTERS) and first_input(_read(sketch, use))]
+    yield from (f"{adapter}({use})" for adapter in adapters for use in foreign)
+
+
+def _found(sketch: Sketch, use: str) -> Technique | None:
+    """Return what ``use`` names; None where its files are wrong."""
+    with suppress(PlaygroundError):
+        return _read(sketch, use)
+    return None
 
 
 def _fits(sketch: Sketch, spec: PassSpec, use: str, outputs: set[str]) -> bool:

@@ -41,6 +41,9 @@ FETCHES = {"texelFetch": "k_fetch_in", "texelFetchOffset": "k_fetch_in_shift"}
 """What replaces GLSL's own functions, as long as these, where an input may stay unwired: the one
 texel of its white or black answers for every place."""
 
+PRESSED = "pressed "
+"""What begins the name of a button among what a step is given, while the button is pressed."""
+
 WINDOW = "k_window"
 """Where the window that is drawn lies in the whole picture, an ivec2 in pixels."""
 
@@ -63,8 +66,28 @@ PLAIN_UNIFORMS: dict[str, tuple[str, ...]] = {
 _IDENTITY_3 = (1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)
 _IDENTITY_4 = (1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
+MOMENT = "moment"
+"""What a source depends on besides its parameters, such as a frame of a film, among what a step is given."""
+
+CLOCKED = frozenset(
+    {"time", "frame", "frame_of_time", "delta", "date", "date_from_1"}
+    | {"mouse", "hover", "hover_share", "drag", "bands", MOMENT}
+)
+"""What belongs to one frame: given names and meanings that, in a loop that counts ``frames``, are those
+of its iteration, so that what is computed of the frames before stays."""
+
 SIZES = "sizes: "
 """What begins the meaning of a uniform that is given the sizes of samplers, whose names follow."""
+
+ELEMENT = "_"
+"""What is between the name of an array of samplers and the number of one, in the name of what feeds it."""
+
+VALUE = "value: "
+"""What begins the meaning of a uniform that is given a number, which follows."""
+
+DEPTH = "depth: "
+"""What begins the meaning of a uniform that is given the levels of a pyramid; how often the foot was halved
+for this pass follows."""
 
 NEUTRAL: dict[str, tuple[float, ...]] = {
     "frame_rate": (60.0,),

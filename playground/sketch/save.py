@@ -32,7 +32,7 @@ from playground.sketch.save_values import (
 )
 from playground.sketch.source import normalised
 from playground.sketch.techniques import Techniques
-from playground.sketch.toml_edit import append, drop, put, text_of
+from playground.sketch.toml_edit import append, drop, key_text, put, text_of
 from playground.sketch.toml_places import Place
 from playground.sketch.values import shortest
 
@@ -54,9 +54,12 @@ def saved_text(text: str, file: Sketch, wanted: Sketch) -> str:
             text = put(text, (), key, written_terrain_value(value))
     for spec in wanted.graph.passes:
         was = file.graph.find(spec.name)
-        assert was is not None
+        if was is None:
+            text = _with_pass(text, wanted, spec)
+            continue
         if spec.use != was.use:
             text = _with_technique(_view(text, file, spec.name), _table(file, spec.name), was, spec)
+        text = _with_feed(text, file, wanted, was, spec)
     if wanted.main != file.main:  # what another technique lacks is gone from it
         text = put(text, (), "main", f"[{', '.join(map(text_of, wanted.main))}]")
     for path, value in wanted.overrides:
@@ -161,6 +164,41 @@ def _with_technique(text: str, table: Place, was: PassSpec, now: PassSpec) -> st
     return text if now.repeat == was.repeat else drop(text, table, "repeat")
 
 
+def _with_pass(text: str, wanted: Sketch, spec: PassSpec) -> str:
+    """Return the text with a pass more: one that feeds a channel."""
+    lines = ["[[pass]]", f"name = {text_of(spec.name)}", f"use  = {text_of(spec.use)}"]
+    if spec.size is not None:
+        lines.append(f"size = {written_size(spec.size)}")
+    if spec.values:
+        own = [(path, written_value(wanted, f"{spec.name}.{path}", value, "")) for path, value in spec.values]
+        pairs = [f"{key_text(path)} = {value}" for path, value in own]
+        lines.append(f"set  = {{ {', '.join(pairs)} }}")
+    return append(text, lines)
+
+
+def _with_feed(text: str, file: Sketch, wanted: Sketch, was: PassSpec, now: PassSpec) -> str:
+    """Return the text with a pass's wires, and of one that feeds a channel its size and values."""
+    before = dict(was.inputs)
+    for name, source in now.inputs:
+        if before.get(name) != source:
+            text = put(
+                _view(text, file, was.name), (*_table(file, was.name), "inputs"), name, text_of(source)
+            )
+    if now.size != was.size and now.size is not None:
+        text = put(text, _table(file, was.name), "size", written_size(now.size))
+    for path, value in now.values:
+        if (path, value) not in was.values:
+            written = written_value(wanted, f"{now.name}.{path}", value, "")
+            text = put(text, (*_table(file, was.name), "set"), path, written)
+    return text
+
+
+def written_size(size: tuple[str, str]) -> str:
+    """Return a size as TOML writes it."""
+    x, y = (side if side.isdecimal() else text_of(side) for side in size)
+    return f"[{x}, {y}]"
+
+
 def _with_value(text: str, file: Sketch, wanted: Sketch, path: str, value: Value) -> str:
     """Return the text with a parameter set, by the name that the file has for it already."""
     name, _, inner = path.partition(".")
@@ -169,7 +207,7 @@ def _with_value(text: str, file: Sketch, wanted: Sketch, path: str, value: Value
     text = _view(text, file, name)
     mine = {target.path for target in resolve(spec.technique, inner)}
     names = [key for key, _ in spec.values if {t.path for t in resolve(spec.technique, key)} == mine]
-    table = (*_table(file, name), "set")
+    table = (*_table(wanted, name), "set")
     for key in names or [inner]:
         written = written_value(wanted, f"{name}.{key}", value, written_so_far(text, table, key))
         text = put(text, table, key, written)

@@ -31,8 +31,9 @@ def written_value(sketch: Sketch, path: str, value: Value, before: str) -> str:
     if kind == "menu" and isinstance(value, int):
         return text_of(parameter.widget.choices[value])
     if kind == "colour" and isinstance(value, tuple):
-        text = to_hex(value)
-        if shortest((*parse_hex(text), 1.0)[: len(value)]) == value:
+        raw = parameter.widget.raw
+        text = to_hex(value, raw=raw)
+        if shortest((*parse_hex(text, raw=raw), 1.0)[: len(value)]) == value:
             return text_of(text)
     if kind == "direction" and isinstance(value, tuple) and before.startswith("{"):
         return f"{{ azimuth = {written_number(value[0])}, elevation = {written_number(value[1])} }}"

@@ -13,19 +13,22 @@ from __future__ import annotations
 
 import re
 import stat
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from playground.errors import Diagnostic, ShaderError, SketchError, nearest
+from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.allowed_files import is_file, is_inside, names_below, note, real
+from playground.sketch.allowed_files import exists, is_file, is_inside, names_below, note, real
+from playground.sketch.libraries import how_to_name, libraries, library_around
 from playground.sketch.macro_calls import with_calls_joined
 
 _INCLUDE = re.compile(r'\s*#\s*include\b\s*(?:"([^"]*)"|<([^>]*)>)?(.*)', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|source|draw|compute)\b")
 _LINE = re.compile(r"\s*#\s*line\b")
+_LIBRARY = re.compile(r"([A-Za-z_][\w.-]*)/(.+)")
 _MARK = re.compile(r'"(?:[^"\\]|\\.)*(?:"|\Z)|//|/\*')
 _NOT_TAB = re.compile(r"[^\t]")
 _WHITE = str.maketrans({"\v": " ", "\f": " "})
@@ -87,7 +90,12 @@ class SourceText:
     @cached_property
     def names(self) -> frozenset[str]:
         """Every identifier that the code names."""
-        return frozenset(re.findall(r"[A-Za-z_]\w*", self.code))
+        return frozenset(self.counts)
+
+    @cached_property
+    def counts(self) -> Counter[str]:
+        """How often the code names each identifier."""
+        return Counter(re.findall(r"[A-Za-z_]\w*", self.code))
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +104,7 @@ class Origin:
 
     texts: tuple[tuple[str, str], ...]  # of each file read, by absolute path
     places: tuple[tuple[Path, Path | None], ...]  # where includes were looked for, and the file found there
+    libraries: tuple[tuple[str, Path | None], ...] = ()  # that were looked for by name, and their folders
 
     def holds(self) -> bool:
         """Return whether every file still has the same text, and every place still leads to the same file.
@@ -103,10 +112,13 @@ class Origin:
         Texts are compared, not times: two saves may fall into one tick of a file system's clock.
         """
         try:
-            return all(_file_at(place) == found for place, found in self.places) and all(
-                read_text(Path(path)) == text for path, text in self.texts
+            named = libraries() if self.libraries else {}
+            return (
+                all(named.get(name) == folder for name, folder in self.libraries)
+                and all(_file_at(place) == found for place, found in self.places)
+                and all(read_text(Path(path)) == text for path, text in self.texts)
             )
-        except SketchError:
+        except PlaygroundError:
             return False
 
 
@@ -114,7 +126,8 @@ def read_source(path: Path, roots: Sequence[Path], instead: Mapping[str, str] | 
     """Read a GLSL file and everything it includes.
 
     An include is looked for in the folder of the file that includes it, then in each of
-    ``roots`` (the sketch's own folder, then ``glsl/``), and must lie in one of them. A
+    ``roots`` (the sketch's own folder, then ``glsl/``), and must lie in one of them; then, by the
+    name that it begins with, in a library that the user named, whose files include from there alone. A
     file of ``glsl/`` includes from there alone, so that no sketch changes what it means.
     ``instead`` has texts, by absolute path, that are taken in place of the files'.
 
@@ -142,7 +155,8 @@ def read_source_and_origin(
         for line, code in zip(reader.lines, codes, strict=True)
     )
     source = SourceText(str(path), lines, tuple(reader.texts))
-    return source, Origin(tuple(reader.texts.items()), tuple(reader.looked_at.items()))
+    asked = tuple((name, reader.libraries.get(name)) for name in sorted(reader.asked))
+    return source, Origin(tuple(reader.texts.items()), tuple(reader.looked_at.items()), asked)
 
 
 def read_text(path: Path) -> str:
@@ -189,6 +203,11 @@ class _Reader:
         self.texts: dict[str, str] = {}  # of each file read, outermost first
         self.looked_at: dict[Path, Path | None] = {}  # where includes may be, and what file is there
         self.includes = 0
+        self.asked: set[str] = set()  # libraries that were looked for by name
+
+    @cached_property
+    def libraries(self) -> dict[str, Path]:
+        return libraries()
 
     def flatten(self, path: Path, text: str, chain: tuple[str, ...], stack: tuple[str, ...]) -> None:
         self.texts[str(path)] = text
@@ -249,18 +268,51 @@ class _Reader:
         return self.instead[str(path)] if str(path) in self.instead else read_text(path)
 
     def find(self, name: str, includer: Path, line: Line) -> Path:
-        in_own = any(includer.is_relative_to(root) for root in self.own)
-        from_library = includer.is_relative_to(self.library) and not in_own
-        allowed = (self.library,) if from_library else tuple(dict.fromkeys([*self.own, self.library]))
-        parents = [p for p in includer.parents if any(map(p.is_relative_to, allowed))] if self.foreign else ()
+        allowed, climbs = self.allowed(includer)
+        parents = [p for p in includer.parents if any(map(p.is_relative_to, allowed))] if climbs else ()
         for folder in (includer.parent, *parents, *allowed):
             place = folder / name
             candidate = self.looked_at[place] = _file_at(place)
             if candidate is not None:
-                if not is_inside(candidate, allowed):
+                if not is_inside(candidate, allowed) and not library_around(candidate, self.libraries):
                     raise line.error(f"'{name}' lies outside the sketch's own folder and glsl/")
                 return candidate
-        raise line.error(f"no file '{name}' to include{nearest(name, names_below(allowed, ('.glsl',)))}")
+        named = _LIBRARY.fullmatch(name) if allowed != (self.library,) else None
+        if named:
+            self.asked.add(named[1])
+            if named[1] in self.libraries:
+                return self.in_library(named[1], named[2], line)
+        near = nearest(name, names_below(allowed, (".glsl",)))
+        if named and not near.endswith(f"/{named[2].rpartition('/')[2]}'?"):  # else another folder is meant
+            places = [folder / named[1] for folder in (includer.parent, *parents, *allowed)]
+            if not any(map(exists, places)):
+                near = f"; if {named[1]} is a library on this computer, name its folder once"
+                near += f": {how_to_name(named[1])}"
+        raise line.error(f"no file '{name}' to include{near}")
+
+    def allowed(self, includer: Path) -> tuple[tuple[Path, ...], bool]:
+        """Return the folders that a file may include from, and whether those around it are searched."""
+        if any(includer.is_relative_to(root) for root in self.own):
+            return tuple(dict.fromkeys([*self.own, self.library])), self.foreign
+        if includer.is_relative_to(self.library):
+            return (self.library,), self.foreign
+        around = library_around(includer, self.libraries)
+        if around:
+            return (self.libraries[around].resolve(),), True
+        return tuple(dict.fromkeys([*self.own, self.library])), self.foreign
+
+    def in_library(self, library: str, name: str, line: Line) -> Path:
+        """Return a file of a named library."""
+        folder = self.libraries[library]
+        place = folder / name
+        found = self.looked_at[place] = _file_at(place)
+        if found is None:
+            near = nearest(name, names_below((folder,), (".glsl",))) if folder.is_dir() else ""
+            gone = "" if folder.is_dir() else ", which is gone"
+            raise line.error(f"no file '{name}' in the library {library} ({shown(folder)}){gone}{near}")
+        if not is_inside(found, (folder,)):
+            raise line.error(f"'{name}' lies outside the library {library} ({shown(folder)})")
+        return found
 
 
 def _file_at(place: Path) -> Path | None:

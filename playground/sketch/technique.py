@@ -16,14 +16,25 @@ VARIANTS = ("compute", "passes")
 """The kinds of fast variants: a ``.comp`` needs compute shaders, a ``.fast.toml`` does not."""
 
 
+SHAPES = {
+    "sampler2D": "",
+    "samplerCube": "cube",
+    "sampler3D": "volume",
+    "sampler2DArray": "layers",
+    "sampler1D": "line",
+}
+"""GLSL type of a sampler → the shape of what it reads."""
+
+
 @dataclass(frozen=True, slots=True)
 class Input:
     """A texture that a kernel reads."""
 
     name: str
     sampling: Sampling = AS_IT_IS
-    fallback: str = ""  # "white" or "black": what it reads when nothing is wired; "": must be wired
+    fallback: str = ""  # "white", "black", "zero": what it reads when nothing is wired; "": must be wired
     line: int = 0
+    shape: str = ""  # of another tool's shader: a value of ``SHAPES``; "": two dimensions
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +82,7 @@ class Kernel:
     between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
     at_once: str = "1"  # steps that one run may take
     registry: str = ""  # of a source or a draw: the name of the source or mesh
+    depends: tuple[str, ...] = ()  # of a source: what its texels depend on besides its parameters, as time
     blend: str = "none"
     depth: str = "less"
     count: str = ""  # of a draw: elements of a mesh that has no size of its own
@@ -87,7 +99,11 @@ class Kernel:
     dialect: str = ""  # of another tool's shader: the name of a row of sketch/dialects
     prelude: tuple[str, ...] = ()  # likewise: lines that the driver gets before the file's
     epilogue: str = ""  # likewise: the file of gpu/shaders that follows the file's lines
+    helpers: tuple[str, ...] = ()  # likewise: files of gpu/shaders between the prelude and its lines
     vertex: tuple[tuple[str, str], ...] = ()  # what its vertex shader gives it: declaration, statements
+    vertex_source: SourceText | None = None  # the author's own vertex shader, in place of ``vertex``
+    vertex_prelude: tuple[str, ...] = ()  # of that
+    vertex_helpers: tuple[str, ...] = ()  # likewise
     meanings: tuple[tuple[str, str], ...] = ()  # uniform → what it is given: see ``usual``
     unfed: tuple[tuple[str, str], ...] = ()  # likewise: what it lacks where nothing is wired, what is instead
 
@@ -108,7 +124,10 @@ class Kernel:
     @property
     def files(self) -> tuple[str, ...]:
         """Absolute paths of every file the kernel is made of."""
-        return tuple(dict.fromkeys((*self.source.files, *(f for v in self.variants for f in v.files))))
+        vertex = self.vertex_source.files if self.vertex_source else ()
+        return tuple(
+            dict.fromkeys((*self.source.files, *vertex, *(f for v in self.variants for f in v.files)))
+        )
 
     @cached_property
     def given(self) -> tuple[str, ...]:
@@ -124,6 +143,11 @@ class Kernel:
     def file_parameters(self) -> tuple[Parameter, ...]:
         """Those of its parameters that name files."""
         return tuple(p for p in self.parameters if p.widget.kind == "file")
+
+    @cached_property
+    def valued_menus(self) -> tuple[Parameter, ...]:
+        """Those of its parameters that are menus with values of their own."""
+        return tuple(p for p in self.parameters if p.widget.values)
 
     def error(self, message: str) -> ShaderError:
         """Return an error that points at its header."""
@@ -144,8 +168,12 @@ class Kernel:
         return {parameter.name: parameter for parameter in reversed(self.parameters)}
 
     def reads(self, given: str) -> bool:
-        """Return whether the text names something that the engine gives."""
-        return given in self.source.names
+        """Return whether the text names something that the engine gives, or depends on it all the same."""
+        return (
+            given in self.source.names
+            or given in self.depends
+            or (self.vertex_source is not None and given in self.vertex_source.names)
+        )
 
     @property
     def needs_inputs(self) -> tuple[str, ...]:
@@ -204,6 +232,11 @@ class Graph:
         """Absolute paths of every file the technique is made of."""
         parts = (*(spec.technique for spec in self.passes), *self.variants)
         return tuple(dict.fromkeys([self.path, *(file for part in parts for file in part.files)]))
+
+    @property
+    def dialect(self) -> str:
+        """Of another tool's shader the name of a row of sketch/dialects, of a TOML none."""
+        return "" if self.path.endswith(".toml") else self.kernels[-1][1].dialect
 
     @cached_property
     def kernels(self) -> tuple[tuple[str, Kernel], ...]:

@@ -19,6 +19,7 @@ from playground.sketch.allowed_files import (
     root_of,
 )
 from playground.sketch.canonical import content_of
+from playground.sketch.composed import composed, parts_of
 from playground.sketch.dialects import OWN, read_foreign
 from playground.sketch.find import shipped_names
 from playground.sketch.kernel_cache import parsed_kernel, replaced
@@ -107,7 +108,9 @@ class Techniques:
         return len(self.open) + depth <= _MAX_NESTING
 
     def read(self, use: str, folder: Path, root: Path) -> Technique:
-        """Return what ``use`` names, as ``read_technique`` does."""
+        """Return what ``use`` names, as ``read_technique`` does; of "A(B)", A that reads B."""
+        if parts := parts_of(use):
+            return composed(use, *(self.read(part, folder, root) for part in parts))
         named = (use, folder, root) if use.startswith("./") else (use, GLSL, GLSL)
         if named not in self.known:
             self.known[named] = self._read(*_locate(use, folder, root), use)
@@ -213,7 +216,7 @@ class WithLibrary(Techniques):
 
     def read(self, use: str, folder: Path, root: Path) -> Technique:
         """Return what ``use`` names, as ``read_technique`` does."""
-        own = use.startswith("./") and not folder.is_relative_to(GLSL)
+        own = "./" in use and not folder.is_relative_to(GLSL)
         return super().read(use, folder, root) if own else self._library.read(use, folder, root)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 from playground.errors import DataError
 from playground.paths import GLSL
@@ -30,7 +30,7 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
     """
     if not texts:
         return sketch
-    known: dict[int, Technique] = {}  # one technique may be in several passes
+    known: dict[int, Any] = {}  # one technique may be in several passes
 
     def reread(technique: Technique) -> Technique:
         """Return the technique itself where none of the texts is in it."""
@@ -38,26 +38,35 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
             return technique
         if id(technique) not in known:
             variants = tuple(replace(v, technique=reread(v.technique)) for v in technique.variants)
-            if isinstance(technique, Graph):
+            if isinstance(technique, Graph) and technique.dialect:
+                known[id(technique)] = _read_again(technique, texts, Path(sketch.folder))
+                if technique is sketch.graph:  # of a sketch all are at view
+                    known[id(technique)] = replace(known[id(technique)], inputs=(), parameters=())
+            elif isinstance(technique, Graph):
                 passes = tuple(replace(p, technique=reread(p.technique)) for p in technique.passes)
                 known[id(technique)] = replace(technique, passes=passes, variants=variants)
             else:
                 kernel = _parsed_again(technique, texts, Path(sketch.folder))
                 known[id(technique)] = replace(kernel, variants=variants)
-        return known[id(technique)]
+        return cast(Technique, known[id(technique)])
 
     return replace(sketch, graph=cast(Graph, reread(sketch.graph)))
+
+
+def _read_again(graph: Graph, texts: Mapping[str, str], folder: Path) -> Graph:
+    """Return another tool's shader by its texts."""
+    path = Path(graph.path)
+    root = GLSL if path.is_relative_to(GLSL) else folder
+    found = read_foreign(path, graph.name, root, Techniques().read, graph.dialect, instead=texts)
+    if found is None:
+        raise DataError("no shader is left of this text", file=path)
+    return found
 
 
 def _parsed_again(kernel: Kernel, texts: Mapping[str, str], folder: Path) -> Kernel:
     path = Path(kernel.path)
     root = folder if not path.is_relative_to(GLSL) else GLSL
-    found: Kernel | None
-    if kernel.dialect:
-        graph = read_foreign(path, kernel.name, root, Techniques().read, kernel.dialect, instead=texts)
-        found = graph.kernels[-1][1] if graph is not None else None
-    else:
-        found = parse_kernel(kernel.name, read_source(path, (root,), texts))
+    found = parse_kernel(kernel.name, read_source(path, (root,), texts))
     if found is None:
         raise DataError("no kernel is left of this text", file=path)
     if kernel.kind == "compute":  # a compute variant has these of its technique

@@ -72,8 +72,8 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
 
 def read_passes(file: TomlFile, read: Read) -> tuple[PassSpec, ...]:
     """Return what the ``[[pass]]`` tables say."""
-    tables = file.tables("pass")
-    if not tables:
+    tables, view = file.tables("pass"), file.table.get("view")
+    if not tables and not (isinstance(view, dict) and "use" in view):  # a picture needs no terrain
         raise file.error('no passes; a [[pass]] with name = "…" and use = "…" was expected', "pass")
     found: dict[str, PassSpec] = {}
     for index, table in enumerate(tables):

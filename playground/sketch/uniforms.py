@@ -33,6 +33,9 @@ from playground.sketch.reserved_names import (
 from playground.sketch.source import Line, SourceText
 from playground.sketch.widgets import SCALARS, VECTORS, WIDGETS
 
+_FALLBACKS = ("white", "black", "zero")
+"""What an input reads where nothing is wired: "zero" is black with alpha 0, and a loop's first iteration
+reads zeros of the size of what is fed back."""
 _UNIFORM = re.compile(
     r"^\s*uniform\s+(?:(?:lowp|mediump|highp)\s+)?(\w+)\s+(\w+)\s*(\[[^\]]*\])?\s*(?:=([^;]*))?;"
 )
@@ -48,7 +51,7 @@ _LONGEST_LITERAL = 64
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
 _BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
-_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "follows", "was"})
+_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "values", "follows", "was"})
 
 Calls = dict[str, list[str]]
 
@@ -191,21 +194,21 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         "clamp",
         "repeat",
         "mipmap",
-        *(["paint"] if is_file else ["white", "black"]),
+        *(["paint"] if is_file else _FALLBACKS),
     ]
     for word in words:
         if word not in valid:
             raise line.error(f"'{word}' is not a way to read a texture{nearest(word, valid)}")
-    for pair in (("nearest", "linear"), ("clamp", "repeat"), ("white", "black")):
-        if set(pair) <= set(words):
-            raise line.error(f"'{name}' is both {pair[0]} and {pair[1]}")
+    for pair in (("nearest", "linear"), ("clamp", "repeat"), _FALLBACKS):
+        if len(both := [word for word in pair if word in words]) > 1:
+            raise line.error(f"'{name}' is both {both[0]} and {both[1]}")
     sampling = Sampling(
         "linear" if "linear" in words else "nearest",
         "repeat" if "repeat" in words else "clamp",
         "mipmap" in words,
     )
     if not is_file:
-        fallback = next((word for word in ("white", "black") if word in words), "")
+        fallback = next((word for word in _FALLBACKS if word in words), "")
         return Input(name, sampling, fallback, line.number)
     return Parameter(
         name,
@@ -236,6 +239,7 @@ def _parameter(
     if step is not None and step <= 0:
         raise line.error(f"step of '{name}': expected a number above 0")
     widget = _widget(name, kind, calls.get(kind, []), line)
+    widget = replace(widget, values=_menu_values(name, widget, calls, line))
     parameter = Parameter(
         name,
         glsl_type,
@@ -248,6 +252,13 @@ def _parameter(
         former=_former_names(name, calls, line),
     )
     default = _literal(name, glsl_type, initial, line)
+    if widget.values:
+        if default not in widget.values:
+            listed = ", ".join(map(str, widget.values))
+            raise line.error(f"the default of '{name}' is {default}; its menu's values are {listed}")
+        default = widget.values.index(default)
+    if kind == "button" and default:
+        raise line.error(f"the default of '{name}' must be false: a button is true while it is pressed")
     try:
         return replace(parameter, default=values.coerce(parameter, default))
     except ParameterError as error:
@@ -267,6 +278,18 @@ def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tu
         wanted = f"{count} different names, as parts({example})" if count > 1 else "a vector"
         raise line.error(f"parts of '{name}', a {glsl_type}: expected {wanted}")
     return found
+
+
+def _menu_values(name: str, widget: Widget, calls: Calls, line: Line) -> tuple[int, ...]:
+    """Return what the uniform gets for each choice of a menu; nothing where that is the choice's number."""
+    if "values" not in calls:
+        return ()
+    found = [_number(word, fractions=False) for word in calls["values"]]
+    numbers = tuple(n for n in found if isinstance(n, int) and -(2**31) <= n < 2**31)
+    if widget.kind != "menu" or len(numbers) != len(widget.choices) or len(found) != len(numbers):
+        wanted = f"{len(widget.choices)} whole numbers" if widget.choices else "a menu before it"
+        raise line.error(f'values of \'{name}\': expected {wanted}, as menu("soft", "hard") values(1, 4)')
+    return numbers
 
 
 def _former_names(name: str, calls: Calls, line: Line) -> tuple[str, ...]:
@@ -309,6 +332,15 @@ def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
         if kind == "log_slider" and low <= 0:
             raise line.error(f"log_slider of '{name}': its range must lie above 0")
         return Widget(kind, low, high)
+    if facts.takes == "ranges" and arguments:
+        pairs = [arguments[:2], arguments[2:]] if len(arguments) > 2 else [arguments]
+        axes = [_numbers(name, kind, pair, 2, line) for pair in pairs]
+        return with_axes(kind, [(low, high) for low, high in axes])
+    if facts.takes == "raw or nothing" and arguments:
+        if arguments != ["raw"]:
+            example = f'as {kind}("raw") for one that is not linear, or {kind}'
+            raise line.error(f"{kind} of '{name}' takes only raw in brackets, {example}")
+        return Widget(kind, raw=True)
     if facts.takes == "choices":
         if len(arguments) < 2:
             raise line.error(f'the {kind} of \'{name}\' needs its choices, as {kind}("linear", "smooth")')
@@ -318,6 +350,12 @@ def _widget(name: str, kind: str, arguments: list[str], line: Line) -> Widget:
     if arguments:
         raise line.error(f"{kind} of '{name}' takes nothing in brackets")
     return Widget(kind, *(facts.range or (None, None)))
+
+
+def with_axes(kind: str, axes: Sequence[tuple[float, float]]) -> Widget:
+    """Return a widget of a vector whose numbers have these ranges: one for all, or one each."""
+    low, high = min(low for low, _ in axes), max(high for _, high in axes)
+    return Widget(kind, low, high, axes=tuple(axes) if len(set(axes)) > 1 else ())
 
 
 def _numbers(name: str, word: str, arguments: list[str], count: int, line: Line) -> tuple[float, ...]:

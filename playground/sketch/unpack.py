@@ -48,6 +48,7 @@ class Manifest:
     sketch: str  # the file to open, from the zip's root
     version: str = ""  # of the playground that packed it
     shipped: tuple[str, ...] = ()  # files of ``glsl/`` that it needs
+    libraries: tuple[str, ...] = ()  # libraries that it includes from, which are not in it
 
 
 @dataclass(frozen=True)
@@ -196,7 +197,8 @@ def _manifest(archive: zipfile.ZipFile, files: dict[str, zipfile.ZipInfo]) -> Ma
         table = read_json(archive.read(MANIFEST))
         if table["format"] != FORMAT:
             raise DataError(f"is of format {table['format']}; this playground ({__version__}) reads {FORMAT}")
-        found = Manifest(str(table["sketch"]), str(table["version"]), tuple(map(str, table["shipped"])))
+        shipped, named = (tuple(map(str, some)) for some in (table["shipped"], table.get("libraries", ())))
+        found = Manifest(str(table["sketch"]), str(table["version"]), shipped, named)
     except (ValueError, KeyError, TypeError) as error:
         raise DataError(f"its {MANIFEST} cannot be read: {_reason(error)}") from None
     if found.sketch not in files or found.sketch == MANIFEST:

@@ -10,11 +10,11 @@ import math
 import os
 import reprlib
 import struct
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from playground.errors import DataError, ParameterError, nearest
 from playground.sketch.colour import parse_hex, to_hex
-from playground.sketch.parameter import Parameter, Value
+from playground.sketch.parameter import Parameter, Value, Widget
 from playground.sketch.widgets import VECTORS, WIDGETS
 
 _LENGTH = {vector: int(vector[-1]) for vector in VECTORS}
@@ -69,7 +69,7 @@ def coerce(parameter: Parameter, given: object, path: str = "") -> Value:
         given = _direction(given, name)
     if kind == "colour" and isinstance(given, str) and given.strip().startswith("#"):
         try:
-            given = (*parse_hex(given.strip()), 1.0)[: length_of(parameter.type)]
+            given = (*parse_hex(given.strip(), raw=parameter.widget.raw), 1.0)[: length_of(parameter.type)]
         except DataError as error:
             raise ParameterError(f"{name}: {error}") from None
     if isinstance(given, str):
@@ -94,12 +94,27 @@ def expected(parameter: Parameter) -> str:
         return "one of " + ", ".join(widget.choices)
     if words := WIDGETS[widget.kind].expects:
         return words
+    if widget.kind == "point":
+        ranges = [f"from {low:g} to {high:g}" for low, high in map(_ends(widget), range(2))]
+        middles = [f"{(low + high) / 2:g}" for low, high in map(_ends(widget), range(2))]
+        return f"two numbers {' and '.join(dict.fromkeys(ranges))}, as {','.join(middles)}"
     count = length_of(parameter.type)
     noun = "whole number" if is_whole(parameter.type) else "number"
     what = f"a {noun}" if count == 1 else f"{count} {noun}s, as " + ",".join(["1"] * count)
     if widget.low is not None and widget.high is not None:
         what += f" from {widget.low:g} to {widget.high:g}"
     return what
+
+
+def _ends(widget: Widget) -> Callable[[int], tuple[float, float]]:
+    """Return a function that gives the range of a bounded vector's number."""
+
+    def of(axis: int) -> tuple[float, float]:
+        low, high = widget.ends(axis)
+        assert low is not None and high is not None
+        return low, high
+
+    return of
 
 
 def write(parameter: Parameter, value: Value) -> str:
@@ -110,8 +125,9 @@ def write(parameter: Parameter, value: Value) -> str:
     if parameter.widget.kind == "menu" and isinstance(value, int):
         return parameter.widget.choices[value]
     if parameter.widget.kind == "colour" and isinstance(value, tuple):
-        text = to_hex(value)
-        there = (*parse_hex(text), 1.0)[: len(value)]
+        raw = parameter.widget.raw
+        text = to_hex(value, raw=raw)
+        there = (*parse_hex(text, raw=raw), 1.0)[: len(value)]
         if all(math.isclose(a, b, rel_tol=0.0, abs_tol=1e-7) for a, b in zip(there, value, strict=True)):
             return text
     if isinstance(value, tuple):
@@ -224,10 +240,11 @@ def _check_range(parameter: Parameter, value: Value, name: str) -> None:
         return
     if widget.low is None or widget.high is None:
         return
-    for item in items:
-        slack = 1e-6 * max(abs(widget.low), abs(widget.high))
-        if isinstance(item, int | float) and not widget.low - slack <= item <= widget.high + slack:
-            raise ParameterError(f"{name} = {item:g} is outside its range {widget.low:g} to {widget.high:g}")
+    for axis, item in enumerate(items):
+        low, high = _ends(widget)(axis)
+        slack = 1e-6 * max(abs(low), abs(high))
+        if isinstance(item, int | float) and not low - slack <= item <= high + slack:
+            raise ParameterError(f"{name} = {item:g} is outside its range {low:g} to {high:g}")
 
 
 def _wrong(name: str, given: object, wanted: str) -> ParameterError:

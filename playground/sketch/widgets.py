@@ -17,7 +17,8 @@ class Kind:
     """What is true of every parameter with one widget."""
 
     types: tuple[str, ...]  # GLSL types that it may be given to
-    takes: str = ""  # in brackets: "" nothing | range | "range or nothing" | choices | sampling
+    takes: str = ""
+    """In brackets: "" nothing, range, "range or nothing", ranges, "raw or nothing", choices, sampling."""
     range: tuple[float, float] | None = None  # of each number, where the brackets give none
     expects: str = ""  # a value, in words; "": numbers of the type, in the range
     listed: str = ""  # a value, in a word or two of a table; "": its range
@@ -46,10 +47,11 @@ WIDGETS: dict[str, Kind] = {
         listed="azimuth, elevation",
         unit="°",
     ),
-    "colour": Kind(("vec3", "vec4"), expects="a colour, as #8a9a5b"),
+    "colour": Kind(("vec3", "vec4"), "raw or nothing", expects="a colour, as #8a9a5b"),
     "menu": Kind(("int",), "choices"),
     "checkbox": Kind(("bool",), expects="true or false"),
-    "point": Kind(("vec2",), range=(0.0, 1.0), expects="two numbers from 0 to 1, as 0.5,0.5"),
+    "button": Kind(("bool",), expects="true or false", listed="true while pressed"),
+    "point": Kind(("vec2",), "ranges", range=(0.0, 1.0)),
     "file": Kind(("sampler2D",), "sampling", expects="the path of a file"),
 }
 """By the word that asks for it in an annotation."""

@@ -11,7 +11,7 @@ from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Export, Graph, Kernel, Output, PassSpec, Technique
 from playground.sketch.widgets import SCALARS
 
-_GIVEN = ("time", "compute", "size.x", "size.y")  # what every expression may name
+_GIVEN = (*expressions.CLOCKS, "compute", "size.x", "size.y")  # what every expression may name
 
 
 def output_names(technique: Technique) -> tuple[str, ...]:
@@ -124,6 +124,8 @@ def _check_expressions(graph: Graph, spec: PassSpec) -> None:
     for what, text in texts:
         try:
             names = expressions.names_in(text)
+            if "frames" in names and find_targets(graph, "frames"):
+                raise ExpressionError(f"'{text}': 'frames' {expressions.TWO_FRAMES}")
             known = {name for name in names if _is_number(graph, name)}
             if names - known:
                 expressions.check(text, [*known, *_numbers(graph)])
@@ -139,6 +141,8 @@ def _is_number(graph: Graph, name: str) -> bool:
     if axis in ("x", "y") and head.endswith(".size"):
         sized = head.removesuffix(".size")
         if inner(graph, sized) is not None or sized in input_names(graph):
+            return True
+        if any(target.parameter.widget.kind == "file" for target in find_targets(graph, sized)[:1]):
             return True
     return any(target.parameter.type in SCALARS for target in find_targets(graph, name)[:1])
 

@@ -1,7 +1,9 @@
 """The sources a sketch may name: what the processor must do to make terrain.
 
 A closed registry: a sketch is data and cannot bring Python. A source says what it knows
-of its terrain before any texel is made (``describe``), then makes the texels (``make``).
+of its terrain before any texel is made (``describe``), then makes the texels (``make``). What depends on
+more than its parameters, as a film does on the time, says on what (``moment``), and is made again when
+that changes.
 """
 
 from __future__ import annotations
@@ -11,19 +13,30 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, SketchError, nearest
 from playground.images.content_hash import content_key
+from playground.media.now import Now
 from playground.paths import shown
 from playground.sketch.model import Value
 from playground.terrain.delaunay import Rules, tables, triangulate
 from playground.terrain.elevation import Edge, Elevation, read_elevation
 from playground.terrain.gaps import Voids, fill_no_data
 from playground.terrain.grid import Packing
+from playground.terrain.live_sources import make_keys, moment_of_keys, size_of_keys
 from playground.terrain.masks import read_mask
+from playground.terrain.over_time import (
+    make_sound,
+    make_video,
+    moment_of_sound,
+    moment_of_video,
+    size_of_sound,
+    size_of_video,
+)
 from playground.terrain.resample import resample
 
 
@@ -37,17 +50,30 @@ class Terrain:
     base_elevation: float | None = None  # [m] above sea level at height 0
 
 
+class Make(Protocol):
+    """Makes the texels of a source, by the names of its outputs; row 0 south."""
+
+    def __call__(
+        self, values: Mapping[str, Value], size: tuple[int, int], moment: Any = None, /
+    ) -> Mapping[str, NDArray[Any]]:
+        """Return an array (ny, nx) or (ny, nx, channels) for each output: 0..1, or bytes of r8 formats."""
+
+
 @dataclass(frozen=True, slots=True)
 class SourceKind:
     """One entry of the registry."""
 
     describe: Callable[[Mapping[str, Value]], Terrain]
-    make: Callable[[Mapping[str, Value], tuple[int, int]], dict[str, NDArray[np.float32]]]
+    make: Make
     files: tuple[str, ...]  # parameters that name files
     parameters: tuple[str, ...]  # what the kernel's file must declare
     notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
     picture: Callable[[Mapping[str, Value], tuple[int, int]], Path | None] = lambda values, size: None
     # the image whose channels, where it has this size, are the texels of the one output as they are
+    # What of now the texels depend on: its ``repr`` says all of it, and ``make`` gets it. None: nothing.
+    moment: Callable[[Mapping[str, Value], Now], object] | None = None
+    # Texels, where the pass says none; None: those of the terrain.
+    size: Callable[[Mapping[str, Value]], tuple[int, int] | None] = lambda values: None
 
 
 def source_kind(name: str) -> SourceKind:
@@ -103,7 +129,9 @@ def _describe_elevation(values: Mapping[str, Value]) -> Terrain:
     return Terrain(elevation.size, elevation.extent, relief, base)
 
 
-def _make_elevation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
+def _make_elevation(
+    values: Mapping[str, Value], size: tuple[int, int], moment: None = None
+) -> dict[str, NDArray[np.float32]]:
     elevation = _elevation(values)
     low, span = elevation.lowest, elevation.highest - elevation.lowest
     with _memory_explained(Path(str(values["elevation"]))):
@@ -122,7 +150,9 @@ def _notes_of_elevation(values: Mapping[str, Value]) -> tuple[str, ...]:
     return tuple(f"{elevation.name}: {note}" for note in elevation.notes)
 
 
-def _make_triangulation(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
+def _make_triangulation(
+    values: Mapping[str, Value], size: tuple[int, int], moment: None = None
+) -> dict[str, NDArray[np.float32]]:
     rules = Rules(
         points=int(_number(values, "points")),
         seed=int(_number(values, "seed")),
@@ -137,7 +167,9 @@ def _make_triangulation(values: Mapping[str, Value], size: tuple[int, int]) -> d
     return tables(triangulate(rules), size)
 
 
-def _make_mask(values: Mapping[str, Value], size: tuple[int, int]) -> dict[str, NDArray[np.float32]]:
+def _make_mask(
+    values: Mapping[str, Value], size: tuple[int, int], moment: None = None
+) -> dict[str, NDArray[np.float32]]:
     stated = values["texels"]
     assert isinstance(stated, tuple)  # the kernel's file says so
     return {"mask": read_mask(Path(str(values["image"])), size, (int(stated[0]), int(stated[1])))}
@@ -170,5 +202,22 @@ SOURCES: dict[str, SourceKind] = {
     "mask_file": SourceKind(
         lambda _: Terrain(), _make_mask, ("image",), ("image", "texels"), picture=_mask_picture
     ),
+    "video_file": SourceKind(
+        lambda _: Terrain(),
+        make_video,
+        ("video",),
+        ("video", "start", "speed", "loop"),
+        moment=moment_of_video,
+        size=size_of_video,
+    ),
+    "sound_file": SourceKind(
+        lambda _: Terrain(),
+        make_sound,
+        ("sound",),
+        ("sound", "start", "loop", "content"),
+        moment=moment_of_sound,
+        size=size_of_sound,
+    ),
+    "keyboard": SourceKind(lambda _: Terrain(), make_keys, (), (), moment=moment_of_keys, size=size_of_keys),
 }
 """Name → what it does."""

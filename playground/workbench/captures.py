@@ -191,7 +191,8 @@ def seconds_of(wish: Wish, sketch: Sketch) -> float:
 
 def sweep_text(path: str, parameter: Parameter, part: str = "") -> str:
     """Return a sweep of a parameter, or of a part of it, over its range."""
-    low, high = _TURN.get(part, (parameter.widget.low, parameter.widget.high))
+    axis = parts_of(parameter).index(part) if part else 0
+    low, high = _TURN.get(part, parameter.widget.ends(axis))
     default = parameter.default
     if low is None or high is None:
         number = float(default) if isinstance(default, int | float) else 1.0

@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
 from playground.paths import shown
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
+from playground.sketch.channels import source_of
 from playground.sketch.model import Camera, Value
 from playground.sketch.save import save, save_copy, save_preset, saved_text
 from playground.workbench.edits import Draft
 from playground.workbench.history import History, Key
 from playground.workbench.notices import Notices
+from playground.workbench.pasted import keep_text
 from playground.workbench.session import Session
 from playground.workbench.sketch_file import SketchFile
+from playground.workbench.sketch_of_shader import is_shader, save_as_sketch
 from playground.workbench.undo import Undo
 
 
@@ -29,16 +32,52 @@ class Commands:
     file: SketchFile
     folder: Path
     opens: Callable[[Path], None] | None = None  # opens a sketch with its remembered edits
+    _visited: list[Path] = field(default_factory=list)  # the sketches that were opened, in order
+    _at: int = 0  # which of them is open now
 
-    def open(self, path: Path) -> None:
-        """Open another sketch, with a history of its own; the one that is shown is read again."""
+    def open(self, path: Path) -> bool:
+        """Open another sketch, with a history of its own; the one that is shown is read again.
+
+        Returns False, with a notice, where that cannot be.
+        """
+        before = self.session.path
+        if not self._open(path):
+            return False
+        if self.session.path != before:
+            self._visits(before, self.session.path)
+        return True
+
+    def _visits(self, before: Path, path: Path) -> None:
+        self._visited = [*(self._visited or [before])[: self._at + 1], path]
+        self._at = len(self._visited) - 1
+
+    def visit(self, by: int) -> None:
+        """Open the sketch again that was open before this one (-1), or after it (1), with its edits."""
+        if 0 <= self._at + by < len(self._visited):
+            if self._open(self._visited[self._at + by]):
+                self._at += by
+        else:
+            self.notices.say(f"no other sketch was opened {'before' if by < 0 else 'after'} this one")
+
+    def _open(self, path: Path) -> bool:
         try:
             (self.opens or self.session.open)(path)
         except PlaygroundError as error:
             self.notices.say(str(error))
-        else:
-            if self.session.drafts.opening:
-                self.undo.begin(History())
+            return False
+        if self.session.drafts.opening:
+            self.undo.begin(History())
+        return True
+
+    def paste(self, text: str) -> None:
+        """Open a shader's text as a new sketch: a new file in the folder, which a notice names."""
+        try:
+            path = keep_text(text, self.folder)
+        except PlaygroundError as error:
+            self.notices.say(f"the clipboard: {error}")
+            return
+        if self.open(path):
+            self.notices.say(f"pasted as {path.name} in {path.parent}; Backspace goes back")
 
     # ── many values at once ──────────────────────────────────────────────────
 
@@ -85,19 +124,36 @@ class Commands:
             self.undo.history.saved(_values_in_file(draft))
             self.notices.say(f"saved {_summary(draft)} into {shown(draft.file.file)}")
 
+    @property
+    def copy_is(self) -> tuple[str, str]:
+        """What ``save_a_copy`` is called in a menu, and where it writes."""
+        draft = self.session.shown
+        if draft is not None and is_shader(draft):
+            shader = Path(draft.file.file).name
+            return "Save a sketch", f"A new sketch that uses {shader}, which stays as it is"
+        return "Save a copy", f"A new folder in {self.folder}"
+
     def save_a_copy(self) -> None:
-        """Save the sketch with the user's edits as a new one in the current folder, and go on with that."""
+        """Save the sketch with the user's edits as a new one in the current folder, and go on with that.
+
+        Of a shader that was opened alone, it is a sketch next to it that uses it.
+        """
         draft = self._ready()
         if draft is None:
             return
+        saved = None
         try:
-            path = save_copy(draft.file, draft.sketch, self.folder)
+            if is_shader(draft):
+                saved = save_as_sketch(draft, self.folder)
+            path = Path(saved.file.file) if saved else save_copy(draft.file, draft.sketch, self.folder)
         except PlaygroundError as error:
             self.notices.say(str(error))
             return
         self.undo.history.saved(_values_in_file(draft))
-        self.notices.say(f"saved a copy in {path.parent}; from here on this is the sketch")
-        self.session.open_copy(path)
+        what = f"{path.name} in {path.parent}" if saved else f"a copy in {path.parent}"
+        self.notices.say(f"saved {what}; from here on this is the sketch")
+        self._visits(self.session.path, path)
+        self.session.open_copy(path, saved)
 
     def save_as_preset(self, name: str) -> None:
         """Save the edited values as a preset of the sketch."""
@@ -160,6 +216,8 @@ def _values_in_file(draft: Draft) -> dict[Key, object]:
     for name, _ in draft.edits.techniques:
         spec = draft.file.graph.find(name)
         found["technique", name] = spec.use if spec else None
+    for channel, _ in draft.edits.channels:
+        found["channel", channel] = source_of(draft.file, channel)
     found["camera", ""] = draft.file.camera
     return {key: value for key, value in found.items() if value is not None}
 
@@ -167,5 +225,6 @@ def _values_in_file(draft: Draft) -> dict[Key, object]:
 def _summary(draft: Draft) -> str:
     parts = [counted(len(draft.applied), "value")] if draft.applied else []
     parts += [counted(len(draft.edits.techniques), "technique")] if draft.edits.techniques else []
+    parts += [counted(len(draft.edits.channels), "channel")] if draft.edits.channels else []
     parts += ["the camera"] if draft.edits.camera is not None else []
     return " and ".join([", ".join(parts[:-1]), parts[-1]] if parts[1:] else parts)

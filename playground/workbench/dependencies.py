@@ -7,7 +7,7 @@ from pathlib import Path
 
 from playground.engine.files import find_file
 from playground.errors import DataError, PlaygroundError
-from playground.paths import GLSL, current_folder
+from playground.paths import GLSL, current_folder, without_part
 from playground.sketch.allowed_files import Signature
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
@@ -69,6 +69,7 @@ def files_named_by(error: PlaygroundError) -> frozenset[Path]:
 
 def path_named(name: str) -> Path:
     """Return the file that a diagnostic names, as its user would, as an absolute path."""
+    name = without_part(name)
     here = current_folder() / name
     path = GLSL / name.removeprefix("glsl/") if name.startswith("glsl/") else here
     return path if path.is_file() else here

@@ -16,10 +16,9 @@ from __future__ import annotations
 import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import reduce
 from pathlib import Path
-from typing import Protocol
 
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ParameterError, PlaygroundError
@@ -34,6 +33,7 @@ from playground.sketch.technique_cache import TechniqueCache
 from playground.sketch.text_overrides import with_texts
 from playground.sketch.values import shortest
 from playground.sketch.variants import left_out
+from playground.workbench.checks import Checks, DrawnState
 from playground.workbench.dependencies import watched
 from playground.workbench.edits import Draft, Edits, reload_draft, taken
 from playground.workbench.history import applied, changes_between, edits_of, state_of
@@ -43,27 +43,6 @@ from playground.workbench.resume import StoredEdits, first_draft, stored
 from playground.workbench.sun_drag import suns_of, turned
 
 _NAMED = 2  # files that are named of those saved at once
-
-
-class DrawnState(Protocol):
-    """What has been drawn already: it needs no sandbox."""
-
-    def needs_drawing(self, sketch: Sketch) -> bool:
-        """Say whether the driver would get anything that it has not drawn already."""
-
-    def reads_new_data(self, sketch: Sketch) -> bool:
-        """Say whether a sketch reads data that was never drawn with."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Checks:
-    """Where and how a draft is checked before it is drawn."""
-
-    driver: str
-    variants: tuple[str, ...] = ()  # kinds of fast variants that can run
-    sandbox: Sandbox | None = None
-    now: Callable[[], float] = time.perf_counter  # [s] of any clock
-    sketch_time: Callable[[], float] = lambda: 0.0  # [s] at which the sandbox draws
 
 
 class Drafts:
@@ -245,6 +224,10 @@ class Drafts:
         """Fill a pass with another technique, once that has proved good."""
         self._change(lambda draft: draft.choose(pass_name, use))
 
+    def feed(self, channel: str, source: str, /, **values: Value) -> None:
+        """Feed a channel from another source, with ``values`` of its parameters, once it has proved good."""
+        self._change(lambda draft: draft.feed(channel, source, **values))
+
     def show(self, draft: Draft) -> None:
         """Show a draft of this sketch that was drawn before; what is saved since goes on being checked."""
         self.revision += 1
@@ -410,7 +393,9 @@ class Drafts:
     def restore_with_save(self, edits: Edits) -> None:
         """Replace values and camera in what was just saved; what is shown stays until that is drawn."""
         if self._is_checked and self._saved is not None:
-            self._saved = self._saved.with_edits(replace(edits, techniques=self._saved.edits.techniques))
+            known = self._saved.edits
+            kept = replace(edits, techniques=known.techniques, channels=known.channels)
+            self._saved = self._saved.with_edits(kept)
             self.coming = self._saved
             for choice in self._choices:
                 self.coming = choice.change(self.coming)
@@ -432,7 +417,7 @@ class Drafts:
         if self.shown is not None:
             locked = set(self.shown.edits.locked)
             left = tuple(v for v in self.shown.edits.values if v[0] in locked)
-            self.restore(replace(self.shown.edits, values=left, techniques=()))
+            self.restore(replace(self.shown.edits, values=left, techniques=(), channels=()))
 
     def _edit(self, change: Callable[[Edits], Edits]) -> None:
         self._change(lambda draft: draft.with_edits(change(draft.edits)))
@@ -487,7 +472,7 @@ class Drafts:
 
     def _is_new(self, shown: Draft, edited: Draft) -> bool:
         """Say whether a choice has to be checked first: a technique, or data that was never drawn with."""
-        if edited.edits.techniques != shown.edits.techniques:
+        if edited.edits.techniques != shown.edits.techniques or edited.edits.channels != shown.edits.channels:
             return True
         return self.sandboxed and self._drawn.reads_new_data(edited.sketch)
 

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from pathlib import Path
 
-from playground.errors import ParameterError
+from playground.errors import DataError, ParameterError
+from playground.images.content_hash import content_key
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.model import Sketch, Value
 from playground.sketch.values import write
@@ -58,12 +60,23 @@ def newer_value(
 
 def notice(sketch: Sketch, path: str, value: Value, newer: FileValue) -> str:
     """Return the sentence that reports an edit that gave way; "" where the files say that very value."""
-    if newer.value == value:
+    if newer.value == value or _same_file(sketch, value, newer.value):
         return ""
     if newer.value is None or path in TERRAIN_KEYS:
         return f"{path}: the file's new value is taken"
     parameter = resolve(sketch.graph, path)[0].parameter
     return f"{path}: the file's new value, {write(parameter, newer.value)}, is taken"
+
+
+def _same_file(sketch: Sketch, value: Value, newer: Value | None) -> bool:
+    """Return whether two paths lead to the same contents: saving copies files next to the sketch."""
+    if not (isinstance(value, str) and isinstance(newer, str)):
+        return False
+    folder = Path(sketch.folder)
+    try:
+        return content_key(folder / value) == content_key(folder / newer)
+    except DataError:
+        return False
 
 
 def _set_by(sketch: Sketch) -> set[str]:

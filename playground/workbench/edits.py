@@ -18,10 +18,10 @@ Edits survive a reload. In full, for an edited parameter:
   it returns, as long as that has the same type and a range that holds it; so does a value that the
   current technique does not take.
 
-A parameter that is not edited shows what the files say, new defaults included. A camera set by the
-user stays until the file moves the camera, and a technique chosen by the user until the file fills
-that pass with another. A locked parameter keeps its value, edited or not, over any change of the files, as
-long as it fits at all.
+A parameter that is not edited shows what the files say, new defaults included. A camera set by the user
+stays until the file moves the camera, a technique chosen by the user until the file fills that pass with
+another, and what feeds a channel until the file feeds it otherwise. A locked parameter keeps its value,
+edited or not, over any change of the files, as long as it fits at all.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from functools import cached_property
 
 from playground.errors import ParameterError, PlaygroundError
 from playground.sketch.assign import TERRAIN_KEYS, check_value, current_path, resolve, values_of
+from playground.sketch.channels import channels, find_channel, in_order, with_source
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.replace_technique import with_technique
 from playground.sketch.values import is_whole, write
@@ -47,6 +48,7 @@ class Edits:
     techniques: tuple[tuple[str, str], ...] = ()  # pass → use
     camera: Camera | None = None  # None: the file's
     locked: tuple[str, ...] = ()  # parameter paths that only their own row changes
+    channels: tuple[tuple[str, str], ...] = ()  # channel of another tool's shader → what feeds it
 
     def with_value(self, path: str, value: Value) -> Edits:
         """Return them with a parameter set."""
@@ -113,13 +115,34 @@ class Draft:
 
     def choose(self, pass_name: str, use: str) -> Draft:
         """Return the draft with another technique in a pass; raise ``SketchError`` if it cannot be there."""
+        fed = next((c for c in channels(self.base) if c.alone and c.feeder == pass_name), None)
+        if fed is not None:
+            return self.feed(fed.path, use)
         others = tuple(t for t in self.edits.techniques if t[0] != pass_name)
         in_file = self.file.graph.find(pass_name)
         chosen = () if in_file is not None and in_file.use == use else ((pass_name, use),)
-        return self.with_techniques((*others, *chosen))
+        return self.with_choices((*others, *chosen), self.edits.channels)
 
-    def with_techniques(self, techniques: tuple[tuple[str, str], ...]) -> Draft:
-        """Return the draft with these techniques chosen by the user, and no others.
+    def feed(self, channel: str, source: str, /, **values: Value) -> Draft:
+        """Return the draft with another source for a channel, and ``values`` of the parameters of that.
+
+        Raises ``SketchError`` if it cannot be there.
+        """
+        in_file = find_channel(self.file, channel)
+        own = in_file.feeder if in_file is not None and in_file.alone else ""
+        techniques = tuple(t for t in self.edits.techniques if t[0] != own)
+        others = tuple(c for c in self.edits.channels if c[0] != channel)
+        chosen = () if in_file is not None and in_file.is_fed_by(source) else ((channel, source),)
+        made = self.with_choices(techniques, (*others, *chosen))
+        feeder = found.feeder if (found := find_channel(made.base, channel)) is not None else ""
+        for name, value in values.items():
+            made = made.with_value(f"{feeder}.{name}", value)
+        return made
+
+    def with_choices(
+        self, techniques: tuple[tuple[str, str], ...], sources: tuple[tuple[str, str], ...]
+    ) -> Draft:
+        """Return the draft with these techniques and sources of channels chosen by the user, and no others.
 
         They are put into the file's own sketch, so that what a pass had comes back with
         its technique. Raises ``SketchError`` if one cannot be there.
@@ -127,12 +150,14 @@ class Draft:
         base = self.file
         for name, use in techniques:
             base = with_technique(base, name, use)
-        return Draft(self.file, base, replace(self.edits, techniques=techniques))
+        for channel, source in in_order(sources):
+            base = with_source(base, channel, source)
+        return Draft(self.file, base, replace(self.edits, techniques=techniques, channels=sources))
 
     def with_all(self, edits: Edits) -> Draft:
-        """Return the same files with other edits, techniques included; raise as ``with_techniques``."""
-        same = edits.techniques == self.edits.techniques
-        return (self if same else self.with_techniques(edits.techniques)).with_edits(edits)
+        """Return the same files with other edits, techniques included; raise as ``with_choices``."""
+        same = (edits.techniques, edits.channels) == (self.edits.techniques, self.edits.channels)
+        return (self if same else self.with_choices(edits.techniques, edits.channels)).with_edits(edits)
 
 
 def taken(sketch: Sketch, path: str, value: Value) -> Value | None:
@@ -157,8 +182,10 @@ def reload_draft(old: Draft, loaded: Sketch) -> tuple[Draft, list[str]]:
     edits, note = with_camera_of(old.edits, old.file.camera, loaded.camera)
     notes += filter(None, [note])
     base, techniques = _with_techniques(old.file, loaded, edits.techniques, notes)
+    base, sources = _with_sources(old.file, base, loaded, edits.channels, notes)
     values = tuple(_after_reload(old, base, notes))
-    return Draft(loaded, base, replace(edits, techniques=techniques, values=values)), notes
+    edits = replace(edits, techniques=techniques, channels=sources, values=values)
+    return Draft(loaded, base, edits), notes
 
 
 def with_camera_of(edits: Edits, was: Camera, now: Camera) -> tuple[Edits, str]:
@@ -186,6 +213,26 @@ def _with_techniques(
             stay.append((name, use))
         except PlaygroundError as error:
             notes.append(f"{name}: {use} can no longer be used ({error.diagnostics[0].message})")
+    return base, tuple(stay)
+
+
+def _with_sources(
+    before: Sketch, base: Sketch, loaded: Sketch, chosen: tuple[tuple[str, str], ...], notes: list[str]
+) -> tuple[Sketch, tuple[tuple[str, str], ...]]:
+    """Return the sketch with the sources that still can feed their channels, and which they are."""
+    stay = []
+    for channel, source in in_order(chosen):
+        was, now = find_channel(before, channel), find_channel(loaded, channel)
+        if now is not None and now.is_fed_by(source):
+            continue  # it has become the file's own
+        if now is None or (was is not None and was.source != now.source):
+            notes.append(f"{channel}: what was chosen to feed it here gave way to the file's")
+            continue
+        try:
+            base = with_source(base, channel, source)
+            stay.append((channel, source))
+        except PlaygroundError as error:
+            notes.append(f"{channel}: {source} can no longer feed it ({error.diagnostics[0].message})")
     return base, tuple(stay)
 
 
@@ -256,7 +303,8 @@ def _moved(was: Parameter, now: Parameter, value: Value, path: str, base: Sketch
 
 def _clamped(parameter: Parameter, value: Value, low: float, high: float) -> Value:
     numbers = value if isinstance(value, tuple) else (value,)
-    held = [min(max(float(n), low), high) for n in numbers]
+    axes = parameter.widget.axes or ((low, high),) * len(numbers)
+    held = [min(max(float(n), least), most) for n, (least, most) in zip(numbers, axes, strict=True)]
     found = tuple(round(n) for n in held) if is_whole(parameter.type) else tuple(held)
     return found if isinstance(value, tuple) else found[0]
 

@@ -28,8 +28,10 @@ MOST = 200
 KEYFRAMES = "keyframes"
 
 Key = tuple[str, str]
-"""What can change: ("value", path), ("technique", pass), ("lock", path), ("step", path), ("camera", "")
-("keyframes", "") or ("time", "")."""
+"""What can change: ("value", path), ("technique", pass), ("channel", path), ("lock", path), ("step", path),
+("camera", ""), ("keyframes", "") or ("time", "")."""
+CHECKED = ("technique", "channel")
+"""The kinds that are shown only once they have proved good."""
 State = Mapping[Key, object]
 """What is set, by what it is; what is as the file says is not in it."""
 
@@ -48,6 +50,7 @@ def state_of(edits: Edits, steps: Mapping[str, int]) -> dict[Key, object]:
     """Return everything that is edited."""
     found: dict[Key, object] = {("value", path): value for path, value in edits.values}
     found |= {("technique", name): use for name, use in edits.techniques}
+    found |= {("channel", path): source for path, source in edits.channels}
     found |= {("lock", path): True for path in edits.locked}
     found |= {("step", path): step for path, step in steps.items()}
     if edits.camera is not None:
@@ -62,6 +65,7 @@ def edits_of(state: State) -> Edits:
         tuple((name, cast(str, use)) for (kind, name), use in state.items() if kind == "technique"),
         cast("Camera | None", state.get(("camera", ""))),
         tuple(path for (kind, path), _ in state.items() if kind == "lock"),
+        tuple((path, cast(str, source)) for (kind, path), source in state.items() if kind == "channel"),
     )
 
 
@@ -134,7 +138,7 @@ class History:
         if rests and self._due:
             missed = {key: value for key, value in self._due.items() if self._state.get(key) != value}
             self._due = {}
-            if any(kind == "technique" for kind, _ in missed):
+            if any(kind in CHECKED for kind, _ in missed):
                 before = {**before, **missed}
                 changed |= missed.keys()
         if changed:
@@ -227,6 +231,9 @@ def in_words(step: Step, name_of: Callable[[str], str], write: Callable[[str, ob
     if step.name:
         return step.name
     kinds = {kind for kind, _ in step.after}
+    if "channel" in kinds:  # what else changed belongs to what feeds it
+        fed = next((path, source) for (kind, path), source in step.after.items() if kind == "channel")
+        return f"{fed[0]}: {fed[1] if fed[1] is not None else 'what the file feeds it'}"
     if len(step.after) != 1:
         return f"{len(step.after)} parameters" if kinds == {"value"} else f"{len(step.after)} things"
     ((kind, path), after), before = next(iter(step.after.items())), next(iter(step.before.values()))

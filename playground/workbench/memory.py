@@ -159,7 +159,11 @@ def _written(remembered: Remembered, sketch: str) -> dict[str, Any]:
 
 def _written_edits(edits: Edits) -> dict[str, Any]:
     values = {path: {"value": value} for path, value in edits.values}
-    return asdict(edits) | {"values": values, "techniques": dict(edits.techniques)}
+    return asdict(edits) | {
+        "values": values,
+        "techniques": dict(edits.techniques),
+        "channels": dict(edits.channels),
+    }
 
 
 def _read(table: Any) -> Remembered:
@@ -198,6 +202,7 @@ def _edits(table: Any) -> Edits:
         tuple((str(name), str(use)) for name, use in table["techniques"].items()),
         _camera(table["camera"]),
         tuple(str(path) for path in table.get("locked", ())),
+        tuple((str(path), str(source)) for path, source in table.get("channels", {}).items()),
     )
 
 

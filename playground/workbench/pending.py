@@ -1,4 +1,4 @@
-"""Choices of the user that have to be checked before they are shown: techniques and data files."""
+"""Choices of the user that have to be checked before they are shown: techniques, channels, data files."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from playground.workbench.edits import Draft, Edits
-from playground.workbench.history import Key, changes_between
+from playground.workbench.history import CHECKED, Key, changes_between
 
 Change = Callable[[Draft], Draft]
 """Returns a draft with something edited; may raise ``PlaygroundError``."""
@@ -19,18 +19,20 @@ class Choice:
 
     change: Change
     keys: frozenset[Key]  # all that it sets
-    chosen: Mapping[Key, object]  # techniques and files, by what they are for; None: the file's own again
+    chosen: Mapping[
+        Key, object
+    ]  # techniques, sources, files, by what they are for; None: the file's own again
 
     @property
     def use(self) -> str:
-        """The technique that is chosen; empty where it is the file's, or a data file."""
-        return next((str(use) for (kind, _), use in self.chosen.items() if kind == "technique" and use), "")
+        """The technique or source that is chosen; empty where it is the file's, or a data file."""
+        return next((str(use) for (kind, _), use in self.chosen.items() if kind in CHECKED and use), "")
 
     @property
     def label(self) -> str:
         """What is chosen, for a sentence: "height: ./dunes"."""
         named = {
-            path: value if kind == "technique" or value is None else Path(str(value)).name
+            path: value if kind in CHECKED or value is None else Path(str(value)).name
             for (kind, path), value in self.chosen.items()
         }
         return ", ".join(f"{path}: {value or 'what the file says'}" for path, value in named.items())
@@ -42,6 +44,6 @@ def choice_of(change: Change, before: Edits, after: Edits) -> Choice:
     chosen = {
         key: value
         for key, value in new.items()
-        if key[0] == "technique" or isinstance(value, str) or isinstance(old[key], str)
+        if key[0] in CHECKED or isinstance(value, str) or isinstance(old[key], str)
     }
     return Choice(change, frozenset(new), chosen)

@@ -51,20 +51,22 @@ def _anywhere(parameter: Parameter, randoms: Random) -> Value | None:
         return randoms.randrange(len(parameter.widget.choices))
     if kind == "checkbox":
         return randoms.random() < 0.5
+    if kind == "button":
+        return None
     if kind == "direction":
         return round(randoms.uniform(0, 360), 1), round(randoms.uniform(*HEIGHTS), 1)
     if kind == "colour":
         return _colour(parameter, [randoms.random() for _ in range(3)])
     if low is None or high is None:
         return None
-    return _number(parameter, [_on(parameter, randoms.random()) for _ in range(_count(parameter))])
+    return _number(parameter, [_on(parameter, randoms.random(), n) for n in range(_count(parameter))])
 
 
 def _near(parameter: Parameter, value: Value, randoms: Random, strength: float) -> Value | None:
     kind, (low, high) = parameter.widget.kind, (parameter.widget.low, parameter.widget.high)
     if kind in ("menu", "checkbox"):
         return _anywhere(parameter, randoms) if randoms.random() < strength else value
-    if isinstance(value, str):
+    if isinstance(value, str) or kind == "button":
         return None
     numbers = [float(n) for n in value] if isinstance(value, tuple) else [float(value)]
     if kind == "direction":
@@ -72,18 +74,18 @@ def _near(parameter: Parameter, value: Value, randoms: Random, strength: float) 
         elevation = numbers[1] + 90 * randoms.gauss(0, strength)
         return round(azimuth, 1), round(min(max(elevation, HEIGHTS[0]), HEIGHTS[1]), 1)
     if kind == "colour":
-        seen = linear_to_srgb([min(max(n, 0.0), 1.0) for n in numbers[:3]]).tolist()
+        held = [min(max(n, 0.0), 1.0) for n in numbers[:3]]
+        seen = held if parameter.widget.raw else linear_to_srgb(held).tolist()
         return _colour(parameter, [c + randoms.gauss(0, strength) for c in seen], numbers[3:])
     if low is None or high is None:
         return _number(parameter, [n * math.exp(randoms.gauss(0, strength)) for n in numbers])
-    return _number(
-        parameter, [_on(parameter, _share(parameter, n) + randoms.gauss(0, strength)) for n in numbers]
-    )
+    shares = [_share(parameter, n, axis) + randoms.gauss(0, strength) for axis, n in enumerate(numbers)]
+    return _number(parameter, [_on(parameter, share, axis) for axis, share in enumerate(shares)])
 
 
-def _on(parameter: Parameter, share: float) -> float:
-    """Return the number at a share of the slider's way."""
-    low, high = parameter.widget.low, parameter.widget.high
+def _on(parameter: Parameter, share: float, axis: int) -> float:
+    """Return the number at a share of the slider's way; ``axis`` is its place in a vector."""
+    low, high = parameter.widget.ends(axis)
     assert low is not None and high is not None
     share = min(max(share, 0.0), 1.0)
     if parameter.widget.kind == "log_slider":
@@ -91,9 +93,9 @@ def _on(parameter: Parameter, share: float) -> float:
     return low + (high - low) * share
 
 
-def _share(parameter: Parameter, number: float) -> float:
-    """Return the share of the slider's way at which a number lies."""
-    low, high = parameter.widget.low, parameter.widget.high
+def _share(parameter: Parameter, number: float, axis: int) -> float:
+    """Return the share of the slider's way at which a number lies; ``axis`` is its place in a vector."""
+    low, high = parameter.widget.ends(axis)
     assert low is not None and high is not None
     if parameter.widget.kind == "log_slider":
         return math.log(number / low) / math.log(high / low)
@@ -119,4 +121,5 @@ def _colour(parameter: Parameter, seen: list[float], alpha: list[float] | None =
     """Return a colour of eight bits a channel, so that it can be written as it is; alpha stays."""
     steps = [round(min(max(c, 0.0), 1.0) * 255) / 255 for c in seen]
     assert isinstance(parameter.default, tuple)
-    return (*srgb_to_linear(steps).tolist(), *(alpha or parameter.default[3:]))
+    found = steps if parameter.widget.raw else srgb_to_linear(steps).tolist()
+    return (*found, *(alpha or parameter.default[3:]))

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from playground.errors import PlaygroundError
 from playground.sketch.assign import current_path
+from playground.sketch.channels import in_order
 from playground.sketch.model import Camera, Sketch, Value
 from playground.workbench.edit_merge import FileValue, file_values, newer_value, notice
 from playground.workbench.edits import Draft, Edits, with_camera_of
@@ -37,13 +38,18 @@ def stored(draft: Draft) -> StoredEdits:
 def first_draft(loaded: Sketch, start: StoredEdits) -> tuple[Draft, list[str]]:
     """Return the draft to begin with, and a sentence for each edit that gave way to the files."""
     edits, note = with_camera_of(start.edits, start.camera_in_file or loaded.camera, loaded.camera)
-    draft = Draft(loaded, loaded, replace(edits, techniques=()))
+    draft = Draft(loaded, loaded, replace(edits, techniques=(), channels=()))
     notes = [note] if note else []
     for name, use in edits.techniques:
         try:
             draft = draft.choose(name, use)
         except PlaygroundError as error:
             notes.append(f"{name}: {use} can no longer be used ({error.diagnostics[0].message})")
+    for channel, source in in_order(edits.channels):
+        try:
+            draft = draft.feed(channel, source)
+        except PlaygroundError as error:
+            notes.append(f"{channel}: {source} can no longer feed it ({error.diagnostics[0].message})")
     now = file_values(draft.base, [path for path, _ in edits.values])
     values = []
     for path, value in edits.values:

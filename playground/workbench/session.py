@@ -11,7 +11,7 @@ No window and no keys: ``frame(size)`` returns the texture to show.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
@@ -22,12 +22,15 @@ from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan
 from playground.errors import ContextError, PlaygroundError
+from playground.sketch.assign import resolve
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Sketch, Value
+from playground.workbench.catch_up import CatchUp
+from playground.workbench.checks import Checks
 from playground.workbench.clock import Clock
 from playground.workbench.data_files import DataFiles
-from playground.workbench.drafts import Checks, Drafts
+from playground.workbench.drafts import Drafts
 from playground.workbench.edits import Draft
 from playground.workbench.framing import framed
 from playground.workbench.last_frame import Painter, Picture
@@ -86,7 +89,9 @@ class Session:
         self.is_preview = False  # the picture is a preview, and will be drawn again in full
         self.before_switch: Callable[[], None] = lambda: None  # called before another sketch is shown
         self._now = now
+        self.catch_up = CatchUp(now)
         self._is_lost = is_lost  # says whether the engine's context is lost
+        self._pressed: frozenset[str] = frozenset()  # buttons pressed since the last frame, by leaf
         self._lost_over: object = None  # what was shown when a context was lost last
         self._painter = Painter(engine.ctx)
         self._picture = Picture(self._painter)
@@ -156,7 +161,8 @@ class Session:
     @property
     def rests(self) -> bool:
         """Whether there is a picture, and nothing is coming that may replace it."""
-        return self.plan is not None and self.drafts.stage is ReloadStage.NONE and not self.awaits_data
+        coming = self.drafts.stage is not ReloadStage.NONE or self.catch_up.behind is not None
+        return self.plan is not None and not coming and not self.awaits_data
 
     def can_show(self, ref: str) -> bool:
         """Say whether a map can show a texture: one of ``refs``, or one of the view itself."""
@@ -176,9 +182,15 @@ class Session:
         self.drafts.open(path, start=start, texts=texts)
         self.view.restore({}, None, later=True)
 
-    def open_copy(self, path: Path) -> None:
-        """Open a copy of the sketch that is shown; edits and view go on. Raises as ``Drafts.open``."""
+    def open_copy(self, path: Path, saved: Draft | None = None) -> None:
+        """Open a copy of the sketch that is shown; edits and view go on. Raises as ``Drafts.open``.
+
+        ``saved`` is the same picture as the copy says it, where its paths are not those of the one shown.
+        """
         self._take_back()
+        if saved is not None:
+            self.drafts.show(saved)
+            self.drafts.reads, self.drafts.read_edits = self.drafts.reads + 1, saved.edits
         self.drafts.open(path, keep=True)
 
     def stay(self) -> None:
@@ -225,9 +237,31 @@ class Session:
             if self.sketch is not None and traits_of(self.sketch).mouse:
                 self.redraw()
 
+    def press(self, path: str) -> None:
+        """Press a button, by its path: the next frame alone sees it pressed."""
+        if self.sketch is not None:
+            self._pressed |= {target.path for target in resolve(self.sketch.graph, path)}
+
+    def _press(self) -> None:
+        """Pass the buttons pressed since the last frame to the engine, and let go of those before."""
+        runner = self.engine.runner
+        if runner.pressed != self._pressed:
+            runner.pressed = self._pressed
+            self.redraw()
+        self._pressed = frozenset()
+
+    def hold_keys(self, codes: Collection[int]) -> None:
+        """Begin a frame in which the picture's keys are down, by their codes in JavaScript."""
+        if self.engine.runner.inputs.keyboard.hold(codes) and self.sketch and traits_of(self.sketch).keys:
+            self.redraw()
+
     def advance(self, seconds: float, date: datetime) -> None:
-        """Advance the clock by seconds of real time, unless it is paused; plain shaders get the date."""
-        self.clock.advance(seconds)
+        """Advance the clock by seconds of real time, unless it is paused; plain shaders get the date.
+
+        While the picture is behind, it waits.
+        """
+        if self.catch_up.behind is None:
+            self.clock.advance(seconds)
         midnight = date.replace(hour=0, minute=0, second=0, microsecond=0)
         runner = self.engine.runner
         runner.delta = seconds * self.clock.speed
@@ -282,6 +316,7 @@ class Session:
         for a mistake in the sketch: it is in ``error``, and the last good picture stays.
         """
         drafts, self._size = self.drafts, size
+        self._press()
         if drafts.stage is ReloadStage.SANDBOX:
             drafts.take_report()
         if drafts.stage is ReloadStage.DRAW:
@@ -289,7 +324,7 @@ class Session:
         if drafts.shown is not None:
             wanted = self._wanted(size)
             in_full = self.is_preview and self._now() - self._drawn_at >= REST
-            if wanted != self._drawn:
+            if wanted != self._drawn or self.catch_up.behind is not None:
                 self._draw_shown(drafts.shown.sketch, wanted, size)
             elif in_full:
                 self._draw_shown(drafts.shown.sketch, wanted, size, in_full=True)
@@ -298,7 +333,8 @@ class Session:
     def read(self) -> Frame | None:
         """Read the picture back, in full; None before the first."""
         texture = self._picture.texture
-        if self.is_preview and texture is not None and self.sketch is not None:
+        unfinished = self.is_preview or self.catch_up.behind is not None
+        if unfinished and texture is not None and self.sketch is not None:
             self._draw_shown(self.sketch, self._wanted(texture.size), texture.size, in_full=True)
         return self._picture.frame(self.sketch.name if self.sketch else "", self.clock.time)
 
@@ -314,6 +350,7 @@ class Session:
         something is changed.
         """
         engine.runner.mouse = self.engine.runner.mouse
+        engine.runner.inputs = self.engine.runner.inputs
         engine.runner.hover, engine.runner.drag = self.engine.runner.hover, self.engine.runner.drag
         engine.plain_forms.notice = silent
         engine.painted.update(self.engine.painted)
@@ -398,14 +435,19 @@ class Session:
         """Draw; on a software renderer a preview first: see ``workbench.preview``."""
         engine, now, view, traits = self.engine, self.clock.time, self.view, traits_of(sketch)
         chosen = as_preview(sketch) if engine.info.software and traits.draws and not in_full else sketch
-        engine.runner.frame = self.draws
-        texture = engine.draw(
-            framed(chosen, now, view.framed_for, size) if traits.camera else chosen,
-            size=size,
-            time=now,
-            steps=view.stops(sketch, now, coming=coming),
-            interpolated=view.interpolated,
-        )
+
+        def drawn_at(time: float) -> moderngl.Texture:
+            return engine.draw(
+                framed(chosen, time, view.framed_for, size) if traits.camera else chosen,
+                size=size,
+                time=time,
+                steps=view.stops(sketch, time, coming=coming),
+                interpolated=view.interpolated,
+            )
+
+        texture = self.catch_up.draw(engine, now, drawn_at, in_full=in_full)
+        if texture is None:
+            return
         self._picture.copy(texture)
         self.is_preview = chosen is not sketch
         self._drawn_at = self._now()

@@ -15,7 +15,10 @@ def sun_off_arc(plan: Plan) -> str:
     for step in plan.walk():
         for parameter in step.kernel.parameters:
             rule = parameter.follows
-            if rule is None or (rule.menu and step.values[rule.menu] != rule.choice):
+            if rule is None:
+                continue
+            menu = step.kernel.parameter(rule.menu)
+            if menu is not None and step.values[rule.menu] != menu.widget.given(rule.choice):
                 continue
             if any(source is not None for name, source in step.inputs if name == "daylight"):
                 continue  # the sun is that of the daylight

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
-from playground.sketch.expressions import names_in
+from playground.sketch.expressions import follows_time
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, kernels_of
 
-_MOVING = frozenset({"time", "frame", "frame_of_time", "delta", "date"})
+_MOVING = frozenset({"time", "bands", "frame", "frame_of_time", "delta", "date", "date_from_1"})
 _MOUSE = frozenset({"mouse", "hover", "hover_share", "drag"})
 _CAMERA = ("clip_from_world", "world_from_clip", "eye")
 
@@ -23,6 +23,7 @@ class Traits:
     counts: bool  # a size or a number of steps names time
     camera: bool  # the camera moves something in the picture
     mouse: bool  # a plain shader reads the mouse
+    keys: bool  # a source reads the keyboard
     files: tuple[tuple[str, Parameter], ...]  # parameters that name files, by the paths of the leaves
     draws: tuple[tuple[str, Kernel], ...]  # kernels that draw meshes
     arcs: bool  # an angle follows a direction until it is set
@@ -48,7 +49,7 @@ def _traits(key: Identity[Graph]) -> Traits:
     kernels = list(kernels_of(key.object))
     plain = {id(kernel) for _, kernel in kernels if kernel.kind.startswith("plain")}
     files = [(f"{at}.{p.name}", p) for at, k in kernels for p in k.parameters if p.widget.kind == "file"]
-    counts = any("time" in text and "time" in names_in(text) for text in _counts_of(key.object))
+    counts = any(follows_time(text) for text in _counts_of(key.object))
     return Traits(
         moves=counts
         or any(k.reads("time") for _, k in kernels if id(k) not in plain)
@@ -56,6 +57,7 @@ def _traits(key: Identity[Graph]) -> Traits:
         counts=counts,
         camera=any(kernel.reads(name) for _, kernel in kernels for name in _CAMERA),
         mouse=any(meaning in _MOUSE for _, k in kernels for _, meaning in k.usual),
+        keys=any("keys" in kernel.depends for _, kernel in kernels),
         files=tuple(files),
         draws=tuple((path, kernel) for path, kernel in kernels if kernel.kind == "draw"),
         arcs=any(p.follows for _, k in kernels for p in k.parameters),

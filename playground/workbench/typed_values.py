@@ -12,7 +12,7 @@ from playground.sketch.values import coerce, is_whole
 NAMES = {"pi": math.pi, "tau": math.tau}
 """What an expression may name."""
 
-_WORDS = ("menu", "file", "checkbox")
+_WORDS = ("menu", "file", "checkbox", "button")
 
 
 def read_typed(parameter: Parameter, text: str, path: str) -> Value:

@@ -19,6 +19,7 @@ from playground.images.files import write_png
 from playground.reduce.inline import inline_sketch
 from playground.sketch.dialects.foreign import unfed_warnings
 from playground.sketch.load import load
+from playground.sketch.model import kernels_of
 from playground.sketch.text_overrides import with_texts
 from playground.workbench.traits import traits_of
 from tests.dialect_texts import TEXTS, with_mistake
@@ -64,10 +65,10 @@ def test_a_mistake_is_at_its_own_line(any_engine, folder, name):
 
 @pytest.mark.parametrize("name", TEXTS)
 def test_the_driver_gets_no_deprecated_name(folder, name):
-    kernel = load(folder.write(f"{name}.frag", TEXTS[name])).graph.find("view").technique
-    for stage in wrap(kernel, FRAGMENT, 450).stages.values():
-        left = [word for line in stage.text.split("\n") for word in DEPRECATED.findall(line)]
-        assert not left
+    kernels = kernels_of(load(folder.write(f"{name}.frag", TEXTS[name])).graph.find("view").technique)
+    stages = [stage for _, kernel in kernels for stage in wrap(kernel, FRAGMENT, 450).stages.values()]
+    left = [word for stage in stages for line in stage.text.split("\n") for word in DEPRECATED.findall(line)]
+    assert stages and not left
 
 
 def test_a_mistake_in_an_include_is_at_the_include_s_line(any_engine, folder):
@@ -238,9 +239,9 @@ def test_a_sketch_wires_a_pass_to_a_channel_and_sets_a_parameter(any_engine, fol
 def test_what_nothing_feeds_is_named_once(folder):
     text = TEXTS["kodelife"]
     plan = Planner().plan(load(folder.write("t.frag", text)), frame_size=SIZE)
-    fed, black = source_warnings(plan)
+    sound, fed = source_warnings(plan)
     assert "texture0, texture1, texture2, texture3" in fed.message and fed.line == 6
-    assert "prevFrame, prevPass" in black.message and "reads black" in black.message
+    assert "nothing feeds spectrum: a made-up sound" in sound.message
     toy = TOY.format("texture(iChannel0, p) + texture(iChannel1, p)")
     folder.write("toy.frag", toy)
     view = '[view]\nuse = "./toy"\ninputs = {{ {} }}\n'
@@ -275,12 +276,10 @@ def test_a_dialect_may_be_named(any_engine, folder):
 
 def test_what_is_not_read_yet_is_one_sentence(folder):
     cases = {
-        '/*{"ISFVSN": "2", "INPUTS": []}*/\nvoid main() {}': "an ISF shader, which is not read yet",
-        '{"Shader": {"renderpass": []}}': "a Shadertoy export .JSON., which is not read yet",
-        '#iChannel0 "self"\nvoid mainImage(out vec4 c, vec2 p) {}': "VS Code .* not read yet",
-        "vec2 mainSound(int s, float t) { return vec2(0.0); }": "sound, .* not read yet",
+        "vec2 mainSound(int s, float t) { return vec2(0.0); }": "mainSound is sound, .* no mainImage",
+        "void mainVR(out vec4 c, vec2 p, vec3 o, vec3 d) {}": "mainVR is for VR, .* no mainImage",
+        "void mainCubemap(out vec4 c, vec2 p, vec3 o, vec3 d) {}": "a cube map alone is not drawn",
         "float x;": "nothing to run: no main, mainImage or #pragma",
-        "#if defined(BUFFER_0)\n#endif\nvoid main() {}": "BUFFER_0 is a pass of its own, .* not drawn yet",
     }
     for text, sentence in cases.items():
         with pytest.raises(PlaygroundError, match=sentence):
@@ -326,3 +325,28 @@ def test_check_names_the_dialect_and_the_line(folder):
 def test_the_title_names_the_dialect(folder):
     assert load(folder.write("t.frag", TEXTS["toy"])).title == "All that Shadertoy declares (shadertoy)"
     assert load(folder.write("u.frag", TEXTS["book"])).title == "u (main)"
+
+
+def test_a_made_up_sound_stands_in_for_one_and_is_named(any_engine, folder):
+    lines = "uniform sampler1D texFFT;\nuniform sampler1D texFFTSmoothed;\nuniform vec2 v2Resolution;\n"
+    body = "float x = gl_FragCoord.x / v2Resolution.x;\n"
+    colour = "vec4(texture(texFFT, x).r, texture(texFFTSmoothed, x).r, 0.0, 1.0)"
+    text = f"#version 410 core\n{lines}out vec4 c;\nvoid main() {{ {body} c = {colour}; }}\n"
+    sketch = load(folder.write("t.glsl", text))
+    found = [any_engine.render(sketch, size=(64, 4), time=t).array[0, :, 0].astype(int) for t in (1.1, 1.3)]
+    assert found[0].max() > 60 and found[0][-4:].max() < 60, "tones in the west, fewer in the east"
+    assert not np.array_equal(*found)
+    plan = any_engine.plan_for(sketch, (64, 4))
+    (warning,) = source_warnings(plan)
+    assert "nothing feeds texFFT, texFFTSmoothed: a made-up sound stands in" in warning.message
+
+
+def test_kodelife_s_three_bands_go_by_time_and_are_named(any_engine, folder):
+    text = "uniform vec3 spectrum;\nvoid main() { gl_FragColor = vec4(spectrum, 1.0); }\n"
+    sketch = load(folder.write("t.frag", text))
+    pictures = [any_engine.render(sketch, size=(2, 2), time=t).array for t in (0.0, 0.2, 0.4)]
+    found = {tuple(picture[0, 0, :3].tolist()) for picture in pictures}
+    assert len(found) == 3 and all(min(one) > 0 for one in found)
+    assert traits_of(sketch).moves
+    (warning,) = source_warnings(any_engine.plan_for(sketch, (2, 2)))
+    assert "nothing feeds spectrum: a made-up sound stands in" in warning.message

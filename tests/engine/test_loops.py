@@ -144,14 +144,14 @@ def test_what_reads_a_loop_is_stale_when_its_iterations_are(engine, rain):
     assert engine.runs["after"] == 2
 
 
-def test_a_repeat_that_reads_time_goes_on_and_starts_again_when_time_goes_back(engine, rain):
+def test_a_repeat_that_reads_time_goes_on_and_goes_back_to_an_earlier_state(engine, rain):
     sketch = rain("floor(time * 2)")
     counts = []
     for time in (0.0, 1.0, 1.2, 4.0, 4.0, 1.0, 1.5):
         found = engine.read(sketch, "rain:water", time=time)
         np.testing.assert_allclose(found, expected(int(time * 2))[0], rtol=1e-6)
         counts.append(engine.ran.count("rain.move"))
-    assert counts == [0, 2, 0, 6, 0, 2, 1]
+    assert counts == [0, 2, 0, 6, 0, 1, 1]
 
 
 def test_going_on_gives_the_same_bits_as_beginning_anew(ctx, engine, rain):
@@ -362,9 +362,9 @@ def test_what_changes_with_an_outer_loop_by_way_of_what_is_fed_back(engine, fold
 # ── what it costs ────────────────────────────────────────────────────────────
 
 
-def test_five_hundred_iterations_need_no_more_memory_than_five(any_engine, rain):
+def test_five_hundred_iterations_need_no_more_memory_than_a_hundred(any_engine, rain):
     sketch = rain("floor(time)")
-    any_engine.texture(sketch, "rain:water", time=5.0)
+    any_engine.texture(sketch, "rain:water", time=100.0)  # as many states are kept as may be
     made, cached = any_engine.pool.made, any_engine.cache.bytes
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     any_engine.texture(sketch, "rain:water", time=500.0)

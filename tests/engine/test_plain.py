@@ -34,7 +34,7 @@ def test_it_is_the_whole_picture(any_engine, toy):
     frame = any_engine.render(toy, size=(20, 10), time=5.0)
     expected = np.round((np.arange(20) + 0.5) / 20 * 255)
     np.testing.assert_allclose(frame.array[4, :, 0], expected, atol=1)
-    assert frame.array[0, 0].tolist()[1:] == [128, 0, 255]
+    np.testing.assert_allclose(frame.array[0, 0, 1:], [127.5, 0.3 * 255, 255], atol=1)
 
 
 def test_its_own_uniforms_are_parameters(any_engine, toy):
@@ -65,8 +65,8 @@ def test_the_resolution_has_as_many_components_as_are_declared(any_engine, folde
 @pytest.mark.parametrize("kind", ["float", "int", "uint"])
 def test_the_frame_number_fits_its_type(any_engine, folder, kind):
     path = folder.write("t.frag", TOY.replace("int iFrame", f"{kind} iFrame"))
-    any_engine.runner.frame = 1000
-    assert any_engine.render(load(path), size=(8, 8)).array[0, 0, 2] == 255
+    picture = any_engine.render(load(path), size=(8, 8), time=1000 / 60).array
+    assert picture[0, 0, 2] == 255
 
 
 def test_the_mouse_is_passed_on_and_a_still_one_makes_nothing_stale(any_engine, toy):

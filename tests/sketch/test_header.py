@@ -357,7 +357,7 @@ def test_mistakes_in_a_pragma(refused, text, words):
         ("uniform float a = 0.2; //! colour", "colour is for vec3 or vec4; 'a' is a float"),
         ("uniform vec3 a; //! direction", "direction is for vec2"),
         ("uniform bool a; //! slider(0, 1)", "slider is for numbers"),
-        ("uniform vec2 a; //! point(1, 2)", "takes nothing in brackets"),
+        ("uniform vec2 a; //! direction(1, 2)", "takes nothing in brackets"),
         ('uniform float a; //! menu("x", "y")', "menu is for int"),
         ('uniform int a; //! menu("x")', "needs its choices"),
         ('uniform int a; //! menu("x", "x")', "a choice twice"),

@@ -149,4 +149,11 @@ def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
         KIND.describe(values(elevation=str(tmp_path / "none.npy")))
     with pytest.raises(SketchError, match="did you mean 'elevation_file'"):
         source_kind("elevation_fil")
-    assert list(SOURCES) == ["elevation_file", "delaunay", "mask_file"]
+    assert list(SOURCES) == [
+        "elevation_file",
+        "delaunay",
+        "mask_file",
+        "video_file",
+        "sound_file",
+        "keyboard",
+    ]

@@ -15,6 +15,7 @@ from playground.errors import DataError, ParameterError
 from playground.paths import GLSL, shown
 from playground.shots.mutants.model import DoesNotApply, Edit, Rendering
 from playground.sketch.assign import resolve, value_of, values_of
+from playground.sketch.expressions import follows_time
 from playground.sketch.model import Camera, Graph, Kernel, PassSpec, Sketch, Technique, kernels_of
 from playground.sketch.reserved_names import PLAIN_UNIFORMS
 from playground.sketch.source import read_text
@@ -89,9 +90,9 @@ def _reads_time(graph: Graph) -> bool:
     repeats += [kernel.repeat for kernel in kernels]
     given = {meaning for kernel in kernels for _, meaning in kernel.usual}
     return (
-        bool({"time", "frame_of_time"} & given)
-        or any(names & kernel.source.names for kernel in kernels)
-        or any("time" in text for text in repeats)
+        bool({"time", "frame", "frame_of_time"} & given)
+        or any(kernel.reads(name) for kernel in kernels for name in names)
+        or any(follows_time(text) for text in repeats)
     )
 
 

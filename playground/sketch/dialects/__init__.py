@@ -8,24 +8,28 @@ from __future__ import annotations
 
 import re
 from collections import OrderedDict
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.sketch.allowed_files import is_file
-from playground.sketch.dialects import main, shadertoy
-from playground.sketch.dialects.es import rewritten, version_of
-from playground.sketch.dialects.foreign import Read, Rules, commented_files, graph_of, places_of
+from playground.sketch.dialects import isf, main, shadertoy, shadertoy_export, shadertoy_folder, vscode
+from playground.sketch.dialects.passes import Read, graph_of_shaders
+from playground.sketch.dialects.reading import Files
+from playground.sketch.dialects.shader import Made, Shader
 from playground.sketch.model import Graph
-from playground.sketch.source import Origin, read_source_and_origin, read_text
+from playground.sketch.source import read_text
 
 OWN = "own"
+EXPORT = ".json"
+_REFUSED = "sound"
 _MOST = 64
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
-_ISF = re.compile(r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES)"', re.DOTALL)
+_ISF = re.compile(
+    r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS)"', re.DOTALL
+)
 _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
 _DIRECTIVE = re.compile(r"^[ \t]*#(?:iChannel\d|iUniform|iKeyboard)\b", re.MULTILINE)
@@ -41,47 +45,65 @@ class Dialect:
     name: str  # as --dialect takes it
     label: str  # in a sentence
     sign: Callable[[str, str], object]  # of the text, and of the text without comments
-    rules: Rules | None = None  # None: not read yet, or our own
+    shaders: Callable[[Files], Sequence[Shader | Made]] | None = None  # None: not read yet, or our own
+    # No shader: the file runs as it is, as a plain shader.
 
 
-@dataclass(frozen=True)
-class _Known:
-    """What was read, and what it was made of."""
+def _shadertoy(files: Files) -> Sequence[Shader]:
+    """Return the passes of a file, and of the folder where it is one of several."""
+    if shadertoy_folder.has_more(files.path):
+        return shadertoy_folder.shaders(files)
+    return shadertoy.shaders(files)
 
-    graph: Graph | None
-    origin: Origin
-    pictures: tuple[tuple[Path, bool], ...]  # where a comment's file was looked for, and whether it was there
 
-    def holds(self) -> bool:
-        return self.origin.holds() and all(is_file(place) == there for place, there in self.pictures)
+def _vscode(files: Files) -> Sequence[Shader]:
+    return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else vscode.shaders(files)
+
+
+def _without_picture(files: Files) -> Sequence[Shader]:
+    """Return the passes of the folder that a file is one of; raise ``ShaderError`` for one alone."""
+    return (
+        shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else shadertoy.refused(files)
+    )
 
 
 DIALECTS = (
-    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text)),
-    Dialect("export", "a Shadertoy export (JSON)", lambda text, code: _EXPORT.match(text)),
+    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text), isf.shaders),
+    Dialect(
+        "export",
+        "a Shadertoy export (JSON)",
+        lambda text, code: _EXPORT.match(text),
+        shadertoy_export.shaders,
+    ),
     Dialect(OWN, "a kernel", lambda text, code: _OWN_PRAGMA.search(code)),
     Dialect(
         "vscode",
         "a VS Code Shadertoy file (#iChannel, #iUniform)",
         lambda text, code: _DIRECTIVE.search(code),
+        _vscode,
     ),
     Dialect(
         "shadertoy",
         "a Shadertoy shader",
         lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code),
-        shadertoy.RULES,
+        _shadertoy,
     ),
-    Dialect("main", "a shader with its own main", lambda text, code: _MAIN.search(code), main.RULES),
-    Dialect("sound", "Shadertoy's sound, VR or cube map", lambda text, code: _SOUND.search(code)),
+    Dialect("main", "a shader with its own main", lambda text, code: _MAIN.search(code), main.shaders),
+    Dialect(
+        _REFUSED,
+        "Shadertoy's sound, VR or cube map",
+        lambda text, code: _SOUND.search(code),
+        _without_picture,
+    ),
 )
 """The dialects, in the order in which a text is looked at."""
 
-_known: OrderedDict[tuple[Path, Path, str], _Known] = OrderedDict()
+_known: OrderedDict[tuple[Path, Path, str], tuple[Graph | None, Files]] = OrderedDict()
 
 
 def names() -> tuple[str, ...]:
     """Return what ``--dialect`` takes."""
-    return tuple(d.name for d in DIALECTS if d.rules is not None or d.name == OWN)
+    return tuple(d.name for d in DIALECTS if d.name != _REFUSED and (d.shaders or d.name == OWN))
 
 
 def check_name(name: str) -> str:
@@ -97,11 +119,9 @@ def dialect_of(text: str) -> Dialect | None:
     return next((dialect for dialect in DIALECTS if dialect.sign(text, code)), None)
 
 
-def refuse_export(path: Path) -> None:
-    """Raise ``SketchError`` for a JSON file that Shadertoy wrote."""
-    found = dialect_of(read_text(path)) if path.suffix == ".json" else None
-    if found is not None and found.name == "export":
-        raise _unread(found, path)
+def is_export(path: Path) -> bool:
+    """Return whether a file is a JSON that Shadertoy, or a tool in its place, wrote."""
+    return path.suffix == EXPORT and _EXPORT.match(read_text(path)) is not None
 
 
 def _unread(dialect: Dialect, path: Path) -> SketchError:
@@ -128,24 +148,23 @@ def read_foreign(
     """
     key = (path, root, dialect)
     known = _known.get(key) if not instead else None
-    if known is not None and known.holds():
+    if known is not None and known[1].hold():
         _known.move_to_end(key)
-        return known.graph
-    text = (instead or {}).get(str(path)) or read_text(path)
+        return known[0]
+    files = Files(path, root, instead or {}, named=bool(dialect))
+    text = files.text()
     chosen = next((d for d in DIALECTS if d.name == dialect), None) if dialect else dialect_of(text)
-    if chosen is None or chosen.name == OWN or (is_plain and chosen.rules is None):
+    if chosen is None or chosen.name == OWN or (is_plain and chosen.shaders is None):
         return None
-    if chosen.rules is None:
+    if chosen.shaders is None:
         raise _unread(chosen, path)
-    source, origin = read_source_and_origin(path, (root,), instead, foreign=True)
-    graph = None
-    if chosen.rules is main.RULES:
-        main.refuse_passes(source)
-    if chosen.rules is not main.RULES or dialect or version_of(source) < 330 or main.needs_dialect(source):
-        graph = graph_of(name, rewritten(source), chosen.rules, read, root)
+    shaders = chosen.shaders(files)
+    graph = graph_of_shaders(name, shaders, read, root) if shaders else None
+    if graph is not None:
+        title = files.title or graph.title
+        graph = replace(graph, title=title, warnings=(*graph.warnings, *files.notes))
     if not instead:
-        places = [place for line, file in commented_files(source) for place in places_of(file, line, root)]
-        _known[key] = _Known(graph, origin, tuple((place, is_file(place)) for place in places))
+        _known[key] = graph, files
         while len(_known) > _MOST:
             _known.popitem(last=False)
     return graph

@@ -6,8 +6,9 @@ Text only, by statements: comments are blanked already, and preprocessor conditi
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 
 _PRECISION = r"(?:(?:lowp|mediump|highp)\s+)?"
 _BEGINS = r"(?:^|[;{}\n])[ \t]*"
@@ -42,7 +43,8 @@ class Declared:
     written: str  # the name, its array and its initial value
 
 
-def uniforms(code: str) -> dict[str, Declared]:
+@lru_cache(maxsize=32)  # passes of one file share a text
+def uniforms(code: str) -> Mapping[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
     code = _with_qualifiers(code)
     found: dict[str, Declared] = {}
@@ -53,6 +55,7 @@ def uniforms(code: str) -> dict[str, Declared]:
     return found
 
 
+@lru_cache(maxsize=512)
 def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     """Return whether a text declares a variable or a function, outside of functions or ``anywhere``."""
     for match in re.finditer(rf"\b(?!return\b|else\b)[A-Za-z_]\w*\s+{name}\b\s*[=;,)\[(]", code):
@@ -62,6 +65,7 @@ def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     return False
 
 
+@lru_cache(maxsize=32)
 def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
     """Return what the vertex shader gives a fragment shader: declarations, and statements that set them."""
     code = _DIRECTIVE.sub("", _with_qualifiers(code))

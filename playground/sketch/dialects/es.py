@@ -7,8 +7,8 @@ not the longer one. ``Line.text`` stays what the author wrote.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 from playground.sketch.source import Line, SourceText
 
@@ -18,9 +18,22 @@ _PRAGMA = re.compile(r"\s*#\s*pragma\b")
 _DIRECTIVE = re.compile(r"\s*#")
 _OLD = re.compile(
     r"\b(?:(?P<lookup>texture(?:[123]D|Cube|2DRect)|shadow(?:[12]D|2DRect))(?P<way>Proj)?(?P<level>Lod|Grad)?"
-    r"(?:EXT|ARB)?|varying|attribute|gl_FragColor|gl_FragData|gl_FragDepthEXT)\b"
+    r"(?:EXT|ARB)?|varying|attribute"
+    r"|gl_(?:FragColor|FragData|FragDepthEXT|TexCoord|Color|SecondaryColor|FogFragCoord))\b"
 )
 _COLOUR, _DATA = "k_frag_color", "k_frag_data"  # as long as gl_FragColor and gl_FragData
+_OF_VERTICES = {
+    "gl_TexCoord": ("k_tex_coord", "vec4 k_tex_coord[8]"),
+    "gl_Color": ("k_color", "vec4 k_color"),
+    "gl_SecondaryColor": ("k_second", "vec4 k_second"),
+    "gl_FogFragCoord": ("k_fog", "float k_fog"),
+}
+"""What older vertex shaders gave under names of GLSL's own: the new name, and its declaration."""
+
+_OURS = re.compile(
+    r"k_(?:frag_color|frag_data|tex_coord|color|second|fog|window|part|picture|corner|share|place|i)"
+)
+"""Names that come before or after a text, or are in the vertex shader that is made for it."""
 
 _NEVER_NAMES = frozenset(
     """
@@ -55,6 +68,7 @@ class Rewritten:
 
     source: SourceText
     prelude: tuple[str, ...]  # lines that come before it: extensions, outputs
+    names: Mapping[str, str] = field(default_factory=dict)  # the author's name → what it is called in it
 
 
 def version_of(source: SourceText) -> int:
@@ -63,15 +77,20 @@ def version_of(source: SourceText) -> int:
     return int(found.group(1)) if found and found.group(2) != "es" and found.group(1) != "100" else 0
 
 
-def rewritten(source: SourceText) -> Rewritten:
-    """Rewrite a text; one of ``#version`` 330 or more keeps its version and its extensions."""
+def rewritten(source: SourceText, *, is_vertex: bool = False, declared: Collection[str] = ()) -> Rewritten:
+    """Rewrite a text; one of ``#version`` 330 or more keeps its version and its extensions.
+
+    ``declared`` are names that its tool declares for it: they are renamed where GLSL 3.30 has taken them.
+    """
     is_modern = version_of(source) >= 330
     names: dict[str, str] = {}
     version = next(filter(None, (_VERSION.match(line.code) for line in source.lines)), None)
     if version is None or int(version.group(1)) < 130:
-        names = _clashing(source)
-    data = "gl_FragData" in source.names
+        names = _clashing(source, declared)
+    names |= _free({name for name in source.names if _OURS.fullmatch(name)}, source)
+    data = "gl_FragData" in source.names and not is_vertex
     own = _own_functions(source) if names else ()
+    inputs = [declared for old, (_, declared) in _OF_VERTICES.items() if old in source.names]
     rename = re.compile(rf"\b(?:{'|'.join(names)})\b") if names else None
     lines: list[Line] = []
     extensions: list[str] = []
@@ -84,26 +103,30 @@ def rewritten(source: SourceText) -> Rewritten:
                 lines.append(replace(line, code=""))
                 continue
         new = rename.sub(lambda found: _renamed(found, names, own), code) if rename else code
-        new = _OLD.sub(lambda found: _new(found, data=data), new)
+        new = _OLD.sub(lambda found: _new(found, data=data, is_vertex=is_vertex), new)
         lines.append(line if new == code else replace(line, code=new))
-    prelude = extensions
+    prelude = [*extensions, *(f"in {declared};" for declared in inputs)]
     if data:
         prelude = [*prelude, f"layout(location = 0) out vec4 {_DATA}[4];"]
-    elif "gl_FragColor" in source.names:
+    elif "gl_FragColor" in source.names and not is_vertex:
         prelude = [*prelude, f"layout(location = 0) out vec4 {_COLOUR};"]
     made = SourceText(source.path, tuple(lines), source.files)
-    return Rewritten(made, tuple(prelude))
+    return Rewritten(made, tuple(prelude), names)
 
 
-def _new(found: re.Match[str], *, data: bool) -> str:
+def _new(found: re.Match[str], *, data: bool, is_vertex: bool = False) -> str:
     """Return what replaces an old word, as long as it."""
     old = found.group()
     if found.group("lookup"):
         new = f"texture{found.group('way') or ''}{found.group('level') or ''}"
     elif old == "gl_FragColor":
         new = f"{_DATA}[0]" if data else _COLOUR
+    elif old == "varying" and is_vertex:
+        new = "out"
     else:
-        new = {"gl_FragData": _DATA, "gl_FragDepthEXT": "gl_FragDepth"}.get(old, "in")
+        new = {"gl_FragData": _DATA, "gl_FragDepthEXT": "gl_FragDepth"}.get(old) or _OF_VERTICES.get(
+            old, ("in",)
+        )[0]
     # In a definition, blanks before the bracket would make another macro of it.
     return new if _DIRECTIVE.match(found.string) else new.ljust(len(old))
 
@@ -115,15 +138,21 @@ def _renamed(found: re.Match[str], names: Mapping[str, str], own: Collection[str
     return name if name in _FUNCTIONS and is_call and name not in own else names[name]
 
 
-def _clashing(source: SourceText) -> dict[str, str]:
+def _clashing(source: SourceText, declared: Collection[str]) -> dict[str, str]:
     """Return the author's names that GLSL 3.30 has taken, each with a free one."""
     code = source.code
     found = sorted(source.names & _NEVER_NAMES)
+    found += [name for name in declared if name in _SINCE_TAKEN or name in _FUNCTIONS]
     found += [name for name in sorted(source.names & _SINCE_TAKEN) if _declares(code, name)]
     found += [name for name in _FUNCTIONS if name in source.names and _declares(code, name, variable=True)]
     found += sorted(_own_functions(source).difference(found))
+    return _free(found, source)
+
+
+def _free(found: Iterable[str], source: SourceText) -> dict[str, str]:
+    """Return names that are taken, each with a free one."""
     names: dict[str, str] = {}
-    for name in found:
+    for name in dict.fromkeys(found):
         new = f"{name}_"
         while new in source.names:
             new += "1"

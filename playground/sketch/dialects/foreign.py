@@ -1,4 +1,4 @@
-"""Make a sketch's passes of another tool's shader: its text as a plain shader, stand-ins for its channels.
+"""Make a kernel of one pass of another tool's file: its text, and what is declared before it.
 
 What a dialect gives is a table: name → (type, meaning). A name that the text reads and does not
 declare is declared before it; where the text declares one, its own type counts.
@@ -7,153 +7,158 @@ declare is declared before it; where the text declares one, its own type counts.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import Diagnostic, ShaderError
-from playground.paths import GLSL, shown
 from playground.sketch.allowed_files import is_file, leads_outside
 from playground.sketch.dialects.declarations import Declared, is_declared, uniforms, vertex_outputs
 from playground.sketch.dialects.es import Rewritten
-from playground.sketch.header import title_of
-from playground.sketch.model import (
-    Export,
-    Graph,
-    Input,
-    Kernel,
-    Output,
-    Parameter,
-    PassSpec,
-    Sampling,
-    Technique,
-    Widget,
+from playground.sketch.dialects.shader import (
+    SAMPLING,
+    STAND_INS,
+    STAND_INS_OF_SHAPES,
+    Channel,
+    Shader,
+    stand_in,
 )
+from playground.sketch.header import title_of
+from playground.sketch.model import SHAPES, Input, Kernel, Output, Parameter, Widget
+from playground.sketch.reserved_names import ELEMENT
 from playground.sketch.source import Line, SourceText
 from playground.sketch.uniforms import read_uniforms
 
-Names = Mapping[str, tuple[str, str]]
-"""Name → GLSL type and meaning: a key of ``Runner``'s values; of a sampler "noise 0", "picture 3", "none"."""
-
-Read = Callable[[str, Path, Path], Technique]
-"""Return the technique that ``use`` names: see ``Techniques.read``."""
-
-STAND_INS = {"noise": "foreign/noise", "picture": "foreign/picture"}
-SAMPLING = Sampling("linear", "repeat", mipmap=True)
-_STAND_IN_SIZE = ("256", "256")
 _COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
 _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
+_COUNT = re.compile(r"\[\s*(\d+)\s*\]")
+_MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
 _MODEL = "MODEL_"
 _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
+_SOUNDS = "a made-up sound stands in; a sketch may wire foreign/sound to it"
+_BANDS = "a made-up sound stands in"
 
 
-@dataclass(frozen=True)
-class Rules:
-    """What a dialect gives a shader."""
+class ForeignKernel:
+    """One shader's kernel, and what its samplers read; ``root`` is the folder that its files stay in."""
 
-    name: str  # of its row
-    names: Names
-    declared_anywhere: bool = False  # a name declared in any function counts as declared
-    epilogue: str = ""  # of gpu/shaders
-    defines: Callable[[SourceText], tuple[str, ...]] = lambda source: ()  # lines of the prelude
-
-
-def graph_of(name: str, text: Rewritten, rules: Rules, read: Read, root: Path) -> Graph:
-    """Return a technique whose last pass, ``view``, is the shader; the others are stand-ins.
-
-    Its channels are inputs, and its own uniforms parameters. ``root`` is the folder that its files stay in.
-    """
-    shader = _Shader(text, rules, root)
-    kernel = shader.kernel(name)
-    passes = [
-        PassSpec(
-            channel,
-            STAND_INS[kind],
-            read(STAND_INS[kind], GLSL, GLSL),
-            values=(("number", int(number)),),
-            size=_STAND_IN_SIZE,
-        )
-        for channel, (kind, number) in shader.stand_ins.items()
-    ]
-    path = Path(kernel.path)
-    passes.append(PassSpec("view", f"./{path.stem}", kernel, file=shown(path)))
-    return Graph(
-        name,
-        kernel.path,
-        tuple(passes),
-        parameters=tuple(Export(p.name, (f"view.{p.name}",)) for p in kernel.parameters),
-        inputs=tuple(Export(i.name, (f"view.{i.name}",)) for i in kernel.inputs),
-        title=kernel.title,
-    )
-
-
-class _Shader:
-    """One text, and what its dialect's table says of it."""
-
-    def __init__(self, text: Rewritten, rules: Rules, root: Path) -> None:
-        self.text = text
-        self.source = text.source
-        self.code = text.source.code
-        self.rules = rules
+    def __init__(self, shader: Shader, root: Path) -> None:
+        self.shader = shader
+        self.source = shader.text.source
+        self.code = self.source.code
+        self.rules = shader.rules
         self.root = root
         self.declared = uniforms(self.code)
-        self.missing = [name for name in rules.names if self._lacks(name)]
+        self.missing = self._missing(self.source)
+        self.vertex = shader.vertex.source if shader.vertex else None
+        self.vertex_missing = self._missing(self.vertex) if self.vertex else []
         self.commented = {(line.file, line.number): file for line, file in commented_files(self.source)}
         self.pictures = dict(self._pictures())
-        self.samplers = [name for name, kind in self._kinds() if kind == "sampler2D"]
-        self.stand_ins: dict[str, tuple[str, str]] = {}  # channel → kind, number
-        for sampler in self.samplers:
-            kind, _, number = rules.names.get(sampler, ("", ""))[1].partition(" ")
-            if kind in STAND_INS and self._is_read(sampler):
-                self.stand_ins[sampler] = kind, number
+        self.shapes = {n: SHAPES[kind] for n, kind in self._kinds() if kind in SHAPES and self._is_read(n)}
+        self.shapes |= {element: SHAPES[one.type] for element, one in self._elements()}
+        self.channels = {name: self._channel(name) for name in self.shapes}
 
     def kernel(self, name: str) -> Kernel:
-        parameters = self._parameters()
-        prelude = [*self.text.prelude, *self.rules.defines(self.source)]
-        prelude += [f"uniform {_declaration(self.rules.names[n][0], n)};" for n in self.missing]
+        """Return the kernel as a technique called ``name``."""
+        shader, parameters = self.shader, self._parameters()
         own = {p.name for p in parameters}
+        given = {*self.declared, *self.missing, *self.vertex_missing}
         meanings = [
             (n, meaning)
             for n, (kind, meaning) in self.rules.names.items()
-            if (n in self.declared or n in self.missing) and n not in own and "sampler" not in kind
+            if n in given and n not in own and "sampler" not in kind
         ]
+        ours = not shader.vertex
         return Kernel(
             name,
             "plain_fragment",
             self.source,
-            (Output("frame", "rgba8"),),
+            (Output("frame", shader.format),),
             parameters,
-            tuple(Input(n, SAMPLING, "black") for n in self.samplers if self._is_read(n)),
+            tuple(
+                Input(n, c.sampling, "zero" if c.target else "black", shape=self.shapes[n])
+                for n, c in self.channels.items()
+            ),
             title=title_of(self.source),
             dialect=self.rules.name,
-            prelude=tuple(prelude),
+            prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
             epilogue=self.rules.epilogue,
-            vertex=vertex_outputs(self.code),
+            helpers=self.rules.helpers,
+            vertex=vertex_outputs("\n".join([*shader.text.prelude, *self._varyings(), self.code]))
+            if ours
+            else (),
+            vertex_source=self.vertex,
+            vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
+            vertex_helpers=self.rules.vertex_helpers if shader.vertex else (),
             meanings=tuple(meanings),
             unfed=tuple(self._unfed(own)),
         )
 
-    def _lacks(self, name: str) -> bool:
-        if name not in self.source.names or name in self.declared:
-            return False
-        read = re.search(rf"(?<![.\w]){name}\b", self.code)
-        return bool(read) and not is_declared(self.code, name, anywhere=self.rules.declared_anywhere)
+    def _prelude(self, text: Rewritten, missing: Sequence[str]) -> Iterator[str]:
+        """Yield the lines that come before a text: what is declared for it."""
+        yield from (*text.prelude, *self.shader.prelude, *self.rules.defines(text.source))
+        yield from (f"uniform {_declaration(self.rules.names[name][0], name)};" for name in missing)
+        declared = uniforms(text.source.code)
+        yield from (f"uniform {p.type} {p.name};" for p in self.shader.parameters if p.name not in declared)
+
+    def _varyings(self) -> list[str]:
+        """Return the dialect's own that a text reads and does not declare itself."""
+        known = [declaration for declaration, _ in vertex_outputs(self.code)]
+        return [one for one in self.rules.varyings if one.replace("in ", "out ", 1) not in known]
+
+    def _channel(self, sampler: str) -> Channel:
+        """Return what feeds a sampler; by the rules where the shader does not say."""
+        if sampler in self.shader.channels:
+            return self.shader.channels[sampler]
+        kind, _, number = self.rules.names.get(sampler, ("", ""))[1].partition(" ")
+        if kind not in STAND_INS:
+            return Channel()
+        file = self._commented(self.declared[sampler]) if sampler in self.declared else ""
+        unfed = f"there is no file '{file}', so a stand-in is drawn" if file else _STANDS_IN
+        unfed = _SOUNDS if kind == "sound" else unfed
+        kind = STAND_INS_OF_SHAPES.get(self.shapes[sampler], kind)
+        return stand_in(kind, int(number), unfed)
+
+    def _missing(self, source: SourceText) -> list[str]:
+        """Return the names of the dialect that a text reads and does not declare."""
+        code, declared = source.code, uniforms(source.code)
+        anywhere = self.rules.declared_anywhere
+        return [
+            name
+            for name in self.rules.names
+            if name not in declared
+            and (name in self.shader.named or name in source.names)
+            and (name in self.shader.named or re.search(rf"(?<![.\w]){name}\b", code))
+            and not is_declared(code, name, anywhere=anywhere)
+        ]
 
     def _is_read(self, name: str) -> bool:
         """Return whether a text names a sampler besides declaring it."""
-        return name in self.missing or len(re.findall(rf"\b{name}\b", self.code)) > 1
+        return name in self.missing or name in self.vertex_missing or self.source.counts[name] > 1
 
     def _kinds(self) -> Iterator[tuple[str, str]]:
         """Yield each sampler that a wire may feed, with its type."""
-        for name in self.missing:
+        for name in dict.fromkeys([*self.missing, *self.vertex_missing]):
             yield name, self.rules.names[name][0]
+        files = {p.name for p in self.shader.parameters}
         for one in self.declared.values():
             if (
                 not one.is_array
                 and one.name not in self.pictures
+                and one.name not in files
                 and not self._line(one).comment.startswith("!")
             ):
                 yield one.name, one.type
+
+    def _elements(self) -> Iterator[tuple[str, Declared]]:
+        """Yield what a wire feeds of the arrays of samplers: ``maps_0`` is the first of ``maps[4]``."""
+        for one in self.declared.values():
+            count = _COUNT.search(one.written) if one.is_array and one.type in SHAPES else None
+            if count and self._is_read(one.name):
+                elements = (
+                    f"{one.name}{ELEMENT}{number}" for number in range(min(int(count[1]), _MOST_ELEMENTS))
+                )
+                yield from ((element, one) for element in elements if element not in self.source.names)
 
     def _line(self, one: Declared) -> Line:
         return self.source.lines[one.line]
@@ -175,6 +180,7 @@ class _Shader:
                     raise
                 continue
             found |= {one.name: one for one in some}
+        found |= {one.name: one for one in self.shader.parameters}
         return (*found.values(), *self.pictures.values())
 
     def _pictures(self) -> Iterator[tuple[str, Parameter]]:
@@ -203,13 +209,18 @@ class _Shader:
 
     def _unfed(self, fed: Collection[str]) -> Iterator[tuple[str, str]]:
         """Yield what the picture lacks where nothing is wired: each name, and what is drawn instead."""
-        for name in self.stand_ins:
-            file = self._commented(self.declared[name]) if name in self.declared else ""
-            yield name, f"there is no file '{file}', so a stand-in is drawn" if file else _STANDS_IN
-        own = {one.name: one.type for one in self.declared.values()}
-        own |= {name: self.rules.names[name][0] for name in self.missing}
+        arrays = {one.name for _, one in self._elements()}
+        own = {one.name: one.type for one in self.declared.values() if one.name not in arrays}
+        for element, _ in self._elements():
+            yield element, "it reads black"
+        own |= {name: self.rules.names[name][0] for name in (*self.missing, *self.vertex_missing)}
         for name, kind in own.items():
-            if "sampler" in kind and name not in self.stand_ins and name not in fed and self._is_read(name):
+            channel = self.channels.get(name, Channel())
+            if channel.unfed:
+                yield name, channel.unfed
+            elif self.rules.names.get(name, ("", ""))[1] == "bands":
+                yield name, _BANDS
+            elif "sampler" in kind and channel == Channel() and name not in fed and self._is_read(name):
                 yield name, "it reads black"
         for name in sorted(self.source.names):
             if name.startswith(_MODEL):
@@ -225,7 +236,9 @@ def unfed_warnings(kernel: Kernel, wired: Collection[str]) -> tuple[Diagnostic, 
     lines = kernel.source.lines
     found = []
     for instead, some in names.items():
-        first = re.compile(rf"\b(?:{'|'.join(some)})\b")
+        first = re.compile(
+            rf"\b(?:{'|'.join([*some, *(name.rpartition(ELEMENT)[0] or name for name in some)])})\b"
+        )
         line = next((line for line in lines if first.search(line.code)), lines[0])
         found.append(line.diagnostic(f"nothing feeds {', '.join(some)}: {instead}", severity="warning"))
     return tuple(found)

@@ -5,11 +5,16 @@ The names are those of glslCanvas, glslViewer, KodeLife, Bonzomatic and glslsand
 
 from __future__ import annotations
 
-import re
+from collections.abc import Sequence
 
 from playground.sketch.dialects import shadertoy
 from playground.sketch.dialects.declarations import uniforms, vertex_outputs
-from playground.sketch.dialects.foreign import Names, Rules
+from playground.sketch.dialects.es import rewritten, version_of
+from playground.sketch.dialects.passes import VIEW
+from playground.sketch.dialects.reading import Files
+from playground.sketch.dialects.shader import Channel, Made, Names, Rules, Shader
+from playground.sketch.dialects.viewer import shaders_of
+from playground.sketch.model import Sampling
 from playground.sketch.reserved_names import PLAIN_UNIFORMS, SIZES
 from playground.sketch.source import SourceText
 
@@ -27,34 +32,35 @@ _MATRICES = (
     "u_modelMatrix u_viewMatrix u_projectionMatrix u_modelViewMatrix u_modelViewProjectionMatrix".split()
 )
 _PICTURES = range(_MOST_PICTURES)
+_BEFORE = ("backbuffer", "u_backbuffer", "prevFrame", "prevPass", "texPreviousFrame")
+"""Samplers that read the picture of the frame before: 8 bits a channel, as the tools have it."""
 
 _ELSEWHERE: Names = {
     # glslViewer
     **{f"u_tex{n}": ("sampler2D", f"picture {n}") for n in _PICTURES},
     **{f"u_tex{n}Resolution": ("vec2", f"{SIZES}u_tex{n}") for n in _PICTURES},
-    "u_camera": ("vec3", "forward"),
-    "u_light": ("vec3", "forward"),
+    "u_camera": ("vec3", "camera"),
+    "u_light": ("vec3", "light"),
     "u_lightColor": ("vec3", "one"),
     "u_view2d": ("mat3", "identity3"),
     "u_normalMatrix": ("mat3", "identity3"),
     **{name: ("mat4", "identity4") for name in _MATRICES},
     "u_SH": ("vec3[9]", "none"),
-    "u_cubeMap": ("samplerCube", "none"),
+    "u_cubeMap": ("samplerCube", "sky 0"),
     "u_scene": ("sampler2D", "none"),
     # Bonzomatic
     "fGlobalTime": ("float", "time"),
     "fFrameTime": ("float", "delta"),
     "v2Resolution": ("vec2", "resolution"),
-    **{name: ("sampler1D", "none") for name in ("texFFT", "texFFTSmoothed", "texFFTIntegrated")},
-    "texPreviousFrame": ("sampler2D", "none"),
+    **{name: ("sampler1D", "sound 0") for name in ("texFFT", "texFFTSmoothed", "texFFTIntegrated")},
     "texChecker": ("sampler2D", "picture 0"),
     "texNoise": ("sampler2D", "noise 0"),
     **{f"texTex{n}": ("sampler2D", f"picture {n}") for n in range(1, 5)},
     # KodeLife and glslsandbox
     "mouse": ("vec2", "hover_share"),
-    "spectrum": ("vec3", "none"),
+    "spectrum": ("vec3", "bands"),
     **{f"texture{n}": ("sampler2D", f"picture {n}") for n in range(4)},
-    **{name: ("sampler2D", "none") for name in ("prevFrame", "prevPass", "backbuffer")},
+    **{name: ("sampler2D", "none") for name in _BEFORE},
 }
 
 NAMES: Names = {
@@ -67,20 +73,8 @@ NAMES: Names = {
     **_ELSEWHERE,
 }
 
-_PASS = re.compile(
-    r"#\s*(?:if|ifdef|elif)\b.*\b((?:DOUBLE_)?BUFFER_\d+|(?:CONVOLUTION_)?PYRAMID_\w+|FLOOD_\w+)\b"
-)
 
-
-def refuse_passes(source: SourceText) -> None:
-    """Raise ``ShaderError`` at the first pass that glslViewer would make of the text by a define."""
-    for line in source.lines:
-        if not line.chain and (match := _PASS.search(line.code)):
-            message = f"glslViewer's {match.group(1)} is a pass of its own, which is not drawn yet"
-            raise line.error(message, match.start(1) + 1)
-
-
-def needs_dialect(source: SourceText) -> bool:
+def _needs_dialect(source: SourceText) -> bool:
     """Return whether a text of ``#version`` 330 or more needs what a plain shader is not given.
 
     That is what a vertex shader gives it, and names that it declares or lacks of tools other than those
@@ -103,3 +97,15 @@ def _defines(source: SourceText) -> tuple[str, ...]:
 
 
 RULES = Rules("main", NAMES, declared_anywhere=True, defines=_defines)
+
+
+def shaders(files: Files) -> Sequence[Shader | Made]:
+    """Return the passes of a file, none where it lacks nothing that a plain shader is given."""
+    source = files.source()
+    text = rewritten(source)
+    if found := shaders_of(text, RULES):
+        return found
+    if not files.named and version_of(source) >= 330 and not _needs_dialect(source):
+        return ()
+    before = dict.fromkeys(_BEFORE, Channel(target=VIEW, sampling=Sampling("linear", "clamp")))
+    return (Shader(VIEW, text, RULES, target=VIEW, channels=before, keeps=True),)

@@ -2,8 +2,15 @@
 
 from __future__ import annotations
 
-from playground.sketch.dialects.foreign import Names, Rules
+import re
+from collections.abc import Sequence
+
+from playground.sketch.dialects.es import rewritten
+from playground.sketch.dialects.passes import VIEW
+from playground.sketch.dialects.reading import Files
+from playground.sketch.dialects.shader import Names, Rules, Shader
 from playground.sketch.reserved_names import SIZES
+from playground.sketch.source import Line, SourceText
 
 CHANNELS = tuple(f"iChannel{number}" for number in range(4))
 
@@ -22,4 +29,50 @@ NAMES: Names = {
     **{name: ("sampler2D", f"noise {number}") for number, name in enumerate(CHANNELS)},
 }
 
+_MORE_CHANNELS = tuple(f"iChannel{number}" for number in range(10))
+
+MORE_NAMES: Names = {
+    **NAMES,
+    "iGlobalFrame": ("int", "frame_of_time"),
+    "iMouseButton": ("vec4", "buttons"),
+    "iViewMatrix": ("mat4", "identity4"),
+    "iChannelResolution": ("vec3[10]", f"{SIZES}{' '.join(_MORE_CHANNELS)}"),
+    **{name: ("sampler2D", f"noise {number}") for number, name in enumerate(_MORE_CHANNELS)},
+}
+"""Those of the VS Code extension."""
+
 RULES = Rules("shadertoy", NAMES, epilogue="main_image.glsl")
+
+
+_NOT_DRAWN = {"mainSound": "sound", "mainVR": "for VR"}
+
+
+def shaders(files: Files) -> Sequence[Shader]:
+    """Return the passes of a file."""
+    source = files.source()
+    note_not_drawn(files, source)
+    return (Shader(VIEW, rewritten(source), RULES),)
+
+
+def note_not_drawn(files: Files, source: SourceText) -> None:
+    """Note each function of a text that makes no picture here."""
+    for function, what in _NOT_DRAWN.items():
+        if line := _defines(source, function):
+            files.note_at(line, f"{function} is {what}, which is not drawn")
+
+
+def refused(files: Files) -> Sequence[Shader]:
+    """Raise ``ShaderError`` for a text that has no picture of its own, at the function that it has."""
+    source = files.source()
+    for function, what in _NOT_DRAWN.items():
+        if line := _defines(source, function):
+            raise line.error(f"{function} is {what}, which is not drawn, and there is no mainImage")
+    line = _defines(source, "mainCubemap") or source.lines[0]
+    raise line.error(
+        "a cube map alone is not drawn: as 'Cube A.glsl' it is, next to an Image.glsl that reads it"
+    )
+
+
+def _defines(source: SourceText, function: str) -> Line | None:
+    sign = re.compile(rf"\b{function}\s*\(")
+    return next((line for line in source.lines if sign.search(line.code)), None)

@@ -74,7 +74,7 @@ class FigureView:
             return False
         edits = session.shown.edits
         if self.before_lesson is None or self.scene is None:
-            return bool(edits.values or edits.techniques)
+            return bool(edits.values or edits.techniques or edits.channels)
         return not self.busy and (edits, dict(session.view.steps)) != self._set
 
     def show(self, scene: Scene, key: Key, texts: Mapping[str, str] | None = None) -> None:

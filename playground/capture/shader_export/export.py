@@ -1,0 +1,144 @@
+"""Make the files of a sketch's picture as a shader of another tool, by the file's ending."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from playground.capture.export_textures import kind_of
+from playground.capture.extensions import ISF, SHADERTOY_EXPORT, SHADERTOY_TEXT
+from playground.capture.shader_export import isf, shadertoy, standalone
+from playground.capture.shader_export.passes import PROBES, Leaving, leaving, plan_of
+from playground.capture.shader_export.texts import Host, PassText, is_sampled, shown_text, text_of
+from playground.engine.plan import Plan
+from playground.errors import DataError
+from playground.images.files import reason
+from playground.sketch.model import Sketch
+
+MADE_BY = "terrain shader playground"
+
+
+@dataclass(frozen=True)
+class ShaderFiles:
+    """The files of one export, and what is to be told of them."""
+
+    plan: Plan
+    files: dict[Path, bytes]  # the shader's own first
+    summary: str
+    warnings: tuple[str, ...]
+
+
+def shader_files(sketch: Sketch, path: Path, *, texture: str, kind: str, time: float) -> ShaderFiles:
+    """Return a sketch's picture, or one texture of it, as the shader that the path's ending names.
+
+    Raises ``SketchError`` with a sentence for each thing that the format has not.
+    """
+    shows = kind
+    if texture:
+        plan = plan_of(sketch, PROBES[0], time)
+        plan.flat.ref(texture, sketch.name)
+        shows = kind or kind_of(plan, texture)
+    found = leaving(sketch, texture, shows, time)
+    heading = [f"// {_ascii(sketch.title or sketch.name)}, exported by the {MADE_BY}"]
+    ending = path.suffix.lower()
+    notes = _notes(sketch, found)
+    files: dict[Path, bytes] = {}
+    if ending == ISF:
+        inputs = isf.inputs_of(found)
+        texts = _texts(found, inputs.host(), shows)
+        copies = _copies(path, inputs.images)
+        text = isf.written(texts, inputs, heading, {name: copy.name for name, copy in copies.items()})
+        for name, copy in copies.items():
+            files[copy] = _read(inputs.images[name])
+        notes += _isf_notes(texts, inputs)
+        count = len(texts) + len(inputs.decoded)
+        what = f"ISF; {_counted(count, 'pass')}, {_counted(len(inputs.header), 'input')}"
+    elif ending in (SHADERTOY_TEXT, SHADERTOY_EXPORT):
+        texts = shadertoy.fitted(_texts(found, shadertoy.HOST, shows))
+        is_export = ending == SHADERTOY_EXPORT
+        shadertoy.check(texts, one_text=not is_export)
+        if is_export:
+            text = shadertoy.export(texts, sketch.title or sketch.name, heading)
+            what = f"Shadertoy export; {_counted(len(texts) - 1, 'buffer')}"
+        else:
+            text = shadertoy.one_text(texts[0], heading)
+            what = "Shadertoy text"
+    else:
+        texts = _texts(found, standalone.HOST, shows)
+        standalone.check(texts)
+        text = standalone.one_text(texts[0], heading)
+        what = "GLSL 3.30"
+    data = _ascii(text).encode()
+    return ShaderFiles(found.plan, {path: data, **files}, f"{what}; {len(data)} bytes", tuple(notes))
+
+
+def _texts(found: Leaving, host: Host, shows: str) -> list[PassText]:
+    sizes = {one.name: one.size for one in found.passes}
+    texts = [text_of(found, one, host, sizes) for one in found.passes]
+    if texts[-1].size != (None, None):
+        output = found.passes[-1].output
+        texts.append(shown_text(texts[-1], output.components, shows, host))
+    return texts
+
+
+def _notes(sketch: Sketch, found: Leaving) -> list[str]:
+    notes = []
+    if found.follows and any(one.size == (None, None) for one in found.passes[:-1]):
+        notes.append("the terrain has as many texels as the picture has pixels")
+    if sketch.keyframes:
+        notes.append(f"keyframes stay behind: values are those at {found.plan.time:g} s")
+    return notes
+
+
+def _isf_notes(texts: Sequence[PassText], inputs: isf.Inputs) -> list[str]:
+    notes = []
+    small = sorted(
+        {
+            read.word
+            for text in texts
+            for read in text.reads
+            if read.sampling.mipmap and is_sampled(text, read.word)
+        }
+    )
+    if small:
+        notes.append(
+            f"ISF has no mipmaps: {', '.join(small)} may flicker where it is shown smaller than it is"
+        )
+    if inputs.unbounded:
+        notes.append(f"without a range of their own, so that one was made up: {', '.join(inputs.unbounded)}")
+    return notes
+
+
+def _copies(path: Path, images: dict[str, Path]) -> dict[str, Path]:
+    """Return where each imported image is copied to: beside the file, under a name of its own."""
+    found: dict[str, Path] = {}
+    for name, source in images.items():
+        copy = path.with_name(f"{path.stem}-{source.name}")
+        if copy in found.values():
+            copy = path.with_name(f"{path.stem}-{name}{source.suffix}")
+        if copy.exists() and _read(copy) != _read(source):
+            message = f"{copy.name} is there already, and is another image; choose another name"
+            raise DataError(message, file=path)
+        found[name] = copy
+    return found
+
+
+def _read(path: Path) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise DataError(f"cannot be read: {reason(error)}", file=path) from error
+
+
+def _ascii(text: str) -> str:
+    """Return a text that every tool reads: what is not ASCII is in comments and titles alone."""
+    for old, new in {"–": "-", "—": "-", "’": "'", "…": "...", "°": " degrees", "×": "x", "−": "-"}.items():
+        text = text.replace(old, new)
+    return re.sub(r"[^\x00-\x7f]", "?", text)
+
+
+def _counted(count: int, what: str) -> str:
+    plural = f"{what}es" if what.endswith("s") else f"{what}s"
+    return f"{count} {what if count == 1 else plural}"

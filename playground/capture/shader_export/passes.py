@@ -1,0 +1,222 @@
+"""Make a list of shader passes of a sketch's plan, or say what of it cannot leave.
+
+Each step of a repeat is a pass; a kernel with several outputs is a pass for each that is read, since
+a pass elsewhere has one target. Sizes are told by planning the sketch for two pictures: a side that
+is the picture's in both is the picture's, one that stays is a number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, needed
+from playground.engine.planner import Planner
+from playground.errors import Diagnostic, PlaygroundError, SketchError
+from playground.gpu.wrap import previous_name
+from playground.sketch import expressions
+from playground.sketch.flat import Ref
+from playground.sketch.model import Input, Output, Sketch
+from playground.sketch.reserved_names import GLSL_WORDS
+from playground.sketch.wiring import initial_names
+
+PROBES = ((640, 360), (484, 272))
+"""Pictures that a sketch is planned for: no side, nor a simple part of one, is another's."""
+
+MOST_PASSES = 64
+CAMERA = ("clip_from_world", "world_from_clip", "eye")
+_INSTEAD = "; --texture PASS exports one texture"
+
+
+@dataclass(frozen=True)
+class ShaderPass:
+    """One pass of the exported shader: it gives one texture, or the picture."""
+
+    name: str  # an identifier that no other pass has
+    step: Step
+    output: Output
+    size: tuple[int | None, int | None]  # None: the picture's side
+    inputs: tuple[tuple[Input, str], ...]  # what each reads: a pass's name, "" where nothing is wired
+    previous: tuple[tuple[Output, str], ...] = ()  # likewise of each output of the step before
+    iteration: int = 0
+    iterations: int = 1
+    until: int = 1
+    shows: str = ""  # of the picture: "", or what it shows of a texture: height, colour or numbers
+
+    @property
+    def reads(self) -> tuple[str, ...]:
+        """Names of the passes that it reads."""
+        names = (*(name for _, name in self.inputs), *(name for _, name in self.previous))
+        return tuple(dict.fromkeys(filter(None, names)))
+
+
+@dataclass(frozen=True)
+class Leaving:
+    """What leaves of a sketch."""
+
+    sketch: Sketch  # with the terrain's size of the first probe where it follows the picture's
+    plan: Plan
+    passes: tuple[ShaderPass, ...]  # in order; the last is the picture
+    follows: bool  # the terrain has the picture's size
+
+
+def leaving(sketch: Sketch, texture: str, kind: str, time: float) -> Leaving:
+    """Return the passes of a sketch's picture, or of one texture shown as ``kind``.
+
+    The terrain has the picture's size where every kernel takes any size. Raises ``SketchError`` with a
+    sentence for each thing that cannot leave.
+    """
+    follows = True
+    try:
+        plans = [plan_of(sketch.with_values({"size": size}), size, time) for size in PROBES]
+    except PlaygroundError:
+        follows = False
+        plans = [plan_of(sketch, size, time) for size in PROBES]
+    ref = plans[0].flat.ref(texture, sketch.name) if texture else plans[0].picture
+    made = _Passes(plans, ref, kind if texture else "")
+    passes = made.all()
+    if made.refused:
+        raise SketchError(diagnostics=[Diagnostic(one, file=sketch.name) for one in made.refused])
+    return Leaving(plans[0].sketch if follows else sketch, plans[0], passes, follows)
+
+
+def plan_of(sketch: Sketch, size: tuple[int, int], time: float) -> Plan:
+    """Plan a sketch in its plain forms, which every fragment shader can run."""
+    return Planner().plan(sketch, frame_size=size, time=time, interpolated=False)
+
+
+class _Passes:
+    def __init__(self, plans: list[Plan], ref: Ref, shows: str) -> None:
+        self.plan, self.other = plans
+        self.ref = ref
+        self.shows = shows
+        self.refused: dict[str, None] = {}
+        self.found: list[ShaderPass] = []
+        self.made: dict[Ref, str] = {}  # texture → the pass that gives it
+        self.nodes = needed(self.plan.nodes, ref)
+        self.wanted = set(self._read())
+
+    def _read(self) -> Iterator[Ref]:
+        yield self.ref
+        for node in self.nodes:
+            if isinstance(node, Step):
+                yield from (source for _, source in node.inputs if isinstance(source, Ref))
+
+    def all(self) -> tuple[ShaderPass, ...]:
+        for node in self.nodes:
+            reason = self._reason(node)
+            if reason:
+                hint = "" if self.shows or self.refused else _INSTEAD
+                self.refused[reason + hint] = None
+            elif isinstance(node, Step):
+                self._add(node)
+        if len(self.found) > MOST_PASSES:
+            self.refused[f"{len(self.found)} passes with their steps; {MOST_PASSES} is the most"] = None
+        return tuple(self.found)
+
+    def _reason(self, node: PlanNode) -> str:
+        """Return why a node cannot leave, in a sentence; "" where it can."""
+        who = f"pass '{node.path}'"
+        if isinstance(node, LoopStep):
+            return f"{who} is a loop of several passes, which these formats have not"
+        kernel = node.kernel
+        twin = self.other.step(node.path)
+        assert twin is not None  # the plans are of one sketch
+        if kernel.kind == "draw":
+            return f"{who} draws a mesh ({kernel.registry}), which these formats have not"
+        if kernel.kind == "source":
+            return f"{who} is a source ({kernel.registry}), which a processor computes"
+        if kernel.kind in ("plain_compute", "compute"):
+            return f"{who} is a compute shader, which these formats have not"
+        if kernel.kind != "kernel":
+            return f"{who} is another tool's shader already: {Path(kernel.path).name}"
+        camera = [name for name in CAMERA if kernel.reads(name)]
+        if camera:
+            return f"{who} reads the camera ({', '.join(camera)}), which these formats have not"
+        if node.repeat != twin.repeat:
+            return (
+                f"{who} takes {node.repeat} steps for a picture of {_times(PROBES[0])}, "
+                f"and {twin.repeat} for one of {_times(PROBES[1])}; they cannot be written as passes"
+            )
+        if node.repeat < 1:
+            return f"{who} takes no step, so there is nothing to write"
+        if None is (size := self._size(node)) or 0 in size:
+            return (
+                f"{who} has a size that depends on the picture's, {_times(node.size)} for {_times(PROBES[0])}"
+            )
+        return ""
+
+    def _size(self, step: Step) -> tuple[int | None, int | None] | None:
+        twin = self.other.step(step.path)
+        assert twin is not None
+        found: list[int | None] = []
+        for axis in (0, 1):
+            a, b = step.size[axis], twin.size[axis]
+            if (a, b) == (PROBES[0][axis], PROBES[1][axis]):
+                found.append(None)
+            elif a == b:
+                found.append(a)
+            else:
+                return None
+        return found[0], found[1]
+
+    def _add(self, step: Step) -> None:
+        kernel = step.kernel
+        size = self._size(step)
+        assert size is not None
+        wired = dict(step.inputs)
+        inputs = tuple((i, self._name_of(wired.get(i.name))) for i in kernel.inputs)
+        starts = {output: self._name_of(wired.get(name)) for name, output in initial_names(kernel).items()}
+        at_once = max(self._at_once(step), 1)
+        outputs = [o for o in kernel.outputs if Ref(step.path, o.name) in self.wanted]
+        read = [o for o in kernel.outputs if kernel.reads(previous_name(kernel, o))]
+        before = {o.name: starts.get(o.name, "") for o in kernel.outputs}
+        iteration = 0
+        while iteration < step.repeat:
+            until = min(iteration + at_once, step.repeat)
+            is_last = until == step.repeat
+            now = {}
+            for output in outputs if is_last else (read or outputs[:0]):
+                name = self._free(step, output, f"_{iteration}" if not is_last else "", len(outputs) > 1)
+                is_picture = is_last and Ref(step.path, output.name) == self.ref
+                self.found.append(
+                    ShaderPass(
+                        name,
+                        step,
+                        output,
+                        size,
+                        inputs,
+                        tuple((o, before[o.name]) for o in read),
+                        iteration,
+                        step.whole,
+                        until,
+                        self.shows if is_picture else "",
+                    )
+                )
+                now[output.name] = name
+                if is_last:
+                    self.made[Ref(step.path, output.name)] = name
+            before |= now
+            iteration = until
+
+    def _name_of(self, source: object) -> str:
+        return self.made.get(source, "") if isinstance(source, Ref) else ""
+
+    def _at_once(self, step: Step) -> int:
+        """Return how many steps one pass may take: however they are grouped, they give the same."""
+        if step.kernel.at_once == "1":
+            return 1
+        numbers = {"size.x": step.size[0], "size.y": step.size[1]}
+        numbers |= {k: v for k, v in step.values.items() if isinstance(v, int | float)}  # type: ignore[misc]
+        return expressions.evaluate(step.kernel.at_once, numbers)
+
+    def _free(self, step: Step, output: Output, more: str, several: bool) -> str:
+        name = step.path.replace(".", "_") + (f"_{output.name}" if several else "") + more
+        while name in GLSL_WORDS or name in [other.name for other in self.found]:
+            name += "_"
+        return name
+
+
+def _times(size: tuple[int, int]) -> str:
+    return f"{size[0]} x {size[1]}"

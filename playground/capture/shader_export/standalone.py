@@ -1,0 +1,54 @@
+"""Write one pass as a fragment shader of its own, with its parameters as annotated uniforms."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from playground.capture.shader_export.declarations import Declaration, made
+from playground.capture.shader_export.literals import literal
+from playground.capture.shader_export.passes import ShaderPass
+from playground.capture.shader_export.shadertoy import blocks
+from playground.capture.shader_export.texts import Host, PassText, towards
+from playground.errors import SketchError
+from playground.sketch.annotation import note_at
+from playground.sketch.model import Parameter, Value
+
+_HEAD = ("#version 330", "uniform vec3 iResolution;", "uniform float iTime;", "out vec4 fragColor;")
+
+
+def _uniform(
+    one: ShaderPass, parameter: Parameter, value: Value
+) -> tuple[tuple[Declaration, ...], tuple[str, ...]]:
+    if parameter.widget.kind == "direction" and isinstance(value, tuple):
+        text = f"const {parameter.type} {parameter.name} = {literal(parameter.type, value)};"
+        return (made(text, parameter.name), towards(parameter.name, value)), ()
+    text = f"uniform {parameter.type} {parameter.name} = {literal(parameter.type, value)};"
+    lines = one.step.kernel.source.lines
+    index = next(i for i, n in enumerate(lines) if (n.file, n.number) == (parameter.file, parameter.line))
+    note = note_at(lines, index).text.strip()
+    return (made(f"{text}  //! {note}" if note else text, parameter.name),), ()
+
+
+def _no_file(one: ShaderPass, parameter: Parameter, value: Value) -> str:
+    message = f"pass '{one.step.path}' reads the image file {value}, which a file alone has not; .fs can"
+    raise SketchError(message)
+
+
+HOST = Host("ivec2(iResolution.xy)", "ivec2(gl_FragCoord.xy)", "iTime", _uniform, _no_file)
+
+
+def check(texts: Sequence[PassText]) -> None:
+    """Raise ``SketchError`` where there is more than one pass."""
+    if len(texts) > 1:
+        names = ", ".join(text.name for text in texts)
+        message = (
+            f"a file of its own is one pass; these are {len(texts)} ({names}): export it as .json or .fs"
+        )
+        raise SketchError(message)
+
+
+def one_text(text: PassText, heading: Sequence[str]) -> str:
+    """Return the text of one pass that reads no other."""
+    lines = [f"    {line}" for line in (*text.statements, f"fragColor = {text.result};")]
+    head = [_HEAD[0], *heading, "", *_HEAD[1:], ""]
+    return "\n".join([*head, *blocks(text.declarations), "void main() {", *lines, "}"]) + "\n"

@@ -1,0 +1,277 @@
+"""Write one pass as GLSL that every format can take: its declarations, and the statements that run it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+from playground.capture.extensions import COLOUR
+from playground.capture.shader_export.declarations import Declaration, declarations_of, made
+from playground.capture.shader_export.literals import number, vector
+from playground.capture.shader_export.passes import Leaving, ShaderPass
+from playground.gpu.wrap import previous_name
+from playground.sketch.model import Kernel, Output, Parameter, Sampling, Value
+from playground.sketch.parameter import AS_IT_IS
+from playground.sketch.reserved_names import MATCHES, TOWARDS, WIRED
+from playground.terrain.directions import unit_vector
+
+_CALL = r"\b(texelFetch|texelFetchOffset|textureLod|textureSize)\s*\(\s*{name}\s*,"
+_FALLBACKS = {"white": "vec4(1.0)", "black": "vec4(0.0, 0.0, 0.0, 1.0)", "": "vec4(0.0)"}
+ENCODE, DECODE = "srgb_of_linear", "linear_of_srgb"
+_ENCODE_TEXT = (
+    f"vec3 {ENCODE}(vec3 light) {{ vec3 c = clamp(light, 0.0, 1.0);"
+    " return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c)); }"
+)
+_DECODE_TEXT = (
+    f"vec3 {DECODE}(vec3 c) {{"
+    " return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), step(0.04045, c)); }"
+)
+ENCODING = made(_ENCODE_TEXT, ENCODE)
+DECODING = made(_DECODE_TEXT, DECODE)
+
+
+@dataclass(frozen=True)
+class Sampled:
+    """A texture that a pass reads."""
+
+    word: str  # as its text calls it
+    source: str  # the pass that gives it, or the file parameter's pass
+    sampling: Sampling = AS_IT_IS
+
+
+@dataclass(frozen=True)
+class PassText:
+    """One pass as text."""
+
+    name: str
+    size: tuple[int | None, int | None]
+    declarations: tuple[Declaration, ...]
+    reads: tuple[Sampled, ...]
+    statements: tuple[str, ...]  # before the result
+    result: str  # an expression, a vec4
+    is_bytes: bool = False  # its texels have 8 bits a channel
+    title: str = ""
+
+
+@dataclass(frozen=True)
+class Host:
+    """What a format gives a pass."""
+
+    size: str  # an ivec2, of the pass's target
+    texel: str  # an ivec2
+    time: str  # seconds, a float
+    parameter: Callable[[ShaderPass, Parameter, Value], tuple[tuple[Declaration, ...], tuple[str, ...]]]
+    file: Callable[[ShaderPass, Parameter, Value], str]  # returns the pass that gives a file's texels
+
+
+def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, object]) -> PassText:
+    """Return a pass's text; ``sizes`` are those of the passes so far, by name."""
+    kernel, step = one.step.kernel, one.step
+    given, statements = _given(leaving, one, host)
+    reads: list[Sampled] = []
+    unwired: dict[str, str] = {}
+    for declared, source in one.inputs:
+        if source:
+            reads.append(Sampled(declared.name, source, declared.sampling))
+        else:
+            unwired[declared.name] = _FALLBACKS[declared.fallback]
+        if kernel.reads(f"{WIRED}{declared.name}"):
+            given.append(_constant("bool", f"{WIRED}{declared.name}", "true" if source else "false"))
+        if kernel.reads(f"{MATCHES}{declared.name}"):
+            matches = "true" if source and sizes[source] == one.size else "false"
+            given.append(_constant("bool", f"{MATCHES}{declared.name}", matches))
+    for parameter in kernel.parameters:
+        value = step.values[parameter.name]
+        if parameter.widget.kind == "file":
+            reads.append(Sampled(parameter.name, host.file(one, parameter, value), parameter.sampling))
+            continue
+        own, setting = host.parameter(one, parameter, value)
+        given += own
+        statements += setting
+    for output, source in one.previous:
+        given.append(_previous(kernel, output, source))
+        if source:
+            reads.append(Sampled(f"{output.name}_before", source))
+    declarations = [_without_unwired(d, unwired) for d in declarations_of(kernel.source.lines)]
+    lines, value = _call(kernel, one.output, host.texel)
+    result = _filled(one.output, value)
+    if one.shows:
+        result, more = _shown(one.output, value, one.shows)
+        given += more
+    return PassText(
+        name=one.name,
+        size=one.size,
+        declarations=(*given, *declarations),
+        reads=tuple(reads),
+        statements=(*statements, *lines),
+        result=result,
+        is_bytes=one.output.format in ("r8", "rg8", "rgba8"),
+        title=kernel.title,
+    )
+
+
+def handed_on(text: PassText, word: str) -> bool:
+    """Return whether a text does more with a texture than to fetch single texels of it."""
+    uses = fetches = 0
+    for each in text.declarations:
+        if word in each.arguments:
+            continue
+        uses += len(re.findall(rf"(?<![\w.]){word}\b", each.code))
+        fetches += len(re.findall(rf"\btexelFetch\s*\(\s*{word}\s*,", each.code))
+    return uses > fetches
+
+
+def is_sampled(text: PassText, word: str) -> bool:
+    """Return whether a text may sample a texture between its texels, itself or in a function it calls."""
+    samplers = {"textureLod"}
+    while True:
+        more = {n for d in text.declarations if not samplers.isdisjoint(d.words) for n in d.names} - samplers
+        if not more:
+            break
+        samplers |= more
+    for each in text.declarations:
+        if word in each.arguments:
+            continue
+        for use in re.finditer(rf"(?<![\w.]){word}\b", each.code):
+            if _caller(each.code, use.start()) in samplers:
+                return True
+    return False
+
+
+def _caller(code: str, position: int) -> str:
+    """Return the function that a place in a text is an argument of; "" where it is none."""
+    depth = 0
+    for index in range(position - 1, -1, -1):
+        depth += (code[index] == ")") - (code[index] == "(")
+        if depth < 0:
+            found = re.search(r"(\w+)\s*$", code[:index])
+            return found[1] if found else ""
+    return ""
+
+
+def with_size_of(text: PassText, word: str, size: str) -> PassText:
+    """Return a text in which the size of a texture that it reads is written as a constant."""
+    pattern = re.compile(rf"\btextureSize\s*\(\s*{word}\s*,\s*0\s*\)")
+    declarations = tuple(
+        replace(each, code=pattern.sub(size, each.code), text=pattern.sub(size, each.text))
+        if word not in each.arguments
+        else each
+        for each in text.declarations
+    )
+    return replace(text, declarations=declarations)
+
+
+def _constant(kind: str, name: str, value: str, comment: str = "") -> Declaration:
+    return made(f"const {kind} {name} = {value};" + (f"  // {comment}" if comment else ""), name)
+
+
+def _given(leaving: Leaving, one: ShaderPass, host: Host) -> tuple[list[Declaration], list[str]]:
+    """Return what stands for the names that the engine gives a kernel, and what sets them."""
+    kernel, terrain = one.step.kernel, leaving.plan.terrain
+    assert terrain.extent is not None and terrain.relief is not None  # a plan's terrain is known
+    given: list[Declaration] = []
+    statements: list[str] = []
+
+    def variable(kind: str, name: str, value: str) -> None:
+        given.append(made(f"{kind} {name};", name))
+        statements.append(f"{name} = {value};")
+
+    reads_spacing = kernel.reads("spacing")
+    if kernel.reads("size") or reads_spacing or one.previous:
+        variable("ivec2", "size", size_of(one.size, host))
+    free = leaving.follows and leaving.sketch.extent is None and one.size == (None, None)
+    if (kernel.reads("extent") or reads_spacing) and free:
+        wide = number(terrain.extent[0])
+        ratio = "float(size.y - 1) / float(max(size.x - 1, 1))"
+        if not statements:
+            variable("ivec2", "size", host.size)
+        variable("vec2", "extent", f"{wide} * vec2(1.0, {ratio})")
+    elif kernel.reads("extent") or reads_spacing:
+        given.append(_constant("vec2", "extent", vector(terrain.extent), "metres, east and north"))
+    if reads_spacing:
+        variable("vec2", "spacing", "extent / vec2(max(size - 1, ivec2(1)))")
+    if kernel.reads("relief"):
+        given.append(_constant("float", "relief", number(terrain.relief), "metres from height 0 to 1"))
+    if kernel.reads("base_elevation"):
+        base = number(terrain.base_elevation or 0.0)
+        given.append(_constant("float", "base_elevation", base, "metres above sea level at height 0"))
+    if kernel.reads("time"):
+        variable("float", "time", host.time)
+    counts = {"iteration": one.iteration, "iterations": one.iterations, "until": one.until}
+    for name, count in counts.items():
+        if kernel.reads(name):
+            variable("int", name, str(count))
+    return given, statements
+
+
+def size_of(size: tuple[int | None, int | None], host: Host) -> str:
+    """Return a pass's size as an ivec2; ``host.size`` is that of a pass as large as the picture."""
+    if size == (None, None):
+        return host.size
+    sides = [str(side) if side else f"{host.size}.{axis}" for side, axis in zip(size, "xy", strict=True)]
+    return f"ivec2({', '.join(sides)})"
+
+
+def towards(name: str, direction: tuple[float, ...]) -> Declaration:
+    """Return the unit vector towards a direction, as a constant."""
+    return _constant("vec3", f"{TOWARDS}{name}", vector(unit_vector(direction)))
+
+
+def _previous(kernel: Kernel, output: Output, source: str) -> Declaration:
+    name, kind = previous_name(kernel, output), output.glsl
+    head = f"{kind} {name}(ivec2 texel) {{"
+    if not source:
+        return made(f"{head} return {kind}(0.0); }}  // there is no step before", name)
+    swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
+    place = "clamp(texel, ivec2(0), size - 1)"
+    return made(f"{head} return texelFetch({output.name}_before, {place}, 0){swizzle}; }}", name)
+
+
+def _call(kernel: Kernel, output: Output, texel: str) -> tuple[list[str], str]:
+    if len(kernel.outputs) == 1:
+        return [], f"kernel({texel})"
+    lines = [f"{o.glsl} {o.name}_out;" for o in kernel.outputs]
+    names = ", ".join(f"{o.name}_out" for o in kernel.outputs)
+    return [*lines, f"kernel({texel}, {names});"], f"{output.name}_out"
+
+
+def _filled(output: Output, value: str) -> str:
+    return {1: f"vec4({value}, 0.0, 0.0, 1.0)", 2: f"vec4({value}, 0.0, 1.0)", 4: value}[output.components]
+
+
+def _shown(output: Output, value: str, kind: str) -> tuple[str, tuple[Declaration, ...]]:
+    """Return a texture's texel as a picture: a number in grey, colours encoded as sRGB."""
+    three = {1: f"vec3({value})", 2: f"vec3({value}, 0.0)", 4: f"({value}).rgb"}[output.components]
+    if kind == COLOUR:
+        return f"vec4({ENCODE}({three}), 1.0)", (ENCODING,)
+    return f"vec4({three}, 1.0)", ()
+
+
+def shown_text(text: PassText, components: int, kind: str, host: Host) -> PassText:
+    """Return a pass that shows a texture of any size over the whole picture, nearest texel."""
+    output = Output("shown", {1: "r32f", 2: "rg32f", 4: "rgba32f"}[components])
+    swizzle = {1: ".r", 2: ".rg", 4: ""}[components]
+    place = f"{host.texel} * {size_of(text.size, host)} / {host.size}"
+    result, more = _shown(output, f"texelFetch(shown, {place}, 0){swizzle}", kind)
+    return PassText("picture", (None, None), more, (Sampled("shown", text.name),), (), result)
+
+
+def _without_unwired(declaration: Declaration, unwired: Mapping[str, str]) -> Declaration:
+    for name, value in unwired.items():
+        if declaration.reads(name):
+            code, text = (_constant_calls(t, name, value) for t in (declaration.code, declaration.text))
+            declaration = Declaration(declaration.names, code, text, declaration.is_macro)
+    return declaration
+
+
+def _constant_calls(text: str, name: str, value: str) -> str:
+    """Return a text in which what an unwired input is read by is the constant that it gives."""
+    pattern = re.compile(_CALL.format(name=name))
+    while match := pattern.search(text):
+        depth, end = 1, match.end()
+        while depth and end < len(text):
+            depth += (text[end] == "(") - (text[end] == ")")
+            end += 1
+        text = text[: match.start()] + ("ivec2(1)" if match[1] == "textureSize" else value) + text[end:]
+    return text

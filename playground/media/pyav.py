@@ -1,0 +1,69 @@
+"""Open a film or a sound with PyAV, and say in one sentence what is wrong with it.
+
+PyAV is an extra, and brings FFmpeg's decoders. Only the formats listed here are opened, and nothing but
+the file itself is read: a playlist under the name of a film would lead to other files, or to a network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from playground.errors import ContextError, DataError
+from playground.images.files import checked_file, reason
+
+if TYPE_CHECKING:
+    import av.container
+
+VIDEO_FILES = (".mp4", ".mov", ".webm", ".mkv", ".gif", ".avi")
+SOUND_FILES = (".wav", ".mp3", ".ogg", ".flac", ".m4a")
+_FORMATS = "mov,matroska,gif,avi,wav,mp3,ogg,flac"  # FFmpeg's names; m4a is one of mov's
+_OPTIONS = {"format_whitelist": _FORMATS, "protocol_whitelist": "file"}
+
+
+def pyav(what: str) -> Any:
+    """Return PyAV's module; raise ``ContextError`` where it is missing. ``what``: "a video file"."""
+    try:
+        import av
+    except ImportError:
+        raise ContextError(
+            f'{what} needs PyAV: python -m pip install "terrain-shader-playground[video]", or '
+            "python -m pip install av"
+        ) from None
+    av.logging.set_level(av.logging.PANIC)  # what a decoder has to say goes nowhere: errors are exceptions
+    return av
+
+
+def open_media(path: Path, what: str, endings: tuple[str, ...]) -> av.container.InputContainer:
+    """Open a film or a sound, which is recognised by its content.
+
+    Raises ``DataError`` for a file that is missing, damaged or of another format, ``ContextError`` where
+    PyAV is missing.
+    """
+    module = pyav(what)
+    checked_file(path)
+    listed = ", ".join(ending[1:] for ending in endings)
+    try:
+        found: av.container.InputContainer = module.open(str(path), "r", options=dict(_OPTIONS))
+    except (module.FFmpegError, OSError, ValueError) as error:
+        message = f"not {what} that can be read ({_why(error)}); expected {listed}"
+        raise DataError(message, file=path) from None
+    return found
+
+
+@contextmanager
+def decoding(path: Path, what: str) -> Iterator[None]:
+    """Raise an error of a decoder as a ``DataError``: ``what`` cannot be decoded."""
+    module = pyav("a video or sound file")
+    try:
+        yield
+    except (module.FFmpegError, OSError, ValueError, MemoryError) as error:
+        raise DataError(f"{what} cannot be decoded: {_why(error)}", file=path) from None
+
+
+def _why(error: BaseException) -> str:
+    """Return in a few words what an error of FFmpeg means; it names the file as well, which is known."""
+    text = getattr(error, "strerror", "") or reason(error)
+    return text[:1].lower() + text[1:]

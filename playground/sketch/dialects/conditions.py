@@ -1,0 +1,336 @@
+"""Judge a text's conditions (``#if``, ``#ifdef``, ``#elif``, ``#else``) by what is defined.
+
+Where every condition of a group can be judged, its directives and the branches that are left out become
+blank; lines stay. What depends on the driver (``GL_…``, ``__VERSION__``) stays as it is, and so does a text
+whose conditions do not close. Numbers are GLSL 4.60's, section 3.3; an undefined name is 0.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+_DIRECTIVE = re.compile(r"\s*#\s*(ifdef|ifndef|if|elif|else|endif|define|undef)\b\s*(.*)", re.DOTALL)
+_DEFINE = re.compile(r"(\w+)(\()?(.*)", re.DOTALL)
+_TOKEN = re.compile(
+    r"\s*(0[xX][0-9a-fA-F]+|\d+|[A-Za-z_]\w*|<<|>>|<=|>=|==|!=|&&|\|\||[-+~!*/%<>&^|()])([uU]?)"
+)
+_OF_THE_DRIVER = re.compile(r"(?:GL_(?!ES$)|__)\w*")
+_LEVELS: tuple[tuple[str, ...], ...] = (
+    ("||",),
+    ("&&",),
+    ("|",),
+    ("^",),
+    ("&",),
+    ("==", "!="),
+    ("<", ">", "<=", ">="),
+    ("<<", ">>"),
+    ("+", "-"),
+    ("*", "/", "%"),
+)
+"""Operators of two numbers, those that bind least first."""
+_DEEPEST = 32
+_MAX_SHIFT = 62
+
+
+@dataclass
+class _Branch:
+    directive: int  # index of its line
+    kind: str  # if | ifdef | ifndef | elif | else
+    condition: str
+    items: list[_Item] = field(default_factory=list)
+
+
+@dataclass
+class _Group:
+    branches: list[_Branch]
+    end: int = 0  # index of its #endif
+
+
+_Item = int | _Group
+
+
+class Conditions:
+    """The lines of a text, comments blanked, and the conditions among them."""
+
+    def __init__(self, codes: Sequence[str]) -> None:
+        self.codes = tuple(codes)
+        self._directives = {
+            i: m for i, code in enumerate(codes) if "#" in code and (m := _DIRECTIVE.match(code))
+        }
+        self._items = self._parsed()
+        texts = [m[2] for m in self._directives.values() if m[1] in ("if", "ifdef", "ifndef", "elif")]
+        self.names = frozenset(name for text in texts for name in re.findall(r"[A-Za-z_]\w*", text))
+
+    def live(self, defined: Mapping[str, str]) -> tuple[str, ...]:
+        """Return the lines with what is left out blank, where these macros are defined before them."""
+        if self._items is None:
+            return self.codes
+        return _Judge(self.codes, self._directives, defined).lines(self._items)
+
+    def _parsed(self) -> list[_Item] | None:
+        """Return lines and groups in order; None where conditions do not close, or nest too deeply."""
+        found: list[_Item] = []
+        open_groups: list[_Group] = []
+        items = found
+        for index in range(len(self.codes)):
+            match = self._directives.get(index)
+            kind = match[1] if match else ""
+            if match and kind in ("if", "ifdef", "ifndef"):
+                group = _Group([_Branch(index, kind, match[2])])
+                items.append(group)
+                open_groups.append(group)
+                if len(open_groups) > _DEEPEST:
+                    return None
+                items = group.branches[-1].items
+            elif match and kind in ("elif", "else"):
+                if not open_groups or open_groups[-1].branches[-1].kind == "else":
+                    return None
+                open_groups[-1].branches.append(_Branch(index, kind, match[2]))
+                items = open_groups[-1].branches[-1].items
+            elif kind == "endif":
+                if not open_groups:
+                    return None
+                open_groups.pop().end = index
+                items = open_groups[-1].branches[-1].items if open_groups else found
+            else:
+                items.append(index)
+        return None if open_groups else found
+
+
+class _Judge:
+    """One judgement of a text."""
+
+    def __init__(
+        self, codes: Sequence[str], directives: Mapping[int, re.Match[str]], defined: Mapping[str, str]
+    ) -> None:
+        self.codes = list(codes)
+        self.directives = directives
+        self.macros: dict[str, str | None] = dict(defined)  # None: a macro with arguments
+        self.unsure: set[str] = set()  # names that a branch which may be left out defines
+
+    def lines(self, items: Sequence[_Item]) -> tuple[str, ...]:
+        self._walk(items, certain=True)
+        return tuple(self.codes)
+
+    def _walk(self, items: Sequence[_Item], *, certain: bool) -> None:
+        for item in items:
+            if isinstance(item, int):
+                if match := self.directives.get(item):
+                    self._define(match, certain=certain)
+                continue
+            chosen, known = self._choice(item)
+            if not known:
+                for branch in item.branches:
+                    self._walk(branch.items, certain=False)
+                continue
+            for branch in item.branches:
+                self.codes[branch.directive] = ""
+                if branch is not chosen:
+                    self._blank(branch.items)
+            self.codes[item.end] = ""
+            if chosen is not None:
+                self._walk(chosen.items, certain=certain)
+
+    def _choice(self, group: _Group) -> tuple[_Branch | None, bool]:
+        """Return the branch that stays, and whether that can be known."""
+        for branch in group.branches:
+            found = self._holds(branch)
+            if found is None:
+                return None, False
+            if found:
+                return branch, True
+        return None, True
+
+    def _holds(self, branch: _Branch) -> bool | None:
+        if branch.kind == "else":
+            return True
+        if branch.kind in ("ifdef", "ifndef"):
+            name = re.match(r"\w+", branch.condition)
+            found = self._is_defined(name[0]) if name else None
+            return found if found is None or branch.kind == "ifdef" else not found
+        number = _Expression(self, branch.condition).value()
+        return None if number is None else bool(number)
+
+    def _is_defined(self, name: str) -> bool | None:
+        if name in self.unsure or (_OF_THE_DRIVER.fullmatch(name) and name not in self.macros):
+            return None
+        return name in self.macros
+
+    def meaning(self, name: str) -> str | None:
+        """Return the text that a name stands for in an expression; None where that cannot be known."""
+        if not self._is_defined(name):
+            return None if self._is_defined(name) is None else "0"
+        return self.macros[name]
+
+    def is_defined(self, name: str) -> int | None:
+        """Return 1 or 0, None where it cannot be known."""
+        found = self._is_defined(name)
+        return None if found is None else int(found)
+
+    def _define(self, match: re.Match[str], *, certain: bool) -> None:
+        found = _DEFINE.match(match[2]) if match[1] in ("define", "undef") else None
+        if found is None:
+            return
+        if not certain:
+            self.unsure.add(found[1])
+        elif match[1] == "define":
+            self.macros[found[1]] = None if found[2] else found[3].strip()
+            self.unsure.discard(found[1])
+        else:
+            self.macros.pop(found[1], None)
+            self.unsure.discard(found[1])
+
+    def _blank(self, items: Sequence[_Item]) -> None:
+        for item in items:
+            if isinstance(item, int):
+                self.codes[item] = ""
+                continue
+            for branch in item.branches:
+                self.codes[branch.directive] = ""
+                self._blank(branch.items)
+            self.codes[item.end] = ""
+
+
+class _Wrong(Exception):
+    """An expression is none, or nests too deeply."""
+
+
+class _Expression:
+    """The expression of one ``#if``."""
+
+    def __init__(self, judge: _Judge, text: str) -> None:
+        self.judge = judge
+        self.tokens: list[str | None] = []  # None: what cannot be known
+        try:
+            self.tokens = [*self._expanded(text, frozenset())]
+            self.is_wrong = False
+        except _Wrong:
+            self.is_wrong = True
+        self.at = 0
+
+    def value(self) -> int | None:
+        """Return the number; None where it cannot be known."""
+        if self.is_wrong or not self.tokens:
+            return None
+        try:
+            found = self._level(0)
+        except _Wrong:
+            return None
+        return found if self.at == len(self.tokens) else None
+
+    def _expanded(self, text: str, inside: frozenset[str]) -> Iterator[str | None]:
+        """Yield the tokens of a text with its macros replaced, ``defined`` answered."""
+        if len(inside) > _DEEPEST:
+            raise _Wrong
+        tokens = _tokens(text)
+        index = 0
+        while index < len(tokens):
+            token = tokens[index]
+            index += 1
+            if token == "defined":
+                names = (
+                    tokens[index : index + 3]
+                    if tokens[index : index + 1] == ["("]
+                    else tokens[index : index + 1]
+                )
+                index += len(names)
+                name = names[len(names) // 2] if names else ""
+                found = self.judge.is_defined(name)
+                yield None if found is None else str(found)
+            elif token[0].isalpha() or token[0] == "_":
+                meaning = None if token in inside else self.judge.meaning(token)
+                if meaning is None:
+                    yield None
+                else:
+                    yield from self._expanded(meaning, inside | {token})
+            else:
+                yield token
+
+    def _level(self, level: int, depth: int = 0) -> int | None:
+        if depth > _DEEPEST:
+            raise _Wrong
+        if level == len(_LEVELS):
+            return self._single(depth + 1)
+        left = self._level(level + 1, depth)
+        while self.at < len(self.tokens) and (operator := self.tokens[self.at]) in _LEVELS[level]:
+            self.at += 1
+            left = _worked_out(str(operator), left, self._level(level + 1, depth))
+        return left
+
+    def _single(self, depth: int) -> int | None:
+        if depth > _DEEPEST or self.at >= len(self.tokens):
+            raise _Wrong
+        token = self.tokens[self.at]
+        self.at += 1
+        if token is None:
+            return None
+        if token in ("!", "-", "+", "~"):
+            number = self._single(depth + 1)
+            if number is None:
+                return None
+            return {"!": int(not number), "-": -number, "+": number, "~": ~number}[token]
+        if token == "(":
+            number = self._level(0, depth + 1)
+            if self.at >= len(self.tokens) or self.tokens[self.at] != ")":
+                raise _Wrong
+            self.at += 1
+            return number
+        if not token[0].isdigit():
+            raise _Wrong
+        octal = len(token) > 1 and token[0] == "0" and token.isdigit()
+        try:
+            return int(token, 8) if octal else int(token, 0)
+        except ValueError:
+            raise _Wrong from None
+
+
+def _tokens(text: str) -> list[str]:
+    found, at = [], 0
+    text = text.rstrip()
+    while at < len(text):
+        match = _TOKEN.match(text, at)
+        if match is None:
+            raise _Wrong
+        found.append(match[1])
+        at = match.end()
+    return found
+
+
+def _worked_out(operator: str, left: int | None, right: int | None) -> int | None:
+    """Return the number of an operator; of what cannot be known only where the other side decides."""
+    if operator == "&&":
+        if 0 in (left, right):
+            return 0
+        return None if None in (left, right) else 1
+    if operator == "||":
+        if (left is not None and left) or (right is not None and right):
+            return 1
+        return None if None in (left, right) else 0
+    if left is None or right is None:
+        return None
+    if operator in ("/", "%"):
+        if not right:
+            return None
+        quotient = abs(left) // abs(right) * (1 if (left < 0) == (right < 0) else -1)
+        return quotient if operator == "/" else left - quotient * right
+    if operator in ("<<", ">>"):
+        if not 0 <= right <= _MAX_SHIFT:
+            return None
+        return left << right if operator == "<<" else left >> right
+    results = {
+        "|": left | right,
+        "^": left ^ right,
+        "&": left & right,
+        "==": left == right,
+        "!=": left != right,
+        "<": left < right,
+        ">": left > right,
+        "<=": left <= right,
+        ">=": left >= right,
+        "+": left + right,
+        "-": left - right,
+        "*": left * right,
+    }
+    return int(results[operator])

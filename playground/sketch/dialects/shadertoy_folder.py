@@ -1,0 +1,118 @@
+"""Read a folder of Shadertoy's passes: ``Image``, ``Buffer A`` to ``Buffer D``, ``Cube A`` and ``Common``.
+
+Each is a file, ``.glsl`` or ``.frag``, with a space in its name or without. What a channel reads says a line
+as ``#iChannel0 "file://Buffer A.glsl"`` or a comment as ``// iChannel0: Buffer A``; else channel 0 reads
+Buffer A, 1 Buffer B and so on, of those that are there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from playground.errors import SketchError
+from playground.paths import shown
+from playground.sketch.dialects.directives import read_directives
+from playground.sketch.dialects.reading import Files
+from playground.sketch.dialects.shader import Shader
+from playground.sketch.dialects.toy_passes import (
+    BUFFER,
+    CUBE,
+    IMAGE,
+    ToyInput,
+    pass_name,
+    reading,
+    shaders_of,
+)
+from playground.sketch.dialects.vscode import Reader
+from playground.sketch.source import SourceText
+
+_COMMON, _SOUND = "Common", "Sound"
+_IMAGE = "Image"
+_BUFFERS = tuple(f"Buffer {letter}" for letter in "ABCD")
+_CUBES = ("Cube A",)
+_LABELS = (*_BUFFERS, *_CUBES, _IMAGE)
+_ENDINGS = (".glsl", ".frag")
+_COMMENT = re.compile(
+    r"\biChannel([0-3])\b\s*(?:[:=]|->|→|reads|is)?\s*(Buffer ?[A-D]|Cube ?A|self)\b", re.IGNORECASE
+)
+
+
+def image_of(folder: Path) -> Path | None:
+    """Return the file of a folder's Image; None where it has none that is one."""
+    found = next((place for place in _places(folder, _IMAGE) if place.is_file()), None)
+    return found if found is not None and "mainImage" in found.read_text("utf-8", "replace") else None
+
+
+def is_of_folder(path: Path) -> bool:
+    """Return whether a file is one of a folder's passes, its Image another or itself."""
+    known = {place.name for label in (*_LABELS, _COMMON, _SOUND) for place in _places(path.parent, label)}
+    return path.name in known and image_of(path.parent) is not None
+
+
+def has_more(path: Path) -> bool:
+    """Return whether a file is an Image, or a pass of one, that others are next to."""
+    others = [p for label in (*_LABELS, _COMMON, _SOUND) for p in _places(path.parent, label) if p != path]
+    return is_of_folder(path) and any(place.is_file() for place in others)
+
+
+def shaders(files: Files) -> Sequence[Shader]:
+    """Return the passes of the folder that a file is in."""
+    folder = files.path.parent
+    there = {label: found for label in _LABELS if (found := _file(files, folder, label))}
+    if _file(files, folder, _SOUND):
+        files.note(f"{_SOUND} is sound, which is not drawn")
+    common = _file(files, folder, _COMMON)
+    kinds = {label: IMAGE if label == _IMAGE else CUBE if label in _CUBES else BUFFER for label in _LABELS}
+    reader = Reader(
+        files,
+        labels={path: label for label, path in there.items()},
+        kinds={path: kinds[label] for label, path in there.items()},
+        inputs={path: _inputs(files, path, files.source(path), there) for path in there.values()},
+        common=read_directives(files.source(common)).source if common else None,
+    )
+    for label, path in there.items():
+        reader.add(path, kinds[label])
+    return shaders_of(sorted(reader.passes(), key=lambda one: one.label))
+
+
+def _inputs(files: Files, path: Path, source: SourceText, there: dict[str, Path]) -> dict[str, ToyInput]:
+    """Return what the channels read that no directive names."""
+    named: dict[int, str] = {}
+    for line in source.lines:
+        for number, text in _COMMENT.findall(line.comment):
+            wanted = pass_name(text.replace(" ", ""))
+            own = next(label for label, file in there.items() if file == path)
+            label = next((one for one in there if pass_name(one.replace(" ", "")) == wanted), "")
+            named.setdefault(int(number), own if wanted == "self" else label)
+    taken = read_directives(source).channels
+    assumed = {}
+    for number, label in enumerate(_BUFFERS):
+        is_read = re.search(rf"\biChannel{number}\b", source.code)
+        if number not in named and number not in taken and label in there and is_read:
+            named[number] = assumed[number] = label
+    if assumed:
+        pairs = ", ".join(f"iChannel{number} reads {label}" for number, label in assumed.items())
+        files.note(f"nothing says otherwise, so {pairs}; a comment as // iChannel0: Buffer B does", path=path)
+    return {
+        f"iChannel{number}": ToyInput(
+            reading(pass_name(label)), "samplerCube" if label in _CUBES else "sampler2D"
+        )
+        for number, label in named.items()
+        if label in there
+    }
+
+
+def _file(files: Files, folder: Path, label: str) -> Path | None:
+    """Return the file of a pass; raise ``SketchError`` where there are two."""
+    found = [place for place in _places(folder, label) if files.is_there(place)]
+    if len(found) > 1:
+        both = " and ".join(shown(place) for place in found[:2])
+        raise SketchError(f"{both} are both {label}; remove one", file=shown(files.path))
+    return found[0].resolve() if found else None
+
+
+def _places(folder: Path, label: str) -> list[Path]:
+    names = dict.fromkeys((label, label.replace(" ", "")))
+    return [folder / f"{name}{ending}" for name in names for ending in _ENDINGS]

@@ -1,0 +1,85 @@
+"""The sources that change with time: films and sounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import floor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.media import analysis
+from playground.media.film import Film, film_of
+from playground.media.now import Now
+from playground.media.sound import RATE, Sound, sound_of
+from playground.sketch.model import Value
+
+OUTPUT = "channel_texels"
+_CHANNEL, _WAVES, _SPECTRUM = range(3)  # the choices of ``content``
+
+
+def _film(values: Mapping[str, Value]) -> Film:
+    return film_of(Path(str(values["video"])))
+
+
+def size_of_video(values: Mapping[str, Value]) -> tuple[int, int]:
+    """Return the pixels of a film's frames."""
+    return _film(values).size
+
+
+def moment_of_video(values: Mapping[str, Value], now: Now) -> int:
+    """Return which frame of a film is shown, from 0."""
+    seconds = _number(values, "start") + _number(values, "speed") * now.time
+    return _film(values).frame_at(seconds, loop=bool(values["loop"]))
+
+
+def make_video(
+    values: Mapping[str, Value], size: tuple[int, int], moment: Any = None
+) -> dict[str, NDArray[np.uint8]]:
+    """Return the frame that ``moment_of_video`` named."""
+    return {OUTPUT: _film(values).pixels(moment, size)}
+
+
+def _sound(values: Mapping[str, Value]) -> Sound:
+    return sound_of(Path(str(values["sound"])))
+
+
+def size_of_sound(values: Mapping[str, Value]) -> tuple[int, int]:
+    """Return the texels of what is shown of a sound."""
+    rows = _sound(values).channels
+    sizes = {_CHANNEL: (analysis.SHOWN, 2), _WAVES: (analysis.WINDOW, rows), _SPECTRUM: (analysis.BINS, rows)}
+    return sizes[values["content"]]  # type: ignore[index]  # a menu's
+
+
+def moment_of_sound(values: Mapping[str, Value], now: Now) -> int:
+    """Return the sample that is about to be heard; before the first and long after the last it stays."""
+    end = max(floor((_number(values, "start") + now.time) * RATE + 1e-6), 0)
+    length = None if values["loop"] else _sound(values).length(end)
+    return end if length is None else min(end, length + analysis.SPAN)
+
+
+def make_sound(
+    values: Mapping[str, Value], size: tuple[int, int], moment: Any = None
+) -> dict[str, NDArray[np.uint8]]:
+    """Return what is shown of a sound before a sample: see ``media.analysis``."""
+    heard = _sound(values).heard(moment, max(analysis.SPAN, size[0]), loop=bool(values["loop"]))
+    return {OUTPUT: shown_of(heard, int(values["content"]), size)}  # type: ignore[arg-type]
+
+
+def shown_of(heard: NDArray[np.float32], content: int, size: tuple[int, int]) -> NDArray[np.uint8]:
+    """Return the texels of what was heard, (channels, samples), as a choice of ``content`` shows it."""
+    if content == _WAVES:
+        return analysis.waves(heard, size)
+    if content == _SPECTRUM:
+        return analysis.spectra(heard, size)
+    rows = np.arange(size[1]) * 2 // size[1]
+    columns = np.arange(size[0]) * analysis.SHOWN // size[0]
+    return analysis.channel(heard)[rows[:, None], columns]
+
+
+def _number(values: Mapping[str, Value], name: str) -> float:
+    value = values[name]
+    assert isinstance(value, int | float)  # the kernel's file says so
+    return value

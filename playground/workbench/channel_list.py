@@ -1,0 +1,70 @@
+"""The channels of other tools' shaders in words, and which of them take a file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from playground.paths import GLSL
+from playground.sketch.channels import Channel, channels, is_technique, sources
+from playground.sketch.model import Kernel, Parameter, Sketch, Technique
+from playground.sketch.techniques import read_technique
+
+
+def in_words(sketch: Sketch, source: str) -> str:
+    """Return what a source is called in a list: "noise", "image file", "pass photo"."""
+    if not source:
+        return "nothing (black)"
+    if not is_technique(source):
+        return f"pass {source}"
+    name = source.rpartition("/")[2].replace("_", " ")
+    takes_file = _file_parameter(_technique(sketch, source)) is not None
+    return f"{name} file" if takes_file else name
+
+
+def note_of(sketch: Sketch, channel: Channel) -> str:
+    """Return a tooltip: what feeds a channel."""
+    if not is_technique(channel.source):
+        spec = sketch.graph.find(channel.feeder)
+        title = spec.technique.title if spec is not None else ""
+        what = f"the pass {channel.source}" if channel.source else "nothing: it reads black"
+        return "\n".join(filter(None, [f"Fed by {what}", title]))
+    return f"Fed by {channel.source}\n{_technique(sketch, channel.source).title}"
+
+
+def file_of(sketch: Sketch, channel: Channel) -> tuple[str, Parameter] | None:
+    """Return the parameter, with its path, that names the file which feeds a channel; None for no file."""
+    spec = sketch.graph.find(channel.feeder) if channel.alone else None
+    parameter = _file_parameter(spec.technique) if spec is not None else None
+    return (f"{channel.feeder}.{parameter.name}", parameter) if parameter is not None else None
+
+
+@dataclass(frozen=True, slots=True)
+class Taker:
+    """A channel that an image file may feed."""
+
+    channel: Channel
+    source: str  # the technique that reads the file
+    parameter: str  # of the technique: names the file
+
+
+def takers(sketch: Sketch) -> tuple[Taker, ...]:
+    """Return the channels that an image file may feed."""
+    found = []
+    for channel in channels(sketch):
+        for source in [s for s in sources(sketch, channel.path) if is_technique(s)]:
+            parameter = _file_parameter(_technique(sketch, source))
+            if parameter is not None and parameter.type == "sampler2D":
+                found.append(Taker(channel, source, parameter.name))
+                break
+    return tuple(found)
+
+
+def _technique(sketch: Sketch, source: str) -> Technique:
+    spec = next((spec for spec in sketch.graph.passes if spec.use == source), None)
+    return spec.technique if spec is not None else read_technique(source, GLSL, GLSL)
+
+
+def _file_parameter(technique: Technique) -> Parameter | None:
+    if not isinstance(technique, Kernel):
+        return None
+    return next(iter(technique.file_parameters), None)

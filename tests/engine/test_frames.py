@@ -1,0 +1,219 @@
+"""A loop that counts frames: frame n is at n / 60 s, from the first, whatever was drawn before."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.errors import ShaderError
+from playground.sketch.load import load
+from playground.workbench.traits import has_moving_counts, is_animated
+
+from ..sketch_texts import passes
+
+STATE = """// Each texel takes the mean of the one to its west and of the other pass, and what goes by time.
+#pragma kernel(output = "state:rgba32f")
+uniform sampler2D own;    //! input("zero")
+uniform sampler2D other;  //! input
+vec4 kernel(ivec2 texel) {
+    ivec2 whole = textureSize(own, 0);
+    vec4 west = texelFetch(own, ivec2((texel.x + whole.x - 1) % whole.x, texel.y), 0);
+    ivec2 there = min(texel, textureSize(other, 0) - 1);
+    return vec4(0.5 * (west.r + texelFetch(other, there, 0).r) + float(int(round(60.0 * time)) % 4), time,
+                vec2(whole));
+}
+"""
+OTHER = """#pragma kernel(output = "other:r32f")
+uniform sampler2D own;  //! input("zero")
+float kernel(ivec2 texel) { return 0.25 * texelFetch(own, texel, 0).r + float(texel.x + 2 * texel.y); }
+"""
+STILL = """#pragma kernel(output = "still:r32f")
+float kernel(ivec2 texel) { return float(texel.x); }
+"""
+SHOW = """#pragma kernel(output = "shown:rgba16f")
+uniform sampler2D state;  //! input
+uniform sampler2D still;  //! input
+vec4 kernel(ivec2 texel) { return texelFetch(state, texel, 0) / 32.0 + 0.0 * texelFetch(still, texel, 0); }
+"""
+INNER = (
+    passes(
+        other=("./other", 'size = ["view_size.size.x // 2", "view_size.size.y // 2 + 1"]'),
+        state="./state",
+        still="./still",
+        show="./show",
+    )
+    + '[inputs]\nown = ["state.own", "other.own"]\n[outputs]\nshown = "show:shown"\nstate = "state:state"\n'
+).replace("view_size.", "")
+LOOP = '[[pass]]\nname = "loop"\nuse = "./USE"\nrepeat = "frames"\nfeedback = { INPUT = "OUTPUT" }\n'
+SKETCH = f'format = 1\nsize = 8\n{passes(unread="./still")}[view]\nuse = "./loop"\n'
+
+
+def looped(folder, use: str, output: str, fed: str):
+    """Return a sketch whose picture is a technique that runs once a frame, from the frame before."""
+    folder.write("still.glsl", STILL)
+    folder.write("loop.toml", LOOP.replace("USE", use).replace("OUTPUT", output).replace("INPUT", fed))
+    return load(folder.write("sketch.toml", SKETCH))
+
+
+@pytest.fixture
+def sketch(folder):
+    for name, text in {"state": STATE, "other": OTHER, "show": SHOW}.items():
+        folder.write(f"{name}.glsl", text)
+    folder.write("inner.toml", INNER)
+    return looped(folder, "inner", "state", "own")
+
+
+def twin(size: tuple[int, int], frames: int) -> np.ndarray:
+    """Return the state after so many frames, (height, width, 4), worked out texel by texel."""
+    width, height = size
+    small = (width // 2, height // 2 + 1)
+    state = np.zeros((height, width, 4))
+    for frame in range(frames):
+        other = np.zeros((small[1], small[0]))
+        for y in range(small[1]):
+            for x in range(small[0]):
+                other[y, x] = 0.25 * state[y, x, 0] + x + 2 * y
+        new = np.empty_like(state)
+        for y in range(height):
+            for x in range(width):
+                there = other[min(y, small[1] - 1), min(x, small[0] - 1)]
+                new[y, x] = 0.5 * (state[y, x - 1, 0] + there) + frame % 4, frame / 60, width, height
+        state = new
+    return state
+
+
+def states(engine: Engine, sketch, size: tuple[int, int], time: float) -> np.ndarray:
+    return engine.read(sketch, "view.loop:state", size=size, time=time).copy()
+
+
+@pytest.mark.parametrize("size", [(8, 6), (13, 9)])
+@pytest.mark.parametrize("time", [0.0, 0.5, 1.0])
+def test_a_frame_is_that_of_a_twin_stepped_from_the_first(any_engine, sketch, time, size):
+    found = states(any_engine, sketch, size, time)
+    # Two roundings a frame, of 2**-24 each; what is fed back comes back by 5 / 8.
+    np.testing.assert_allclose(found, twin(size, round(60 * time) + 1), rtol=2 * 2**-24 / (1 - 5 / 8))
+
+
+def test_what_reads_neither_time_nor_what_is_fed_back_runs_once(any_engine, sketch):
+    any_engine.draw(sketch, size=(8, 6), time=0.5)
+    assert any_engine.runs == {
+        "view.loop.other": 31,
+        "view.loop.state": 31,
+        "view.loop.still": 1,
+        "view.loop.show": 31,
+    }
+    any_engine.draw(sketch, size=(8, 6), time=0.75)
+    assert any_engine.runs["view.loop.state"] == 46, "frames that are cached are not run again"
+    assert any_engine.runs["view.loop.still"] == 1
+    any_engine.draw(sketch, size=(8, 6), time=0.755)
+    assert any_engine.ran == [], "the same frame"
+
+
+def test_the_picture_is_a_function_of_time_and_size_alone(ctx, sketch):
+    def cold(time, size):
+        with Engine(ctx) as engine:
+            return states(engine, sketch, size, time), engine.render(sketch, size=size, time=time).array
+
+    with Engine(ctx) as warm:
+        for time, size in ((2.0, (8, 6)), (1.0, (8, 6)), (1.0, (13, 9)), (0.0, (8, 6)), (1.5, (8, 6))):
+            found = states(warm, sketch, size, time), warm.render(sketch, size=size, time=time).array
+            for one, other, again in zip(found, cold(time, size), cold(time, size), strict=True):
+                assert one.tobytes() == other.tobytes() == again.tobytes()
+
+
+DRAW = """void mainImage(out vec4 colour, in vec2 place) {
+    vec2 whole = vec2(textureSize(iChannel0, 0));
+    colour = texelFetch(iChannel0, ivec2(0), 0) + vec4(iMouse.x, 1.0, 0.0, 0.0) / 255.0;
+    colour.z = (10.0 * whole.x + float(iFrame)) / 255.0;
+}
+"""
+
+
+@pytest.fixture
+def drawing(folder):
+    folder.write("draw.frag", DRAW)
+    return looped(folder, "draw", "frame", "iChannel0")
+
+
+def test_another_tools_shader_reads_zeros_of_its_own_size_before_the_first_frame(any_engine, drawing):
+    found = any_engine.read(drawing, "view.loop", size=(5, 4))
+    np.testing.assert_array_equal(np.round(255 * found), np.broadcast_to([0, 1, 50, 255], (4, 5, 4)))
+
+
+def test_the_mouse_enters_at_its_frame_and_makes_no_frame_before_stale(any_engine, drawing):
+    any_engine.read(drawing, "view.loop", size=(4, 4), time=4 / 60)
+    any_engine.runner.drag = (2.0, 0.0, 0.0, 0.0)
+    any_engine.read(drawing, "view.loop", size=(4, 4), time=4 / 60)
+    assert any_engine.ran == []
+    found = any_engine.read(drawing, "view.loop", size=(4, 4), time=7 / 60)
+    assert any_engine.ran == ["view.loop.view"] * 3
+    np.testing.assert_array_equal(np.round(255 * found[0, 0]), [6, 8, 47, 255])
+
+
+KERNEL = """#pragma kernel(output = "sum:r32f")
+uniform sampler2D before;  //! input("black")
+float kernel(ivec2 texel) {
+    return texelFetch(before, texel, 0).r + time + (wired_before ? 100.0 : 0.0);
+}
+"""
+
+
+def test_a_kernel_of_ones_own_gets_the_frames_time_and_its_fallback_as_in_any_loop(engine, folder):
+    folder.write("sum.glsl", KERNEL)
+    sketch = folder.sketch(
+        '[[pass]]\nname = "a"\nuse = "./sum"\nrepeat = "frames"\nfeedback = { before = "sum" }\n'
+    )
+    for last in (0, 1, 12, 6, 18):
+        expected = sum(n / 60 + (100 if n else 0) for n in range(last + 1))
+        np.testing.assert_allclose(engine.read(sketch, "a", time=last / 60), expected, rtol=1e-6)
+    assert engine.runs["a"] < 13 + 13 + 18, "it went on"
+
+
+def test_a_kernel_that_repeats_by_frames_itself_gets_their_times_and_goes_on(engine, folder):
+    sketch = folder.one(
+        '#pragma kernel(output = "sum:r32f", repeat = "frames")\n'
+        "float kernel(ivec2 texel) { return previous(texel) + time; }\n"
+    )
+    for last in (0, 12, 30):
+        expected = sum(n / 60 for n in range(last + 1))
+        np.testing.assert_allclose(engine.read(sketch, "a", time=last / 60), expected, rtol=1e-5)
+    assert engine.texels == 18 * 17 * 17, "18 more frames"
+
+
+def test_an_inner_loop_and_what_is_around_it_have_the_time_of_the_frame(engine, folder):
+    folder.write(
+        "sum.glsl", KERNEL.replace('("black")', '("zero")').replace("time", "time * float(iteration + 1)")
+    )
+    folder.write(
+        "now.glsl", '#pragma kernel(output = "now:r32f")\nfloat kernel(ivec2 texel) { return time; }\n'
+    )
+    folder.write(
+        "frame.toml",
+        passes(sum=("./sum", "repeat = 3", 'feedback = { before = "sum" }'), now="./now")
+        + '[inputs]\nbefore = "sum.before"\n[outputs]\nsum = "sum:sum"\nnow = "now:now"\n',
+    )
+    sketch = folder.sketch(
+        '[[pass]]\nname = "a"\nuse = "./frame"\nrepeat = "frames"\nfeedback = { before = "sum" }\n'
+    )
+    total = 0.0
+    for n in range(7):
+        total += n / 60 * (1 + 2 + 3) + 300
+    np.testing.assert_allclose(engine.read(sketch, "a:sum", time=0.1), total, rtol=1e-6)
+    np.testing.assert_allclose(engine.read(sketch, "a:now", time=0.1), 0.1, rtol=1e-6)
+    assert engine.runs == {"a.sum": 21, "a.now": 7}
+
+
+def test_a_sketch_that_counts_frames_is_known_to_move(sketch):
+    assert is_animated(sketch)
+    assert has_moving_counts(sketch)
+
+
+def test_a_parameter_called_frames_is_refused_where_the_frames_are_counted(folder):
+    folder.write(
+        "p.glsl",
+        '#pragma kernel(output = "v:r32f", repeat = "frames")\nuniform int frames = 3;\n'
+        "float kernel(ivec2 texel) { return previous(texel) + 1.0; }\n",
+    )
+    with pytest.raises(ShaderError, match=r"p\.glsl:1.*'frames' is the number of frames at a time"):
+        folder.sketch('[[pass]]\nname = "a"\nuse = "./p"\n')

@@ -1,0 +1,481 @@
+"""Shadertoy's shaders of several passes are drawn: from exports, folders and the VS Code form."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.plan_warnings import source_warnings
+from playground.engine.planner import Planner
+from playground.errors import PlaygroundError, ShaderError
+from playground.images.files import write_png
+from playground.sketch.load import load
+from playground.sketch.warnings import former_names_used
+from tests.toy_texts import (
+    CUBE,
+    EXPORTS,
+    FOLDERS,
+    GROWS,
+    IMAGE,
+    PLAIN,
+    SOUND,
+    VSCODE,
+    A,
+    Toy,
+    cube,
+    export,
+    one,
+    read,
+)
+
+SIZE = (32, 18)
+TOYS: dict[str, Toy] = {**EXPORTS, **FOLDERS, **VSCODE}
+
+
+@pytest.fixture
+def opened(folder):
+    def of(files, opens=""):
+        for name, text in files.items():
+            folder.write(name, text)
+        return load(folder.path / opens)
+
+    return of
+
+
+def drawn(engine, sketch, time=0.0, size=SIZE):
+    return engine.render(sketch, size=size, time=time).array
+
+
+def notes(sketch):
+    plan = Planner().plan(sketch, frame_size=SIZE)
+    return [str(d.message) for d in (*former_names_used(sketch), *source_warnings(plan))]
+
+
+@pytest.mark.parametrize("name", TOYS)
+def test_each_is_drawn_and_at_a_time_it_is_always_the_same_picture(any_engine, ctx, opened, name):
+    sketch = opened(TOYS[name].files, TOYS[name].opens)
+    first = drawn(any_engine, sketch, 1.0)
+    assert len(np.unique(first[..., :3].reshape(-1, 3), axis=0)) > 1
+    any_engine.cache.clear()
+    drawn(any_engine, sketch, 2.0)
+    np.testing.assert_array_equal(drawn(any_engine, sketch, 1.0), first)
+    with Engine(ctx) as fresh:
+        np.testing.assert_array_equal(drawn(fresh, sketch, 1.0), first)
+
+
+@pytest.mark.parametrize("name", TOYS)
+def test_a_mistake_is_at_its_line_and_pass(any_engine, opened, name):
+    files, line = TOYS[name].with_mistake()
+    with pytest.raises(ShaderError) as caught:
+        drawn(any_engine, opened(files, TOYS[name].opens))
+    found = caught.value.diagnostics[0]
+    assert (found.file.rpartition("/")[2], found.line) == (TOYS[name].at, line)
+    assert "not_declared" in found.message and "not_declared" in found.excerpt
+
+
+# ── exports ──────────────────────────────────────────────────────────────────
+
+
+def first_texel(engine, sketch, time=0.0, size=(4, 4)):
+    return drawn(engine, sketch, time, size)[0, 0].astype(int)
+
+
+def test_a_buffer_is_drawn_before_what_reads_it_and_the_last_frame_s_where_it_is_later(any_engine, opened):
+    count = "void mainImage(out vec4 c, in vec2 p) {{ c = vec4(float(iFrame + {}) / 255.0); }}"
+    plain = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(0), 0); }"
+    later = opened({"a.json": export(
+        one("Image", plain, read(257)),
+        one("Buffer A", plain, read(258), output=257),
+        one("Buffer B", count.format(10), output=258),
+    )}, "a.json")  # fmt: skip
+    earlier = opened({"b.json": export(
+        one("Image", plain, read(258)),
+        one("Buffer B", plain, read(257), output=258),
+        one("Buffer A", count.format(10), output=257),
+    )}, "b.json")  # fmt: skip
+    for frame in (0, 1, 7):
+        time = (frame + 0.5) / 60
+        assert first_texel(any_engine, earlier, time)[0] == 10 + frame
+        assert first_texel(any_engine, later, time)[0] == (0 if frame == 0 else 9 + frame)
+
+
+def test_a_buffer_keeps_fractions_negative_numbers_and_alpha(any_engine, opened):
+    plain = "void mainImage(out vec4 c, in vec2 p) {{ c = {}; }}"
+    sketch = opened({"a.json": export(
+        one("Image", plain.format("vec4(texelFetch(iChannel0, ivec2(0), 0).wzy + 1.0, 1.0)"), read(257)),
+        one("Buffer A", plain.format("vec4(9.0, -0.75, -0.5, -0.25)"), output=257),
+    )}, "a.json")  # fmt: skip
+    np.testing.assert_allclose(first_texel(any_engine, sketch)[:3], [191, 128, 64], atol=1)
+
+
+def test_feedback_counts_the_frames(any_engine, opened):
+    counts = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel1, ivec2(p), 0) + 1.0 / 255.0; }"
+    image = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0); }"
+    sketch = opened(
+        {"a.json": export(one("Image", image, read(257)), one("Buffer A", counts, read(257, 1), output=257))},
+        "a.json",
+    )
+    for frame in (0, 5, 30):
+        assert first_texel(any_engine, sketch, (frame + 0.5) / 60)[0] == frame + 1
+
+
+def test_a_sampler_says_how_a_buffer_is_read(any_engine, opened):
+    ramp = "void mainImage(out vec4 c, in vec2 p) { c = vec4(floor(p.x) / 3.0); }"
+    image = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec2(1.03, 0.5)); }"
+    wanted = {
+        ("nearest", "clamp"): 255,
+        ("nearest", "repeat"): 0,
+        ("linear", "clamp"): 255,
+        ("linear", "repeat"): (0.5 - 4 * 0.03) * 255,
+    }
+    for (form, wrap), value in wanted.items():
+        text = export(
+            one("Image", image, read(257, sampler={"filter": form, "wrap": wrap})),
+            one("Buffer A", ramp, output=257),
+        )
+        np.testing.assert_allclose(
+            first_texel(any_engine, opened({"a.json": text}, "a.json"))[0], value, atol=2
+        )
+
+
+def test_a_cube_map_pass_is_read_by_direction_by_later_passes_and_by_itself(any_engine, opened):
+    image = "void mainImage(out vec4 c, in vec2 p) {{ c = texture(iChannel0, {}); }}"
+    wire = {"id": 41, "ctype": "cubemap", "channel": 0}
+    for way in np.vstack([np.eye(3), -np.eye(3), [[0.3, -0.5, 0.8], [-0.7, 0.6, -0.2]]]):
+        text = export(one("Image", image.format(f"vec3({way[0]}, {way[1]}, {way[2]})"), wire), cube(CUBE))
+        expected = 255 * (0.5 + 0.5 * way / np.linalg.norm(way))
+        np.testing.assert_allclose(
+            first_texel(any_engine, opened({"a.json": text}, "a.json"))[:3], expected, atol=2
+        )
+    counts = "void mainCubemap(out vec4 c, in vec2 p, in vec3 o, in vec3 d) { c = texture(iChannel0, d) + vec4(iResolution.y / 1024.0 / 255.0); }"  # noqa: E501
+    text = export(one("Image", image.format("vec3(0.2, -1.0, 0.4)"), wire), cube(counts, wire))
+    sketch = opened({"a.json": text}, "a.json")
+    assert [first_texel(any_engine, sketch, (frame + 0.5) / 60)[0] for frame in (0, 3)] == [1, 4]
+
+
+def test_pixels_of_a_cube_map_pass_are_those_of_its_face(any_engine, opened):
+    where = (
+        "void mainCubemap(out vec4 c, in vec2 p, in vec3 o, in vec3 d) { c = vec4(p / 1024.0, 0.0, 1.0); }"
+    )
+    image = "void mainImage(out vec4 c, in vec2 p) {{ c = texture(iChannel0, {}); }}"
+    wire = {"id": 41, "ctype": "cubemap", "channel": 0}
+    for way, expected in [
+        ("vec3(1.0, 0.5, 0.0)", (0.5, 0.25)),
+        ("vec3(0.5, 1.0, 0.0)", (0.75, 0.5)),
+        ("vec3(-0.5, 0.0, -1.0)", (0.75, 0.5)),
+    ]:
+        text = export(one("Image", image.format(way), wire), cube(where))
+        found = first_texel(any_engine, opened({"a.json": text}, "a.json"))
+        np.testing.assert_allclose(found[:2], 255 * np.array(expected), atol=2)
+
+
+def test_an_image_next_to_an_export_is_read_as_its_sampler_says(any_engine, opened, folder):
+    pixels = np.full((4, 4, 4), 255, np.uint8)
+    pixels[:2, :, :3] = 128  # its upper half
+    write_png(folder.path / "x.png", pixels)
+    image = "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec2(0.5, 0.875)); }"
+    for sampler, level in [
+        ({}, 128),
+        ({"vflip": "false"}, 255),
+        ({"vflip": False}, 255),
+        ({"vflip": "true", "srgb": "true"}, 255 * ((128 / 255 + 0.055) / 1.055) ** 2.4),
+    ]:
+        given = {"id": "a", "src": "x.png", "ctype": "texture", "channel": 0, "sampler": sampler}
+        sketch = opened({"a.json": export(one("Image", image, given))}, "a.json")
+        np.testing.assert_allclose(first_texel(any_engine, sketch)[0], level, atol=1)
+        assert notes(sketch) == []
+
+
+def test_what_makes_no_picture_is_named(opened):
+    text = f"{PLAIN}{SOUND}\nvoid mainVR(out vec4 c, vec2 p) {{}}\n"
+    for files, opens in [
+        ({"a.frag": text}, "a.frag"),
+        ({"a.json": export(one("Image", text))}, "a.json"),
+        ({"a.frag": f"#iKeyboard\n{text}"}, "a.frag"),
+    ]:
+        found = notes(opened(files, opens))
+        assert [note.split(",")[0] for note in found if "not drawn" in note] == [
+            "mainSound is sound",
+            "mainVR is for VR",
+        ]
+
+
+def test_what_is_not_there_is_named_once_with_its_channel(opened):
+    for name, wanted in {
+        "site": ["iChannel0: '/media/a/1.jpg' is a file of the site", "iChannel3: it is a video"],
+        "devices": [
+            "iChannel0: it is music",
+            "iChannel1: no key",
+            "iChannel2: it is a camera",
+            "a microphone",
+        ],
+        "sound": ["Sound is sound, which is not drawn"],
+    }.items():
+        found = "\n".join(notes(opened(TOYS[name].files, TOYS[name].opens)))
+        for words in wanted:
+            assert found.count(words) == 1, found
+
+
+def test_the_title_is_the_export_s(opened):
+    assert opened(TOYS["buffer"].files, "shader.json").title == "Made here (export)"
+
+
+@pytest.mark.parametrize(
+    ("text", "words", "place"),
+    [
+        ('{"Shader": {"renderpass": [{"code": "void\\n"}}', "damaged JSON", (1, 46)),
+        ('{"renderpass": 3}', "holds a list of passes called renderpass", (0, 0)),
+        (export(), "there is no Image pass to draw; there is nothing", (0, 0)),
+        (
+            export(one("Sound", "vec2 mainSound(int s, float t) { return vec2(0); }")),
+            "there is Sound",
+            (0, 0),
+        ),
+        (export(one("Image", PLAIN), one("Image", PLAIN)), "a second pass called Image", (0, 0)),
+        (json.dumps({"renderpass": ["x"]}), "is not a table of a pass", (0, 0)),
+        (json.dumps({"renderpass": [{"name": "Image", "type": "image"}]}), "Image has no code", (0, 0)),
+        (
+            export(one("Image", IMAGE, read(257, 7)), A),
+            "Image: an input for channel 7; there are 0 to 3",
+            (0, 0),
+        ),
+    ],
+)
+def test_a_damaged_export_is_one_sentence(folder, text, words, place):
+    with pytest.raises(PlaygroundError) as caught:
+        load(folder.write("a.json", text))
+    (found,) = caught.value.diagnostics
+    assert words in found.message and "\n" not in found.message
+    assert (found.line, found.column) == place and found.file.endswith("a.json")
+
+
+def test_a_pass_without_its_function_or_what_it_reads_is_named(folder):
+    for text, place, words in [
+        (export(one("Image", PLAIN), one("Buffer A", "\nfloat x;\n", output=257)), ("a.json:Buffer A", 2),
+         "Buffer A has no mainImage"),
+        (export(one("Image", PLAIN), cube(PLAIN)), ("a.json:Cube A", 1), "no mainCubemap, but a mainImage"),
+        (export(one("Image", IMAGE, read(259)), A), ("a.json:Image", 4), "iChannel0 reads 'output 259'"),
+        (export(one("Image", "")), ("a.json:Image", 1), "Image has no mainImage"),
+    ]:  # fmt: skip
+        with pytest.raises(ShaderError) as caught:
+            load(folder.write("a.json", text))
+        (found,) = caught.value.diagnostics
+        assert words in found.message
+        assert (found.file.rpartition("/")[2], found.line) == place
+
+
+def test_an_export_reads_nothing_outside_its_folder(folder, any_engine):
+    folder.write("secret.glsl", "float secret = 1.0;\n")
+    text = export(one("Image", '#include "../secret.glsl"\n' + PLAIN))
+    with pytest.raises(ShaderError, match="outside"):
+        load(folder.write("own/a.json", text))
+    given = {"id": "a", "src": "../x.png", "ctype": "texture", "channel": 0}
+    folder.write("x.png", "not read")
+    drawn(any_engine, load(folder.write("own/b.json", export(one("Image", IMAGE, given)))))
+
+
+def test_growth_differs_from_frame_to_frame(any_engine, opened):
+    text = export(one("Image", IMAGE, read(257)), one("Buffer A", GROWS, read(257), output=257))
+    sketch = opened({"a.json": text}, "a.json")
+    blue = [first_texel(any_engine, sketch, frame / 60 + 0.001)[2] for frame in (1, 2, 10, 60)]
+    np.testing.assert_allclose(blue, [0, 1, 9, 59], atol=1)
+
+
+# ── folders ──────────────────────────────────────────────────────────────────
+
+
+COUNTS = "void mainImage(out vec4 c, in vec2 p) {{ c = vec4(float(iFrame + {}) / 255.0); }}\n"
+FETCH = "void mainImage(out vec4 c, in vec2 p) {{ c = texelFetch({}, ivec2(0), 0); }}\n"
+
+
+def test_channels_of_a_folder_are_its_buffers_in_order_unless_a_line_says_otherwise(any_engine, opened):
+    buffers = {"Buffer A.glsl": COUNTS.format(10), "BufferC.frag": COUNTS.format(30)}
+    for head, channel, value in [
+        ("", "iChannel0", 10),
+        ("", "iChannel2", 30),
+        ("// iChannel0 = BufferC\n", "iChannel0", 30),
+        ('#iChannel0 "file://BufferC.frag"\n', "iChannel0", 30),
+    ]:
+        sketch = opened({**buffers, "Image.glsl": head + FETCH.format(channel)})
+        assert first_texel(any_engine, sketch)[0] == value
+        said = [note for note in notes(sketch) if "nothing says otherwise" in note]
+        assert len(said) == (not head)
+        assert not said or f"{channel} reads Buffer {'A' if value == 10 else 'C'}" in said[0]
+
+
+def test_a_later_buffer_of_a_folder_is_that_of_the_frame_before(any_engine, opened):
+    sketch = opened(
+        {
+            "Image.glsl": FETCH.format("iChannel0"),
+            "Buffer A.glsl": '#iChannel0 "file://Buffer B.glsl"\n' + FETCH.format("iChannel0"),
+            "Buffer B.glsl": COUNTS.format(10),
+        }
+    )
+    assert [first_texel(any_engine, sketch, (frame + 0.5) / 60)[0] for frame in (0, 4)] == [0, 13]
+
+
+def test_a_pass_that_comes_or_changes_is_read(any_engine, opened, folder):
+    sketch = opened({"Image.glsl": FETCH.format("iChannel1"), "Buffer A.glsl": COUNTS.format(1)})
+    noise = first_texel(any_engine, sketch)[0]
+    folder.write("Buffer B.glsl", COUNTS.format(20))
+    assert first_texel(any_engine, load(folder.path))[0] == 20 != noise
+    folder.write("Buffer B.glsl", COUNTS.format(21))
+    assert first_texel(any_engine, load(folder.path))[0] == 21
+    named = {path.rpartition("/")[2] for path in load(folder.path).files}
+    assert {"Image.glsl", "Buffer B.glsl"} <= named
+
+
+def test_a_folder_that_is_none_is_one_sentence(folder):
+    with pytest.raises(PlaygroundError, match=r"no sketch\.toml, and no Image"):
+        load(folder.path)
+    folder.write("Image.glsl", PLAIN)
+    folder.write("Buffer A.glsl", PLAIN)
+    folder.write("BufferA.glsl", PLAIN)
+    with pytest.raises(
+        PlaygroundError, match=r"Buffer A.glsl and .*BufferA.glsl are both Buffer A; remove one"
+    ):
+        load(folder.path)
+
+
+def test_a_pass_of_a_folder_without_its_function_is_named(opened):
+    with pytest.raises(ShaderError, match="Cube A has no mainCubemap, but a mainImage") as caught:
+        opened({"Image.glsl": PLAIN, "Cube A.glsl": PLAIN})
+    assert caught.value.diagnostics[0].file.endswith("Cube A.glsl")
+
+
+# ── VS Code ──────────────────────────────────────────────────────────────────
+
+
+def test_uniforms_are_parameters_with_their_ranges(any_engine, opened):
+    sketch = opened(VSCODE["code_uniforms"].files, "a.glsl")
+    found = {p.name: p for p in sketch.graph.find("view").technique.parameters}
+    level, count = found["level"], found["count"]
+    assert (level.default, level.widget.kind, level.widget.low, level.widget.high) == (
+        1.0,
+        "slider",
+        0.0,
+        1.0,
+    )
+    assert (level.step, level.tooltip, level.line) == (0.1, "how bright", 1)
+    assert (count.type, count.default, count.widget.high) == ("int", 3, 15)
+    assert (found["tint"].type, found["tint"].default, found["tint"].widget.kind) == (
+        "vec3",
+        (1.0, 0.5, 0.0),
+        "colour",
+    )
+    assert (found["other"].type, found["other"].default) == ("vec4", (1.0, 1.0, 1.0, 1.0))
+    assert (found["place"].default, found["on"].default, found["free"].default) == ((0.25, 0.25), True, 2.0)
+    dark = drawn(any_engine, sketch.with_values({"view.on": False, "view.place": (0.0, 0.0)}))
+    assert dark[..., 2].max() == 0 < drawn(any_engine, sketch)[..., 0].max()
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("#iUniform float", "cannot read this #iUniform"),
+        ("#iUniform flaot x = 1.0", "did you mean 'float'"),
+        ("#iUniform float x = 1.0 in { a, 2.0 }", "expected a number, not 'a'"),
+        ("#iChannel0 file://x.png", "expected #iChannel0"),
+        ('#iChannel0::MinFiltre "Nearest"', "did you mean 'MinFilter'"),
+        ('#iChannel0::WrapMode "Repaet"', "did you mean 'Repeat'"),
+        ('#iChannel0 "file://bb.glsl"', "no file 'bb.glsl'; did you mean 'b.glsl'"),
+    ],
+)
+def test_a_directive_that_cannot_be_read_is_one_sentence_at_its_line(opened, line, words):
+    with pytest.raises(ShaderError) as caught:
+        opened({"a.glsl": f"// first\n{line}\n{PLAIN}", "b.glsl": PLAIN}, "a.glsl")
+    (found,) = caught.value.diagnostics
+    assert (found.line, found.file.endswith("a.glsl")) == (2, True)
+    assert words in found.message
+
+
+def test_an_image_of_a_channel_has_its_own_size_and_filters(any_engine, opened, folder):
+    pixels = np.zeros((2, 4, 4), np.uint8)
+    pixels[..., 3], pixels[:, 2:, 0], pixels[0, :, 1] = 255, 255, 255
+    write_png(folder.path / "x.png", pixels)
+    read_it = "void mainImage(out vec4 c, in vec2 p) {{ c = texture(iChannel0, {}); }}"
+    for more, place, expected in [
+        ("", "vec2(0.5, 0.25)", [128, 0]),
+        ('#iChannel0::MagFilter "Nearest"\n', "vec2(0.51, 0.25)", [255, 0]),
+        (
+            '#iChannel0::MagFilter "Nearest"\n#iChannel0::MinFilter "LinearMipMapLinear"\n',
+            "vec2(0.49, 0.75)",
+            [0, 255],
+        ),
+        ('#iChannel0::WrapMode "Clamp"\n', "vec2(1.5, 1.5)", [255, 255]),
+        ('#iChannel0::WrapMode "Repeat"\n', "vec2(1.125, 1.25)", [0, 0]),
+        ('#iChannel0::WrapMode "Mirror"\n', "vec2(1.125, 1.25)", [255, 255]),
+    ]:
+        sketch = opened({"a.glsl": f'#iChannel0 "file://x.png"\n{more}{read_it.format(place)}'}, "a.glsl")
+        np.testing.assert_allclose(first_texel(any_engine, sketch)[:2], expected, atol=1)
+    size = read_it.replace(
+        "texture(iChannel0, {})", "vec4(iChannelResolution[0] / 8.0, 1.0) + 0.0 * texture(iChannel0, p)"
+    )
+    sketch = opened(
+        {"a.glsl": '#iChannel0 "file://x.png"\n' + size.replace("{{", "{").replace("}}", "}")}, "a.glsl"
+    )
+    np.testing.assert_allclose(first_texel(any_engine, sketch)[:3], [128, 64, 32], atol=1)
+
+
+def test_two_passes_may_read_two_files_by_one_channel(any_engine, opened, folder):
+    for name, level in (("x", 100), ("y", 20)):
+        write_png(folder.path / f"{name}.png", np.full((2, 2, 4), level, np.uint8))
+    text = "void mainImage(out vec4 c, in vec2 p) {{ c = texture(iChannel0, vec2(0.5)){}; }}\n"
+    files = {
+        "a.glsl": '#iChannel0 "file://x.png"\n#iChannel1 "file://b.glsl"\n'
+        + text.format(" + texture(iChannel1, vec2(0.5))"),
+        "b.glsl": '#iChannel0 "file://y.png"\n' + text.format(""),
+    }
+    assert first_texel(any_engine, opened(files, "a.glsl"))[0] == 120
+
+
+def test_a_cube_of_six_files_has_each_where_it_belongs_and_the_right_way_up(any_engine, opened, folder):
+    (folder.path / "six").mkdir()
+    levels = {"px": 20, "nx": 60, "py": 100, "ny": 140, "pz": 180, "nz": 220}
+    for face, level in levels.items():
+        pixels = np.full((4, 4, 4), level, np.uint8)
+        pixels[:2, :, 1] = 255  # its upper half
+        write_png(folder.path / f"six/sky_{face}.png", pixels)
+    ways = {
+        "px": "1, .3, 0",
+        "nx": "-1, .3, 0",
+        "py": "0, 1, -.3",
+        "ny": "0, -1, .3",
+        "pz": "0, .3, 1",
+        "nz": "0, .3, -1",
+    }
+    for face, way in ways.items():
+        text = (
+            '#iChannel0 "file://six/sky_{}.png"\n#iChannel0::Type "CubeMap"\n'
+            f"void mainImage(out vec4 c, in vec2 p) {{ c = texture(iChannel0, vec3({way})); }}\n"
+        )
+        found = first_texel(any_engine, opened({"a.glsl": text}, "a.glsl"))
+        np.testing.assert_allclose(found[:2], [levels[face], 255], atol=1)
+
+
+def test_files_that_read_each_other_are_each_drawn_once_a_frame(any_engine, opened):
+    adds = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0) + 1.0 / 255.0; }\n"
+    sketch = opened(
+        {"a.glsl": f'#iChannel0 "file://b.glsl"\n{adds}', "b.glsl": f'#iChannel0 "file://a.glsl"\n{adds}'},
+        "a.glsl",
+    )
+    assert [first_texel(any_engine, sketch, (frame + 0.5) / 60)[0] for frame in (0, 1, 9)] == [2, 4, 20]
+
+
+def test_the_button_of_the_mouse(any_engine, opened):
+    text = "#iUniform float x = 0.0\nvoid mainImage(out vec4 c, in vec2 p) { c = iMouseButton + x; }\n"
+    sketch = opened({"a.glsl": text}, "a.glsl")
+    for press, level in [(2.0, 255), (-2.0, 0)]:
+        any_engine.runner.drag = (3.0, 3.0, press, press)
+        assert first_texel(any_engine, sketch)[0] == level
+
+
+def test_a_file_outside_the_folder_is_not_read(folder):
+    folder.write("b.glsl", PLAIN)
+    path = folder.write("own/a.glsl", f'#iChannel0 "file://../b.glsl"\n{IMAGE}')
+    with pytest.raises(ShaderError, match="lies outside the shader's own folder") as caught:
+        load(path)
+    assert caught.value.diagnostics[0].line == 1

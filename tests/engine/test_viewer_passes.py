@@ -1,0 +1,392 @@
+"""glslViewer's passes: each the text with its macro; floods and pyramids against slower truths."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.ndimage import distance_transform_edt
+
+from playground.errors import ShaderError
+from playground.sketch.load import load
+from playground.sketch.warnings import warnings_of_kernel
+
+HEAD = "uniform vec2 u_resolution;\n"
+PASSES = """void main() {{
+    vec2 st = gl_FragCoord.xy / u_resolution;
+#if defined({define})
+    gl_FragColor = {value};
+#else
+    gl_FragColor = {picture};
+#endif
+}}
+"""
+
+
+def text_of(define, value, picture, head=""):
+    return HEAD + head + PASSES.format(define=define, value=value, picture=picture)
+
+
+def passes_of(sketch):
+    return [spec.name for spec in sketch.graph.find("view").technique.passes]
+
+
+@pytest.fixture
+def read(any_engine, folder):
+    """Return what a pass of a text writes, row 0 below."""
+
+    def read_(text, name, size=(24, 16)):
+        sketch = load(folder.write("t.frag", text))
+        return any_engine.read(sketch, f"view.{name}", size=size) if name else sketch
+
+    return read_
+
+
+@pytest.fixture
+def picture(any_engine, folder):
+    def picture_(text, size=(24, 16), time=0.0):
+        found = any_engine.render(load(folder.write("t.frag", text)), size=size, time=time)
+        return found.array[::-1] / 255.0  # row 0 below
+
+    return picture_
+
+
+# ── buffers ──────────────────────────────────────────────────────────────────
+
+
+def test_a_buffer_is_the_text_with_its_macro_and_is_read_by_its_sampler(picture):
+    text = text_of("BUFFER_0", "vec4(st, 0.25, 1.0)", "texture2D(u_buffer0, st).grba")
+    found = picture(text)
+    centres = (np.arange(24) + 0.5) / 24, (np.arange(16) + 0.5) / 16
+    np.testing.assert_allclose(found[..., 1], np.broadcast_to(centres[0], (16, 24)), atol=1 / 255)
+    np.testing.assert_allclose(found[..., 0], np.broadcast_to(centres[1][:, None], (16, 24)), atol=1 / 255)
+
+
+@pytest.mark.parametrize(
+    ("comment", "size"),
+    [
+        ("", (24, 16)),
+        ("// 0.5", (12, 8)),
+        ("// 32x8", (32, 8)),
+        ("//0.25x1.0", (6, 16)),
+        ("// the first", (24, 16)),
+    ],
+)
+def test_the_size_of_a_buffer_is_in_its_comment_and_its_resolution_is_its_own(picture, comment, size):
+    head = f"uniform sampler2D u_buffer0; {comment}\n"
+    text = text_of("BUFFER_0", "vec4(u_resolution / 64.0, 0.0, 1.0)", "texture2D(u_buffer0, st)", head)
+    expected = [size[0] / 64, size[1] / 64]
+    np.testing.assert_allclose(picture(text)[3, 3, :2], expected, atol=1 / 255)
+
+
+def test_a_buffer_holds_numbers_beyond_one(picture):
+    text = text_of(
+        "BUFFER_0", "vec4(-1000.0, 1e6, 0.0, 1.0)", "abs(texture2D(u_buffer0, st)) * vec4(1e-3, 1e-6, 0, 1)"
+    )
+    np.testing.assert_allclose(picture(text)[0, 0], [1, 1, 0, 1])
+
+
+def test_buffers_run_in_the_order_of_their_numbers_and_read_each_other(picture):
+    text = """uniform sampler2D u_buffer0, u_buffer1, u_buffer2;
+void main() {
+#ifdef BUFFER_1
+    gl_FragColor = texture2D(u_buffer0, vec2(0.5)) * 0.5;
+#elif defined(BUFFER_0)
+    gl_FragColor = vec4(0.8);
+#elif defined(BUFFER_2) && !defined(NEVER)
+    gl_FragColor = texture2D(u_buffer1, vec2(0.5)) * 0.5;
+#else
+    gl_FragColor = texture2D(u_buffer2, vec2(0.5));
+#endif
+}
+"""
+    np.testing.assert_allclose(picture(text)[0, 0], 0.2, atol=1 / 255)
+
+
+def test_only_what_the_macro_changes_is_a_pass(read):
+    text = """#if 0
+#ifdef BUFFER_0
+#endif
+#endif
+#ifdef BUFFER_2
+float a;
+#else
+float b;
+#endif
+// #ifdef BUFFER_3
+void main() { gl_FragColor = vec4(gl_FragCoord.xy / 64.0, 0.0, 1.0); }
+"""
+    assert passes_of(read(text, "")) == ["buffer2", "view"]
+
+
+def test_a_buffer_that_no_pass_writes_reads_black_and_is_named(read, picture):
+    text = text_of(
+        "BUFFER_0",
+        "vec4(1.0)",
+        "texture2D(u_buffer0, st) + texture2D(u_buffer7, st)",
+        "uniform sampler2D u_buffer7;\n",
+    )
+    kernel = read(text, "").graph.find("view").technique.find("view").technique
+    assert ("u_buffer7", "it reads black") in kernel.unfed
+    np.testing.assert_allclose(picture(text)[0, 0], 1.0)
+
+
+def test_a_parameter_of_several_passes_is_one(read):
+    text = text_of("BUFFER_0", "vec4(gain)", "texture2D(u_buffer0, st) * gain", "uniform float gain = 0.5;\n")
+    assert [p.name for p in read(text, "").graph.find("view").technique.parameters] == ["gain"]
+    alone = text.replace("* gain", "* 2.0")  # one pass reads it, all declare it
+    found = read(alone, "")
+    assert [p.name for p in found.graph.find("view").technique.parameters] == ["gain"]
+    assert not [w.message for _, kernel in found.graph.kernels for w in warnings_of_kernel(kernel)]
+    none = read(alone.replace("vec4(gain)", "vec4(1.0)"), "").graph.kernels
+    assert any("nothing reads 'gain'" in w.message for _, kernel in none for w in warnings_of_kernel(kernel))
+
+
+@pytest.mark.parametrize("define", ["BUFFER_0", "PYRAMID_0", "FLOOD_0", "POSTPROCESSING"])
+def test_a_mistake_in_a_pass_is_at_its_own_line(any_engine, folder, define):
+    sampler = {"BUFFER_0": "u_buffer0", "PYRAMID_0": "u_pyramid0", "FLOOD_0": "u_flood0"}.get(
+        define, "u_tex0"
+    )
+    text = f"{HEAD}void main() {{\n#ifdef {define}\n    gl_FragColor = vec4(not_declared);\n#else\n"
+    text += f"    gl_FragColor = texture2D({sampler}, vec2(0.5));\n#endif\n}}\n"
+    with pytest.raises(ShaderError) as caught:
+        any_engine.render(load(folder.write("t.frag", text)), size=(8, 8))
+    found = caught.value.diagnostics[0]
+    assert (found.line, "not_declared" in found.message) == (4, True)
+
+
+def test_a_mistake_in_the_picture_and_in_an_include_of_a_pass(any_engine, folder):
+    folder.write("inc.glsl", "vec4 inc() {\n    return vec4(not_declared);\n}\n")
+    text = '#ifdef BUFFER_0\n#include "inc.glsl"\nvoid main() { gl_FragColor = inc(); }\n#else\n'
+    path = folder.write(
+        "t.frag", f"{text}void main() {{ gl_FragColor = texture2D(u_buffer0, vec2(0.5)); }}\n#endif\n"
+    )
+    with pytest.raises(ShaderError) as caught:
+        any_engine.render(load(path), size=(8, 8))
+    found = caught.value.diagnostics[0]
+    assert (found.line, found.file.endswith("inc.glsl")) == (2, True)
+
+
+def test_an_absurd_size_is_one_sentence(any_engine, folder):
+    text = text_of(
+        "BUFFER_0", "vec4(1.0)", "texture2D(u_buffer0, st)", "uniform sampler2D u_buffer0; // 99999x99999\n"
+    )
+    from playground.errors import PlaygroundError
+
+    with pytest.raises(PlaygroundError) as caught:
+        any_engine.render(load(folder.write("t.frag", text)), size=(8, 8))
+    assert "99999" in str(caught.value) and "\n" not in str(caught.value)
+
+
+# ── post-processing and background ───────────────────────────────────────────
+
+
+def test_post_processing_reads_the_picture(picture):
+    text = text_of(
+        "POSTPROCESSING", "1.0 - texture2D(u_scene, st)", "vec4(st, 0.0, 0.0)", "uniform sampler2D u_scene;\n"
+    )
+    found = picture(text)
+    np.testing.assert_allclose(found[2, 5, :3], [1 - 5.5 / 24, 1 - 2.5 / 16, 1.0], atol=1.5 / 255)
+
+
+def test_the_background_is_of_the_picture_alone(picture):
+    text = """uniform sampler2D u_scene;
+void main() {
+#if defined(BACKGROUND)
+    gl_FragColor = vec4(0.2, 0.4, 0.6, 1.0);
+#elif defined(POSTPROCESSING)
+    gl_FragColor = texture2D(u_scene, vec2(0.5)).bgra;
+#else
+    gl_FragColor = vec4(1.0);
+#endif
+}
+"""
+    np.testing.assert_allclose(picture(text)[0, 0], [0.6, 0.4, 0.2, 1.0], atol=1 / 255)
+
+
+# ── floods ───────────────────────────────────────────────────────────────────
+
+FLOOD_TEXT = """#elif defined(FLOOD_ALGORITHM)
+    float jump = exp2(float(u_floodTotal - u_floodIndex - 1));
+    vec4 best = vec4(0.0);
+    float least = 1e9;
+    for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+            vec4 seed = texture2D(u_floodSrc, st + vec2(x, y) * jump / u_resolution);
+            float far = distance(seed.xy, st);
+            if (seed.xy != vec2(0.0) && far <= least) { least = far; best = seed; }
+        }
+    }
+    gl_FragColor = best;
+"""
+FLOOD_HEAD = """uniform sampler2D u_flood0, u_floodSrc, u_tex0;
+uniform int u_floodIndex, u_floodTotal;
+float chance(vec2 p) { return fract(sin(dot(floor(p), vec2(12.9898, 78.233))) * 43758.5453); }
+"""
+SIZES = [(64, 64), (100, 37), (31, 90), (1, 1), (3, 2)]
+
+
+def flood_text(own):
+    text = text_of(
+        "FLOOD_0",
+        "chance(gl_FragCoord.xy) < 0.02 || floor(gl_FragCoord.xy) == vec2(0.0) ? vec4(st, st) : vec4(0.0)",
+        "texture2D(u_flood0, st)",
+        FLOOD_HEAD,
+    )
+    return text.replace("#else", f"{FLOOD_TEXT}#else") if own else text
+
+
+@pytest.mark.parametrize("size", SIZES)
+@pytest.mark.parametrize("own", [False, True])
+def test_a_flood_finds_the_nearest_seed(read, size, own):
+    text, (width, height) = flood_text(own), size
+    seeds, found = read(text, "flood0_seeds", size), read(text, "flood0", size)
+    there = (seeds[..., :2] != 0).any(-1)
+    assert there.any()
+    truth = distance_transform_edt(~there, sampling=(1 / height, 1 / width))  # shares of the picture
+    y, x = np.mgrid[:height, :width]
+    places = np.stack([(x + 0.5) / width, (y + 0.5) / height], -1)
+    distances = np.hypot(*np.moveaxis(found[..., :2].astype(np.float64) - places, -1, 0))
+    near = 1e-6  # of single precision
+    assert (distances >= truth - near).all(), "nearer than any seed"
+    wrong = distances > truth + near
+    assert wrong.mean() < 0.01  # Rong and Tan 2006: fewer than 1 % for seeds at random
+    np.testing.assert_array_equal(found[there], seeds[there])  # a seed is its own
+    known = {tuple(seed) for seed in seeds[there].tolist()}
+    assert all(tuple(one) in known for one in found.reshape(-1, 4).tolist())
+
+
+def test_the_rounds_of_a_flood_are_as_many_as_its_size_needs(read):
+    head = FLOOD_HEAD
+    text = text_of("FLOOD_0", "vec4(1.0)", "texture2D(u_flood0, st)", head).replace(
+        "#else",
+        "#elif defined(FLOOD_ALGORITHM)\n    gl_FragColor = texture2D(u_floodSrc, st)\n"
+        "        + vec4(float(u_floodTotal), 1.0, 0.0, 0.0);\n#else",
+    )
+    for size, rounds in {(8, 8): 4, (9, 4): 5, (2, 33): 7, (1, 1): 1}.items():
+        np.testing.assert_array_equal(
+            read(text, "flood0", size)[0, 0], [1 + rounds * rounds, 1 + rounds, 1, 1]
+        )
+
+
+# ── pyramids ─────────────────────────────────────────────────────────────────
+
+H1, H2, G = np.array([0.1507, 0.6836, 1.0334, 0.6836, 0.1507]), 0.0270, np.array([0.0312, 0.7753, 0.0312])
+
+
+def divided(sums):
+    alpha = sums[..., 3:]
+    return np.where(
+        alpha == 0, sums, np.concatenate([sums[..., :3] / np.where(alpha == 0, 1, alpha), alpha * 0 + 1], -1)
+    )
+
+
+def weighed(image, rows, columns, weights, clamped):
+    """Sum an image's texels around places, by the outer product of weights; outside there is nothing."""
+    total, reach = np.zeros((len(rows), len(columns), 4)), len(weights) // 2
+    for dy in range(-reach, reach + 1):
+        for dx in range(-reach, reach + 1):
+            y, x = rows + dy, columns + dx
+            inside = ((y >= 0) & (y < image.shape[0]))[:, None] & ((x >= 0) & (x < image.shape[1]))[None]
+            some = image[np.clip(y, 0, image.shape[0] - 1)][:, np.clip(x, 0, image.shape[1] - 1)]
+            weight = weights[dy + reach] * weights[dx + reach]
+            total += weight * some * (1.0 if clamped else inside[..., None])
+    return total
+
+
+def pyramid(foot):
+    """Return a pyramid's result by NumPy, in double precision."""
+    height, width = foot.shape[:2]
+    levels = max(min(int(np.log2(min(width, height))) - 1, 12), 0)
+    downs = [foot]
+    for level in range(1, levels + 1):
+        rows, columns = np.arange(max(height >> level, 1)), np.arange(max(width >> level, 1))
+        downs.append(divided(weighed(downs[-1], rows * 2 + 1, columns * 2 + 1, H1, False)))
+    above = downs[-1]
+    for level in reversed(range(levels)):
+        own = downs[level]
+        rows, columns = np.arange(own.shape[0]), np.arange(own.shape[1])
+        coarse = H2 * weighed(above, rows // 2, columns // 2, H1, False)
+        above = divided(weighed(own, rows, columns, G, True) + coarse)
+    return above, levels
+
+
+PYRAMID_TEXT = """#elif defined({macro})
+    if (!{begins}Upscaling) {{
+        for (int y = -2; y <= 2; ++y) for (int x = -2; x <= 2; ++x) {{
+            ivec2 p = ivec2(gl_FragCoord.xy) * 2 + 1 + ivec2(x, y);
+            if (p == clamp(p, ivec2(0), textureSize({begins}Tex0, 0) - 1))
+                gl_FragColor += texelFetch({begins}Tex0, p, 0) * h1(x) * h1(y);
+        }}
+    }} else {{
+        for (int y = -1; y <= 1; ++y) for (int x = -1; x <= 1; ++x) {{
+            ivec2 p = clamp(ivec2(gl_FragCoord.xy) + ivec2(x, y), ivec2(0), textureSize({begins}Tex0, 0) - 1);
+            gl_FragColor += texelFetch({begins}Tex0, p, 0) * g(x) * g(y);
+        }}
+        for (int y = -2; y <= 2; ++y) for (int x = -2; x <= 2; ++x) {{
+            ivec2 p = ivec2(gl_FragCoord.xy) / 2 + ivec2(x, y);
+            if (p == clamp(p, ivec2(0), textureSize({begins}Tex1, 0) - 1))
+                gl_FragColor += texelFetch({begins}Tex1, p, 0) * 0.0270 * h1(x) * h1(y);
+        }}
+    }}
+    if (gl_FragColor.a != 0.0) gl_FragColor = vec4(gl_FragColor.rgb / gl_FragColor.a, 1.0);
+"""
+PYRAMID_HEAD = """uniform sampler2D {begins}0, {begins}Tex0, {begins}Tex1;
+uniform bool {begins}Upscaling;
+float h1(int i) {{ return abs(i) == 2 ? 0.1507 : abs(i) == 1 ? 0.6836 : 1.0334; }}
+float g(int i) {{ return i == 0 ? 0.7753 : 0.0312; }}
+float chance(vec2 p) {{ return fract(sin(dot(floor(p), vec2(12.9898, 78.233))) * 43758.5453); }}
+"""
+
+
+def pyramid_text(begins, macro, own):
+    holes = "chance(gl_FragCoord.xy) < 0.1 ? vec4(st, chance(gl_FragCoord.yx), 1.0) : vec4(0.0)"
+    head = PYRAMID_HEAD.format(begins=begins)
+    text = text_of(f"{macro}_0", holes, f"texture2D({begins}0, st)", head)
+    text = text.replace("vec2 st =", "gl_FragColor = vec4(0.0);\n    vec2 st =")
+    algorithm = PYRAMID_TEXT.format(begins=begins, macro=f"{macro}_ALGORITHM")
+    return text.replace("#else", f"{algorithm}#else") if own else text
+
+
+@pytest.mark.parametrize("size", [(32, 32), (50, 33), (17, 70), (5, 4), (3, 2)])
+@pytest.mark.parametrize(
+    ("begins", "macro", "own"),
+    [
+        ("u_pyramid", "PYRAMID", False),
+        ("u_pyramid", "PYRAMID", True),
+        ("u_convolutionPyramid", "CONVOLUTION_PYRAMID", True),
+        ("u_pyramid", "CONVOLUTION_PYRAMID", True),
+    ],
+)
+def test_a_pyramid_is_that_of_numpy(read, size, begins, macro, own):
+    text = pyramid_text(begins, macro, own)
+    foot, found = read(text, "pyramid0_foot", size), read(text, "pyramid0", size)
+    expected, levels = pyramid(foot.astype(np.float64))
+    # Each level adds at most 34 products of numbers below 1.1 and divides: single precision, by level.
+    np.testing.assert_allclose(found, expected, atol=2 * max(levels, 1) * 40 * 2**-23)
+    if levels > 2:
+        assert (found[..., 3] == 1).mean() > 0.99 and (foot[..., 3] == 0).mean() > 0.8, "holes are filled"
+
+
+def test_each_level_is_told_which_it_is(read):
+    text = text_of(
+        "PYRAMID_0", "vec4(1.0)", "texture2D(u_pyramid0, st)", "uniform sampler2D u_pyramidTex0;\n"
+    ).replace(
+        "#else",
+        "#elif defined(PYRAMID_ALGORITHM)\n    gl_FragColor = vec4(float(u_pyramidDepth), "
+        "float(u_pyramidTotalDepth), float(u_pyramidUpscaling), texture2D(u_pyramidTex0, st).a);\n#else",
+    )
+    for size, total in {(64, 48): 4, (33, 200): 4, (8, 8): 2}.items():
+        for level in range(total):
+            np.testing.assert_array_equal(
+                read(text, f"pyramid0_down{level}", size)[0, 0, :3], [level, total, 0]
+            )
+            up = "pyramid0" if level == 0 else f"pyramid0_up{level}"
+            np.testing.assert_array_equal(read(text, up, size)[0, 0, :3], [level, total, 1])
+
+
+def test_a_pyramid_of_a_share_of_the_picture(read):
+    text = pyramid_text("u_pyramid", "PYRAMID", False).replace(
+        "uniform sampler2D u_pyramid0, u_pyramidTex0",
+        "uniform sampler2D u_pyramid0; // 0.5\nuniform sampler2D u_pyramidTex0",
+    )
+    assert read(text, "pyramid0", (64, 40)).shape == (20, 32, 4)

@@ -1,0 +1,159 @@
+"""The channels of other tools' shaders: what feeds them, what may, and what is changed for another source."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.errors import PlaygroundError
+from playground.images.files import write_png
+from playground.sketch.channels import channels, source_of, sources, with_source
+from playground.sketch.load import load
+from playground.sketch.model import Sketch
+
+TWO = """void mainImage(out vec4 c, in vec2 p) {
+    c = texelFetch(iChannel0, ivec2(0), 0) + texelFetch(iChannel1, ivec2(0), 0);
+}
+"""
+ONE = """void mainImage(out vec4 c, in vec2 p) {
+    c = vec4(iChannelResolution[0].xy / 255.0, 0.0, 1.0) + 0.0 * texture(iChannel0, p);
+}
+"""
+PART = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(p), 0); }\n"
+NONE = "void main() { gl_FragColor = vec4(1.0); }\n"
+LAND = '[[pass]]\nname = "land"\nuse = "generation/white_noise"\nsize = 16\n'
+PHOTO = '[[pass]]\nname = "photo"\nuse = "foreign/image"\nsize = [8, 4]\nset = { image = "a.png" }\n'
+STAND_INS = [
+    f"foreign/{name}"
+    for name in "black cube_faces image keys noise picture sky_box sound spectrum video".split()
+]
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name, text in {"two": TWO, "one": ONE, "part": PART, "none": NONE}.items():
+        (tmp_path / f"{name}.frag").write_text(text, "utf-8")
+    write_png(tmp_path / "a.png", np.full((30, 40, 4), (0, 255, 0, 255), np.uint8))
+    return tmp_path
+
+
+def sketch(folder: Path, view: str, *passes: str) -> Sketch:
+    (folder / "sketch.toml").write_text(f"format = 1\n{''.join(passes)}[view]\n{view}\n", "utf-8")
+    return load(folder)
+
+
+def pixel(engine: Engine, shown: Sketch) -> tuple[int, ...]:
+    return tuple(int(n) for n in engine.render(shown, size=(4, 4)).array[0, 0, :3])
+
+
+def test_a_shader_opened_alone_has_its_channels(folder: Path) -> None:
+    found = channels(load(folder / "two.frag"))
+    assert [(c.path, c.source) for c in found] == [
+        ("view.iChannel0", "foreign/noise"),
+        ("view.iChannel1", "foreign/noise"),
+    ]
+    assert channels(load(folder / "none.frag")) == () and channels(load()) == ()
+
+
+def test_channels_are_in_the_order_of_their_numbers(folder: Path) -> None:
+    text = "void main() { gl_FragColor = texture2D(u_tex2, vec2(0)) + texture2D(u_tex0, vec2(0)); }\n"
+    (folder / "main.frag").write_text("uniform sampler2D u_tex2;\n" + text, "utf-8")
+    assert [c.name for c in channels(load(folder / "main.frag"))] == ["u_tex0", "u_tex2"]
+
+
+def test_what_may_feed_a_channel_is_every_stand_in_and_every_other_pass(folder: Path) -> None:
+    assert sources(load(folder / "two.frag"), "view.iChannel0") == STAND_INS
+    wired = sketch(folder, 'use = "./two"\ninputs = { iChannel0 = "photo" }', LAND, PHOTO)
+    assert [(c.path, c.source) for c in channels(wired)] == [
+        ("view.iChannel0", "foreign/image"),
+        ("view.iChannel1", "foreign/noise"),
+    ]
+    assert sources(wired, "view.iChannel0") == [*STAND_INS, "land"]
+    assert sources(wired, "view.iChannel1") == [*STAND_INS, "land", "photo"]
+
+
+def test_a_pass_that_reads_the_shader_may_not_feed_it(folder: Path) -> None:
+    after = '[[pass]]\nname = "after"\nuse = "./part"\ninputs = { iChannel0 = "first" }\n'
+    first = '[[pass]]\nname = "first"\nuse = "./two"\nsize = 8\n'
+    found = sketch(folder, 'use = "./part"\ninputs = { iChannel0 = "after" }', first, after)
+    assert "after" not in sources(found, "first.iChannel0") and "view" not in sources(
+        found, "first.iChannel0"
+    )
+    assert "first" in sources(found, "view.iChannel0")
+    with pytest.raises(PlaygroundError, match="circle"):
+        with_source(found, "first.iChannel0", "after")
+
+
+@pytest.mark.parametrize("alone", [True, False])
+def test_each_source_is_what_the_shader_then_reads(folder: Path, any_engine: Engine, *, alone: bool) -> None:
+    shown = load(folder / "two.frag") if alone else sketch(folder, 'use = "./two"')
+    black = with_source(
+        with_source(shown, "view.iChannel0", "foreign/black"), "view.iChannel1", "foreign/black"
+    )
+    assert pixel(any_engine, black) == (0, 0, 0)
+    image = with_source(black, "view.iChannel1", "foreign/image").with_values(
+        {"iChannel1.image": str(folder / "a.png")}
+    )
+    assert pixel(any_engine, image) == (0, 255, 0)
+    noise = with_source(black, "view.iChannel1", "foreign/noise")
+    first = with_source(black, "view.iChannel0", "foreign/noise")
+    assert pixel(any_engine, noise) != pixel(any_engine, first), "the noise of each channel is its own"
+    assert source_of(image, "view.iChannel1") == "foreign/image"
+
+
+def test_a_picture_keeps_its_size(folder: Path, any_engine: Engine) -> None:
+    image = with_source(load(folder / "one.frag"), "view.iChannel0", "foreign/image").with_values(
+        {"iChannel0.image": str(folder / "a.png")}
+    )
+    assert pixel(any_engine, image)[:2] == (40, 30)
+    back = with_source(image, "view.iChannel0", "foreign/noise")
+    assert dict(back.overrides) == {}
+
+
+def test_a_pass_that_others_read_stays_as_it_is(folder: Path) -> None:
+    both = 'use = "./two"\ninputs = { iChannel0 = "photo", iChannel1 = "photo" }'
+    shown = sketch(folder, both, PHOTO)
+    changed = with_source(shown, "view.iChannel1", "foreign/noise")
+    photo = changed.graph.find("photo")
+    assert photo is not None and photo.use == "foreign/image"
+    assert [(c.path, c.source) for c in channels(changed)] == [
+        ("view.iChannel0", "foreign/image"),
+        ("view.iChannel1", "foreign/noise"),
+    ]
+
+
+def test_two_shaders_with_the_same_channel_are_fed_apart(folder: Path) -> None:
+    first = '[[pass]]\nname = "first"\nuse = "./part"\nsize = 8\n'
+    shown = sketch(folder, 'use = "./two"', first)
+    changed = with_source(shown, "first.iChannel0", "foreign/picture")
+    assert source_of(changed, "first.iChannel0") == "foreign/picture"
+    assert source_of(changed, "view.iChannel0") == "foreign/noise"
+
+
+def test_what_is_no_channel_or_no_source_is_named(folder: Path) -> None:
+    shown = load(folder / "two.frag")
+    with pytest.raises(PlaygroundError, match=r"no channel 'view\.iChannel7'.*view\.iChannel"):
+        with_source(shown, "view.iChannel7", "foreign/noise")
+    with pytest.raises(PlaygroundError, match="no technique 'foreign/nois'"):
+        with_source(shown, "view.iChannel0", "foreign/nois")
+    with pytest.raises(PlaygroundError, match="no pass 'photo'"):
+        with_source(shown, "view.iChannel0", "photo")
+
+
+SOUND = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "heard", "TYPE": "audioFFT", "MAX": 32},
+  {"NAME": "waves", "TYPE": "audio"}]}*/
+void main() { gl_FragColor = texelFetch(heard, ivec2(0), 0) + texelFetch(waves, ivec2(0), 0); }
+"""
+
+
+def test_a_sound_takes_the_place_of_a_made_up_one(folder: Path) -> None:
+    (folder / "a.fs").write_text(SOUND, "utf-8")
+    found = load(folder / "a.fs")
+    for name, content, size in (("heard", "spectrum", ("32", "1")), ("waves", "waves", ("256", "1"))):
+        fed = with_source(found, f"view.{name}", "foreign/sound").graph.find(name)
+        assert fed is not None and fed.size == size
+        menu = fed.technique.parameter("content").widget.choices
+        assert menu[dict(fed.values)["content"]] == content
