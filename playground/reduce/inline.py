@@ -34,7 +34,8 @@ def inline_sketch(
     plan = Planner().plan(sketch, frame_size=frame, time=time, steps=steps)
     leaves = list(plan.walk())
     alone = len(leaves) == 1 or Path(sketch.file).suffix != ".toml"  # the rest stands in for its channels
-    foreign = {_words(leaf.kernel.source, as_written=True) for leaf in leaves if leaf.kernel.dialect}
+    own = [leaf.kernel for leaf in leaves if leaf.kernel.dialect]
+    foreign = {_words(_whole_source(kernel, plan), as_written=True) for kernel in own}
     if alone and len(foreign) > 1:
         raise SketchError(
             f"{len(foreign)} passes of another tool's shader cannot be inlined; reduce a file of one of them",
