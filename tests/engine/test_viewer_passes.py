@@ -283,6 +283,18 @@ def test_the_rounds_of_a_flood_are_as_many_as_its_size_needs(read):
         )
 
 
+@pytest.mark.parametrize("own", [False, True])
+def test_a_flood_of_a_share_of_the_picture(read, own):
+    text = flood_text(own).replace(
+        "uniform sampler2D u_flood0, u_floodSrc,",
+        "uniform sampler2D u_flood0; // 0.5\nuniform sampler2D u_floodSrc,",
+    )
+    seeds, found = read(text, "flood0_seeds", (64, 40)), read(text, "flood0", (64, 40))
+    assert found.shape == (20, 32, 4) and (found[..., :2] != 0).all()
+    there = (seeds[..., :2] != 0).any(-1)
+    np.testing.assert_array_equal(found[there], seeds[there])
+
+
 # ── pyramids ─────────────────────────────────────────────────────────────────
 
 H1, H2, G = np.array([0.1507, 0.6836, 1.0334, 0.6836, 0.1507]), 0.0270, np.array([0.0312, 0.7753, 0.0312])

@@ -203,7 +203,6 @@ class _Viewer:
                 Made(one.name, "foreign/jump_flood", {"initial": seeds}, target=one.name, size=size),
             ]
         width, height = size or ("size.x", "size.y")
-        longest = f"max({width}, {height})"
         rounds = self._shader(
             one.name,
             algorithm,
@@ -211,7 +210,7 @@ class _Viewer:
             size=size,
             channels={"u_floodSrc": Channel(target=seeds, sampling=_SEED)},
             names={"u_floodIndex": ("int", "iteration"), "u_floodTotal": ("int", "iterations")},
-            repeat=" + ".join(["1", *(f"({longest} > {2**n})" for n in range(15))]),
+            repeat=f"1 + bits(max({width}, {height}) - 1)",
             feeds="u_floodSrc",
         )
         return [first, rounds]
