@@ -404,6 +404,26 @@ def test_an_unknown_type_is_named_and_left_out(any_engine, isf):
     np.testing.assert_array_equal(drawn(any_engine, path)[0, 0], [255, 0, 0, 255])
 
 
+def test_other_kinds_of_shaders_are_not_drawn(isf):
+    header = '/*{"INPUTS": [],\n"MODE": "VERTEX_SHADER_ART"}*/'
+    with pytest.raises(ShaderError, match="MODE VERTEX_SHADER_ART: only ISF's own kind is drawn") as caught:
+        load(isf(header + MAIN))
+    assert caught.value.diagnostics[0].line == 2
+
+
+def test_a_comment_may_come_before_the_description(any_engine, isf):
+    text = "// A licence\n\n// of two lines\n" + TEXTS["tabs"]
+    path = isf(text)
+    assert colours(drawn(any_engine, path)) > 1
+    assert load(path).graph.find("view").technique.parameters[0].line == 10
+
+
+def test_a_name_with_blanks_has_its_vertex_shader(any_engine, isf, folder):
+    folder.write("Edge of it.vs", VERTEX["with_vertex"])
+    path = folder.write("Edge of it.fs", TEXTS["with_vertex"])
+    assert kernels(path)[0].vertex_source is not None and colours(drawn(any_engine, path)) > 1
+
+
 def test_a_key_in_small_letters_is_named(isf):
     (note,) = load(
         isf('/*{"INPUTS": [{"NAME": "a", "TYPE": "float", "default": 1}]}*/' + MAIN)
