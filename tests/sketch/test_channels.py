@@ -26,7 +26,8 @@ PART = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(
 NONE = "void main() { gl_FragColor = vec4(1.0); }\n"
 LAND = '[[pass]]\nname = "land"\nuse = "generation/white_noise"\nsize = 16\n'
 PHOTO = '[[pass]]\nname = "photo"\nuse = "foreign/image"\nsize = [8, 4]\nset = { image = "a.png" }\n'
-STAND_INS = [f"foreign/{name}" for name in "black image keys noise picture sound spectrum video".split()]
+_NAMES = "black camera image keys microphone noise picture sound spectrum video"
+STAND_INS = [f"foreign/{name}" for name in _NAMES.split()]
 
 
 @pytest.fixture
