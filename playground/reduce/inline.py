@@ -20,6 +20,8 @@ from playground.sketch.reserved_names import MATCHES, WIRED
 from playground.sketch.source import SourceText
 from playground.sketch.variants import active_variant
 
+_OF_SHADERS = (".fs", ".fragment", ".glsl", ".json")
+
 
 def inline_sketch(
     sketch: Sketch, *, frame: tuple[int, int], time: float = 0.0, steps: dict[str, int] | None = None
@@ -32,6 +34,12 @@ def inline_sketch(
     plan = Planner().plan(sketch, frame_size=frame, time=time, steps=steps)
     leaves = list(plan.walk())
     alone = len(leaves) == 1 or Path(sketch.file).suffix != ".toml"  # the rest stands in for its channels
+    foreign = {_words(leaf.kernel.source, as_written=True) for leaf in leaves if leaf.kernel.dialect}
+    if alone and len(foreign) > 1:
+        raise SketchError(
+            f"{len(foreign)} passes of another tool's shader cannot be inlined; reduce a file of one of them",
+            file=Path(sketch.file),
+        )
     if alone and leaves[-1].kernel.kind.startswith("plain"):
         return _plain(leaves[-1], plan)
     inliner = _Inliner(plan, leaves[-1].path)
@@ -61,7 +69,7 @@ def _plain(step: Step, plan: Plan) -> Case:
     one = Pass(
         name=name,
         text=_words(kernel.source, as_written=bool(kernel.dialect)),
-        suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix,
+        suffix=".frag" if suffix in _OF_SHADERS else suffix,
         head=f"/*{json.dumps(read_header(kernel.source).table)}*/\n" if kernel.dialect == "isf" else "",
         beside=((Path(vertex.path).suffix, _words(vertex, as_written=True)),) if vertex else (),
     )

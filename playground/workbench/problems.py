@@ -15,7 +15,7 @@ from playground.engine.plan_warnings import source_warnings
 from playground.errors import Diagnostic, PlaygroundError, counted
 from playground.images.content_hash import content_hash
 from playground.media.live_inputs import LiveInputs
-from playground.paths import GLSL
+from playground.paths import GLSL, without_part
 from playground.sketch.allowed_files import root_of
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import Techniques
@@ -131,8 +131,8 @@ class Problems:
 
 
 def _lines_of(name: str) -> list[str]:
-    """Return the lines of a file as an error names it; none where it cannot be read."""
-    path = path_named(name) if name else None
+    """Return the lines of a file as an error names it; none of a part of one, or where it cannot be read."""
+    path = path_named(name) if name and without_part(name) == name else None
     try:
         return _lines_at(path, content_hash(path)) if path is not None else []
     except (OSError, PlaygroundError):

@@ -12,7 +12,7 @@ from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique,
 
 _MOVING = frozenset({"time", "bands", "frame", "frame_of_time", "delta", "date", "date_from_1"})
 _DEVICES = frozenset({"microphone", "camera"})
-_MOUSE = frozenset({"mouse", "hover", "hover_share", "drag"})
+_MOUSE = frozenset({"mouse", "hover", "hover_share", "drag", "buttons"})
 _CAMERA = ("clip_from_world", "world_from_clip", "eye")
 
 

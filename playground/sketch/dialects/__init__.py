@@ -51,20 +51,18 @@ class Dialect:
 
 def _shadertoy(files: Files) -> Sequence[Shader]:
     """Return the passes of a file, and of the folder where it is one of several."""
-    if shadertoy_folder.has_more(files.path):
+    if shadertoy_folder.has_more(files):
         return shadertoy_folder.shaders(files)
     return shadertoy.shaders(files)
 
 
 def _vscode(files: Files) -> Sequence[Shader]:
-    return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else vscode.shaders(files)
+    return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files) else vscode.shaders(files)
 
 
 def _without_picture(files: Files) -> Sequence[Shader]:
     """Return the passes of the folder that a file is one of; raise ``ShaderError`` for one alone."""
-    return (
-        shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else shadertoy.refused(files)
-    )
+    return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files) else shadertoy.refused(files)
 
 
 DIALECTS = (
