@@ -10,14 +10,14 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.errors import PlaygroundError
 from playground.live.theme import Theme
-from playground.live.widgets import IMAGES
+from playground.live.widgets import DATA_FILES
 from playground.sketch.allowed_files import SHADERS
 from playground.sketch.dialects import is_export
 from playground.sketch.dialects.shadertoy_folder import image_of
 from playground.sketch.find import find
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.sketch.unpack import is_pack, unpacked_beside
-from playground.workbench.channel_list import Taker, in_words, takers
+from playground.workbench.channel_list import Taker, in_words, kind_of, takers
 from playground.workbench.commands import Commands
 from playground.workbench.parameter_list import Listing
 
@@ -49,7 +49,7 @@ class Drops:
     commands: Commands
     waiting: list[Path] = field(default_factory=list)  # images that the user is to choose a place for
     _asks: bool = False  # the choice is still to be shown
-    _takers: tuple[Sketch | None, tuple[Taker, ...]] = (None, ())  # of the sketch
+    _takers: tuple[Sketch | None, str, tuple[Taker, ...]] = (None, "", ())  # of the sketch and a kind of file
 
     def take(self, paths: list[Path]) -> None:
         """Take in dropped files: the first sketch opens, images wait for a choice."""
@@ -61,14 +61,14 @@ class Drops:
             if _is_sketch(path):
                 self.commands.open(path)
                 return
-        images = [path for path in paths if path.suffix.lower() in IMAGES and path.is_file()]
+        files = [path for path in paths if path.suffix.lower() in DATA_FILES and path.is_file()]
         for path in paths:
-            if path not in images:
-                say(f"{path.name} is neither a sketch, a shader nor an image")
-        if images and not self.parameters() and not self.channels():
-            say(f"no parameter of this sketch takes a file, so {images[0].name} has no place in it")
-        elif images:
-            self.waiting, self._asks = images, True
+            if path not in files:
+                say(f"{path.name} is neither a sketch, a shader nor an image, a film or a sound")
+        if files and not self.parameters() and not self.channels(files[0]):
+            say(f"no parameter of this sketch takes a file, so {files[0].name} has no place in it")
+        elif files:
+            self.waiting, self._asks = files, True
 
     def parameters(self) -> list[tuple[str, Parameter, Value]]:
         """Return the parameters that take a file, those a technique exports first; those of channels not.
@@ -87,14 +87,15 @@ class Drops:
         found.sort(key=lambda item: not item.exported)
         return [(item.path, item.parameter, values[item.path]) for item in found]
 
-    def channels(self) -> tuple[Taker, ...]:
-        """Return the channels of other tools' shaders that take a file."""
+    def channels(self, file: Path | None = None) -> tuple[Taker, ...]:
+        """Return the channels of other tools' shaders that take a file, or the one that waits."""
         draft = self.commands.session.shown
         if draft is None:
             return ()
-        if self._takers[0] is not draft.base:
-            self._takers = draft.base, takers(draft.base)
-        return self._takers[1]
+        kind = kind_of(file or next(iter(self.waiting), Path()))
+        if self._takers[0] is not draft.base or self._takers[1] != kind:
+            self._takers = draft.base, kind, takers(draft.base, kind)
+        return self._takers[2]
 
     def feed(self, taker: Taker) -> None:
         """Feed a channel from the file that waits."""

@@ -251,13 +251,18 @@ def _same_choices(technique: Technique, before: PassSpec | None) -> Iterator[tup
             yield name, parameter.widget.choices.index(was.widget.choices[value])
 
 
-def _size(technique: Technique, name: str, before: PassSpec | None) -> tuple[str, str]:
+def _size(technique: Technique, name: str, before: PassSpec | None) -> tuple[str, str] | None:
     """Return the size of a pass that feeds a channel: that of its picture, if it reads one.
 
-    A sound has no size: its texels are as many as those of the stand-in ``before``.
+    What changes with time, as a film, has a size of its own; where it has choices of what it replaces,
+    ``before``, as a sound has those of a made-up one, it has the size of that.
     """
-    if isinstance(technique, Kernel) and technique.registry == "sound_file":
-        return before.size if before is not None and before.size is not None else _SIZE
+    if isinstance(technique, Kernel) and technique.depends:
+        choices = {p.name: {*p.widget.choices} for p in technique.parameters if p.widget.choices}
+        was = before.technique if before is not None else None
+        menus = was.parameters if isinstance(was, Kernel) else ()
+        alike = any(choices.get(p.name, set()) & {*p.widget.choices} for p in menus)
+        return before.size if before is not None and alike else None
     if isinstance(technique, Kernel):
         for parameter in technique.parameters:
             if parameter.widget.kind == "file" and parameter.type == "sampler2D":

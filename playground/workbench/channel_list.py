@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
+from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL
 from playground.sketch.channels import Channel, channels, is_technique, sources
 from playground.sketch.model import Kernel, Parameter, Sketch, Technique
@@ -40,20 +42,26 @@ def file_of(sketch: Sketch, channel: Channel) -> tuple[str, Parameter] | None:
 
 @dataclass(frozen=True, slots=True)
 class Taker:
-    """A channel that an image file may feed."""
+    """A channel that a file may feed."""
 
     channel: Channel
     source: str  # the technique that reads the file
     parameter: str  # of the technique: names the file
 
 
-def takers(sketch: Sketch) -> tuple[Taker, ...]:
-    """Return the channels that an image file may feed."""
+def kind_of(file: Path) -> str:
+    """Return what a file is by its ending, which is what parameters call it: "image", "video" or "sound"."""
+    ending = file.suffix.lower()
+    return "video" if ending in VIDEO_FILES else "sound" if ending in SOUND_FILES else "image"
+
+
+def takers(sketch: Sketch, kind: str = "image") -> tuple[Taker, ...]:
+    """Return the channels that a file of a kind may feed: see ``kind_of``."""
     found = []
     for channel in channels(sketch):
         for source in [s for s in sources(sketch, channel.path) if is_technique(s)]:
             parameter = _file_parameter(_technique(sketch, source))
-            if parameter is not None and parameter.type == "sampler2D":
+            if parameter is not None and parameter.type == "sampler2D" and parameter.name == kind:
                 found.append(Taker(channel, source, parameter.name))
                 break
     return tuple(found)

@@ -13,6 +13,7 @@ from playground.images.files import write_png
 from playground.sketch.channels import channels, source_of, sources, with_source
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
+from tests.media.films import own_film
 
 TWO = """void mainImage(out vec4 c, in vec2 p) {
     c = texelFetch(iChannel0, ivec2(0), 0) + texelFetch(iChannel1, ivec2(0), 0);
@@ -28,8 +29,8 @@ LAND = '[[pass]]\nname = "land"\nuse = "generation/white_noise"\nsize = 16\n'
 PHOTO = '[[pass]]\nname = "photo"\nuse = "foreign/image"\nsize = [8, 4]\nset = { image = "a.png" }\n'
 STAND_INS = [
     f"foreign/{name}"
-    for name in "black cube_faces image keys noise picture sky_box sound spectrum video".split()
-]
+    for name in "black camera cube_faces image keys microphone noise picture sky_box sound spectrum".split()
+] + ["foreign/video"]
 
 
 @pytest.fixture
@@ -157,3 +158,15 @@ def test_a_sound_takes_the_place_of_a_made_up_one(folder: Path) -> None:
         assert fed is not None and fed.size == size
         menu = fed.technique.parameter("content").widget.choices
         assert menu[dict(fed.values)["content"]] == content
+
+
+def test_a_film_brings_its_size_and_keys_theirs(folder: Path, any_engine: Engine) -> None:
+    own_film(folder / "dance.mp4", count=2, size=(48, 36))
+    film = with_source(load(folder / "one.frag"), "view.iChannel0", "foreign/video").with_values(
+        {"iChannel0.video": str(folder / "dance.mp4")}
+    )
+    assert pixel(any_engine, film)[:2] == (48, 36)
+    keys = with_source(film, "view.iChannel0", "foreign/keys")
+    assert any_engine.read(keys, "iChannel0").shape == (3, 256)
+    heard = with_source(film, "view.iChannel0", "foreign/sound")
+    assert any_engine.read(heard, "iChannel0").shape == (2, 512)
