@@ -71,7 +71,7 @@ if TYPE_CHECKING:
 
 FRAME = 1 / 60  # [s] between pictures while time runs
 IDLE = 1.0  # [s] between frames while nothing happens
-_SANDBOX = 0.004  # [s] between questions to the sandbox
+_SANDBOX = 0.1  # [s] between questions to the sandbox, whose answer wakes the window
 _SETTLES = 3  # frames that the panel takes to settle after something happened
 _LONGEST_STEP = 0.25  # [s] time never jumps by more, however long a frame took
 
@@ -91,6 +91,7 @@ def run(
     show_lessons: bool = False,
     cache_limit: int = 0,
     time_limit: float | None = None,
+    sandbox: Sandbox | None = None,
     report: Callable[[str], None] = to_log,
     remotes: Remotes | None = None,
 ) -> int:
@@ -101,7 +102,8 @@ def run(
     ``language`` by code; ``show_lessons`` opens the one read last, or the first, next to the sketch,
     unless the reader has closed the lessons. Expensive terrain is cached on disk, in at most
     ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
-    ``report`` receives each error, for the terminal. ``remotes`` are closed by who opened them.
+    ``sandbox``: one that has been started already, and is its owner's. ``report`` receives each error,
+    for the terminal. ``remotes`` are closed by who opened them.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -113,12 +115,14 @@ def run(
     if software:
         prefer_software()
     with ExitStack() as stack:
-        sandbox = stack.enter_context(Sandbox(software=software))
-        sandbox.start()
+        if sandbox is None:
+            sandbox = stack.enter_context(Sandbox(software=software))
+            sandbox.start()
         memory = memory_of(path)
         found, complaint = (Remembered(), "") if fresh else memory.read()
         opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
         window = stack.enter_context(Window(title_of(path), opens))
+        sandbox.on_answer = wake
         engine = Engine(window.ctx, driver=driver)
         session = Session(
             engine,

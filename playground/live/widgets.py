@@ -17,7 +17,6 @@ from playground.live import dome, theme
 from playground.live.draw import choose
 from playground.live.panel_rows import fitting_choice
 from playground.live.sliders import draw_numbers, part_names
-from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import shown
 from playground.sketch.colour import linear_to_srgb, srgb_to_linear
 from playground.sketch.model import Parameter, Value
@@ -27,8 +26,7 @@ from playground.workbench.number_format import unit_of
 
 _CLAMP = imgui.SliderFlags_.always_clamp.value
 _PAD = 84.0
-_IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
-DATA_FILES = (*_IMAGES, *VIDEO_FILES, *SOUND_FILES)
+IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
 
 
 @dataclass(frozen=True)
@@ -237,7 +235,7 @@ def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
             if imgui.selectable(name, name == text)[0]:
                 chosen = name
         if not names:
-            imgui.text_disabled("no images, films, sounds or elevation files next to the sketch")
+            imgui.text_disabled("no images or elevation files next to the sketch")
         imgui.end_combo()
     if chosen is not None:
         return chosen
@@ -246,7 +244,7 @@ def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
 
 def _files_in(folder: Path) -> list[str]:
     inside = (p for pattern in ("*", "*/*") for p in folder.glob(pattern))
-    return sorted(p.relative_to(folder).as_posix() for p in inside if p.suffix.lower() in DATA_FILES)[:200]
+    return sorted(p.relative_to(folder).as_posix() for p in inside if p.suffix.lower() in IMAGES)[:200]
 
 
 # ── between imgui's lists and parameters' values ─────────────────────────────

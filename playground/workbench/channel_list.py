@@ -3,13 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL
 from playground.sketch.channels import Channel, channels, is_technique, sources
 from playground.sketch.model import Kernel, Parameter, Sketch, Technique
 from playground.sketch.techniques import read_technique
+
+PICTURES = (".png", ".jpg", ".jpeg", ".webp")
+"""Endings of what is read as a picture."""
+
+MEDIA = {"video_file": VIDEO_FILES, "sound_file": SOUND_FILES}
+"""Endings of what sources of these kinds read."""
 
 
 def in_words(sketch: Sketch, source: str) -> str:
@@ -49,21 +54,17 @@ class Taker:
     parameter: str  # of the technique: names the file
 
 
-def kind_of(file: Path) -> str:
-    """Return what a file is by its ending, which is what parameters call it: "image", "video" or "sound"."""
-    ending = file.suffix.lower()
-    return "video" if ending in VIDEO_FILES else "sound" if ending in SOUND_FILES else "image"
-
-
-def takers(sketch: Sketch, kind: str = "image") -> tuple[Taker, ...]:
-    """Return the channels that a file of a kind may feed: see ``kind_of``."""
+def takers(sketch: Sketch, ending: str) -> tuple[Taker, ...]:
+    """Return the channels that a file of an ending, as ".png", may feed."""
     found = []
     for channel in channels(sketch):
         for source in [s for s in sources(sketch, channel.path) if is_technique(s)]:
-            parameter = _file_parameter(_technique(sketch, source))
-            if parameter is not None and parameter.type == "sampler2D" and parameter.name == kind:
-                found.append(Taker(channel, source, parameter.name))
-                break
+            kernel = _technique(sketch, source)
+            if not isinstance(kernel, Kernel) or len(kernel.file_parameters) != 1:
+                continue
+            known = MEDIA.get(kernel.registry, PICTURES if kernel.kind == "kernel" else ())
+            if ending in known:
+                found.append(Taker(channel, source, kernel.file_parameters[0].name))
     return tuple(found)
 
 

@@ -10,8 +10,8 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.images.files import write_png
+from playground.paths import SKETCHES
 from playground.workbench.problems import Warnings
-from tests.media.films import own_film, sound
 
 from .desk import Bare
 
@@ -105,22 +105,14 @@ def test_a_dropped_image_is_put_into_the_channel_that_is_chosen(alone: Bare, fol
     alone.close()
 
 
-def test_a_dropped_film_or_sound_is_read_as_one(alone: Bare, folder: Path) -> None:
-    own_film(folder / "dance.mp4", count=2)
-    sound(folder / "song.wav", np.zeros((1, 4000)))
-    for name, source, parameter in (
-        ("dance.mp4", "foreign/video", "video"),
-        ("song.wav", "foreign/sound", "sound"),
-    ):
-        alone.drops.take([folder / name])
+def test_a_dropped_video_and_a_sound_go_to_a_channel_too(alone: Bare, folder: Path) -> None:
+    data = SKETCHES / "data"
+    for name, source in (("sun_flight.mp4", "foreign/video"), ("tones.flac", "foreign/sound")):
+        alone.drops.take([data / name])
         alone.run_frames(3)
-        alone.click("view.iChannel3##channel view.iChannel3")
+        alone.click("view.iChannel0##channel view.iChannel0")
         alone.run_frames(3)
-        assert alone.session.error is None
-        assert sources(alone) == {"view.iChannel3": source}
-        assert alone.session.shown is not None
-        chosen = dict(alone.session.shown.edits.values)
-        assert chosen[f"iChannel3.{parameter}"] == str((folder / name).resolve())
+        assert alone.session.error is None and sources(alone) == {"view.iChannel0": source}
     alone.close()
 
 

@@ -280,7 +280,7 @@ def test_an_image_that_is_dropped_is_put_where_a_hand_says(folder: Path, any_eng
     (folder / "sketch.toml").write_text(text, encoding="utf-8")
     bare = Bare(any_engine, folder)
     bare.drops.take([image, folder / "other" / "notes.txt"])
-    assert "notes.txt is neither a sketch, a shader nor an image, a film or a sound" in notices_of(bare)
+    assert "notes.txt is neither a sketch, a shader nor an image" in notices_of(bare)
     bare.run_frames(3)
     bare.click("Elevation   height.image##height.image")
     assert value(bare, "image") == str(image.resolve()) and bare.drops.waiting == []
