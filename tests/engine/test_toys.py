@@ -356,6 +356,17 @@ def test_channels_of_a_folder_are_its_buffers_in_order_unless_a_line_says_otherw
         assert not said or f"{channel} reads Buffer {'A' if value == 10 else 'C'}" in said[0]
 
 
+def test_a_channel_that_is_read_by_direction_is_the_cube_map_or_a_sky(any_engine, opened, folder):
+    text = "void mainImage(out vec4 c, in vec2 p) { vec3 rd = -vec3(0, 1, 0); c = texture(iChannel1, rd); }\n"
+    alone = opened({"a.frag": text}, "a.frag")
+    assert first_texel(any_engine, alone)[2] < 102, "the ground of a sky"
+    assert "nothing feeds iChannel1" in notes(alone)[0]
+    sketch = opened({"t/Image.glsl": text, "t/Cube A.glsl": CUBE}, "t")
+    np.testing.assert_allclose(first_texel(any_engine, sketch)[:3], [128, 0, 128], atol=2)
+    declared = opened({"b.frag": f"uniform sampler3D iChannel1;\n{text}"}, "b.frag")
+    assert [i.shape for i in declared.graph.find("view").technique.inputs] == ["volume"]
+
+
 def test_a_later_buffer_of_a_folder_is_that_of_the_frame_before(any_engine, opened):
     sketch = opened(
         {
