@@ -28,7 +28,9 @@ _MOST = 64
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _ISF = re.compile(
-    r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS)"', re.DOTALL
+    r"(?:\s|//[^\n]*\n)*/\*\s*\{(?:(?!\*/).)*"
+    r'"(?:INPUTS|PASSES|ISFVSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS)"',
+    re.DOTALL,
 )
 _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
@@ -160,7 +162,7 @@ def read_foreign(
     graph = graph_of_shaders(name, shaders, read, root) if shaders else None
     if graph is not None:
         title = files.title or graph.title
-        graph = replace(graph, title=title, warnings=(*graph.warnings, *files.notes))
+        graph = replace(graph, title=title, warnings=(*files.notes, *graph.warnings))
     if not instead:
         _known[key] = graph, files
         while len(_known) > _MOST:
