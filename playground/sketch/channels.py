@@ -17,6 +17,7 @@ from functools import lru_cache
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.assign import find_targets
+from playground.sketch.dialects.shader import STAND_INS_OF_SHAPES, stand_in
 from playground.sketch.find import shipped_names
 from playground.sketch.flat import Ref, Source, leaves_of
 from playground.sketch.flatten import flatten
@@ -27,6 +28,7 @@ from playground.sketch.wiring import input_names, is_optional, output_names
 
 OUTPUT = "channel_texels"
 FOLDER = "foreign/"
+FACES = 6
 _SIZE = ("256", "256")
 _NUMBER = re.compile(r"\d{1,2}$")
 
@@ -192,7 +194,7 @@ def with_source(sketch: Sketch, path: str, source: str) -> Sketch:
         source,
         technique,
         values=(*_values(technique, now), *_same_choices(technique, before)),
-        size=_size(technique, name, before),
+        size=_size(technique, name, before, _shape(sketch.graph, now.path)),
         file=shown(sketch.file),
     )
     if not now.alone:
@@ -251,18 +253,34 @@ def _same_choices(technique: Technique, before: PassSpec | None) -> Iterator[tup
             yield name, parameter.widget.choices.index(was.widget.choices[value])
 
 
-def _size(technique: Technique, name: str, before: PassSpec | None) -> tuple[str, str]:
+def _size(technique: Technique, name: str, before: PassSpec | None, shape: str) -> tuple[str, str]:
     """Return the size of a pass that feeds a channel: that of its picture, if it reads one.
 
-    A sound has no size: its texels are as many as those of the stand-in ``before``.
+    A sound has no size: its texels are as many as those of the stand-in ``before``. What has six
+    pictures is a cube map; what has none is as the channel's ``shape`` needs it.
     """
     if isinstance(technique, Kernel) and technique.registry == "sound_file":
         return before.size if before is not None and before.size is not None else _SIZE
     if isinstance(technique, Kernel):
-        for parameter in technique.parameters:
-            if parameter.widget.kind == "file" and parameter.type == "sampler2D":
-                return f"{name}.{parameter.name}.size.x", f"{name}.{parameter.name}.size.y"
-    return _SIZE
+        files = [p.name for p in technique.parameters if p.widget.kind == "file" and p.type == "sampler2D"]
+        if len(files) == FACES:
+            return f"{name}.{files[0]}.size.x", f"{FACES} * {name}.{files[0]}.size.x"
+        if files:
+            return f"{name}.{files[0]}.size.x", f"{name}.{files[0]}.size.y"
+    of_shape = STAND_INS_OF_SHAPES.get(shape)
+    return stand_in(of_shape, 0, "").size if of_shape else _SIZE
+
+
+def _shape(technique: Technique, path: str) -> str:
+    """Return the shape of what an input reads, by its path."""
+    if isinstance(technique, Kernel):
+        return next((declared.shape for declared in technique.inputs if declared.name == path), "")
+    head, _, rest = path.partition(".")
+    if rest:
+        spec = technique.find(head)
+        return _shape(spec.technique, rest) if spec is not None else ""
+    export = next((one for one in technique.inputs if one.name == path), None)
+    return _shape(technique, export.targets[0]) if export is not None else ""
 
 
 def _names(technique: Technique) -> Iterator[str]:

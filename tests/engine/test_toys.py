@@ -15,6 +15,7 @@ from playground.engine.planner import Planner
 from playground.errors import PlaygroundError, ShaderError
 from playground.images.files import write_png
 from playground.reduce.inline import inline_sketch
+from playground.sketch.channels import with_source
 from playground.sketch.load import load
 from playground.sketch.warnings import former_names_used
 from tests.toy_texts import (
@@ -24,6 +25,7 @@ from tests.toy_texts import (
     GROWS,
     IMAGE,
     PLAIN,
+    SHOWS,
     SOUND,
     VSCODE,
     A,
@@ -262,7 +264,7 @@ def test_what_cannot_be_drawn_in_parts_says_so(any_engine, opened, name):
 
 
 def test_a_sketch_may_use_an_export_or_a_folder_and_feed_its_channels(any_engine, folder):
-    folder.write("toy.json", export(one("Image", IMAGE, {"id": "a", "src": "/media/a.jpg", "channel": 0}), A))
+    folder.write("toy.json", export(one("Image", IMAGE, {"id": "a", "src": "/media/a.jpg", "channel": 0})))
     folder.write("Image.glsl", IMAGE)
     folder.write("Common.glsl", "float nothing;\n")
     for use in ("./toy", "./Image"):
@@ -365,6 +367,16 @@ def test_a_channel_that_is_read_by_direction_is_the_cube_map_or_a_sky(any_engine
     np.testing.assert_allclose(first_texel(any_engine, sketch)[:3], [128, 0, 128], atol=2)
     declared = opened({"b.frag": f"uniform sampler3D iChannel1;\n{text}"}, "b.frag")
     assert [i.shape for i in declared.graph.find("view").technique.inputs] == ["volume"]
+
+
+@pytest.mark.parametrize("opens", ["a.frag", "a.json"])
+def test_another_source_of_a_cube_map_has_a_cube_s_size(any_engine, opened, opens):
+    image = SHOWS.replace("iChannel0, uv", "iChannel0, vec3(uv, 1.0)")
+    site = {"id": "b", "src": "/media/a/2.png", "ctype": "cubemap", "channel": 0}
+    sketch = opened({"a.frag": image, "a.json": export(one("Image", image, site))}, opens)
+    sky = drawn(any_engine, sketch)
+    for source in ("foreign/noise", "foreign/cube_faces"):
+        assert not np.array_equal(drawn(any_engine, with_source(sketch, "view.iChannel0", source)), sky)
 
 
 def test_a_later_buffer_of_a_folder_is_that_of_the_frame_before(any_engine, opened):
