@@ -279,6 +279,7 @@ def test_a_sketch_may_use_an_export_or_a_folder_and_feed_its_channels(any_engine
     ("text", "words", "place"),
     [
         ('{"Shader": {"renderpass": [{"code": "void\\n"}}', "damaged JSON", (1, 46)),
+        ('{"renderpass": ' + "[" * 200_000, "damaged JSON: it nests too deeply", (0, 0)),
         ('{"renderpass": 3}', "holds a list of passes called renderpass", (0, 0)),
         (export(), "there is no Image pass to draw; there is nothing", (0, 0)),
         (
