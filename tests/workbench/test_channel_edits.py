@@ -223,11 +223,11 @@ def test_a_kernel_alone_is_saved_as_a_sketch_too(folder: Path, any_engine: Engin
 
 
 def test_what_cannot_be_saved_says_why(folder: Path, any_engine: Engine) -> None:
-    file = folder / "alone" / "other.fs"
+    file = folder / "alone" / "other.fragment"
     file.write_text(FIRST, "utf-8")
     window = Window(any_engine, file, folder)
     window.bench.commands.save_a_copy()
     window.frame()
-    assert any("a sketch uses shaders that end in .glsl or .frag" in text for text in window.said)
-    assert sorted(path.name for path in (folder / "alone").iterdir()) == ["first.frag", "other.fs"]
+    assert any("a sketch uses shaders that end in .glsl or .frag or .fs" in text for text in window.said)
+    assert sorted(path.name for path in (folder / "alone").iterdir()) == ["first.frag", "other.fragment"]
     window.close()
