@@ -58,6 +58,12 @@ def test_a_shader_opened_alone_has_its_channels(folder: Path) -> None:
     assert channels(load(folder / "none.frag")) == () and channels(load()) == ()
 
 
+def test_a_sketch_of_a_view_alone_is_the_shader_s_picture(folder: Path, any_engine: Engine) -> None:
+    assert pixel(any_engine, sketch(folder, 'use = "./none"')) == (255, 255, 255)
+    with pytest.raises(PlaygroundError, match="no passes"):
+        sketch(folder, 'use = "view/terrain"')
+
+
 def test_channels_are_in_the_order_of_their_numbers(folder: Path) -> None:
     text = "void main() { gl_FragColor = texture2D(u_tex2, vec2(0)) + texture2D(u_tex0, vec2(0)); }\n"
     (folder / "main.frag").write_text("uniform sampler2D u_tex2;\n" + text, "utf-8")
