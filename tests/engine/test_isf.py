@@ -341,6 +341,30 @@ def test_an_imported_image_is_as_in_its_file(any_engine, isf, folder):
     assert "lies outside the sketch's folder" in kernels(outside)[0].unfed[0][1]
 
 
+SIX = ["right", "left", "top", "bottom", "front", "back"]
+CUBE = """/*{{"ISFVSN": "1", "INPUTS": [], "IMPORTED": [{{"NAME": "around", "TYPE": "cube", "PATH": {}}}]}}*/
+uniform vec3 towards;  //! Which way
+void main() {{ gl_FragColor = textureCube(around, towards); }}
+"""
+
+
+def test_a_cube_of_six_images(any_engine, isf, folder):
+    for number, name in enumerate(SIX):
+        face = np.full((4, 4, 4), 255, np.uint8)
+        face[..., 0] = 40 * number
+        (folder.path / "faces").mkdir(exist_ok=True)
+        write_png(folder.path / "faces" / f"{name}.png", face)
+    paths = [f"faces/{name}.png" for name in SIX]
+    path = isf(CUBE.format(str(paths).replace("'", '"')))
+    ways = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    seen = [int(drawn(any_engine, path, size=(2, 2), **{"view.towards": way})[0, 0, 0]) for way in ways]
+    np.testing.assert_allclose(seen, [0, 40, 80, 120, 160, 200], atol=1)
+    missing = isf(CUBE.format(str([*paths[:5], "faces/x.png"]).replace("'", '"')))
+    assert kernels(missing)[0].unfed[0][1] == "there is no file 'faces/x.png', so a sky stands in"
+    with pytest.raises(ShaderError, match="cube 'around' needs the paths of six images"):
+        load(isf(CUBE.format('["a.png"]')))
+
+
 # ── bad input ────────────────────────────────────────────────────────────────
 
 MAIN = "\nvoid main() { gl_FragColor = vec4(1.0); }\n"

@@ -125,7 +125,7 @@ function row(one) {
   made.dataset.words = `${one.label} ${one.path} ${one.group}`.toLowerCase();
   head.append(element("span", one.label, "name"), shown);
   made.append(head);
-  const control = (controls[one.widget] || numbers)(one, (value) => { write(value); set(one.path, value); });
+  const control = (controls[one.widget] || numbers)(one, (value) => { if (one.widget !== "button") write(value); set(one.path, value); });
   made.append(control.element);
   for (const input of made.querySelectorAll("input, select")) {
     input.disabled = one.locked;
@@ -150,6 +150,12 @@ const controls = {
     input.type = "checkbox";
     input.onchange = () => changed(input.checked);
     return { element: input, show: (value) => { input.checked = value; } };
+  },
+  button(one, changed) {
+    const input = element("button", one.label);
+    input.type = "button";
+    input.onclick = () => changed(true);
+    return { element: input, show: () => {} };
   },
   menu(one, changed) {
     const input = element("select");
@@ -203,7 +209,7 @@ function numbers(one, changed) {
 
 function scaleOf(one, at) {
   const sky = [[0, 360], [0, 90]];
-  const [low, high] = one.widget === "direction" ? sky[at] : [one.low, one.high];
+  const [low, high] = one.widget === "direction" ? sky[at] : one.ranges[at] || [one.low, one.high];
   if (low === null || !(high > low)) return null;
   const whole = /^(u?int|[iu]vec)/.test(one.type), step = one.step || (whole ? 1 : 0);
   const log = one.widget === "log_slider";

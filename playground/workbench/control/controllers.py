@@ -212,7 +212,7 @@ class Controllers:
         if found is None or not strength:
             return
         parameter, value, part = found
-        if parameter.widget.kind == "checkbox":
+        if parameter.widget.kind in ("checkbox", "button"):
             self._set(binding, not value)
         elif parameter.widget.kind == "menu" and isinstance(value, int):
             self._set(binding, (value + 1) % len(parameter.widget.choices))
@@ -226,7 +226,8 @@ class Controllers:
                 f"lock {binding.path}", f"MIDI: {binding.path} is locked: {binding.source} sets nothing"
             )
             return
-        self._session.drafts.set(binding.path, value)
+        for path, other in self._session.without_buttons({binding.path: value}).items():
+            self._session.drafts.set(path, other)
 
     def _value(self, binding: Binding) -> tuple[Parameter, Value, int] | None:
         """Return a binding's parameter, its value, and which part; None, and a notice, where it is gone."""

@@ -89,7 +89,7 @@ class Controls:
 
     def flush(self) -> None:
         """Do what was set."""
-        waiting, self._waiting = self._waiting, {}
+        waiting, self._waiting = self.session.without_buttons(self._waiting), {}
         if waiting:
             self.session.drafts.set_all(waiting)
 
