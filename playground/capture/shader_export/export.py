@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from playground.capture.export_textures import kind_of
@@ -76,10 +76,12 @@ def shader_files(sketch: Sketch, path: Path, *, texture: str, kind: str, time: f
 
 def _texts(found: Leaving, host: Host, shows: str) -> list[PassText]:
     sizes = {one.name: one.size for one in found.passes}
-    texts = [text_of(found, one, host, sizes) for one in found.passes]
-    if texts[-1].size != (None, None):
-        output = found.passes[-1].output
-        texts.append(shown_text(texts[-1], output.components, shows, host))
+    passes = [replace(one, shows="") for one in found.passes] if found.is_shown else found.passes
+    texts = [text_of(found, one, host, sizes) for one in passes]
+    if found.is_shown:
+        index = next(i for i, one in enumerate(found.passes) if one.name == found.picture)
+        output = found.passes[index].output
+        texts.append(shown_text(texts[index], output.components, shows, host))
     return texts
 
 

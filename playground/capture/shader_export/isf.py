@@ -53,7 +53,7 @@ class Inputs:
 
     def host(self) -> Host:
         """Return what ISF gives a pass."""
-        return Host(_RENDER, _TEXEL, "TIME", self.parameter, self.file)
+        return Host(_RENDER, _TEXEL, "TIME", "FRAMEINDEX", self.parameter, self.file)
 
     def parameter(
         self, one: ShaderPass, parameter: Parameter, value: Value
@@ -225,12 +225,15 @@ def written(
     prefixes = [text.name for text in everything]
     taken = {*targets, *(each["NAME"] for each in inputs.header), *inputs.images, *WORDS}
     merged = joined([text.declarations for text in linear], prefixes, renames, taken=taken)
+    kept = {read.source for text in everything for read in text.reads if read.is_before}
     passes, calls, functions = [], [], []
     for index, (text, names) in enumerate(zip(linear, merged.renames, strict=True)):
         is_picture = index == len(linear) - 1
         entry: dict[str, Any] = {} if is_picture else {"TARGET": text.name}
         if not is_picture and not text.is_bytes:
             entry["FLOAT"] = True
+        if text.name in kept:
+            entry["PERSISTENT"] = True
         for key, side in zip(("WIDTH", "HEIGHT"), text.size, strict=True):
             if side is not None:
                 entry[key] = str(side)

@@ -46,7 +46,7 @@ def _no_file(one: ShaderPass, parameter: Parameter, value: Value) -> str:
     raise SketchError(message)
 
 
-HOST = Host(_SIZE, "ivec2(fragCoord)", "iTime", _constant, _no_file)
+HOST = Host(_SIZE, "ivec2(fragCoord)", "iTime", "iFrame", _constant, _no_file)
 
 
 def fitted(texts: Sequence[PassText]) -> list[PassText]:
@@ -104,7 +104,7 @@ def export(texts: Sequence[PassText], name: str, heading: Sequence[str]) -> str:
         channels = _sources(text)
         names = {read.word: f"iChannel{channels.index(read.source)}" for read in text.reads}
         renamed.append(tuple(d.renamed(names) for d in text.declarations))
-    never = (*(f"iChannel{n}" for n in range(MOST_CHANNELS)), "iResolution", "iTime")
+    never = (*(f"iChannel{n}" for n in range(MOST_CHANNELS)), "iResolution", "iTime", "iFrame")
     parted = with_common(renamed, never)
     passes = []
     if parted.shared:

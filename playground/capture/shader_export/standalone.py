@@ -34,7 +34,7 @@ def _no_file(one: ShaderPass, parameter: Parameter, value: Value) -> str:
     raise SketchError(message)
 
 
-HOST = Host("ivec2(iResolution.xy)", "ivec2(gl_FragCoord.xy)", "iTime", _uniform, _no_file)
+HOST = Host("ivec2(iResolution.xy)", "ivec2(gl_FragCoord.xy)", "iTime", "0", _uniform, _no_file)
 
 
 def check(texts: Sequence[PassText]) -> None:
