@@ -10,8 +10,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
+from playground.capture.shader_export.foreign_given import reason_to_stay
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, needed, sources_of
 from playground.engine.planner import Planner
 from playground.errors import Diagnostic, PlaygroundError, SketchError
@@ -163,8 +163,8 @@ class _Passes:
             return f"{who} is a source ({kernel.registry}), which a processor computes"
         if kernel.kind in ("plain_compute", "compute"):
             return f"{who} is a compute shader, which these formats have not"
-        if kernel.kind != "kernel":
-            return f"{who} is another tool's shader already: {Path(kernel.path).name}"
+        if kernel.kind == "plain_fragment" and (reason := reason_to_stay(kernel)):
+            return f"{who} {reason}"
         camera = [name for name in CAMERA if kernel.reads(name)]
         if camera:
             return f"{who} reads the camera ({', '.join(camera)}), which these formats have not"

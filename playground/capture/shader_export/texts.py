@@ -16,7 +16,7 @@ from playground.sketch.parameter import AS_IT_IS
 from playground.sketch.reserved_names import MATCHES, TOWARDS, WIRED
 from playground.terrain.directions import unit_vector
 
-_CALL = r"\b(texelFetch|texelFetchOffset|textureLod|textureSize)\s*\(\s*{name}\s*,"
+_CALL = r"\b(texelFetch|texelFetchOffset|textureLod|textureSize|texture)\s*\(\s*{name}\s*,"
 _FALLBACKS = {"white": "vec4(1.0)", "black": "vec4(0.0, 0.0, 0.0, 1.0)"}
 _BYTES = ("r8", "rg8", "rgba8")
 ENCODE, DECODE = "srgb_of_linear", "linear_of_srgb"
@@ -64,8 +64,11 @@ class Host:
     texel: str  # an ivec2
     time: str  # seconds, a float
     frame: str  # its number, an int from 0
+    pixel: str  # the pixel's middle, a vec2
     parameter: Callable[[ShaderPass, Parameter, Value], tuple[tuple[Declaration, ...], tuple[str, ...]]]
     file: Callable[[ShaderPass, Parameter, Value], str]  # returns the pass that gives a file's texels
+    native: frozenset[tuple[str, str]] = frozenset()  # names that it gives by themselves, and their types
+    mouse: str = ""  # a vec4 as Shadertoy has it; "" where there is none
 
 
 def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, object]) -> PassText:
@@ -105,7 +108,7 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
             reads.append(Sampled(f"{output.name}_before", wire.name, is_before=wire.is_before))
         if wire.first:
             reads.append(Sampled(f"{output.name}_at_first", wire.first))
-    declarations = [_without_unwired(d, unwired) for d in declarations_of(kernel.source.lines)]
+    declarations = [without_unwired(d, unwired) for d in declarations_of(kernel.source.lines)]
     declarations = [_with_start(d, starting, host.frame) for d in declarations]
     lines, value = _call(kernel, one.output, host.texel)
     result = _filled(one.output, value)
@@ -137,7 +140,7 @@ def handed_on(text: PassText, word: str) -> bool:
 
 def is_sampled(text: PassText, word: str) -> bool:
     """Return whether a text may sample a texture between its texels, itself or in a function it calls."""
-    samplers = {"textureLod"}
+    samplers = {"textureLod", "texture"}
     while True:
         more = {n for d in text.declarations if not samplers.isdisjoint(d.words) for n in d.names} - samplers
         if not more:
@@ -312,7 +315,8 @@ def shown_text(text: PassText, components: int, kind: str, host: Host) -> PassTe
     return PassText("picture", (None, None), more, (Sampled("shown", text.name),), (), result)
 
 
-def _without_unwired(declaration: Declaration, unwired: Mapping[str, str]) -> Declaration:
+def without_unwired(declaration: Declaration, unwired: Mapping[str, str]) -> Declaration:
+    """Return a declaration in which what an unwired input is read by is a constant."""
     for name, value in unwired.items():
         if declaration.reads(name):
             code, text = (_constant_calls(t, name, value) for t in (declaration.code, declaration.text))
