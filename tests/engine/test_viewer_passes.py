@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from scipy.ndimage import distance_transform_edt
 
 from playground.errors import ShaderError
 from playground.sketch.load import load
-from playground.sketch.warnings import warnings_of_kernel
+from playground.sketch.warnings import former_names_used, warnings_of_kernel
 
 HEAD = "uniform vec2 u_resolution;\n"
 PASSES = """void main() {{
@@ -128,6 +130,19 @@ def test_a_buffer_that_no_pass_writes_reads_black_and_is_named(read, picture):
     kernel = read(text, "").graph.find("view").technique.find("view").technique
     assert ("u_buffer7", "it reads black") in kernel.unfed
     np.testing.assert_allclose(picture(text)[0, 0], 1.0)
+
+
+@pytest.mark.parametrize("define", ["BUFFER_3", "DOUBLE_BUFFER_3", "PYRAMID_3", "FLOOD_3"])
+def test_a_pass_that_nothing_reads_is_named(read, define):
+    name = define.lower().replace("_3", "3")
+    sampler = {"DOUBLE_BUFFER_3": "u_doubleBuffer3"}.get(define, f"u_{name}")
+    used = text_of(define, "vec4(1.0)", f"texture2D({sampler}, st)")
+    assert former_names_used(read(used, "")) == ()
+    (note,) = former_names_used(read(text_of(define, f"texture2D({sampler}, st)", "vec4(st, 0.0, 1.0)"), ""))
+    assert re.match(
+        rf"the picture reads nothing of {name}\b|the picture reads nothing of {name}_", note.message
+    )
+    assert note.message.endswith(": what the picture does not need is not drawn")
 
 
 def test_a_parameter_of_several_passes_is_one(read):

@@ -58,6 +58,12 @@ def test_a_shader_opened_alone_has_its_channels(folder: Path) -> None:
     assert channels(load(folder / "none.frag")) == () and channels(load()) == ()
 
 
+def test_a_sketch_of_a_view_alone_is_the_shader_s_picture(folder: Path, any_engine: Engine) -> None:
+    assert pixel(any_engine, sketch(folder, 'use = "./none"')) == (255, 255, 255)
+    with pytest.raises(PlaygroundError, match="no passes"):
+        sketch(folder, 'use = "view/terrain"')
+
+
 def test_channels_are_in_the_order_of_their_numbers(folder: Path) -> None:
     text = "void main() { gl_FragColor = texture2D(u_tex2, vec2(0)) + texture2D(u_tex0, vec2(0)); }\n"
     (folder / "main.frag").write_text("uniform sampler2D u_tex2;\n" + text, "utf-8")
@@ -157,3 +163,15 @@ def test_a_sound_takes_the_place_of_a_made_up_one(folder: Path) -> None:
         assert fed is not None and fed.size == size
         menu = fed.technique.parameter("content").widget.choices
         assert menu[dict(fed.values)["content"]] == content
+
+
+def test_a_channel_of_several_passes_is_one(folder: Path) -> None:
+    head = '/*{"INPUTS": [{"NAME": "inputImage", "TYPE": "image"}], "PASSES": [{"TARGET": "a"}, {}]}*/\n'
+    (folder / "b.fs").write_text(
+        f"{head}void main() {{ gl_FragColor = IMG_THIS_PIXEL(inputImage); }}\n", "utf-8"
+    )
+    found = load(folder / "b.fs")
+    (channel,) = channels(found)
+    assert (channel.path, channel.source, channel.alone) == ("view.inputImage", "foreign/picture", True)
+    fed = with_source(found, channel.path, "foreign/image")
+    assert [(spec.name, spec.use) for spec in fed.graph.passes][:-1] == [("inputImage", "foreign/image")]

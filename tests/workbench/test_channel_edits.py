@@ -189,6 +189,11 @@ def test_a_shader_alone_is_saved_as_a_sketch_next_to_it(folder: Path, any_engine
     window.session.drafts.set("iChannel1.number", 7)
     window.frame()
     assert window.colour == GREY
+    copied: list[str] = []
+    window.bench.commands.copy_toml(copied.append)
+    window.frame()
+    assert copied == [] and any("is no TOML" in text for text in window.said)
+    window.time += 60.0
     window.bench.commands.save_values()
     assert window.bench.file.asks and "no sketch file" in window.bench.file.offer
     assert window.bench.commands.copy_is[0] == "Save a sketch"
