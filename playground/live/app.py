@@ -215,6 +215,7 @@ class Live:
         self._reloads = session.last_reload
         self.mouse = PictureMouse(session, self.bench.painting)
         self.keys = PictureKeys(self.bench)
+        session.engine.runner.inputs.is_live = True
         self.finite = FiniteWatch()
         self.lessons = Lessons(self.bench, autosave, self._remember)
         self.remotes = Remotes()
@@ -260,6 +261,7 @@ class Live:
         self.bench.inspection.release()
         self.lessons.release()
         self.painter.release()
+        self.session.engine.runner.inputs.close()
         self.session.release()
         self.session.engine.release()
 
@@ -276,7 +278,7 @@ class Live:
 
     def _patience(self) -> float:
         """Return how long nothing needs to be done [s]."""
-        if self.session.animated and self.session.clock.playing:
+        if self.session.listens or (self.session.animated and self.session.clock.playing):
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
         if self._settling > 0 or self.remotes.waits:
             return 0.0
@@ -332,6 +334,7 @@ class Live:
         guard.draw("the mouse over the picture", lambda: self._act(area), None)
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
+        guard.run("listening", self.session.listen, None)
         picture = guard.run("the picture", lambda: self._picture((wide - skipped, high)), None)
         guard.run("taking in the picture", self._take_in, None)
         self._draw_over(picture, area)
@@ -364,7 +367,9 @@ class Live:
         self.caching.update(bench.inspection, self.finite)
         self._say_reload()
         bench.take_notes()
-        bench.problems.take(session.error, self.warnings.of(session.sketch, session.plan), session.sketch)
+        inputs = session.engine.runner.inputs
+        warnings = self.warnings.of(session.sketch, session.plan, inputs)
+        bench.problems.take(session.error, warnings, session.sketch)
         self.terminal.take(bench.problems.errors)
 
     def _draw_over(self, picture: moderngl.Texture | None, area: Area) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -10,8 +11,9 @@ from imgui_bundle import ImVec2, imgui
 from playground.errors import PlaygroundError
 from playground.live.theme import Theme
 from playground.live.widgets import IMAGES
-from playground.sketch.allowed_files import TEXTS
-from playground.sketch.dialects import EXPORT
+from playground.sketch.allowed_files import SHADERS
+from playground.sketch.dialects import is_export
+from playground.sketch.dialects.shadertoy_folder import image_of
 from playground.sketch.find import find
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.sketch.unpack import is_pack, unpacked_beside
@@ -32,6 +34,15 @@ def opened_from(sketch: Path) -> tuple[Path, str]:
     return unpacked_beside(path) if is_pack(path) and path.is_file() else (find(sketch), "")
 
 
+def _is_sketch(path: Path) -> bool:
+    """Return whether a file or a folder opens as a sketch."""
+    if path.is_dir():
+        return (path / "sketch.toml").is_file() or image_of(path) is not None
+    with suppress(PlaygroundError):
+        return path.suffix == ".toml" or path.suffix in SHADERS or is_export(path)
+    return False
+
+
 @dataclass
 class Drops:
     """The files that were dropped on one window."""
@@ -49,7 +60,7 @@ class Drops:
             if is_pack(path) and path.is_file():
                 self._open_pack(path)
                 return
-            if path.is_dir() or path.suffix in (*TEXTS, EXPORT):
+            if _is_sketch(path):
                 self.commands.open(path)
                 return
         files = [path for path in paths if path.suffix.lower() in _FILES and path.is_file()]

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import logging
 import socket
 import sys
 import threading
@@ -52,6 +53,9 @@ PATIENCE = 20.0
 _PAGE = {"": ("remote.html", "text/html"), "remote.js": ("remote.js", "text/javascript")}
 _PAGE |= {"remote.css": ("remote.css", "text/css")}
 _WANTED = 'expected a JSON object, as {"playing": false}'
+_SILENT = logging.getLogger("playground.remote")  # who asks gets the sentence; the terminal does not
+_SILENT.addHandler(logging.NullHandler())
+_SILENT.propagate = False
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
@@ -116,7 +120,9 @@ class Server:
         app.router.add_post("/{token}/do", self._do)
         app.router.add_get("/{token}/events", self._events)
         app.router.add_get("/{token}/{file:(remote\\.js|remote\\.css)?}", self._page)
-        self._runner = web.AppRunner(app, access_log=None, handle_signals=False, shutdown_timeout=0.5)
+        self._runner = web.AppRunner(
+            app, access_log=None, logger=_SILENT, handle_signals=False, shutdown_timeout=0.5
+        )
         await self._runner.setup()
         await web.SockSite(self._runner, self._socket, backlog=16).start()
         self._started.set()
@@ -149,6 +155,10 @@ class Server:
             answer = _error(400, str(error))
         except TimeoutError:
             answer = _error(504, f"the window has not answered for {PATIENCE:g} s")
+        except ConnectionError:  # who asked is gone
+            raise
+        except Exception as error:
+            answer = _error(500, f"by a bug of the playground: {_sentence(error)}")
         finally:
             self._busy -= counts
         if not isinstance(answer, web.WebSocketResponse):
@@ -280,7 +290,7 @@ _HEADERS = {
 
 def _policy(port: int) -> str:
     sockets = f"ws://127.0.0.1:{port} ws://localhost:{port}"
-    own = f"script-src 'self'; style-src 'self'; img-src 'self' blob:; connect-src 'self' {sockets}"
+    own = f"script-src 'self'; style-src 'self'; img-src 'self' blob: data:; connect-src 'self' {sockets}"
     return f"default-src 'none'; {own}; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 
 

@@ -87,7 +87,7 @@ def _channels(key: Identity[Graph]) -> tuple[Channel, ...]:
     if not names:
         return ()
     flat = flatten(_bare(graph))
-    readers: dict[str, int] = {}
+    readers: dict[str, set[tuple[str, str]]] = {}  # passes of a shader read one channel by one name
     sources: dict[tuple[str, str], Source | None] = {}
     shapes: dict[tuple[str, str], str] = {}
     for leaf in leaves_of(flat.nodes):
@@ -95,13 +95,13 @@ def _channels(key: Identity[Graph]) -> tuple[Channel, ...]:
         for name, source in leaf.inputs:
             sources[leaf.path, name] = source
             if isinstance(source, Ref):
-                readers[source.path] = readers.get(source.path, 0) + 1
+                readers.setdefault(source.path, set()).add((leaf.path.partition(".")[0], name))
     found = []
     for spec, name in names:
         kernel, _, own = _leaf(spec, name).rpartition(".")
         source, shape = sources.get((kernel, own)), shapes.get((kernel, own), "")
         if isinstance(source, Ref):
-            fed = _fed(graph, f"{spec.name}.{name}", source, readers[source.path], flat.specs)
+            fed = _fed(graph, f"{spec.name}.{name}", source, len(readers[source.path]), flat.specs)
             found.append(replace(fed, shape=shape))
         elif source is None:
             found.append(Channel(f"{spec.name}.{name}", "", shape=shape))

@@ -255,6 +255,16 @@ class Session:
         if self.engine.runner.inputs.keyboard.hold(codes) and self.sketch and traits_of(self.sketch).keys:
             self.redraw()
 
+    @property
+    def listens(self) -> bool:
+        """Whether the picture may change by what a microphone or a camera delivers."""
+        return self.sketch is not None and traits_of(self.sketch).devices
+
+    def listen(self) -> None:
+        """Begin a frame: take what microphones and cameras delivered."""
+        if self.engine.runner.inputs.begin_frame() and self.listens:
+            self.redraw()
+
     def advance(self, seconds: float, date: datetime) -> None:
         """Advance the clock by seconds of real time, unless it is paused; plain shaders get the date.
 

@@ -151,6 +151,17 @@ def test_one_texture_is_a_picture(
     assert apart(drawn(any_engine, folder / "chain.toml", texture="height"), again) <= ROUNDING
 
 
+@pytest.mark.parametrize("ending", ["fs", "json"])
+@pytest.mark.parametrize("name", ["chain", "alone", "lives", "water"])
+def test_several_passes_are_read_again_and_drawn_the_same(
+    folder: Path, any_engine: Engine, ending: str, name: str
+) -> None:
+    path = folder / f"again.{ending}"
+    export(folder / f"{name}.toml", path, engine=any_engine)
+    again = any_engine.render(load(path), size=FRAME, time=1.5).array[::-1, :, :3]
+    assert apart(drawn(any_engine, folder / f"{name}.toml", time=1.5), again) <= ROUNDING
+
+
 @pytest.mark.parametrize("ending", ["frag", "glsl"])
 def test_a_text_of_one_pass_is_read_again_and_drawn_the_same(
     folder: Path, any_engine: Engine, ending: str

@@ -7,7 +7,7 @@ import io
 import json
 import socket
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -449,3 +449,64 @@ def test_importing_the_playground_imports_no_server():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_closing_ends_open_sockets_and_requests_that_wait(desk: Desk):
+    import threading
+    import time
+
+    url = opened(desk)
+    server = desk.remotes.server
+    closed: list[object] = []
+    listening = threading.Event()
+
+    def listen() -> None:
+        async def go() -> None:
+            async with aiohttp.ClientSession() as client, client.ws_connect(f"{url}events") as events:
+                await until(events, "state")
+                listening.set()
+                async for _ in events:
+                    pass
+                closed.append(events.close_code)
+
+        asyncio.run(go())
+
+    def ask() -> None:
+        closed.append(fetched(f"{url}state")[0])
+
+    listener = threading.Thread(target=listen, daemon=True)
+    listener.start()
+    desk.until(listening.is_set)
+    asker = threading.Thread(target=ask, daemon=True)
+    asker.start()
+    while not desk.remotes.calls:
+        time.sleep(0.001)
+    start = time.monotonic()
+    desk.remotes.close()
+    listener.join(5)
+    asker.join(5)
+    assert server is not None and not server._thread.is_alive() and time.monotonic() - start < 4
+    assert set(closed) == {1001, 503}
+
+
+def test_bytes_that_are_no_http_and_bugs_print_nothing(
+    desk: Desk, capfd: pytest.CaptureFixture[str], caplog: pytest.LogCaptureFixture
+):
+    url = opened(desk)
+    server = desk.remotes.server
+    assert server is not None
+    for data in (b"\xff" * 200, b"GET / HTTP/9.9\r\n\r\n", b"GET " + b"a" * 100_000 + b" HTTP/1.1\r\n\r\n"):
+        with closing(socket.create_connection(("127.0.0.1", server.port))) as other:
+            other.sendall(data)
+            other.settimeout(5)
+            with suppress(ConnectionError):
+                while other.recv(4096):
+                    pass
+
+    def fails(*_: object) -> None:
+        raise ZeroDivisionError("as a bug would")
+
+    desk.remotes._controls.state = fails  # type: ignore
+    status, text = desk.during(lambda: fetched(f"{url}state"))
+    assert status == 500 and "ZeroDivisionError" in json.loads(text)["error"]
+    assert capfd.readouterr() == ("", "") and caplog.records == []

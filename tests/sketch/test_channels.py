@@ -202,3 +202,15 @@ def test_a_sound_takes_the_place_of_a_made_up_one(folder: Path) -> None:
         assert fed is not None and fed.size == size
         menu = fed.technique.parameter("content").widget.choices
         assert menu[dict(fed.values)["content"]] == content
+
+
+def test_a_channel_of_several_passes_is_one(folder: Path) -> None:
+    head = '/*{"INPUTS": [{"NAME": "inputImage", "TYPE": "image"}], "PASSES": [{"TARGET": "a"}, {}]}*/\n'
+    (folder / "b.fs").write_text(
+        f"{head}void main() {{ gl_FragColor = IMG_THIS_PIXEL(inputImage); }}\n", "utf-8"
+    )
+    found = load(folder / "b.fs")
+    (channel,) = channels(found)
+    assert (channel.path, channel.source, channel.alone) == ("view.inputImage", "foreign/picture", True)
+    fed = with_source(found, channel.path, "foreign/image")
+    assert [(spec.name, spec.use) for spec in fed.graph.passes][:-1] == [("inputImage", "foreign/image")]

@@ -114,20 +114,23 @@ class Inputs:
             self.taken.add(name)
             return name
 
-        if kind == "bool":
+        if widget.kind == "button":
+            expression = add(base, "event", label)
+        elif kind == "bool":
             expression = add(base, "bool", label, DEFAULT=bool(value))
         elif widget.kind == "menu":
-            menu = {"VALUES": list(range(len(widget.choices))), "LABELS": list(widget.choices)}
+            numbers = widget.values or range(len(widget.choices))
+            menu = {"VALUES": list(numbers), "LABELS": list(widget.choices)}
             expression = add(base, "long", label, **menu, DEFAULT=value)
         elif widget.kind == "colour":
             assert isinstance(value, tuple)
-            shown = [*map(float, linear_to_srgb(value[:3])), *value[3:], 1.0][:4]
-            name = add(base, "color", label, DEFAULT=shown)
-            expression = f"{DECODE}({name}.rgb)"
+            encoded = value[:3] if widget.raw else linear_to_srgb(value[:3])
+            name = add(base, "color", label, DEFAULT=[*map(float, encoded), *value[3:], 1.0][:4])
+            expression = f"{name}.rgb" if widget.raw else f"{DECODE}({name}.rgb)"
             expression = expression if kind == "vec3" else f"vec4({expression}, {name}.a)"
         elif widget.kind == "point":
-            name = add(base, "point2D", label, MIN=[0.0, 0.0], MAX=[1.0, 1.0], DEFAULT=value)
-            expression = name
+            lows, highs = zip(*map(widget.ends, range(2)), strict=True)
+            expression = add(base, "point2D", label, MIN=lows, MAX=highs, DEFAULT=value)
         elif isinstance(value, tuple):
             sides = "xyzw"[: len(value)]
             parts = parameter.parts or tuple(sides)

@@ -214,7 +214,7 @@ _READERS: dict[str, Callable[[_Declared, Inputs], None]] = {
 }
 """By the type of an input."""
 
-_BY_LOWER = {kind.lower(): kind for kind in _READERS}
+_BY_LOWER = {kind.lower(): kind for kind in _READERS} | {"int": "long"}
 
 
 def _import(name: str, one: Mapping[str, Any], line: Line, files: Files, found: Inputs) -> None:

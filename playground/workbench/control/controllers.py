@@ -35,6 +35,7 @@ from playground.workbench.session import Session
 
 SETTLES = 0.25
 """[s] after the first message of a knob that is learned: until then it shows whether it sends 14 bits."""
+_ASKS = "MIDI: move a knob or press a button"
 _LSB = 32  # the control that has the lower bits is so much higher
 
 Move = tuple[Source, int]
@@ -115,7 +116,7 @@ class Controllers:
             return
         self.learning = _Learning(path, part)
         target = f"{path}, {part}" if part else path
-        self._notices.say(f"MIDI: move a knob or press a button for {target}")
+        self._notices.say(f"{_ASKS} for {target}")
 
     def cancel(self) -> None:
         """Learn nothing after all."""
@@ -136,6 +137,7 @@ class Controllers:
         if self._notices.now() - learning.since < SETTLES and not _is_note(learning):
             return
         source, fine = _learned(learning.seen)
+        self._notices.drop(_ASKS)
         self.learning = None
         binding = Binding(learning.path, learning.part, source, fine)
         others = [b for b in self.bindings if (b.path, b.part) != (binding.path, binding.part)]

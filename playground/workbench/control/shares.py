@@ -12,8 +12,9 @@ import math
 from playground.errors import ParameterError
 from playground.sketch.colour import linear_to_srgb, srgb_to_linear
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import is_whole, length_of, tidied
+from playground.sketch.values import is_whole, length_of
 from playground.sketch.widgets import WIDGETS
+from playground.workbench.number_format import decimals
 
 _DIRECTION = ((0.0, 360.0), (0.0, 90.0))  # [degrees] azimuth, elevation: the sky
 
@@ -99,8 +100,11 @@ def _stepped(parameter: Parameter, number: float, low: float, high: float) -> fl
         number = round(number)
     if parameter.step:
         number = low + round((number - low) / parameter.step) * parameter.step
-    number = min(max(number, low), high)
-    return number if is_whole(parameter.type) else tidied(number)
+    if parameter.widget.kind == "log_slider":
+        number = float(f"{number:.5g}")
+    elif not is_whole(parameter.type):
+        number = round(number, decimals(parameter) + 2)  # finer than 14 bits are, and short in a file
+    return min(max(number, low), high)
 
 
 def _ends(parameter: Parameter, part: int) -> tuple[float, float]:

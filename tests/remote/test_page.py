@@ -1,0 +1,103 @@
+"""The page of sliders in a browser as narrow as a phone's: it sets values, and follows the window."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from ..report.browser import MISSING, Browser
+from .desk import TOKEN, Desk
+
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
+
+ROW = "document.querySelector('.row[title$=\"height.{}\"]')"
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
+    with Browser(tmp_path_factory.mktemp("profile"), 412, 915) as made:
+        yield made
+
+
+@pytest.fixture
+def page(desk: Desk, browser: Browser) -> Iterator[Browser]:
+    server = desk.open(port=0, token=TOKEN).server
+    assert server is not None
+    desk.during(lambda: browser.open(server.url))
+    desk.during(lambda: browser.wait("document.querySelectorAll('.row').length > 8"))
+    desk.during(lambda: browser.wait("document.getElementById('picture').naturalWidth === 48"))
+    try:
+        yield browser
+        assert desk.during(browser.log) == [], "nothing was refused, nothing failed"
+    finally:
+        desk.during(lambda: browser.open("about:blank"))
+
+
+def shown(desk: Desk, page: Browser, name: str, what: str) -> object:
+    return desk.during(lambda: page.run(f"return {ROW.format(name)}.{what}"))
+
+
+def test_a_slider_sets_a_value_and_follows_the_window(desk: Desk, page: Browser, tmp_path: Path) -> None:
+    level = '.row[title$="height.level"] input'
+    desk.during(lambda: page.drag(level, (0, 0), (100, 0)))
+    desk.until(lambda: desk.value("height.level") > 0.5)
+    text = shown(desk, page, "level", "querySelector('output').textContent")
+    assert text == f"{desk.value('height.level'):.5g}"
+    assert "changed" in str(shown(desk, page, "level", "className"))
+    desk.during(lambda: page.click("#undo"))
+    desk.until(lambda: desk.value("height.level") == 0.25)
+    desk.during(lambda: page.run("document.activeElement.blur()"))
+    desk.session.drafts.set("height.level", 0.75)
+    desk.during(lambda: page.wait(f"{ROW.format('level')}.querySelector('input').value == 0.75"))
+    if target := os.environ.get("PAGE_PICTURE"):
+        Path(target).write_bytes(desk.during(page.picture))
+
+
+def test_each_widget_sets_what_the_window_has(desk: Desk, page: Browser) -> None:
+    def change(name: str, script: str) -> None:
+        at = f"const at = (n) => {ROW.format(name)}.querySelectorAll('input, select')[n];"
+        desk.during(lambda: page.run(at + script))
+
+    for name, script, value in (
+        ("scale", "at(0).value = 0.5; at(0).oninput()", 1000**0.5),
+        ("count", "at(0).value = 0.71; at(0).oninput()", 7),
+        ("sun", "at(1).value = 0.5; at(1).oninput()", (135.0, 45.0)),
+        ("kind", "at(0).value = 'sharp'; at(0).onchange()", 1),
+        ("rocks", "at(0).click()", False),
+        ("tint", "at(0).value = '#00ff00'; at(0).oninput()", (0.0, 1.0, 0.0)),
+        ("middle", "at(0).value = 0.1; at(0).oninput()", (0.1, 0.5)),
+        ("free", "at(0).value = -3.5; at(0).oninput()", -3.5),
+    ):
+        change(name, script)
+        before, end = desk.value(f"height.{name}"), time.monotonic() + 20
+        while desk.value(f"height.{name}") != pytest.approx(value, rel=1e-3):  # type: ignore[arg-type]
+            assert time.monotonic() < end, f"{name} is {desk.value(f'height.{name}')}, and was {before}"
+            desk.frame()
+    change("grass", "at(0).value = '/etc/passwd'; at(0).onchange()")
+    desk.during(lambda: page.wait("document.getElementById('message').textContent.includes('own folder')"))
+
+
+def test_time_presets_errors_and_the_search(desk: Desk, page: Browser, tmp_path: Path) -> None:
+    desk.during(lambda: page.click("#play"))
+    desk.until(lambda: not desk.session.clock.playing)
+    desk.during(lambda: page.wait("document.getElementById('play').textContent === 'Play'"))
+    desk.during(lambda: page.run("const t = document.getElementById('time'); t.value = 2.5; t.onchange()"))
+    desk.until(lambda: desk.session.clock.time == 2.5)
+    desk.during(
+        lambda: page.run("const p = document.getElementById('preset'); p.value = 'high'; p.onchange()")
+    )
+    desk.until(lambda: desk.value("height.level") == 0.75)
+    desk.during(lambda: page.run("const s = document.getElementById('search'); s.value = 'lev'; s.oninput()"))
+    assert desk.during(lambda: page.run("return document.querySelectorAll('.row:not([hidden])').length")) == 1
+    kernel = desk.session.path.parent / "hills.glsl"
+    text = kernel.read_text("utf-8")
+    kernel.write_text(text.replace("return level", "return nothing"), encoding="utf-8")
+    desk.session.drafts.reload()
+    desk.during(lambda: page.wait("document.getElementById('message').textContent.includes('hills.glsl')"))
+    kernel.write_text(text, encoding="utf-8")
+    desk.session.drafts.reload()
+    desk.during(lambda: page.wait("document.getElementById('message').hidden"))
