@@ -17,7 +17,6 @@ from functools import lru_cache
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.assign import find_targets
-from playground.sketch.dialects.shader import STAND_INS_OF_SHAPES, stand_in
 from playground.sketch.find import shipped_names
 from playground.sketch.flat import Ref, Source, leaves_of
 from playground.sketch.flatten import flatten
@@ -28,8 +27,21 @@ from playground.sketch.wiring import input_names, is_optional, output_names
 
 OUTPUT = "channel_texels"
 FOLDER = "foreign/"
-FACES = 6
 _SIZE = ("256", "256")
+_SIZES = {
+    "foreign/keys": ("256", "3"),
+    "foreign/sky_box": ("128", "768"),
+    "foreign/sound": ("512", "2"),
+    "foreign/spectrum": ("512", "2"),
+}
+_SIZES_OF_SHAPES = {
+    "cube": ("64", "384"),
+    "volume": ("32", "1024"),
+    "line": ("256", "1"),
+}  # of other stand-ins
+_CUBES = ("foreign/sky_box", "foreign/cube_faces")  # six square faces above each other
+_ANY = "foreign/black"  # what has any shape
+_OWN_SIZE = ("video_file",)  # sources that give a pass of no size the size of their file
 _NUMBER = re.compile(r"\d{1,2}$")
 
 
@@ -41,6 +53,7 @@ class Channel:
     source: str  # what feeds it now; "" for nothing
     feeder: str = ""  # the pass of the sketch that feeds it; "" where that is inside the shader's own
     alone: bool = False  # the feeder feeds nothing else, and a technique of ``glsl/foreign`` fills it
+    shape: str = ""  # of what it reads: a value of ``SHAPES``
 
     @property
     def spec(self) -> str:
@@ -65,13 +78,20 @@ def channels(sketch: Sketch) -> tuple[Channel, ...]:
 @lru_cache(maxsize=16)
 def _channels(key: Identity[Graph]) -> tuple[Channel, ...]:
     graph = key.object
-    names = [(spec, name) for spec in graph.passes for name in sorted(_names(spec.technique), key=_by_number)]
+    names = [
+        (spec, name)
+        for spec in graph.passes
+        for name in sorted(_names(spec.technique), key=_by_number)
+        if name not in dict(spec.feedback)
+    ]
     if not names:
         return ()
     flat = flatten(_bare(graph))
     readers: dict[str, set[tuple[str, str]]] = {}  # passes of a shader read one channel by one name
     sources: dict[tuple[str, str], Source | None] = {}
+    shapes: dict[tuple[str, str], str] = {}
     for leaf in leaves_of(flat.nodes):
+        shapes |= {(leaf.path, declared.name): declared.shape for declared in leaf.kernel.inputs}
         for name, source in leaf.inputs:
             sources[leaf.path, name] = source
             if isinstance(source, Ref):
@@ -79,11 +99,12 @@ def _channels(key: Identity[Graph]) -> tuple[Channel, ...]:
     found = []
     for spec, name in names:
         kernel, _, own = _leaf(spec, name).rpartition(".")
-        source = sources.get((kernel, own))
+        source, shape = sources.get((kernel, own)), shapes.get((kernel, own), "")
         if isinstance(source, Ref):
-            found.append(_fed(graph, f"{spec.name}.{name}", source, len(readers[source.path]), flat.specs))
+            fed = _fed(graph, f"{spec.name}.{name}", source, len(readers[source.path]), flat.specs)
+            found.append(replace(fed, shape=shape))
         elif source is None:
-            found.append(Channel(f"{spec.name}.{name}", ""))
+            found.append(Channel(f"{spec.name}.{name}", "", shape=shape))
     return tuple(found)
 
 
@@ -136,10 +157,15 @@ def sources(sketch: Sketch, path: str) -> list[str]:
         for outputs in [output_names(spec.technique)]
         for output in outputs
         if spec.name not in (now.spec, now.feeder)
-        and not (spec.name in stand_ins and spec.size == _SIZE)  # another channel's own
+        and not (spec.name in stand_ins and not _reads_file(spec))  # another channel's own
     ]
-    found = dict.fromkeys([*_feeds(), *passes, now.source])
+    feeds = [use for use in _feeds() if use == _ANY or (use in _CUBES) == (now.shape == "cube")]
+    found = dict.fromkeys([*feeds, *passes, now.source])
     return [source for source in found if source == now.source or _may_feed(sketch, path, source)]
+
+
+def _reads_file(spec: PassSpec) -> bool:
+    return isinstance(spec.technique, Kernel) and bool(spec.technique.file_parameters)
 
 
 def is_technique(source: str) -> bool:
@@ -194,7 +220,7 @@ def with_source(sketch: Sketch, path: str, source: str) -> Sketch:
         source,
         technique,
         values=(*_values(technique, now), *_same_choices(technique, before)),
-        size=_size(technique, name, before, _shape(sketch.graph, now.path)),
+        size=_size(technique, source, now.shape, name, before),
         file=shown(sketch.file),
     )
     if not now.alone:
@@ -253,34 +279,23 @@ def _same_choices(technique: Technique, before: PassSpec | None) -> Iterator[tup
             yield name, parameter.widget.choices.index(was.widget.choices[value])
 
 
-def _size(technique: Technique, name: str, before: PassSpec | None, shape: str) -> tuple[str, str]:
+def _size(
+    technique: Technique, use: str, shape: str, name: str, before: PassSpec | None
+) -> tuple[str, str] | None:
     """Return the size of a pass that feeds a channel: that of its picture, if it reads one.
 
-    A sound has no size: its texels are as many as those of the stand-in ``before``. What has six
-    pictures is a cube map; what has none is as the channel's ``shape`` needs it.
+    A sound has no size: its texels are as many as those of a made-up one ``before``.
     """
-    if isinstance(technique, Kernel) and technique.registry == "sound_file":
-        return before.size if before is not None and before.size is not None else _SIZE
-    if isinstance(technique, Kernel):
-        files = [p.name for p in technique.parameters if p.widget.kind == "file" and p.type == "sampler2D"]
-        if len(files) == FACES:
-            return f"{name}.{files[0]}.size.x", f"{FACES} * {name}.{files[0]}.size.x"
-        if files:
-            return f"{name}.{files[0]}.size.x", f"{name}.{files[0]}.size.y"
-    of_shape = STAND_INS_OF_SHAPES.get(shape)
-    return stand_in(of_shape, 0, "").size if of_shape else _SIZE
-
-
-def _shape(technique: Technique, path: str) -> str:
-    """Return the shape of what an input reads, by its path."""
-    if isinstance(technique, Kernel):
-        return next((declared.shape for declared in technique.inputs if declared.name == path), "")
-    head, _, rest = path.partition(".")
-    if rest:
-        spec = technique.find(head)
-        return _shape(spec.technique, rest) if spec is not None else ""
-    export = next((one for one in technique.inputs if one.name == path), None)
-    return _shape(technique, export.targets[0]) if export is not None else ""
+    kernel = technique if isinstance(technique, Kernel) else None
+    if kernel is not None and kernel.registry in _OWN_SIZE:
+        return None
+    if use == "foreign/sound" and before is not None and before.use == "foreign/spectrum":
+        return before.size
+    files = [p for p in kernel.parameters if p.widget.kind == "file"] if kernel is not None else []
+    if files and kernel is not None and kernel.kind == "kernel":
+        wide, high = (f"{name}.{files[0].name}.size.{axis}" for axis in "xy")
+        return (wide, f"6 * {wide}") if use in _CUBES else (wide, high)
+    return _SIZES.get(use) or _SIZES_OF_SHAPES.get(shape, _SIZE)
 
 
 def _names(technique: Technique) -> Iterator[str]:
@@ -297,26 +312,30 @@ def _names(technique: Technique) -> Iterator[str]:
             exported |= dict.fromkeys(export.targets)
             yield export.name
     for spec in technique.passes:
-        wired = {name for name, _ in spec.inputs}
+        wired = {name for name, _ in (*spec.inputs, *spec.feedback)}
         for name in _names(spec.technique):
             if f"{spec.name}.{name}" not in exported and name not in wired:
                 yield f"{spec.name}.{name}"
 
 
 def _is_foreign(graph: Graph, target: str) -> bool:
-    path = target.rpartition(".")[0]
-    return any(kernel.dialect and where == path for where, kernel in graph.kernels)
+    return _reader(graph, target)[0].dialect != ""
 
 
 def _leaf(spec: PassSpec, name: str) -> str:
     """Return the path of the kernel's input that a channel's name leads to."""
-    technique, path = spec.technique, spec.name
+    return f"{spec.name}.{_reader(spec.technique, name)[1]}"
+
+
+def _reader(technique: Technique, name: str) -> tuple[Kernel, str]:
+    """Return the kernel that has an input of a name or path, and the path of the input."""
+    path = ""
     while isinstance(technique, Graph):
         export = next((e for e in technique.inputs if e.name == name), None)
         head, _, name = (export.targets[0] if export else name).partition(".")
-        path = f"{path}.{head}"
+        path = f"{path}{head}."
         technique = technique.find(head).technique  # type: ignore[union-attr]
-    return f"{path}.{name}"
+    return technique, f"{path}{name}"
 
 
 def _bare(graph: Graph) -> Sketch:

@@ -26,10 +26,7 @@ PART = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(
 NONE = "void main() { gl_FragColor = vec4(1.0); }\n"
 LAND = '[[pass]]\nname = "land"\nuse = "generation/white_noise"\nsize = 16\n'
 PHOTO = '[[pass]]\nname = "photo"\nuse = "foreign/image"\nsize = [8, 4]\nset = { image = "a.png" }\n'
-STAND_INS = [
-    f"foreign/{name}"
-    for name in "black cube_faces image keys noise picture sky_box sound spectrum video".split()
-]
+STAND_INS = [f"foreign/{name}" for name in "black image keys noise picture sound spectrum video".split()]
 
 
 @pytest.fixture
@@ -62,6 +59,48 @@ def test_a_sketch_of_a_view_alone_is_the_shader_s_picture(folder: Path, any_engi
     assert pixel(any_engine, sketch(folder, 'use = "./none"')) == (255, 255, 255)
     with pytest.raises(PlaygroundError, match="no passes"):
         sketch(folder, 'use = "view/terrain"')
+
+
+CUBE = """uniform samplerCube iChannel0;
+void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec3(1.0)); }
+"""
+
+
+def test_a_cube_is_fed_from_what_has_six_faces(folder: Path, any_engine: Engine) -> None:
+    (folder / "cube.frag").write_text(CUBE, "utf-8")
+    found = load(folder / "cube.frag")
+    assert sources(found, "view.iChannel0") == ["foreign/black", "foreign/cube_faces", "foreign/sky_box"]
+    for source in sources(found, "view.iChannel0"):
+        any_engine.render(with_source(found, "view.iChannel0", source), size=(4, 4))
+        assert any_engine.plan is not None
+        wide, high = any_engine.plan.step("iChannel0").size  # type: ignore[union-attr]
+        assert high == 6 * wide
+
+
+def test_each_source_has_the_size_of_its_kind(folder: Path, any_engine: Engine) -> None:
+    found = load(folder / "two.frag")
+    sizes = {
+        "keys": (256, 3),
+        "spectrum": (512, 2),
+        "sound": (512, 2),
+        "video": (160, 90),
+        "noise": (256, 256),
+    }
+    for name, size in sizes.items():
+        any_engine.render(with_source(found, "view.iChannel0", f"foreign/{name}"), size=(4, 4))
+        assert any_engine.plan is not None and any_engine.plan.step("iChannel0").size == size  # type: ignore[union-attr]
+
+
+KEEPS = """uniform sampler2D backbuffer;
+uniform sampler2D u_tex0;
+void main() { gl_FragColor = texture2D(backbuffer, vec2(0.5)) + texture2D(u_tex0, vec2(0.5)); }
+"""
+
+
+def test_the_frame_before_is_no_channel(folder: Path) -> None:
+    (folder / "keeps.frag").write_text(KEEPS, "utf-8")
+    assert [c.path for c in channels(load(folder / "keeps.frag"))] == ["view.u_tex0"]
+    assert [c.path for c in channels(sketch(folder, 'use = "./keeps"'))] == ["view.u_tex0"]
 
 
 def test_channels_are_in_the_order_of_their_numbers(folder: Path) -> None:
