@@ -43,7 +43,12 @@ class ChannelRows:
             shown = fitting_choice(in_words(base, channel.source))
             options = (source for source in self._sources_for(channel.path, base))
             source = choose(
-                f"##feeds {channel.path}", shown, options, channel.source, name=lambda s: in_words(base, s)
+                f"##feeds {channel.path}",
+                shown,
+                options,
+                channel.source,
+                name=lambda s: in_words(base, s),
+                flags=imgui.ComboFlags_.height_large.value,
             )
         in_file = source_of(draft.file, channel.path)
         if edited and in_file:
