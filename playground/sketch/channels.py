@@ -41,7 +41,7 @@ _SIZES_OF_SHAPES = {
 }  # of other stand-ins
 _CUBES = ("foreign/sky_box", "foreign/cube_faces")  # six square faces above each other
 _ANY = "foreign/black"  # what has any shape
-_OWN_SIZE = ("video_file",)  # sources that give a pass of no size the size of their file
+_OWN_SIZE = ("video_file", "camera", "microphone")  # sources that give a pass of no size one of their own
 _NUMBER = re.compile(r"\d{1,2}$")
 
 

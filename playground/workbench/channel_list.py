@@ -59,13 +59,18 @@ def takers(sketch: Sketch, ending: str) -> tuple[Taker, ...]:
     found = []
     for channel in channels(sketch):
         for source in [s for s in sources(sketch, channel.path) if is_technique(s)]:
-            kernel = _technique(sketch, source)
-            if not isinstance(kernel, Kernel) or len(kernel.file_parameters) != 1:
-                continue
-            known = MEDIA.get(kernel.registry, PICTURES if kernel.kind == "kernel" else ())
-            if ending in known:
-                found.append(Taker(channel, source, kernel.file_parameters[0].name))
+            parameter = _file_parameter(_technique(sketch, source))
+            if parameter is not None and ending in endings_of(sketch, source):
+                found.append(Taker(channel, source, parameter.name))
     return tuple(found)
+
+
+def endings_of(sketch: Sketch, source: str) -> tuple[str, ...]:
+    """Return the endings of the files that a technique reads for a channel."""
+    kernel = _technique(sketch, source)
+    if not isinstance(kernel, Kernel):
+        return ()
+    return MEDIA.get(kernel.registry, PICTURES if kernel.kind == "kernel" else ())
 
 
 def _technique(sketch: Sketch, source: str) -> Technique:
@@ -74,6 +79,6 @@ def _technique(sketch: Sketch, source: str) -> Technique:
 
 
 def _file_parameter(technique: Technique) -> Parameter | None:
-    if not isinstance(technique, Kernel):
-        return None
-    return next(iter(technique.file_parameters), None)
+    """Return the one parameter of a technique that names a file; None for none, or several."""
+    found = technique.file_parameters if isinstance(technique, Kernel) else ()
+    return found[0] if len(found) == 1 else None

@@ -13,6 +13,7 @@ from playground.images.files import write_png
 from playground.sketch.channels import channels, source_of, sources, with_source
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
+from tests.media.films import own_film
 
 TWO = """void mainImage(out vec4 c, in vec2 p) {
     c = texelFetch(iChannel0, ivec2(0), 0) + texelFetch(iChannel1, ivec2(0), 0);
@@ -26,7 +27,8 @@ PART = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(
 NONE = "void main() { gl_FragColor = vec4(1.0); }\n"
 LAND = '[[pass]]\nname = "land"\nuse = "generation/white_noise"\nsize = 16\n'
 PHOTO = '[[pass]]\nname = "photo"\nuse = "foreign/image"\nsize = [8, 4]\nset = { image = "a.png" }\n'
-STAND_INS = [f"foreign/{name}" for name in "black image keys noise picture sound spectrum video".split()]
+_NAMES = "black camera image keys microphone noise picture sound spectrum video"
+STAND_INS = [f"foreign/{name}" for name in _NAMES.split()]
 
 
 @pytest.fixture
@@ -214,3 +216,17 @@ def test_a_channel_of_several_passes_is_one(folder: Path) -> None:
     assert (channel.path, channel.source, channel.alone) == ("view.inputImage", "foreign/picture", True)
     fed = with_source(found, channel.path, "foreign/image")
     assert [(spec.name, spec.use) for spec in fed.graph.passes][:-1] == [("inputImage", "foreign/image")]
+
+
+def test_a_film_brings_its_size_and_keys_theirs(folder: Path, any_engine: Engine) -> None:
+    own_film(folder / "dance.mp4", count=2, size=(48, 36))
+    film = with_source(load(folder / "one.frag"), "view.iChannel0", "foreign/video").with_values(
+        {"iChannel0.video": str(folder / "dance.mp4")}
+    )
+    assert pixel(any_engine, film)[:2] == (48, 36)
+    keys = with_source(film, "view.iChannel0", "foreign/keys")
+    assert any_engine.read(keys, "iChannel0").shape == (3, 256)
+    heard = with_source(film, "view.iChannel0", "foreign/sound")
+    assert any_engine.read(heard, "iChannel0").shape == (2, 512)
+    seen = with_source(film, "view.iChannel0", "foreign/camera")
+    assert any_engine.read(seen, "iChannel0").shape == (480, 640, 4)

@@ -53,7 +53,7 @@ class Inputs:
 
     def host(self) -> Host:
         """Return what ISF gives a pass."""
-        return Host(_RENDER, _TEXEL, "TIME", self.parameter, self.file)
+        return Host(_RENDER, _TEXEL, "TIME", "FRAMEINDEX", "gl_FragCoord.xy", self.parameter, self.file)
 
     def parameter(
         self, one: ShaderPass, parameter: Parameter, value: Value
@@ -228,12 +228,15 @@ def written(
     prefixes = [text.name for text in everything]
     taken = {*targets, *(each["NAME"] for each in inputs.header), *inputs.images, *WORDS}
     merged = joined([text.declarations for text in linear], prefixes, renames, taken=taken)
+    kept = {read.source for text in everything for read in text.reads if read.is_before}
     passes, calls, functions = [], [], []
     for index, (text, names) in enumerate(zip(linear, merged.renames, strict=True)):
         is_picture = index == len(linear) - 1
         entry: dict[str, Any] = {} if is_picture else {"TARGET": text.name}
         if not is_picture and not text.is_bytes:
             entry["FLOAT"] = True
+        if text.name in kept:
+            entry["PERSISTENT"] = True
         for key, side in zip(("WIDTH", "HEIGHT"), text.size, strict=True):
             if side is not None:
                 entry[key] = str(side)
@@ -273,7 +276,7 @@ def _free_function(name: str, shared: Sequence[Declaration]) -> str:
 
 def _with_sampling(text: PassText) -> PassText:
     """Return a text that reads textures as it wants to: ISF samples all of them linear and clamped."""
-    if not any(each.reads("textureLod") for each in text.declarations):
+    if not any(each.reads("textureLod") or each.reads("texture") for each in text.declarations):
         return text
     wanted = {(r.sampling.filter, r.sampling.wrap) for r in text.reads if is_sampled(text, r.word)}
     if wanted <= {("linear", "clamp")}:
@@ -285,9 +288,13 @@ def _with_sampling(text: PassText) -> PassText:
         )
     way = wanted.pop()
     name = f"sampled_{'_'.join(way)}"
-    swap = {"textureLod": name}
+    swap = {"textureLod": name, "texture": name}
     changed = tuple(each.renamed(swap) for each in text.declarations)
-    return replace(text, declarations=(made("\n".join(_sampler(name, *way)), name), *changed))
+    functions = [made("\n".join(_sampler(name, *way)), name)]
+    if any(each.reads("texture") for each in text.declarations):
+        call = f"vec4 {name}(sampler2D texels, vec2 place) {{ return {name}(texels, place, 0.0); }}"
+        functions.append(made(call, name))
+    return replace(text, declarations=(*functions, *changed))
 
 
 def _sampler(name: str, filter_: str, wrap: str) -> list[str]:
