@@ -330,7 +330,7 @@ out vec4 fragColor;
 void main(void) {
     vec2 uv = -1.0 + 2.0 * inData.v_texcoord;
     // here
-    fragColor = vec4(abs(uv), 0.5 + 0.5 * sin(time), 1.0) + texture(texture0, uv) * 0.2 + spectrum.x;
+    fragColor = vec4(abs(uv), 0.5 + 0.5 * sin(time), 1.0) + texture(texture0, uv) * 0.2 + spectrum.x * 0.1;
 }
 """,
     # Older built-ins, our own names, arrays of samplers, macros over lines

@@ -1,4 +1,4 @@
-// foreign/height.glsl -- another tool's picture as heights: one of its channels, or its brightness.
+// foreign/height.glsl -- another tool's picture as heights: a channel, or its brightness.
 //
 //   gives    height, as the picture has it
 //   needs    nothing

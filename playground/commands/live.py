@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from contextlib import suppress
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
@@ -174,19 +175,24 @@ def open_window(
     limit = (
         0 if no_cache else limit_in()
     )  # a wrong value in the environment is an error before a window opens
-    from playground.live.app import run
+    from playground.engine.sandbox import Sandbox
     from playground.remote.remotes import RemoteOptions, Remotes
+    from playground.sketch.find import find
+    from playground.sketch.load import load
+    from playground.sketch.unpack import is_pack
 
+    if sketch and not is_pack(Path(sketch)):
+        find(sketch)  # says so before anything is started, where there is none
     if values:
-        from playground.sketch.load import load
-
         with suppress(PlaygroundError):  # the window shows what is wrong with the sketch
             values = with_whole_paths(load(sketch, dialect=options.get("dialect", "")), values)
-    options |= {"cache_limit": limit, "report": complain}
-    with Remotes(RemoteOptions(**(remotes or {}))) as opened:
+    with Sandbox(software=renderer.software) as sandbox, Remotes(RemoteOptions(**(remotes or {}))) as opened:
         for sentence in opened.sentences:
             note(sentence)
-        options["remotes"] = opened
+        sandbox.start()  # it is warm by the time that the window, whose parts take long to read, is there
+        from playground.live.app import run
+
+        options |= {"cache_limit": limit, "report": complain, "sandbox": sandbox, "remotes": opened}
         status = run(sketch, size=size, software=renderer.software, values=values, **options)
     if status:
         raise typer.Exit(status)

@@ -81,7 +81,9 @@ class Binder:
         for parameter in kernel.parameters:
             value = step.values[parameter.name]
             if parameter.widget.kind != "file":
-                uniforms[parameter.name] = given.get(f"{PRESSED}{parameter.name}", value)
+                uniforms[parameter.name] = value
+                if parameter.widget.kind == "button":
+                    uniforms[parameter.name] = given.get(f"{PRESSED}{parameter.name}", value)
                 if parameter.widget.kind == "direction":
                     uniforms[f"{TOWARDS}{parameter.name}"] = unit_vector(value)  # type: ignore[arg-type]
             elif parameter.name in program.uniforms:

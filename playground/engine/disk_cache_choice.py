@@ -64,13 +64,18 @@ def _stops(loop: LoopStep) -> bool:
 
 def _passes(step: Step, plan: Plan) -> bool:
     kernel = step.kernel
-    if kernel.kind.startswith("plain") or step.path in plan.continued or step.window is not None:
+    if (
+        kernel.kind.startswith("plain")
+        or kernel.depends
+        or step.path in plan.continued
+        or step.window is not None
+    ):
         return True
     if step.size == plan.frame_size or step.repeat != step.whole:
         return True
     if follows_time(kernel.repeat):
         return True
-    return any(kernel.reads(name) for name in _PASSING)
+    return bool(kernel.depends) or any(kernel.reads(name) for name in _PASSING)
 
 
 @dataclass(frozen=True)

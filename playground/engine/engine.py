@@ -88,7 +88,7 @@ class Engine(Recorded):
         self.painted = PaintedFiles()  # painted in this process, in place of their files
         self.runner = Runner(ctx, self.info, self.pool, self.painted)
         self.planner = Planner()
-        self.warnings = PlanWarnings()
+        self.warnings = PlanWarnings(lambda: self.runner.inputs)
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
         self.plain_forms = PlainForms(notice, self._computes and driver != FRAGMENT)

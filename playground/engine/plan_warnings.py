@@ -8,6 +8,7 @@ from pathlib import Path
 
 from playground.engine.plan import Plan, Step
 from playground.errors import DataError, Diagnostic
+from playground.media.live_inputs import LiveInputs
 from playground.paths import GLSL, shown
 from playground.sketch.dialects.foreign import unfed_warnings
 from playground.sketch.dialects.passes import stand_in_paths
@@ -21,7 +22,8 @@ from playground.terrain.sources import source_kind
 class PlanWarnings:
     """Reports each warning of what is drawn, once."""
 
-    def __init__(self) -> None:
+    def __init__(self, inputs: Callable[[], LiveInputs] = LiveInputs) -> None:
+        self.inputs = inputs  # of the engine
         self.report: Callable[[Diagnostic], None] | None = None  # None: nothing is reported
         self._reported: set[tuple[str, str]] = set()  # about what, and of which file
         self._graph: Graph | None = None  # whose kernels were looked at last
@@ -30,7 +32,7 @@ class PlanWarnings:
         """Report the warnings of a plan that were not reported yet."""
         if self.report is None:
             return
-        found = [*former_names_used(plan.sketch), *source_warnings(plan)]
+        found = [*former_names_used(plan.sketch), *source_warnings(plan, self.inputs())]
         if plan.sketch.graph is not self._graph:
             self._graph = plan.sketch.graph
             found += kernel_warnings(plan.sketch.graph, unheeded)
@@ -52,11 +54,13 @@ def kernel_warnings(
     return list(dict.fromkeys(warning for kernel in own for warning in of(kernel)))
 
 
-def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
+def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagnostic, ...]:
     """Return what a plan's sources assumed of their files, or lost, at the pass that names each file.
 
-    Of another tool's shader what nothing feeds, at its line.
+    Of another tool's shader what nothing feeds, at its line; of a live input why nothing comes from it, with
+    the inputs that read it. ``inputs`` None: there is no window.
     """
+    live = inputs or LiveInputs()
     found: dict[str, Diagnostic] = {}
     for step in plan.walk():
         if step.kernel.dialect:
@@ -64,13 +68,22 @@ def source_warnings(plan: Plan) -> tuple[Diagnostic, ...]:
                 found.setdefault(f"{step.kernel.path} {warning.message}", warning)
         if step.kernel.kind == "source":
             spec = plan.flat.user(step.path)
-            notes: tuple[str, ...] = ()
+            kind, notes = source_kind(step.kernel.registry), tuple[str, ...]()
             with suppress(DataError):  # the file has gone since; drawing reports it
-                notes = source_kind(step.kernel.registry).notes(step.values)
+                notes = kind.notes(step.values)
+            if lack := kind.lack(step.values, live):
+                notes = (*notes, f"{_readers(plan, step)}: {lack}")
             for note in notes:
                 file = spec.file or shown(step.kernel.path)
                 found.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
     return tuple(found.values())
+
+
+def _readers(plan: Plan, source: Step) -> str:
+    """Return the inputs that read a step, or its own name where none does."""
+    inputs = [(name, s) for step in plan.walk() for name, s in step.inputs]
+    found = dict.fromkeys(name for name, s in inputs if isinstance(s, Ref) and s.path == source.path)
+    return ", ".join(found) or source.path
 
 
 def _wired(plan: Plan, step: Step) -> set[str]:

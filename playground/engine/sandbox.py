@@ -14,6 +14,7 @@ worker that hangs: that is killed, and the spare takes its place.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -92,6 +93,7 @@ class Sandbox(Closing):
         software: bool = False,
         device: int | None = None,
     ) -> None:
+        self.on_answer: Callable[[], None] = lambda: None  # called, in another thread, when ``poll`` has news
         self.limit_seconds = limit_seconds
         self._workers = Replaceable(
             Launch(
@@ -99,6 +101,7 @@ class Sandbox(Closing):
                 options=(software, device),
                 memory_bytes=memory_bytes,
                 limit_seconds=limit_seconds,
+                on_answer=lambda: self.on_answer(),
             )
         )
         self._current: Request | None = None  # what the worker is at, while that is the newest

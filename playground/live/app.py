@@ -71,7 +71,7 @@ if TYPE_CHECKING:
 
 FRAME = 1 / 60  # [s] between pictures while time runs
 IDLE = 1.0  # [s] between frames while nothing happens
-_SANDBOX = 0.004  # [s] between questions to the sandbox
+_SANDBOX = 0.1  # [s] between questions to the sandbox, whose answer wakes the window
 _SETTLES = 3  # frames that the panel takes to settle after something happened
 _LONGEST_STEP = 0.25  # [s] time never jumps by more, however long a frame took
 
@@ -91,6 +91,7 @@ def run(
     show_lessons: bool = False,
     cache_limit: int = 0,
     time_limit: float | None = None,
+    sandbox: Sandbox | None = None,
     report: Callable[[str], None] = to_log,
     remotes: Remotes | None = None,
 ) -> int:
@@ -101,7 +102,8 @@ def run(
     ``language`` by code; ``show_lessons`` opens the one read last, or the first, next to the sketch,
     unless the reader has closed the lessons. Expensive terrain is cached on disk, in at most
     ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
-    ``report`` receives each error, for the terminal. ``remotes`` are closed by who opened them.
+    ``sandbox``: one that has been started already, and is its owner's. ``report`` receives each error,
+    for the terminal. ``remotes`` are closed by who opened them.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -113,12 +115,14 @@ def run(
     if software:
         prefer_software()
     with ExitStack() as stack:
-        sandbox = stack.enter_context(Sandbox(software=software))
-        sandbox.start()
+        if sandbox is None:
+            sandbox = stack.enter_context(Sandbox(software=software))
+            sandbox.start()
         memory = memory_of(path)
         found, complaint = (Remembered(), "") if fresh else memory.read()
         opens = size or (found.window if found.window != (0, 0) else DEFAULT_PICTURE)
         window = stack.enter_context(Window(title_of(path), opens))
+        sandbox.on_answer = wake
         engine = Engine(window.ctx, driver=driver)
         session = Session(
             engine,
@@ -211,6 +215,7 @@ class Live:
         self._reloads = session.last_reload
         self.mouse = PictureMouse(session, self.bench.painting)
         self.keys = PictureKeys(self.bench)
+        session.engine.runner.inputs.is_live = True
         self.finite = FiniteWatch()
         self.lessons = Lessons(self.bench, autosave, self._remember)
         self.remotes = Remotes()
@@ -256,6 +261,7 @@ class Live:
         self.bench.inspection.release()
         self.lessons.release()
         self.painter.release()
+        self.session.engine.runner.inputs.close()
         self.session.release()
         self.session.engine.release()
 
@@ -272,7 +278,7 @@ class Live:
 
     def _patience(self) -> float:
         """Return how long nothing needs to be done [s]."""
-        if self.session.animated and self.session.clock.playing:
+        if self.session.listens or (self.session.animated and self.session.clock.playing):
             return max(FRAME - (time.perf_counter() - self._last), 0.0)
         if self._settling > 0 or self.remotes.waits:
             return 0.0
@@ -328,6 +334,7 @@ class Live:
         guard.draw("the mouse over the picture", lambda: self._act(area), None)
         wide, high = window.pixels
         skipped = min(round(left * window.density), wide - 1)
+        guard.run("listening", self.session.listen, None)
         picture = guard.run("the picture", lambda: self._picture((wide - skipped, high)), None)
         guard.run("taking in the picture", self._take_in, None)
         self._draw_over(picture, area)
@@ -360,7 +367,9 @@ class Live:
         self.caching.update(bench.inspection, self.finite)
         self._say_reload()
         bench.take_notes()
-        bench.problems.take(session.error, self.warnings.of(session.sketch, session.plan), session.sketch)
+        inputs = session.engine.runner.inputs
+        warnings = self.warnings.of(session.sketch, session.plan, inputs)
+        bench.problems.take(session.error, warnings, session.sketch)
         self.terminal.take(bench.problems.errors)
 
     def _draw_over(self, picture: moderngl.Texture | None, area: Area) -> None:

@@ -14,6 +14,7 @@ from playground.live import theme
 from playground.live.draw import QUIET, Area, button, buttons, styled
 from playground.live.text_field import ctrl_held
 from playground.live.theme import Theme
+from playground.paths import without_part
 from playground.workbench.dependencies import path_named
 from playground.workbench.notices import Notices
 from playground.workbench.open_files import OpenFiles
@@ -182,7 +183,11 @@ def _bar(editing: Editing, view: _View, notices: Notices, look: Theme) -> None:
 
 def _mark(editing: Editing, view: _View, problems: Problems) -> None:
     """Mark the lines that have diagnostics."""
-    mine = tuple(d for d in problems.all if d.file and d.line and path_named(d.file) == editing.text.path)
+    mine = tuple(
+        d
+        for d in problems.all
+        if d.file and d.line and d.file == without_part(d.file) and path_named(d.file) == editing.text.path
+    )
     if mine == view.marked:
         return
     view.marked = mine

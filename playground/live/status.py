@@ -77,7 +77,7 @@ class Status:
 
     def _hash(self, session: Session) -> str:
         draws = session.draws
-        if self._hashed[0] != draws:
+        if self._hashed[0] != draws and session.catch_up.behind is None:  # to read it would run to the end
             frame = session.read()
             digest = hashlib.blake2b(frame.array.tobytes(), digest_size=8).hexdigest() if frame else ""
             self._hashed = (draws, digest)

@@ -106,7 +106,7 @@ class Film:
             self._hold(number, frame)
         self._held.move_to_end(number)
         with decoding(self.path, f"frame {number}"):
-            return _as_pixels(frame, size)
+            return as_pixels(frame, size)
 
     def _decoded(self, number: int) -> Any:
         """Decode up to a frame, from where the decoder is or from the last key frame before it."""
@@ -207,7 +207,8 @@ def _indexed(container: av.container.InputContainer, path: Path) -> _Index:
     return _Index(times, tuple(stamps) if ordered else (), keys if ordered else (), duration)
 
 
-def _as_pixels(frame: Any, size: tuple[int, int]) -> NDArray[np.uint8]:
+def as_pixels(frame: Any, size: tuple[int, int]) -> NDArray[np.uint8]:
+    """Return a frame of PyAV as (ny, nx, 4) bytes, row 0 south, at another size if need be."""
     quarters = round(frame.rotation / 90) % 4
     width, height = size[::-1] if quarters % 2 else size
     shrinks = width * height < frame.width * frame.height

@@ -15,7 +15,7 @@ import subprocess
 import sys
 import tempfile
 import threading
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Self
@@ -46,6 +46,9 @@ class Launch:
     ends_with_parent: bool = True  # at once, where the system can; else with what it reports next
     environment: Mapping[str, str] = field(default_factory=dict)  # added to this process's
     folder: Path | None = None  # it works in; None: this process's
+    on_answer: Callable[[], None] = lambda: (
+        None
+    )  # called, in another thread, when ``Worker.poll`` has an answer
 
 
 class Closing:
@@ -88,6 +91,7 @@ class Worker(Closing):
         # Simple queues: Ctrl-C in the midst of a call leaves no lock of theirs taken.
         self._requests: queue.SimpleQueue[bytes | None] = queue.SimpleQueue()  # None: no more
         self._encoder = Encoder()
+        self._on_answer = launch.on_answer
         self._answers: queue.SimpleQueue[Answer | None] = queue.SimpleQueue()  # None: it is dead
         self._output = _Output()
         life, self._life = os.pipe() if launch.ends_with_parent and sys.platform == "linux" else (-1, -1)
@@ -270,6 +274,7 @@ class Worker(Closing):
         finally:  # a caller that waits gets an answer, even if something went wrong here
             self._answers.put(None)
             self._started.set()
+            self._on_answer()
 
     def _serve(self, requests: IO[bytes], answers: IO[bytes]) -> None:
         while (request := self._requests.get()) is not None:
@@ -284,6 +289,7 @@ class Worker(Closing):
             assert isinstance(message, Answer)
             self._clock.clear()
             self._answers.put(message)
+            self._on_answer()
 
     def _send_cancel(self) -> None:
         assert self._process.stdin is not None

@@ -17,8 +17,10 @@ from playground.sketch.flat import Ref, Source
 from playground.sketch.include_guards import without_guards
 from playground.sketch.model import Kernel, Sketch, Value
 from playground.sketch.reserved_names import MATCHES, WIRED
-from playground.sketch.source import SourceText
+from playground.sketch.source import SourceText, read_source_and_origin
 from playground.sketch.variants import active_variant
+
+_OF_SHADERS = (".fs", ".fragment", ".glsl", ".json")
 
 
 def inline_sketch(
@@ -32,6 +34,13 @@ def inline_sketch(
     plan = Planner().plan(sketch, frame_size=frame, time=time, steps=steps)
     leaves = list(plan.walk())
     alone = len(leaves) == 1 or Path(sketch.file).suffix != ".toml"  # the rest stands in for its channels
+    own = [leaf.kernel for leaf in leaves if leaf.kernel.dialect]
+    foreign = {_words(_whole_source(kernel, plan), as_written=True) for kernel in own}
+    if alone and len(foreign) > 1:
+        raise SketchError(
+            f"{len(foreign)} passes of another tool's shader cannot be inlined; reduce a file of one of them",
+            file=Path(sketch.file),
+        )
     if alone and leaves[-1].kernel.kind.startswith("plain"):
         return _plain(leaves[-1], plan)
     inliner = _Inliner(plan, leaves[-1].path)
@@ -60,14 +69,22 @@ def _plain(step: Step, plan: Plan) -> Case:
     vertex = kernel.vertex_source
     one = Pass(
         name=name,
-        text=_words(kernel.source, as_written=bool(kernel.dialect)),
-        suffix=".frag" if suffix in (".fs", ".fragment", ".glsl") else suffix,
+        text=_words(_whole_source(kernel, plan), as_written=bool(kernel.dialect)),
+        suffix=".frag" if suffix in _OF_SHADERS else suffix,
         head=f"/*{json.dumps(read_header(kernel.source).table)}*/\n" if kernel.dialect == "isf" else "",
         beside=((Path(vertex.path).suffix, _words(vertex, as_written=True)),) if vertex else (),
     )
     named = [(p.default, step.values[p.name]) for p in kernel.file_parameters]
     files = tuple((str(written), str(found)) for written, found in named if kernel.dialect)
     return Case(passes=(one,), target=name, frame=plan.frame_size, time=plan.time, samples=1, files=files)
+
+
+def _whole_source(kernel: Kernel, plan: Plan) -> SourceText:
+    """Return a kernel's text; where it is one pass of several of a text, and has some of its lines, all."""
+    several = sum(step.kernel.path == kernel.path for step in plan.walk()) > 1
+    if kernel.dialect != "main" or not several:
+        return kernel.source
+    return read_source_and_origin(Path(kernel.path), (Path(plan.sketch.folder),), foreign=True)[0]
 
 
 def _words(source: SourceText, *, as_written: bool) -> str:

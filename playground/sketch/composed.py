@@ -40,7 +40,7 @@ def first_input(technique: Technique) -> str:
 def is_foreign(technique: Technique) -> bool:
     """Return whether a technique's picture is that of another tool's shader, or of a plain one."""
     if isinstance(technique, Graph):
-        return not technique.outputs and is_foreign(technique.passes[-1].technique)
+        return is_foreign(technique.parts[0]) if technique.parts else bool(technique.dialect)
     return technique.kind == "plain_fragment"
 
 
@@ -68,7 +68,8 @@ def _composed(use: str, outer_key: Identity[Technique], inner_key: Identity[Tech
     fed = first_input(outer)
     outputs = output_names(inner)
     output = fed if fed in outputs else outputs[0]
-    source = dict(inner.outputs).get(output) if isinstance(inner, Graph) else ""
+    opened = isinstance(inner, Graph) and not inner.variants
+    source = dict(inner.outputs).get(output) if isinstance(inner, Graph) and opened else ""
     wire = source or f"{before[-1].name}:{output}"
     parameters = _exports(inner, before[0].name, "parameters") + _own(outer, last, "parameters", "")
     inputs = _exports(inner, before[0].name, "inputs") + _own(outer, last, "inputs", fed)
@@ -80,11 +81,12 @@ def _composed(use: str, outer_key: Identity[Technique], inner_key: Identity[Tech
         inputs=_distinct(inputs, last),
         title=outer.title if is_foreign(outer) else inner.title or outer.title,
         warnings=(*_warnings(inner), *_warnings(outer)),
+        parts=(outer, inner_key.object),
     )
 
 
 def _passes(technique: Technique, use: str) -> tuple[PassSpec, ...]:
-    if isinstance(technique, Graph):
+    if isinstance(technique, Graph) and not technique.variants:
         return technique.passes
     return (PassSpec(_free(_short(use), set()), use, technique, file=technique.path),)
 
@@ -99,7 +101,7 @@ def _exact(technique: Technique) -> Technique:
 
 
 def _exports(technique: Technique, name: str, what: str) -> list[Export]:
-    if isinstance(technique, Graph):
+    if isinstance(technique, Graph) and not technique.variants:
         return list(getattr(technique, what))
     return [Export(one.name, (f"{name}.{one.name}",)) for one in getattr(technique, what)]
 

@@ -50,7 +50,7 @@ _EXAMPLES = {
     "compute": '(groups = "size.y, 1", agrees = "exact")',
 }
 _SIZE = ("size.x", "size.y")
-_SOURCE_READS = ("time", "keys")
+_SOURCE_READS = ("time", "keys", "microphone", "camera")
 _NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?![\w.]|\s*:)")
 _NOT_IN_WHERE = ("size", "if", "else", "and", "or", "not", "log2", "min", "max", "abs", "floor", "ceil")
 _BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()

@@ -71,7 +71,7 @@ MOMENT = "moment"
 
 CLOCKED = frozenset(
     {"time", "frame", "frame_of_time", "delta", "date", "date_from_1"}
-    | {"mouse", "hover", "hover_share", "drag", "bands", MOMENT}
+    | {"mouse", "hover", "hover_share", "drag", "buttons", "bands", MOMENT}
 )
 """What belongs to one frame: given names and meanings that, in a loop that counts ``frames``, are those
 of its iteration, so that what is computed of the frames before stays."""

@@ -226,17 +226,18 @@ class Graph:
     variants: tuple[Variant, ...] = ()  # its fast variants, the fastest first
     line: int = 0  # of its outputs
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # former names that its file uses
+    parts: tuple[Technique, ...] = ()  # of "A(B)": A and B; see sketch/composed.py
 
     @property
     def files(self) -> tuple[str, ...]:
         """Absolute paths of every file the technique is made of."""
-        parts = (*(spec.technique for spec in self.passes), *self.variants)
+        parts = (*(spec.technique for spec in self.passes), *self.variants, *self.parts)
         return tuple(dict.fromkeys([self.path, *(file for part in parts for file in part.files)]))
 
     @property
     def dialect(self) -> str:
         """Of another tool's shader the name of a row of sketch/dialects, of a TOML none."""
-        return "" if self.path.endswith(".toml") else self.kernels[-1][1].dialect
+        return "" if self.parts or self.path.endswith(".toml") else self.kernels[-1][1].dialect
 
     @cached_property
     def kernels(self) -> tuple[tuple[str, Kernel], ...]:

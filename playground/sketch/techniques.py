@@ -20,7 +20,7 @@ from playground.sketch.allowed_files import (
 )
 from playground.sketch.canonical import content_of
 from playground.sketch.composed import composed, parts_of
-from playground.sketch.dialects import OWN, read_foreign
+from playground.sketch.dialects import EXPORT, OWN, is_export, read_foreign
 from playground.sketch.find import shipped_names
 from playground.sketch.kernel_cache import parsed_kernel, replaced
 from playground.sketch.model import Graph, Kernel, Technique, Variant
@@ -240,10 +240,12 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
     own = use.startswith("./")
     limit = root if own else GLSL
     base = (folder if own else GLSL) / (use[2:] if own else use)
-    candidates = [base.parent / f"{base.name}{suffix}" for suffix in TECHNIQUES]
+    candidates = [
+        base.parent / f"{base.name}{suffix}" for suffix in (*TECHNIQUES, *((EXPORT,) if own else ()))
+    ]
     if not base.name.strip(".") or not all(is_inside(path, (limit,)) for path in candidates):
         raise SketchError(f"use = '{use}' lies outside {'the sketch’s own folder' if own else 'glsl/'}")
-    present = [path for path in candidates if is_file(path)]
+    present = [path for path in candidates if is_file(path) and (path.suffix != EXPORT or is_export(path))]
     if present and is_variant(present[0]):
         raise SketchError(f"use = '{use}' is a fast variant; use = '{use.removesuffix('.fast')}' runs it")
     if len(present) > 1:

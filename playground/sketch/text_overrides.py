@@ -12,6 +12,7 @@ from typing import Any, cast
 
 from playground.errors import DataError
 from playground.paths import GLSL
+from playground.sketch.composed import composed
 from playground.sketch.dialects import read_foreign
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Graph, Kernel, Sketch, Technique
@@ -38,7 +39,9 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
             return technique
         if id(technique) not in known:
             variants = tuple(replace(v, technique=reread(v.technique)) for v in technique.variants)
-            if isinstance(technique, Graph) and technique.dialect:
+            if isinstance(technique, Graph) and technique.parts:
+                known[id(technique)] = composed(technique.name, *map(reread, technique.parts))
+            elif isinstance(technique, Graph) and technique.dialect:
                 known[id(technique)] = _read_again(technique, texts, Path(sketch.folder))
                 if technique is sketch.graph:  # of a sketch all are at view
                     known[id(technique)] = replace(known[id(technique)], inputs=(), parameters=())

@@ -73,8 +73,9 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
 def read_passes(file: TomlFile, read: Read) -> tuple[PassSpec, ...]:
     """Return what the ``[[pass]]`` tables say."""
     tables, view = file.tables("pass"), file.table.get("view")
-    if not tables and not (isinstance(view, dict) and "use" in view):  # a picture needs no terrain
-        raise file.error('no passes; a [[pass]] with name = "…" and use = "…" was expected', "pass")
+    own = str(view.get("use", "")) if isinstance(view, dict) else ""
+    if not tables and not own.startswith("./"):  # a shader of the sketch's own may be the whole picture
+        raise no_passes(file)
     found: dict[str, PassSpec] = {}
     for index, table in enumerate(tables):
         place = ("pass", index)
@@ -91,6 +92,11 @@ def read_passes(file: TomlFile, read: Read) -> tuple[PassSpec, ...]:
             raise file.error(wrong, *place, "name")
         found[name] = read_pass(file, table, place, name, read)
     return tuple(found.values())
+
+
+def no_passes(file: TomlFile) -> SketchError:
+    """Return the error of a file that has too little to run."""
+    return file.error('no passes; a [[pass]] with name = "…" and use = "…" was expected', "pass")
 
 
 def read_pass(file: TomlFile, table: Mapping[str, Any], place: Place, name: str, read: Read) -> PassSpec:

@@ -48,9 +48,13 @@ def _sound(values: Mapping[str, Value]) -> Sound:
 
 def size_of_sound(values: Mapping[str, Value]) -> tuple[int, int]:
     """Return the texels of what is shown of a sound."""
-    rows = _sound(values).channels
-    sizes = {_CHANNEL: (analysis.SHOWN, 2), _WAVES: (analysis.WINDOW, rows), _SPECTRUM: (analysis.BINS, rows)}
-    return sizes[values["content"]]  # type: ignore[index]  # a menu's
+    return size_of_content(int(values["content"]), _sound(values).channels)  # type: ignore[arg-type]
+
+
+def size_of_content(content: int, channels: int) -> tuple[int, int]:
+    """Return the texels of a choice of ``content``, of a sound of so many channels."""
+    width = {_CHANNEL: analysis.SHOWN, _WAVES: analysis.WINDOW, _SPECTRUM: analysis.BINS}[content]
+    return width, 2 if content == _CHANNEL else channels
 
 
 def moment_of_sound(values: Mapping[str, Value], now: Now) -> int:

@@ -20,14 +20,15 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError, SketchError, nearest
 from playground.images.content_hash import content_key
+from playground.media.live_inputs import LiveInputs
 from playground.media.now import Now
 from playground.paths import shown
 from playground.sketch.model import Value
+from playground.terrain import live_sources as live
 from playground.terrain.delaunay import Rules, tables, triangulate
 from playground.terrain.elevation import Edge, Elevation, read_elevation
 from playground.terrain.gaps import Voids, fill_no_data
 from playground.terrain.grid import Packing
-from playground.terrain.live_sources import make_keys, moment_of_keys, size_of_keys
 from playground.terrain.masks import read_mask
 from playground.terrain.over_time import (
     make_sound,
@@ -74,6 +75,8 @@ class SourceKind:
     moment: Callable[[Mapping[str, Value], Now], object] | None = None
     # Texels, where the pass says none; None: those of the terrain.
     size: Callable[[Mapping[str, Value]], tuple[int, int] | None] = lambda values: None
+    # Why nothing comes, where a window feeds it; "": something may.
+    lack: Callable[[Mapping[str, Value], LiveInputs], str] = lambda values, inputs: ""
 
 
 def source_kind(name: str) -> SourceKind:
@@ -218,6 +221,26 @@ SOURCES: dict[str, SourceKind] = {
         moment=moment_of_sound,
         size=size_of_sound,
     ),
-    "keyboard": SourceKind(lambda _: Terrain(), make_keys, (), (), moment=moment_of_keys, size=size_of_keys),
+    "keyboard": SourceKind(
+        lambda _: Terrain(), live.make_keys, (), (), moment=live.moment_of_keys, size=live.size_of_keys
+    ),
+    "microphone": SourceKind(
+        lambda _: Terrain(),
+        live.make_microphone,
+        (),
+        ("content",),
+        moment=live.moment_of_microphone,
+        size=live.size_of_microphone,
+        lack=live.lack_of_microphone,
+    ),
+    "camera": SourceKind(
+        lambda _: Terrain(),
+        live.make_camera,
+        (),
+        ("device", "mirror"),
+        moment=live.moment_of_camera,
+        size=live.size_of_camera,
+        lack=live.lack_of_camera,
+    ),
 }
 """Name → what it does."""

@@ -171,6 +171,9 @@ class Commands:
         draft = self._ready()
         if draft is None:
             return
+        if is_shader(draft):
+            self.notices.say("a shader opened alone is no TOML; Save makes a sketch of it")
+            return
         file = Path(draft.file.file)
         try:
             text = saved_text(file.read_bytes().decode("utf-8-sig"), draft.file, draft.sketch)

@@ -9,7 +9,7 @@ from functools import lru_cache
 from pathlib import Path
 
 from playground.errors import Diagnostic, PlaygroundError
-from playground.paths import shown
+from playground.paths import shown, without_part
 from playground.workbench.dependencies import path_named
 from playground.workbench.editors import Opener, find_editor
 from playground.workbench.notices import Notices
@@ -62,8 +62,11 @@ class OpenFiles:
 
     def open_problem(self, diagnostic: Diagnostic, *, here: bool = False) -> None:
         """Open the file that a mistake is in, at its place."""
-        if diagnostic.file:
-            self.open(path_named(diagnostic.file), diagnostic.line, diagnostic.column, here=here)
+        if not diagnostic.file:
+            return
+        whole = without_part(diagnostic.file) == diagnostic.file
+        place = (diagnostic.line, diagnostic.column) if whole else (0, 0)  # a line of a string has none
+        self.open(path_named(diagnostic.file), *place, here=here)
 
     def open_current(self, problems: Problems) -> None:
         """Open the file of the current mistake, at first of the first."""

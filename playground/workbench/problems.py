@@ -14,7 +14,8 @@ from playground.engine.plan import Plan
 from playground.engine.plan_warnings import source_warnings
 from playground.errors import Diagnostic, PlaygroundError, counted
 from playground.images.content_hash import content_hash
-from playground.paths import GLSL
+from playground.media.live_inputs import LiveInputs
+from playground.paths import GLSL, without_part
 from playground.sketch.allowed_files import root_of
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import Techniques
@@ -130,8 +131,8 @@ class Problems:
 
 
 def _lines_of(name: str) -> list[str]:
-    """Return the lines of a file as an error names it; none where it cannot be read."""
-    path = path_named(name) if name else None
+    """Return the lines of a file as an error names it; none of a part of one, or where it cannot be read."""
+    path = path_named(name) if name and without_part(name) == name else None
     try:
         return _lines_at(path, content_hash(path)) if path is not None else []
     except (OSError, PlaygroundError):
@@ -160,8 +161,13 @@ class Warnings:
         self._plan: Plan | None = None
         self._of_sources: tuple[Diagnostic, ...] = ()
 
-    def of(self, sketch: Sketch | None, plan: Plan | None = None) -> list[Diagnostic]:
-        """Return what is known of a sketch's warnings so far; ``plan`` is that of its last picture."""
+    def of(
+        self, sketch: Sketch | None, plan: Plan | None = None, inputs: LiveInputs | None = None
+    ) -> list[Diagnostic]:
+        """Return what is known of a sketch's warnings so far; ``plan`` is that of its last picture.
+
+        ``inputs`` are the live ones; None: there are none.
+        """
         if sketch is None:
             return []
         if self._of is not sketch.graph:
@@ -171,7 +177,7 @@ class Warnings:
             self._found = {text: self._found[text] for text in self._kernels if text in self._found}
             self.waiting = [text for text in self._kernels if text not in self._found]
         if self._plan is not plan:
-            self._plan, self._of_sources = plan, source_warnings(plan) if plan is not None else ()
+            self._plan, self._of_sources = plan, source_warnings(plan, inputs) if plan is not None else ()
         of_kernels = (d for text in self._kernels for d in self._found.get(text, ()))
         return [*former_names_used(sketch), *of_kernels, *self._of_sources]
 

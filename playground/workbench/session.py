@@ -22,7 +22,7 @@ from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan
 from playground.errors import ContextError, PlaygroundError
-from playground.sketch.assign import resolve
+from playground.sketch.assign import find_targets, resolve
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Sketch, Value
@@ -242,6 +242,18 @@ class Session:
         if self.sketch is not None:
             self._pressed |= {target.path for target in resolve(self.sketch.graph, path)}
 
+    def without_buttons(self, values: Mapping[str, Value]) -> dict[str, Value]:
+        """Press the buttons that values by path set to true; return the values of all else."""
+        graph = self.sketch.graph if self.sketch is not None else None
+        others: dict[str, Value] = {}
+        for path, value in values.items():
+            targets = find_targets(graph, path) if graph is not None else ()
+            if not targets or targets[0].parameter.widget.kind != "button":
+                others[path] = value
+            elif value:
+                self.press(path)
+        return others
+
     def _press(self) -> None:
         """Pass the buttons pressed since the last frame to the engine, and let go of those before."""
         runner = self.engine.runner
@@ -253,6 +265,16 @@ class Session:
     def hold_keys(self, codes: Collection[int]) -> None:
         """Begin a frame in which the picture's keys are down, by their codes in JavaScript."""
         if self.engine.runner.inputs.keyboard.hold(codes) and self.sketch and traits_of(self.sketch).keys:
+            self.redraw()
+
+    @property
+    def listens(self) -> bool:
+        """Whether the picture may change by what a microphone or a camera delivers."""
+        return self.sketch is not None and traits_of(self.sketch).devices
+
+    def listen(self) -> None:
+        """Begin a frame: take what microphones and cameras delivered."""
+        if self.engine.runner.inputs.begin_frame() and self.listens:
             self.redraw()
 
     def advance(self, seconds: float, date: datetime) -> None:

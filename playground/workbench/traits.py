@@ -11,7 +11,8 @@ from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Parameter, Sketch, Technique, kernels_of
 
 _MOVING = frozenset({"time", "bands", "frame", "frame_of_time", "delta", "date", "date_from_1"})
-_MOUSE = frozenset({"mouse", "hover", "hover_share", "drag"})
+_DEVICES = frozenset({"microphone", "camera"})
+_MOUSE = frozenset({"mouse", "hover", "hover_share", "drag", "buttons"})
 _CAMERA = ("clip_from_world", "world_from_clip", "eye")
 
 
@@ -24,6 +25,7 @@ class Traits:
     camera: bool  # the camera moves something in the picture
     mouse: bool  # a plain shader reads the mouse
     keys: bool  # a source reads the keyboard
+    devices: bool  # a source reads a microphone or a camera
     files: tuple[tuple[str, Parameter], ...]  # parameters that name files, by the paths of the leaves
     draws: tuple[tuple[str, Kernel], ...]  # kernels that draw meshes
     arcs: bool  # an angle follows a direction until it is set
@@ -58,6 +60,7 @@ def _traits(key: Identity[Graph]) -> Traits:
         camera=any(kernel.reads(name) for _, kernel in kernels for name in _CAMERA),
         mouse=any(meaning in _MOUSE for _, k in kernels for _, meaning in k.usual),
         keys=any("keys" in kernel.depends for _, kernel in kernels),
+        devices=any(not _DEVICES.isdisjoint(kernel.depends) for _, kernel in kernels),
         files=tuple(files),
         draws=tuple((path, kernel) for path, kernel in kernels if kernel.kind == "draw"),
         arcs=any(p.follows for _, k in kernels for p in k.parameters),

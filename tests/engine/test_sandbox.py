@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -401,3 +402,15 @@ def test_the_errors_old_names_are_read_with_a_note():
     for kind in ("Error", "Timeout", "Crash"):
         with pytest.warns(DeprecationWarning, match=f"Trial{kind} is called Sandbox{kind} now"):
             assert getattr(playground, f"Trial{kind}") is getattr(playground, f"Sandbox{kind}")
+
+
+def test_an_answer_is_announced(tmp_path: Path) -> None:
+    path = tmp_path / "a.glsl"
+    path.write_text("float twice(float x) { return 2.0 * x; }\n", encoding="utf-8")
+    announced = threading.Event()
+    with Sandbox() as sandbox:
+        sandbox.on_answer = announced.set
+        sandbox.submit(TryLibrary(str(path), str(tmp_path)))
+        assert announced.wait(PATIENCE)
+        report = sandbox.poll()
+        assert report is not None and report.ok

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import json
+import wave
 
 import numpy as np
 import pytest
 
+from playground.capture.large import strips
 from playground.engine.engine import Engine
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError, ShaderError
 from playground.images.files import write_png
+from playground.reduce.inline import inline_sketch
+from playground.sketch.channels import with_source
 from playground.sketch.load import load
 from playground.sketch.warnings import former_names_used
 from tests.toy_texts import (
@@ -21,6 +25,7 @@ from tests.toy_texts import (
     GROWS,
     IMAGE,
     PLAIN,
+    SHOWS,
     SOUND,
     VSCODE,
     A,
@@ -208,7 +213,6 @@ def test_what_is_not_there_is_named_once_with_its_channel(opened):
         "site": ["iChannel0: '/media/a/1.jpg' is a file of the site", "iChannel3: it is a video"],
         "devices": [
             "iChannel0: it is music",
-            "iChannel1: no key",
             "iChannel2: it is a camera",
             "a microphone",
         ],
@@ -219,14 +223,64 @@ def test_what_is_not_there_is_named_once_with_its_channel(opened):
             assert found.count(words) == 1, found
 
 
-def test_the_title_is_the_export_s(opened):
+def test_the_title_is_the_export_s_or_the_folder_s(opened, folder):
     assert opened(TOYS["buffer"].files, "shader.json").title == "Made here (export)"
+    assert opened(TOYS["folder"].files).title == f"{folder.path.name} (shadertoy)"
+    titled = {"Image.glsl": f"// waves on a pond.\n{PLAIN}"}
+    assert opened({**TOYS["folder"].files, **titled}).title == "Waves on a pond (shadertoy)"
+
+
+def test_line_ends_of_any_system_and_what_is_beyond_ascii(any_engine, opened):
+    code = PLAIN.replace(") {", ") { // größer → und\r\n").replace(";", ";\r\n")
+    sketch = opened({"a.json": export(one("Image", code))}, "a.json")
+    plain = opened({"b.json": export(one("Image", PLAIN))}, "b.json")
+    np.testing.assert_array_equal(drawn(any_engine, sketch), drawn(any_engine, plain))
+    wrong = code.replace("c = ", "c = not_declared + ")
+    with pytest.raises(ShaderError) as caught:
+        drawn(any_engine, opened({"a.json": export(one("Image", wrong))}, "a.json"))
+    assert caught.value.diagnostics[0].line == 2
+
+
+@pytest.mark.parametrize("name", ["common", "cube", "code_uniforms"])
+def test_a_picture_drawn_in_parts_is_the_picture_drawn_whole(any_engine, opened, name):
+    sketch = opened(TOYS[name].files, TOYS[name].opens)
+    whole = drawn(any_engine, sketch, 0.25)
+    parts = np.concatenate(list(strips(any_engine, sketch, SIZE, tile=(20, 8), time=0.25)))
+    np.testing.assert_allclose(parts.astype(int), whole, atol=1)
+
+
+def test_one_pass_is_reduced_and_of_several_a_sentence_says_why_not(opened):
+    files, _ = TOYS["one_pass"].with_mistake()
+    (one_pass,) = inline_sketch(opened(files, "shader.json"), frame=SIZE).passes
+    assert one_pass.suffix == ".frag" and "not_declared" in one_pass.text
+    with pytest.raises(PlaygroundError, match="2 passes of another tool's shader cannot be inlined"):
+        inline_sketch(opened(TOYS["buffer"].files, "shader.json"), frame=SIZE)
+
+
+@pytest.mark.parametrize("name", ["buffer", "feedback"])
+def test_what_cannot_be_drawn_in_parts_says_so(any_engine, opened, name):
+    with pytest.raises(PlaygroundError, match=r"cannot be drawn in parts: .*; choose a smaller picture"):
+        list(strips(any_engine, opened(TOYS[name].files, TOYS[name].opens), SIZE, tile=(20, 8)))
+
+
+def test_a_sketch_may_use_an_export_or_a_folder_and_feed_its_channels(any_engine, folder):
+    folder.write("toy.json", export(one("Image", IMAGE, {"id": "a", "src": "/media/a.jpg", "channel": 0})))
+    folder.write("Image.glsl", IMAGE)
+    folder.write("Common.glsl", "float nothing;\n")
+    for use in ("./toy", "./Image"):
+        wired = 'inputs = { iChannel0 = "data" }'
+        body = f'[[pass]]\nname = "data"\nuse = "foreign/black"\nsize = 4\n[view]\nuse = "{use}"\n{wired}\n'
+        assert drawn(any_engine, folder.sketch(body))[..., :3].max() == 0
+        left = ["the picture reads nothing of buffer_a: what the picture does not need is not drawn"]
+        assert notes(folder.sketch(body)) == (left if use == "./toy" else [])
+        assert drawn(any_engine, folder.sketch(body.replace(wired, "")))[..., :3].max() > 0
 
 
 @pytest.mark.parametrize(
     ("text", "words", "place"),
     [
         ('{"Shader": {"renderpass": [{"code": "void\\n"}}', "damaged JSON", (1, 46)),
+        ('{"renderpass": ' + "[" * 200_000, "damaged JSON: it nests too deeply", (0, 0)),
         ('{"renderpass": 3}', "holds a list of passes called renderpass", (0, 0)),
         (export(), "there is no Image pass to draw; there is nothing", (0, 0)),
         (
@@ -304,6 +358,27 @@ def test_channels_of_a_folder_are_its_buffers_in_order_unless_a_line_says_otherw
         said = [note for note in notes(sketch) if "nothing says otherwise" in note]
         assert len(said) == (not head)
         assert not said or f"{channel} reads Buffer {'A' if value == 10 else 'C'}" in said[0]
+
+
+def test_a_channel_that_is_read_by_direction_is_the_cube_map_or_a_sky(any_engine, opened, folder):
+    text = "void mainImage(out vec4 c, in vec2 p) { vec3 rd = -vec3(0, 1, 0); c = texture(iChannel1, rd); }\n"
+    alone = opened({"a.frag": text}, "a.frag")
+    assert first_texel(any_engine, alone)[2] < 102, "the ground of a sky"
+    assert "nothing feeds iChannel1" in notes(alone)[0]
+    sketch = opened({"t/Image.glsl": text, "t/Cube A.glsl": CUBE}, "t")
+    np.testing.assert_allclose(first_texel(any_engine, sketch)[:3], [128, 0, 128], atol=2)
+    declared = opened({"b.frag": f"uniform sampler3D iChannel1;\n{text}"}, "b.frag")
+    assert [i.shape for i in declared.graph.find("view").technique.inputs] == ["volume"]
+
+
+@pytest.mark.parametrize("opens", ["a.frag", "a.json"])
+def test_another_source_of_a_cube_map_has_a_cube_s_size(any_engine, opened, opens):
+    image = SHOWS.replace("iChannel0, uv", "iChannel0, vec3(uv, 1.0)")
+    site = {"id": "b", "src": "/media/a/2.png", "ctype": "cubemap", "channel": 0}
+    sketch = opened({"a.frag": image, "a.json": export(one("Image", image, site))}, opens)
+    sky = drawn(any_engine, sketch)
+    for source in ("foreign/noise", "foreign/cube_faces"):
+        assert not np.array_equal(drawn(any_engine, with_source(sketch, "view.iChannel0", source)), sky)
 
 
 def test_a_later_buffer_of_a_folder_is_that_of_the_frame_before(any_engine, opened):
@@ -454,6 +529,40 @@ def test_a_cube_of_six_files_has_each_where_it_belongs_and_the_right_way_up(any_
         )
         found = first_texel(any_engine, opened({"a.glsl": text}, "a.glsl"))
         np.testing.assert_allclose(found[:2], [levels[face], 255], atol=1)
+
+
+@pytest.mark.parametrize("row", range(3))
+def test_keys_are_those_of_the_window(any_engine, opened, row):
+    name = ("isKeyDown", "isKeyPressed", "isKeyToggled")[row]
+    text = (
+        f"void mainImage(out vec4 c, in vec2 p) {{ c = vec4({name}(Key_A), {name}(Key_Space), 0.0, 1.0); }}"
+    )
+    toy = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(65, ROW), 0); }"
+    keyboard = {"id": "a", "src": "/presets/tex00.jpg", "ctype": "keyboard", "channel": 0}
+    code = opened({"a.glsl": f"#iKeyboard\n{text}"}, "a.glsl")
+    site = opened({"a.json": export(one("Image", toy.replace("ROW", str(row)), keyboard))}, "a.json")
+    assert first_texel(any_engine, code)[0] == first_texel(any_engine, site)[0] == 0
+    any_engine.runner.inputs.keyboard.hold([65])
+    assert list(first_texel(any_engine, code)[:2]) == [255, 0]
+    assert first_texel(any_engine, site)[0] == 255
+
+
+def test_a_sound_file_of_a_channel_is_read(any_engine, opened, folder):
+    path = folder.path / "tone.wav"
+    with wave.open(str(path), "wb") as file:
+        file.setparams((1, 2, 44100, 0, "NONE", ""))
+        samples = np.round(12000 * np.sin(2 * np.pi * 2000 * np.arange(44100) / 44100)).astype("<i2")
+        file.writeframes(samples.tobytes())
+    text = (
+        "void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec2((p.x + 0.5) / 512.0, 0.25)); }"
+    )
+    sketch = opened({"a.glsl": f'#iChannel0 "file://tone.wav"\n{text}'}, "a.glsl")
+    row = drawn(any_engine, sketch, 0.5, (256, 1))[0, :, 0].astype(int)
+    made = {"id": "a", "src": "tone.wav", "ctype": "music", "channel": 0}
+    same = opened({"a.json": export(one("Image", text, made))}, "a.json")
+    np.testing.assert_array_equal(drawn(any_engine, same, 0.5, (256, 1))[0, :, 0], row)
+    assert abs(int(row.argmax()) - 2000 / (44100 / 2048)) < 3 and row.max() > 100
+    assert notes(sketch) == []
 
 
 def test_files_that_read_each_other_are_each_drawn_once_a_frame(any_engine, opened):

@@ -14,6 +14,7 @@ from playground.sketch.colour import srgb_to_linear
 from playground.sketch.load import load
 from playground.sketch.replace_technique import choices, with_technique
 from playground.sketch.save import save, save_copy
+from playground.sketch.text_overrides import with_texts
 
 from ..sketch_texts import map_of, passes
 
@@ -106,6 +107,70 @@ def test_other_tools_files_are_in_the_chooser(folder: Path) -> None:
     assert "./invert(view/map)" in view and "view/map" in view
     assert "./plain(view/map)" not in view and "./fine(view/map)" not in view, "they read no picture"
     assert "./plain" in view, "a whole picture by itself, as before"
+
+
+ISF = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"},
+ {"NAME": "share", "TYPE": "float", "MIN": 0.0, "MAX": 1.0, "DEFAULT": 1.0}]}*/
+void main() {
+    vec4 c = IMG_THIS_PIXEL(inputImage);
+    gl_FragColor = vec4(mix(c.rgb, 1.0 - c.rgb, share), 1.0);
+}
+"""
+
+
+def test_an_isf_filter_takes_the_frame(folder: Path, any_engine: Engine) -> None:
+    (folder / "negative.fs").write_text(ISF)
+    sketch = load(folder)
+    assert "./negative(view/map)" in choices(sketch, "view")
+    filtered = with_technique(sketch, "view", "./negative(view/map)")
+    plain = any_engine.render(sketch, size=(64, 40)).array[..., :3]
+    np.testing.assert_array_equal(any_engine.render(filtered, size=(64, 40)).array[..., :3], 255 - plain)
+    off = any_engine.render(filtered.with_values({"view.share": 0.0}), size=(64, 40)).array[..., :3]
+    np.testing.assert_array_equal(off, plain)
+
+
+def test_an_isf_generator_is_a_terrain(folder: Path, any_engine: Engine) -> None:
+    text = "void main() { gl_FragColor = vec4(isf_FragNormCoord.x / 300.0); }\n"
+    text = '/*{"ISFVSN": "2", "INPUTS": []}*/\n' + text
+    (folder / "slope.fs").write_text(text)
+    sketch = load(folder)
+    assert "foreign/height(./slope)" in choices(sketch, "height")
+    found = any_engine.read(with_technique(sketch, "height", "foreign/height(./slope)"), "height")
+    wanted = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / SIZE[0] / 300.0, SIZE[::-1])
+    np.testing.assert_allclose(found, wanted, rtol=1e-5)
+
+
+BUFFERED = """/*{"ISFVSN": "2", "INPUTS": [],
+ "PASSES": [{"TARGET": "first", "FLOAT": true}, {}]}*/
+void main() {
+    if (PASSINDEX == 0) gl_FragColor = vec4(gl_FragCoord.x / 70000.0);
+    else gl_FragColor = IMG_THIS_PIXEL(first);
+}
+"""
+
+
+def test_several_passes_of_one_file_keep_their_numbers(folder: Path, any_engine: Engine) -> None:
+    (folder / "buffered.fs").write_text(BUFFERED)
+    sketch = load(folder)
+    assert "foreign/height(./buffered)" in choices(sketch, "height")
+    found = any_engine.read(with_technique(sketch, "height", "foreign/height(./buffered)"), "height")
+    wanted = np.broadcast_to((np.arange(SIZE[0]) + 0.5) / 70000.0, SIZE[::-1])
+    np.testing.assert_allclose(found, wanted, rtol=1e-5)
+
+
+def test_a_text_that_is_typed_takes_the_file_s_place(folder: Path, any_engine: Engine) -> None:
+    texts = {str(folder / "fine.frag"): FINE.replace("0.5 + x", "0.25 + x")}
+    sketch = with_texts(load(folder / "placed.toml"), texts)
+    found = any_engine.read(sketch, "height")
+    x, y = np.meshgrid(np.arange(SIZE[0]), np.arange(SIZE[1]))
+    np.testing.assert_allclose(found, 0.25 + (x + SIZE[0] * y) / 65536.0, rtol=0, atol=2**-23)
+
+
+def test_all_files_of_both_parts_are_watched(folder: Path) -> None:
+    (folder / "twice.toml").write_text(passes(flat="./plain"))
+    (folder / "placed.toml").write_text(SKETCH.replace("./own", "foreign/height(./twice)"))
+    names = {Path(file).name for file in load(folder / "placed.toml").files}
+    assert {"twice.toml", "plain.glsl", "height.glsl"} <= names
 
 
 def test_a_filter_is_replaced_and_taken_off_again(folder: Path) -> None:

@@ -13,6 +13,7 @@ from playground.images.files import write_png
 from playground.sketch.channels import channels, source_of, sources, with_source
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
+from tests.media.films import own_film
 
 TWO = """void mainImage(out vec4 c, in vec2 p) {
     c = texelFetch(iChannel0, ivec2(0), 0) + texelFetch(iChannel1, ivec2(0), 0);
@@ -26,10 +27,8 @@ PART = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(
 NONE = "void main() { gl_FragColor = vec4(1.0); }\n"
 LAND = '[[pass]]\nname = "land"\nuse = "generation/white_noise"\nsize = 16\n'
 PHOTO = '[[pass]]\nname = "photo"\nuse = "foreign/image"\nsize = [8, 4]\nset = { image = "a.png" }\n'
-STAND_INS = [
-    f"foreign/{name}"
-    for name in "black cube_faces image keys noise picture sky_box sound spectrum video".split()
-]
+_NAMES = "black camera image keys microphone noise picture sound spectrum video"
+STAND_INS = [f"foreign/{name}" for name in _NAMES.split()]
 
 
 @pytest.fixture
@@ -56,6 +55,54 @@ def test_a_shader_opened_alone_has_its_channels(folder: Path) -> None:
         ("view.iChannel1", "foreign/noise"),
     ]
     assert channels(load(folder / "none.frag")) == () and channels(load()) == ()
+
+
+def test_a_sketch_of_a_view_alone_is_the_shader_s_picture(folder: Path, any_engine: Engine) -> None:
+    assert pixel(any_engine, sketch(folder, 'use = "./none"')) == (255, 255, 255)
+    with pytest.raises(PlaygroundError, match="no passes"):
+        sketch(folder, 'use = "view/terrain"')
+
+
+CUBE = """uniform samplerCube iChannel0;
+void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec3(1.0)); }
+"""
+
+
+def test_a_cube_is_fed_from_what_has_six_faces(folder: Path, any_engine: Engine) -> None:
+    (folder / "cube.frag").write_text(CUBE, "utf-8")
+    found = load(folder / "cube.frag")
+    assert sources(found, "view.iChannel0") == ["foreign/black", "foreign/cube_faces", "foreign/sky_box"]
+    for source in sources(found, "view.iChannel0"):
+        any_engine.render(with_source(found, "view.iChannel0", source), size=(4, 4))
+        assert any_engine.plan is not None
+        wide, high = any_engine.plan.step("iChannel0").size  # type: ignore[union-attr]
+        assert high == 6 * wide
+
+
+def test_each_source_has_the_size_of_its_kind(folder: Path, any_engine: Engine) -> None:
+    found = load(folder / "two.frag")
+    sizes = {
+        "keys": (256, 3),
+        "spectrum": (512, 2),
+        "sound": (512, 2),
+        "video": (160, 90),
+        "noise": (256, 256),
+    }
+    for name, size in sizes.items():
+        any_engine.render(with_source(found, "view.iChannel0", f"foreign/{name}"), size=(4, 4))
+        assert any_engine.plan is not None and any_engine.plan.step("iChannel0").size == size  # type: ignore[union-attr]
+
+
+KEEPS = """uniform sampler2D backbuffer;
+uniform sampler2D u_tex0;
+void main() { gl_FragColor = texture2D(backbuffer, vec2(0.5)) + texture2D(u_tex0, vec2(0.5)); }
+"""
+
+
+def test_the_frame_before_is_no_channel(folder: Path) -> None:
+    (folder / "keeps.frag").write_text(KEEPS, "utf-8")
+    assert [c.path for c in channels(load(folder / "keeps.frag"))] == ["view.u_tex0"]
+    assert [c.path for c in channels(sketch(folder, 'use = "./keeps"'))] == ["view.u_tex0"]
 
 
 def test_channels_are_in_the_order_of_their_numbers(folder: Path) -> None:
@@ -157,3 +204,29 @@ def test_a_sound_takes_the_place_of_a_made_up_one(folder: Path) -> None:
         assert fed is not None and fed.size == size
         menu = fed.technique.parameter("content").widget.choices
         assert menu[dict(fed.values)["content"]] == content
+
+
+def test_a_channel_of_several_passes_is_one(folder: Path) -> None:
+    head = '/*{"INPUTS": [{"NAME": "inputImage", "TYPE": "image"}], "PASSES": [{"TARGET": "a"}, {}]}*/\n'
+    (folder / "b.fs").write_text(
+        f"{head}void main() {{ gl_FragColor = IMG_THIS_PIXEL(inputImage); }}\n", "utf-8"
+    )
+    found = load(folder / "b.fs")
+    (channel,) = channels(found)
+    assert (channel.path, channel.source, channel.alone) == ("view.inputImage", "foreign/picture", True)
+    fed = with_source(found, channel.path, "foreign/image")
+    assert [(spec.name, spec.use) for spec in fed.graph.passes][:-1] == [("inputImage", "foreign/image")]
+
+
+def test_a_film_brings_its_size_and_keys_theirs(folder: Path, any_engine: Engine) -> None:
+    own_film(folder / "dance.mp4", count=2, size=(48, 36))
+    film = with_source(load(folder / "one.frag"), "view.iChannel0", "foreign/video").with_values(
+        {"iChannel0.video": str(folder / "dance.mp4")}
+    )
+    assert pixel(any_engine, film)[:2] == (48, 36)
+    keys = with_source(film, "view.iChannel0", "foreign/keys")
+    assert any_engine.read(keys, "iChannel0").shape == (3, 256)
+    heard = with_source(film, "view.iChannel0", "foreign/sound")
+    assert any_engine.read(heard, "iChannel0").shape == (2, 512)
+    seen = with_source(film, "view.iChannel0", "foreign/camera")
+    assert any_engine.read(seen, "iChannel0").shape == (480, 640, 4)

@@ -156,4 +156,6 @@ def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
         "video_file",
         "sound_file",
         "keyboard",
+        "microphone",
+        "camera",
     ]

@@ -20,7 +20,8 @@ _VERTEX = (
 _BEFORE = (
     "#version 300 es",
     "precision highp float; precision highp int; precision highp sampler2D;",
-    "uniform vec3 iResolution; uniform float iTime; uniform int iFrame; uniform vec4 iMouse;",
+    "uniform vec3 iResolution; uniform float iTime; uniform int iFrame; uniform vec4 iMouse, iDate;",
+    "uniform float iTimeDelta, iSampleRate, iFrameRate, iChannelTime[4]; uniform vec3 iChannelResolution[4];",
     "uniform sampler2D iChannel0, iChannel1, iChannel2, iChannel3; out vec4 colour_of_pixel;",
 )
 _AFTER = "void main() { mainImage(colour_of_pixel, gl_FragCoord.xy); }"

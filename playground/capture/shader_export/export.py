@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from playground.capture.export_textures import kind_of
 from playground.capture.extensions import ISF, SHADERTOY_EXPORT, SHADERTOY_TEXT
 from playground.capture.shader_export import isf, shadertoy, standalone
-from playground.capture.shader_export.passes import PROBES, Leaving, leaving, plan_of
-from playground.capture.shader_export.texts import Host, PassText, is_sampled, shown_text, text_of
+from playground.capture.shader_export.foreign_given import MOUSE, given_by
+from playground.capture.shader_export.foreign_texts import foreign_text
+from playground.capture.shader_export.passes import PROBES, Leaving, ShaderPass, leaving, plan_of
+from playground.capture.shader_export.texts import Host, PassText, is_sampled, shown_text, size_of, text_of
 from playground.engine.plan import Plan
 from playground.errors import DataError
 from playground.images.files import reason
@@ -44,6 +46,8 @@ def shader_files(sketch: Sketch, path: Path, *, texture: str, kind: str, time: f
     heading = [f"// {_ascii(sketch.title or sketch.name)}, exported by the {MADE_BY}"]
     ending = path.suffix.lower()
     notes = _notes(sketch, found)
+    if ending not in (SHADERTOY_TEXT, SHADERTOY_EXPORT):
+        notes += _mouse_notes(found)
     files: dict[Path, bytes] = {}
     if ending == ISF:
         inputs = isf.inputs_of(found)
@@ -76,11 +80,22 @@ def shader_files(sketch: Sketch, path: Path, *, texture: str, kind: str, time: f
 
 def _texts(found: Leaving, host: Host, shows: str) -> list[PassText]:
     sizes = {one.name: one.size for one in found.passes}
-    texts = [text_of(found, one, host, sizes) for one in found.passes]
-    if texts[-1].size != (None, None):
-        output = found.passes[-1].output
-        texts.append(shown_text(texts[-1], output.components, shows, host))
+    passes = [replace(one, shows="") for one in found.passes] if found.is_shown else found.passes
+    texts = [_foreign(one, host) if _is_foreign(one) else text_of(found, one, host, sizes) for one in passes]
+    if found.is_shown:
+        index = next(i for i, one in enumerate(found.passes) if one.name == found.picture)
+        output = found.passes[index].output
+        texts.append(shown_text(texts[index], output.components, shows, host))
     return texts
+
+
+def _is_foreign(one: ShaderPass) -> bool:
+    return one.step.kernel.kind == "plain_fragment" and not one.copies.name
+
+
+def _foreign(one: ShaderPass, host: Host) -> PassText:
+    time = f"float({host.frame}) / 60.0" if one.by_frames else host.time
+    return foreign_text(one, host, given_by(size_of(one.size, host), time, host.frame, host.mouse))
 
 
 def _notes(sketch: Sketch, found: Leaving) -> list[str]:
@@ -90,6 +105,12 @@ def _notes(sketch: Sketch, found: Leaving) -> list[str]:
     if sketch.keyframes:
         notes.append(f"keyframes stay behind: values are those at {found.plan.time:g} s")
     return notes
+
+
+def _mouse_notes(found: Leaving) -> list[str]:
+    usual = {pair for one in found.passes for pair in one.step.kernel.usual}
+    names = sorted({name for name, meaning in usual if meaning in MOUSE})
+    return [f"the mouse stays behind: {', '.join(names)} is at 0"] if names else []
 
 
 def _isf_notes(texts: Sequence[PassText], inputs: isf.Inputs) -> list[str]:

@@ -53,7 +53,7 @@ class Inputs:
 
     def host(self) -> Host:
         """Return what ISF gives a pass."""
-        return Host(_RENDER, _TEXEL, "TIME", self.parameter, self.file)
+        return Host(_RENDER, _TEXEL, "TIME", "FRAMEINDEX", "gl_FragCoord.xy", self.parameter, self.file)
 
     def parameter(
         self, one: ShaderPass, parameter: Parameter, value: Value
@@ -114,20 +114,23 @@ class Inputs:
             self.taken.add(name)
             return name
 
-        if kind == "bool":
+        if widget.kind == "button":
+            expression = add(base, "event", label)
+        elif kind == "bool":
             expression = add(base, "bool", label, DEFAULT=bool(value))
         elif widget.kind == "menu":
-            menu = {"VALUES": list(range(len(widget.choices))), "LABELS": list(widget.choices)}
+            numbers = widget.values or range(len(widget.choices))
+            menu = {"VALUES": list(numbers), "LABELS": list(widget.choices)}
             expression = add(base, "long", label, **menu, DEFAULT=value)
         elif widget.kind == "colour":
             assert isinstance(value, tuple)
-            shown = [*map(float, linear_to_srgb(value[:3])), *value[3:], 1.0][:4]
-            name = add(base, "color", label, DEFAULT=shown)
-            expression = f"{DECODE}({name}.rgb)"
+            encoded = value[:3] if widget.raw else linear_to_srgb(value[:3])
+            name = add(base, "color", label, DEFAULT=[*map(float, encoded), *value[3:], 1.0][:4])
+            expression = f"{name}.rgb" if widget.raw else f"{DECODE}({name}.rgb)"
             expression = expression if kind == "vec3" else f"vec4({expression}, {name}.a)"
         elif widget.kind == "point":
-            name = add(base, "point2D", label, MIN=[0.0, 0.0], MAX=[1.0, 1.0], DEFAULT=value)
-            expression = name
+            lows, highs = zip(*map(widget.ends, range(2)), strict=True)
+            expression = add(base, "point2D", label, MIN=lows, MAX=highs, DEFAULT=value)
         elif isinstance(value, tuple):
             sides = "xyzw"[: len(value)]
             parts = parameter.parts or tuple(sides)
@@ -225,12 +228,15 @@ def written(
     prefixes = [text.name for text in everything]
     taken = {*targets, *(each["NAME"] for each in inputs.header), *inputs.images, *WORDS}
     merged = joined([text.declarations for text in linear], prefixes, renames, taken=taken)
+    kept = {read.source for text in everything for read in text.reads if read.is_before}
     passes, calls, functions = [], [], []
     for index, (text, names) in enumerate(zip(linear, merged.renames, strict=True)):
         is_picture = index == len(linear) - 1
         entry: dict[str, Any] = {} if is_picture else {"TARGET": text.name}
         if not is_picture and not text.is_bytes:
             entry["FLOAT"] = True
+        if text.name in kept:
+            entry["PERSISTENT"] = True
         for key, side in zip(("WIDTH", "HEIGHT"), text.size, strict=True):
             if side is not None:
                 entry[key] = str(side)
@@ -270,7 +276,7 @@ def _free_function(name: str, shared: Sequence[Declaration]) -> str:
 
 def _with_sampling(text: PassText) -> PassText:
     """Return a text that reads textures as it wants to: ISF samples all of them linear and clamped."""
-    if not any(each.reads("textureLod") for each in text.declarations):
+    if not any(each.reads("textureLod") or each.reads("texture") for each in text.declarations):
         return text
     wanted = {(r.sampling.filter, r.sampling.wrap) for r in text.reads if is_sampled(text, r.word)}
     if wanted <= {("linear", "clamp")}:
@@ -282,9 +288,13 @@ def _with_sampling(text: PassText) -> PassText:
         )
     way = wanted.pop()
     name = f"sampled_{'_'.join(way)}"
-    swap = {"textureLod": name}
+    swap = {"textureLod": name, "texture": name}
     changed = tuple(each.renamed(swap) for each in text.declarations)
-    return replace(text, declarations=(made("\n".join(_sampler(name, *way)), name), *changed))
+    functions = [made("\n".join(_sampler(name, *way)), name)]
+    if any(each.reads("texture") for each in text.declarations):
+        call = f"vec4 {name}(sampler2D texels, vec2 place) {{ return {name}(texels, place, 0.0); }}"
+        functions.append(made(call, name))
+    return replace(text, declarations=(*functions, *changed))
 
 
 def _sampler(name: str, filter_: str, wrap: str) -> list[str]:

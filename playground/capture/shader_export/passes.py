@@ -7,16 +7,17 @@ is the picture's in both is the picture's, one that stays is a number.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
-from playground.engine.plan import LoopStep, Plan, PlanNode, Step, needed
+from playground.capture.shader_export.foreign_given import reason_to_stay
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, needed, sources_of
 from playground.engine.planner import Planner
 from playground.errors import Diagnostic, PlaygroundError, SketchError
 from playground.gpu.wrap import previous_name
 from playground.sketch import expressions
-from playground.sketch.flat import Ref
+from playground.sketch.flat import Fed, Ref, Source
 from playground.sketch.model import Input, Output, Sketch
 from playground.sketch.reserved_names import GLSL_WORDS
 from playground.sketch.wiring import initial_names
@@ -24,9 +25,22 @@ from playground.sketch.wiring import initial_names
 PROBES = ((640, 360), (484, 272))
 """Pictures that a sketch is planned for: no side, nor a simple part of one, is another's."""
 
+FRAMES = "frames"
 MOST_PASSES = 64
 CAMERA = ("clip_from_world", "world_from_clip", "eye")
 _INSTEAD = "; --texture PASS exports one texture"
+
+
+@dataclass(frozen=True)
+class Wire:
+    """What an input reads."""
+
+    name: str = ""  # a pass; "" where nothing is wired
+    is_before: bool = False  # what it gave in the frame before
+    first: str = ""  # in the first frame, instead of that: a pass; "" for zeros
+
+
+NOTHING = Wire()
 
 
 @dataclass(frozen=True)
@@ -37,18 +51,19 @@ class ShaderPass:
     step: Step
     output: Output
     size: tuple[int | None, int | None]  # None: the picture's side
-    inputs: tuple[tuple[Input, str], ...]  # what each reads: a pass's name, "" where nothing is wired
-    previous: tuple[tuple[Output, str], ...] = ()  # likewise of each output of the step before
+    inputs: tuple[tuple[Input, Wire], ...]  # what each reads
+    previous: tuple[tuple[Output, Wire], ...] = ()  # likewise of each output of the step before
     iteration: int = 0
     iterations: int = 1
     until: int = 1
     shows: str = ""  # of the picture: "", or what it shows of a texture: height, colour or numbers
+    by_frames: bool = False  # it runs once a frame: its iteration is the frame's number
+    copies: Wire = NOTHING  # not its kernel's: it is a copy, so that later passes read what was before
 
     @property
-    def reads(self) -> tuple[str, ...]:
-        """Names of the passes that it reads."""
-        names = (*(name for _, name in self.inputs), *(name for _, name in self.previous))
-        return tuple(dict.fromkeys(filter(None, names)))
+    def wires(self) -> tuple[Wire, ...]:
+        """All that it reads."""
+        return (*(wire for _, wire in self.inputs), *(wire for _, wire in self.previous), self.copies)
 
 
 @dataclass(frozen=True)
@@ -59,6 +74,14 @@ class Leaving:
     plan: Plan
     passes: tuple[ShaderPass, ...]  # in order; the last is the picture
     follows: bool  # the terrain has the picture's size
+    picture: str  # the pass that is the picture, or that the picture shows
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether the picture is a pass more, that shows one of another size, or one that is read."""
+        last = self.passes[-1]
+        read = {wire.name for one in self.passes for wire in one.wires}
+        return last.name != self.picture or last.size != (None, None) or last.name in read
 
 
 def leaving(sketch: Sketch, texture: str, kind: str, time: float) -> Leaving:
@@ -78,7 +101,7 @@ def leaving(sketch: Sketch, texture: str, kind: str, time: float) -> Leaving:
     passes = made.all()
     if made.refused:
         raise SketchError(diagnostics=[Diagnostic(one, file=sketch.name) for one in made.refused])
-    return Leaving(plans[0].sketch if follows else sketch, plans[0], passes, follows)
+    return Leaving(plans[0].sketch if follows else sketch, plans[0], passes, follows, made.made[ref].name)
 
 
 def plan_of(sketch: Sketch, size: tuple[int, int], time: float) -> Plan:
@@ -93,15 +116,17 @@ class _Passes:
         self.shows = shows
         self.refused: dict[str, None] = {}
         self.found: list[ShaderPass] = []
-        self.made: dict[Ref, str] = {}  # texture → the pass that gives it
+        self.made: dict[Ref, Wire] = {}  # texture → the pass that gives it
+        self.fed: dict[Fed, Wire] = {}  # what a loop feeds back → the pass that gives it
         self.nodes = needed(self.plan.nodes, ref)
         self.wanted = set(self._read())
 
     def _read(self) -> Iterator[Ref]:
         yield self.ref
         for node in self.nodes:
-            if isinstance(node, Step):
-                yield from (source for _, source in node.inputs if isinstance(source, Ref))
+            if isinstance(node, LoopStep):
+                yield from (ref for _, _, ref in node.feedback)
+            yield from (source for source in sources_of(node) if isinstance(source, Ref))
 
     def all(self) -> tuple[ShaderPass, ...]:
         for node in self.nodes:
@@ -111,6 +136,8 @@ class _Passes:
                 self.refused[reason + hint] = None
             elif isinstance(node, Step):
                 self._add(node)
+            else:
+                self._add_loop(node)
         if len(self.found) > MOST_PASSES:
             self.refused[f"{len(self.found)} passes with their steps; {MOST_PASSES} is the most"] = None
         return tuple(self.found)
@@ -119,7 +146,14 @@ class _Passes:
         """Return why a node cannot leave, in a sentence; "" where it can."""
         who = f"pass '{node.path}'"
         if isinstance(node, LoopStep):
-            return f"{who} is a loop of several passes, which these formats have not"
+            if node.spec.repeat.strip() != FRAMES:
+                return (
+                    f"{who} repeats passes ({node.spec.repeat}), which these formats have not; once a frame"
+                    f' (repeat = "{FRAMES}") would do'
+                )
+            if any(isinstance(inside, LoopStep) for inside in node.body):
+                return f"{who} is a loop in a loop, which these formats have not"
+            return next(filter(None, map(self._reason, node.body)), "")
         kernel = node.kernel
         twin = self.other.step(node.path)
         assert twin is not None  # the plans are of one sketch
@@ -129,8 +163,8 @@ class _Passes:
             return f"{who} is a source ({kernel.registry}), which a processor computes"
         if kernel.kind in ("plain_compute", "compute"):
             return f"{who} is a compute shader, which these formats have not"
-        if kernel.kind != "kernel":
-            return f"{who} is another tool's shader already: {Path(kernel.path).name}"
+        if kernel.kind == "plain_fragment" and (reason := reason_to_stay(kernel)):
+            return f"{who} {reason}"
         camera = [name for name in CAMERA if kernel.reads(name)]
         if camera:
             return f"{who} reads the camera ({', '.join(camera)}), which these formats have not"
@@ -161,7 +195,37 @@ class _Passes:
                 return None
         return found[0], found[1]
 
-    def _add(self, step: Step) -> None:
+    def _add_loop(self, node: LoopStep) -> None:
+        """Add passes that run once a frame and read what was there in the frame before.
+
+        A buffer that is written already in this frame no longer holds that: who reads it later reads a copy.
+        """
+        steps = [inside for inside in node.body if isinstance(inside, Step)]
+        order = [step.path for step in steps]
+        for name, first, ref in node.feedback:
+            source = Fed(node.path, name)
+            readers = [step for step in steps if source in dict(step.inputs).values()]
+            writer = next(step for step in steps if step.path == ref.path)
+            output = next(o for o in writer.kernel.outputs if o.name == ref.output)
+            wanted = [o for o in writer.kernel.outputs if Ref(writer.path, o.name) in self.wanted]
+            later = self._name(writer, output, "", len(wanted) > 1)
+            start = self._name_of(first).name
+            is_late = any(order.index(step.path) > order.index(writer.path) for step in readers)
+            # Of a step with several outputs, each is a pass of its own, and the first comes first.
+            is_late |= len(wanted) > 1 and wanted[-1].name != output.name and writer in readers
+            handed = start and any(_hands_on(step, source) for step in readers)
+            wire = Wire(later, True, start)
+            if is_late or handed:
+                size = self._size(writer)
+                assert size is not None
+                copy = self._free(writer, output, "_before", len(wanted) > 1)
+                self.found.append(ShaderPass(copy, writer, output, size, (), by_frames=True, copies=wire))
+                wire = Wire(copy)
+            self.fed[source] = wire
+        for step in steps:
+            self._add(step, by_frames=True)
+
+    def _add(self, step: Step, *, by_frames: bool = False) -> None:
         kernel = step.kernel
         size = self._size(step)
         assert size is not None
@@ -171,7 +235,7 @@ class _Passes:
         at_once = max(self._at_once(step), 1)
         outputs = [o for o in kernel.outputs if Ref(step.path, o.name) in self.wanted]
         read = [o for o in kernel.outputs if kernel.reads(previous_name(kernel, o))]
-        before = {o.name: starts.get(o.name, "") for o in kernel.outputs}
+        before = {o.name: starts.get(o.name, NOTHING) for o in kernel.outputs}
         iteration = 0
         while iteration < step.repeat:
             until = min(iteration + at_once, step.repeat)
@@ -192,16 +256,19 @@ class _Passes:
                         step.whole,
                         until,
                         self.shows if is_picture else "",
+                        by_frames and kernel.repeat == "1",
                     )
                 )
-                now[output.name] = name
+                now[output.name] = Wire(name)
                 if is_last:
-                    self.made[Ref(step.path, output.name)] = name
+                    self.made[Ref(step.path, output.name)] = Wire(name)
             before |= now
             iteration = until
 
-    def _name_of(self, source: object) -> str:
-        return self.made.get(source, "") if isinstance(source, Ref) else ""
+    def _name_of(self, source: Source | None) -> Wire:
+        if isinstance(source, Fed):
+            return self.fed[source]
+        return self.made.get(source, NOTHING) if source is not None else NOTHING
 
     def _at_once(self, step: Step) -> int:
         """Return how many steps one pass may take: however they are grouped, they give the same."""
@@ -212,10 +279,24 @@ class _Passes:
         return expressions.evaluate(step.kernel.at_once, numbers)
 
     def _free(self, step: Step, output: Output, more: str, several: bool) -> str:
-        name = step.path.replace(".", "_") + (f"_{output.name}" if several else "") + more
+        name = self._name(step, output, more, several)
         while name in GLSL_WORDS or name in [other.name for other in self.found]:
             name += "_"
         return name
+
+    def _name(self, step: Step, output: Output, more: str, several: bool) -> str:
+        return step.path.replace(".", "_") + (f"_{output.name}" if several else "") + more
+
+
+def _hands_on(step: Step, source: Source) -> bool:
+    """Return whether a step does more with an input than to fetch single texels of it."""
+    code = step.kernel.source.code
+    for name, read in step.inputs:
+        uses = len(re.findall(rf"(?<![\w.]){name}\b", code)) - 1  # its declaration
+        fetches = len(re.findall(rf"\b(?:texelFetch|textureSize)\s*\(\s*{name}\s*,", code))
+        if read == source and not name.startswith("initial") and uses > fetches:
+            return True
+    return False
 
 
 def _times(size: tuple[int, int]) -> str:

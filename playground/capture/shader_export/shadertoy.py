@@ -30,6 +30,23 @@ _LETTERS = "ABCD"
 _SIZE = "ivec2(iResolution.xy)"
 
 
+NATIVE = frozenset(
+    {
+        ("iResolution", "vec3"),
+        ("iTime", "float"),
+        ("iTimeDelta", "float"),
+        ("iFrame", "int"),
+        ("iMouse", "vec4"),
+        ("iDate", "vec4"),
+        ("iSampleRate", "float"),
+        ("iFrameRate", "float"),
+        ("iChannelTime", "float[4]"),
+        ("iChannelResolution", "vec3[4]"),
+    }
+)
+"""What Shadertoy gives each pass, by name and type."""
+
+
 def _constant(
     one: ShaderPass, parameter: Parameter, value: Value
 ) -> tuple[tuple[Declaration, ...], tuple[str, ...]]:
@@ -46,7 +63,7 @@ def _no_file(one: ShaderPass, parameter: Parameter, value: Value) -> str:
     raise SketchError(message)
 
 
-HOST = Host(_SIZE, "ivec2(fragCoord)", "iTime", _constant, _no_file)
+HOST = Host(_SIZE, "ivec2(fragCoord)", "iTime", "iFrame", "fragCoord", _constant, _no_file, NATIVE, "iMouse")
 
 
 def fitted(texts: Sequence[PassText]) -> list[PassText]:
@@ -104,7 +121,7 @@ def export(texts: Sequence[PassText], name: str, heading: Sequence[str]) -> str:
         channels = _sources(text)
         names = {read.word: f"iChannel{channels.index(read.source)}" for read in text.reads}
         renamed.append(tuple(d.renamed(names) for d in text.declarations))
-    never = (*(f"iChannel{n}" for n in range(MOST_CHANNELS)), "iResolution", "iTime")
+    never = (*(f"iChannel{n}" for n in range(MOST_CHANNELS)), *(name for name, _ in NATIVE))
     parted = with_common(renamed, never)
     passes = []
     if parted.shared:

@@ -16,6 +16,9 @@ from playground.sketch.model import Parameter, Value
 _HEAD = ("#version 330", "uniform vec3 iResolution;", "uniform float iTime;", "out vec4 fragColor;")
 
 
+NATIVE = frozenset({("iResolution", "vec3"), ("iTime", "float")})
+
+
 def _uniform(
     one: ShaderPass, parameter: Parameter, value: Value
 ) -> tuple[tuple[Declaration, ...], tuple[str, ...]]:
@@ -34,7 +37,17 @@ def _no_file(one: ShaderPass, parameter: Parameter, value: Value) -> str:
     raise SketchError(message)
 
 
-HOST = Host("ivec2(iResolution.xy)", "ivec2(gl_FragCoord.xy)", "iTime", _uniform, _no_file)
+_FRAME = "int(floor(iTime * 60.0 + 0.001))"
+HOST = Host(
+    "ivec2(iResolution.xy)",
+    "ivec2(gl_FragCoord.xy)",
+    "iTime",
+    _FRAME,
+    "gl_FragCoord.xy",
+    _uniform,
+    _no_file,
+    NATIVE,
+)
 
 
 def check(texts: Sequence[PassText]) -> None:

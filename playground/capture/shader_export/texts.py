@@ -9,15 +9,16 @@ from dataclasses import dataclass, replace
 from playground.capture.extensions import COLOUR
 from playground.capture.shader_export.declarations import Declaration, declarations_of, made
 from playground.capture.shader_export.literals import number, vector
-from playground.capture.shader_export.passes import Leaving, ShaderPass
+from playground.capture.shader_export.passes import Leaving, ShaderPass, Wire
 from playground.gpu.wrap import previous_name
 from playground.sketch.model import Kernel, Output, Parameter, Sampling, Value
 from playground.sketch.parameter import AS_IT_IS
 from playground.sketch.reserved_names import MATCHES, TOWARDS, WIRED
 from playground.terrain.directions import unit_vector
 
-_CALL = r"\b(texelFetch|texelFetchOffset|textureLod|textureSize)\s*\(\s*{name}\s*,"
-_FALLBACKS = {"white": "vec4(1.0)", "black": "vec4(0.0, 0.0, 0.0, 1.0)", "": "vec4(0.0)"}
+_CALL = r"\b(texelFetch|texelFetchOffset|textureLod|textureSize|texture)\s*\(\s*{name}\s*,"
+_FALLBACKS = {"white": "vec4(1.0)", "black": "vec4(0.0, 0.0, 0.0, 1.0)"}
+_BYTES = ("r8", "rg8", "rgba8")
 ENCODE, DECODE = "srgb_of_linear", "linear_of_srgb"
 _ENCODE_TEXT = (
     f"vec3 {ENCODE}(vec3 light) {{ vec3 c = clamp(light, 0.0, 1.0);"
@@ -38,6 +39,7 @@ class Sampled:
     word: str  # as its text calls it
     source: str  # the pass that gives it, or the file parameter's pass
     sampling: Sampling = AS_IT_IS
+    is_before: bool = False  # as it was in the frame before
 
 
 @dataclass(frozen=True)
@@ -61,21 +63,32 @@ class Host:
     size: str  # an ivec2, of the pass's target
     texel: str  # an ivec2
     time: str  # seconds, a float
+    frame: str  # its number, an int from 0
+    pixel: str  # the pixel's middle, a vec2
     parameter: Callable[[ShaderPass, Parameter, Value], tuple[tuple[Declaration, ...], tuple[str, ...]]]
     file: Callable[[ShaderPass, Parameter, Value], str]  # returns the pass that gives a file's texels
+    native: frozenset[tuple[str, str]] = frozenset()  # names that it gives by themselves, and their types
+    mouse: str = ""  # a vec4 as Shadertoy has it; "" where there is none
 
 
 def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, object]) -> PassText:
     """Return a pass's text; ``sizes`` are those of the passes so far, by name."""
     kernel, step = one.step.kernel, one.step
+    if one.copies.name:
+        return _copy(one, host)
     given, statements = _given(leaving, one, host)
     reads: list[Sampled] = []
     unwired: dict[str, str] = {}
-    for declared, source in one.inputs:
+    starting: dict[str, str] = {}
+    for declared, wire in one.inputs:
+        source = wire.name
         if source:
-            reads.append(Sampled(declared.name, source, declared.sampling))
+            reads.append(Sampled(declared.name, source, declared.sampling, wire.is_before))
+            if wire.first:
+                starting[declared.name] = f"{declared.name}_at_first"
+                reads.append(Sampled(starting[declared.name], wire.first, declared.sampling))
         else:
-            unwired[declared.name] = _FALLBACKS[declared.fallback]
+            unwired[declared.name] = _FALLBACKS.get(declared.fallback, "vec4(0.0)")
         if kernel.reads(f"{WIRED}{declared.name}"):
             given.append(_constant("bool", f"{WIRED}{declared.name}", "true" if source else "false"))
         if kernel.reads(f"{MATCHES}{declared.name}"):
@@ -89,11 +102,14 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
         own, setting = host.parameter(one, parameter, value)
         given += own
         statements += setting
-    for output, source in one.previous:
-        given.append(_previous(kernel, output, source))
-        if source:
-            reads.append(Sampled(f"{output.name}_before", source))
-    declarations = [_without_unwired(d, unwired) for d in declarations_of(kernel.source.lines)]
+    for output, wire in one.previous:
+        given.append(_previous(kernel, output, wire, host))
+        if wire.name:
+            reads.append(Sampled(f"{output.name}_before", wire.name, is_before=wire.is_before))
+        if wire.first:
+            reads.append(Sampled(f"{output.name}_at_first", wire.first))
+    declarations = [without_unwired(d, unwired) for d in declarations_of(kernel.source.lines)]
+    declarations = [_with_start(d, starting, host.frame) for d in declarations]
     lines, value = _call(kernel, one.output, host.texel)
     result = _filled(one.output, value)
     if one.shows:
@@ -106,7 +122,7 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
         reads=tuple(reads),
         statements=(*statements, *lines),
         result=result,
-        is_bytes=one.output.format in ("r8", "rg8", "rgba8"),
+        is_bytes=one.output.format in _BYTES,
         title=kernel.title,
     )
 
@@ -124,7 +140,7 @@ def handed_on(text: PassText, word: str) -> bool:
 
 def is_sampled(text: PassText, word: str) -> bool:
     """Return whether a text may sample a texture between its texels, itself or in a function it calls."""
-    samplers = {"textureLod"}
+    samplers = {"textureLod", "texture"}
     while True:
         more = {n for d in text.declarations if not samplers.isdisjoint(d.words) for n in d.names} - samplers
         if not more:
@@ -197,8 +213,11 @@ def _given(leaving: Leaving, one: ShaderPass, host: Host) -> tuple[list[Declarat
         base = number(terrain.base_elevation or 0.0)
         given.append(_constant("float", "base_elevation", base, "metres above sea level at height 0"))
     if kernel.reads("time"):
-        variable("float", "time", host.time)
+        variable("float", "time", f"float({host.frame}) / 60.0" if one.by_frames else host.time)
+    counts: dict[str, int | str]
     counts = {"iteration": one.iteration, "iterations": one.iterations, "until": one.until}
+    if one.by_frames:
+        counts = {"iteration": host.frame, "iterations": f"{host.frame} + 1", "until": f"{host.frame} + 1"}
     for name, count in counts.items():
         if kernel.reads(name):
             variable("int", name, str(count))
@@ -218,14 +237,53 @@ def towards(name: str, direction: tuple[float, ...]) -> Declaration:
     return _constant("vec3", f"{TOWARDS}{name}", vector(unit_vector(direction)))
 
 
-def _previous(kernel: Kernel, output: Output, source: str) -> Declaration:
+def _copy(one: ShaderPass, host: Host) -> PassText:
+    """Return a pass that holds what another gave in the frame before."""
+    reads = [Sampled("texels", one.copies.name, is_before=True)]
+    result = f"texelFetch(texels, {host.texel}, 0)"
+    if one.copies.first:
+        reads.append(Sampled("texels_at_first", one.copies.first))
+        result = f"{host.frame} == 0 ? texelFetch(texels_at_first, {host.texel}, 0) : {result}"
+    is_bytes = one.output.format in _BYTES
+    title = f"{one.copies.name} as it was in the frame before"
+    return PassText(one.name, one.size, (), tuple(reads), (), result, is_bytes, title)
+
+
+def _with_start(declaration: Declaration, starting: Mapping[str, str], frame: str) -> Declaration:
+    """Return a declaration that reads a texture's start in the first frame."""
+    for name, start in starting.items():
+        if declaration.reads(name) and name not in declaration.arguments:
+            code, text = (_either_calls(t, name, start, frame) for t in (declaration.code, declaration.text))
+            declaration = Declaration(declaration.names, code, text, declaration.is_macro)
+    return declaration
+
+
+def _either_calls(text: str, name: str, start: str, frame: str) -> str:
+    """Return a text in which each fetch of a texel is one of two, by the frame."""
+    found, position = "", 0
+    for match in re.finditer(rf"\btexelFetch\s*\(\s*{name}\s*,", text):
+        depth, end = 1, match.end()
+        while depth and end < len(text):
+            depth += (text[end] == "(") - (text[end] == ")")
+            end += 1
+        call = text[match.start() : end]
+        other = call.replace(match.group(), f"texelFetch({start},", 1)
+        found += f"{text[position : match.start()]}({frame} == 0 ? {other} : {call})"
+        position = end
+    return found + text[position:]
+
+
+def _previous(kernel: Kernel, output: Output, wire: Wire, host: Host) -> Declaration:
     name, kind = previous_name(kernel, output), output.glsl
     head = f"{kind} {name}(ivec2 texel) {{"
-    if not source:
+    if not wire.name:
         return made(f"{head} return {kind}(0.0); }}  // there is no step before", name)
     swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
     place = "clamp(texel, ivec2(0), size - 1)"
-    return made(f"{head} return texelFetch({output.name}_before, {place}, 0){swizzle}; }}", name)
+    fetch = f"texelFetch({output.name}_before, {place}, 0){swizzle}"
+    if wire.first:
+        fetch = f"{host.frame} == 0 ? texelFetch({output.name}_at_first, {place}, 0){swizzle} : {fetch}"
+    return made(f"{head} return {fetch}; }}", name)
 
 
 def _call(kernel: Kernel, output: Output, texel: str) -> tuple[list[str], str]:
@@ -257,7 +315,8 @@ def shown_text(text: PassText, components: int, kind: str, host: Host) -> PassTe
     return PassText("picture", (None, None), more, (Sampled("shown", text.name),), (), result)
 
 
-def _without_unwired(declaration: Declaration, unwired: Mapping[str, str]) -> Declaration:
+def without_unwired(declaration: Declaration, unwired: Mapping[str, str]) -> Declaration:
+    """Return a declaration in which what an unwired input is read by is a constant."""
     for name, value in unwired.items():
         if declaration.reads(name):
             code, text = (_constant_calls(t, name, value) for t in (declaration.code, declaration.text))

@@ -28,7 +28,9 @@ _MOST = 64
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _ISF = re.compile(
-    r'\s*/\*\s*\{(?:(?!\*/).)*"(?:INPUTS|PASSES|ISFVSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS)"', re.DOTALL
+    r"(?:\s|//[^\n]*\n)*/\*\s*\{(?:(?!\*/).)*"
+    r'"(?:INPUTS|PASSES|ISFVSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS)"',
+    re.DOTALL,
 )
 _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
@@ -51,20 +53,18 @@ class Dialect:
 
 def _shadertoy(files: Files) -> Sequence[Shader]:
     """Return the passes of a file, and of the folder where it is one of several."""
-    if shadertoy_folder.has_more(files.path):
+    if shadertoy_folder.has_more(files):
         return shadertoy_folder.shaders(files)
     return shadertoy.shaders(files)
 
 
 def _vscode(files: Files) -> Sequence[Shader]:
-    return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else vscode.shaders(files)
+    return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files) else vscode.shaders(files)
 
 
 def _without_picture(files: Files) -> Sequence[Shader]:
     """Return the passes of the folder that a file is one of; raise ``ShaderError`` for one alone."""
-    return (
-        shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files.path) else shadertoy.refused(files)
-    )
+    return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files) else shadertoy.refused(files)
 
 
 DIALECTS = (
@@ -162,7 +162,7 @@ def read_foreign(
     graph = graph_of_shaders(name, shaders, read, root) if shaders else None
     if graph is not None:
         title = files.title or graph.title
-        graph = replace(graph, title=title, warnings=(*graph.warnings, *files.notes))
+        graph = replace(graph, title=title, warnings=(*files.notes, *graph.warnings))
     if not instead:
         _known[key] = graph, files
         while len(_known) > _MOST:

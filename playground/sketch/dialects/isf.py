@@ -44,8 +44,9 @@ _MAIN = re.compile(r"\bmain\s*\(")
 _SENTENCE = re.compile(r"(.{3,}?[.!?])(?:\s|$)")
 _LONGEST_TITLE = 72
 _MOST_PASSES = 64
+_MODES = ("", "ISF", "FRAGMENT", "FRAGMENT_SHADER")
 _KEYS = (
-    *("ISFVSN", "VSN", "DESCRIPTION", "CREDIT", "CATEGORIES", "INPUTS", "PASSES", "IMPORTED"),
+    *("MODE", "ISFVSN", "VSN", "DESCRIPTION", "CREDIT", "CATEGORIES", "INPUTS", "PASSES", "IMPORTED"),
     *("PERSISTENT_BUFFERS", "LABEL", "KEYWORDS", "TAGS", "LICENSE"),
 )
 _PASS_KEYS = ("TARGET", "PERSISTENT", "FLOAT", "WIDTH", "HEIGHT", "DESCRIPTION")
@@ -78,6 +79,10 @@ class _Reader:
             raise self.source.lines[-1].error(
                 "an ISF shader needs a main() of its own, after its description"
             )
+        mode = self.header.table.get("MODE")
+        if isinstance(mode, str) and mode.upper() not in _MODES:
+            message = f"MODE {mode}: only ISF's own kind is drawn, a fragment shader over the whole picture"
+            raise self.header.line_of("MODE").error(message)
         self.notes: list[Diagnostic] = []
         note = self.header.unknown(self.header.table.keys(), _KEYS, "the description")
         self.notes += [note] if note else []
@@ -123,9 +128,8 @@ class _Reader:
                     keeps=target is not None and target.keeps,
                 )
             )
-        self.files.title = self._title()
         self.files.notes += dict.fromkeys(self.notes)
-        return found
+        return [replace(one, title=self._title()) for one in found]
 
     # ── what the description says ────────────────────────────────────────────
 

@@ -14,7 +14,7 @@ from typing import Any
 from playground.errors import Diagnostic, ShaderError, nearest
 from playground.sketch.source import Line, SourceText
 
-_BEGIN = re.compile(r"\s*/\*\s*(?=\{)")
+_BEGIN = re.compile(r"(?:\s|//[^\n]*\n)*/\*\s*(?=\{)")
 _LENIENT = re.compile(
     r'(?P<text>"(?:[^"\\]|\\.)*")'
     r"|(?P<comment>//[^\n]*)"

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from playground.errors import ShaderError, nearest
+from playground.errors import Diagnostic, ShaderError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.dialects.foreign import ForeignKernel
 from playground.sketch.dialects.shader import Channel, Made, Shader
@@ -24,6 +24,7 @@ Read = Callable[[str, Path, Path], Technique]
 
 VIEW = "view"
 _BEFORE = "before_"  # begins the input that has a target's content of the frame before
+_MOST_NAMED = 3  # passes in one message
 _FRAMES = "frames"
 
 
@@ -64,6 +65,26 @@ class _Passes:
                 if channel.target:
                     self._wire(index, sampler, channel.target)
         self.inputs = dict(self._inputs())
+
+    def _unread(self) -> Iterator[Diagnostic]:
+        """Yield a warning that names the passes which the picture does not depend on: they are not drawn."""
+        last = {shader.target: shader.name for shader in self.shaders}
+        reads: dict[str, set[str]] = {shader.name: set() for shader in self.shaders}
+        for shader, wires in zip(self.shaders, self.wires, strict=True):
+            reads[shader.name] |= {name for _, name in wires}
+        for target, paths in self.state.items():
+            for path in paths:
+                reads[path.partition(".")[0]].add(last[target])
+        reached, found = set[str](), {self.shaders[-1].name}
+        while found:
+            reached |= found
+            found = set().union(*[reads[name] for name in found]) - reached
+        left = [shader.name for shader in self.shaders if shader.name not in reached]
+        if left:
+            more = f" and {len(left) - _MOST_NAMED} more" if len(left) > _MOST_NAMED else ""
+            names = f"{', '.join(left[:_MOST_NAMED])}{more}"
+            message = f"the picture reads nothing of {names}: what the picture does not need is not drawn"
+            yield self.kernels[-1].source.lines[0].diagnostic(message, severity="warning")
 
     def _drop_unread(self) -> None:
         """Drop the parameters that a pass declares and only other passes read."""
@@ -126,6 +147,7 @@ class _Passes:
             parameters=tuple(_inside(VIEW, name) for name in _parameters_of(view.technique)),
             inputs=tuple(_inside(VIEW, name) for name in self.inputs),
             title=next((kernel.title for kernel in self.kernels if kernel.title), ""),
+            warnings=tuple(self._unread()),
         )
 
     def _view(self) -> PassSpec:

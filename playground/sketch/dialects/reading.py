@@ -10,7 +10,7 @@ from playground.errors import Diagnostic
 from playground.paths import PART_OF_FILE, shown
 from playground.sketch.allowed_files import is_file
 from playground.sketch.dialects.foreign import commented_files, places_of
-from playground.sketch.source import Line, Origin, SourceText, read_source_and_origin, read_text
+from playground.sketch.source import Line, Origin, SourceText, normalised, read_source_and_origin, read_text
 
 
 @dataclass
@@ -50,7 +50,7 @@ class Files:
     def part(self, label: str, text: str) -> SourceText:
         """Return a text that is a part of the file: its lines are those of "file:label", from 1."""
         named = self.path.with_name(f"{self.path.name}{PART_OF_FILE}{label}")
-        instead = {**self.instead, str(named): text}
+        instead = {**self.instead, str(named): normalised(text)}
         source, origin = read_source_and_origin(named, (self.root,), instead, foreign=True)
         self._origins.append(Origin(tuple(t for t in origin.texts if t[0] != str(named)), origin.places))
         files = (str(self.path), *(name for name in source.files if name != str(named)))

@@ -86,6 +86,7 @@ class Shader:
     named: frozenset[str] = frozenset()  # names of the rules that the prelude names
     prelude: tuple[str, ...] = ()  # lines besides those that the rules give
     vertex: Rewritten | None = None  # the author's own vertex shader
+    title: str = ""  # of the whole; "": the comment that the text begins with
     keeps: bool = False  # what it wrote in the last frame may be read
     repeat: str = ""  # an expression: it is drawn so often, and reads what it wrote before by ``feeds``
     feeds: str = ""  # a sampler

@@ -186,7 +186,10 @@ def _input(
     if kind == "texture" and _is_own(files, source):
         return ToyInput(Channel(sampling=sampling or _OF_PICTURES), file=source)
     if kind == "keyboard":
-        return ToyInput(Channel(unfed="no key is pressed"))
+        return ToyInput(stand_in("keys", 0, ""))
+    if kind in _SOUNDS and _is_own(files, source):
+        made = replace(stand_in("sound", 0, ""), use="foreign/sound", values=(("sound", source),))
+        return ToyInput(replace(made, sampling=sampling or OF_BUFFERS))
     if kind in _SOUNDS:
         unfed = f"it is {_NOT_FED[kind]}, so a made-up sound stands in for it"
         return ToyInput(replace(stand_in("sound", 0, unfed), sampling=sampling or OF_BUFFERS))

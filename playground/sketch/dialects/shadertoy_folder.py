@@ -15,6 +15,7 @@ from playground.errors import SketchError
 from playground.paths import shown
 from playground.sketch.dialects.directives import read_directives
 from playground.sketch.dialects.reading import Files
+from playground.sketch.dialects.sampler_types import cubes_of
 from playground.sketch.dialects.shader import Shader
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
@@ -26,6 +27,7 @@ from playground.sketch.dialects.toy_passes import (
     shaders_of,
 )
 from playground.sketch.dialects.vscode import Reader
+from playground.sketch.header import title_of
 from playground.sketch.source import SourceText
 
 _COMMON, _SOUND = "Common", "Sound"
@@ -47,14 +49,25 @@ def image_of(folder: Path) -> Path | None:
 
 def is_of_folder(path: Path) -> bool:
     """Return whether a file is one of a folder's passes, its Image another or itself."""
-    known = {place.name for label in (*_LABELS, _COMMON, _SOUND) for place in _places(path.parent, label)}
-    return path.name in known and image_of(path.parent) is not None
+    return _is_named(path) and image_of(path.parent) is not None
 
 
-def has_more(path: Path) -> bool:
-    """Return whether a file is an Image, or a pass of one, that others are next to."""
-    others = [p for label in (*_LABELS, _COMMON, _SOUND) for p in _places(path.parent, label) if p != path]
-    return is_of_folder(path) and any(place.is_file() for place in others)
+def has_more(files: Files) -> bool:
+    """Return whether a file is one of a folder's passes, and others are next to it."""
+    path = files.path
+    if not _is_named(path):
+        return False
+    others = [place for place in _all_places(path.parent) if place != path]
+    there = [files.is_there(place) for place in others]  # all, so that one that comes is seen
+    return any(there) and image_of(path.parent) is not None
+
+
+def _is_named(path: Path) -> bool:
+    return path.name in {place.name for place in _all_places(path.parent)}
+
+
+def _all_places(folder: Path) -> list[Path]:
+    return [place for label in (*_LABELS, _COMMON, _SOUND) for place in _places(folder, label)]
 
 
 def shaders(files: Files) -> Sequence[Shader]:
@@ -74,6 +87,7 @@ def shaders(files: Files) -> Sequence[Shader]:
     )
     for label, path in there.items():
         reader.add(path, kinds[label])
+    files.title = title_of(files.source(there[_IMAGE])) or folder.name
     return shaders_of(sorted(reader.passes(), key=lambda one: one.label))
 
 
@@ -88,7 +102,9 @@ def _inputs(files: Files, path: Path, source: SourceText, there: dict[str, Path]
             named.setdefault(int(number), own if wanted == "self" else label)
     taken = read_directives(source).channels
     assumed = {}
-    for number, label in enumerate(_BUFFERS):
+    cubes = cubes_of(source.code)
+    for number, buffer in enumerate(_BUFFERS):
+        label = _CUBES[0] if f"iChannel{number}" in cubes else buffer
         is_read = re.search(rf"\biChannel{number}\b", source.code)
         if number not in named and number not in taken and label in there and is_read:
             named[number] = assumed[number] = label

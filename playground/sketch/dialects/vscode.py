@@ -92,7 +92,7 @@ class Reader:
         for number, channel in read.channels.items():
             feeds[f"iChannel{number}"] = self._feed(path, number, channel)
         if directives.KEYBOARD in read.source.names:
-            feeds[directives.KEYBOARD] = ToyInput(Channel(unfed="no key is pressed"))
+            feeds[directives.KEYBOARD] = ToyInput(stand_in("keys", 0, ""))
         source = read.source
         if self.common is not None:
             source = replace(source, lines=(*self.common.lines, *source.lines))
@@ -137,7 +137,7 @@ class Reader:
         elif _WEB.match(text):
             unfed = f"'{text}' is on the web, where nothing is read, so a stand-in is drawn"
         elif ending in _SOUND:
-            return ToyInput(self._sound(text, channel))
+            return ToyInput(self._sound(text, number, channel))
         elif ending not in _PICTURES:
             unfed = f"'{text}' is no image that can be read, so a stand-in is drawn"
         elif (found := self._found(text, channel.line)) is not None:
@@ -147,7 +147,7 @@ class Reader:
             unfed = f"there is no file '{text}' in this folder, so a stand-in is drawn"
         return ToyInput(replace(stand_in(form, number, unfed), sampling=of_pictures))
 
-    def _sound(self, text: str, channel: directives.Channel) -> Channel:
+    def _sound(self, text: str, number: int, channel: directives.Channel) -> Channel:
         """Return a sound file's spectrum and wave, or those of a made-up one."""
         sampling, found = channel.sampling(OF_BUFFERS), self._found(text, channel.line)
         if found is not None:
