@@ -48,7 +48,7 @@ class ChannelRows:
                 options,
                 channel.source,
                 name=lambda s: in_words(base, s),
-                flags=imgui.ComboFlags_.height_large,  # all are in view: there are more than a list shows
+                flags=imgui.ComboFlags_.height_large.value,
             )
         in_file = source_of(draft.file, channel.path)
         if edited and in_file:

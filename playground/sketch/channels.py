@@ -30,6 +30,7 @@ FOLDER = "foreign/"
 _SIZE = ("256", "256")
 _SIZES = {
     "foreign/keys": ("256", "3"),
+    "foreign/microphone": ("512", "2"),
     "foreign/sky_box": ("128", "768"),
     "foreign/sound": ("512", "2"),
     "foreign/spectrum": ("512", "2"),
@@ -40,8 +41,9 @@ _SIZES_OF_SHAPES = {
     "line": ("256", "1"),
 }  # of other stand-ins
 _CUBES = ("foreign/sky_box", "foreign/cube_faces")  # six square faces above each other
+_HEARD = ("foreign/microphone", "foreign/sound")
 _ANY = "foreign/black"  # what has any shape
-_OWN_SIZE = ("video_file", "camera", "microphone")  # sources that give a pass of no size one of their own
+_OWN_SIZE = ("camera", "video_file")  # sources that give a pass of no size their own
 _NUMBER = re.compile(r"\d{1,2}$")
 
 
@@ -289,13 +291,17 @@ def _size(
     kernel = technique if isinstance(technique, Kernel) else None
     if kernel is not None and kernel.registry in _OWN_SIZE:
         return None
-    if use == "foreign/sound" and before is not None and before.use == "foreign/spectrum":
+    if use in _HEARD and before is not None and before.use == "foreign/spectrum":
         return before.size
     files = [p for p in kernel.parameters if p.widget.kind == "file"] if kernel is not None else []
     if files and kernel is not None and kernel.kind == "kernel":
         wide, high = (f"{name}.{files[0].name}.size.{axis}" for axis in "xy")
         return (wide, f"6 * {wide}") if use in _CUBES else (wide, high)
-    return _SIZES.get(use) or _SIZES_OF_SHAPES.get(shape, _SIZE)
+    if use in _SIZES:
+        return _SIZES[use]
+    if before is not None and before.use not in _SIZES and before.size and not _reads_file(before):
+        return before.size  # as an ISF filter has it, whose image is as large as its picture
+    return _SIZES_OF_SHAPES.get(shape, _SIZE)
 
 
 def _names(technique: Technique) -> Iterator[str]:

@@ -10,6 +10,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 from playground.images.files import write_png
+from playground.paths import GLSL
 from playground.sketch.channels import channels, source_of, sources, with_source
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
@@ -27,8 +28,12 @@ PART = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(
 NONE = "void main() { gl_FragColor = vec4(1.0); }\n"
 LAND = '[[pass]]\nname = "land"\nuse = "generation/white_noise"\nsize = 16\n'
 PHOTO = '[[pass]]\nname = "photo"\nuse = "foreign/image"\nsize = [8, 4]\nset = { image = "a.png" }\n'
-_NAMES = "black camera image keys microphone noise picture sound spectrum video"
-STAND_INS = [f"foreign/{name}" for name in _NAMES.split()]
+CUBES = ["cube_faces", "sky_box"]
+STAND_INS = [
+    f"foreign/{file.stem}"
+    for file in sorted((GLSL / "foreign").glob("*.glsl"))
+    if 'output = "channel_texels:' in file.read_text("utf-8") and file.stem not in CUBES
+]
 
 
 @pytest.fixture
@@ -63,6 +68,22 @@ def test_a_sketch_of_a_view_alone_is_the_shader_s_picture(folder: Path, any_engi
         sketch(folder, 'use = "view/terrain"')
 
 
+FILTER = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}*/
+void main() { gl_FragColor = IMG_THIS_PIXEL(inputImage); }
+"""
+
+
+def test_a_stand_in_for_a_filter_s_image_stays_as_large_as_the_picture(
+    folder: Path, any_engine: Engine
+) -> None:
+    (folder / "filter.fs").write_text(FILTER, "utf-8")
+    found = load(folder / "filter.fs")
+    for source in ("foreign/picture", "foreign/noise", "foreign/black"):
+        any_engine.render(with_source(found, "view.inputImage", source), size=(12, 7))
+        assert any_engine.plan is not None
+        assert any_engine.plan.step("inputImage").size == (12, 7)  # type: ignore[union-attr]
+
+
 CUBE = """uniform samplerCube iChannel0;
 void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec3(1.0)); }
 """
@@ -81,13 +102,8 @@ def test_a_cube_is_fed_from_what_has_six_faces(folder: Path, any_engine: Engine)
 
 def test_each_source_has_the_size_of_its_kind(folder: Path, any_engine: Engine) -> None:
     found = load(folder / "two.frag")
-    sizes = {
-        "keys": (256, 3),
-        "spectrum": (512, 2),
-        "sound": (512, 2),
-        "video": (160, 90),
-        "noise": (256, 256),
-    }
+    sizes = {"keys": (256, 3), "spectrum": (512, 2), "sound": (512, 2), "microphone": (512, 2)}
+    sizes |= {"video": (160, 90), "camera": (640, 480), "noise": (256, 256)}
     for name, size in sizes.items():
         any_engine.render(with_source(found, "view.iChannel0", f"foreign/{name}"), size=(4, 4))
         assert any_engine.plan is not None and any_engine.plan.step("iChannel0").size == size  # type: ignore[union-attr]

@@ -125,7 +125,7 @@ def _isf_notes(texts: Sequence[PassText], inputs: isf.Inputs) -> list[str]:
     )
     if small:
         notes.append(
-            f"ISF has no mipmaps: {', '.join(small)} may flicker where it is shown smaller than it is"
+            f"ISF has no mipmaps: {', '.join(small)} is rougher where it is shown smaller than it is"
         )
     if inputs.unbounded:
         notes.append(f"without a range of their own, so that one was made up: {', '.join(inputs.unbounded)}")
