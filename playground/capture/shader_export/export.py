@@ -63,6 +63,9 @@ def shader_files(sketch: Sketch, path: Path, *, texture: str, kind: str, time: f
         texts = shadertoy.fitted(_texts(found, shadertoy.HOST, shows))
         is_export = ending == SHADERTOY_EXPORT
         shadertoy.check(texts, one_text=not is_export)
+        least = [max((text.size[axis] or 0) for text in texts) for axis in (0, 1)]
+        if max(least):
+            notes.append(f"it needs a picture of at least {max(least[0], 1)} x {max(least[1], 1)} pixels")
         if is_export:
             text = shadertoy.export(texts, sketch.title or sketch.name, heading)
             what = f"Shadertoy export; {_counted(len(texts) - 1, 'buffer')}"

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from playground.capture.extensions import COLOUR
 from playground.capture.shader_export.declarations import Declaration, declarations_of, made
 from playground.capture.shader_export.literals import number, vector
 from playground.capture.shader_export.passes import Leaving, ShaderPass, Wire
+from playground.errors import SketchError
 from playground.gpu.wrap import previous_name
 from playground.sketch.model import Kernel, Output, Parameter, Sampling, Value
 from playground.sketch.parameter import AS_IT_IS
@@ -110,6 +111,9 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
             reads.append(Sampled(f"{output.name}_at_first", wire.first))
     declarations = [without_unwired(d, unwired) for d in declarations_of(kernel.source.lines)]
     declarations = [_with_start(d, starting, host.frame) for d in declarations]
+    for name in unwired:
+        if any(d.reads(name) and name not in d.arguments for d in declarations):
+            reads.append(_never_read(one, name, reads))
     lines, value = _call(kernel, one.output, host.texel)
     result = _filled(one.output, value)
     if one.shows:
@@ -124,6 +128,18 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
         result=result,
         is_bytes=one.output.format in _BYTES,
         title=kernel.title,
+    )
+
+
+def _never_read(one: ShaderPass, name: str, reads: Sequence[Sampled]) -> Sampled:
+    """Return what an unwired input is called that a function is handed: any texture, where none is read.
+
+    Raises ``SketchError`` where the text does not ask first whether anything is wired.
+    """
+    if one.step.kernel.reads(f"{WIRED}{name}") and reads:
+        return Sampled(name, reads[0].source, reads[0].sampling)
+    raise SketchError(
+        f"pass '{one.step.path}' hands its input '{name}', to which nothing is wired, to a function"
     )
 
 
@@ -178,6 +194,11 @@ def with_size_of(text: PassText, word: str, size: str) -> PassText:
     return replace(text, declarations=declarations)
 
 
+def variable_of(kind: str, name: str) -> Declaration:
+    """Return a global variable, which a pass sets before its function reads it."""
+    return made(f"{kind} {name} = {kind}(0);", name)  # without the 0 a driver warns
+
+
 def _constant(kind: str, name: str, value: str, comment: str = "") -> Declaration:
     return made(f"const {kind} {name} = {value};" + (f"  // {comment}" if comment else ""), name)
 
@@ -190,7 +211,7 @@ def _given(leaving: Leaving, one: ShaderPass, host: Host) -> tuple[list[Declarat
     statements: list[str] = []
 
     def variable(kind: str, name: str, value: str) -> None:
-        given.append(made(f"{kind} {name};", name))
+        given.append(variable_of(kind, name))
         statements.append(f"{name} = {value};")
 
     reads_spacing = kernel.reads("spacing")
