@@ -13,7 +13,15 @@ from playground.capture.shader_export import isf, shadertoy, standalone
 from playground.capture.shader_export.foreign_given import MOUSE, given_by
 from playground.capture.shader_export.foreign_texts import foreign_text
 from playground.capture.shader_export.passes import PROBES, Leaving, ShaderPass, leaving, plan_of
-from playground.capture.shader_export.texts import Host, PassText, is_sampled, shown_text, size_of, text_of
+from playground.capture.shader_export.texts import (
+    Host,
+    PassText,
+    constants_of,
+    is_sampled,
+    shown_text,
+    size_of,
+    text_of,
+)
 from playground.engine.plan import Plan
 from playground.errors import DataError
 from playground.images.files import reason
@@ -85,9 +93,10 @@ def _texts(found: Leaving, host: Host, shows: str) -> list[PassText]:
     sizes = {one.name: one.size for one in found.passes}
     passes = [replace(one, shows="") for one in found.passes] if found.is_shown else found.passes
     texts = [_foreign(one, host) if _is_foreign(one) else text_of(found, one, host, sizes) for one in passes]
+    texts = [*(more := constants_of(texts)), *texts]
     if found.is_shown:
-        index = next(i for i, one in enumerate(found.passes) if one.name == found.picture)
-        output = found.passes[index].output
+        index = len(more) + next(i for i, one in enumerate(found.passes) if one.name == found.picture)
+        output = found.passes[index - len(more)].output
         texts.append(shown_text(texts[index], output.components, shows, host))
     return texts
 

@@ -10,7 +10,6 @@ from playground.capture.extensions import COLOUR
 from playground.capture.shader_export.declarations import Declaration, declarations_of, made
 from playground.capture.shader_export.literals import number, vector
 from playground.capture.shader_export.passes import Leaving, ShaderPass, Wire
-from playground.errors import SketchError
 from playground.gpu.wrap import previous_name
 from playground.sketch.model import Kernel, Output, Parameter, Sampling, Value
 from playground.sketch.parameter import AS_IT_IS
@@ -20,6 +19,7 @@ from playground.terrain.directions import unit_vector
 _CALL = r"\b(texelFetch|texelFetchOffset|textureLod|textureSize|texture)\s*\(\s*{name}\s*,"
 _FALLBACKS = {"white": "vec4(1.0)", "black": "vec4(0.0, 0.0, 0.0, 1.0)"}
 _BYTES = ("r8", "rg8", "rgba8")
+CONSTANT = "constant_"
 ENCODE, DECODE = "srgb_of_linear", "linear_of_srgb"
 _ENCODE_TEXT = (
     f"vec3 {ENCODE}(vec3 light) {{ vec3 c = clamp(light, 0.0, 1.0);"
@@ -113,7 +113,7 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
     declarations = [_with_start(d, starting, host.frame) for d in declarations]
     for name in unwired:
         if any(d.reads(name) and name not in d.arguments for d in declarations):
-            reads.append(_never_read(one, name, reads))
+            reads.append(_instead(one, name, reads))
     lines, value = _call(kernel, one.output, host.texel)
     result = _filled(one.output, value)
     if one.shows:
@@ -131,16 +131,35 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
     )
 
 
-def _never_read(one: ShaderPass, name: str, reads: Sequence[Sampled]) -> Sampled:
-    """Return what an unwired input is called that a function is handed: any texture, where none is read.
+def _instead(one: ShaderPass, name: str, reads: Sequence[Sampled]) -> Sampled:
+    """Return what an unwired input reads that a function is handed: a pass of its constant.
 
-    Raises ``SketchError`` where the text does not ask first whether anything is wired.
+    Where the text asks first whether anything is wired, it is never read, and any texture will do.
     """
     if one.step.kernel.reads(f"{WIRED}{name}") and reads:
         return Sampled(name, reads[0].source, reads[0].sampling)
-    raise SketchError(
-        f"pass '{one.step.path}' hands its input '{name}', to which nothing is wired, to a function"
-    )
+    declared = next(declared for declared, _ in one.inputs if declared.name == name)
+    return Sampled(name, f"{CONSTANT}{declared.fallback}", declared.sampling)
+
+
+def constants_of(texts: Sequence[PassText]) -> list[PassText]:
+    """Return the passes of the constants that some passes read."""
+    names = dict.fromkeys(read.source for text in texts for read in text.reads)
+    found = [name for name in names if name.startswith(CONSTANT)]
+    title = "an input to which nothing is wired"
+    return [
+        PassText(
+            name,
+            (None, None),
+            (),
+            (),
+            (),
+            _FALLBACKS.get(name.removeprefix(CONSTANT), "vec4(0.0)"),
+            True,
+            title,
+        )
+        for name in found
+    ]
 
 
 def handed_on(text: PassText, word: str) -> bool:
