@@ -10,11 +10,7 @@
 //
 // Its error: a seed may be hidden by others on the way to a texel. Rong and Tan found fewer than
 // 1 % of the texels wrong, and then by the distance to a seed nearly as near.
-#pragma kernel(output = "frame:rgba32f", \
-    where = "m = max(size.x, size.y); a = (m > 1) + (m > 2) + (m > 4) + (m > 8) + (m > 16); \
-        b = (m > 32) + (m > 64) + (m > 128) + (m > 256) + (m > 512) + (m > 1024); \
-        c = (m > 2048) + (m > 4096) + (m > 8192) + (m > 16384)", \
-    repeat = "1 + a + b + c")
+#pragma kernel(output = "frame:rgba32f", repeat = "1 + bits(max(size.x, size.y) - 1)")
 
 vec4 kernel(ivec2 texel) {
     int jump = 1 << (iterations - 1 - iteration);

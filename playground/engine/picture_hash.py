@@ -19,6 +19,7 @@ from typing import Any
 from playground.engine.cache_keys import KeyMaker
 from playground.engine.plan import Plan, Step
 from playground.sketch.canonical import compiled_text
+from playground.sketch.reserved_names import MOMENT
 
 _DIGITS = 9
 
@@ -35,7 +36,7 @@ class PictureHasher:
         """Return the hash of what a plan's picture is made from; arguments as ``KeyMaker`` takes them."""
 
         def smoothed(step: Step) -> dict[str, Any]:
-            return {name: rounded(value) for name, value in given(step).items()}
+            return {n: value if n == MOMENT else rounded(value) for n, value in given(step).items()}
 
         return self._keys.keys_of(plan, driver, smoothed).steps[plan.picture.path]
 

@@ -14,7 +14,7 @@ from playground.live.theme import Theme
 from playground.live.widgets import Place, draw_value, explanation
 from playground.sketch.channels import Channel, channels, source_of, sources
 from playground.sketch.model import PassSpec, Sketch
-from playground.workbench.channel_list import file_of, in_words, note_of
+from playground.workbench.channel_list import endings_of, file_of, in_words, note_of
 from playground.workbench.edits import Draft
 from playground.workbench.parameter_list import Listing
 from playground.workbench.session import Session
@@ -43,7 +43,12 @@ class ChannelRows:
             shown = fitting_choice(in_words(base, channel.source))
             options = (source for source in self._sources_for(channel.path, base))
             source = choose(
-                f"##feeds {channel.path}", shown, options, channel.source, name=lambda s: in_words(base, s)
+                f"##feeds {channel.path}",
+                shown,
+                options,
+                channel.source,
+                name=lambda s: in_words(base, s),
+                flags=imgui.ComboFlags_.height_large.value,
             )
         in_file = source_of(draft.file, channel.path)
         if edited and in_file:
@@ -61,7 +66,8 @@ class ChannelRows:
         path, parameter = found
         values = self.listing.values(draft)
         with row("  file", lambda: explanation(parameter, path), edited=path in values.changed):
-            place = Place(f"##of {channel.path}", look.scale, Path(draft.file.folder))
+            endings = endings_of(draft.base, channel.source)
+            place = Place(f"##of {channel.path}", look.scale, Path(draft.file.folder), endings)
             new = draw_value(parameter, values.of[path], place)
         if new is not None:
             session.drafts.set(path, new)

@@ -1,4 +1,4 @@
-"""Files dropped on the window: a sketch opens, an image goes to a parameter or a channel that takes one."""
+"""Files dropped on the window: a sketch opens, an image, video or sound goes to what takes one."""
 
 from __future__ import annotations
 
@@ -17,11 +17,12 @@ from playground.sketch.dialects.shadertoy_folder import image_of
 from playground.sketch.find import find
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.sketch.unpack import is_pack, unpacked_beside
-from playground.workbench.channel_list import Taker, in_words, takers
+from playground.workbench.channel_list import MEDIA, Taker, in_words, takers
 from playground.workbench.commands import Commands
-from playground.workbench.parameter_list import Listing
+from playground.workbench.parameter_list import Item, Listing
 
 _TITLE = "dropped"
+_FILES = (*IMAGES, *(ending for endings in MEDIA.values() for ending in endings))
 
 
 def opened_from(sketch: Path) -> tuple[Path, str]:
@@ -47,12 +48,13 @@ class Drops:
     """The files that were dropped on one window."""
 
     commands: Commands
-    waiting: list[Path] = field(default_factory=list)  # images that the user is to choose a place for
+    waiting: list[Path] = field(default_factory=list)  # files that the user is to choose a place for
     _asks: bool = False  # the choice is still to be shown
-    _takers: tuple[Sketch | None, tuple[Taker, ...]] = (None, ())  # of the sketch
+    _takers: dict[str, tuple[Taker, ...]] = field(default_factory=dict)  # by the ending of what waits
+    _takers_of: Sketch | None = None
 
     def take(self, paths: list[Path]) -> None:
-        """Take in dropped files: the first sketch opens, images wait for a choice."""
+        """Take in dropped files: the first sketch opens, images, videos and sounds wait for a choice."""
         say = self.commands.notices.say
         for path in paths:
             if is_pack(path) and path.is_file():
@@ -61,16 +63,17 @@ class Drops:
             if _is_sketch(path):
                 self.commands.open(path)
                 return
-        images = [path for path in paths if path.suffix.lower() in IMAGES and path.is_file()]
+        files = [path for path in paths if path.suffix.lower() in _FILES and path.is_file()]
         for path in paths:
-            if path not in images:
-                say(f"{path.name} is neither a sketch, a shader nor an image")
-        if images and not self.parameters() and not self.channels():
-            say(f"no parameter of this sketch takes a file, so {images[0].name} has no place in it")
-        elif images:
-            self.waiting, self._asks = images, True
+            if path not in files:
+                say(f"{path.name} is neither a sketch, a shader nor an image, a video or a sound")
+        placed = [path for path in files if self.parameters(path) or self.channels(path)]
+        if files and not placed:
+            say(f"no parameter of this sketch takes a file like {files[0].name}, so it has no place in it")
+        elif placed:
+            self.waiting, self._asks = placed, True
 
-    def parameters(self) -> list[tuple[str, Parameter, Value]]:
+    def parameters(self, file: Path) -> list[tuple[str, Parameter, Value]]:
         """Return the parameters that take a file, those a technique exports first; those of channels not.
 
         Each with its path and the file that it has now.
@@ -81,20 +84,28 @@ class Drops:
         listing = Listing()
         items = [item for section in listing.sections(draft) for item in section.items]
         values = listing.values(draft).of
-        found = [item for item in items if item.parameter.widget.kind == "file"]
-        feeders = {taker.channel.feeder for taker in self.channels() if taker.channel.alone}
+        kernels = dict(draft.base.graph.kernels)
+
+        def takes(item: Item) -> bool:
+            registry = kernels[item.leaf.rpartition(".")[0]].registry
+            return file.suffix.lower() in MEDIA.get(registry, IMAGES)
+
+        found = [item for item in items if item.parameter.widget.kind == "file" and takes(item)]
+        feeders = {taker.channel.feeder for taker in self.channels(file) if taker.channel.alone}
         found = [item for item in found if item.path.partition(".")[0] not in feeders]
         found.sort(key=lambda item: not item.exported)
         return [(item.path, item.parameter, values[item.path]) for item in found]
 
-    def channels(self) -> tuple[Taker, ...]:
+    def channels(self, file: Path) -> tuple[Taker, ...]:
         """Return the channels of other tools' shaders that take a file."""
-        draft = self.commands.session.shown
+        draft, ending = self.commands.session.shown, file.suffix.lower()
         if draft is None:
             return ()
-        if self._takers[0] is not draft.base:
-            self._takers = draft.base, takers(draft.base)
-        return self._takers[1]
+        if self._takers_of is not draft.base:
+            self._takers_of, self._takers = draft.base, {}
+        if ending not in self._takers:
+            self._takers[ending] = takers(draft.base, ending)
+        return self._takers[ending]
 
     def feed(self, taker: Taker) -> None:
         """Feed a channel from the file that waits."""
@@ -126,14 +137,14 @@ class Drops:
         with look.font(look.bold):
             imgui.text_unformatted(f"Put {self.waiting[0].name} where?")
         draft = self.commands.session.shown
-        for taker in self.channels():
+        for taker in self.channels(self.waiting[0]):
             if imgui.selectable(f"{taker.channel.path}##channel {taker.channel.path}", False)[0]:
                 self.feed(taker)
                 break
             if draft is not None:
                 imgui.same_line(0, 2 * imgui.get_style().item_spacing.x)
                 imgui.text_disabled(f"now {in_words(draft.base, taker.channel.source)}")
-        for path, parameter, now in self.parameters():
+        for path, parameter, now in self.parameters(self.waiting[0]) if self.waiting else ():
             if imgui.selectable(f"{parameter.title}   {path}##{path}", False)[0]:
                 self.put(path)
                 break

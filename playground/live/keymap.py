@@ -19,7 +19,7 @@ GESTURES = (
     ("wheel", "nearer, farther"),
     ("double click, Ctrl+click", "type a value; pi/4 will do"),
     ("right click", "a parameter's menu"),
-    ("drop a file", "open a sketch, or choose what reads an image"),
+    ("drop a file", "open a sketch, or choose what reads an image, a video or a sound"),
 )
 """What a mouse does."""
 

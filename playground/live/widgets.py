@@ -36,6 +36,7 @@ class Place:
     label: str  # imgui's, unique in the panel
     scale: float  # of the screen
     folder: Path  # the sketch's own: its files are offered
+    endings: tuple[str, ...] = IMAGES  # of the files
 
 
 Draw = Callable[[Parameter, Value, Place], "Value | None"]
@@ -230,21 +231,22 @@ def _file(parameter: Parameter, value: Value, place: Place) -> Value | None:
     if imgui.begin_combo(
         f"{place.label}-files", "", imgui.ComboFlags_.no_preview | imgui.ComboFlags_.popup_align_left
     ):
-        names = _files_in(place.folder)
+        names = _files_in(place.folder, place.endings)
         for name in names:
             if imgui.selectable(name, name == text)[0]:
                 chosen = name
         if not names:
-            imgui.text_disabled("no images or elevation files next to the sketch")
+            none = "images or elevation files" if place.endings == IMAGES else ", ".join(place.endings)
+            imgui.text_disabled(f"no {none} next to the sketch")
         imgui.end_combo()
     if chosen is not None:
         return chosen
     return typed if changed and typed != text else None
 
 
-def _files_in(folder: Path) -> list[str]:
+def _files_in(folder: Path, endings: tuple[str, ...]) -> list[str]:
     inside = (p for pattern in ("*", "*/*") for p in folder.glob(pattern))
-    return sorted(p.relative_to(folder).as_posix() for p in inside if p.suffix.lower() in IMAGES)[:200]
+    return sorted(p.relative_to(folder).as_posix() for p in inside if p.suffix.lower() in endings)[:200]
 
 
 # ── between imgui's lists and parameters' values ─────────────────────────────

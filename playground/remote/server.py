@@ -54,8 +54,7 @@ _PAGE = {"": ("remote.html", "text/html"), "remote.js": ("remote.js", "text/java
 _PAGE |= {"remote.css": ("remote.css", "text/css")}
 _WANTED = 'expected a JSON object, as {"playing": false}'
 _SILENT = logging.getLogger("playground.remote")  # who asks gets the sentence; the terminal does not
-_SILENT.addHandler(logging.NullHandler())
-_SILENT.propagate = False
+_SILENT.setLevel(logging.CRITICAL + 1)
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 

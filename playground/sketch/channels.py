@@ -28,6 +28,22 @@ from playground.sketch.wiring import input_names, is_optional, output_names
 OUTPUT = "channel_texels"
 FOLDER = "foreign/"
 _SIZE = ("256", "256")
+_SIZES = {
+    "foreign/keys": ("256", "3"),
+    "foreign/microphone": ("512", "2"),
+    "foreign/sky_box": ("128", "768"),
+    "foreign/sound": ("512", "2"),
+    "foreign/spectrum": ("512", "2"),
+}
+_SIZES_OF_SHAPES = {
+    "cube": ("64", "384"),
+    "volume": ("32", "1024"),
+    "line": ("256", "1"),
+}  # of other stand-ins
+_CUBES = ("foreign/sky_box", "foreign/cube_faces")  # six square faces above each other
+_HEARD = ("foreign/microphone", "foreign/sound")
+_ANY = "foreign/black"  # what has any shape
+_OWN_SIZE = ("camera", "video_file")  # sources that give a pass of no size their own
 _NUMBER = re.compile(r"\d{1,2}$")
 
 
@@ -39,6 +55,7 @@ class Channel:
     source: str  # what feeds it now; "" for nothing
     feeder: str = ""  # the pass of the sketch that feeds it; "" where that is inside the shader's own
     alone: bool = False  # the feeder feeds nothing else, and a technique of ``glsl/foreign`` fills it
+    shape: str = ""  # of what it reads: a value of ``SHAPES``
 
     @property
     def spec(self) -> str:
@@ -63,13 +80,20 @@ def channels(sketch: Sketch) -> tuple[Channel, ...]:
 @lru_cache(maxsize=16)
 def _channels(key: Identity[Graph]) -> tuple[Channel, ...]:
     graph = key.object
-    names = [(spec, name) for spec in graph.passes for name in sorted(_names(spec.technique), key=_by_number)]
+    names = [
+        (spec, name)
+        for spec in graph.passes
+        for name in sorted(_names(spec.technique), key=_by_number)
+        if name not in dict(spec.feedback)
+    ]
     if not names:
         return ()
     flat = flatten(_bare(graph))
     readers: dict[str, set[tuple[str, str]]] = {}  # passes of a shader read one channel by one name
     sources: dict[tuple[str, str], Source | None] = {}
+    shapes: dict[tuple[str, str], str] = {}
     for leaf in leaves_of(flat.nodes):
+        shapes |= {(leaf.path, declared.name): declared.shape for declared in leaf.kernel.inputs}
         for name, source in leaf.inputs:
             sources[leaf.path, name] = source
             if isinstance(source, Ref):
@@ -77,11 +101,12 @@ def _channels(key: Identity[Graph]) -> tuple[Channel, ...]:
     found = []
     for spec, name in names:
         kernel, _, own = _leaf(spec, name).rpartition(".")
-        source = sources.get((kernel, own))
+        source, shape = sources.get((kernel, own)), shapes.get((kernel, own), "")
         if isinstance(source, Ref):
-            found.append(_fed(graph, f"{spec.name}.{name}", source, len(readers[source.path]), flat.specs))
+            fed = _fed(graph, f"{spec.name}.{name}", source, len(readers[source.path]), flat.specs)
+            found.append(replace(fed, shape=shape))
         elif source is None:
-            found.append(Channel(f"{spec.name}.{name}", ""))
+            found.append(Channel(f"{spec.name}.{name}", "", shape=shape))
     return tuple(found)
 
 
@@ -134,10 +159,15 @@ def sources(sketch: Sketch, path: str) -> list[str]:
         for outputs in [output_names(spec.technique)]
         for output in outputs
         if spec.name not in (now.spec, now.feeder)
-        and not (spec.name in stand_ins and spec.size == _SIZE)  # another channel's own
+        and not (spec.name in stand_ins and not _reads_file(spec))  # another channel's own
     ]
-    found = dict.fromkeys([*_feeds(), *passes, now.source])
+    feeds = [use for use in _feeds() if use == _ANY or (use in _CUBES) == (now.shape == "cube")]
+    found = dict.fromkeys([*feeds, *passes, now.source])
     return [source for source in found if source == now.source or _may_feed(sketch, path, source)]
+
+
+def _reads_file(spec: PassSpec) -> bool:
+    return isinstance(spec.technique, Kernel) and bool(spec.technique.file_parameters)
 
 
 def is_technique(source: str) -> bool:
@@ -192,7 +222,7 @@ def with_source(sketch: Sketch, path: str, source: str) -> Sketch:
         source,
         technique,
         values=(*_values(technique, now), *_same_choices(technique, before)),
-        size=_size(technique, name, before),
+        size=_size(technique, source, now.shape, name, before),
         file=shown(sketch.file),
     )
     if not now.alone:
@@ -251,18 +281,27 @@ def _same_choices(technique: Technique, before: PassSpec | None) -> Iterator[tup
             yield name, parameter.widget.choices.index(was.widget.choices[value])
 
 
-def _size(technique: Technique, name: str, before: PassSpec | None) -> tuple[str, str]:
+def _size(
+    technique: Technique, use: str, shape: str, name: str, before: PassSpec | None
+) -> tuple[str, str] | None:
     """Return the size of a pass that feeds a channel: that of its picture, if it reads one.
 
-    A sound has no size: its texels are as many as those of the stand-in ``before``.
+    A sound has no size: its texels are as many as those of a made-up one ``before``.
     """
-    if isinstance(technique, Kernel) and technique.registry == "sound_file":
-        return before.size if before is not None and before.size is not None else _SIZE
-    if isinstance(technique, Kernel):
-        for parameter in technique.parameters:
-            if parameter.widget.kind == "file" and parameter.type == "sampler2D":
-                return f"{name}.{parameter.name}.size.x", f"{name}.{parameter.name}.size.y"
-    return _SIZE
+    kernel = technique if isinstance(technique, Kernel) else None
+    if kernel is not None and kernel.registry in _OWN_SIZE:
+        return None
+    if use in _HEARD and before is not None and before.use == "foreign/spectrum":
+        return before.size
+    files = [p for p in kernel.parameters if p.widget.kind == "file"] if kernel is not None else []
+    if files and kernel is not None and kernel.kind == "kernel":
+        wide, high = (f"{name}.{files[0].name}.size.{axis}" for axis in "xy")
+        return (wide, f"6 * {wide}") if use in _CUBES else (wide, high)
+    if use in _SIZES:
+        return _SIZES[use]
+    if before is not None and before.use not in _SIZES and before.size and not _reads_file(before):
+        return before.size  # as an ISF filter has it, whose image is as large as its picture
+    return _SIZES_OF_SHAPES.get(shape, _SIZE)
 
 
 def _names(technique: Technique) -> Iterator[str]:
@@ -279,26 +318,30 @@ def _names(technique: Technique) -> Iterator[str]:
             exported |= dict.fromkeys(export.targets)
             yield export.name
     for spec in technique.passes:
-        wired = {name for name, _ in spec.inputs}
+        wired = {name for name, _ in (*spec.inputs, *spec.feedback)}
         for name in _names(spec.technique):
             if f"{spec.name}.{name}" not in exported and name not in wired:
                 yield f"{spec.name}.{name}"
 
 
 def _is_foreign(graph: Graph, target: str) -> bool:
-    path = target.rpartition(".")[0]
-    return any(kernel.dialect and where == path for where, kernel in graph.kernels)
+    return _reader(graph, target)[0].dialect != ""
 
 
 def _leaf(spec: PassSpec, name: str) -> str:
     """Return the path of the kernel's input that a channel's name leads to."""
-    technique, path = spec.technique, spec.name
+    return f"{spec.name}.{_reader(spec.technique, name)[1]}"
+
+
+def _reader(technique: Technique, name: str) -> tuple[Kernel, str]:
+    """Return the kernel that has an input of a name or path, and the path of the input."""
+    path = ""
     while isinstance(technique, Graph):
         export = next((e for e in technique.inputs if e.name == name), None)
         head, _, name = (export.targets[0] if export else name).partition(".")
-        path = f"{path}.{head}"
+        path = f"{path}{head}."
         technique = technique.find(head).technique  # type: ignore[union-attr]
-    return f"{path}.{name}"
+    return technique, f"{path}{name}"
 
 
 def _bare(graph: Graph) -> Sketch:

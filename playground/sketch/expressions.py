@@ -2,9 +2,9 @@
 
 An expression is parsed by Python's grammar, and its tree is evaluated here, never by
 ``eval``. There are + - * / // % **, comparisons, ``a if b else c``, and the
-functions ``log2`` (exact), ``min``, ``max``, ``abs``, ``floor``, ``ceil``. Names may be
-dotted (``size.x``, ``height.size.y``); the caller gives their values. Whole
-numbers are divided exactly: ``3 * (n / 3)`` is n.
+functions ``log2`` (exact), ``bits`` (binary digits), ``min``, ``max``, ``abs``, ``floor``,
+``ceil``. Names may be dotted (``size.x``, ``height.size.y``); the caller gives their values.
+Whole numbers are divided exactly: ``3 * (n / 3)`` is n.
 """
 
 from __future__ import annotations
@@ -258,6 +258,13 @@ def _log2(value: Number) -> int:
     return whole.bit_length() - 1
 
 
+def _bits(value: Number) -> int:
+    whole = int(value)
+    if whole != value or whole < 0:
+        raise ExpressionError(f"bits({float(value):g}): a whole number from 0 was expected")
+    return whole.bit_length()
+
+
 _BINARY: dict[type[ast.operator], Callable[[Number, Number], Number]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
@@ -277,6 +284,7 @@ _COMPARE: dict[type[ast.cmpop], Callable[[Number, Number], bool]] = {
 }
 _FUNCTIONS: dict[str, Callable[..., Number]] = {
     "log2": _log2,
+    "bits": _bits,
     "min": min,
     "max": max,
     "abs": abs,

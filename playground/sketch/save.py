@@ -184,7 +184,9 @@ def _with_feed(text: str, file: Sketch, wanted: Sketch, was: PassSpec, now: Pass
             text = put(
                 _view(text, file, was.name), (*_table(file, was.name), "inputs"), name, text_of(source)
             )
-    if now.size != was.size and now.size is not None:
+    if now.size is None:
+        text = drop(text, _table(file, was.name), "size") if was.size is not None else text
+    elif now.size != was.size:
         text = put(text, _table(file, was.name), "size", written_size(now.size))
     for path, value in now.values:
         if (path, value) not in was.values:

@@ -75,7 +75,7 @@ def read_passes(file: TomlFile, read: Read) -> tuple[PassSpec, ...]:
     tables, view = file.tables("pass"), file.table.get("view")
     own = str(view.get("use", "")) if isinstance(view, dict) else ""
     if not tables and not own.startswith("./"):  # a shader of the sketch's own may be the whole picture
-        raise no_passes(file)
+        raise file.error('no passes; a [[pass]] with name = "…" and use = "…" was expected', "pass")
     found: dict[str, PassSpec] = {}
     for index, table in enumerate(tables):
         place = ("pass", index)
@@ -92,11 +92,6 @@ def read_passes(file: TomlFile, read: Read) -> tuple[PassSpec, ...]:
             raise file.error(wrong, *place, "name")
         found[name] = read_pass(file, table, place, name, read)
     return tuple(found.values())
-
-
-def no_passes(file: TomlFile) -> SketchError:
-    """Return the error of a file that has too little to run."""
-    return file.error('no passes; a [[pass]] with name = "…" and use = "…" was expected', "pass")
 
 
 def read_pass(file: TomlFile, table: Mapping[str, Any], place: Place, name: str, read: Read) -> PassSpec:

@@ -13,12 +13,12 @@ from playground.sketch.flat import repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.model import LARGEST_SIDE, Camera, Graph, PassSpec, Preset, Shot, Sketch
 from playground.sketch.toml_camera import read_camera
-from playground.sketch.toml_graph import Read, no_passes, read_pass, read_passes, read_set
+from playground.sketch.toml_graph import Read, read_pass, read_passes, read_set
 from playground.sketch.toml_keyframes import read_keyframes
 from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
-from playground.sketch.wiring import check_graph, input_names, is_optional
+from playground.sketch.wiring import check_graph
 
 SKETCH_KEYS = frozenset({*TERRAIN_KEYS, "main", "view", "shot", "preset", "keyframe"})
 """What a sketch's TOML may hold and a technique's may not."""
@@ -79,8 +79,6 @@ def _view(file: TomlFile, passes: tuple[PassSpec, ...], read: Read) -> tuple[Pas
         return PassSpec("view", _PLAIN_VIEW, technique, inputs, file=shown(file.path)), Camera(), 4
     file.only(table, _VIEW, "view")
     spec = read_pass(file, {"use": _DEFAULT_VIEW, **table}, ("view",), "view", read)
-    if not passes and any(not is_optional(spec.technique, name) for name in input_names(spec.technique)):
-        raise no_passes(file)
     return spec, read_camera(file, table, Camera(), ("view",)), _samples(file, table, 4, ("view",))
 
 

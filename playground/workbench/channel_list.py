@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL
 from playground.sketch.channels import Channel, channels, is_technique, sources
 from playground.sketch.model import Kernel, Parameter, Sketch, Technique
 from playground.sketch.techniques import read_technique
+
+PICTURES = (".png", ".jpg", ".jpeg", ".webp")
+"""Endings of what is read as a picture."""
+
+MEDIA = {"video_file": VIDEO_FILES, "sound_file": SOUND_FILES}
+"""Endings of what sources of these kinds read."""
 
 
 def in_words(sketch: Sketch, source: str) -> str:
@@ -40,23 +47,30 @@ def file_of(sketch: Sketch, channel: Channel) -> tuple[str, Parameter] | None:
 
 @dataclass(frozen=True, slots=True)
 class Taker:
-    """A channel that an image file may feed."""
+    """A channel that a file may feed."""
 
     channel: Channel
     source: str  # the technique that reads the file
     parameter: str  # of the technique: names the file
 
 
-def takers(sketch: Sketch) -> tuple[Taker, ...]:
-    """Return the channels that an image file may feed."""
+def takers(sketch: Sketch, ending: str) -> tuple[Taker, ...]:
+    """Return the channels that a file of an ending, as ".png", may feed."""
     found = []
     for channel in channels(sketch):
         for source in [s for s in sources(sketch, channel.path) if is_technique(s)]:
             parameter = _file_parameter(_technique(sketch, source))
-            if parameter is not None and parameter.type == "sampler2D":
+            if parameter is not None and ending in endings_of(sketch, source):
                 found.append(Taker(channel, source, parameter.name))
-                break
     return tuple(found)
+
+
+def endings_of(sketch: Sketch, source: str) -> tuple[str, ...]:
+    """Return the endings of the files that a technique reads for a channel."""
+    kernel = _technique(sketch, source)
+    if not isinstance(kernel, Kernel):
+        return ()
+    return MEDIA.get(kernel.registry, PICTURES if kernel.kind == "kernel" else ())
 
 
 def _technique(sketch: Sketch, source: str) -> Technique:
@@ -65,6 +79,6 @@ def _technique(sketch: Sketch, source: str) -> Technique:
 
 
 def _file_parameter(technique: Technique) -> Parameter | None:
-    if not isinstance(technique, Kernel):
-        return None
-    return next(iter(technique.file_parameters), None)
+    """Return the one parameter of a technique that names a file; None for none, or several."""
+    found = technique.file_parameters if isinstance(technique, Kernel) else ()
+    return found[0] if len(found) == 1 else None

@@ -22,7 +22,7 @@ from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan
 from playground.errors import ContextError, PlaygroundError
-from playground.sketch.assign import resolve
+from playground.sketch.assign import find_targets, resolve
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Sketch, Value
@@ -241,6 +241,18 @@ class Session:
         """Press a button, by its path: the next frame alone sees it pressed."""
         if self.sketch is not None:
             self._pressed |= {target.path for target in resolve(self.sketch.graph, path)}
+
+    def without_buttons(self, values: Mapping[str, Value]) -> dict[str, Value]:
+        """Press the buttons that values by path set to true; return the values of all else."""
+        graph = self.sketch.graph if self.sketch is not None else None
+        others: dict[str, Value] = {}
+        for path, value in values.items():
+            targets = find_targets(graph, path) if graph is not None else ()
+            if not targets or targets[0].parameter.widget.kind != "button":
+                others[path] = value
+            elif value:
+                self.press(path)
+        return others
 
     def _press(self) -> None:
         """Pass the buttons pressed since the last frame to the engine, and let go of those before."""

@@ -7,9 +7,11 @@ import gc
 import numpy as np
 import pytest
 
+from playground.engine import binder
 from playground.engine.engine import Engine
 from playground.engine.planner import Planner
 from playground.errors import SketchError
+from playground.gpu.shapes import copied
 from playground.images.files import write_png
 from playground.sketch.load import load
 from tests.cube_maps import directions, face_and_place
@@ -153,6 +155,17 @@ def test_a_texture_that_cannot_be_a_cube_is_one_sentence_at_the_wire(folder):
             found.file.endswith("sketch.toml")
             and found.line == SKETCH.count("\n", 0, SKETCH.index("[view]")) + 1
         )
+
+
+def test_a_copy_is_made_once_for_all_who_read_it(any_engine, folder, monkeypatch):
+    made = []
+    monkeypatch.setattr(binder, "copied", lambda *given: made.append(given[1]) or copied(*given))
+    read = Reader(any_engine, folder, "cube", "textureLod(data, at, 0.0)")
+    for way in ((1, 0, 0), (0, 1, 0), (0, 0, -1)):
+        read(way)
+    assert made == ["cube"]
+    Reader(any_engine, folder, "cube", "textureLod(data, at, 0.0)", seed=1)((1, 0, 0))
+    assert made == ["cube", "cube"]
 
 
 def test_copies_are_released(any_engine, folder, alive):

@@ -228,6 +228,8 @@ def test_what_a_later_pass_writes_and_nothing_keeps_reads_zero(any_engine, isf):
         ('"HEIGHT": "$HEIGHT /"', "HEIGHT of pass 0: .*is not an expression", 1),
         ('"WIDTH": "import os"', "is not an expression", 1),
         ('"WIDTH": [1]', "is no size", 1),
+        ('"WIDTH": "(1, 2)"', r"WIDTH of pass 0: '\(1, 2\)' holds something other", 1),
+        ('"WIDTH": "WIDTH / 2"', r"'WIDTH / 2' names 'WIDTH', .*there are: \$WIDTH, \$HEIGHT", 1),
     ],
 )
 def test_a_size_that_cannot_be(isf, size, words, line):
@@ -339,6 +341,30 @@ def test_an_imported_image_is_as_in_its_file(any_engine, isf, folder):
     assert kernel.unfed == (("photo", "there is no file './gone.png', so a stand-in is drawn"),)
     outside = isf(TEXTS["imported_1"].replace("./photo.png", "../../x.png"))
     assert "lies outside the sketch's folder" in kernels(outside)[0].unfed[0][1]
+
+
+SIX = ["right", "left", "top", "bottom", "front", "back"]
+CUBE = """/*{{"ISFVSN": "1", "INPUTS": [], "IMPORTED": [{{"NAME": "around", "TYPE": "cube", "PATH": {}}}]}}*/
+uniform vec3 towards;  //! Which way
+void main() {{ gl_FragColor = textureCube(around, towards); }}
+"""
+
+
+def test_a_cube_of_six_images(any_engine, isf, folder):
+    for number, name in enumerate(SIX):
+        face = np.full((4, 4, 4), 255, np.uint8)
+        face[..., 0] = 40 * number
+        (folder.path / "faces").mkdir(exist_ok=True)
+        write_png(folder.path / "faces" / f"{name}.png", face)
+    paths = [f"faces/{name}.png" for name in SIX]
+    path = isf(CUBE.format(str(paths).replace("'", '"')))
+    ways = [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0), (0, 0, 1), (0, 0, -1)]
+    seen = [int(drawn(any_engine, path, size=(2, 2), **{"view.towards": way})[0, 0, 0]) for way in ways]
+    np.testing.assert_allclose(seen, [0, 40, 80, 120, 160, 200], atol=1)
+    missing = isf(CUBE.format(str([*paths[:5], "faces/x.png"]).replace("'", '"')))
+    assert kernels(missing)[0].unfed[0][1] == "there is no file 'faces/x.png', so a sky stands in"
+    with pytest.raises(ShaderError, match="cube 'around' needs the paths of six images"):
+        load(isf(CUBE.format('["a.png"]')))
 
 
 # ── bad input ────────────────────────────────────────────────────────────────

@@ -15,6 +15,7 @@ from playground.engine.planner import Planner
 from playground.errors import PlaygroundError, ShaderError
 from playground.images.files import write_png
 from playground.reduce.inline import inline_sketch
+from playground.sketch.channels import with_source
 from playground.sketch.load import load
 from playground.sketch.warnings import former_names_used
 from tests.toy_texts import (
@@ -24,6 +25,7 @@ from tests.toy_texts import (
     GROWS,
     IMAGE,
     PLAIN,
+    SHOWS,
     SOUND,
     VSCODE,
     A,
@@ -262,7 +264,7 @@ def test_what_cannot_be_drawn_in_parts_says_so(any_engine, opened, name):
 
 
 def test_a_sketch_may_use_an_export_or_a_folder_and_feed_its_channels(any_engine, folder):
-    folder.write("toy.json", export(one("Image", IMAGE, {"id": "a", "src": "/media/a.jpg", "channel": 0}), A))
+    folder.write("toy.json", export(one("Image", IMAGE, {"id": "a", "src": "/media/a.jpg", "channel": 0})))
     folder.write("Image.glsl", IMAGE)
     folder.write("Common.glsl", "float nothing;\n")
     for use in ("./toy", "./Image"):
@@ -277,6 +279,7 @@ def test_a_sketch_may_use_an_export_or_a_folder_and_feed_its_channels(any_engine
     ("text", "words", "place"),
     [
         ('{"Shader": {"renderpass": [{"code": "void\\n"}}', "damaged JSON", (1, 46)),
+        ('{"renderpass": ' + "[" * 200_000, "damaged JSON: it nests too deeply", (0, 0)),
         ('{"renderpass": 3}', "holds a list of passes called renderpass", (0, 0)),
         (export(), "there is no Image pass to draw; there is nothing", (0, 0)),
         (
@@ -354,6 +357,27 @@ def test_channels_of_a_folder_are_its_buffers_in_order_unless_a_line_says_otherw
         said = [note for note in notes(sketch) if "nothing says otherwise" in note]
         assert len(said) == (not head)
         assert not said or f"{channel} reads Buffer {'A' if value == 10 else 'C'}" in said[0]
+
+
+def test_a_channel_that_is_read_by_direction_is_the_cube_map_or_a_sky(any_engine, opened, folder):
+    text = "void mainImage(out vec4 c, in vec2 p) { vec3 rd = -vec3(0, 1, 0); c = texture(iChannel1, rd); }\n"
+    alone = opened({"a.frag": text}, "a.frag")
+    assert first_texel(any_engine, alone)[2] < 102, "the ground of a sky"
+    assert "nothing feeds iChannel1" in notes(alone)[0]
+    sketch = opened({"t/Image.glsl": text, "t/Cube A.glsl": CUBE}, "t")
+    np.testing.assert_allclose(first_texel(any_engine, sketch)[:3], [128, 0, 128], atol=2)
+    declared = opened({"b.frag": f"uniform sampler3D iChannel1;\n{text}"}, "b.frag")
+    assert [i.shape for i in declared.graph.find("view").technique.inputs] == ["volume"]
+
+
+@pytest.mark.parametrize("opens", ["a.frag", "a.json"])
+def test_another_source_of_a_cube_map_has_a_cube_s_size(any_engine, opened, opens):
+    image = SHOWS.replace("iChannel0, uv", "iChannel0, vec3(uv, 1.0)")
+    site = {"id": "b", "src": "/media/a/2.png", "ctype": "cubemap", "channel": 0}
+    sketch = opened({"a.frag": image, "a.json": export(one("Image", image, site))}, opens)
+    sky = drawn(any_engine, sketch)
+    for source in ("foreign/noise", "foreign/cube_faces"):
+        assert not np.array_equal(drawn(any_engine, with_source(sketch, "view.iChannel0", source)), sky)
 
 
 def test_a_later_buffer_of_a_folder_is_that_of_the_frame_before(any_engine, opened):

@@ -218,6 +218,26 @@ void main() {
     np.testing.assert_allclose(picture(text)[0, 0], [0.6, 0.4, 0.2, 1.0], atol=1 / 255)
 
 
+SHADOWS = """uniform vec2 u_resolution;
+void main() {
+    float shade = texture2D(LIGHT_SHADOWMAP, gl_FragCoord.xy / LIGHT_SHADOWMAP_SIZE).r;
+    gl_FragColor = vec4(gl_FragCoord.xy / u_resolution, shade, 1.0);
+}
+"""
+
+
+@pytest.mark.parametrize("passes", [False, True])
+def test_a_shadow_map_that_is_read_without_a_question_is_black_and_named(picture, read, passes):
+    post = "#ifdef POSTPROCESSING\nvoid main() { gl_FragColor = texture2D(u_scene, vec2(0.5)); }\n#else\n"
+    text = f"{post}{SHADOWS}#endif\n" if passes else SHADOWS
+    assert (picture(text)[..., 2] == 0).all()
+    kernels = [kernel for _, kernel in read(text, "").graph.kernels]
+    assert any(("LIGHT_SHADOWMAP", "it reads black") in kernel.unfed for kernel in kernels)
+    asked = text.replace("float shade =", "float shade = 1.0;\n#ifdef LIGHT_SHADOWMAP\n    shade =")
+    asked = asked.replace("_SIZE).r;", "_SIZE).r;\n#endif")
+    assert (picture(asked)[..., 2] == 1).all(), "a text that asks for it does without"
+
+
 # ── floods ───────────────────────────────────────────────────────────────────
 
 FLOOD_TEXT = """#elif defined(FLOOD_ALGORITHM)
@@ -281,6 +301,18 @@ def test_the_rounds_of_a_flood_are_as_many_as_its_size_needs(read):
         np.testing.assert_array_equal(
             read(text, "flood0", size)[0, 0], [1 + rounds * rounds, 1 + rounds, 1, 1]
         )
+
+
+@pytest.mark.parametrize("own", [False, True])
+def test_a_flood_of_a_share_of_the_picture(read, own):
+    text = flood_text(own).replace(
+        "uniform sampler2D u_flood0, u_floodSrc,",
+        "uniform sampler2D u_flood0; // 0.5\nuniform sampler2D u_floodSrc,",
+    )
+    seeds, found = read(text, "flood0_seeds", (64, 40)), read(text, "flood0", (64, 40))
+    assert found.shape == (20, 32, 4) and (found[..., :2] != 0).all()
+    there = (seeds[..., :2] != 0).any(-1)
+    np.testing.assert_array_equal(found[there], seeds[there])
 
 
 # ── pyramids ─────────────────────────────────────────────────────────────────

@@ -85,6 +85,15 @@ def test_the_texture_is_shadertoy_s(any_engine, sketch):
     np.testing.assert_array_equal(any_engine.render(sketch, size=(2, 2)).array[0, 0], [255, 0, 255, 255])
 
 
+def test_a_picture_s_hash_goes_by_its_keys(any_engine, sketch):
+    hashes = []
+    for codes in ([], [A], [A]):
+        any_engine.runner.inputs.keyboard.hold(codes)
+        any_engine.draw(sketch, size=(4, 4))
+        hashes.append((any_engine.drawn(), any_engine.fingerprint(sketch, size=(4, 4))))
+    assert len({*hashes}) == 3, "none; pressed; held"
+
+
 def test_its_pass_runs_only_when_a_key_changes(any_engine, sketch):
     keyboard = any_engine.runner.inputs.keyboard
     for codes in ([], [A], [A], [A], [A, LEFT], [A, LEFT]):

@@ -10,6 +10,7 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.images.files import write_png
+from playground.paths import SKETCHES
 from playground.workbench.problems import Warnings
 
 from .desk import Bare
@@ -101,6 +102,17 @@ def test_a_dropped_image_is_put_into_the_channel_that_is_chosen(alone: Bare, fol
     alone.bench.undo.undo()
     alone.run_frames(3)
     assert sources(alone) == {}
+    alone.close()
+
+
+def test_a_dropped_video_and_a_sound_go_to_a_channel_too(alone: Bare, folder: Path) -> None:
+    data = SKETCHES / "data"
+    for name, source in (("sun_flight.mp4", "foreign/video"), ("tones.flac", "foreign/sound")):
+        alone.drops.take([data / name])
+        alone.run_frames(3)
+        alone.click("view.iChannel0##channel view.iChannel0")
+        alone.run_frames(3)
+        assert alone.session.error is None and sources(alone) == {"view.iChannel0": source}
     alone.close()
 
 

@@ -28,11 +28,14 @@ uniform vec3  tint = vec3(1.0, 0.5, 0.0); //! colour
 uniform int   kind = 0;      //! menu("round", "sharp", "flat")
 uniform bool  rocks = true;  //! checkbox
 uniform vec2  middle = vec2(0.5, 0.5); //! point
+uniform vec2  place = vec2(0.0, 5.0); //! point(-1, 1, 0, 10)
+uniform bool  fire = false;  //! button
 uniform float free = 1.0;    //! Any number
 uniform float phase = 0.0;   //! angle
 uniform sampler2D grass;     //! file("grass.png")
 float kernel(ivec2 texel) {
     float all = level + scale + float(count) + sun.x + tint.g + float(kind) + middle.x + free + phase;
+    all += place.x + (fire ? 1.0 : 0.0);
     return level * float(texel.x) / float(size.x) + (rocks ? 1e-9 : 2e-9) * all * sin(time)
         + 0.0 * texelFetch(grass, ivec2(0), 0).r;
 }
@@ -117,6 +120,13 @@ class Desk:
             assert time.monotonic() < end, "it does not happen"
             self.frame()
             time.sleep(0.002)
+
+    def pressed(self) -> list[str]:
+        """Return a list of the buttons that are pressed from now on."""
+        found: list[str] = []
+        press = self.session.press
+        self.session.press = lambda path: (found.append(path), press(path))[1]  # type: ignore
+        return found
 
     def value(self, path: str) -> Any:
         assert self.session.sketch is not None

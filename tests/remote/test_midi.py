@@ -178,6 +178,18 @@ def test_notes_switch_step_and_strike(desk: Desk, device: Device):
     assert desk.value("height.rocks") is True
 
 
+def test_a_button_is_pressed_by_a_note_and_where_a_control_rises(desk: Desk, device: Device):
+    pressed = desk.pressed()
+    device.learn("height.fire")
+    for position, count in ((63, 0), (64, 1), (127, 1), (0, 1), (127, 2)):
+        device.turn(KNOB, position)
+        assert len(pressed) == count, position
+    desk.bench.controllers.learn("height.fire")
+    device.strike(60)
+    device.strike(60)
+    assert len(pressed) == 3 and desk.value("height.fire") is False
+
+
 def test_a_control_of_14_bits_is_found_while_it_is_learned(desk: Desk, device: Device):
     desk.bench.controllers.learn("height.level")
     device.raw(0xB0, 7, 0, 0xB0, 39, 5)

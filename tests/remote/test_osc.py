@@ -111,6 +111,14 @@ def test_values_come_in_by_address(desk: Desk, surface: Surface):
     assert desk.notices == []
 
 
+def test_a_button_is_pressed_where_its_message_is_no_zero(desk: Desk, surface: Surface):
+    pressed = desk.pressed()
+    surface.send("/height/fire", 1)
+    surface.send("/height/fire", 0)
+    surface.send("/height/fire", True)
+    assert pressed == ["height.fire"] * 2 and desk.value("height.fire") is False
+
+
 def test_a_colour_of_osc_itself(desk: Desk, surface: Surface):
     builder = OscMessageBuilder("/height/tint")
     builder.add_arg(0xFF000080, "r")  # red, half opaque

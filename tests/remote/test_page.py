@@ -77,6 +77,11 @@ def test_each_widget_sets_what_the_window_has(desk: Desk, page: Browser) -> None
         while desk.value(f"height.{name}") != pytest.approx(value, rel=1e-3):  # type: ignore[arg-type]
             assert time.monotonic() < end, f"{name} is {desk.value(f'height.{name}')}, and was {before}"
             desk.frame()
+    pressed = desk.pressed()
+    desk.during(lambda: page.run(f"{ROW.format('fire')}.querySelector('button').click()"))
+    desk.until(lambda: pressed == ["height.fire"])
+    change("place", "at(1).value = 0.25; at(1).oninput()")
+    desk.until(lambda: desk.value("height.place") == (0.0, 2.5))
     change("grass", "at(0).value = '/etc/passwd'; at(0).onchange()")
     desk.during(lambda: page.wait("document.getElementById('message').textContent.includes('own folder')"))
 

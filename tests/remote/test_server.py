@@ -165,6 +165,18 @@ def test_values_are_set_with_the_checks_and_sentences_of_set(desk: Desk):
     assert "locked" in do(desk, reset="height.level")["error"]
 
 
+def test_a_button_is_pressed_once_and_sets_nothing(desk: Desk):
+    opened(desk)
+    pressed = desk.pressed()
+    do(desk, set={"height.fire": True, "height.level": 0.5})
+    assert pressed == ["height.fire"] and desk.value("height.fire") is False
+    do(desk, set={"height.fire": False})
+    assert pressed == ["height.fire"] and desk.value("height.level") == 0.5
+    ranges = {one["path"]: one["ranges"] for one in get(desk, "parameters")}
+    assert ranges["height.place"] == [[-1, 1], [0, 10]] and ranges["height.sun"] == [[0, 360], [0, 90]]
+    assert ranges["height.free"] == [None]
+
+
 def test_what_a_remote_sets_is_a_step_that_can_be_undone(desk: Desk):
     opened(desk)
     assert do(desk, set={"height.level": 0.5})["can_undo"]
@@ -372,6 +384,8 @@ def test_more_clients_than_may_listen_are_refused(desk: Desk):
                 with pytest.raises(aiohttp.WSServerHandshakeError) as caught:
                     await client.ws_connect(f"{url}events")
                 assert not any(one.closed for one in open_ones)
+                for one in open_ones:
+                    await one.close()
                 return int(caught.value.status)
 
         return asyncio.run(go())

@@ -10,9 +10,11 @@ import pytest
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 from playground.images.files import write_png
+from playground.paths import GLSL
 from playground.sketch.channels import channels, source_of, sources, with_source
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
+from tests.media.films import own_film
 
 TWO = """void mainImage(out vec4 c, in vec2 p) {
     c = texelFetch(iChannel0, ivec2(0), 0) + texelFetch(iChannel1, ivec2(0), 0);
@@ -26,9 +28,11 @@ PART = "void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(
 NONE = "void main() { gl_FragColor = vec4(1.0); }\n"
 LAND = '[[pass]]\nname = "land"\nuse = "generation/white_noise"\nsize = 16\n'
 PHOTO = '[[pass]]\nname = "photo"\nuse = "foreign/image"\nsize = [8, 4]\nset = { image = "a.png" }\n'
+CUBES = ["cube_faces", "sky_box"]
 STAND_INS = [
-    f"foreign/{name}"
-    for name in "black cube_faces image keys noise picture sky_box sound spectrum video".split()
+    f"foreign/{file.stem}"
+    for file in sorted((GLSL / "foreign").glob("*.glsl"))
+    if 'output = "channel_texels:' in file.read_text("utf-8") and file.stem not in CUBES
 ]
 
 
@@ -62,6 +66,59 @@ def test_a_sketch_of_a_view_alone_is_the_shader_s_picture(folder: Path, any_engi
     assert pixel(any_engine, sketch(folder, 'use = "./none"')) == (255, 255, 255)
     with pytest.raises(PlaygroundError, match="no passes"):
         sketch(folder, 'use = "view/terrain"')
+
+
+FILTER = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}*/
+void main() { gl_FragColor = IMG_THIS_PIXEL(inputImage); }
+"""
+
+
+def test_a_stand_in_for_a_filter_s_image_stays_as_large_as_the_picture(
+    folder: Path, any_engine: Engine
+) -> None:
+    (folder / "filter.fs").write_text(FILTER, "utf-8")
+    found = load(folder / "filter.fs")
+    for source in ("foreign/picture", "foreign/noise", "foreign/black"):
+        any_engine.render(with_source(found, "view.inputImage", source), size=(12, 7))
+        assert any_engine.plan is not None
+        assert any_engine.plan.step("inputImage").size == (12, 7)  # type: ignore[union-attr]
+
+
+CUBE = """uniform samplerCube iChannel0;
+void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec3(1.0)); }
+"""
+
+
+def test_a_cube_is_fed_from_what_has_six_faces(folder: Path, any_engine: Engine) -> None:
+    (folder / "cube.frag").write_text(CUBE, "utf-8")
+    found = load(folder / "cube.frag")
+    assert sources(found, "view.iChannel0") == ["foreign/black", "foreign/cube_faces", "foreign/sky_box"]
+    for source in sources(found, "view.iChannel0"):
+        any_engine.render(with_source(found, "view.iChannel0", source), size=(4, 4))
+        assert any_engine.plan is not None
+        wide, high = any_engine.plan.step("iChannel0").size  # type: ignore[union-attr]
+        assert high == 6 * wide
+
+
+def test_each_source_has_the_size_of_its_kind(folder: Path, any_engine: Engine) -> None:
+    found = load(folder / "two.frag")
+    sizes = {"keys": (256, 3), "spectrum": (512, 2), "sound": (512, 2), "microphone": (512, 2)}
+    sizes |= {"video": (160, 90), "camera": (640, 480), "noise": (256, 256)}
+    for name, size in sizes.items():
+        any_engine.render(with_source(found, "view.iChannel0", f"foreign/{name}"), size=(4, 4))
+        assert any_engine.plan is not None and any_engine.plan.step("iChannel0").size == size  # type: ignore[union-attr]
+
+
+KEEPS = """uniform sampler2D backbuffer;
+uniform sampler2D u_tex0;
+void main() { gl_FragColor = texture2D(backbuffer, vec2(0.5)) + texture2D(u_tex0, vec2(0.5)); }
+"""
+
+
+def test_the_frame_before_is_no_channel(folder: Path) -> None:
+    (folder / "keeps.frag").write_text(KEEPS, "utf-8")
+    assert [c.path for c in channels(load(folder / "keeps.frag"))] == ["view.u_tex0"]
+    assert [c.path for c in channels(sketch(folder, 'use = "./keeps"'))] == ["view.u_tex0"]
 
 
 def test_channels_are_in_the_order_of_their_numbers(folder: Path) -> None:
@@ -175,3 +232,17 @@ def test_a_channel_of_several_passes_is_one(folder: Path) -> None:
     assert (channel.path, channel.source, channel.alone) == ("view.inputImage", "foreign/picture", True)
     fed = with_source(found, channel.path, "foreign/image")
     assert [(spec.name, spec.use) for spec in fed.graph.passes][:-1] == [("inputImage", "foreign/image")]
+
+
+def test_a_film_brings_its_size_and_keys_theirs(folder: Path, any_engine: Engine) -> None:
+    own_film(folder / "dance.mp4", count=2, size=(48, 36))
+    film = with_source(load(folder / "one.frag"), "view.iChannel0", "foreign/video").with_values(
+        {"iChannel0.video": str(folder / "dance.mp4")}
+    )
+    assert pixel(any_engine, film)[:2] == (48, 36)
+    keys = with_source(film, "view.iChannel0", "foreign/keys")
+    assert any_engine.read(keys, "iChannel0").shape == (3, 256)
+    heard = with_source(film, "view.iChannel0", "foreign/sound")
+    assert any_engine.read(heard, "iChannel0").shape == (2, 512)
+    seen = with_source(film, "view.iChannel0", "foreign/camera")
+    assert any_engine.read(seen, "iChannel0").shape == (480, 640, 4)

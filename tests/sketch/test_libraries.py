@@ -7,6 +7,7 @@ import os
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from playground import cli
@@ -225,3 +226,34 @@ def test_the_commands(stones, capsys):
     assert cli.main(["library", "remove", "stones"]) == 0
     assert cli.main(["library", "remove", "stones"]) == 2
     assert "no library 'stones' was named" in capsys.readouterr().err
+
+
+def test_passes_of_one_text_include_from_it_once_for_all(write, stones, any_engine):
+    sampler = "#ifndef STONE_LOOK\n#if __VERSION__ >= 300\n#define STONE_LOOK(T, P) texture(T, P)\n#else\n"
+    write("far/stones/look.glsl", f"{sampler}#define STONE_LOOK(T, P) texture2D(T, P)\n#endif\n#endif\n")
+    blur = '#include "look.glsl"\n#ifndef FNC_BLUR\n#define FNC_BLUR\nvec4 blur(sampler2D t, vec2 p) {\n'
+    blur += "    return (STONE_LOOK(t, p) + STONE_LOOK(t,\n        p + 0.25)) * 0.5;\n}\n#endif\n"
+    write("far/stones/blur.glsl", blur)
+    text = (
+        '#include "stones/blur.glsl"\nuniform vec2 u_resolution;\nuniform sampler2D u_buffer0, u_buffer1;\n'
+    )
+    text += (
+        '#include "stones/colour/red.glsl"\nvoid main() {\n    vec2 st = gl_FragCoord.xy / u_resolution;\n'
+    )
+    text += "#if defined(BUFFER_0)\n    gl_FragColor = vec4(red(st.x));\n#elif defined(BUFFER_1)\n"
+    text += (
+        "    gl_FragColor = blur(u_buffer0, st);\n#else\n    gl_FragColor = blur(u_buffer1, st);\n#endif\n}\n"
+    )
+    named.add_library("stones", stones)
+    path = write("own/a.frag", text)
+    picture = any_engine.render(load(path), size=(4, 4)).array
+    # A quarter of the picture is a texel: each blur is the mean of two neighbours, around the edge.
+    once = (np.arange(4) + 0.5) / 4
+    for _ in range(2):
+        once = (once + np.roll(once, -1)) / 2
+    np.testing.assert_allclose(picture[0, :, 0], once * 255, atol=1)
+    write("far/stones/blur.glsl", blur.replace("* 0.5", "* not_declared"))
+    with pytest.raises(ShaderError) as caught:
+        any_engine.render(load(path), size=(4, 4))
+    found = caught.value.diagnostics[0]
+    assert (found.file.endswith("stones/blur.glsl"), found.line, len(found.chain)) == (True, 5, 1)

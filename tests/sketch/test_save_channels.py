@@ -84,6 +84,11 @@ def test_another_source_replaces_the_one_there(folder: Path) -> None:
     assert 'use = "foreign/noise"\nsize = [256, 256]   # texels\n' in text and "a.png" not in text
 
 
+def test_a_video_has_its_own_size(folder: Path) -> None:
+    text = saved(folder, PHOTO, ("iChannel0", "foreign/video"))
+    assert 'use = "foreign/video"\nset = {}\n[view]' in text
+
+
 def test_a_pass_is_wired_and_the_one_before_stays(folder: Path) -> None:
     text = saved(folder, PHOTO, ("iChannel0", "land"), ("iChannel1", "photo"))
     assert text == PHOTO.replace('{ iChannel0 = "photo" }', '{ iChannel0 = "land", iChannel1 = "photo" }')

@@ -10,6 +10,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.images.files import write_png
+from playground.sketch.assign import values_of
 from playground.sketch.channels import channels
 from playground.sketch.load import load
 from playground.workbench.autosave import Autosave, memory_of
@@ -211,6 +212,33 @@ def test_a_shader_alone_is_saved_as_a_sketch_next_to_it(folder: Path, any_engine
     window.close()
 
 
+TOY = """#iChannel0 "file://buffer.frag"
+void mainImage(out vec4 c, in vec2 p) { c = texelFetch(iChannel0, ivec2(0), 0); }
+"""
+BUFFER = """uniform float gain = 1.0; //! slider(0, 2)
+void mainImage(out vec4 c, in vec2 p) { c = gain * texelFetch(iChannel1, ivec2(0), 0); }
+"""
+
+
+def test_a_shader_of_several_passes_is_saved_as_a_sketch_too(folder: Path, any_engine: Engine) -> None:
+    home = folder / "alone"
+    (home / "buffer.frag").write_text(BUFFER, "utf-8")
+    (home / "toy.frag").write_text(TOY, "utf-8")
+    window = Window(any_engine, home / "toy.frag", folder)
+    assert window.session.sketch is not None
+    (channel,) = [c for c in channels(window.session.sketch) if c.name.endswith("iChannel1")]
+    window.feed("foreign/image", channel.path, image=str(folder / "green.png"))
+    (gain,) = [path for path in values_of(window.session.sketch) if path.endswith("gain")]
+    window.session.drafts.set(gain, 0.5)
+    window.frame()
+    assert window.colour == GREY
+    window.bench.commands.save_a_copy()
+    window.frame()
+    assert window.session.path == home / "toy_sketch.toml", window.said
+    assert window.colour == GREY and window.session.error is None
+    window.close()
+
+
 def test_a_kernel_alone_is_saved_as_a_sketch_too(folder: Path, any_engine: Engine) -> None:
     file = folder / "alone" / "flat.glsl"
     file.write_text(KERNEL, "utf-8")
@@ -228,11 +256,14 @@ def test_a_kernel_alone_is_saved_as_a_sketch_too(folder: Path, any_engine: Engin
 
 
 def test_what_cannot_be_saved_says_why(folder: Path, any_engine: Engine) -> None:
-    file = folder / "alone" / "other.fs"
+    file = folder / "alone" / "other.fragment"
     file.write_text(FIRST, "utf-8")
     window = Window(any_engine, file, folder)
     window.bench.commands.save_a_copy()
     window.frame()
-    assert any("a sketch uses shaders that end in .glsl or .frag" in text for text in window.said)
-    assert sorted(path.name for path in (folder / "alone").iterdir()) == ["first.frag", "other.fs"]
+    assert any(
+        "a sketch uses shaders that end in .glsl, .frag or .fs, not in .fragment" in text
+        for text in window.said
+    )
+    assert sorted(path.name for path in (folder / "alone").iterdir()) == ["first.frag", "other.fragment"]
     window.close()

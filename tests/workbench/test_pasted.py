@@ -14,6 +14,11 @@ SHADERTOY = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy
 MAIN = "void main() { gl_FragColor = vec4(1.0); }\n"
 KERNEL = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'
 COMPUTE = "#version 430\nlayout(local_size_x = 8) in;\nvoid main() {}\n"
+EXPORT = """{"Shader": {"info": {"name": "Two hills"}, "renderpass": [{"type": "image", "name": "Image",
+  "inputs": [], "outputs": [], "code": "void mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }"}]}}
+"""
+ISF = '/*{"ISFVSN": "2", "INPUTS": []}*/\nvoid main() { gl_FragColor = vec4(1.0); }\n'
+VSCODE = f'#iChannel0 "self"\n{SHADERTOY}'
 SOUND = "vec2 mainSound(int sample, float time) { return vec2(0.0); }\n"
 
 
@@ -24,6 +29,9 @@ SOUND = "vec2 mainSound(int sample, float time) { return vec2(0.0); }\n"
         (MAIN, "pasted_1.frag"),
         (KERNEL, "pasted_1.glsl"),
         (COMPUTE, "pasted_1.comp"),
+        (EXPORT, "two_hills.json"),
+        (ISF, "pasted_1.fs"),
+        (VSCODE, "pasted_1.frag"),
         (f"// Waves at night\n{SHADERTOY}", "waves_at_night.frag"),
         (f"// waves.glsl -- Waves at night.\n{KERNEL}", "waves_at_night.glsl"),
         (f"/* Waves\n * by me */\n{MAIN}", "waves.frag"),

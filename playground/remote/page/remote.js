@@ -151,6 +151,12 @@ const controls = {
     input.onchange = () => changed(input.checked);
     return { element: input, show: (value) => { input.checked = value; } };
   },
+  button(one) {
+    const input = element("button", one.label);
+    input.type = "button";
+    input.onclick = () => set(one.path, true);
+    return { element: input, show: () => {} };
+  },
   menu(one, changed) {
     const input = element("select");
     input.append(...one.choices.map((name) => new Option(name, name)));
@@ -202,9 +208,9 @@ function numbers(one, changed) {
 }
 
 function scaleOf(one, at) {
-  const sky = [[0, 360], [0, 90]];
-  const [low, high] = one.widget === "direction" ? sky[at] : [one.low, one.high];
-  if (low === null || !(high > low)) return null;
+  if (!one.ranges[at]) return null;
+  const [low, high] = one.ranges[at];
+  if (!(high > low)) return null;
   const whole = /^(u?int|[iu]vec)/.test(one.type), step = one.step || (whole ? 1 : 0);
   const log = one.widget === "log_slider";
   const snapped = (number) => {

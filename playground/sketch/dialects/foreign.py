@@ -34,6 +34,7 @@ _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
 _COUNT = re.compile(r"\[\s*(\d+)\s*\]")
 _MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
 _MODEL = "MODEL_"
+_SHADOW_MAP = "#define LIGHT_SHADOWMAP "
 _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
 _SOUNDS = "a made-up sound stands in; a sketch may wire foreign/sound to it"
 _BANDS = "a made-up sound stands in"
@@ -222,6 +223,8 @@ class ForeignKernel:
                 yield name, _BANDS
             elif "sampler" in kind and channel == Channel() and name not in fed and self._is_read(name):
                 yield name, "it reads black"
+        if any(line.startswith(_SHADOW_MAP) for line in self.rules.defines(self.source)):
+            yield "LIGHT_SHADOWMAP", "it reads black"
         for name in sorted(self.source.names):
             if name.startswith(_MODEL):
                 yield name, "there is no mesh here, so it is drawn flat"

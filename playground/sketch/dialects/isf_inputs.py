@@ -26,6 +26,8 @@ OF_PICTURE = ("view.size.x", "view.size.y")
 _KEYS = ("NAME", "TYPE", "LABEL", "DEFAULT", "MIN", "MAX", "IDENTITY", "VALUES", "LABELS", "DESCRIPTION")
 _IMPORT_KEYS = ("NAME", "PATH", "TYPE", "DESCRIPTION")
 _BINS = 256
+_FACES = ("right", "left", "top", "bottom", "front", "back")
+_CUBE = ("512", "3072")
 
 
 @dataclass
@@ -220,20 +222,50 @@ _BY_LOWER = {kind.lower(): kind for kind in _READERS} | {"int": "long"}
 def _import(name: str, one: Mapping[str, Any], line: Line, files: Files, found: Inputs) -> None:
     path = one.get("PATH")
     if str(one.get("TYPE", "")).lower() == "cube" or isinstance(path, list):
-        _add_cube(name, found, "six pictures of a cube are not read, so a sky stands in for them")
+        _import_cube(name, path, line, files, found)
         return
-    if not isinstance(path, str) or not path.strip() or "\0" in path:
+    path = _path(name, path, line)
+    if wrong := _lacking(path, line, files):
+        found.channels[name] = _card(0, f"{wrong}, so a stand-in is drawn")
+        return
+    declared = _Declared(name, one, line)
+    parameter = declared.parameter("sampler2D", path, Widget("file"))
+    found.parameters.append(replace(parameter, sampling=IMAGE))
+
+
+def _import_cube(name: str, given: object, line: Line, files: Files, found: Inputs) -> None:
+    """Add a cube map of six images: right, left, top, bottom, front, back."""
+    if not isinstance(given, list) or len(given) != len(_FACES):
+        message = f"cube '{name}' needs the paths of six images, +X, -X, +Y, -Y, +Z and -Z, as its PATH"
+        raise line.error(message)
+    paths = [_path(name, one, line) for one in given]
+    wrong = next(filter(None, (_lacking(path, line, files) for path in paths)), "")
+    if wrong:
+        _add_cube(name, found, f"{wrong}, so a sky stands in")
+        return
+    found.cubes.append(name)
+    # What fills the pass ships, so that a path has to be that from the sketch's folder.
+    values = tuple(zip(_FACES, (_from_root(path, line, files) for path in paths), strict=True))
+    found.channels[name] = Channel(use="foreign/cube_faces", values=values, size=_CUBE, sampling=IMAGE)
+
+
+def _path(name: str, given: object, line: Line) -> str:
+    if not isinstance(given, str) or not given.strip() or "\0" in given:
         raise line.error(f'image \'{name}\' needs the path of its file, as "PATH": "moon.jpg"')
-    path = path.strip().replace("\\", "/")
-    place = Path(line.file).parent / path
+    return given.strip().replace("\\", "/")
+
+
+def _lacking(path: str, line: Line, files: Files) -> str:
+    """Return why there is no image at a path, "" where there is one."""
     if leads_outside(path, files.root, line.file):
-        found.channels[name] = _card(0, f"'{path}' lies outside the sketch's folder, so a stand-in is drawn")
-    elif not any([files.is_there(place), files.is_there(files.root / path)]):
-        found.channels[name] = _card(0, f"there is no file '{path}', so a stand-in is drawn")
-    else:
-        declared = _Declared(name, one, line)
-        parameter = declared.parameter("sampler2D", path, Widget("file"))
-        found.parameters.append(replace(parameter, sampling=IMAGE))
+        return f"'{path}' lies outside the sketch's folder"
+    there = [files.is_there(place / path) for place in (Path(line.file).parent, files.root)]
+    return "" if any(there) else f"there is no file '{path}'"
+
+
+def _from_root(path: str, line: Line, files: Files) -> str:
+    place = Path(line.file).parent / path
+    return place.resolve().relative_to(files.root.resolve()).as_posix() if files.is_there(place) else path
 
 
 def _ordered(low: float, high: float) -> tuple[float, float]:

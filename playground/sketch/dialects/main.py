@@ -5,6 +5,7 @@ The names are those of glslCanvas, glslViewer, KodeLife, Bonzomatic and glslsand
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from playground.sketch.dialects import shadertoy
@@ -93,8 +94,23 @@ def _defines(source: SourceText) -> tuple[str, ...]:
     """Return glslViewer's own macros where its names occur."""
     found = ["#define GLSLVIEWER 1", "#define PLATFORM_LINUX"]
     found = found if any(name.startswith("u_") for name in source.names) else []
+    tested = {
+        name for line in source.lines if _CONDITION.match(line.code) for name in _NAME.findall(line.code)
+    }
+    for name, lines in _SHADOW_MAP.items():  # where a text asks for it first, it does without
+        if name in source.names and name not in tested:
+            found += [
+                line for line in lines if line.startswith("#") or "u_lightShadowMap" not in source.names
+            ]
     return (*found, "#define BACKGROUND") if "BACKGROUND" in source.names else tuple(found)
 
+
+_CONDITION, _NAME = re.compile(r"\s*#\s*(?:el)?if"), re.compile(r"[A-Za-z_]\w*")
+_SHADOW_MAP = {
+    "LIGHT_SHADOWMAP": ["#define LIGHT_SHADOWMAP u_lightShadowMap", "uniform sampler2D u_lightShadowMap;"],
+    "LIGHT_SHADOWMAP_SIZE": ["#define LIGHT_SHADOWMAP_SIZE 2048.0"],
+}
+"""What glslViewer defines for a scene: here the map is black."""
 
 RULES = Rules("main", NAMES, declared_anywhere=True, defines=_defines)
 

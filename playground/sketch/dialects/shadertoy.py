@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 from playground.sketch.dialects.es import rewritten
 from playground.sketch.dialects.passes import VIEW
 from playground.sketch.dialects.reading import Files
+from playground.sketch.dialects.sampler_types import cubes_of
 from playground.sketch.dialects.shader import Names, Rules, Shader
 from playground.sketch.reserved_names import SIZES
 from playground.sketch.source import Line, SourceText
@@ -51,7 +53,13 @@ def shaders(files: Files) -> Sequence[Shader]:
     """Return the passes of a file."""
     source = files.source()
     note_not_drawn(files, source)
-    return (Shader(VIEW, rewritten(source), RULES),)
+    return (Shader(VIEW, rewritten(source), replace(RULES, names=with_cubes(NAMES, source))),)
+
+
+def with_cubes(names: Names, source: SourceText) -> Names:
+    """Return names with the channels as cube maps that a text reads so."""
+    cubes = {name: ("samplerCube", f"sky {name[-1]}") for name in cubes_of(source.code)}
+    return {**names, **{name: kind for name, kind in cubes.items() if name in names}}
 
 
 def note_not_drawn(files: Files, source: SourceText) -> None:

@@ -15,6 +15,7 @@ from playground.errors import SketchError
 from playground.paths import shown
 from playground.sketch.dialects.directives import read_directives
 from playground.sketch.dialects.reading import Files
+from playground.sketch.dialects.sampler_types import cubes_of
 from playground.sketch.dialects.shader import Shader
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
@@ -101,7 +102,9 @@ def _inputs(files: Files, path: Path, source: SourceText, there: dict[str, Path]
             named.setdefault(int(number), own if wanted == "self" else label)
     taken = read_directives(source).channels
     assumed = {}
-    for number, label in enumerate(_BUFFERS):
+    cubes = cubes_of(source.code)
+    for number, buffer in enumerate(_BUFFERS):
+        label = _CUBES[0] if f"iChannel{number}" in cubes else buffer
         is_read = re.search(rf"\biChannel{number}\b", source.code)
         if number not in named and number not in taken and label in there and is_read:
             named[number] = assumed[number] = label

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from playground.errors import ShaderError
 from playground.sketch.dialects.es import rewritten
 from playground.sketch.dialects.shader import Channel, Rules, Shader
-from playground.sketch.dialects.shadertoy import MORE_NAMES, NAMES
+from playground.sketch.dialects.shadertoy import MORE_NAMES, NAMES, with_cubes
 from playground.sketch.model import Parameter, Sampling, Widget
 from playground.sketch.source import SourceText
 
@@ -85,7 +85,7 @@ def _shader(one: ToyPass, dialect: str) -> Shader:
         others = next((f for f in ("mainImage", "mainCubemap", "mainSound") if f in one.source.names), "")
         hint = f", but a {others}" if others else ""
         raise ShaderError(diagnostics=[place.diagnostic(f"{one.label} has no {function}{hint}")])
-    names = dict(MORE_NAMES if dialect == "vscode" else NAMES)
+    names = dict(with_cubes(MORE_NAMES if dialect == "vscode" else NAMES, one.source))
     parameters = []
     for sampler, feeds in one.inputs.items():
         if feeds.file:

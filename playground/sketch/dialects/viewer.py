@@ -71,7 +71,9 @@ class _Viewer:
         self.text = text
         self.rules = rules
         self.conditions = Conditions([line.code for line in text.source.lines])
-        given = [line for line in rules.defines(text.source) if not line.endswith("BACKGROUND")]
+        before = [line for line in rules.defines(text.source) if not line.endswith("BACKGROUND")]
+        given = [line for line in before if line.startswith("#define")]
+        self.declared = tuple(line for line in before if line not in given)
         self.given = {words[1]: " ".join(words[2:]) for words in map(str.split, given)}
         self._live: dict[tuple[str, ...], tuple[str, ...]] = {}
         self.bare = self.live()
@@ -134,9 +136,8 @@ class _Viewer:
     ) -> Shader:
         """Return the text with some macros defined, as a pass; ``own`` is the pass that it is the text of."""
         made = Rewritten(self._source(macros), self.text.prelude)
-        before = tuple(
-            f"#define {n} {v}".rstrip() for n, v in {**self.given, **dict.fromkeys(macros, "")}.items()
-        )
+        defined = {**self.given, **dict.fromkeys(macros, "")}
+        before = (*(f"#define {n} {v}".rstrip() for n, v in defined.items()), *self.declared)
         known: Names = {s: ("sampler2D", "none") for one in self.passes for s in one.samplers}
         rules = replace(
             self.rules, names={**self.rules.names, **known, **(names or {})}, defines=lambda source: before
@@ -203,7 +204,6 @@ class _Viewer:
                 Made(one.name, "foreign/jump_flood", {"initial": seeds}, target=one.name, size=size),
             ]
         width, height = size or ("size.x", "size.y")
-        longest = f"max({width}, {height})"
         rounds = self._shader(
             one.name,
             algorithm,
@@ -211,7 +211,7 @@ class _Viewer:
             size=size,
             channels={"u_floodSrc": Channel(target=seeds, sampling=_SEED)},
             names={"u_floodIndex": ("int", "iteration"), "u_floodTotal": ("int", "iterations")},
-            repeat=" + ".join(["1", *(f"({longest} > {2**n})" for n in range(15))]),
+            repeat=f"1 + bits(max({width}, {height}) - 1)",
             feeds="u_floodSrc",
         )
         return [first, rounds]

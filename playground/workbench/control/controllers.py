@@ -2,8 +2,9 @@
 
 A control goes over the range of its parameter's widget (see ``shares``). It takes over softly: a value
 does not jump to where the knob happens to be, but follows once the knob has passed it. A menu or a
-checkbox has no such place between, and follows at once. A note switches a checkbox, goes to a
-menu's next choice, and sets a number by how hard it is struck.
+checkbox has no such place between, and follows at once; a button is pressed where the control comes
+to 64. A note switches a checkbox, presses a button, goes to a menu's next choice, and sets a number
+by how hard it is struck.
 """
 
 from __future__ import annotations
@@ -24,6 +25,7 @@ from playground.workbench.control.controller_file import (
 )
 from playground.workbench.control.items import items_of, values_of
 from playground.workbench.control.shares import (
+    HALF,
     check_shares,
     is_switch,
     part_names,
@@ -197,6 +199,10 @@ class Controllers:
         parameter, value, part = found
         knob = self._knobs.setdefault(binding, _Knob())
         before, knob.at = knob.at, share
+        if parameter.widget.kind == "button":
+            if share >= HALF and (before is None or before < HALF):
+                self._set(binding, True)
+            return
         has_it = knob.made is not None and knob.made == value
         if not has_it and not is_switch(parameter):
             now = share_of(parameter, value, part)
@@ -212,8 +218,8 @@ class Controllers:
         if found is None or not strength:
             return
         parameter, value, part = found
-        if parameter.widget.kind == "checkbox":
-            self._set(binding, not value)
+        if parameter.type == "bool":
+            self._set(binding, parameter.widget.kind == "button" or not value)
         elif parameter.widget.kind == "menu" and isinstance(value, int):
             self._set(binding, (value + 1) % len(parameter.widget.choices))
         else:
@@ -226,7 +232,8 @@ class Controllers:
                 f"lock {binding.path}", f"MIDI: {binding.path} is locked: {binding.source} sets nothing"
             )
             return
-        self._session.drafts.set(binding.path, value)
+        for path, other in self._session.without_buttons({binding.path: value}).items():
+            self._session.drafts.set(path, other)
 
     def _value(self, binding: Binding) -> tuple[Parameter, Value, int] | None:
         """Return a binding's parameter, its value, and which part; None, and a notice, where it is gone."""

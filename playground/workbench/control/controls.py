@@ -76,7 +76,7 @@ class Controls:
             raise ParameterError(f"set = {spell(values)}: expected values by path, as light.sun: [135, 25]")
         names = current_paths(draft.base.graph, values)
         found = {names[path]: _checked(draft, path, given) for path, given in values.items()}
-        for path, value in found.items():
+        for path, value in self.session.without_buttons(found).items():
             self._waiting.pop(path, None)  # what is set last comes last, and wins
             self._waiting[path] = value
 

@@ -77,6 +77,7 @@ def _described(item: Item, values: Values) -> dict[str, Any]:
         "file": plain(parameter, values.in_file[item.path]),
         "low": ends[0] if ends else None,
         "high": ends[1] if ends else None,
+        "ranges": [range_of(parameter, part) for part in range(max(len(part_names(parameter)), 1))],
         "step": parameter.step,
         "unit": parameter.unit or kind.unit,
         "choices": list(widget.choices),

@@ -16,6 +16,8 @@ from playground.sketch.values import is_whole, length_of
 from playground.sketch.widgets import WIDGETS
 from playground.workbench.number_format import decimals
 
+HALF = 64 / 127
+"""From which share on a checkbox is on, and a button pressed: 64 of MIDI's 127."""
 _DIRECTION = ((0.0, 360.0), (0.0, 90.0))  # [degrees] azimuth, elevation: the sky
 
 
@@ -30,9 +32,11 @@ def part_names(parameter: Parameter) -> tuple[str, ...]:
     return tuple(("rgba" if parameter.widget.kind == "colour" else "xyzw")[: length_of(parameter.type)])
 
 
-def range_of(parameter: Parameter) -> tuple[float, float] | None:
-    """Return the range of each number of a parameter; None where it has none."""
-    low, high = parameter.widget.low, parameter.widget.high
+def range_of(parameter: Parameter, part: int = 0) -> tuple[float, float] | None:
+    """Return the range of a parameter's number, or of one of its parts; None where it has none."""
+    if parameter.widget.kind == "direction":
+        return _DIRECTION[part]
+    low, high = parameter.widget.ends(part)
     if low is not None and high is not None:
         return low, high
     return WIDGETS[parameter.widget.kind].range
@@ -43,24 +47,24 @@ def check_shares(parameter: Parameter, path: str) -> None:
     kind = parameter.widget.kind
     if kind == "file":
         raise ParameterError(f"{path} names a file, so no knob can set it")
-    if kind not in ("direction", "colour", "menu", "checkbox") and range_of(parameter) is None:
+    if kind not in ("colour", "menu", "checkbox", "button") and range_of(parameter) is None:
         raise ParameterError(f"{path} has no range: no knob can set it without a slider(low, high)")
 
 
 def is_switch(parameter: Parameter) -> bool:
     """Say whether a parameter has a few choices rather than a range: a knob takes it over at once."""
-    return parameter.widget.kind in ("menu", "checkbox")
+    return parameter.widget.kind in ("menu", "checkbox", "button")
 
 
 def share_of(parameter: Parameter, value: Value, part: int = 0) -> float:
     """Return which share of its range a value, or a part of it, is at: 0 to 1."""
     widget = parameter.widget
-    if widget.kind == "checkbox":
+    if parameter.type == "bool":
         return 1.0 if value else 0.0
     number = _numbers(value)[part]
     if widget.kind == "menu":
         return (number + 0.5) / max(len(widget.choices), 1)
-    if widget.kind == "colour" and part < 3:
+    if _is_encoded(parameter, part):
         number = float(linear_to_srgb([min(max(number, 0.0), 1.0)])[0])
     low, high = _ends(parameter, part)
     if widget.kind == "direction" and part == 0:
@@ -77,13 +81,13 @@ def share_of(parameter: Parameter, value: Value, part: int = 0) -> float:
 def with_share(parameter: Parameter, value: Value, share: float, part: int = 0) -> Value:
     """Return a value with one part, or all of a scalar, at a share of its range: 0 to 1."""
     widget, share = parameter.widget, min(max(share, 0.0), 1.0)
-    if widget.kind == "checkbox":
-        return share >= 64 / 127
+    if parameter.type == "bool":
+        return share >= HALF
     if widget.kind == "menu":
         return min(int(share * len(widget.choices)), len(widget.choices) - 1)
     low, high = _ends(parameter, part)
     number = low * (high / low) ** share if widget.kind == "log_slider" else low + share * (high - low)
-    if widget.kind == "colour" and part < 3:
+    if _is_encoded(parameter, part):
         number = float(srgb_to_linear([number])[0])
     else:
         number = _stepped(parameter, number, low, high)
@@ -108,9 +112,12 @@ def _stepped(parameter: Parameter, number: float, low: float, high: float) -> fl
 
 
 def _ends(parameter: Parameter, part: int) -> tuple[float, float]:
-    if parameter.widget.kind == "direction":
-        return _DIRECTION[part]
-    return range_of(parameter) or (0.0, 1.0)
+    return range_of(parameter, part) or (0.0, 1.0)
+
+
+def _is_encoded(parameter: Parameter, part: int) -> bool:
+    """Say whether a number is the light of a channel, which the panel shows display-encoded."""
+    return parameter.widget.kind == "colour" and part < 3 and not parameter.widget.raw
 
 
 def _numbers(value: Value) -> tuple[float, ...]:

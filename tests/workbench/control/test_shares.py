@@ -24,6 +24,8 @@ ALL: list[tuple[Parameter, Value]] = [
     (Parameter("a", "vec2", (0.0, 0.0), Widget("direction")), (135.0, 25.0)),
     (Parameter("a", "vec4", (0.0,) * 4, Widget("colour")), (0.5, 0.25, 0.125, 1.0)),
     (Parameter("a", "vec2", (0.0, 0.0), Widget("point", 0.0, 1.0)), (0.5, 0.5)),
+    (Parameter("a", "vec2", (0.0, 2.0), Widget("point", axes=((-1.0, 1.0), (2.0, 9.0)))), (0.0, 3.0)),
+    (Parameter("a", "vec3", (0.0,) * 3, Widget("colour", raw=True)), (0.5, 0.25, 0.125)),
     (Parameter("a", "float", 0.0, Widget("angle", -360.0, 360.0)), 0.0),
     (Parameter("a", "int", 0, Widget("menu", choices=("x", "y", "z"))), 1),
     (Parameter("a", "bool", False, Widget("checkbox")), False),
@@ -41,7 +43,7 @@ def test_every_share_gives_a_value_that_the_parameter_takes_and_that_is_at_that_
         assert coerce(parameter, made) == made
         assert type(made) is type(value) or parameter.type == "bool"
         back = share_of(parameter, made, part)
-        ends = range_of(parameter) or (0.0, 90.0)
+        ends = range_of(parameter, part) or (0.0, 1.0)
         whole = parameter.type.startswith(("i", "u"))
         grain = 1.0 if whole else parameter.step or 0.0
         allowed = 0.5 / choices + 1e-9 if choices else 0.5 * grain / (ends[1] - ends[0]) + 1e-4

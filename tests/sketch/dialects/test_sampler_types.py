@@ -1,0 +1,70 @@
+"""A channel that is read at three coordinates is a cube map."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.sketch.dialects.sampler_types import cubes_of
+
+DECLARED = """
+vec3 direction(vec2 p) { return vec3(p, 1.0); }
+vec2 place(vec3 p) { return p.xy; }
+mat3 camera;
+const float far = 10.0, near = 1e-3;
+void mainImage(out vec4 c, in vec2 fragCoord) {
+    vec2 uv = fragCoord / iResolution.xy, other;
+    vec3 rd = normalize(vec3(uv, 1.0)), n = rd, ref = reflect(rd, n);
+    vec4 four;
+    c = LOOKUP;
+}
+"""
+
+
+@pytest.mark.parametrize(
+    "lookup",
+    [
+        "texture(iChannel0, rd)",
+        "texture(iChannel0, ref, 1.0)",
+        "textureLod(iChannel0, -rd, 0.0)",
+        "texture( iChannel0 , reflect(rd, n) )",
+        "texture(iChannel0, vec3(uv, 0.5))",
+        "texture(iChannel0, normalize(rd * 2.0 + 0.5))",
+        "texture(iChannel0, camera * rd)",
+        "texture(iChannel0, direction(uv))",
+        "texture(iChannel0, four.xyz)",
+        "texture(iChannel0, (rd))",
+        "texture(iChannel0, rd.xzy * 1e-3)",
+        "texture(iChannel0, mix(rd, n, 0.5))",
+        "texture(iChannel0, cross(rd, n))",
+        "textureCube(iChannel0, rd)",
+        "texture(iChannel0, rd) + texture(iChannel1, uv)",
+    ],
+)
+def test_three_coordinates_are_a_cube(lookup):
+    assert cubes_of(DECLARED.replace("LOOKUP", lookup)) == {"iChannel0"}
+
+
+@pytest.mark.parametrize(
+    "lookup",
+    [
+        "texture(iChannel0, uv)",
+        "texture(iChannel0, uv * near)",
+        "texture(iChannel0, rd.xy)",
+        "texture(iChannel0, place(rd))",
+        "texture(iChannel0, fragCoord / iResolution.xy)",
+        "texture(iChannel0, vec2(rd.x, n.y) * 0.5 + vec3(1.0).xy)",
+        "texture(iChannel0, fract(uv - 0.5))",
+        "texture(iChannel0, UNKNOWN)",
+        "texelFetch(iChannel0, ivec2(rd), 0)",
+        "texture(iChannel0, other, 1.0)",
+        "texture(iChannel0, rd) + texture(iChannel0, uv)",
+        "texture(iChannel0, (rd",
+    ],
+)
+def test_two_or_unknown_ones_are_none(lookup):
+    assert cubes_of(DECLARED.replace("LOOKUP", lookup)) == frozenset()
+
+
+def test_the_latest_declaration_counts():
+    text = "vec4 a(vec2 p) { return texture(iChannel0, p); } vec4 b(vec3 p) { return texture(iChannel1, p); }"
+    assert cubes_of(text) == {"iChannel1"}
