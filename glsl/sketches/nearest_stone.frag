@@ -33,7 +33,8 @@ void main() {
     for (int i = 0; i < 8; ++i) {
         float turn = 0.78539816 * float(i);
         vec2 aside = gl_FragCoord.xy + 0.5 * u_mortar * vec2(cos(turn), sin(turn));
-        vec2 other = texture(u_flood0, clamp(aside, vec2(0.5), u_resolution - 0.5) / u_resolution).xy;
+        aside = clamp(aside, vec2(0.5), u_resolution - 0.5);
+        vec2 other = texture(u_flood0, aside / u_resolution).xy;
         joint += any(greaterThan(abs(other - nearest) * u_resolution, vec2(1.0))) ? 0.125 : 0.0;
     }
     float rise = 1.0 - 0.55 * distance(nearest * u_resolution, gl_FragCoord.xy) / side;
