@@ -13,6 +13,7 @@ from pathlib import Path
 
 from playground.errors import SketchError
 from playground.paths import shown
+from playground.sketch.allowed_files import is_inside
 from playground.sketch.dialects.directives import read_directives
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.sampler_types import cubes_of
@@ -42,9 +43,11 @@ _COMMENT = re.compile(
 
 
 def image_of(folder: Path) -> Path | None:
-    """Return the file of a folder's Image; None where it has none that is one."""
+    """Return the file of a folder's Image; None where it has none of its own that is one."""
     found = next((place for place in _places(folder, _IMAGE) if place.is_file()), None)
-    return found if found is not None and "mainImage" in found.read_text("utf-8", "replace") else None
+    if found is None or not is_inside(found, (folder,)):
+        return None
+    return found if "mainImage" in found.read_text("utf-8", "replace") else None
 
 
 def is_of_folder(path: Path) -> bool:
@@ -126,7 +129,10 @@ def _file(files: Files, folder: Path, label: str) -> Path | None:
     if len(found) > 1:
         both = " and ".join(shown(place) for place in found[:2])
         raise SketchError(f"{both} are both {label}; remove one", file=shown(files.path))
-    return found[0].resolve() if found else None
+    if not found:
+        return None
+    files.check_inside(found[0])
+    return found[0].resolve()
 
 
 def _places(folder: Path, label: str) -> list[Path]:
