@@ -34,7 +34,7 @@ class Files:
         """Return a file's text, by default the shader's; raise ``SketchError`` where it cannot be read."""
         path = path or self.path
         found = self.instead.get(str(path))
-        found = read_text(path) if found is None else found
+        found = read_text(path, any_encoding=True) if found is None else found
         self._texts[str(path)] = found
         return found
 
