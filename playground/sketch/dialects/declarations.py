@@ -11,9 +11,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 _PRECISION = r"(?:(?:lowp|mediump|highp)\s+)?"
+_MEMORY = r"(?:(?:coherent|volatile|restrict|readonly|writeonly)\s+)*"
 _BEGINS = r"(?:^|[;{}\n])[ \t]*"
 _UNIFORM = re.compile(
-    rf"{_BEGINS}(?:layout\s*\([^)]*\)\s*)?uniform\s+{_PRECISION}(\w+)\s+([^;{{}}]*)(?=;)", re.MULTILINE
+    rf"{_BEGINS}(?:layout\s*\([^)]*\)\s*)?uniform\s+{_MEMORY}{_PRECISION}(\w+)(\s*\[[^\]]*\]\s*|\s+)"
+    r"([^;{}]*)(?=;)",
+    re.MULTILINE,
 )
 _IN = re.compile(
     rf"{_BEGINS}(layout\s*\([^)]*\)\s*)?"
@@ -49,9 +52,11 @@ def uniforms(code: str) -> Mapping[str, Declared]:
     code = _with_qualifiers(code)
     found: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
-        for name, array, at, written in _names(match.group(2)):
-            line = code.count("\n", 0, match.start(2) + at)
-            found.setdefault(name, Declared(name, match.group(1), bool(array), line, written))
+        of_type = match.group(2).strip()  # the array of "float[3] a"
+        for name, array, at, written in _names(match.group(3)):
+            line = code.count("\n", 0, match.start(3) + at)
+            written = written.replace(name, f"{name}{of_type}", 1)
+            found.setdefault(name, Declared(name, match.group(1), bool(array or of_type), line, written))
     return found
 
 

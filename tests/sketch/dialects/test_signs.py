@@ -103,3 +103,16 @@ def test_what_a_vertex_shader_gives():
             "inside.v_normal = vec3(0.0, 0.0, 1.0); inside.at = vec2(0.0);"
         ),
     }
+
+
+def test_uniforms_with_the_array_at_their_type_and_images_are_found():
+    code = "uniform float[3] a;\nlayout(r32ui) uniform coherent restrict uimage2D [2] b;\n"
+    code += "uniform lowp sampler2D[4] maps, more;uniform vec2\tc;\n"
+    found = uniforms(code)
+    assert {n: (d.type, d.is_array, d.line, d.written.strip()) for n, d in found.items()} == {
+        "a": ("float", True, 0, "a[3]"),
+        "b": ("uimage2D", True, 1, "b[2]"),
+        "maps": ("sampler2D", True, 2, "maps[4]"),
+        "more": ("sampler2D", True, 2, "more[4]"),
+        "c": ("vec2", False, 2, "c"),
+    }
