@@ -30,7 +30,10 @@ _MEMBER = re.compile(
 )
 _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*(\[[^\]]*\])?")
 _DIRECTIVE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
-_QUALIFIER = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+(in|uniform)[ \t]*$", re.MULTILINE)
+_QUALIFIER = re.compile(
+    r"^[ \t]*#[ \t]*define[ \t]+(\w+)(?:[ \t]+(in|uniform|lowp|mediump|highp))?[ \t]*$", re.MULTILINE
+)
+_QUALIFIED = re.compile(rf"{_BEGINS}(?:\w+[ \t]+)?(?:uniform|in)[ \t]+(\w+)[ \t]+\w+[ \t]+\w", re.MULTILINE)
 _BRACKETS = re.compile(r"\([^()]*\)")
 _VECTOR = re.compile(r"vec([234])|float")
 
@@ -96,8 +99,12 @@ def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
 
 
 def _with_qualifiers(code: str) -> str:
-    """Replace macros that stand for a qualifier, as texts for several versions of GLSL have them."""
-    macros = dict(_QUALIFIER.findall(code))
+    """Replace macros that stand for a qualifier, as texts for several versions of GLSL have them.
+
+    One of no value counts where it stands as one: texts for OpenGL ES define precisions so elsewhere.
+    """
+    there = set(_QUALIFIED.findall(code))
+    macros = {name: value for name, value in _QUALIFIER.findall(code) if value or name in there}
     if not macros:
         return code
     return re.sub(rf"\b(?:{'|'.join(macros)})\b", lambda found: macros[found.group()], code)

@@ -116,3 +116,13 @@ def test_uniforms_with_the_array_at_their_type_and_images_are_found():
         "more": ("sampler2D", True, 2, "more[4]"),
         "c": ("vec2", False, 2, "c"),
     }
+
+
+def test_macros_that_stand_for_a_precision_or_for_nothing_are_no_types():
+    code = "#ifdef GL_ES\n#define LOWP lowp\n#else\n#define LOWP\n#endif\n#define HIGH highp\n#define GUARD\n"
+    code += "uniform LOWP float a;\nin LOWP vec4 v_color;\nin HIGH vec2 v_uv;\nuniform HIGH sampler2D b;\n"
+    assert {n: (d.type, d.line) for n, d in uniforms(code).items()} == {
+        "a": ("float", 7),
+        "b": ("sampler2D", 10),
+    }
+    assert [declaration for declaration, _ in vertex_outputs(code)] == ["out vec4 v_color;", "out vec2 v_uv;"]
