@@ -272,6 +272,32 @@ FOLDERS: dict[str, Toy] = {
     "folder": Toy({"Image.glsl": IMAGE, "Buffer A.glsl": PLAIN}, "Image.glsl"),
     "folder_frag_without_space": Toy({"Image.frag": SHOWS, "BufferA.frag": GROWS}, "BufferA.frag"),
     "folder_by_its_image": Toy({"Image.glsl": IMAGE, "Buffer A.glsl": PLAIN}, "Image.glsl", "Image.glsl"),
+    "folder_in_small_letters": Toy(
+        {
+            "common.glsl": "#define HERE(s, p) texture(s, p / iResolution.xy)\n",
+            "image.glsl": "// iChannel1: buffer_b\n" + SHOWS.replace("iChannel0, uv", "iChannel1, uv"),
+            "buffer_b.glsl": PLAIN.replace("{ c", f"{{\n{HERE} c")
+            + "vec4 f() { return HERE(iChannel0, vec2(1.0)); }\n",
+        },
+        "buffer_b.glsl",
+    ),
+    "folder_that_includes_its_common": Toy(
+        {
+            "common.frag": f"float shade(float x) {{\n{HERE}    return fract(x * 0.1);\n}}\n",
+            "image.frag": '#include "common.frag"\n// iChannel0: bufferA\n'
+            + SHOWS.replace("uv);", "uv) * shade(p.x);"),
+            "bufferA.frag": '#include "common.frag"\n' + PLAIN.replace("fract(iTime)", "shade(p.x)"),
+        },
+        "common.frag",
+    ),
+    "folder_with_a_keyboard": Toy(
+        {
+            "Image.glsl": "// iChannel0 = Buffer A\n// iChannel1 = Keyboard\n"
+            + IMAGE.replace("uv);", "uv) + texelFetch(iChannel1, ivec2(65, 0), 0).x;"),
+            "Buffer A.glsl": PLAIN,
+        },
+        "Image.glsl",
+    ),
     "folder_common": Toy(
         {
             "Common.glsl": f"float shade(float x) {{\n{HERE}    return fract(x * 0.1);\n}}\n",

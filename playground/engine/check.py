@@ -30,7 +30,7 @@ from playground.paths import GLSL, SKETCHES, shown
 from playground.sketch.allowed_files import TEXTS, is_variant, root_of
 from playground.sketch.assign import values_of
 from playground.sketch.dialects import EXPORT, is_export
-from playground.sketch.dialects.shadertoy_folder import is_of_folder
+from playground.sketch.dialects.shadertoy_folder import is_image, is_of_folder
 from playground.sketch.load import is_technique, load, plain_sketch
 from playground.sketch.model import Graph, Sketch, Technique, kernels_of
 from playground.sketch.shadowed import shadowed_by_files
@@ -286,7 +286,7 @@ def _inside(folder: Path) -> Iterator[Path]:
             if not (path / "pyvenv.cfg").exists() and not path.is_symlink():
                 yield from _inside(path)
         elif path.suffix in TEXTS and (path.suffix != ".toml" or _is_ours(path)):
-            if path.stem == "Image" or not is_of_folder(path):  # the Image is checked with all of its passes
+            if is_image(path) or not is_of_folder(path):  # the Image is checked with all of its passes
                 yield path
         elif path.suffix == EXPORT and _holds_passes(path):
             yield path

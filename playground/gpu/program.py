@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
+from unicodedata import name as name_of
 
 from playground.errors import Diagnostic, ShaderError
 from playground.gpu.driver_log import LogEntry, hint, parse_log, source_column, split_moderngl
@@ -69,6 +70,10 @@ def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diag
     for name, ours in sorted(FETCHES.items(), reverse=True):  # the longer first
         entry = replace(entry, message=entry.message.replace(ours, name))
     line = stage.locate(entry.line) if entry.line else _defined(entry.message, stage.source)
+    if line is not None and entry.severity == "error" and (place := _beyond_ascii(line)) is not None:
+        found = line.text[place]
+        message = f"the character U+{ord(found):04X}, {name_of(found, 'of no name')}, is none of GLSL's"
+        return line.diagnostic(f"{message}: only comments may have it", place + 1, entry.severity)
     more = guess(entry.message, stage.source, line) or hint(entry.message)
     message = f"{entry.message}; {more}" if more else entry.message
     if line is not None:
@@ -83,6 +88,12 @@ def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diag
             f"{entry.message}; is a bracket unclosed? the file needs {stage.expected}", 0, entry.severity
         )
     return Diagnostic(message, shown(wrapped.kernel.path), 0, 0, entry.severity)
+
+
+def _beyond_ascii(line: Line) -> int | None:
+    """Return where a line has a character that the driver was given as "?"; None where it has none."""
+    pairs = enumerate(zip(line.text, line.code, strict=False))
+    return next((place for place, (own, given) in pairs if given == "?" and not own.isascii()), None)
 
 
 def _defined(message: str, source: SourceText) -> Line | None:

@@ -45,7 +45,7 @@ def find(name: str | Path) -> Path:
         if candidate.suffix in TEXTS and is_file(candidate) and is_inside(candidate, (GLSL,)):
             return candidate
     if is_folder:
-        raise SketchError("this folder holds no sketch.toml, and no Image of Shadertoy", file=path)
+        raise SketchError("this folder holds no sketch.toml, and no Image of Shadertoy of its own", file=path)
     if exists(path):
         raise SketchError("this is a pipe, a socket or a device; a file was expected", file=path)
     raise SketchError(f"there is no file and no shipped sketch '{text}'{nearest(text, shipped_sketches())}")

@@ -116,7 +116,7 @@ class Origin:
             return (
                 all(named.get(name) == folder for name, folder in self.libraries)
                 and all(_file_at(place) == found for place, found in self.places)
-                and all(read_text(Path(path)) == text for path, text in self.texts)
+                and all(read_text(Path(path), any_encoding=True) == text for path, text in self.texts)
             )
         except PlaygroundError:
             return False
@@ -159,8 +159,15 @@ def read_source_and_origin(
     return source, Origin(tuple(reader.texts.items()), tuple(reader.looked_at.items()), asked)
 
 
-def read_text(path: Path) -> str:
-    """Read a UTF-8 file with any line ends; raise ``SketchError`` in a sentence if it cannot be read."""
+class EncodingError(SketchError):
+    """A file is not UTF-8."""
+
+
+def read_text(path: Path, *, any_encoding: bool = False) -> str:
+    """Read a UTF-8 file with any line ends; raise ``SketchError`` in a sentence if it cannot be read.
+
+    With ``any_encoding``, a text that is no UTF-8 is taken as Latin-1, where each byte is a character.
+    """
     note(path)
     data = b""
     try:
@@ -176,9 +183,11 @@ def read_text(path: Path) -> str:
     except IsADirectoryError:
         raise SketchError("this is a folder; a file was expected", file=path) from None
     except UnicodeDecodeError as error:
+        if any_encoding and b"\0" not in data:
+            return normalised(data.decode("latin-1"))
         before = normalised(data[: error.start].decode()).split("\n")
         message = f"not UTF-8 text (byte {error.start}); save the file as UTF-8"
-        raise SketchError(message, file=path, line=len(before), column=len(before[-1]) + 1) from None
+        raise EncodingError(message, file=path, line=len(before), column=len(before[-1]) + 1) from None
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise SketchError(f"cannot be read: {reason}", file=path) from None
@@ -265,7 +274,9 @@ class _Reader:
         self.flatten(target, self.texts[key], (*chain, place), (*stack, key))
 
     def read(self, path: Path) -> str:
-        return self.instead[str(path)] if str(path) in self.instead else read_text(path)
+        if str(path) in self.instead:
+            return self.instead[str(path)]
+        return read_text(path, any_encoding=self.foreign)
 
     def find(self, name: str, includer: Path, line: Line) -> Path:
         allowed, climbs = self.allowed(includer)

@@ -24,6 +24,7 @@ from playground.sketch.dialects import EXPORT, OWN, is_export, read_foreign
 from playground.sketch.find import shipped_names
 from playground.sketch.kernel_cache import parsed_kernel, replaced
 from playground.sketch.model import Graph, Kernel, Technique, Variant
+from playground.sketch.source import EncodingError
 from playground.sketch.toml_graph import read_graph
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.variant_check import check_shape
@@ -129,11 +130,12 @@ class Techniques:
 
         ``dialect`` is that of another tool, or "" to go by the text.
         """
-        path, kernel, wrong = path.resolve(), None, None
+        path, kernel = path.resolve(), None
+        wrong: ShaderError | EncodingError | None = None
         if dialect in ("", OWN):
             try:
                 kernel = self.kernel(path, folder)
-            except ShaderError as error:
+            except (ShaderError, EncodingError) as error:
                 wrong = error
         if (kernel is None or kernel.kind == "plain_fragment") and path.suffix != ".comp" and dialect != OWN:
             is_plain = kernel is not None

@@ -223,3 +223,42 @@ def test_what_needs_the_whole_picture_says_so(any_engine, folder, name):
     sketch = load(folder.write("t.frag", MAIN_TEXTS[name]))
     with pytest.raises(SketchError, match=r"cannot be drawn in parts: it .*; choose a smaller picture"):
         list(strips(any_engine, sketch, SIZE, tile=(20, 8), time=0.1))
+
+
+def test_a_uniform_that_no_panel_shows_and_nothing_feeds_is_named(any_engine, folder):
+    text = """struct Light { vec3 colour; float power; };
+uniform Light key;
+uniform Light lights[2];
+uniform float u_values[4];
+uniform float kept[2] = float[2](0.25, 0.5);
+uniform float unread[3];
+uniform vec3 u_SH[9];
+uniform float gain;
+uniform vec2 u_resolution;
+void main() {
+    float all_of_it = u_values[1] + kept[1] + gain + u_SH[0].x;
+    gl_FragColor = vec4(gl_FragCoord.xy / u_resolution, all_of_it, 1.0);
+    gl_FragColor.rgb += key.colour + lights[1].colour;
+}
+"""
+    path = folder.write("a.frag", text)
+    plan = Planner().plan(load(path), frame_size=SIZE)
+    assert [(w.message, w.line) for w in source_warnings(plan)] == [
+        ("nothing feeds key, lights, u_values: it is 0, as no panel shows its type", 2)
+    ]
+    assert drawn(any_engine, path)[0, 0, 2] == 128
+
+
+def test_an_image_that_shaders_write_is_named(folder):
+    text = """#version 420
+layout(r32ui) uniform coherent uimage2D[3] computeTex;
+uniform float fGlobalTime;
+out vec4 c;
+void main() { imageStore(computeTex[0], ivec2(0), uvec4(1)); c = vec4(fGlobalTime); }
+"""
+    plan = Planner().plan(load(folder.write("a.frag", text)), frame_size=SIZE)
+    (found,) = source_warnings(plan)
+    assert (found.message, found.line) == (
+        "nothing feeds computeTex: it reads 0, and nothing keeps what is written",
+        2,
+    )

@@ -82,3 +82,28 @@ def test_the_sandbox_reports_all(tmp_path: Path) -> None:
         report = sandbox.run(TrySketch(sketch))
     assert report.error is not None
     assert set(files(report.error)) == {"first.glsl", "second.glsl"}
+
+
+@pytest.mark.parametrize(
+    ("character", "words"),
+    [
+        ("\u200b", "U+200B, ZERO WIDTH SPACE"),
+        ("\u00a0", "U+00A0, NO-BREAK SPACE"),
+        ("\u2013", "U+2013, EN DASH"),
+    ],
+)
+def test_a_character_that_glsl_has_not_is_named_as_it_is(any_engine, folder, character, words):
+    body = f"    // \u00fc?\n    float a = 2.0{character} 1.0;\n c = vec4(a);"
+    text = f"void mainImage(out vec4 c, in vec2 p) {{\n{body} }}\n"
+    with pytest.raises(ShaderError) as caught:
+        any_engine.render(load(folder.write("t.frag", text)), size=(8, 8))
+    first = caught.value.diagnostics[0]
+    assert (first.line, first.column) == (3, 18)
+    assert words in first.message and "'?'" not in first.message
+
+
+def test_a_question_mark_of_the_author_s_own_stays_one(any_engine, folder):
+    text = "void mainImage(out vec4 c, in vec2 p) {\n    float a = ? 1.0;  // \u00fc\n c = vec4(a); }\n"
+    with pytest.raises(ShaderError) as caught:
+        any_engine.render(load(folder.write("t.frag", text)), size=(8, 8))
+    assert "U+" not in caught.value.diagnostics[0].message

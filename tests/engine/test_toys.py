@@ -402,6 +402,18 @@ def test_a_pass_that_comes_or_changes_is_read(any_engine, opened, folder):
     assert {"Image.glsl", "Buffer B.glsl"} <= named
 
 
+@pytest.mark.parametrize("name", FOLDERS)
+def test_every_file_of_a_folder_is_one_of_the_sketch_so_that_a_pack_has_it(opened, name):
+    found = {path.rpartition("/")[2] for path in opened(TOYS[name].files, TOYS[name].opens).files}
+    assert found >= set(TOYS[name].files)
+
+
+def test_a_comment_gives_a_channel_the_keyboard(opened):
+    sketch = opened(TOYS["folder_with_a_keyboard"].files)
+    assert notes(sketch) == []
+    assert "foreign/keys" in [spec.use for spec in sketch.graph.passes]
+
+
 def test_a_folder_that_is_none_is_one_sentence(folder):
     with pytest.raises(PlaygroundError, match=r"no sketch\.toml, and no Image"):
         load(folder.path)

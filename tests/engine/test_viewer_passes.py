@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from scipy.ndimage import distance_transform_edt
 
+from playground.engine.plan_warnings import source_warnings
+from playground.engine.planner import Planner
 from playground.errors import ShaderError
 from playground.sketch.load import load
 from playground.sketch.warnings import former_names_used, warnings_of_kernel
@@ -437,3 +439,27 @@ def test_a_pyramid_of_a_share_of_the_picture(read):
         "uniform sampler2D u_pyramid0; // 0.5\nuniform sampler2D u_pyramidTex0",
     )
     assert read(text, "pyramid0", (64, 40)).shape == (20, 32, 4)
+
+
+def test_what_only_an_algorithm_reads_is_not_missed_in_other_passes(folder):
+    head = "uniform sampler2D u_pyramid0, u_pyramidTex0;\nuniform sampler2D u_pyramidTex1;\n"
+    head += "uniform bool u_pyramidUpscaling;\nuniform int u_pyramidDepth;\n"
+    body = """void main() {
+    vec2 st = gl_FragCoord.xy / u_resolution;
+#if defined(PYRAMID_0)
+    gl_FragColor = vec4(st, 0.0, 1.0);
+#elif defined(PYRAMID_ALGORITHM)
+    gl_FragColor = texture2D(u_pyramidTex0, st);
+    if (u_pyramidUpscaling && u_pyramidDepth > 0) gl_FragColor += texture2D(u_pyramidTex1, st);
+#else
+    gl_FragColor = texture2D(u_pyramid0, st);
+#endif
+}
+"""
+    sketch = load(folder.write("t.frag", HEAD + head + body))
+    found = [w.message for _, kernel in sketch.graph.kernels for w in warnings_of_kernel(kernel)]
+    plan = Planner().plan(sketch, frame_size=(32, 18))
+    assert [*found, *(w.message for w in source_warnings(plan))] == []
+    lonely = load(folder.write("t.frag", HEAD + head + "uniform bool u_idle;\n" + body))
+    found = {w.message for _, kernel in lonely.graph.kernels for w in warnings_of_kernel(kernel)}
+    assert found == {"nothing reads 'u_idle', so it has no effect"}

@@ -11,9 +11,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 _PRECISION = r"(?:(?:lowp|mediump|highp)\s+)?"
+_MEMORY = r"(?:(?:coherent|volatile|restrict|readonly|writeonly)\s+)*"
 _BEGINS = r"(?:^|[;{}\n])[ \t]*"
 _UNIFORM = re.compile(
-    rf"{_BEGINS}(?:layout\s*\([^)]*\)\s*)?uniform\s+{_PRECISION}(\w+)\s+([^;{{}}]*)(?=;)", re.MULTILINE
+    rf"{_BEGINS}(?:layout\s*\([^)]*\)\s*)?uniform\s+{_MEMORY}{_PRECISION}(\w+)(\s*\[[^\]]*\]\s*|\s+)"
+    r"([^;{}]*)(?=;)",
+    re.MULTILINE,
 )
 _IN = re.compile(
     rf"{_BEGINS}(layout\s*\([^)]*\)\s*)?"
@@ -27,7 +30,10 @@ _MEMBER = re.compile(
 )
 _NAME = re.compile(r"\s*([A-Za-z_]\w*)\s*(\[[^\]]*\])?")
 _DIRECTIVE = re.compile(r"^[ \t]*#.*$", re.MULTILINE)
-_QUALIFIER = re.compile(r"^[ \t]*#[ \t]*define[ \t]+(\w+)[ \t]+(in|uniform)[ \t]*$", re.MULTILINE)
+_QUALIFIER = re.compile(
+    r"^[ \t]*#[ \t]*define[ \t]+(\w+)(?:[ \t]+(in|uniform|lowp|mediump|highp))?[ \t]*$", re.MULTILINE
+)
+_QUALIFIED = re.compile(rf"{_BEGINS}(?:\w+[ \t]+)?(?:uniform|in)[ \t]+(\w+)[ \t]+\w+[ \t]+\w", re.MULTILINE)
 _BRACKETS = re.compile(r"\([^()]*\)")
 _VECTOR = re.compile(r"vec([234])|float")
 
@@ -49,9 +55,11 @@ def uniforms(code: str) -> Mapping[str, Declared]:
     code = _with_qualifiers(code)
     found: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
-        for name, array, at, written in _names(match.group(2)):
-            line = code.count("\n", 0, match.start(2) + at)
-            found.setdefault(name, Declared(name, match.group(1), bool(array), line, written))
+        of_type = match.group(2).strip()  # the array of "float[3] a"
+        for name, array, at, written in _names(match.group(3)):
+            line = code.count("\n", 0, match.start(3) + at)
+            written = written.replace(name, f"{name}{of_type}", 1)
+            found.setdefault(name, Declared(name, match.group(1), bool(array or of_type), line, written))
     return found
 
 
@@ -91,8 +99,12 @@ def vertex_outputs(code: str) -> tuple[tuple[str, str], ...]:
 
 
 def _with_qualifiers(code: str) -> str:
-    """Replace macros that stand for a qualifier, as texts for several versions of GLSL have them."""
-    macros = dict(_QUALIFIER.findall(code))
+    """Replace macros that stand for a qualifier, as texts for several versions of GLSL have them.
+
+    One of no value counts where it stands as one: texts for OpenGL ES define precisions so elsewhere.
+    """
+    there = set(_QUALIFIED.findall(code))
+    macros = {name: value for name, value in _QUALIFIER.findall(code) if value or name in there}
     if not macros:
         return code
     return re.sub(rf"\b(?:{'|'.join(macros)})\b", lambda found: macros[found.group()], code)

@@ -56,6 +56,8 @@ _SINCE_TAKEN = frozenset(
 _FUNCTIONS = ("texture", "textureSize", "textureProj", "textureLod", "textureGrad")
 """Functions that the rewriting calls: a variable of that name would hide them."""
 
+_SAMPLER_FIRST = r"\s*\(\s*(?:const\s+)?(?:in\s+)?(?:(?:lowp|mediump|highp)\s+)?sampler"
+
 _NOT_TYPES = (
     "in|out|inout|const|uniform|varying|attribute|invariant|lowp|mediump|highp|precision|return|else|define"
     "|flat|smooth|centroid|noperspective|sample|patch|undef|ifdef|ifndef|defined"
@@ -88,6 +90,7 @@ def rewritten(source: SourceText, *, is_vertex: bool = False, declared: Collecti
     if version is None or int(version.group(1)) < 130:
         names = _clashing(source, declared)
     names |= _free({name for name in source.names if _OURS.fullmatch(name)}, source)
+    names |= _free(_lookups_of_its_own(source), source)
     data = "gl_FragData" in source.names and not is_vertex
     own = _own_functions(source) if names else ()
     inputs = [declared for old, (_, declared) in _OF_VERTICES.items() if old in source.names]
@@ -165,6 +168,13 @@ def _own_functions(source: SourceText) -> set[str]:
     code = source.code
     looked_up = {_new(found, data=False).rstrip() for found in _OLD.finditer(code) if found.group("lookup")}
     return {name for name in looked_up & source.names if _declares(code, name)}
+
+
+def _lookups_of_its_own(source: SourceText) -> list[str]:
+    """Return the older lookups that a text defines as functions: their calls are those of its own."""
+    words = dict.fromkeys(found.group() for found in _OLD.finditer(source.code) if found.group("lookup"))
+    typed = r"\b(?!return\b|else\b)[A-Za-z_]\w*\s+"
+    return [word for word in words if re.search(rf"{typed}{word}{_SAMPLER_FIRST}", source.code)]
 
 
 def _declares(code: str, name: str, *, variable: bool = False) -> bool:

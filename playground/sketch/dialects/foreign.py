@@ -38,6 +38,9 @@ _SHADOW_MAP = "#define LIGHT_SHADOWMAP "
 _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
 _SOUNDS = "a made-up sound stands in; a sketch may wire foreign/sound to it"
 _BANDS = "a made-up sound stands in"
+_NO_PANEL = "it is 0, as no panel shows its type"
+_NO_IMAGE = "it reads 0, and nothing keeps what is written"
+_IMAGE = re.compile(r"[iu]?image(?:[123]D|Cube|Buffer|2DRect)\w*")
 
 
 class ForeignKernel:
@@ -221,13 +224,23 @@ class ForeignKernel:
                 yield name, channel.unfed
             elif self.rules.names.get(name, ("", ""))[1] == "bands":
                 yield name, _BANDS
-            elif "sampler" in kind and channel == Channel() and name not in fed and self._is_read(name):
+            elif name in fed or name in self.shader.channels:  # where that is black, the tool has it so
+                continue
+            elif "sampler" in kind and channel == Channel() and self._is_read(name):
                 yield name, "it reads black"
+        yield from self._unset(fed)
         if any(line.startswith(_SHADOW_MAP) for line in self.rules.defines(self.source)):
             yield "LIGHT_SHADOWMAP", "it reads black"
         for name in sorted(self.source.names):
             if name.startswith(_MODEL):
                 yield name, "there is no mesh here, so it is drawn flat"
+
+    def _unset(self, fed: Collection[str]) -> Iterator[tuple[str, str]]:
+        """Yield the uniforms that are no parameters, are given by nobody and have no value in the text."""
+        for one in self.declared.values():
+            is_given = one.name in fed or one.name in self.rules.names or "sampler" in one.type
+            if not is_given and "=" not in one.written and self._is_read(one.name):
+                yield one.name, _NO_IMAGE if _IMAGE.match(one.type) else _NO_PANEL
 
 
 def unfed_warnings(kernel: Kernel, wired: Collection[str]) -> tuple[Diagnostic, ...]:

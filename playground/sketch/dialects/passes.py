@@ -90,7 +90,9 @@ class _Passes:
         """Drop the parameters that a pass declares and only other passes read."""
         kernels = [one for one in self.techniques if isinstance(one, Kernel) and one.dialect]
         reads = {id(one): _names_read(one) for one in kernels}
+        declared = {p.name for one in kernels for p in one.parameters}
         anywhere = set().union(*reads.values())
+        anywhere |= {name for one in kernels for name in declared if one.source.counts[name] > 1}
         for index, one in enumerate(self.techniques):
             if isinstance(one, Kernel) and id(one) in reads:
                 kept = [p for p in one.parameters if p.name in reads[id(one)] or p.name not in anywhere]

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from playground.errors import Diagnostic
+from playground.errors import Diagnostic, SketchError
 from playground.paths import PART_OF_FILE, shown
-from playground.sketch.allowed_files import is_file
+from playground.sketch.allowed_files import is_file, is_inside
 from playground.sketch.dialects.foreign import commented_files, places_of
 from playground.sketch.source import Line, Origin, SourceText, normalised, read_source_and_origin, read_text
 
@@ -34,12 +34,19 @@ class Files:
         """Return a file's text, by default the shader's; raise ``SketchError`` where it cannot be read."""
         path = path or self.path
         found = self.instead.get(str(path))
-        found = read_text(path) if found is None else found
+        found = read_text(path, any_encoding=True) if found is None else found
         self._texts[str(path)] = found
         return found
 
+    def check_inside(self, path: Path) -> None:
+        """Raise ``SketchError`` for a file that leads out of the root; a user may name such a shader."""
+        if path != self.path and not is_inside(path, (self.root,)):
+            message = f"this leads outside the shader's own folder, {shown(self.root)}, and is not read"
+            raise SketchError(message, file=shown(path))
+
     def source(self, path: Path | None = None) -> SourceText:
         """Return a file with its includes, by default the shader's; raise as ``read_source`` does."""
+        self.check_inside(path or self.path)
         source, origin = read_source_and_origin(path or self.path, (self.root,), self.instead, foreign=True)
         self._origins.append(origin)
         for line, file in commented_files(source):

@@ -1,22 +1,23 @@
 """Read a folder of Shadertoy's passes: ``Image``, ``Buffer A`` to ``Buffer D``, ``Cube A`` and ``Common``.
 
-Each is a file, ``.glsl`` or ``.frag``, with a space in its name or without. What a channel reads says a line
-as ``#iChannel0 "file://Buffer A.glsl"`` or a comment as ``// iChannel0: Buffer A``; else channel 0 reads
-Buffer A, 1 Buffer B and so on, of those that are there.
+Each is a file, ``.glsl`` or ``.frag``, with a space or ``_`` in its name or without, in capitals or not. What
+a channel reads says a line as ``#iChannel0 "file://Buffer A.glsl"`` or a comment as
+``// iChannel0: Buffer A``; else channel 0 reads Buffer A, 1 Buffer B and so on, of those that are there.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from playground.errors import SketchError
 from playground.paths import shown
+from playground.sketch.allowed_files import is_inside
 from playground.sketch.dialects.directives import read_directives
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.sampler_types import cubes_of
-from playground.sketch.dialects.shader import Shader
+from playground.sketch.dialects.shader import Shader, stand_in
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
     CUBE,
@@ -37,14 +38,18 @@ _CUBES = ("Cube A",)
 _LABELS = (*_BUFFERS, *_CUBES, _IMAGE)
 _ENDINGS = (".glsl", ".frag")
 _COMMENT = re.compile(
-    r"\biChannel([0-3])\b\s*(?:[:=]|->|→|reads|is)?\s*(Buffer ?[A-D]|Cube ?A|self)\b", re.IGNORECASE
+    r"\biChannel([0-3])\b\s*(?:[:=]|->|→|reads|is)?\s*(Buffer[ _]?[A-D]|Cube[ _]?A|Keyboard|self)\b",
+    re.IGNORECASE,
 )
+_KEYBOARD = "keyboard"
 
 
 def image_of(folder: Path) -> Path | None:
-    """Return the file of a folder's Image; None where it has none that is one."""
+    """Return the file of a folder's Image; None where it has none of its own that is one."""
     found = next((place for place in _places(folder, _IMAGE) if place.is_file()), None)
-    return found if found is not None and "mainImage" in found.read_text("utf-8", "replace") else None
+    if found is None or not is_inside(found, (folder,)):
+        return None
+    return found if "mainImage" in found.read_text("utf-8", "replace") else None
 
 
 def is_of_folder(path: Path) -> bool:
@@ -58,8 +63,13 @@ def has_more(files: Files) -> bool:
     if not _is_named(path):
         return False
     others = [place for place in _all_places(path.parent) if place != path]
-    there = [files.is_there(place) for place in others]  # all, so that one that comes is seen
-    return any(there) and image_of(path.parent) is not None
+    there = [place for place in others if files.is_there(place)]  # all, so that one that comes is seen
+    return not all(_is_one_file((path, place)) for place in there) and image_of(path.parent) is not None
+
+
+def is_image(path: Path) -> bool:
+    """Return whether a file is called as the Image of a folder is."""
+    return path in _places(path.parent, _IMAGE)
 
 
 def _is_named(path: Path) -> bool:
@@ -76,13 +86,16 @@ def shaders(files: Files) -> Sequence[Shader]:
     there = {label: found for label in _LABELS if (found := _file(files, folder, label))}
     if _file(files, folder, _SOUND):
         files.note(f"{_SOUND} is sound, which is not drawn")
+    sources = {path: files.source(path) for path in there.values()}
     common = _file(files, folder, _COMMON)
+    if any(str(common) in source.files for source in sources.values()):
+        common = None  # a pass includes it by itself
     kinds = {label: IMAGE if label == _IMAGE else CUBE if label in _CUBES else BUFFER for label in _LABELS}
     reader = Reader(
         files,
         labels={path: label for label, path in there.items()},
         kinds={path: kinds[label] for label, path in there.items()},
-        inputs={path: _inputs(files, path, files.source(path), there) for path in there.values()},
+        inputs={path: _inputs(files, path, source, there) for path, source in sources.items()},
         common=read_directives(files.source(common)).source if common else None,
     )
     for label, path in there.items():
@@ -96,10 +109,10 @@ def _inputs(files: Files, path: Path, source: SourceText, there: dict[str, Path]
     named: dict[int, str] = {}
     for line in source.lines:
         for number, text in _COMMENT.findall(line.comment):
-            wanted = pass_name(text.replace(" ", ""))
+            wanted = pass_name(re.sub("[ _]", "", text))
             own = next(label for label, file in there.items() if file == path)
             label = next((one for one in there if pass_name(one.replace(" ", "")) == wanted), "")
-            named.setdefault(int(number), own if wanted == "self" else label)
+            named.setdefault(int(number), {"self": own, _KEYBOARD: _KEYBOARD}.get(wanted, label))
     taken = read_directives(source).channels
     assumed = {}
     cubes = cubes_of(source.code)
@@ -111,24 +124,40 @@ def _inputs(files: Files, path: Path, source: SourceText, there: dict[str, Path]
     if assumed:
         pairs = ", ".join(f"iChannel{number} reads {label}" for number, label in assumed.items())
         files.note(f"nothing says otherwise, so {pairs}; a comment as // iChannel0: Buffer B does", path=path)
-    return {
-        f"iChannel{number}": ToyInput(
-            reading(pass_name(label)), "samplerCube" if label in _CUBES else "sampler2D"
-        )
+    found = {
+        number: ToyInput(reading(pass_name(label)), "samplerCube" if label in _CUBES else "sampler2D")
         for number, label in named.items()
         if label in there
     }
+    keys = ToyInput(stand_in("keys", 0, ""))
+    found |= {number: keys for number, label in named.items() if label == _KEYBOARD}
+    return {f"iChannel{number}": feeds for number, feeds in found.items()}
 
 
 def _file(files: Files, folder: Path, label: str) -> Path | None:
     """Return the file of a pass; raise ``SketchError`` where there are two."""
     found = [place for place in _places(folder, label) if files.is_there(place)]
-    if len(found) > 1:
+    if len(found) > 1 and not _is_one_file(found):
         both = " and ".join(shown(place) for place in found[:2])
         raise SketchError(f"{both} are both {label}; remove one", file=shown(files.path))
-    return found[0].resolve() if found else None
+    if not found:
+        return None
+    files.check_inside(found[0])
+    return found[0].resolve()
 
 
 def _places(folder: Path, label: str) -> list[Path]:
-    names = dict.fromkeys((label, label.replace(" ", "")))
-    return [folder / f"{name}{ending}" for name in names for ending in _ENDINGS]
+    return [folder / f"{name}{ending}" for name in _names(label) for ending in _ENDINGS]
+
+
+def _names(label: str) -> Iterator[str]:
+    """Yield what a pass's file may be called, without its ending; the site's own name first."""
+    first, space, letter = label.partition(" ")
+    for between in (" ", "", "_") if space else ("",):
+        for begins in (first, first.lower()):
+            yield from (f"{begins}{between}{ends}" for ends in dict.fromkeys((letter, letter.lower())))
+
+
+def _is_one_file(places: Sequence[Path]) -> bool:
+    """Return whether places are one file: where capitals do not count, each of its names is there."""
+    return all(place.samefile(places[0]) and not place.is_symlink() for place in places)

@@ -24,6 +24,7 @@ from playground.sketch.dialects.toy_passes import (
     pass_name,
     reading,
     shaders_of,
+    with_common,
 )
 from playground.sketch.model import Sampling
 from playground.sketch.source import Line, SourceText
@@ -93,9 +94,7 @@ class Reader:
             feeds[f"iChannel{number}"] = self._feed(path, number, channel)
         if directives.KEYBOARD in read.source.names:
             feeds[directives.KEYBOARD] = ToyInput(stand_in("keys", 0, ""))
-        source = read.source
-        if self.common is not None:
-            source = replace(source, lines=(*self.common.lines, *source.lines))
+        source = with_common(self.common, read.source)
         has_main = bool(_MAIN.search(source.code)) and "mainImage" not in source.names
         label = self.labels.get(path, path.name)
         self._done[path] = ToyPass(label, kind, source, feeds, not has_main, name)

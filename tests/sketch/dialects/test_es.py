@@ -70,6 +70,18 @@ def test_a_line(codes, old, new):
             "vec4 texture(vec2 p) { return texture2D(s, p); }\nvec4 a = texture(p);",
             ["vec4 texture_(vec2 p) { return texture  (s, p); }", "vec4 a = texture_(p);"],
         ),
+        (
+            "vec4 texture2D(sampler2D s, vec2 p) { return texture(s, p); }\nvec4 a = texture2D(s, p);",
+            ["vec4 texture2D_(sampler2D s, vec2 p) { return texture(s, p); }", "vec4 a = texture2D_(s, p);"],
+        ),
+        (
+            "vec4 texture2D(in lowp sampler2D s,\nvec2 p)\n{ return textureLod(s, p, 0.0); }",
+            ["vec4 texture2D_(in lowp sampler2D s,", "vec2 p)", "{ return textureLod(s, p, 0.0); }"],
+        ),
+        (
+            "#define texture2D(s, p) texture(s, p)\nvec4 a() { return texture2D(s, p); }",
+            ["#define texture(s, p) texture(s, p)", "vec4 a() { return texture  (s, p); }"],
+        ),
     ],
 )
 def test_what_an_author_calls_texture_is_told_from_the_lookup(codes, old, new):

@@ -103,3 +103,26 @@ def test_what_a_vertex_shader_gives():
             "inside.v_normal = vec3(0.0, 0.0, 1.0); inside.at = vec2(0.0);"
         ),
     }
+
+
+def test_uniforms_with_the_array_at_their_type_and_images_are_found():
+    code = "uniform float[3] a;\nlayout(r32ui) uniform coherent restrict uimage2D [2] b;\n"
+    code += "uniform lowp sampler2D[4] maps, more;uniform vec2\tc;\n"
+    found = uniforms(code)
+    assert {n: (d.type, d.is_array, d.line, d.written.strip()) for n, d in found.items()} == {
+        "a": ("float", True, 0, "a[3]"),
+        "b": ("uimage2D", True, 1, "b[2]"),
+        "maps": ("sampler2D", True, 2, "maps[4]"),
+        "more": ("sampler2D", True, 2, "more[4]"),
+        "c": ("vec2", False, 2, "c"),
+    }
+
+
+def test_macros_that_stand_for_a_precision_or_for_nothing_are_no_types():
+    code = "#ifdef GL_ES\n#define LOWP lowp\n#else\n#define LOWP\n#endif\n#define HIGH highp\n#define GUARD\n"
+    code += "uniform LOWP float a;\nin LOWP vec4 v_color;\nin HIGH vec2 v_uv;\nuniform HIGH sampler2D b;\n"
+    assert {n: (d.type, d.line) for n, d in uniforms(code).items()} == {
+        "a": ("float", 7),
+        "b": ("sampler2D", 10),
+    }
+    assert [declaration for declaration, _ in vertex_outputs(code)] == ["out vec4 v_color;", "out vec2 v_uv;"]
