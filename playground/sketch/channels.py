@@ -297,7 +297,11 @@ def _size(
     if files and kernel is not None and kernel.kind == "kernel":
         wide, high = (f"{name}.{files[0].name}.size.{axis}" for axis in "xy")
         return (wide, f"6 * {wide}") if use in _CUBES else (wide, high)
-    return _SIZES.get(use) or _SIZES_OF_SHAPES.get(shape, _SIZE)
+    if use in _SIZES:
+        return _SIZES[use]
+    if before is not None and before.use not in _SIZES and before.size and not _reads_file(before):
+        return before.size  # as an ISF filter has it, whose image is as large as its picture
+    return _SIZES_OF_SHAPES.get(shape, _SIZE)
 
 
 def _names(technique: Technique) -> Iterator[str]:

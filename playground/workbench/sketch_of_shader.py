@@ -38,8 +38,9 @@ def save_as_sketch(draft: Draft, folder: Path) -> Draft:
     """
     shader = Path(draft.file.file)
     if shader.suffix not in TECHNIQUES:
-        endings = " or ".join(ending for ending in TECHNIQUES if ending != ".toml")
-        raise DataError(f"a sketch uses shaders that end in {endings}: rename it", file=shader)
+        *endings, last = (ending for ending in TECHNIQUES if ending != ".toml")
+        known = f"{', '.join(endings)} or {last}"
+        raise DataError(f"a sketch uses shaders that end in {known}, not in {shader.suffix}", file=shader)
     ships = shader.is_relative_to(GLSL)
     root = GLSL if ships else Path(draft.file.folder)
     use = f"{'' if ships else './'}{shader.relative_to(root).with_suffix('').as_posix()}"

@@ -312,6 +312,32 @@ def test_a_loop_that_is_not_the_frames_stays_behind(folder: Path, any_engine: En
     assert found[0].startswith("pass 'state' repeats passes (5), which these formats have not")
 
 
+ASKED = """// asked.glsl -- an input that a function reads, where something is wired.
+#pragma kernel(output = "frame:rgba8")
+uniform sampler2D height;  //! input
+uniform sampler2D extra;   //! input("white")
+float at(sampler2D texels, ivec2 texel) { return texelFetch(texels, texel, 0).r; }
+vec4 kernel(ivec2 texel) { return vec4(at(height, texel), wired_extra ? at(extra, texel) : 0.5, 0.0, 1.0); }
+"""
+
+
+@pytest.mark.parametrize("ending", ["fs", "json"])
+def test_an_unwired_input_may_be_handed_to_a_function(folder: Path, any_engine: Engine, ending: str) -> None:
+    (folder / "asked.glsl").write_text(ASKED)
+    (folder / "a.toml").write_text(HEAD + passes(height="./land") + '[view]\nuse = "./asked"\n')
+    path = folder / f"again.{ending}"
+    export(folder / "a.toml", path, engine=any_engine)
+    again = any_engine.render(load(path), size=FRAME).array[::-1, :, :3]
+    assert apart(drawn(any_engine, folder / "a.toml"), again) <= ROUNDING
+    (folder / "asked.glsl").write_text(
+        ASKED.replace("wired_extra ? at(extra, texel) : 0.5", "at(extra, texel)")
+    )
+    export(folder / "a.toml", path, engine=any_engine)
+    again = any_engine.render(load(path), size=FRAME).array[::-1, :, :3]
+    assert (again[..., 1] == 255).all(), "white, by a pass of its own"
+    assert apart(drawn(any_engine, folder / "a.toml"), again) <= ROUNDING
+
+
 REDUCED = """// reduced.glsl -- the mean of a texture, as one texel.
 #pragma kernel(output = "mean:r32f")
 uniform sampler2D height;  //! input
@@ -341,7 +367,8 @@ def test_a_pass_of_another_size_has_its_own_or_a_corner(
     text = HEAD + passes(height="./land", mean=("./reduced", "size = 1")) + '[view]\nuse = "./around"\n'
     (folder / "mean.toml").write_text(text)
     path = folder / f"out.{ending}"
-    export(folder / "mean.toml", path, engine=any_engine)
+    done = export(folder / "mean.toml", path, engine=any_engine)
+    assert ("it needs a picture of at least 1 x 1 pixels" in done.warnings) == (ending == "json")
     again = isf_of(ctx, path) if ending == "fs" else toy_of(ctx, path)
     assert apart(drawn(any_engine, folder / "mean.toml"), again) <= ROUNDING
 

@@ -228,6 +228,8 @@ def test_what_a_later_pass_writes_and_nothing_keeps_reads_zero(any_engine, isf):
         ('"HEIGHT": "$HEIGHT /"', "HEIGHT of pass 0: .*is not an expression", 1),
         ('"WIDTH": "import os"', "is not an expression", 1),
         ('"WIDTH": [1]', "is no size", 1),
+        ('"WIDTH": "(1, 2)"', r"WIDTH of pass 0: '\(1, 2\)' holds something other", 1),
+        ('"WIDTH": "WIDTH / 2"', r"'WIDTH / 2' names 'WIDTH', .*there are: \$WIDTH, \$HEIGHT", 1),
     ],
 )
 def test_a_size_that_cannot_be(isf, size, words, line):

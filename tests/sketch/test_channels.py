@@ -68,6 +68,22 @@ def test_a_sketch_of_a_view_alone_is_the_shader_s_picture(folder: Path, any_engi
         sketch(folder, 'use = "view/terrain"')
 
 
+FILTER = """/*{"ISFVSN": "2", "INPUTS": [{"NAME": "inputImage", "TYPE": "image"}]}*/
+void main() { gl_FragColor = IMG_THIS_PIXEL(inputImage); }
+"""
+
+
+def test_a_stand_in_for_a_filter_s_image_stays_as_large_as_the_picture(
+    folder: Path, any_engine: Engine
+) -> None:
+    (folder / "filter.fs").write_text(FILTER, "utf-8")
+    found = load(folder / "filter.fs")
+    for source in ("foreign/picture", "foreign/noise", "foreign/black"):
+        any_engine.render(with_source(found, "view.inputImage", source), size=(12, 7))
+        assert any_engine.plan is not None
+        assert any_engine.plan.step("inputImage").size == (12, 7)  # type: ignore[union-attr]
+
+
 CUBE = """uniform samplerCube iChannel0;
 void mainImage(out vec4 c, in vec2 p) { c = texture(iChannel0, vec3(1.0)); }
 """

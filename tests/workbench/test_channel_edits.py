@@ -261,6 +261,9 @@ def test_what_cannot_be_saved_says_why(folder: Path, any_engine: Engine) -> None
     window = Window(any_engine, file, folder)
     window.bench.commands.save_a_copy()
     window.frame()
-    assert any("a sketch uses shaders that end in .glsl or .frag or .fs" in text for text in window.said)
+    assert any(
+        "a sketch uses shaders that end in .glsl, .frag or .fs, not in .fragment" in text
+        for text in window.said
+    )
     assert sorted(path.name for path in (folder / "alone").iterdir()) == ["first.frag", "other.fragment"]
     window.close()

@@ -13,7 +13,15 @@ from playground.capture.shader_export import isf, shadertoy, standalone
 from playground.capture.shader_export.foreign_given import MOUSE, given_by
 from playground.capture.shader_export.foreign_texts import foreign_text
 from playground.capture.shader_export.passes import PROBES, Leaving, ShaderPass, leaving, plan_of
-from playground.capture.shader_export.texts import Host, PassText, is_sampled, shown_text, size_of, text_of
+from playground.capture.shader_export.texts import (
+    Host,
+    PassText,
+    constants_of,
+    is_sampled,
+    shown_text,
+    size_of,
+    text_of,
+)
 from playground.engine.plan import Plan
 from playground.errors import DataError
 from playground.images.files import reason
@@ -63,6 +71,9 @@ def shader_files(sketch: Sketch, path: Path, *, texture: str, kind: str, time: f
         texts = shadertoy.fitted(_texts(found, shadertoy.HOST, shows))
         is_export = ending == SHADERTOY_EXPORT
         shadertoy.check(texts, one_text=not is_export)
+        least = [max((text.size[axis] or 0) for text in texts) for axis in (0, 1)]
+        if max(least):
+            notes.append(f"it needs a picture of at least {max(least[0], 1)} x {max(least[1], 1)} pixels")
         if is_export:
             text = shadertoy.export(texts, sketch.title or sketch.name, heading)
             what = f"Shadertoy export; {_counted(len(texts) - 1, 'buffer')}"
@@ -82,9 +93,10 @@ def _texts(found: Leaving, host: Host, shows: str) -> list[PassText]:
     sizes = {one.name: one.size for one in found.passes}
     passes = [replace(one, shows="") for one in found.passes] if found.is_shown else found.passes
     texts = [_foreign(one, host) if _is_foreign(one) else text_of(found, one, host, sizes) for one in passes]
+    texts = [*(more := constants_of(texts)), *texts]
     if found.is_shown:
-        index = next(i for i, one in enumerate(found.passes) if one.name == found.picture)
-        output = found.passes[index].output
+        index = len(more) + next(i for i, one in enumerate(found.passes) if one.name == found.picture)
+        output = found.passes[index - len(more)].output
         texts.append(shown_text(texts[index], output.components, shows, host))
     return texts
 
@@ -125,7 +137,7 @@ def _isf_notes(texts: Sequence[PassText], inputs: isf.Inputs) -> list[str]:
     )
     if small:
         notes.append(
-            f"ISF has no mipmaps: {', '.join(small)} may flicker where it is shown smaller than it is"
+            f"ISF has no mipmaps: {', '.join(small)} is rougher where it is shown smaller than it is"
         )
     if inputs.unbounded:
         notes.append(f"without a range of their own, so that one was made up: {', '.join(inputs.unbounded)}")

@@ -13,7 +13,7 @@ from dataclasses import replace
 from playground.capture.shader_export.declarations import Declaration, declarations_of, made
 from playground.capture.shader_export.foreign_given import neutral
 from playground.capture.shader_export.passes import ShaderPass
-from playground.capture.shader_export.texts import Host, PassText, Sampled, without_unwired
+from playground.capture.shader_export.texts import Host, PassText, Sampled, variable_of, without_unwired
 from playground.errors import SketchError
 from playground.sketch.dialects.declarations import uniforms
 from playground.sketch.model import Kernel
@@ -52,7 +52,7 @@ def foreign_text(one: ShaderPass, host: Host, given: Mapping[str, Callable[[str]
         kind, array = kinds.get(name, ("", ""))
         if not kind or (name, kind + array) in host.native:
             continue
-        found.append(made(f"{kind} {name}{array};", name))
+        found.append(made(f"{kind} {name}{array};", name) if array else variable_of(kind, name))
         statements += _setting(name, kind, array, meaning, one, given)
     for parameter in kernel.parameters:
         own, setting = host.parameter(one, parameter, one.step.values[parameter.name])
@@ -65,7 +65,7 @@ def foreign_text(one: ShaderPass, host: Host, given: Mapping[str, Callable[[str]
                 f"pass '{one.step.path}' takes '{declaration}' of a vertex shader, which others have not"
             )
             raise SketchError(message)
-        found.append(made(f"{match[1]} {match[2]};", match[2]))
+        found.append(variable_of(match[1], match[2]))
         share = f"(({host.pixel}) / vec2({host.size}))"
         text = setting_text.replace("k_share", share).replace("k_place", f"({share} * 2.0 - 1.0)")
         statements.append(text)

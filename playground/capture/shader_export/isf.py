@@ -14,7 +14,7 @@ from typing import Any
 
 from playground.capture.shader_export.declarations import Declaration, joined, made
 from playground.capture.shader_export.passes import Leaving, ShaderPass
-from playground.capture.shader_export.texts import DECODE, DECODING, Host, PassText, is_sampled
+from playground.capture.shader_export.texts import DECODE, DECODING, Host, PassText, is_sampled, variable_of
 from playground.errors import SketchError
 from playground.images.files import read_image
 from playground.sketch.assign import resolve, shown_parameters
@@ -64,13 +64,13 @@ class Inputs:
         given: list[Declaration] = []
         lines: list[str] = []
         if expression != parameter.name:
-            given.append(made(f"{parameter.type} {parameter.name};", parameter.name))
+            given.append(variable_of(parameter.type, parameter.name))
             lines.append(f"{parameter.name} = {expression};")
         if DECODE in expression:
             given.append(DECODING)
         if parameter.widget.kind == "direction":
             name = f"{TOWARDS}{parameter.name}"
-            given += [made("\n".join(_UNIT), "unit_towards"), made(f"vec3 {name};", name)]
+            given += [made("\n".join(_UNIT), "unit_towards"), variable_of("vec3", name)]
             lines.append(f"{name} = unit_towards({parameter.name});")
         return tuple(given), tuple(lines)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from playground.capture.extensions import COLOUR
@@ -19,6 +19,7 @@ from playground.terrain.directions import unit_vector
 _CALL = r"\b(texelFetch|texelFetchOffset|textureLod|textureSize|texture)\s*\(\s*{name}\s*,"
 _FALLBACKS = {"white": "vec4(1.0)", "black": "vec4(0.0, 0.0, 0.0, 1.0)"}
 _BYTES = ("r8", "rg8", "rgba8")
+CONSTANT = "constant_"
 ENCODE, DECODE = "srgb_of_linear", "linear_of_srgb"
 _ENCODE_TEXT = (
     f"vec3 {ENCODE}(vec3 light) {{ vec3 c = clamp(light, 0.0, 1.0);"
@@ -110,6 +111,9 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
             reads.append(Sampled(f"{output.name}_at_first", wire.first))
     declarations = [without_unwired(d, unwired) for d in declarations_of(kernel.source.lines)]
     declarations = [_with_start(d, starting, host.frame) for d in declarations]
+    for name in unwired:
+        if any(d.reads(name) and name not in d.arguments for d in declarations):
+            reads.append(_instead(one, name, reads))
     lines, value = _call(kernel, one.output, host.texel)
     result = _filled(one.output, value)
     if one.shows:
@@ -125,6 +129,37 @@ def text_of(leaving: Leaving, one: ShaderPass, host: Host, sizes: Mapping[str, o
         is_bytes=one.output.format in _BYTES,
         title=kernel.title,
     )
+
+
+def _instead(one: ShaderPass, name: str, reads: Sequence[Sampled]) -> Sampled:
+    """Return what an unwired input reads that a function is handed: a pass of its constant.
+
+    Where the text asks first whether anything is wired, it is never read, and any texture will do.
+    """
+    if one.step.kernel.reads(f"{WIRED}{name}") and reads:
+        return Sampled(name, reads[0].source, reads[0].sampling)
+    declared = next(declared for declared, _ in one.inputs if declared.name == name)
+    return Sampled(name, f"{CONSTANT}{declared.fallback}", declared.sampling)
+
+
+def constants_of(texts: Sequence[PassText]) -> list[PassText]:
+    """Return the passes of the constants that some passes read."""
+    names = dict.fromkeys(read.source for text in texts for read in text.reads)
+    found = [name for name in names if name.startswith(CONSTANT)]
+    title = "an input to which nothing is wired"
+    return [
+        PassText(
+            name,
+            (None, None),
+            (),
+            (),
+            (),
+            _FALLBACKS.get(name.removeprefix(CONSTANT), "vec4(0.0)"),
+            True,
+            title,
+        )
+        for name in found
+    ]
 
 
 def handed_on(text: PassText, word: str) -> bool:
@@ -178,6 +213,11 @@ def with_size_of(text: PassText, word: str, size: str) -> PassText:
     return replace(text, declarations=declarations)
 
 
+def variable_of(kind: str, name: str) -> Declaration:
+    """Return a global variable, which a pass sets before its function reads it."""
+    return made(f"{kind} {name} = {kind}(0);", name)  # without the 0 a driver warns
+
+
 def _constant(kind: str, name: str, value: str, comment: str = "") -> Declaration:
     return made(f"const {kind} {name} = {value};" + (f"  // {comment}" if comment else ""), name)
 
@@ -190,7 +230,7 @@ def _given(leaving: Leaving, one: ShaderPass, host: Host) -> tuple[list[Declarat
     statements: list[str] = []
 
     def variable(kind: str, name: str, value: str) -> None:
-        given.append(made(f"{kind} {name};", name))
+        given.append(variable_of(kind, name))
         statements.append(f"{name} = {value};")
 
     reads_spacing = kernel.reads("spacing")

@@ -125,7 +125,7 @@ function row(one) {
   made.dataset.words = `${one.label} ${one.path} ${one.group}`.toLowerCase();
   head.append(element("span", one.label, "name"), shown);
   made.append(head);
-  const control = (controls[one.widget] || numbers)(one, (value) => { if (one.widget !== "button") write(value); set(one.path, value); });
+  const control = (controls[one.widget] || numbers)(one, (value) => { write(value); set(one.path, value); });
   made.append(control.element);
   for (const input of made.querySelectorAll("input, select")) {
     input.disabled = one.locked;

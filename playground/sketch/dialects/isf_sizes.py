@@ -51,7 +51,13 @@ def translated(text: object, names: Mapping[str, str]) -> str:
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         raise ExpressionError(f"'{written}' is not an expression") from None
     whole = f"max(1, floor({_text(tree, written)}))"
-    expressions.check(whole, ("size.x", "size.y", *names.values()))
+    try:
+        expressions.check(whole, ("size.x", "size.y", *names.values()))
+    except ExpressionError as error:
+        reason = str(error).removeprefix(f"'{whole}' ")
+        for word, here in _SIZES.items():
+            reason = reason.replace(here, f"${word}")
+        raise ExpressionError(f"'{written}' {reason}") from None
     return whole
 
 

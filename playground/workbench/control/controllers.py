@@ -232,11 +232,8 @@ class Controllers:
                 f"lock {binding.path}", f"MIDI: {binding.path} is locked: {binding.source} sets nothing"
             )
             return
-        items = items_of(self._session)
-        if items[binding.path].parameter.widget.kind == "button":
-            self._session.press(binding.path)
-        else:
-            self._session.drafts.set(binding.path, value)
+        for path, other in self._session.without_buttons({binding.path: value}).items():
+            self._session.drafts.set(path, other)
 
     def _value(self, binding: Binding) -> tuple[Parameter, Value, int] | None:
         """Return a binding's parameter, its value, and which part; None, and a notice, where it is gone."""

@@ -35,7 +35,6 @@ class Controls:
         self.bench = bench
         self.session = bench.session
         self._waiting: dict[str, Value] = {}  # checked, and not done yet
-        self._pressed: set[str] = set()  # buttons, likewise
         self._acts: dict[str, Callable[[Any], None]] = {
             "set": self.set,
             "reset": self.reset,
@@ -77,10 +76,7 @@ class Controls:
             raise ParameterError(f"set = {spell(values)}: expected values by path, as light.sun: [135, 25]")
         names = current_paths(draft.base.graph, values)
         found = {names[path]: _checked(draft, path, given) for path, given in values.items()}
-        for path, value in found.items():
-            if is_button(draft.base, path):
-                self._pressed |= {path} if value else set()
-                continue
+        for path, value in self.session.without_buttons(found).items():
             self._waiting.pop(path, None)  # what is set last comes last, and wins
             self._waiting[path] = value
 
@@ -93,12 +89,9 @@ class Controls:
 
     def flush(self) -> None:
         """Do what was set."""
-        waiting, self._waiting = self.session.without_buttons(self._waiting), {}
+        waiting, self._waiting = self._waiting, {}
         if waiting:
             self.session.drafts.set_all(waiting)
-        pressed, self._pressed = self._pressed, set()
-        for path in pressed:
-            self.session.press(path)
 
     def reset(self, paths: object) -> None:
         """Reset parameters to the file's values: one path, or a list of them."""
@@ -218,11 +211,6 @@ def number_of(name: str, given: object, low: float, high: float) -> float:
     if not isinstance(given, int | float) or isinstance(given, bool) or not low <= given <= high:
         raise ParameterError(f"{name} = {spell(given)}: expected a number from {low:g} to {high:g}")
     return float(given)
-
-
-def is_button(sketch: Sketch, path: str) -> bool:
-    """Say whether a parameter is a button: it is pressed, not set."""
-    return any(target.parameter.widget.kind == "button" for target in find_targets(sketch.graph, path)[:1])
 
 
 def _checked(draft: Draft, path: str, given: object) -> Value:

@@ -1,0 +1,98 @@
+"""Whatever a remote asks ends well or in a sentence: wrong types, names and nestings, by chance."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from playground.engine.engine import Engine
+from playground.errors import PlaygroundError
+from playground.workbench.control.addresses import Addresses
+from playground.workbench.control.controls import Controls
+
+from ...remote.desk import Desk, write_sketch
+
+PATHS = [
+    "height.level",
+    "height.sun",
+    "height.kind",
+    "height.rocks",
+    "height.tint",
+    "height.grass",
+    "height.fire",
+]
+PATHS += [
+    "relief",
+    "extent",
+    "height",
+    "",
+    ".",
+    "height.",
+    "..",
+    "height.level.x",
+    "no.such",
+    "view.lowest",
+    "x" * 999,
+]
+
+
+@pytest.fixture
+def desk(tmp_path: Path, any_engine: Engine) -> Iterator[Desk]:
+    made = Desk(any_engine, write_sketch(tmp_path / "hills"))
+    yield made
+    made.close()
+
+
+def anything(chance: random.Random, depth: int = 0) -> Any:
+    """Return a value as JSON may hold one."""
+    simple = [
+        None,
+        True,
+        False,
+        0,
+        1,
+        -1,
+        10**30,
+        0.5,
+        1e308,
+        float("inf"),
+        "",
+        "0.5",
+        "flat",
+        "#12",
+        "1,2",
+        "\0",
+        "😀",
+    ]
+    if depth > 2 or chance.random() < 0.6:
+        return chance.choice(simple)
+    if chance.random() < 0.5:
+        return [anything(chance, depth + 1) for _ in range(chance.randrange(5))]
+    return {chance.choice([*PATHS, "azimuth", "elevation"]): anything(chance, depth + 1) for _ in range(3)}
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_is_asked_by_chance_ends_in_a_sentence_at_worst(desk: Desk, seed: int):
+    chance, controls = random.Random(seed), Controls(desk.bench)
+    addresses = Addresses(controls)
+    refused = 0
+    for _ in range(400):
+        name = chance.choice([*controls.names, "set", "set", "st"])
+        given = anything(chance)
+        if name == "set" and chance.random() < 0.8:
+            given = {chance.choice(PATHS): anything(chance) for _ in range(chance.randrange(3))}
+        try:
+            controls.do({name: given})
+        except PlaygroundError as error:
+            refused += 1
+            assert "\n" not in str(error) and len(str(error)) < 2000
+        arguments = [anything(chance) for _ in range(chance.randrange(4))]
+        words = chance.choice([*PATHS, "playground.time", "playground.preset", "playground.x"])
+        addresses.receive("/" + words.replace(".", "/"), arguments)
+    controls.reset("height.grass")  # it may name a file that is not there, as in the panel
+    desk.frame()
+    assert refused > 50 and desk.session.error is None and controls.parameters()
