@@ -6,7 +6,8 @@
 //   source   made here
 //   tested   tests/engine/test_toys.py, against the files' own colours
 //
-// A file's upper row is the face's first, as cube maps are stored. Each is stretched over its face.
+// A file's upper row is the face's first, as cube maps are stored. Each is stretched over its
+// face.
 #include "colour/encode.glsl"
 #pragma kernel(output = "channel_texels:rgba8")
 

@@ -4,11 +4,11 @@
 //   needs    maths/cube.glsl
 //   units    none; +Y up
 //   source   made here
-//   tested   tests/glsl/test_foreign.py: the sun, the horizon and the ground are where they should be
+//   tested   tests/glsl/test_foreign.py: the sun, the horizon and the ground are in their places
 //
-// The faces are OpenGL's, +X -X +Y -Y +Z -Z from the bottom, in N x 6N texels. The ground is redder
-// towards +X and greener towards +Z, so that a cube turned the wrong way shows as one. The sun
-// of each number stands in another place, and the sky has another tint.
+// The faces are OpenGL's, +X -X +Y -Y +Z -Z from the bottom, in N x 6N texels. The ground is
+// redder towards +X and greener towards +Z, so that a cube turned the wrong way shows as one. The
+// sun of each number stands in another place, and the sky has another tint.
 #include "maths/cube.glsl"
 #pragma kernel(output = "channel_texels:rgba8")
 

@@ -21,7 +21,7 @@ from pathlib import Path
 
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.allowed_files import is_file, is_inside, names_below, note, real
+from playground.sketch.allowed_files import exists, is_file, is_inside, names_below, note, real
 from playground.sketch.libraries import how_to_name, libraries, library_around
 from playground.sketch.macro_calls import with_calls_joined
 
@@ -283,7 +283,8 @@ class _Reader:
             if named[1] in self.libraries:
                 return self.in_library(named[1], named[2], line)
         near = nearest(name, names_below(allowed, (".glsl",)))
-        if named and not near.endswith(f"/{named[2].rpartition('/')[2]}'?"):  # else another folder is meant
+        elsewhere = near.endswith(f"/{named[2].rpartition('/')[2]}'?") if named else True
+        if named and not elsewhere and not exists(self.library / named[1]):
             near = f"; if {named[1]} is a library on this computer, name its folder once"
             near += f": {how_to_name(named[1])}"
         raise line.error(f"no file '{name}' to include{near}")

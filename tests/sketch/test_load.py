@@ -313,7 +313,7 @@ P = PASS
         ({"head": "format = 1\nrelief = 1" + "0" * 5000 + "\n"}, "not TOML", None),
         ({"head": "format = 1\nx = " + "[" * 3000 + "\n"}, "not TOML", None),
         ({"body": "", "tail": ""}, "no passes; a [[pass]]", None),
-        ({"body": ""}, "no passes; a [[pass]]", None),
+        ({"body": ""}, "pass 'view' needs its input 'height' wired", 2),
         ({"body": "[pass]\nname = 'a'\n"}, "[pass]: expected [[pass]]", 2),
         ({"body": "pass = 3\n"}, "each begun by [[pass]]", 2),
         ({"body": "pass = [1]\n"}, "each begun by [[pass]]", 2),

@@ -1,4 +1,4 @@
-// simulation/fluid/carried.glsl -- the velocity after a frame: carried along by itself, and stirred.
+// simulation/fluid/carried.glsl -- the velocity after a frame: carried along by itself, stirred.
 //
 //   gives    velocity: red eastwards through a cell's western side, green northwards through
 //            its southern side
@@ -15,7 +15,7 @@
 #pragma kernel(output = "velocity:rg32f")
 
 uniform sampler2D velocity;    //! input("zero")
-uniform float force = 1.0;     //! slider(0, 4) step(0.05) How fast the fluid goes at a stirrer, times
+uniform float force = 1.0;  //! slider(0, 4) step(0.05) How fast the fluid goes at a stirrer, times
                                //! its own speed
 uniform float radius = 0.05;   //! slider(0.01, 0.2) step(0.005) Of a stirrer, a share of the field
 

@@ -1,4 +1,4 @@
-// simulation/fluid/dyed.glsl -- the dye after a frame: carried along, faded, and added at stirrers.
+// simulation/fluid/dyed.glsl -- the dye after a frame: carried along, faded, added at stirrers.
 //
 //   gives    dye, a linear colour, 0..1
 //   needs    simulation/fluid/stirrers.glsl, simulation/fluid/torus.glsl
@@ -14,7 +14,7 @@
 uniform sampler2D velocity;   //! input
 uniform sampler2D dye;        //! input("zero")
 uniform float radius = 0.05;  //! slider(0.01, 0.2) step(0.005) Of a stirrer, a share of the field
-uniform float rate = 0.4;     //! slider(0, 1) step(0.01) How much of a stirrer's colour a frame adds
+uniform float rate = 0.4;  //! slider(0, 1) step(0.01) How much of a stirrer's colour a frame adds
 uniform float fade = 0.003;   //! slider(0, 0.1) step(0.001) What the dye loses in a frame
 
 const float FRAME = 1.0 / 60.0;  // [s]

@@ -6,8 +6,8 @@
 //            seconds; colours linear
 //   source   none: made here
 //   tested   tests/glsl/test_fluid.py, by derivatives and by the torus
-#ifndef FLUID_STIRRERS
-#define FLUID_STIRRERS
+#ifndef SIMULATION_FLUID_STIRRERS
+#define SIMULATION_FLUID_STIRRERS
 
 const int STIRRERS = 3;
 

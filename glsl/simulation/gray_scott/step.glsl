@@ -13,9 +13,9 @@
 #pragma kernel(output = "amounts:rg32f", repeat = "steps")
 
 uniform int steps = 12;        //! slider(1, 64) Steps a frame
-uniform float feed = 0.037;    //! slider(0, 0.1) step(0.001) F: how fast U is fed and all is drained
+uniform float feed = 0.037;    //! slider(0, 0.1) step(0.001) F: how fast U is fed, all drained
 uniform float kill = 0.06;     //! slider(0, 0.1) step(0.001) k: how fast V is taken away besides
-uniform float spread = 0.209;  //! slider(0, 0.24) step(0.001) Du: how fast U spreads; V half as fast
+uniform float spread = 0.209;  //! slider(0, 0.24) step(0.001) Du: how U spreads, V half as fast
 
 vec2 kernel(ivec2 texel) {
     ivec2 west = ivec2((texel.x + size.x - 1) % size.x, texel.y);
