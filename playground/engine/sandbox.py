@@ -34,7 +34,10 @@ _HANDLER = "playground.engine.sandbox_handler"
 
 @dataclass(frozen=True)
 class TrySketch:
-    """Draw one small frame of a sketch, by each driver named."""
+    """Draw one small frame of a sketch, by each driver named.
+
+    Where a sketch has state and its ``time`` needs more frames than run in a moment, an earlier one is drawn.
+    """
 
     sketch: Sketch
     size: tuple[int, int] = (64, 36)  # pixels

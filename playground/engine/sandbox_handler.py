@@ -13,12 +13,14 @@ from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step
 from playground.engine.sandbox import Activity, Request, SandboxReport, TryLibrary, TrySketch
+from playground.engine.unfinished import Unfinished
 from playground.errors import ContextError, PlaygroundError, SandboxCrash, ShaderError
 from playground.gpu.context import open_context
 from playground.gpu.program import compile_library
 from playground.gpu.textures import drain, is_lost
 from playground.gpu.wrap import COMPUTE
 from playground.process.child import Parent, Service
+from playground.sketch.model import Sketch
 from playground.sketch.source import read_source
 
 if TYPE_CHECKING:
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 
 
 _FINEST = 33  # vertices a side of the sandbox's meshes
+_PATIENCE = 0.2  # [s] for loops over the frames: many frames prove little more than some
+_TRIES = 4  # at earlier times: of several loops, each may have come less far
 
 
 def open_service(parent: Parent, options: tuple[bool, int | None]) -> Service:
@@ -70,7 +74,7 @@ class _Handler:
         small = replace(request.sketch, size=smallest_terrain(request.sketch), samples=1)
         drain(engine.ctx)  # what an earlier, failed request left behind
         try:
-            engine.draw(small, size=request.size, time=request.time)
+            _draw_some_frames(engine, small, request)
             engine.ctx.finish()
             if (error := engine.ctx.error) != "GL_NO_ERROR":
                 raise ContextError(f"OpenGL reports {error} after the frame")
@@ -95,6 +99,21 @@ class _Handler:
     def _report(self, activity: Activity) -> None:
         self._subject = activity.subject
         self._parent.report(activity)
+
+
+def _draw_some_frames(engine: Engine, sketch: Sketch, request: TrySketch) -> None:
+    """Draw at the time asked for, or where that takes very many frames, at an earlier one."""
+    at, engine.patience = request.time, _PATIENCE
+    try:
+        for _ in range(1 + _TRIES):
+            try:
+                engine.draw(sketch, size=request.size, time=at)
+                return
+            except Unfinished as stopped:
+                at *= stopped.done / stopped.wanted
+    finally:
+        engine.patience = None
+    engine.draw(sketch, size=request.size, time=0.0)
 
 
 def _refuse(engine: Engine, what: str) -> None:

@@ -36,7 +36,7 @@ from playground.images.files import encode_png
 from playground.json_text import read_json
 from playground.remote.access import refusal
 from playground.remote.calls import Busy, Calls
-from playground.workbench.control.controls import LARGEST_PICTURE, Controls
+from playground.workbench.control.controls import LARGEST_PICTURE, Behind, Controls
 
 LARGEST_REQUEST = 2**16
 """[bytes] of a request's body, or of one message."""
@@ -48,6 +48,7 @@ MOST_REQUESTS = 32
 IN_FLIGHT = 100
 """Messages of one client that may wait for the window; more are not read until then."""
 PATIENCE = 20.0
+_PAUSE = 0.1  # [s] between two looks at a window that computes frames
 """[s] for the window to answer a request by HTTP."""
 
 _PAGE = {"": ("remote.html", "text/html"), "remote.js": ("remote.js", "text/javascript")}
@@ -148,7 +149,7 @@ class Server:
             answer = _error(
                 error.status, f"{error.reason}: {request.method} {request.path[len(token) + 1 :]}"
             )
-        except Busy as error:
+        except (Busy, Behind) as error:
             answer = _error(503, str(error))
         except PlaygroundError as error:
             answer = _error(400, str(error))
@@ -191,9 +192,22 @@ class Server:
     async def _picture(self, request: web.Request) -> web.Response:
         size, width = _size(request.query.get("size", "")), _width(request.query.get("width", ""))
         async with self._drawing:  # one at a time
-            frame: Frame = await self._ask(lambda: self._controls.picture(size))
+            frame = await self._frame(size)
             data = await asyncio.to_thread(_encoded, frame, width)
         return web.Response(body=data, content_type="image/png")
+
+    async def _frame(self, size: tuple[int, int] | None) -> Frame:
+        """Return the picture; wait for a while until the window has computed the frames before it."""
+        clock = asyncio.get_running_loop().time
+        end = clock() + PATIENCE
+        while True:
+            try:
+                frame: Frame = await self._ask(lambda: self._controls.picture(size))
+                return frame
+            except Behind:
+                if clock() > end:
+                    raise
+                await asyncio.sleep(_PAUSE)
 
     async def _events(self, request: web.Request) -> web.StreamResponse:
         if len(self._clients) >= MOST_CLIENTS:

@@ -18,6 +18,7 @@ import pytest
 from playground.engine.accepted_sizes import smallest_terrain
 from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch
 from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
+from playground.sketch.load import load
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 90.0  # [s] for what happens soon on any machine that is not busy
@@ -103,6 +104,35 @@ def test_it_tries_the_smallest_terrain_that_is_accepted(sandbox, folder):
     assert smallest_terrain(sketch) == (64, 64)
     report = sandbox.run(TrySketch(sketch))
     assert report.ok, report.error
+
+
+COUNTS = """#pragma kernel(output = "a:r32f")
+uniform sampler2D own;  //! input("zero")
+float kernel(ivec2 texel) { return texelFetch(own, texel, 0).r + 1.0; }
+"""
+AFTER = """#pragma kernel(output = "b:r32f")
+uniform sampler2D count;  //! input
+float kernel(ivec2 texel) { return texelFetch(count, texel, 0).r + 1.0; }
+"""
+COUNTING = """[[pass]]
+name     = "counted"
+use      = "./counts"
+repeat   = "frames"
+feedback = { own = "a" }
+"""
+
+
+@pytest.mark.parametrize("wrong", [False, True])
+def test_a_late_time_of_a_sketch_with_state_is_tried_at_an_earlier_one(sandbox, folder, wrong):
+    """Its 900,000 frames take minutes; what comes after them is drawn all the same."""
+    folder.write("counts.glsl", COUNTS)
+    folder.write("after.glsl", AFTER.replace("1.0", "1.0 / 0.0") if wrong else AFTER)
+    view = '[view]\nuse = "./after"\ninputs = { count = "counted" }\n'
+    sketch = load(folder.write("sketch.toml", f"format = 1\nsize = 8\n{COUNTING}{view}"))
+    late = TrySketch(sketch, time=15_000.0, refuses="all")
+    report = sandbox.run(late)
+    assert report.ok is not wrong, report.error
+    assert report.seconds < 20.0, "as long as all frames"
 
 
 def test_what_cannot_be_sent_is_a_sentence_and_the_next_request_works(sandbox, folder):

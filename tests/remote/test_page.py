@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pytest
 
+from playground.engine.engine import Engine
+
 from ..report.browser import MISSING, Browser
 from .desk import TOKEN, Desk
 
@@ -106,3 +108,26 @@ def test_time_presets_errors_and_the_search(desk: Desk, page: Browser, tmp_path:
     kernel.write_text(text, encoding="utf-8")
     desk.session.drafts.reload()
     desk.during(lambda: page.wait("document.getElementById('message').hidden"))
+
+
+def test_a_channel_keeps_the_name_that_the_shader_gives_it(
+    any_engine: Engine, browser: Browser, tmp_path: Path
+) -> None:
+    """The panel writes `iChannel0` too; a word in small letters begins with a capital."""
+    toy = tmp_path / "toy.frag"
+    text = (
+        "uniform float gain;\nvoid mainImage(out vec4 c, in vec2 p) { c = gain * texture(iChannel0, p); }\n"
+    )
+    toy.write_text(text, "utf-8")
+    desk = Desk(any_engine, toy)
+    try:
+        server = desk.open(port=0, token=TOKEN).server
+        assert server is not None
+        desk.during(lambda: browser.open(server.url))
+        desk.during(lambda: browser.wait("document.querySelectorAll('.row').length > 1"))
+        heads = "return [...document.querySelectorAll('h2')].map(head => head.innerText)"
+        found = desk.during(lambda: browser.run(heads))
+        assert "iChannel0" in found and "View" in found
+    finally:
+        desk.during(lambda: browser.open("about:blank"))
+        desk.close()

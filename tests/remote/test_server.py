@@ -228,6 +228,36 @@ def test_the_picture_is_the_windows_or_one_of_a_size(desk: Desk):
         assert "expected" in picture(query)
 
 
+def test_a_picture_waits_for_the_frames_before_it_and_does_not_hold_the_window_up(
+    desk: Desk, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    url = opened(desk)
+    left = 3  # frames of the window in which it is behind
+    frame, read = desk.session.frame, desk.session.read
+
+    def slow(size: tuple[int, int]) -> Any:
+        nonlocal left
+        texture, left = frame(size), left - 1
+        desk.session.catch_up.behind = (5, 36_001) if left > 0 else None
+        return texture
+
+    def in_time() -> Any:
+        assert left <= 0, "all frames are computed between two of the window"
+        return read()
+
+    monkeypatch.setattr(desk.session, "frame", slow)
+    monkeypatch.setattr(desk.session, "read", in_time)
+    desk.frame()
+    assert desk.during(lambda: fetched(f"{url}picture.png"))[0] == 200
+    assert left <= 0
+
+    monkeypatch.setattr("playground.remote.server.PATIENCE", 0.5)
+    left = 10**9
+    desk.frame()
+    status, data = desk.during(lambda: fetched(f"{url}picture.png?size=8x8"))
+    assert status == 503 and "frame 5 of 36,001" in json.loads(data)["error"]
+
+
 def test_what_is_no_request_of_it_is_answered_in_a_sentence(desk: Desk):
     url = opened(desk)
     for path, body, status in (

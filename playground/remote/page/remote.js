@@ -95,6 +95,12 @@ async function picture() {
 
 // ── rows ─────────────────────────────────────────────────────────────────────
 
+// "base_height" is headed "Base height", and "iChannel0" as the shader has it.
+function heading(pass) {
+  const words = pass.replaceAll("_", " ");
+  return /^[^A-Z]*( |$)/.test(words) ? words[0].toUpperCase() + words.slice(1) : words;
+}
+
 async function list() {
   const answer = await fetch("parameters");
   if (!answer.ok) return;
@@ -102,7 +108,7 @@ async function list() {
   const made = [];
   let pass = "", group = "";
   for (const one of await answer.json()) {
-    if (one.pass !== pass) made.push(element("h2", one.pass.replaceAll("_", " ")));
+    if (one.pass !== pass) made.push(element("h2", heading(one.pass)));
     if (one.group && (one.group !== group || one.pass !== pass)) made.push(element("h3", one.group));
     [pass, group] = [one.pass, one.group];
     made.push(row(one));

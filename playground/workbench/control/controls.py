@@ -28,6 +28,10 @@ FASTEST = 100.0
 _LATEST = 1e9  # [s] that time may be set to
 
 
+class Behind(SketchError):
+    """The window computes the frames before its picture: to draw that at once would hold it up."""
+
+
 class Controls:
     """What a remote may do to one session."""
 
@@ -156,10 +160,14 @@ class Controls:
     def picture(self, size: tuple[int, int] | None = None) -> Frame:
         """Return the picture: the window's own, or drawn at another size [pixels].
 
-        Raises ``SketchError`` before the first, ``ParameterError`` for a size that is too large.
+        Raises ``SketchError`` before the first, ``ParameterError`` for a size that is too large, and
+        ``Behind`` while frames before it are computed: ask again.
         """
         self.flush()
         session, sketch = self.session, self.session.sketch
+        if session.catch_up.behind is not None:
+            done, wanted = session.catch_up.behind
+            raise Behind(f"there is no picture yet: the window computes frame {done:,} of {wanted:,}")
         if size is None or sketch is None:
             frame = session.read()
             if frame is None:
