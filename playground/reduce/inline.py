@@ -9,6 +9,7 @@ from pathlib import Path
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step
 from playground.engine.planner import Planner
 from playground.errors import SketchError
+from playground.paths import shown
 from playground.reduce.case import Case, Pass
 from playground.reduce.tokens import tidy
 from playground.sketch.annotation import note_at
@@ -28,8 +29,9 @@ def inline_sketch(
 ) -> Case:
     """Return the sketch as a case that looks at its picture.
 
-    Raises ``PlaygroundError`` for what is wrong before any shader is compiled, and
-    ``SketchError`` for a loop of several passes, which has no place in an inlined sketch.
+    Raises ``PlaygroundError`` for what is wrong before any shader is compiled, and ``SketchError``
+    for what has no place in an inlined sketch: a loop of several passes, another tool's shader among
+    other passes.
     """
     plan = Planner().plan(sketch, frame_size=frame, time=time, steps=steps)
     leaves = list(plan.walk())
@@ -43,6 +45,11 @@ def inline_sketch(
         )
     if alone and leaves[-1].kernel.kind.startswith("plain"):
         return _plain(leaves[-1], plan)
+    if own:
+        raise SketchError(
+            f"another tool's shader among other passes cannot be inlined; reduce {shown(own[0].path)} alone",
+            file=Path(sketch.file),
+        )
     inliner = _Inliner(plan, leaves[-1].path)
     passes = tuple(inliner.one(node) for node in plan.nodes)
     terrain = plan.terrain

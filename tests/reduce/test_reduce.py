@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from playground.cli import main
-from playground.errors import PlaygroundError
+from playground.errors import PlaygroundError, SketchError
 from playground.images.files import write_png
 from playground.reduce import initial_case
 from playground.reduce.candidate_process import CandidateProcess
@@ -485,11 +485,19 @@ def test_ctrl_c_from_a_terminal_keeps_the_smallest(sketch, tmp_path):
 
 
 WITH_VARIANTS = ("soft_cone", "fault_formation", "splat")
+NOT_INLINED = {
+    "fluid": "a loop of several passes",
+    **dict.fromkeys(("channels", "flood", "from_elsewhere"), "another tool's shader among other passes"),
+}
 
 
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(n, marks=[] if n in WITH_VARIANTS else [pytest.mark.slow]) for n in shipped_sketches()],
+    [
+        pytest.param(n, marks=[] if n in WITH_VARIANTS else [pytest.mark.slow])
+        for n in shipped_sketches()
+        if n not in NOT_INLINED
+    ],
 )
 def test_a_shipped_sketch_inlined_is_a_sketch_with_the_same_passes(name, tmp_path):
     case = inline_sketch(load(name), frame=(64, 36))
@@ -500,6 +508,12 @@ def test_a_shipped_sketch_inlined_is_a_sketch_with_the_same_passes(name, tmp_pat
     assert [one.size for one in again.passes] == [one.size for one in case.live]
     assert [dict(one.values) for one in again.passes] == [dict(one.values) for one in case.live]
     assert [dict(one.inputs) for one in again.passes] == [dict(one.inputs) for one in case.live]
+
+
+@pytest.mark.parametrize("name", NOT_INLINED)
+def test_what_cannot_be_inlined_is_one_sentence(name):
+    with pytest.raises(SketchError, match=NOT_INLINED[name]):
+        inline_sketch(load(name), frame=(64, 36))
 
 
 @pytest.mark.slow

@@ -4,10 +4,10 @@
   "CATEGORIES": ["Filter"],
   "INPUTS": [
     {"NAME": "inputImage", "TYPE": "image"},
-    {"NAME": "pitch", "TYPE": "float", "MIN": 2.0, "MAX": 16.0, "DEFAULT": 4.0, "LABEL": "Pixels from line to line"},
+    {"NAME": "pitch", "TYPE": "float", "MIN": 2.0, "MAX": 16.0, "DEFAULT": 4.0, "LABEL": "Line spacing"},
     {"NAME": "ink", "TYPE": "color", "DEFAULT": [0.13, 0.10, 0.16, 1.0]},
     {"NAME": "paper", "TYPE": "color", "DEFAULT": [0.96, 0.93, 0.86, 1.0]},
-    {"NAME": "wash", "TYPE": "float", "MIN": 0.0, "MAX": 1.0, "DEFAULT": 0.8, "LABEL": "How much of its colour stays"}
+    {"NAME": "wash", "TYPE": "float", "MIN": 0.0, "MAX": 1.0, "DEFAULT": 0.8, "LABEL": "Colour kept"}
   ]
 }*/
 float distance_to_line(vec2 pixel, float angle) {
