@@ -14,6 +14,7 @@
 
 uniform int content = 2;  //! menu("spectrum", "waves", "channel") What the texels are
 uniform int number = 0;   //! slider(0, 99) Which band: each has a tempo and tones of its own
+uniform float strength = 1.0;  //! log_slider(0.001, 1) What the loudest tone of the spectrum is
 
 const uint SALT = 0x4c0d55f1u;  // CRC-32 of "foreign/spectrum"
 const float HIGHEST = 11025.0;  // [Hz] at the east edge
@@ -65,7 +66,7 @@ float spectrum_or_wave(ivec2 texel) {
     float since = beats - floor(beats);
     if (content == 0 || (content == 2 && 2 * texel.y < size.y)) {
         float hertz = (float(texel.x) + 0.5) / float(size.x) * HIGHEST;
-        return clamp(spectrum_at(hertz, beat, since), 0.0, 1.0);
+        return strength * clamp(spectrum_at(hertz, beat, since), 0.0, 1.0);
     }
     float seconds = fract(time) + float(texel.x) / RATE;
     return clamp(0.5 + 0.25 * wave_at(seconds, beat, since), 0.0, 1.0);

@@ -330,7 +330,7 @@ def test_the_title_names_the_dialect(folder):
 def test_a_made_up_sound_stands_in_for_one_and_is_named(any_engine, folder):
     lines = "uniform sampler1D texFFT;\nuniform sampler1D texFFTSmoothed;\nuniform vec2 v2Resolution;\n"
     body = "float x = gl_FragCoord.x / v2Resolution.x;\n"
-    colour = "vec4(texture(texFFT, x).r, texture(texFFTSmoothed, x).r, 0.0, 1.0)"
+    colour = "vec4(100.0 * texture(texFFT, x).r, 100.0 * texture(texFFTSmoothed, x).r, 0.0, 1.0)"
     text = f"#version 410 core\n{lines}out vec4 c;\nvoid main() {{ {body} c = {colour}; }}\n"
     sketch = load(folder.write("t.glsl", text))
     found = [any_engine.render(sketch, size=(64, 4), time=t).array[0, :, 0].astype(int) for t in (1.1, 1.3)]
@@ -350,3 +350,12 @@ def test_kodelife_s_three_bands_go_by_time_and_are_named(any_engine, folder):
     assert traits_of(sketch).moves
     (warning,) = source_warnings(any_engine.plan_for(sketch, (2, 2)))
     assert "nothing feeds spectrum: a made-up sound stands in" in warning.message
+
+
+def test_bonzomatic_s_sound_may_be_multiplied_as_its_shaders_do(any_engine, folder):
+    text = "#version 410 core\nuniform sampler1D texFFT;\nuniform vec2 v2Resolution;\nout vec4 c;\n"
+    text += (
+        "void main() { c = vec4(vec3(texture(texFFT, gl_FragCoord.x / v2Resolution.x).r * 100.0), 1.0); }\n"
+    )
+    row = drawn(any_engine, folder.write("b.frag", text), 0.5)[0, :, 0]
+    assert 50 < row.max() and (row < 255).mean() > 0.9

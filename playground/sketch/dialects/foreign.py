@@ -119,7 +119,7 @@ class ForeignKernel:
             return Channel()
         file = self._commented(self.declared[sampler]) if sampler in self.declared else ""
         unfed = f"there is no file '{file}', so a stand-in is drawn" if file else _STANDS_IN
-        unfed = _SOUNDS if kind == "sound" else unfed
+        unfed = _SOUNDS if kind in ("sound", "fft") else unfed
         kind = STAND_INS_OF_SHAPES.get(self.shapes[sampler], kind)
         return stand_in(kind, int(number), unfed)
 

@@ -53,7 +53,7 @@ _ELSEWHERE: Names = {
     "fGlobalTime": ("float", "time"),
     "fFrameTime": ("float", "delta"),
     "v2Resolution": ("vec2", "resolution"),
-    **{name: ("sampler1D", "sound 0") for name in ("texFFT", "texFFTSmoothed", "texFFTIntegrated")},
+    **{name: ("sampler1D", "fft 0") for name in ("texFFT", "texFFTSmoothed", "texFFTIntegrated")},
     "texChecker": ("sampler2D", "picture 0"),
     "texNoise": ("sampler2D", "noise 0"),
     **{f"texTex{n}": ("sampler2D", f"picture {n}") for n in range(1, 5)},

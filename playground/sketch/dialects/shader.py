@@ -18,6 +18,7 @@ STAND_INS = {
     "sky": "foreign/sky_box",
     "volume": "foreign/noise",
     "sound": "foreign/spectrum",
+    "fft": "foreign/spectrum",
     "keys": "foreign/keys",
 }
 """What is drawn where nothing feeds a channel: the first word of its meaning → a technique of ``glsl/``."""
@@ -31,9 +32,12 @@ _SIZES = {
     "sky": ("128", "768"),
     "volume": ("32", "1024"),
     "sound": ("512", "2"),
+    "fft": ("512", "2"),
     "keys": ("256", "3"),
 }
-_SAMPLINGS = {"sound": Sampling("linear", "clamp"), "keys": Sampling("nearest", "clamp")}
+_CLAMPED = Sampling("linear", "clamp")
+_SAMPLINGS = {"sound": _CLAMPED, "fft": _CLAMPED, "keys": Sampling("nearest", "clamp")}
+_STRENGTHS = {"fft": 0.01}  # Bonzomatic's shaders multiply what they hear, by 100 as a rule
 _ALIKE = ("keys",)  # stand-ins that have no numbers
 
 
@@ -66,7 +70,9 @@ class Channel:
 def stand_in(kind: str, number: int, unfed: str) -> Channel:
     """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
     size = _SIZES.get(kind, STAND_IN_SIZE)
-    values = () if kind in _ALIKE else (("number", number),)
+    values: tuple[tuple[str, Value], ...] = () if kind in _ALIKE else (("number", number),)
+    if kind in _STRENGTHS:
+        values = (*values, ("strength", _STRENGTHS[kind]))
     sampling = _SAMPLINGS.get(kind, SAMPLING)
     return Channel(use=STAND_INS[kind], values=values, size=size, sampling=sampling, unfed=unfed)
 
