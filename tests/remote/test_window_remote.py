@@ -36,7 +36,8 @@ float kernel(ivec2 texel) {
 """
 SCREEN = 900, 560
 FRAMES = """
-import sys, time
+import signal, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a background job of a shell ignores it
 from playground import cli
 from playground.engine.engine import Engine
 from playground.live.window import Window

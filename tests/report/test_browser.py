@@ -107,7 +107,7 @@ def test_the_divider_parts_expected_from_actual(leave, browser: Browser) -> None
 def test_zoomed_to_the_worst_pixel_it_is_one_square(page: Browser) -> None:
     x, y = map(int, page.run('return document.querySelector(".current").dataset.place').split(","))
     page.press("5", "w", "m")  # the difference, at the worst pixel, without its mark
-    assert shown(page, ".current .level") == "1600 %"
+    page.wait('document.querySelector(".current .level").textContent.trim() === "1600 %"')  # drawn by now
     assert shown(page, ".current .where") == f"x {x}, y {y}"
     difference = read_png(Path("results/hills/dawn.difference.png"))[0]
     found = page.run("return [viewer.x, viewer.y, viewer.zoom]")
