@@ -17,6 +17,7 @@ from functools import lru_cache
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.assign import find_targets
+from playground.sketch.dialects.shader import SIZES, SIZES_OF_SHAPES, STAND_IN_SIZE
 from playground.sketch.find import shipped_names
 from playground.sketch.flat import Ref, Source, leaves_of
 from playground.sketch.flatten import flatten
@@ -27,19 +28,6 @@ from playground.sketch.wiring import input_names, is_optional, output_names
 
 OUTPUT = "channel_texels"
 FOLDER = "foreign/"
-_SIZE = ("256", "256")
-_SIZES = {
-    "foreign/keys": ("256", "3"),
-    "foreign/microphone": ("512", "2"),
-    "foreign/sky_box": ("128", "768"),
-    "foreign/sound": ("512", "2"),
-    "foreign/spectrum": ("512", "2"),
-}
-_SIZES_OF_SHAPES = {
-    "cube": ("64", "384"),
-    "volume": ("32", "1024"),
-    "line": ("256", "1"),
-}  # of other stand-ins
 _CUBES = ("foreign/sky_box", "foreign/cube_faces")  # six square faces above each other
 _HEARD = ("foreign/microphone", "foreign/sound")
 _ANY = "foreign/black"  # what has any shape
@@ -297,11 +285,11 @@ def _size(
     if files and kernel is not None and kernel.kind == "kernel":
         wide, high = (f"{name}.{files[0].name}.size.{axis}" for axis in "xy")
         return (wide, f"6 * {wide}") if use in _CUBES else (wide, high)
-    if use in _SIZES:
-        return _SIZES[use]
-    if before is not None and before.use not in _SIZES and before.size and not _reads_file(before):
+    if use in SIZES:
+        return SIZES[use]
+    if before is not None and before.use not in SIZES and before.size and not _reads_file(before):
         return before.size  # as an ISF filter has it, whose image is as large as its picture
-    return _SIZES_OF_SHAPES.get(shape, _SIZE)
+    return SIZES_OF_SHAPES.get(shape, STAND_IN_SIZE)
 
 
 def _names(technique: Technique) -> Iterator[str]:

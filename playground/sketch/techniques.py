@@ -138,8 +138,7 @@ class Techniques:
             except (ShaderError, EncodingError) as error:
                 wrong = error
         if (kernel is None or kernel.kind == "plain_fragment") and path.suffix != ".comp" and dialect != OWN:
-            is_plain = kernel is not None
-            found = read_foreign(path, name_of(path), folder, self.read, dialect, is_plain=is_plain)
+            found = read_foreign(path, name_of(path), folder, self.read, dialect)
             if found is not None:
                 for _, own in found.kernels:
                     _check_files(own, folder)

@@ -54,7 +54,7 @@ def keep_text(text: str, folder: Path) -> Path:
     if dialect is None:
         raise SketchError("nothing to run: no main, mainImage or #pragma kernel in the text")
     if dialect.name not in names():
-        raise SketchError(f"the text is {dialect.label}, which is not read yet")
+        raise SketchError("the text is Shadertoy's sound, VR or cube map alone, which is not drawn")
     ending = ".comp" if _COMPUTE.match(text) else _ENDINGS.get(dialect.name, _OTHERS)
     name = _named(text)
     with suppress(OSError):

@@ -74,7 +74,7 @@ def test_nothing_is_overwritten_and_the_same_text_is_kept_once(tmp_path: Path) -
         ("https://example.org/shader", "nothing to run: no main, mainImage or #pragma kernel"),
         ("float twice(float x) { return 2.0 * x; }", "nothing to run"),
         ("// void main() {}", "nothing to run"),
-        (SOUND, "not read yet"),
+        (SOUND, "which is not drawn"),
         ("\0" + MAIN, "no text"),
         (MAIN + " " * 5_000_000, "larger than 4 MiB"),
     ],

@@ -12,8 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from playground.errors import ParameterError, SketchError, nearest
-from playground.paths import shown
+from playground.errors import ParameterError, nearest
 from playground.sketch.dialects import isf, main, shadertoy, shadertoy_export, shadertoy_folder, vscode
 from playground.sketch.dialects.passes import Read, graph_of_shaders
 from playground.sketch.dialects.reading import Files
@@ -45,9 +44,8 @@ class Dialect:
     """A row of the table."""
 
     name: str  # as --dialect takes it
-    label: str  # in a sentence
     sign: Callable[[str, str], object]  # of the text, and of the text without comments
-    shaders: Callable[[Files], Sequence[Shader | Made]] | None = None  # None: not read yet, or our own
+    shaders: Callable[[Files], Sequence[Shader | Made]] | None = None  # None: our own
     # No shader: the file runs as it is, as a plain shader.
 
 
@@ -68,33 +66,13 @@ def _without_picture(files: Files) -> Sequence[Shader]:
 
 
 DIALECTS = (
-    Dialect("isf", "an ISF shader", lambda text, code: _ISF.match(text), isf.shaders),
-    Dialect(
-        "export",
-        "a Shadertoy export (JSON)",
-        lambda text, code: _EXPORT.match(text),
-        shadertoy_export.shaders,
-    ),
-    Dialect(OWN, "a kernel", lambda text, code: _OWN_PRAGMA.search(code)),
-    Dialect(
-        "vscode",
-        "a VS Code Shadertoy file (#iChannel, #iUniform)",
-        lambda text, code: _DIRECTIVE.search(code),
-        _vscode,
-    ),
-    Dialect(
-        "shadertoy",
-        "a Shadertoy shader",
-        lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code),
-        _shadertoy,
-    ),
-    Dialect("main", "a shader with its own main", lambda text, code: _MAIN.search(code), main.shaders),
-    Dialect(
-        _REFUSED,
-        "Shadertoy's sound, VR or cube map",
-        lambda text, code: _SOUND.search(code),
-        _without_picture,
-    ),
+    Dialect("isf", lambda text, code: _ISF.match(text), isf.shaders),
+    Dialect("export", lambda text, code: _EXPORT.match(text), shadertoy_export.shaders),
+    Dialect(OWN, lambda text, code: _OWN_PRAGMA.search(code)),
+    Dialect("vscode", lambda text, code: _DIRECTIVE.search(code), _vscode),
+    Dialect("shadertoy", lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code), _shadertoy),
+    Dialect("main", lambda text, code: _MAIN.search(code), main.shaders),
+    Dialect(_REFUSED, lambda text, code: _SOUND.search(code), _without_picture),
 )
 """The dialects, in the order in which a text is looked at."""
 
@@ -103,7 +81,7 @@ _known: OrderedDict[tuple[Path, Path, str], tuple[Graph | None, Files]] = Ordere
 
 def names() -> tuple[str, ...]:
     """Return what ``--dialect`` takes."""
-    return tuple(d.name for d in DIALECTS if d.name != _REFUSED and (d.shaders or d.name == OWN))
+    return tuple(d.name for d in DIALECTS if d.name != _REFUSED)
 
 
 def check_name(name: str) -> str:
@@ -124,10 +102,6 @@ def is_export(path: Path) -> bool:
     return path.suffix == EXPORT and _EXPORT.match(read_text(path)) is not None
 
 
-def _unread(dialect: Dialect, path: Path) -> SketchError:
-    return SketchError(f"{dialect.label}, which is not read yet", file=shown(path))
-
-
 def read_foreign(
     path: Path,
     name: str,
@@ -135,16 +109,14 @@ def read_foreign(
     read: Read,
     dialect: str = "",
     *,
-    is_plain: bool = False,
     instead: Mapping[str, str] | None = None,
 ) -> Graph | None:
     """Read another tool's shader as a technique called ``name``; None for what is none.
 
-    Its files stay in ``root``. ``dialect`` is one of ``names()``, or "" to go by its signs. A file that
-    ``is_plain`` runs as it is, so that only a dialect that gives it more counts. ``instead`` has texts, by
-    absolute path, in place of files'. The same files give the same object.
+    Its files stay in ``root``. ``dialect`` is one of ``names()``, or "" to go by its signs.
+    ``instead`` has texts, by absolute path, in place of files'. The same files give the same object.
 
-    Raises ``SketchError`` for a dialect that is not read yet, ``ShaderError`` for what is wrong in the text.
+    Raises ``SketchError`` or ``ShaderError`` for what is wrong in the text.
     """
     key = (path, root, dialect)
     known = _known.get(key) if not instead else None
@@ -154,10 +126,8 @@ def read_foreign(
     files = Files(path, root, instead or {}, named=bool(dialect))
     text = files.text()
     chosen = next((d for d in DIALECTS if d.name == dialect), None) if dialect else dialect_of(text)
-    if chosen is None or chosen.name == OWN or (is_plain and chosen.shaders is None):
+    if chosen is None or chosen.shaders is None:
         return None
-    if chosen.shaders is None:
-        raise _unread(chosen, path)
     shaders = chosen.shaders(files)
     graph = graph_of_shaders(name, shaders, read, root) if shaders else None
     if graph is not None:

@@ -1,6 +1,6 @@
 """Read the lines that the VS Code extension Shader Toy knows: ``#iChannel0``, ``#iUniform``, ``#iKeyboard``.
 
-A driver is given what they mean in GLSL, in their own place: a uniform, functions of the keyboard, nothing.
+A driver is given a uniform in the place of ``#iUniform`` and nothing in that of the others.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ MOST_CHANNELS = 10
 _DIRECTIVE = re.compile(
     r"\s*#\s*(iChannel\d?|iUniform|iKeyboard|i[A-Z]\w*|StrictCompatibility)\b(.*)", re.DOTALL
 )
+_KEYBOARD = re.compile(rf"\s*#\s*{KEYBOARD}\b")
 _CHANNEL = re.compile(r'\s*#\s*iChannel(\d)\s*(?:::\s*(\w+)\s*)?"([^"]*)"')
 _UNIFORM = re.compile(
     r"\s*(\w+)\s+([A-Za-z_]\w*)\s*(?:=\s*(.+?)\s*)?(?:\bin\s*\{\s*([^,{}]+),\s*([^,{}]+)\})?"
@@ -36,18 +37,6 @@ _CHOICES = {
     "WrapMode": ("Clamp", "Repeat", "Mirror"),
     "Type": ("Texture2D", "CubeMap"),
 }
-_STATES = {"isKeyDown": 0, "isKeyPressed": 1, "isKeyToggled": 2}
-_KEYS: dict[str, int] = {
-    **{f"Key_{letter}": ord(letter) for letter in "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"},
-    **{f"Key_F{number}": 111 + number for number in range(1, 13)},
-    **{f"Key_Numpad{number}": 96 + number for number in range(10)},
-    "Key_Backspace": 8, "Key_Tab": 9, "Key_Enter": 13, "Key_Shift": 16, "Key_Ctrl": 17, "Key_Alt": 18,
-    "Key_Pause": 19, "Key_Caps": 20, "Key_CapsLock": 20, "Key_Escape": 27, "Key_Space": 32, "Key_PageUp": 33,
-    "Key_PageDown": 34, "Key_End": 35, "Key_Home": 36, "Key_LeftArrow": 37, "Key_Left": 37, "Key_UpArrow": 38,
-    "Key_Up": 38, "Key_RightArrow": 39, "Key_Right": 39, "Key_DownArrow": 40, "Key_Down": 40,
-    "Key_Insert": 45, "Key_Delete": 46,
-}  # fmt: skip
-"""The names of keys, with the codes that browsers give them."""
 
 
 @dataclass
@@ -98,12 +87,17 @@ def read_directives(source: SourceText) -> Read:
         elif match.group(1) == "iUniform":
             lines.append(_uniform(line, match.group(2)))
         elif match.group(1) == KEYBOARD:
-            lines.append(replace(line, code=_keyboard(), comment=""))
+            lines.append(replace(line, code=""))
         else:
             if match.group(1) != "StrictCompatibility":
                 notes.append((line, f"#{match.group(1)} is not known here, and does nothing"))
             lines.append(replace(line, code=""))
     return Read(SourceText(source.path, tuple(lines), source.files), channels, tuple(notes))
+
+
+def has_keyboard(source: SourceText) -> bool:
+    """Return whether a text, with what is included and common, asks for the keyboard."""
+    return any(_KEYBOARD.match(line.text) for line in source.lines)
 
 
 def _channel(line: Line, channels: dict[int, Channel]) -> None:
@@ -171,14 +165,3 @@ def _float(line: Line, text: str) -> float:
         return float(text.strip().rstrip("fF"))
     except ValueError:
         raise line.error(f"expected a number, not '{text.strip()}'", line.text.find(text) + 1) from None
-
-
-def _keyboard() -> str:
-    """Return the functions and the keys, on one line: what they are read from comes with it."""
-    texel = f"texelFetch({KEYBOARD}, ivec2(key, {{}}), 0).r"
-    functions = [
-        f"bool {name}(int key) {{ return {texel.format(row)} > 0.5; }}" for name, row in _STATES.items()
-    ]
-    functions.append("bool isKeyReleased(int key) { return !isKeyDown(key); }")
-    keys = ", ".join(f"{name} = {code}" for name, code in _KEYS.items())
-    return f"uniform sampler2D {KEYBOARD}; {' '.join(functions)} const int {keys};"

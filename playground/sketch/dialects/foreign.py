@@ -83,7 +83,7 @@ class ForeignKernel:
                 Input(n, c.sampling, "zero" if c.target else "black", shape=self.shapes[n])
                 for n, c in self.channels.items()
             ),
-            title=shader.title or title_of(self.source),
+            title=title_of(self.source),
             dialect=self.rules.name,
             prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
             epilogue=self.rules.epilogue,

@@ -129,7 +129,8 @@ class _Reader:
                 )
             )
         self.files.notes += dict.fromkeys(self.notes)
-        return [replace(one, title=self._title()) for one in found]
+        self.files.title = self._title()
+        return found
 
     # ── what the description says ────────────────────────────────────────────
 

@@ -35,7 +35,7 @@ def graph_of_shaders(name: str, shaders: Sequence[Shader | Made], read: Read, ro
     ``root`` is the folder that its files stay in. Raises ``ShaderError`` for a sampler of a target that
     no shader writes.
     """
-    return _Passes(name, shaders, read, root).graph(read)
+    return _Passes(name, shaders, read, root).graph()
 
 
 class _Passes:
@@ -44,6 +44,7 @@ class _Passes:
     def __init__(self, name: str, shaders: Sequence[Shader | Made], read: Read, root: Path) -> None:
         self.name = name
         self.shaders = shaders
+        self.read = read  # returns what feeds a channel, and what makes a pass
         self.techniques: list[Technique] = []
         self.channels: list[Mapping[str, Channel]] = []
         for shader in shaders:
@@ -56,9 +57,8 @@ class _Passes:
                 self.channels.append(foreign.channels)
         self._drop_unread()
         self.kernels = [kernel for kernel in self.techniques if isinstance(kernel, Kernel) and kernel.dialect]
-        self.wires: list[list[tuple[str, str]]] = [
-            [] for _ in shaders
-        ]  # of each: sampler, pass of this frame
+        # Of each shader: samplers, and the passes of this frame that they read.
+        self.wires: list[list[tuple[str, str]]] = [[] for _ in shaders]
         self.state: dict[str, list[str]] = {}  # target → the samplers that read it as it was, as paths
         for index, channels in enumerate(self.channels):
             for sampler, channel in channels.items():
@@ -134,11 +134,11 @@ class _Passes:
             for shader_name, channel in readers:
                 yield _own_name(shader_name, sampler), (channel, [f"{shader_name}.{sampler}"])
 
-    def graph(self, read: Read) -> Graph:
-        """Return the whole; ``read`` returns what feeds a channel."""
+    def graph(self) -> Graph:
+        """Return the whole."""
         view = self._view()
         passes = [
-            PassSpec(name, c.use, read(c.use, GLSL, GLSL), values=c.values, size=c.size)
+            PassSpec(name, c.use, self.read(c.use, GLSL, GLSL), values=c.values, size=c.size)
             for name, (c, _) in self.inputs.items()
             if c.use
         ]

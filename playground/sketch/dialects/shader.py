@@ -28,13 +28,18 @@ STAND_INS_OF_SHAPES = {"cube": "sky", "volume": "volume"}
 
 SAMPLING = Sampling("linear", "repeat", mipmap=True)
 STAND_IN_SIZE = ("256", "256")
-_SIZES = {
-    "sky": ("128", "768"),
-    "volume": ("32", "1024"),
-    "sound": ("512", "2"),
-    "fft": ("512", "2"),
-    "keys": ("256", "3"),
+SIZES = {
+    "foreign/keys": ("256", "3"),
+    "foreign/microphone": ("512", "2"),
+    "foreign/sky_box": ("128", "768"),
+    "foreign/sound": ("512", "2"),
+    "foreign/spectrum": ("512", "2"),
 }
+"""Texels of techniques that feed a channel, where they are not ``STAND_IN_SIZE``."""
+
+SIZES_OF_SHAPES = {"cube": ("64", "384"), "volume": ("32", "1024"), "line": ("256", "1")}
+"""Texels of other techniques, by the channel's shape."""
+
 _CLAMPED = Sampling("linear", "clamp")
 _SAMPLINGS = {"sound": _CLAMPED, "fft": _CLAMPED, "keys": Sampling("nearest", "clamp")}
 _STRENGTHS = {"fft": 0.01}  # Bonzomatic's shaders multiply what they hear, by 100 as a rule
@@ -69,7 +74,7 @@ class Channel:
 
 def stand_in(kind: str, number: int, unfed: str) -> Channel:
     """Return a channel that a stand-in feeds; ``kind`` is a key of ``STAND_INS``."""
-    size = _SIZES.get(kind, STAND_IN_SIZE)
+    size = SIZES.get(STAND_INS[kind]) or SIZES_OF_SHAPES.get(kind, STAND_IN_SIZE)
     values: tuple[tuple[str, Value], ...] = () if kind in _ALIKE else (("number", number),)
     if kind in _STRENGTHS:
         values = (*values, ("strength", _STRENGTHS[kind]))
@@ -92,7 +97,6 @@ class Shader:
     named: frozenset[str] = frozenset()  # names of the rules that the prelude names
     prelude: tuple[str, ...] = ()  # lines besides those that the rules give
     vertex: Rewritten | None = None  # the author's own vertex shader
-    title: str = ""  # of the whole; "": the comment that the text begins with
     keeps: bool = False  # what it wrote in the last frame may be read
     repeat: str = ""  # an expression: it is drawn so often, and reads what it wrote before by ``feeds``
     feeds: str = ""  # a sampler

@@ -15,7 +15,7 @@ from playground.errors import SketchError
 from playground.paths import shown
 from playground.sketch.allowed_files import leads_outside
 from playground.sketch.dialects.reading import Files
-from playground.sketch.dialects.shader import Channel, Shader, stand_in
+from playground.sketch.dialects.shader import SAMPLING, Channel, Shader, stand_in
 from playground.sketch.dialects.shadertoy import note_not_drawn
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
@@ -45,7 +45,6 @@ _PHOTO = re.compile(r"\.(?:jpe?g|webp)$", re.IGNORECASE)
 _LETTERS = "ABCDEFGH"
 _LETTERED = re.compile(r"\s*(?:buf(?:fer)?|cube(?:map)?)?[\s_]*([a-h])\s*$", re.IGNORECASE)
 _CHANNELS = 4
-_OF_PICTURES = Sampling("linear", "repeat", mipmap=True)
 _TYPES = {
     "cubemap": ("samplerCube", "sky"),
     "volume": ("sampler3D", "volume"),
@@ -184,7 +183,7 @@ def _input(
     if kind == "buffer":
         return ToyInput(Channel(target=f"output {given.get('id', '')}".strip()))
     if kind == "texture" and _is_own(files, source):
-        return ToyInput(Channel(sampling=sampling or _OF_PICTURES), file=source)
+        return ToyInput(Channel(sampling=sampling or SAMPLING), file=source)
     if kind == "keyboard":
         return ToyInput(stand_in("keys", 0, ""))
     if kind in _SOUNDS and _is_own(files, source):

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from playground.errors import ShaderError
+from playground.sketch.dialects.directives import KEYBOARD
 from playground.sketch.dialects.es import rewritten
 from playground.sketch.dialects.shader import Channel, Rules, Shader
 from playground.sketch.dialects.shadertoy import MORE_NAMES, NAMES, with_cubes
@@ -106,10 +107,17 @@ def _shader(one: ToyPass, dialect: str) -> Shader:
             names[sampler] = (feeds.type, "none")
     if one.kind == CUBE:
         names["iResolution"] = ("vec3", "square_resolution")
+    has_keyboard = KEYBOARD in one.inputs
     return Shader(
         one.name,
         rewritten(one.source),
-        Rules(dialect, names, epilogue=_EPILOGUES[one.kind] if one.epilogue else ""),
+        Rules(
+            dialect,
+            names,
+            epilogue=_EPILOGUES[one.kind] if one.epilogue else "",
+            helpers=("vscode_keyboard.glsl",) if has_keyboard else (),
+        ),
+        named=frozenset({KEYBOARD}) if has_keyboard else frozenset(),
         target=one.name,
         channels={name: feeds.channel for name, feeds in one.inputs.items() if not feeds.file},
         parameters=tuple(parameters),

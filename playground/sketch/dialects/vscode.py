@@ -12,7 +12,7 @@ from playground.paths import shown
 from playground.sketch.allowed_files import SHADERS, is_inside, names_below
 from playground.sketch.dialects import directives
 from playground.sketch.dialects.reading import Files
-from playground.sketch.dialects.shader import Channel, Shader, stand_in
+from playground.sketch.dialects.shader import SAMPLING, SIZES, Channel, Shader, stand_in
 from playground.sketch.dialects.shadertoy import note_not_drawn
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
@@ -29,7 +29,6 @@ from playground.sketch.dialects.toy_passes import (
 from playground.sketch.model import Sampling
 from playground.sketch.source import Line, SourceText
 
-_OF_PICTURES = Sampling("linear", "repeat", mipmap=True)
 _OF_CUBES = Sampling("linear", "clamp", mipmap=True)
 _SCHEME = re.compile(r"(?:file|buf|glsl)://")
 _WEB = re.compile(r"https?://", re.IGNORECASE)
@@ -44,7 +43,6 @@ _FACES = (
 )
 _FACE_NAMES = ("right", "left", "top", "bottom", "front", "back")
 _CUBE_SIZE = ("512", "3072")
-_SOUND_SIZE = ("512", "2")
 _MOST_PASSES = 32
 
 
@@ -92,9 +90,9 @@ class Reader:
         feeds = dict(self.inputs.get(path, {}))
         for number, channel in read.channels.items():
             feeds[f"iChannel{number}"] = self._feed(path, number, channel)
-        if directives.KEYBOARD in read.source.names:
-            feeds[directives.KEYBOARD] = ToyInput(stand_in("keys", 0, ""))
         source = with_common(self.common, read.source)
+        if directives.has_keyboard(source):
+            feeds[directives.KEYBOARD] = ToyInput(stand_in("keys", 0, ""))
         has_main = bool(_MAIN.search(source.code)) and "mainImage" not in source.names
         label = self.labels.get(path, path.name)
         self._done[path] = ToyPass(label, kind, source, feeds, not has_main, name)
@@ -113,7 +111,7 @@ class Reader:
     def _feed(self, path: Path, number: int, channel: directives.Channel) -> ToyInput:
         """Return what a channel reads; raise ``ShaderError`` for a shader that is not there."""
         text = _SCHEME.sub("", channel.path)
-        of_buffers, of_pictures = channel.sampling(OF_BUFFERS), channel.sampling(_OF_PICTURES)
+        of_buffers, of_pictures = channel.sampling(OF_BUFFERS), channel.sampling(SAMPLING)
         if text == "self":
             self._read_before.add(path)
             return ToyInput(reading(self._names[path], of_buffers))
@@ -151,7 +149,7 @@ class Reader:
         sampling, found = channel.sampling(OF_BUFFERS), self._found(text, channel.line)
         if found is not None:
             file = found.relative_to(self.files.root.resolve()).as_posix()
-            return Channel("", "foreign/sound", (("sound", file),), _SOUND_SIZE, sampling)
+            return Channel("", "foreign/sound", (("sound", file),), SIZES["foreign/sound"], sampling)
         unfed = f"there is no file '{text}' in this folder, so a made-up sound stands in for it"
         return replace(stand_in("sound", 0, unfed), sampling=sampling)
 
