@@ -1,0 +1,175 @@
+// schema.js -- what Python writes and the runtime reads: types only, nothing runs here.
+//
+// Written by playground/web/*.py. Paths are those of the flat sketch ("height.sum"); texels have row 0
+// south; angles are degrees, lengths metres, times seconds.
+
+/** A number, a name, or an operation on others: see expressions.js.
+ *  Names: "size.x", "iteration", a parameter's own name (in a kernel's header), "time", "frames".
+ *  Operations: ["+" | "-" | "*" | "/" | "//" | "%" | "**" | "<" | "<=" | ">" | ">=" | "==" | "!=", a, b],
+ *  ["log2" | "bits" | "min" | "max" | "abs" | "floor" | "ceil", ...], ["if", test, then, otherwise],
+ *  ["size", base, axis]      texels of a pass, by its path; of base "#terrain" or "#frame" those
+ *  ["value", path]           what a uniform gets, by the path of the leaf's parameter
+ *  ["picture", path, axis]   texels of the image file that a parameter names
+ *  @typedef {number | string | Array<any>} Expression */
+
+/** A texture: an output of a leaf, or what a loop feeds back under a name.
+ *  @typedef {{path: string, output: string} | {loop: string, name: string}} Source */
+
+/** @typedef {number | boolean | string | number[]} Value */
+
+/** How a texture is read.
+ *  @typedef {{filter: "nearest" | "linear", wrap: "clamp" | "repeat" | "mirror", mipmap: boolean,
+ *             magnify?: "nearest" | "linear", flip?: boolean, decode?: boolean}} Sampling */
+
+/** A parameter of a kernel: a uniform.
+ *  @typedef {{name: string, type: string, widget: string, values?: number[], sampling?: Sampling}} Uniform
+ *  values: of a menu, what the uniform gets for each choice. */
+
+/** @typedef {{name: string, sampling: Sampling, fallback: "" | "white" | "black" | "zero",
+ *             shape: "" | "cube" | "volume" | "layers" | "line"}} Input */
+
+/** How the text of a stage is made of a kernel's flat text (gpu/wrap.py as data): the lines of `before`,
+ *  of which one with names stands only where the text names one of them; the kernel's lines, a function
+ *  blanked (`without`) or names replaced (`replace`, where `replaceIf` holds); then `after`.
+ *  `text` is a whole stage instead, made of no file.
+ *  @typedef {{text?: string, before?: Array<{text: string, names?: string[]}>, after?: string,
+ *             without?: string, replace?: Object<string, string>, keepsVersion?: boolean}} Stage */
+
+/** A kernel, a draw, a source or a plain shader: what its header says.
+ *  @typedef {object} Kernel
+ *  @property {string} name                         "generation/diamond_square"
+ *  @property {"kernel" | "draw" | "source" | "plain_fragment"} kind
+ *  @property {string} file                         in `Shared.files`
+ *  @property {string} title
+ *  @property {{name: string, format: string}[]} outputs
+ *  @property {Input[]} inputs
+ *  @property {Uniform[]} parameters
+ *  @property {Expression} repeat                   1: it does not repeat
+ *  @property {boolean} countsFrames                its iteration n is at n / 60 seconds
+ *  @property {boolean} followsTime                 its repeat names a clock
+ *  @property {Object<string, string>} initial      input → output that begins with it
+ *  @property {Expression} [stride]
+ *  @property {Expression} [atOnce]
+ *  @property {"" | "squares" | "triangles"} [between]
+ *  @property {string} [accepts]                    as the header has it
+ *  @property {string} [mesh]                       of a draw
+ *  @property {Expression} [count]                  of a draw
+ *  @property {"none" | "add" | "alpha"} [blend]
+ *  @property {"none" | "less" | "equal"} [depth]
+ *  @property {number} [samples]                    of a draw; 0: the sketch's
+ *  @property {string[]} [used]                     names in its header besides those in its text
+ *  @property {[string, string][]} [usual]          of a plain shader: uniform → what it is given
+ *  @property {string} [dialect]
+ *  @property {string[]} extensions                 of GLSL ES that its text needs, if any
+ *  @property {Stage} vertex
+ *  @property {Stage} fragment */
+
+/** A leaf pass.
+ *  @typedef {object} Leaf
+ *  @property {string} path
+ *  @property {number} kernel                       index in `Sketch.kernels`
+ *  @property {[string, Source | null][]} inputs
+ *  @property {Object<string, string>} values       parameter of the kernel → path in `Sketch.values`
+ *  @property {string} base                         whose size it has: a path in `Sketch.passes`
+ *  @property {DataTexture[]} [data]                of a source: its texels for now */
+
+/** What the processor made, exported as texels.
+ *  @typedef {{output: string, format: string, size: [number, number], blob: string,
+ *             times?: number[], frames?: string[]}} DataTexture */
+
+/** @typedef {{path: string, loop: true, repeat: Expression, countsFrames: boolean, followsTime: boolean,
+ *             body: Node[], feedback: [string, Source | null, {path: string, output: string}][]}} Loop */
+
+/** @typedef {Leaf | Loop} Node */
+
+/** Every pass at every level, by path: its size, and what it has unless it says one.
+ *  @typedef {{base: string, size?: [Expression, Expression], own?: [number, number], where: string}} Pass
+ *  base: "#terrain", "#frame" or the path of the technique around it; own: of data; where: for errors. */
+
+/** One row of the panel.
+ *  @typedef {object} Shown
+ *  @property {string} path                         as --set takes it
+ *  @property {string} pass                         the sketch's own pass
+ *  @property {string} label
+ *  @property {string} type                         GLSL
+ *  @property {string} widget                       a row of sketch/widgets.py
+ *  @property {string} unit
+ *  @property {string} group
+ *  @property {string} description
+ *  @property {string[]} parts                      what a vector's components are
+ *  @property {[number | null, number | null][]} ranges   of each number
+ *  @property {number | null} step
+ *  @property {string[]} choices
+ *  @property {boolean} exported                    an inner parameter otherwise
+ *  @property {boolean} main                        the sketch is about it: shown first
+ *  @property {string} locked                       why it cannot be changed in a page; "": it can
+ *  @property {boolean} [raw]                       of a colour: as it is shown, not linear
+ *  @property {Value} value                         at first
+ *  @property {string[]} targets                    paths in `Sketch.values` */
+
+/** A camera that orbits a point: terrain/camera.py.
+ *  @typedef {{azimuth: number, elevation: number, distance: number,
+ *             target: [number, number, number] | null, field_of_view: number}} Camera */
+
+/** What keyframes say of one thing: sketch/keyframes.py.
+ *  @typedef {{of: "camera" | "value", name: string, targets: string[], times: number[], values: Value[],
+ *             eases: ("smooth" | "linear" | "hold")[], holds: boolean, angles: number[]}} Track */
+
+/** An angle that follows a direction while it has its default: sketch/follows.py.
+ *  @typedef {{targets: string[], default: Value, direction: string, menu: string, choice: number}} Rule */
+
+/** @typedef {{size: [number, number], extent: [number, number], relief: number, base_elevation: number,
+ *             locked: string}} Terrain  locked: why its size cannot be changed; "": it can */
+
+/** One way to make the picture: a graph with its passes in order.
+ *  @typedef {object} Sketch
+ *  @property {1} format
+ *  @property {string} name
+ *  @property {string} title
+ *  @property {string} file                         of its TOML or kernel, in `Shared.files`
+ *  @property {[number, number]} frame              pixels of the picture at first
+ *  @property {number} time
+ *  @property {Object<string, number>} steps        repeats that are stopped early, by path
+ *  @property {number} samples
+ *  @property {Terrain} terrain
+ *  @property {Camera} camera
+ *  @property {{path: string, output: string}} picture
+ *  @property {Kernel[]} kernels
+ *  @property {Node[]} nodes                        in an order that wiring allows
+ *  @property {Object<string, Pass>} passes
+ *  @property {Object<string, Value>} values        of each leaf parameter, by path; of a file its key in `Shared.images`
+ *  @property {Shown[]} shown
+ *  @property {{name: string, values: Object<string, Value>}[]} presets   by the paths of `shown`, "size", "relief" …
+ *  @property {Track[]} tracks
+ *  @property {number} duration                     time of the last keyframe; 0: none
+ *  @property {boolean} moves                       its picture follows the time
+ *  @property {Rule[]} rules
+ *  @property {{ref: string, path: string, output: string, label: string, height: boolean}[]} textures  for maps
+ *  @property {MapView} map
+ *  @property {Choice[]} choices                    techniques that may be exchanged
+ *  @property {string[]} notes                      what a page does otherwise, or cannot, a sentence each */
+
+/** How any texture is shown from above: the kernel view/map, whose input `shown` is wired when asked for.
+ *  @typedef {{kernel: number, input: string, values: Object<string, Value>, shown: Shown[]}} MapView */
+
+/** A technique menu: another sketch for each technique, with the same paths where they have the same names.
+ *  @typedef {{pass: string, label: string, now: string, others: {use: string, title: string, sketch: number}[]}} Choice
+ *  sketch: index in `Page.sketches`. */
+
+/** What sketches share.
+ *  @typedef {object} Shared
+ *  @property {Object<string, string>} files        GLSL by name: "noise/hash.glsl", "./waves.glsl"
+ *  @property {Object<string, Object<string, string>>} includes   file → what it writes → file
+ *  @property {Object<string, [string, string]>} given   name → GLSL type and meaning (reserved_names.GIVEN)
+ *  @property {Object<string, string>} own          the engine's own shaders: copy.frag, spread.frag, fill_between.frag
+ *  @property {Object<string, {size: [number, number], kind: "rgba8" | "srgb8" | "rgba16f", blob: string,
+ *             file?: string}>} images              image files by key; blob: raw texels, row 0 south, or (file)
+ *                                                  the file itself, to be decoded by the browser
+ *  @property {Object<string, string>} blobs        gzip in base64, by key */
+
+/** A page: what one HTML file holds, or what a book's scripts put together.
+ *  @typedef {{format: 1, sketches: Sketch[], shared: Shared, pack?: Object<string, string>,
+ *             poster?: string, labels?: Object<string, string>}} Page
+ *  pack: names in the zip of "download my version" → text, or "blob:KEY" for bytes. */
+
+export {};
