@@ -3,6 +3,7 @@
 import { flatten } from "./source.js";
 import { stageText } from "./wrap.js";
 import { toES } from "./es.js";
+import { declaredUniforms } from "./uniforms.js";
 import { filteredByHand } from "./linear_by_hand.js";
 
 /** @typedef {import("./schema.js").Kernel} Kernel */
@@ -42,17 +43,8 @@ export const readKernel = (shared, kernel, texts) => {
     kernel, flat, used, programs: new Map(),
     given: Object.keys(shared.given).filter((name) => flat.names.has(name)),
     identity: /** @type {string} */ (identities.get(whole)),
-    own: [...code.matchAll(/^[ \t]*uniform\s+(\w+)\s+(\w+)\s*=([^;\n]*);/gm)].filter((match) => !declared.has(match[2]))
-      .map(([, , name, value]) => [name, literal(value)]),
+    own: declaredUniforms(flat.lines).flatMap(({ name, value }) => (value === null || declared.has(name) ? [] : [[name, value]])),
   };
-};
-
-/** Return the value of an initialiser: numbers, in a constructor or alone. @param {string} text */
-const literal = (text) => {
-  const numbers = (text.replace(/\b[iub]?vec[234]/g, "").match(/[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|true|false/g) || [])
-    .map((each) => (each === "true" ? 1 : each === "false" ? 0 : Number(each)));
-  const [, many] = /\bvec([234])|[iub]vec([234])/.exec(text) || [];
-  return many && numbers.length === 1 ? Array(+many).fill(numbers[0]) : numbers.length === 1 ? numbers[0] : numbers;
 };
 
 /** Return the texts of a kernel's stages in GLSL ES, and the first line of its own in each.
@@ -63,9 +55,9 @@ const literal = (text) => {
 export const stagesOf = ({ kernel, flat }, byHand, atEnd) => {
   const stages = [kernel.vertex, kernel.fragment].map((stage, i) => {
     const { text, first } = stageText(stage, flat);
-    const es = toES(text, { extensions: kernel.extensions });
-    const hand = byHand.size ? filteredByHand(es, byHand) : es;
-    return { text: i && atEnd ? hand.replace(/\}\s*$/, `${atEnd} }\n`) : hand, first };
+    const filtered = byHand.size ? filteredByHand(text, byHand) : { text, functions: "" };
+    const found = i && atEnd ? filtered.text.replace(/\}\s*$/, `${atEnd} }\n`) : filtered.text;
+    return { text: toES(found, { extensions: kernel.extensions, byHand: { text: filtered.functions, names: {} } }), first };
   });
   return { texts: [stages[0].text, stages[1].text], first: [stages[0].first, stages[1].first] };
 };

@@ -170,13 +170,15 @@ export const createKernels = (context, textures, programs, binder, shared) => {
     if (step.kernel.countsFrames) setUniform(gl, program, "time", now / 60);
   };
 
-  /** Return what the expressions of a step's header mean. @param {Job["step"]} step
-   *  @param {Object<string, number>} [more] */
-  const namesOf = (step, more = {}) => ({
-    /** @param {string} name */
-    name: (name) => more[name] ?? (name === "size.x" ? step.size[0] : name === "size.y" ? step.size[1]
-      : Number(step.values[name])),
-    size: () => 0, value: () => 0, picture: () => 0,
+  /** Return what the expressions of a step's header mean.
+   *  @param {Job["step"]} step @param {Object<string, number>} [more] @returns {import("./expressions.js").Names} */
+  const namesOf = ({ kernel, size, values }, more = {}) => ({
+    name: (name) => {
+      const number = { "size.x": size[0], "size.y": size[1], ...more }[name];
+      if (number !== undefined) return BigInt(number);
+      const parameter = kernel.parameters.find((each) => each.name === name), value = Number(values[name]);
+      return parameter && (/^float/.test(parameter.type) ? value : BigInt(value));
+    },
   });
 
   /** Run a kernel; the result is the caller's. @param {Job} job @returns {Work} */

@@ -25,16 +25,14 @@ const functions = (wrap) => {
     + ` vec4 ${name}(sampler2D k_s, vec2 k_p, vec2 k_x, vec2 k_y) ${call} `;
 };
 
-/** Return a stage's text in which some samplers are filtered by hand; it keeps its lines.
+/** Return a stage's text in which some samplers are filtered by hand, and the functions that it calls for that,
+ *  on one line; the text keeps its lines.
  *  @param {string} text without comments @param {Map<string, Wrap>} samplers */
 export const filteredByHand = (text, samplers) => {
-  const names = reached(text, samplers);
-  const list = [...names.keys()].join("|");
-  const changed = text.replace(new RegExp(`\\btexture(?:Lod|Grad)?\\s*\\(\\s*(${list})\\b(?=\\s*,)`, "g"),
-    (_, name) => `k_linear_${names.get(name)}(${name}`);
-  if (changed === text) return text;
-  const helpers = [...new Set(names.values())].map(functions).join("");
-  return changed.replace(/\n(?=[^#\n]*(?:\n|$))/, `\n${helpers}`); // before the first line that is no directive
+  const names = reached(text, samplers), list = [...names.keys()].join("|");
+  const calls = new RegExp(`\\btexture(?:Lod|Grad)?\\s*\\(\\s*(${list})\\b(?=\\s*,)`, "g");
+  const changed = text.replace(calls, (_, name) => `k_linear_${names.get(name)}(${name}`);
+  return { text: changed, functions: changed === text ? "" : [...new Set(names.values())].map(functions).join("") };
 };
 
 /** Return the samplers and the functions' parameters that they reach.

@@ -59,11 +59,11 @@ export const createTextures = (context, limit) => {
     return { texture: made, size, format, levels: many, bytes: many > 1 ? Math.ceil(flat * 4 / 3) : flat, target: null };
   };
 
-  /** @param {Texture} made @param {ArrayBufferView} texels */
+  /** @param {Texture} made @param {ArrayBufferView | ImageBitmap} texels */
   const write = (made, texels) => {
     const { external, type } = formats(made.format);
     hold(made.texture);
-    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, ...made.size, external, type, texels);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, ...made.size, external, type, /** @type {any} */ (texels));
   };
 
   /** @param {Texture} made */
