@@ -80,7 +80,7 @@ export const createBinder = (context, textures, images) => {
     for (const { name, widget, sampling } of kernel.parameters) {
       const value = values[name];
       if (widget === "file") {
-        if (program.uniforms.has(name)) unit = texture(program, name, unit, images.get(String(value)), sampling || PLAIN);
+        if (program.uniforms.has(name)) unit = texture(program, name, unit, images.get(String(value), sampling || PLAIN), sampling || PLAIN);
         continue;
       }
       set(name, value);

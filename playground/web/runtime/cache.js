@@ -2,8 +2,10 @@
 
 import { createKeptStates } from "./kept_states.js";
 
-/** The results of one pass, or of all passes of a loop after some iteration, by the pass's path.
- *  @typedef {{results: Map<string, import("./textures.js").Result>, iterations: number}} Cached */
+/** The results of one pass, or of all passes of a loop after some iteration, by the pass's path;
+ *  `cancel` ends the run that is at it.
+ *  @typedef {{results: Map<string, import("./textures.js").Result>, iterations: number,
+ *             cancel?: (() => void) | null}} Cached */
 /** @typedef {ReturnType<typeof createCache>} Cache */
 
 const MOST = 1024; // results of any size: a driver spends memory on each texture besides its texels
@@ -64,11 +66,15 @@ export const createCache = (limit, textures) => {
       return found;
     },
 
-    /** @param {string} key @param {Cached} cached @param {Set<string>} used */
+    /** Keep what was computed, and return it; what another run has computed meanwhile stays instead.
+     *  @param {string} key @param {Cached} cached @param {Set<string>} used @returns {Cached} */
     put: (key, cached, used) => {
-      if (known.get(key) !== cached) drop(key);
-      known.set(key, cached);
+      const before = known.get(key), found = before || cached;
+      if (before) cached.results.forEach(textures.give);
+      known.set(key, found);
       used.add(key);
+      trim();
+      return found;
     },
 
     /** @param {string} path @param {string} unfinished @param {string} key @param {number} iterations */

@@ -45,9 +45,9 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
   };
 
   /** @param {Job} job @returns {Mesh} */
-  const meshOf = ({ step }) => {
-    const { kernel } = step, name = /** @type {string} */ (kernel.mesh), values = { ...step.values };
-    if (kernel.count !== undefined) values.count = whole(kernel.count, kernels.namesOf(step));
+  const meshOf = (job) => {
+    const { step } = job, { kernel } = step, name = /** @type {string} */ (kernel.mesh), values = { ...step.values };
+    if (kernel.count !== undefined) values.count = whole(kernel.count, kernels.namesOf(job));
     const key = `${name} ${JSON.stringify(meshKey(name, values))}`, known = meshes.get(key);
     meshes.delete(key);
     if (known) {

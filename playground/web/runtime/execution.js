@@ -6,15 +6,17 @@
 import { failure } from "./context.js";
 import { isSize } from "./binder.js";
 import { texelsOf } from "./formats.js";
+import { isLoop, stepsOf } from "./plan_nodes.js";
 
 /** @typedef {import("./planner.js").Plan} Plan */
-/** @typedef {import("./planner.js").Step} Step */
-/** @typedef {import("./planner.js").LoopStep} LoopStep */
+/** @typedef {import("./plan_nodes.js").Step} Step */
+/** @typedef {import("./plan_nodes.js").LoopStep} LoopStep */
 /** @typedef {Step | LoopStep} PlanNode */
 /** @typedef {import("./schema.js").Source} Source */
 /** @typedef {import("./textures.js").Result} Result */
 /** @typedef {import("./binder.js").Wired} Wired */
 /** @typedef {import("./cache.js").Cached} Cached */
+/** @typedef {import("./plan_nodes.js").Ref} Ref */
 /** @typedef {import("./kernels.js").Job} Job */
 /** @typedef {Map<string, Wired | null>} Fed  what loops feed back, by loop and name */
 
@@ -30,34 +32,11 @@ import { texelsOf } from "./formats.js";
  *  @property {(step: Step, frame: number | null) => Object<string, any>} given
  *  @property {(kernel: import("./schema.js").Kernel) => import("./kernel_texts.js").KernelText} text
  *  @property {(step: Step) => number} samples
- *  @property {(text: import("./kernel_texts.js").KernelText, texels: number) => number} bands
- *  @property {Set<string>} stopped   paths of repeats that are stopped early */
+ *  @property {(text: import("./kernel_texts.js").KernelText, width: number, height: number) => number} rows
+ *  @property {() => void} cancel   give up this run: another needs what it is at */
 
 /** A generator of pieces of work. @template T
  *  @typedef {Generator<any, T, boolean | undefined>} Working */
-
-/** @param {PlanNode} node @returns {node is LoopStep} */
-const isLoop = (node) => "loop" in node;
-
-/** @param {PlanNode[]} nodes @returns {Step[]} */
-export const stepsOf = (nodes) => nodes.flatMap((node) => (isLoop(node) ? stepsOf(node.body) : [node]));
-
-/** Return what a node reads. @param {PlanNode} node @returns {Source[]} */
-const sourcesOf = (node) => {
-  const found = isLoop(node) ? [...node.feedback.map((each) => each[1]), ...node.body.flatMap(sourcesOf)]
-    : node.inputs.map((each) => each[1]);
-  return /** @type {Source[]} */ (found.filter(Boolean));
-};
-
-/** Return the nodes that a texture depends on, in order. @param {PlanNode[]} nodes @param {string} path */
-export const needed = (nodes, path) => {
-  const wanted = new Set([path]);
-  return [...nodes].reverse().filter((node) => {
-    if (!(isLoop(node) ? stepsOf([node]) : [node]).some((step) => wanted.has(step.path))) return false;
-    for (const source of sourcesOf(node)) if ("path" in source) wanted.add(source.path);
-    return true;
-  }).reverse();
-};
 
 /** Return which outputs are read with levels, as "path:output". @param {PlanNode[]} nodes */
 export const readWithLevels = (nodes) => {
@@ -158,22 +137,25 @@ export const createExecution = (plan, nodes, around) => {
     const raw = cache.get(/** @type {string} */ (keys.raw.get(step.path)), used);
     const from = raw ? [...raw.results.values()][0] : yield* computed(step);
     const { stride, form } = step.between, how = { k_stride: stride, k_form: form };
-    const made = kernels.drawnOwn("fill_between.frag", from, how, step.kernel.outputs, isTall(step));
-    cache.put(key, { results: new Map([[step.path, made]]), iterations: 0 }, used);
-    return made;
+    return keep(key, step, kernels.drawnOwn("fill_between.frag", from, how, step.kernel.outputs, isTall(step)));
+  };
+
+  /** Keep a result under its key, and return it. @param {string} key @param {Step} step @param {Result} made */
+  const keep = (key, step, made) => {
+    const { results } = cache.put(key, { results: new Map([[step.path, made]]), iterations: 0 }, used);
+    return /** @type {Result} */ (results.values().next().value);
   };
 
   /** Run a step, from where its earlier iterations are known. @param {Step} step @returns {Working<Result>} */
   const computed = function* (step) {
     const key = /** @type {string} */ (keys.raw.get(step.path));
     const unfinished = /** @type {string} */ (keys.unfinished.get(step.path));
-    const goesOn = around.stopped.has(step.path) || step.kernel.followsTime;
+    const goesOn = step.path in plan.stopped || step.kernel.followsTime;
     const start = goesOn ? cache.takeEarlier(step.path, unfinished, step.repeat) : null;
     /** @type {Map<string, Wired | null>} */
     const inputs = new Map();
     for (const [name, source] of step.inputs) inputs.set(name, wiredTo(source, new Map()));
-    const made = yield* compute(step, inputs, null, start);
-    cache.put(key, { results: new Map([[step.path, made]]), iterations: 0 }, used);
+    const made = keep(key, step, yield* compute(step, inputs, null, start));
     if (goesOn) cache.noteProgress(step.path, unfinished, key, step.repeat);
     return made;
   };
@@ -192,7 +174,7 @@ export const createExecution = (plan, nodes, around) => {
     const job = {
       step, text, inputs, around: loops, start, tall: isTall(step), samples: around.samples(step),
       given: around.given(step, loops ? loops.frame : null), keepsSurface: continued.has(step.path),
-      bands: (texels) => around.bands(text, texels),
+      time: plan.time, rows: (width, height) => around.rows(text, width, height),
     };
     return yield* (kind === "draw" ? draws : kernels).run(job);
   };
@@ -217,7 +199,7 @@ export const createExecution = (plan, nodes, around) => {
     const result = textures.take(step.size, step.kernel.outputs, isTall(step));
     for (const { output, format, blob } of around.given(step, loops ? loops.frame : null).data) {
       const texture = result.textures.get(output);
-      if (texture) textures.write(texture, texelsOf(textures.formats(format), new Float32Array(images.blob(blob)), gl));
+      if (texture) textures.write(texture, texelsOf(gl, textures.formats(format), images.blob(blob)));
     }
     return result;
   };
@@ -238,13 +220,16 @@ export const createExecution = (plan, nodes, around) => {
   const runCachedLoop = function* (loop) {
     const key = /** @type {string} */ (keys.loops.get(loop.path));
     let state = cache.get(key, used);
-    if (!state) cache.put(key, (state = { results: new Map(), iterations: 0 }), used);
+    if (!state) state = cache.put(key, { results: new Map(), iterations: 0 }, used);
+    if (state.cancel) state.cancel();
+    state.cancel = around.cancel;
     const taken = goBack(loop, key, state);
     let ended = false;
     try {
       yield* runLoop(loop, state, new Map(), new Map(), null);
       ended = true;
     } finally {
+      state.cancel = null;
       if (!ended && taken && state.iterations === taken) setAside(loop, key, state); // it is what is fed back only
     }
   };
@@ -387,9 +372,12 @@ export const createExecution = (plan, nodes, around) => {
   };
 
   return {
-    results, ran, all,
+    ran, all,
 
-    /** Return a texture of a pass that has run. @param {{path: string, output: string}} ref @returns {Wired} */
+    /** Return a texture of a pass, if that has run. @param {Ref} ref */
+    known: (ref) => (results.has(ref.path) ? wiredTo(ref, new Map()) : null),
+
+    /** Return a texture of a pass that has run. @param {Ref} ref @returns {Wired} */
     texture: (ref) => {
       const wired = results.has(ref.path) ? wiredTo(ref, new Map()) : null;
       if (!wired) throw failure("sketch", `There is no texture '${ref.path}:${ref.output}'.`);

@@ -41,35 +41,9 @@ export const roundedOutputs = (outputs, formats) =>
     return ` k_out_${name} = floor(clamp(k_out_${name}, 0.0, 1.0) * ${steps} + 0.5) / ${steps};`;
   }).join("");
 
-const numbers = new Float32Array(1), bits = new Uint32Array(numbers.buffer);
-
-/** Return a number as 16-bit float, rounded to even; no more than the largest.
- *  @param {number} value */
-export const half = (value) => {
-  numbers[0] = Math.max(-65504, Math.min(65504, value));
-  const [all] = bits, sign = (all >>> 16) & 0x8000, exponent = (all >>> 23) & 255;
-  if (exponent === 255) return sign | 0x7e00; // not a number
-  if (exponent < 102) return sign;
-  const whole = (all & 0x7fffff) | 0x800000, shift = exponent < 113 ? 126 - exponent : 13;
-  const low = whole >>> shift, rest = whole & ((1 << shift) - 1), middle = 1 << (shift - 1);
-  const up = rest > middle || (rest === middle && low & 1) ? 1 : 0;
-  return sign | ((exponent < 113 ? low : low - 1024 + ((exponent - 112) << 10)) + up);
-};
-
-/** Return floats as what a format's texels are written as.
- *  @param {Format} format @param {Float32Array} values @param {WebGL2RenderingContext} gl */
-export const texelsOf = (format, values, gl) => {
-  /** @param {number} top @returns {(value: number) => number} */
-  const rounded = (top) => (value) => even(Math.fround(Math.max(0, Math.min(1, value || 0)) * top));
-  if (format.type === gl.UNSIGNED_BYTE) return Uint8Array.from(values, rounded(255));
-  if (format.type === gl.UNSIGNED_SHORT) return Uint16Array.from(values, rounded(65535));
-  if (format.type === gl.HALF_FLOAT) return Uint16Array.from(values, half);
-  return format.steps ? values.map((value) => rounded(format.steps)(value) / format.steps) : values;
-};
-
-/** Round to the nearest whole number, halves to the even one.
- *  @param {number} value */
-const even = (value) => {
-  const low = Math.floor(value), rest = value - low;
-  return rest > 0.5 || (rest === 0.5 && low % 2) ? low + 1 : low;
+/** Return a format's texels as what is uploaded. @param {WebGL2RenderingContext} gl @param {Format} format
+ *  @param {ArrayBuffer} bytes as Python writes them */
+export const texelsOf = (gl, { type, steps }, bytes) => {
+  if (steps) return Float32Array.from(new Uint16Array(bytes), (value) => value / steps);
+  return new (type === gl.UNSIGNED_BYTE ? Uint8Array : type === gl.FLOAT ? Float32Array : Uint16Array)(bytes);
 };

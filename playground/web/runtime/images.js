@@ -28,34 +28,29 @@ export const createImages = (textures, shared) => {
     asked.delete(key);
   };
 
-  /** Make the texture of an image file, if it is not made. @param {string} key @param {boolean} levels */
-  const load = async (key, levels) => {
-    const image = shared.images[key];
+  /** Make the texture of an image file, if it is not made.
+   *  @param {string} key @param {import("./schema.js").Sampling} sampling */
+  const load = async (key, { mipmap, flip = false }) => {
+    const image = shared.images[key], name = `${key} ${flip}`, known = made.get(name);
     if (!image) throw failure("no-image", `The page carries no image '${key}'.`);
-    const known = made.get(key);
-    if (known && (known.levels > 1 || !levels)) return;
-    /** @type {ArrayBufferView | ImageBitmap} */
-    let texels;
-    if (image.file) texels = await decoded(await unpacked(shared.blobs[image.blob]));
-    else {
-      await loadBlob(image.blob);
-      const bytes = /** @type {ArrayBuffer} */ (blobs.get(image.blob));
-      texels = image.kind === "rgba16f" ? new Uint16Array(bytes) : new Uint8Array(bytes);
-      blobs.delete(image.blob);
-    }
-    const texture = textures.texture(image.size, image.kind, levels);
+    if (known && (known.levels > 1 || !mipmap)) return;
+    const bytes = await unpacked(shared.blobs[image.blob]);
+    const texels = image.file ? await decoded(bytes, image.file, flip) : inRows(bytes, image, flip);
+    const texture = textures.texture(image.size, image.kind, mipmap);
     textures.write(texture, texels);
-    if (levels) textures.buildLevels(texture);
-    if (known) textures.release(known);
-    made.set(key, texture);
+    if (mipmap) textures.buildLevels(texture);
+    const before = made.get(name); // loaded meanwhile
+    if (before) textures.release(before);
+    made.set(name, texture);
   };
 
   return {
     load, loadBlob,
 
-    /** Return the texture of an image that was loaded. @param {string} key @returns {Texture} */
-    get: (key) => {
-      const found = made.get(key);
+    /** Return the texture of an image that was loaded.
+     *  @param {string} key @param {import("./schema.js").Sampling} sampling @returns {Texture} */
+    get: (key, { flip = false }) => {
+      const found = made.get(`${key} ${flip}`);
       if (!found) throw failure("no-image", `The image '${key}' is not loaded.`);
       return found;
     },
@@ -75,6 +70,17 @@ export const createImages = (textures, shared) => {
   };
 };
 
-/** Return an image file's pixels as they are encoded, row 0 south. @param {ArrayBuffer} bytes */
-const decoded = (bytes) => createImageBitmap(new Blob([bytes]),
-  { premultiplyAlpha: "none", colorSpaceConversion: "none", imageOrientation: "flipY" });
+/** Return an image file's pixels as they are encoded, row 0 south unless `flip`.
+ *  @param {ArrayBuffer} bytes @param {string} type @param {boolean} flip */
+const decoded = (bytes, type, flip) => createImageBitmap(new Blob([bytes], { type }),
+  { premultiplyAlpha: "none", colorSpaceConversion: "none", imageOrientation: flip ? "none" : "flipY" });
+
+/** Return texels, their rows the other way round where `flip`.
+ *  @param {ArrayBuffer} bytes @param {{size: [number, number], kind: string}} image @param {boolean} flip */
+const inRows = (bytes, { size: [, height], kind }, flip) => {
+  const all = kind === "rgba16f" ? new Uint16Array(bytes) : new Uint8Array(bytes), row = all.length / height;
+  if (!flip) return all;
+  const found = all.slice();
+  for (let y = 0; y < height; y++) found.set(all.subarray(y * row, (y + 1) * row), (height - 1 - y) * row);
+  return found;
+};

@@ -16,10 +16,18 @@ import { filteredByHand } from "./linear_by_hand.js";
  *  @property {Set<string>} used       names in its text besides their declaration, or in its header
  *  @property {string} identity        the same for the same header and text
  *  @property {Map<string, import("./programs.js").Program>} programs   by how samplers are filtered
+ *  @property {Map<string, Map<string, import("./linear_by_hand.js").Wrap>>} hands   those ways
  *  @property {[string, any][]} own    uniforms with a value in the text that its header does not know */
 
-/** @type {Map<string, string>} */
-const identities = new Map();
+/** Return a short text that differs where another does. @param {string} text */
+const digest = (text) => {
+  let a = 0x811c9dc5, b = text.length;
+  for (let i = 0; i < text.length; i++) {
+    a = Math.imul(a ^ text.charCodeAt(i), 0x01000193);
+    b = Math.imul(b, 31) + a | 0;
+  }
+  return `${text.length}-${a >>> 0}-${b >>> 0}`;
+};
 
 /** Read a kernel; throws where a file is missing, with `file` and `line`.
  *  @param {Shared} shared @param {Kernel} kernel @param {Object<string, string>} texts edited files
@@ -37,12 +45,10 @@ export const readKernel = (shared, kernel, texts) => {
   if (times.has("iterations")) used.add("iterations");
   const declared = new Set(kernel.parameters.map(({ name }) => name));
   for (const name of declared) if (source || times.has(`towards_${name}`) || (kernel.dialect && times.has(name))) used.add(name);
-  const whole = JSON.stringify([kernel, code]);
-  if (!identities.has(whole)) identities.set(whole, `${kernel.name}#${identities.size}`);
   return {
-    kernel, flat, used, programs: new Map(),
+    kernel, flat, used, programs: new Map(), hands: new Map(),
     given: Object.keys(shared.given).filter((name) => flat.names.has(name)),
-    identity: /** @type {string} */ (identities.get(whole)),
+    identity: digest(JSON.stringify([kernel, code])),
     own: declaredUniforms(flat.lines).flatMap(({ name, value }) => (value === null || declared.has(name) ? [] : [[name, value]])),
   };
 };

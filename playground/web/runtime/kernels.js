@@ -6,10 +6,12 @@
 import { failure } from "./context.js";
 import { whole } from "./expressions.js";
 import { roundedOutputs } from "./formats.js";
+import { complaintsOf } from "./edits.js";
 import { stagesOf } from "./kernel_texts.js";
 import { isSize, PLAIN } from "./binder.js";
 import { setUniform } from "./programs.js";
 import { toES } from "./es.js";
+import { ownNames } from "./planner.js";
 
 /** @typedef {import("./textures.js").Result} Result */
 /** @typedef {import("./textures.js").Texture} Texture */
@@ -19,12 +21,12 @@ import { toES } from "./es.js";
 
 /** What is yielded after each piece of work: whose, and how much. What is sent back says whether others may
  *  have used the context meanwhile.
- *  @typedef {Generator<{step: import("./planner.js").Step, text: import("./kernel_texts.js").KernelText,
+ *  @typedef {Generator<{step: import("./plan_nodes.js").Step, text: import("./kernel_texts.js").KernelText,
  *                       texels: number}, Result, boolean | undefined>} Work */
 
 /** A step about to run, with all it reads.
  *  @typedef {object} Job
- *  @property {import("./planner.js").Step} step
+ *  @property {import("./plan_nodes.js").Step} step
  *  @property {import("./kernel_texts.js").KernelText} text
  *  @property {Object<string, any>} given
  *  @property {Map<string, Wired | null>} inputs
@@ -33,10 +35,14 @@ import { toES } from "./es.js";
  *  @property {number} samples                 of a draw
  *  @property {boolean} keepsSurface           a later draw goes on from it
  *  @property {(name: string) => boolean} tall whether an output is read with levels
- *  @property {(texels: number) => number} bands   into how many parts an iteration is cut */
+ *  @property {number} time                    of the picture
+ *  @property {(width: number, height: number) => number} rows   how many of so many to draw at once */
 
 const TRIANGLE = "#version 330\nvoid main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1)"
   + " * 4.0 - 1.0, 0.0, 1.0); }\n";
+const SHOW = "#version 330\nuniform sampler2D k_picture; uniform int k_channels; out vec4 k_out; void main() {"
+  + " vec4 k_all = texelFetch(k_picture, ivec2(gl_FragCoord.xy), 0); k_all = mix(vec4(0.0), k_all, equal(k_all, k_all));"
+  + " k_out = vec4(k_channels == 1 ? k_all.rrr : k_all.rgb, k_channels == 4 ? k_all.a : 1.0); }\n";
 const ROWS = 64; // a band's rows are a multiple of these: no tile or quad of pixels is cut
 
 /** @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures
@@ -50,7 +56,7 @@ export const createKernels = (context, textures, programs, binder, shared) => {
   /** Return a fragment shader of the engine's own. @param {string} name */
   const own = (name) => {
     let found = owns.get(name);
-    if (!found || found.state === "gone") owns.set(name, (found = programs.ask([toES(TRIANGLE, {}), toES(shared.own[name], {})])));
+    if (!found || found.state === "gone") owns.set(name, (found = programs.ask([toES(TRIANGLE), toES(shared.own[name] || SHOW)])));
     if (!programs.finish(found)) throw failure("shader", `${name}: ${found.logs.join("")}${found.link}`);
     return found;
   };
@@ -139,11 +145,14 @@ export const createKernels = (context, textures, programs, binder, shared) => {
         byHand.set(name, sampling.wrap);
     }
     const program = ask(text, byHand);
-    if (!programs.finish(program)) {
-      const log = [...program.logs, program.link].join("");
-      throw failure("shader", `${step.kernel.file}: ${log}`, { program, kernel: step.kernel });
-    }
+    if (!programs.finish(program)) throw refused(text, program);
     return program;
+  };
+
+  /** @param {import("./kernel_texts.js").KernelText} text @param {Program} program */
+  const refused = (text, program) => {
+    const complaints = complaintsOf(text, program), [{ file, line, message }] = complaints;
+    return failure("shader", `${file}:${line}: ${message}`, { complaints });
   };
 
   /** Begin to compile a kernel. @param {import("./kernel_texts.js").KernelText} text
@@ -154,6 +163,7 @@ export const createKernels = (context, textures, programs, binder, shared) => {
     if (!found || found.state === "gone") {
       const { texts } = stagesOf(text, byHand, roundedOutputs(text.kernel.outputs, textures.formats));
       text.programs.set(key, (found = programs.ask(texts)));
+      text.hands.set(key, byHand);
     }
     programs.touch(found);
     return found;
@@ -170,24 +180,17 @@ export const createKernels = (context, textures, programs, binder, shared) => {
     if (step.kernel.countsFrames) setUniform(gl, program, "time", now / 60);
   };
 
-  /** Return what the expressions of a step's header mean.
-   *  @param {Job["step"]} step @param {Object<string, number>} [more] @returns {import("./expressions.js").Names} */
-  const namesOf = ({ kernel, size, values }, more = {}) => ({
-    name: (name) => {
-      const number = { "size.x": size[0], "size.y": size[1], ...more }[name];
-      if (number !== undefined) return BigInt(number);
-      const parameter = kernel.parameters.find((each) => each.name === name), value = Number(values[name]);
-      return parameter && (/^float/.test(parameter.type) ? value : BigInt(value));
-    },
-  });
+  /** Return what the expressions of a step's header mean. @param {Job} job @param {Object<string, bigint>} [more] */
+  const namesOf = ({ step, time }, more = {}) =>
+    ({ name: ownNames(step.kernel, step.size, step.values, time, more) });
 
   /** Run a kernel; the result is the caller's. @param {Job} job @returns {Work} */
   const run = function* (job) {
-    const { step, text, start } = job, { kernel, size } = step, state = initial(job);
+    const { step, start } = job, { kernel, size } = step, state = initial(job);
     if (!step.repeat) return untouched(job, state);
     const program = programOf(job), reads = readsOf(job);
     let unit = binder.bind(program, job, reads);
-    const atOnce = kernel.atOnce === undefined ? 1 : Math.max(whole(kernel.atOnce, namesOf(step)), 1);
+    const atOnce = kernel.atOnce === undefined ? 1 : Math.max(whole(kernel.atOnce, namesOf(job)), 1);
     const lattice = kernel.stride !== undefined && !state.size;
     let before = start, iteration = start ? start.iterations : 0, shift = 0;
     /** @type {Result | null} */
@@ -195,7 +198,7 @@ export const createKernels = (context, textures, programs, binder, shared) => {
     try {
       while (iteration < step.repeat) {
         const turns = Math.min(atOnce, step.repeat - iteration), was = shift;
-        if (lattice) shift = shiftOf(step, iteration);
+        if (lattice) shift = shiftOf(job, iteration);
         const target = result = textures.take(size, kernel.outputs, job.tall), from = before;
         const [width, height] = size.map((side) => ((side - 1) >> shift) + 1), now = iteration;
         const begin = () => {
@@ -239,29 +242,26 @@ export const createKernels = (context, textures, programs, binder, shared) => {
   /** Fill what is bound, in bands where it takes long; return whether others may have used the context since.
    *  @param {Job} job @param {number} width @param {number} height @param {() => void} again binds all again
    *  @returns {Generator<any, boolean, boolean | undefined>} */
-  const filled = function* ({ step, text, bands }, width, height, again) {
-    const texels = width * height, many = Math.min(bands(texels), Math.ceil(height / ROWS));
-    if (many <= 1) {
-      fill();
-      return !!(yield { step, text, texels });
-    }
-    const rows = Math.ceil(height / many / ROWS) * ROWS;
+  const filled = function* ({ step, text, rows }, width, height, again) {
     let paused = false;
-    for (let low = 0; low < height; low += rows) {
+    for (let low = 0; low < height;) {
+      const high = Math.min(low + Math.ceil(rows(width, height - low) / ROWS) * ROWS, height), part = high - low < height;
       if (paused) again();
-      gl.enable(gl.SCISSOR_TEST);
-      gl.scissor(0, low, width, rows);
+      if (part) gl.enable(gl.SCISSOR_TEST);
+      gl.scissor(0, low, width, high - low);
       fill();
-      gl.disable(gl.SCISSOR_TEST);
-      paused = !!(yield { step, text, texels: width * Math.min(rows, height - low) });
+      if (part) gl.disable(gl.SCISSOR_TEST);
+      paused = !!(yield { step, text, texels: width * (high - low) });
+      low = high;
     }
     return paused;
   };
 
   /** Return the power of two that texels known after an iteration lie apart.
-   *  @param {Job["step"]} step @param {number} iteration */
-  const shiftOf = (step, iteration) => {
-    const stride = whole(/** @type {any} */ (step.kernel.stride), namesOf(step, { iteration, iterations: step.whole }));
+   *  @param {Job} job @param {number} iteration */
+  const shiftOf = (job, iteration) => {
+    const { step } = job, counts = { iteration: BigInt(iteration), iterations: BigInt(step.whole) };
+    const stride = whole(/** @type {any} */ (step.kernel.stride), namesOf(job, counts));
     if (stride < 1 || stride & (stride - 1)) {
       const where = `pass '${step.path}': stride gives ${stride} for iteration ${iteration}`;
       throw failure("sketch", `${where}; a power of two was expected`);
@@ -297,5 +297,12 @@ export const createKernels = (context, textures, programs, binder, shared) => {
     return result;
   };
 
-  return { run, ask, programOf, readsOf, copy, drawnOwn, empty, count, namesOf, own };
+  /** Fill a framebuffer with a texture as a picture: one channel is grey, without a fourth it is opaque.
+   *  @param {WebGLFramebuffer | null} target @param {Texture} source */
+  const show = (target, source) => {
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    drawOwn("show", source.size, source, { k_channels: textures.formats(source.format).channels });
+  };
+
+  return { run, show, refused, ask, programOf, readsOf, copy, drawnOwn, empty, count, namesOf, own };
 };

@@ -74,6 +74,20 @@ export const createPrograms = (context) => {
     return linked;
   };
 
+  /** Wait until programs can be used or were refused, while the browser goes on.
+   *  @param {Program[]} all @param {(done: number, total: number) => void} [onProgress] */
+  const wait = async (all, onProgress = () => {}) => {
+    const list = [...new Set(all)];
+    for (;;) {
+      const next = list.find((program) => program.state === "asked" && (!context.parallel || isDone(program)));
+      if (next) finish(next);
+      const left = list.filter((program) => program.state === "asked").length;
+      onProgress(list.length - left, list.length);
+      if (!left) return;
+      if (!next || !context.parallel) await new Promise((resume) => setTimeout(resume, next ? 0 : 5));
+    }
+  };
+
   /** @param {Program} program */
   const lookAt = ({ program, uniforms }) => {
     const many = gl.getProgramParameter(program, gl.ACTIVE_UNIFORMS);
@@ -109,7 +123,7 @@ export const createPrograms = (context) => {
   const clear = () => known.forEach(release);
 
   return {
-    ask, touch, isDone, finish, trim, release, forgetMesh, clear, get compiled() { return compiled; },
+    ask, touch, isDone, wait, finish, trim, release, forgetMesh, clear, get compiled() { return compiled; },
     get size() { return known.size; },
   };
 };
