@@ -7,6 +7,7 @@ import { failure } from "./context.js";
 import { isSize } from "./binder.js";
 import { texelsOf } from "./formats.js";
 import { isLoop, stepsOf } from "./plan_nodes.js";
+import { continuedOf } from "./staleness.js";
 
 /** @typedef {import("./planner.js").Plan} Plan */
 /** @typedef {import("./plan_nodes.js").Step} Step */
@@ -81,12 +82,7 @@ export const createExecution = (plan, nodes, around) => {
   const zeros = new Map();
   const steps = new Map(stepsOf(plan.nodes).map((step) => [step.path, step]));
   const tall = readWithLevels(plan.nodes);
-  /** Draws that a later draw goes on from. @type {Set<string>} */
-  const continued = new Set();
-  for (const step of steps.values()) {
-    const source = step.kernel.kind === "draw" && step.inputs.find(([name]) => name === "initial")?.[1];
-    if (source && "path" in source) continued.add(source.path);
-  }
+  const continued = continuedOf(plan.nodes);
   /** The loops whose iterations change a node. @param {PlanNode} node */
   const changesOf = (node) => keys.changes.get(node) || new Set();
 

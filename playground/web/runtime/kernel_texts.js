@@ -1,5 +1,7 @@
 // kernel_texts.js -- what a kernel's text says: names it reads, what it is known by, the texts of its stages.
 
+import { hash } from "./hash.js";
+import { usedBy } from "./staleness.js";
 import { flatten } from "./source.js";
 import { stageText } from "./wrap.js";
 import { toES } from "./es.js";
@@ -19,16 +21,6 @@ import { filteredByHand } from "./linear_by_hand.js";
  *  @property {Map<string, Map<string, import("./linear_by_hand.js").Wrap>>} hands   those ways
  *  @property {[string, any][]} own    uniforms with a value in the text that its header does not know */
 
-/** Return a short text that differs where another does. @param {string} text */
-const digest = (text) => {
-  let a = 0x811c9dc5, b = text.length;
-  for (let i = 0; i < text.length; i++) {
-    a = Math.imul(a ^ text.charCodeAt(i), 0x01000193);
-    b = Math.imul(b, 31) + a | 0;
-  }
-  return `${text.length}-${a >>> 0}-${b >>> 0}`;
-};
-
 /** Read a kernel; throws where a file is missing, with `file` and `line`.
  *  @param {Shared} shared @param {Kernel} kernel @param {Object<string, string>} texts edited files
  *  @returns {KernelText} */
@@ -37,18 +29,12 @@ export const readKernel = (shared, kernel, texts) => {
   const flat = source ? { lines: [], names: new Set() }
     : flatten(shared, kernel.file, texts, { once: !!kernel.dialect });
   const code = flat.lines.map((line) => line.code).join("\n");
-  /** @type {Map<string, number>} */
-  const times = new Map();
-  for (const [name] of code.matchAll(/[A-Za-z_]\w*/g)) times.set(name, (times.get(name) || 0) + 1);
-  const used = new Set(kernel.used || []);
-  times.forEach((many, name) => many > 1 && used.add(name));
-  if (times.has("iterations")) used.add("iterations");
+  const given = Object.keys(shared.given).filter((name) => flat.names.has(name));
   const declared = new Set(kernel.parameters.map(({ name }) => name));
-  for (const name of declared) if (source || times.has(`towards_${name}`) || (kernel.dialect && times.has(name))) used.add(name);
   return {
-    kernel, flat, used, programs: new Map(), hands: new Map(),
-    given: Object.keys(shared.given).filter((name) => flat.names.has(name)),
-    identity: digest(JSON.stringify([kernel, code])),
+    kernel, flat, given, programs: new Map(), hands: new Map(),
+    used: usedBy(kernel, code, given),
+    identity: hash(JSON.stringify([kernel, code])),
     own: declaredUniforms(flat.lines).flatMap(({ name, value }) => (value === null || declared.has(name) ? [] : [[name, value]])),
   };
 };
