@@ -68,6 +68,14 @@ window.pages = {
       return window.pages.told(error);
     }
   },
+  read(name, path, output) {
+    try {
+      const { size, channels, data } = window.pages.figures[name].read({ path, output });
+      return { size, channels, texels: window.pages.bytes(data) };
+    } catch (error) {
+      return window.pages.told(error);
+    }
+  },
 };
 """
 
@@ -113,6 +121,12 @@ class Pages:
         width, height = told["size"]
         texels = np.frombuffer(base64.b64decode(told["texels"]), np.uint8).reshape(height, width, 4)
         return Picture(texels[::-1], told["ran"], told["milliseconds"])
+
+    def read(self, name: str, path: str, output: str) -> NDArray[np.float32]:
+        """Return the texels of an open sketch's texture, (ny, nx, channels), row 0 south."""
+        told = self._asked("pages.read", name, path, output)
+        (width, height), channels = told["size"], told["channels"]
+        return np.frombuffer(base64.b64decode(told["texels"]), "<f4").reshape(height, width, channels)
 
     def run(self, script: str, *values: object) -> Any:
         """Return what a function's body returns; `figures` are the players by name, `engine` theirs."""
