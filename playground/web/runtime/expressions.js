@@ -104,7 +104,7 @@ function valueOf(expression, names, text) {
 /** An expression as its author wrote it, where that is known.
  *  @param {Expression} expression */
 export const textOf = (expression) =>
-  Array.isArray(expression) && expression[0] === "text" ? expression[1] : JSON.stringify(expression);
+  Array.isArray(expression) ? (expression[0] === "text" ? expression[1] : JSON.stringify(expression)) : String(expression);
 
 /** Evaluate an expression to a whole number. Throws a `PlanError` in a sentence.
  *  @param {Expression} expression @param {Names} names @returns {bigint} */
