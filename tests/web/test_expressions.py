@@ -56,7 +56,7 @@ def python(text: str) -> list[object]:
 def written(chance: random.Random, deep: int) -> str:
     """Return an expression of Python's grammar."""
     if deep == 0 or chance.random() < 0.12:
-        numbers = "0 1 2 3 7 64 1000003 4611686018427387904 9007199254740995 0.5 2.0 0.1 1e9".split()
+        numbers = "0 1 2 3 7 64 1000003 4611686018427387904 0.5 2.0 0.1 1e9".split()
         return chance.choice(numbers) if chance.random() < 0.5 else chance.choice(list(NAMES))
     one, other, third = (written(chance, deep - 1) for _ in range(3))
     kind = chance.random()
