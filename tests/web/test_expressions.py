@@ -78,7 +78,8 @@ def written(chance: random.Random, deep: int) -> str:
 def test_a_thousand_expressions_give_what_pythons_give(node: Node):
     chance = random.Random(1)
     texts = [written(chance, chance.randint(1, 5)) for _ in range(1500)]
-    texts = [text for text in texts if len(text) < 300]
+    # A number or a name that is all there is needs no words of its own.
+    texts = [text for text in texts if len(text) < 300 and isinstance(tree(text), list)]
     assert len(texts) > 1000
     for text, found in zip(texts, both(node, texts), strict=True):
         assert found == python(text), text
