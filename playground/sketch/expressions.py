@@ -76,12 +76,12 @@ def evaluate_number(text: str, names: Mapping[str, Number]) -> float:
 
 def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
     """Return the numbers of expressions separated by commas. Raises ``ExpressionError`` in a sentence."""
-    return [evaluate_number(part, names) for part in parts_of(text)]
+    return [evaluate_number(part, names) for part in split_at_commas(text)]
 
 
 def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -> tuple[int, int]:
     """Evaluate the two integers of ``"w, h"``."""
-    parts = parts_of(text)
+    parts = split_at_commas(text)
     if len(parts) != 2:
         raise ExpressionError(f"'{text}' should be two expressions separated by a comma")
     return evaluate(parts[0], names), evaluate(parts[1], names)
@@ -89,7 +89,7 @@ def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Numbe
 
 def check(text: str, known: Collection[str], *, count: int = 1) -> None:
     """Raise ``ExpressionError`` where ``text`` is not ``count`` expressions of the names ``known``."""
-    parts = parts_of(text)
+    parts = split_at_commas(text)
     if len(parts) != count:
         what = "one expression" if count == 1 else f"{count} expressions separated by a comma"
         raise ExpressionError(f"'{text}' should be {what}")
@@ -105,7 +105,7 @@ def names_in(text: str) -> frozenset[str]:
         found.add(name)
         return 1
 
-    for part in parts_of(text):
+    for part in split_at_commas(text):
         _value_of(parsed(part), part, look_up, (), dry=True)
     return frozenset(found)
 
@@ -139,28 +139,17 @@ def accepted_sizes(accepts: str, limit: int = LARGEST_SIDE) -> tuple[tuple[int, 
     values must grow with n, which goes from 0 up. ``"2**n or 2**n + 1"`` allows either, and
     ``"n up to 4097"`` none above.
     """
-    parts = parts_of(accepts)
+    parts = split_at_commas(accepts)
     if len(parts) > 2:
         raise ExpressionError(f"'{accepts}' should be one expression of n, or two of n and m")
     axes = [_either(part, "n" if index == 0 else "m", limit) for index, part in enumerate(parts)]
     return axes[0], axes[-1]
 
 
-def alternatives(part: str, limit: int = LARGEST_SIDE) -> list[tuple[str, int]]:
-    """Return the expressions of one axis of ``accepts``, each with the largest value that it may give."""
-    found = []
-    for each in part.split(" or "):
-        expression, _, most = each.partition(" up to ")
-        if most and not most.strip().isdecimal():
-            raise ExpressionError(f"'{each}': expected a whole number after 'up to'")
-        found.append((expression, min(limit, int(most)) if most else limit))
-    return found
-
-
 def is_accepted(accepts: str, size: tuple[int, int]) -> bool:
     """Return whether a size is one of those that ``accepts`` allows."""
     xs, ys = accepted_sizes(accepts)
-    if len(parts_of(accepts)) == 1 and size[0] != size[1]:
+    if len(split_at_commas(accepts)) == 1 and size[0] != size[1]:
         return False
     return size[0] in xs and size[1] in ys
 
@@ -168,7 +157,7 @@ def is_accepted(accepts: str, size: tuple[int, int]) -> bool:
 def nearest_accepted(accepts: str, size: tuple[int, int]) -> tuple[tuple[int, int], ...]:
     """Return the accepted sizes just below and just above ``size`` (one of them where it has no other)."""
     xs, ys = accepted_sizes(accepts)
-    if len(parts_of(accepts)) == 1:
+    if len(split_at_commas(accepts)) == 1:
         size = (max(size), max(size))
     axes = list(zip((xs, ys), size, strict=True))
     below = tuple(max((v for v in axis if v <= s), default=axis[0]) for axis, s in axes)
@@ -177,8 +166,8 @@ def nearest_accepted(accepts: str, size: tuple[int, int]) -> tuple[tuple[int, in
 
 
 @lru_cache(maxsize=256)
-def parts_of(text: str) -> tuple[str, ...]:
-    """Split at the commas that are in no bracket."""
+def split_at_commas(text: str) -> tuple[str, ...]:
+    """Split expressions at the commas that are in no bracket."""
     parts: list[str] = []
     depth, start = 0, 0
     for index, letter in enumerate(text):
@@ -191,8 +180,11 @@ def parts_of(text: str) -> tuple[str, ...]:
 
 def _either(text: str, variable: str, limit: int) -> tuple[int, ...]:
     found: set[int] = set()
-    for expression, most in alternatives(text, limit):
-        found.update(_values(expression, variable, most))
+    for part in text.split(" or "):
+        expression, _, most = part.partition(" up to ")
+        if most and not most.strip().isdecimal():
+            raise ExpressionError(f"'{part}': expected a whole number after 'up to'")
+        found.update(_values(expression, variable, min(limit, int(most)) if most else limit))
     return tuple(sorted(found))
 
 
@@ -216,7 +208,7 @@ def _values(text: str, variable: str, limit: int) -> tuple[int, ...]:
 
 @lru_cache(maxsize=1024)
 def parsed(text: str) -> ast.expr:
-    """Return the tree of one expression; raise ``ExpressionError`` for what Python could not read."""
+    """Parse an expression, which may be no expression of these; raise ``ExpressionError``."""
     if len(text) > _LONGEST:
         raise ExpressionError(f"an expression may not be longer than {_LONGEST} characters")
     try:
@@ -233,12 +225,11 @@ def parsed(text: str) -> ast.expr:
     raise ExpressionError(f"'{text}' is nested more than {_DEEPEST} deep")
 
 
-def dotted_name(node: ast.expr, text: str) -> str:
-    """Return the name that a node of a tree is, as "height.size.x"; raise ``ExpressionError``."""
+def _dotted(node: ast.expr, text: str) -> str:
     if isinstance(node, ast.Name):
         return node.id
     if isinstance(node, ast.Attribute):
-        return f"{dotted_name(node.value, text)}.{node.attr}"
+        return f"{_dotted(node.value, text)}.{node.attr}"
     raise ExpressionError(f"'{text}' names something that is neither a parameter nor a size")
 
 
@@ -315,7 +306,7 @@ def _value_of(
     if isinstance(node, ast.Constant) and type(node.value) in (int, float):
         value = cast(Number, node.value)
     elif isinstance(node, ast.Name | ast.Attribute):
-        name = dotted_name(node, text)
+        name = _dotted(node, text)
         try:
             value = look_up(name)
         except KeyError:

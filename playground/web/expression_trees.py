@@ -1,8 +1,4 @@
-"""Write an expression of a sketch as a tree that needs no parser: see ``Expression`` in schema.js.
-
-The grammar is that of ``sketch/expressions.py``; names become what they stand for, whatever the
-technique calls it: ``height.size.x`` is the size of a pass by its whole path.
-"""
+"""Write expressions as the page's runtime evaluates them: trees, see ``Expression`` in runtime/schema.js."""
 
 from __future__ import annotations
 
@@ -10,14 +6,13 @@ import ast
 from collections.abc import Callable
 from typing import Any
 
-from playground.errors import SketchError
-from playground.sketch import named_numbers
-from playground.sketch.expressions import alternatives, dotted_name, parsed, parts_of
-from playground.sketch.flat import Flat
-from playground.sketch.model import PassSpec
+from playground.sketch.expressions import parsed, split_at_commas
+from playground.sketch.model import LARGEST_SIDE
 
 Tree = Any
-"""A number, a name, or a list of an operation and its arguments."""
+"""A number, a name, or a list: an operation and what it is of."""
+
+_EXACT = 2**53
 
 _BINARY: dict[type[ast.operator], str] = {
     ast.Add: "+",
@@ -38,69 +33,46 @@ _COMPARE: dict[type[ast.cmpop], str] = {
 }
 
 
-def tree(text: str, name: Callable[[str], Tree]) -> Tree:
-    """Return the tree of an expression, with its author's words; ``name`` says what a name becomes."""
-    found = _tree(parsed(text), text, name)
-    return ["text", text, found] if isinstance(found, list) else found
+def tree(text: str, named: Callable[[str], Tree] = str) -> Tree:
+    """Return an expression as a tree, with its text, which messages call it by, unless it is a number.
+
+    ``named`` returns what stands for a dotted name. The expression is one that ``expressions.check``
+    lets pass.
+    """
+    found = _tree(parsed(text), named)
+    return found if isinstance(found, int | float) else ["text", text, found]
 
 
-def header_tree(text: str) -> Tree:
-    """Return the tree of an expression in a kernel's header: its names are the kernel's own."""
-    return tree(text, lambda name: name)
+def accepted(accepts: str) -> list[list[tuple[Tree, int]]]:
+    """Return the sizes that a kernel's ``accepts`` allows, as ``Accepted`` of schema.js."""
+    found = []
+    for axis in split_at_commas(accepts):
+        forms = [each.partition(" up to ") for each in axis.split(" or ")]
+        found.append([(tree(form), int(most or LARGEST_SIDE)) for form, _, most in forms])
+    return found
 
 
-def pass_tree(text: str, flat: Flat, path: str, spec: PassSpec) -> Tree:
-    """Return the tree of a size or a repeat of the pass at a path of a flat sketch."""
-    prefix = path.rpartition(".")[0]
-
-    def name(word: str) -> Tree:
-        kind, where, axis = named_numbers.named(flat, prefix, spec, word)
-        if kind == named_numbers.CLOCK:
-            return where
-        if kind == named_numbers.COMPUTE:
-            return 0
-        where = flat.shape.copied.get(where, where)
-        if kind == named_numbers.VALUE:
-            return ["value", where]
-        return ["size" if kind == named_numbers.SIZE else "picture", where, axis]
-
-    try:
-        return tree(text, name)
-    except KeyError as error:
-        raise spec.error(
-            f"pass '{spec.name}': '{text}' names '{error.args[0]}', which is not known"
-        ) from None
-
-
-def accepted_trees(accepts: str) -> list[list[list[Tree]]]:
-    """Return the sizes that a kernel takes as expressions of n, or m along y: see ``Accepted``."""
-    return [
-        [[tree(text, lambda name: name), most] for text, most in alternatives(part)]
-        for part in parts_of(accepts)
-    ]
-
-
-def _tree(node: ast.expr, text: str, name: Callable[[str], Tree]) -> Tree:
+def _tree(node: ast.expr, named: Callable[[str], Tree]) -> Tree:
     def go(inner: ast.expr) -> Tree:
-        return _tree(inner, text, name)
+        return _tree(inner, named)
 
     match node:
-        case ast.Constant(value=int() as whole):
-            return whole
-        case ast.Constant(value=float() as number):
-            return ["float", int(number)] if number.is_integer() else number
+        case ast.Constant(value=float(number)) if number.is_integer():
+            return ["float", number]
+        case ast.Constant(value=int(number)) if number > _EXACT:  # JavaScript reads a float
+            return ["+", ["*", number // _EXACT, _EXACT], number % _EXACT]
+        case ast.Constant(value=number):
+            return number
         case ast.Name() | ast.Attribute():
-            return name(dotted_name(node, text))
-        case ast.BinOp(op=operator) if type(operator) in _BINARY:
-            return [_BINARY[type(operator)], go(node.left), go(node.right)]
-        case ast.UnaryOp(op=ast.USub()):
-            return ["*", go(node.operand), -1]
-        case ast.UnaryOp(op=ast.UAdd()):
-            return go(node.operand)
-        case ast.IfExp():
-            return ["if", go(node.test), go(node.body), go(node.orelse)]
-        case ast.Compare(ops=[operator]) if type(operator) in _COMPARE:
-            return [_COMPARE[type(operator)], go(node.left), go(node.comparators[0])]
-        case ast.Call(func=ast.Name(id=function)):
-            return [function, *map(go, node.args)]
-    raise SketchError(f"'{text}' holds something that is no expression")
+            return named(ast.unparse(node))
+        case ast.BinOp(left=left, op=op, right=right):
+            return [_BINARY[type(op)], go(left), go(right)]
+        case ast.UnaryOp(op=op, operand=operand):
+            return ["*", go(operand), -1 if isinstance(op, ast.USub) else 1]
+        case ast.IfExp(test=test, body=body, orelse=otherwise):
+            return ["if", go(test), go(body), go(otherwise)]
+        case ast.Compare(left=left, ops=[op], comparators=[right]):
+            return [_COMPARE[type(op)], go(left), go(right)]
+        case ast.Call(func=ast.Name(id=name), args=arguments):
+            return [name, *map(go, arguments)]
+    raise AssertionError(f"expressions.check() lets no {type(node).__name__} pass")

@@ -13,7 +13,7 @@ from playground.sketch.expressions import counts_frames, follows_time
 from playground.sketch.model import Kernel, Parameter, Sampling
 from playground.sketch.wiring import initial_names
 from playground.terrain.meshes import mesh_parameters
-from playground.web.expression_trees import accepted_trees, header_tree
+from playground.web.expression_trees import accepted, tree
 from playground.web.stages import stage_data
 from playground.web.texts import Texts
 
@@ -59,7 +59,7 @@ class Kernels:
                 for declared in kernel.inputs
             ],
             "parameters": [_uniform(parameter) for parameter in kernel.parameters],
-            "repeat": header_tree(kernel.repeat),
+            "repeat": tree(kernel.repeat),
             "countsFrames": counts_frames(kernel.repeat),
             "followsTime": follows_time(kernel.repeat),
             "initial": initial_names(kernel),
@@ -68,16 +68,16 @@ class Kernels:
             "fragment": {},
         }
         if kernel.stride:
-            found |= {"stride": header_tree(kernel.stride), "between": kernel.between}
+            found |= {"stride": tree(kernel.stride), "between": kernel.between}
         if kernel.at_once != "1":
-            found["atOnce"] = header_tree(kernel.at_once)
+            found["atOnce"] = tree(kernel.at_once)
         if kernel.accepts:
-            found |= {"accepts": kernel.accepts, "accepted": accepted_trees(kernel.accepts)}
+            found |= {"accepts": kernel.accepts, "accepted": accepted(kernel.accepts)}
         if kernel.kind == "draw":
             found |= {"mesh": kernel.registry, "blend": kernel.blend, "depth": kernel.depth}
             found["samples"] = kernel.samples
             if kernel.count:
-                found["count"] = header_tree(kernel.count)
+                found["count"] = tree(kernel.count)
         if kernel.kind.startswith("plain"):
             found |= {"usual": [list(pair) for pair in kernel.usual], "dialect": kernel.dialect}
         if used := _used(kernel):

@@ -25,9 +25,9 @@ from playground.sketch.model import DEFAULT_PICTURE, Sketch, Value
 from playground.sketch.named_numbers import base_of
 from playground.sketch.source import read_text
 from playground.sketch.traits import is_animated
-from playground.web.expression_trees import pass_tree
 from playground.web.kernels import Kernels
 from playground.web.locks import Locks
+from playground.web.pass_trees import pass_tree
 from playground.web.shared import SharedData
 from playground.web.shown import presets_data, row, rules_data, shown_data, tracks_data
 from playground.web.sources import source_data

@@ -14,7 +14,7 @@ def stage_data(recipe: Recipe, file: str = "") -> dict[str, Any]:
     before = [
         {"text": part.text, **({"names": list(part.names)} if part.names else {})} for part in recipe.before
     ]
-    found: dict[str, Any] = {"before": before, "after": recipe.after}
+    found: dict[str, Any] = {"before": before, "after": recipe.after.removesuffix("\n")}
     if recipe.without:
         found["without"] = recipe.without
     if recipe.replaced:

@@ -44,7 +44,7 @@ class Texts:
         return name
 
     def _rewritten(self, source: SourceText, folder: str, label: str) -> str:
-        text = "\n".join(map(_with_comment, source.lines)) + "\n"
+        text = "\n".join(map(_with_comment, source.lines))
         known = f"{source.path}{PART_OF_FILE}{label}"
         if self.files.get(self._names.get(known, ""), text) != text:
             known += f" {len(self.files)}"
