@@ -8,7 +8,7 @@ import pytest
 
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError
-from playground.web.expression_trees import header_tree as tree
+from playground.web.expression_trees import tree
 
 from .node import Node
 

@@ -56,7 +56,8 @@ STALE = """async (sketch, shared, states, known, load) => {
     const keys = states.map((state) => {
         const plan = makePlan(sketch, shared, state), { eye, target, distance } = plan.eye;
         const camera = [eye, target, distance, plan.frame];
-        const all = { ...plan.terrain, time: plan.time, eye, clip_from_world: camera, world_from_clip: camera };
+        const all = { ...plan.terrain, time: plan.time, eye };
+        all.clip_from_world = all.world_from_clip = camera;
         const found = keysOf(plan, {
             text: (kernel) => known[pathOf.get(kernel)].text,
             used: (kernel) => used[pathOf.get(kernel)],
