@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import playground.web
-from tests.report.browser import MESA, MISSING, Browser
-from tests.web.node import NODE
+from ..report.browser import MESA, MISSING, Browser
+from .node import NODE
 
 HOME = Path(playground.web.__file__).parent
 ESBUILD = HOME / "node_modules" / "esbuild"
@@ -127,6 +127,15 @@ class Pages:
         told = self._asked("pages.read", name, path, output)
         (width, height), channels = told["size"], told["channels"]
         return np.frombuffer(base64.b64decode(told["texels"]), "<f4").reshape(height, width, channels)
+
+    def renderer(self) -> str:
+        """Return what WebGL says it draws on."""
+        script = """const gl = document.createElement("canvas").getContext("webgl2");
+        const named = gl && gl.getExtension("WEBGL_debug_renderer_info");
+        const found = named ? gl.getParameter(named.UNMASKED_RENDERER_WEBGL) : "";
+        gl?.getExtension("WEBGL_lose_context")?.loseContext();
+        return found"""
+        return str(self.browser.run(script))
 
     def run(self, script: str, *values: object) -> Any:
         """Return what a function's body returns; `figures` are the players by name, `engine` theirs."""
