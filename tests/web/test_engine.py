@@ -24,8 +24,8 @@ uniform int seed = 3;       //! slider(0, 9)
 float kernel(ivec2 texel) { return level * fract(sin(float(texel.x * 7 + texel.y * 13 + seed)) * 43.7); }
 """
 SPREAD = """// Each iteration takes the mean of a texel and its neighbours.
-#pragma kernel(output = "smooth:r32f", repeat = "count", initial = "height -> smooth")
-uniform sampler2D height;  //! input
+#pragma kernel(output = "soft:r32f", repeat = "count")
+uniform sampler2D initial;  //! input
 uniform int count = 6;     //! slider(0, 20)
 float kernel(ivec2 texel) {
     return 0.5 * previous(texel) + 0.25 * (previous(texel + ivec2(1, 0)) + previous(texel - ivec2(0, 1)));
@@ -43,7 +43,7 @@ vec2 kernel(ivec2 texel) {
 CHAIN = (
     passes(
         seed="./seed",
-        spread=("./spread", 'inputs = { height = "seed" }'),
+        spread=("./spread", 'inputs = { initial = "seed" }'),
         sloped=("./sloped", 'inputs = { field = "spread" }'),
     )
     + map_of("sloped")
@@ -77,8 +77,8 @@ def sketch(tmp_path: Path) -> Callable[..., Sketch]:
         texts |= {"flow.glsl": FLOW, "flows.toml": FLOWS, "grows.toml": GROWS}
         for name, text in texts.items():
             (tmp_path / name).write_text(files.get(name.split(".")[0], text), "utf-8")
-        (tmp_path / "sketch.toml").write_text(f"format = 1\nsize = 33\n{body}", "utf-8")
-        return load(tmp_path / "sketch.toml")
+        (tmp_path / "toy.toml").write_text(f"format = 1\nsize = 33\n{body}", "utf-8")
+        return load(tmp_path / "toy.toml")
 
     return made
 
@@ -92,9 +92,9 @@ def begun(pages: Pages, *sketches: Sketch, size: tuple[int, int] = SIZE, **optio
 
 
 def test_sketches_of_each_kind_are_drawn_with_the_engines_bits(pages: Pages, drawn: Engine):
-    """A map with an image file, a terrain with levels of detail and mipmaps, steps of a lattice."""
-    sketches = [load(name).with_values({"size": "65"}) for name in ("splat_weights", "detail")]
-    sketches.append(load("diamond_square_steps"))
+    """A terrain with levels of detail, mixed image files, steps of a lattice."""
+    names = ("geomipmap", "height_blend_image", "diamond_square_steps")
+    sketches = [load(name).with_values({"size": "65"} if name == "geomipmap" else {}) for name in names]
     begun(pages, *sketches, size=(160, 90))
     for one in sketches:
         picture = pages.picture(one.name)
@@ -105,6 +105,7 @@ def test_sketches_of_each_kind_are_drawn_with_the_engines_bits(pages: Pages, dra
 def test_what_runs_is_what_the_engine_would_run(pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]):
     whole = sketch(CHAIN)
     begun(pages, whole)
+    drawn.cache.clear()
     for changes in ({}, {"sloped.steep": 2.5}, {"seed.seed": 5}, {"spread.count": 3}, {"spread.count": 9}, {}):
         frame = drawn.render(whole.with_values(changes), size=SIZE)
         picture = pages.picture(whole.name, values=changes)
@@ -132,6 +133,7 @@ def test_a_loop_feeds_back(pages: Pages, drawn: Engine, sketch: Callable[..., Sk
     loop = '[[pass]]\nname = "rain"\nuse = "./flows"\ninputs = { water = "seed" }\nrepeat = "7"\n'
     whole = sketch(passes(seed="./seed") + loop + 'feedback = { water = "water" }\n' + map_of("rain"))
     begun(pages, whole)
+    drawn.cache.clear()
     for steps in ({}, {"rain": 3}, {"rain": 5}, {"rain": 0}):
         frame = drawn.render(whole, size=SIZE, steps=steps)
         picture = pages.picture(whole.name, steps=steps)
@@ -153,18 +155,18 @@ def test_a_loop_that_counts_frames_goes_on_and_back(pages: Pages, drawn: Engine,
 def test_work_in_slices_gives_the_same_and_an_estimate(pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]):
     whole = sketch(CHAIN)
     begun(pages, whole)
-    assert not pages.run("return figures.sketch.estimate().isKnown")
+    assert not pages.run("return figures.toy.estimate().isKnown")
     assert pages.picture(whole.name, soon=1).levels_off(drawn.render(whole, size=SIZE).array) == 0
-    assert pages.run("return figures.sketch.estimate().milliseconds") == 0  # nothing is stale
+    assert pages.run("return figures.toy.estimate().milliseconds") == 0  # nothing is stale
     assert pages.picture(whole.name, soon=1, values={"seed.seed": 8}).ran
-    estimate = pages.run("figures.sketch.state.values = { 'seed.seed': 9 }; return figures.sketch.estimate()")
+    estimate = pages.run("figures.toy.state.values = { 'seed.seed': 9 }; return figures.toy.estimate()")
     assert estimate["isKnown"] and estimate["milliseconds"] > 0
 
 
 def test_a_later_call_overtakes_one_in_slices(pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]):
     whole = sketch(CHAIN)
     begun(pages, whole)
-    script = """const player = figures.sketch, first = player.renderSoon(1);
+    script = """const player = figures.toy, first = player.renderSoon(1);
     player.state.values = { "seed.seed": 7 };
     const second = await player.renderSoon(1);
     return [await first, second.ran.length]"""
@@ -178,11 +180,11 @@ def test_an_edited_text_is_drawn_and_a_wrong_one_told_by_line(
     whole = sketch(CHAIN)
     [data] = begun(pages, whole)
     file = next(kernel["file"] for kernel in data["kernels"] if kernel["file"].endswith("sloped.glsl"))
-    edit = "return figures.sketch.edit(arguments[0], arguments[1])"
+    edit = "return figures.toy.edit(arguments[0], arguments[1])"
     before = pages.picture(whole.name)
     wrong = pages.run(edit, file, SLOPED.replace("float here =", "float her ="))
     assert wrong["programs"] == 1
-    assert [(one["file"], one["line"]) for one in wrong["errors"]] == [(file, 6)]
+    assert [(one["file"], one["line"]) for one in wrong["errors"]] == [(file, 7)]
     assert "here" in wrong["errors"][0]["message"]
     again = pages.picture(whole.name)
     assert again.ran == []
@@ -196,27 +198,27 @@ def test_an_edited_text_is_drawn_and_a_wrong_one_told_by_line(
 
 
 def test_a_context_that_was_lost_comes_back(pages: Pages):
-    one = load("detail").with_values({"size": "65"})
+    one = load("geomipmap").with_values({"size": "65"})
     begun(pages, one, size=(160, 90))
-    before = pages.picture("detail")
+    before = pages.picture("geomipmap")
     lost = """const gl = engine.parts.context.gl, losing = gl.getExtension("WEBGL_lose_context");
     losing.loseContext();
     let code = "";
     await new Promise((resume) => setTimeout(resume, 50));
-    try { figures.detail.render(); } catch (error) { ({ code } = error); }
+    try { figures.geomipmap.render(); } catch (error) { ({ code } = error); }
     const back = new Promise((resume) => engine.canvas.addEventListener("webglcontextrestored", resume));
     losing.restoreContext();
     await back;
     await engine.restore();
     return code"""
     assert pages.run(f"return (async () => {{ {lost} }})()") == "context-lost"
-    again = pages.picture("detail")
+    again = pages.picture("geomipmap")
     assert again.levels_off(before.pixels) == 0
     assert len(again.ran) == len(before.ran)
 
 
 def test_a_device_that_filters_no_floats_is_filtered_by_hand(pages: Pages, sketch: Callable[..., Sketch]):
-    toy, land = sketch(CHAIN), load("detail").with_values({"size": "65"})
+    toy, land = sketch(CHAIN), load("geomipmap").with_values({"size": "65"})
     begun(pages, toy, land, size=(160, 90))
     pictures = {name: pages.picture(name) for name in (toy.name, land.name)}
     begun(pages, toy, land, size=(160, 90), without=["OES_texture_float_linear"])
@@ -235,7 +237,7 @@ def test_a_device_without_16_bits_rounds_to_them(pages: Pages, sketch: Callable[
     begun(pages, whole, without=["EXT_texture_norm16"])
     now = pages.read(whole.name, "seed", "height")
     assert (now == 1).any() and (now < 1).any()
-    np.testing.assert_allclose(now, before, rtol=0, atol=1e-7)
+    np.testing.assert_allclose(now, before, rtol=0, atol=1.01 / 65535)  # drivers round as they like
 
 
 def test_a_device_that_cannot_draw_floats_is_told(pages: Pages, sketch: Callable[..., Sketch]):
@@ -246,9 +248,10 @@ def test_a_device_that_cannot_draw_floats_is_told(pages: Pages, sketch: Callable
     assert caught.value.told["sentence"].endswith(".")
 
 
+@pytest.mark.slow
 def test_nothing_is_left_behind_by_a_thousand_changes(pages: Pages, sketch: Callable[..., Sketch]):
     begun(pages, sketch(CHAIN))
-    script = """const player = figures.sketch, { state } = player, canvas = document.createElement("canvas");
+    script = """const player = figures.toy, { state } = player, canvas = document.createElement("canvas");
     const context2d = canvas.getContext("2d");
     const change = (n) => {
       state.values = { "seed.seed": n % 9, "spread.count": n % 7, "sloped.steep": 1 + n / 1000 };
@@ -266,8 +269,8 @@ def test_nothing_is_left_behind_by_a_thousand_changes(pages: Pages, sketch: Call
 
 
 def test_a_closed_engine_has_released_everything(pages: Pages, sketch: Callable[..., Sketch]):
-    begun(pages, sketch(CHAIN), load("detail").with_values({"size": "65"}))
-    for name in ("sketch", "detail"):
+    begun(pages, sketch(CHAIN), load("geomipmap").with_values({"size": "65"}))
+    for name in ("toy", "geomipmap"):
         pages.picture(name)
     left = pages.run("engine.close(); return engine.counts()")
     assert set(left.values()) == {0}
