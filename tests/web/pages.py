@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import playground.web
+
 from ..report.browser import MESA, MISSING, Browser
 from .node import NODE
 
