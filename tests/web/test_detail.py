@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -34,22 +34,24 @@ class Case:
     size: tuple[int, int]
 
     @property
-    def given(self) -> dict[str, Any]:
+    def view(self) -> visibility.View:
         eye = cameras.look(self.camera, self.extent, self.relief, self.size)
-        view = {"eye": eye.position, "extent": self.extent, "relief": self.relief, "size": self.size}
-        view["clipFromWorld"] = eye.clip_from_world.T.copy()
+        matrix = eye.clip_from_world.astype(np.float64)
+        return visibility.View(matrix, eye.position, self.extent, self.relief, self.size)
+
+    @property
+    def given(self) -> dict[str, Any]:
+        view = {"eye": self.view.eye, "extent": self.extent, "relief": self.relief, "size": self.size}
+        view["clipFromWorld"] = self.view.clip_from_world.T.astype(np.float32)
         size = self.spans.shape[1::-1]
         tables = {name: {"size": size, "data": getattr(self, name)} for name in ("spans", "errors")}
         return {"detail": self.detail, "tolerance": self.tolerance, "view": view, **tables}
 
     @property
     def expected(self) -> tiles.Chosen:
-        eye = cameras.look(self.camera, self.extent, self.relief, self.size)
-        matrix = eye.clip_from_world.astype(np.float64)
-        view = visibility.View(matrix, eye.position, self.extent, self.relief, self.size)
         values = {"detail": self.detail, "tolerance": self.tolerance}
         with np.errstate(all="ignore"):
-            return lod.choose_terrain(values, lambda: {"spans": self.spans, "errors": self.errors}, view)
+            return lod.choose_terrain(values, lambda: {"spans": self.spans, "errors": self.errors}, self.view)
 
 
 def random_case(rng: np.random.Generator, detail: int) -> Case:
@@ -74,9 +76,19 @@ def random_case(rng: np.random.Generator, detail: int) -> Case:
     )
     tolerance = float(rng.choice([0.0, 0.5, 2.0, 16.0, 10 ** rng.uniform(-3, 4)]))
     size = (int(rng.integers(1, 3000)), int(rng.integers(1, 2000)))
-    return Case(
-        detail, tolerance, spans.astype(np.float32), errors.astype(np.float32), camera, extent, relief, size
-    )
+    spans, errors = spans.astype(np.float32), errors.astype(np.float32)
+    case = Case(detail, tolerance, spans, errors, camera, extent, relief, size)
+    return case if rng.random() < 0.7 else coming_in(rng, case)
+
+
+def coming_in(rng: np.random.Generator, case: Case) -> Case:
+    """Return a case with one error for all, at whose distance, or a little nearer, its nearest tile is."""
+    error, view = 10 ** rng.uniform(-6, 0), case.view
+    with np.errstate(all="ignore"):
+        nearest = visibility.boxes_of(case.spans, view).distances(view.eye)[0].min()
+    length = error * abs(case.relief) * view.pixels * view.stretch
+    tolerance = float(length / (rng.uniform(0.75, 1.0) * nearest)) if nearest else 1.0
+    return replace(case, errors=np.full_like(case.errors, error), tolerance=tolerance)
 
 
 @pytest.mark.parametrize("detail", [1, 2], ids=["geomipmap", "morph"])
