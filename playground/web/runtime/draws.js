@@ -1,6 +1,7 @@
 // draws.js -- draws meshes: samples of colour and depth, blending, resolved into a texture at the end.
 //
-// A draw that begins with an earlier draw's samples and depth goes on in them, since WebGL cannot copy samples:
+// A draw that begins with an earlier draw's samples and depth goes on in them, since WebGL cannot copy
+// samples:
 // the earlier draw is drawn again where only the later one is stale (see execution.js).
 
 import { failure } from "./context.js";
@@ -117,7 +118,8 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
     return choose(mesh, step.values, tables, view);
   };
 
-  /** Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing. @param {Job} job */
+  /** Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing.
+   *  @param {Job} job */
   const begun = (job) => {
     const { step, samples, inputs } = job, { format } = step.kernel.outputs[0];
     const wired = inputs.get("initial"), owner = wired && (wired.result.of || wired.result);
@@ -134,7 +136,8 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
     return surface;
   };
 
-  /** Draw a mesh over what the draw begins with; the result is the caller's. @param {Job} job @returns {Work} */
+  /** Draw a mesh over what the draw begins with; the result is the caller's. @param {Job} job
+   *  @returns {Work} */
   const run = function* (job) {
     const { step, text } = job, { kernel, size } = step, [{ format }] = kernel.outputs;
     if (kernel.blend !== "none" && !context.floatBlend && textures.formats(format).float32)

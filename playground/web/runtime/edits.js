@@ -1,4 +1,5 @@
-// edits.js -- tries an edited text: all kernels that it is part of are compiled, and what is wrong is told by line.
+// edits.js -- tries an edited text: all kernels that it is part of are compiled, and what is wrong is told
+// by line.
 
 import { readKernel, stagesOf } from "./kernel_texts.js";
 
@@ -10,7 +11,8 @@ import { readKernel, stagesOf } from "./kernel_texts.js";
 const ERROR = /^ERROR: \d+:(\d+): (.*)$/gm; // as browsers write it, whatever the driver
 
 /** Compile what edited texts change; nothing else changes.
- *  @param {import("./engine.js").Engine} engine @param {Kernel[]} all @param {(kernel: Kernel) => KernelText} before
+ *  @param {import("./engine.js").Engine} engine @param {Kernel[]} all
+ *  @param {(kernel: Kernel) => KernelText} before
  *  @param {Object<string, string>} texts @returns {Promise<Edit & {kernels: KernelText[]}>} */
 export const tried = async (engine, all, before, texts) => {
   const { kernels, programs } = engine.parts;

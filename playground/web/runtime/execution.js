@@ -1,6 +1,8 @@
-// execution.js -- runs the passes of one plan in order: known results are taken, stale ones computed, loops iterate.
+// execution.js -- runs the passes of one plan in order: known results are taken, stale ones computed,
+// loops iterate.
 //
-// What an iteration of a loop computes belongs to the loop until its next iteration is done; all else belongs to
+// What an iteration of a loop computes belongs to the loop until its next iteration is done; all else
+// belongs to
 // the cache. A pass inside a loop that does not change with it runs once.
 
 import { failure } from "./context.js";
@@ -116,7 +118,8 @@ export const createExecution = (plan, nodes, around) => {
   /** Whether what is wired is a draw's. @param {Wired} wired */
   const continuesFrom = ({ result }) => !!pathOf(result);
 
-  /** The path of the draw that a result is of, if it is a draw's that others go on from. @param {Result} result */
+  /** The path of the draw that a result is of, if it is a draw's that others go on from.
+   *  @param {Result} result */
   const pathOf = (result) => {
     const owner = result.of || result;
     for (const path of continued)
@@ -136,13 +139,15 @@ export const createExecution = (plan, nodes, around) => {
     return keep(key, step, kernels.drawnOwn("fill_between.frag", from, how, step.kernel.outputs, isTall(step)));
   };
 
-  /** Keep a result under its key, and return it. @param {string} key @param {Step} step @param {Result} made */
+  /** Keep a result under its key, and return it. @param {string} key @param {Step} step
+   *  @param {Result} made */
   const keep = (key, step, made) => {
     const { results } = cache.put(key, { results: new Map([[step.path, made]]), iterations: 0 }, used);
     return /** @type {Result} */ (results.values().next().value);
   };
 
-  /** Run a step, from where its earlier iterations are known. @param {Step} step @returns {Working<Result>} */
+  /** Run a step, from where its earlier iterations are known. @param {Step} step
+   *  @returns {Working<Result>} */
   const computed = function* (step) {
     const key = /** @type {string} */ (keys.raw.get(step.path));
     const unfinished = /** @type {string} */ (keys.unfinished.get(step.path));
@@ -230,7 +235,8 @@ export const createExecution = (plan, nodes, around) => {
     }
   };
 
-  /** Set a loop back where it is too far, or on to a later state that was kept; return the iterations of that.
+  /** Set a loop back where it is too far, or on to a later state that was kept; return the iterations of
+   *  that.
    *  @param {LoopStep} loop @param {string} key @param {Cached} state */
   const goBack = (loop, key, state) => {
     if (state.iterations === loop.repeat) return 0;

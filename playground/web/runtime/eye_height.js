@@ -1,6 +1,7 @@
 // eye_height.js -- keeps the eye above the terrain: engine/eye_height.py.
 //
-// The terrain is what the first draw reads as its input `height`, if that draw names `relief` and the camera. Its
+// The terrain is what the first draw reads as its input `height`, if that draw names `relief` and the
+// camera. Its
 // texels are read once for each place of the eye; an eye outside the terrain is left where it is.
 
 import { stepsOf } from "./plan_nodes.js";
@@ -25,7 +26,8 @@ export const createEyeHeight = (namesOf) => {
     return null;
   };
 
-  /** Return where the eye is above the terrain, in shares of its sides; null outside it. @param {Plan} plan */
+  /** Return where the eye is above the terrain, in shares of its sides; null outside it.
+   *  @param {Plan} plan */
   const placeOf = ({ eye, terrain }) => {
     const [x, y] = [0, 1].map((axis) => eye.eye[axis] / terrain.extent[axis]);
     return x >= 0 && x <= 1 && y >= 0 && y <= 1 ? [x, y] : null;
@@ -53,7 +55,8 @@ export const createEyeHeight = (namesOf) => {
     /** By how many metres the last picture's eye was raised; 0: it was above the terrain. */
     get raisedBy() { return raisedBy; },
 
-    /** Return a camera over the terrain where the last eye was raised over the same terrain, at the same place;
+    /** Return a camera over the terrain where the last eye was raised over the same terrain, at the same
+     *  place;
      *  null: the terrain must be drawn and read first.
      *  @param {Plan} plan @param {import("./staleness.js").Keys} keys */
     raisedAsBefore: (plan, keys) => {
@@ -65,7 +68,8 @@ export const createEyeHeight = (namesOf) => {
     /** Return a camera whose eye is over the terrain, or null where the plan's own is.
      *  @param {Plan} plan @param {import("./staleness.js").Keys} keys
      *  @param {(ref: Ref) => import("./binder.js").Wired | null} wired
-     *  @param {(texture: import("./textures.js").Texture, corner: number[], size: number[]) => number[]} texels
+     *  @param {(texture: import("./textures.js").Texture, corner: number[], size: number[]) => number[]}
+     *  texels
      *  the first channel of a block of texels */
     raised: (plan, keys, wired, texels) => {
       const source = terrainOf(plan), place = placeOf(plan), found = source && wired(source);

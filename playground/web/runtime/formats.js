@@ -1,4 +1,5 @@
-// formats.js -- the formats of textures: what WebGL calls them, and what one without 16-bit channels takes instead.
+// formats.js -- the formats of textures: what WebGL calls them, and what one without 16-bit channels takes
+// instead.
 
 /** @typedef {object} Format
  *  @property {number} internal

@@ -1,6 +1,7 @@
 // kernels.js -- runs kernels: a triangle over the whole target, once for each iteration.
 //
-// A kernel that repeats writes two sets of textures alternately. One whose iterations fill a lattice ever more
+// A kernel that repeats writes two sets of textures alternately. One whose iterations fill a lattice ever
+// more
 // closely fills as small a part of its textures as that takes.
 
 import { failure } from "./context.js";
@@ -180,7 +181,8 @@ export const createKernels = (context, textures, programs, binder, shared) => {
     if (step.kernel.countsFrames) setUniform(gl, program, "time", now / 60);
   };
 
-  /** Return what the expressions of a step's header mean. @param {Job} job @param {Object<string, bigint>} [more] */
+  /** Return what the expressions of a step's header mean. @param {Job} job
+   *  @param {Object<string, bigint>} [more] */
   const namesOf = ({ step, time }, more = {}) =>
     ({ name: ownNames(step.kernel, step.size, step.values, time, more) });
 

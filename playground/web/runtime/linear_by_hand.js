@@ -1,7 +1,9 @@
 // linear_by_hand.js -- filters textures of 32-bit floats in the shader, where the device does not.
 //
-// Phones lack OES_texture_float_linear: there such a texture reads as zeros wherever it is to be filtered. In a
-// program's text each texture(NAME, place) and its like becomes a function that mixes four texels, for samplers
+// Phones lack OES_texture_float_linear: there such a texture reads as zeros wherever it is to be filtered.
+// In a
+// program's text each texture(NAME, place) and its like becomes a function that mixes four texels, for
+// samplers
 // NAME that read such a texture and for the parameters of functions that they are handed to.
 
 /** @typedef {"clamp" | "repeat" | "mirror"} Wrap */
@@ -25,7 +27,8 @@ const functions = (wrap) => {
     + ` vec4 ${name}(sampler2D k_s, vec2 k_p, vec2 k_x, vec2 k_y) ${call} `;
 };
 
-/** Return a stage's text in which some samplers are filtered by hand, and the functions that it calls for that,
+/** Return a stage's text in which some samplers are filtered by hand, and the functions that it calls for
+ *  that,
  *  on one line; the text keeps its lines.
  *  @param {string} text without comments @param {Map<string, Wrap>} samplers */
 export const filteredByHand = (text, samplers) => {

@@ -20,6 +20,7 @@ import { PLAIN } from "./binder.js";
 
 /** @typedef {object} Player
  *  @property {import("./schema.js").Sketch} sketch
+ *  @property {import("./schema.js").Shared} shared
  *  @property {import("./planner.js").State} state   may be changed at any time
  *  @property {Plan | null} plan                     of the last picture
  *  @property {number} raisedBy                      [m] by which its eye was raised out of the terrain
@@ -167,7 +168,7 @@ export const createPlayer = (engine, sketch, onClose) => {
 
   /** @type {Player} */
   const player = {
-    sketch, state: {}, plan: null, texts: {}, render,
+    sketch, shared, state: {}, plan: null, texts: {}, render,
     get raisedBy() { return eyeHeight.raisedBy; },
 
     load: async (onProgress = () => {}) => {

@@ -1,4 +1,5 @@
-// slices.js -- long work in slices: between them the browser draws and listens; what each kernel takes is measured.
+// slices.js -- long work in slices: between them the browser draws and listens; what each kernel takes is
+// measured.
 
 /** @typedef {import("./kernel_texts.js").KernelText} KernelText */
 /** @typedef {{text: KernelText, texels: number}} Piece */
@@ -62,7 +63,8 @@ export const createClock = () => {
     isKnown: ({ identity }) => costs.has(identity),
 
     /** Return how many rows of so many texels to draw at once.
-     *  @param {KernelText} text @param {number} width @param {number} height @param {number} budget [ms] 0: none */
+     *  @param {KernelText} text @param {number} width @param {number} height
+     *  @param {number} budget [ms] 0: none */
     rows: (text, width, height, budget) => {
       const known = costs.get(text.identity), limit = budget || LONGEST;
       if (known === undefined) return budget && width * height > 4 * PROBE ? PROBE / width : height;

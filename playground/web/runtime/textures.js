@@ -16,8 +16,10 @@ import { formatsOf } from "./formats.js";
  *  @property {Map<string, Texture>} textures   by output
  *  @property {WebGLFramebuffer | null} target  of several outputs
  *  @property {number} iterations               done, of a pass that repeats
- *  @property {number} number                   of all that were handed out: textures are used again, it is not
- *  @property {Surface | null} surface          a draw's samples and depth, while a later draw may go on from it
+ *  @property {number} number                   of all that were handed out: textures are used again, it is
+ *  not
+ *  @property {Surface | null} surface          a draw's samples and depth, while a later draw may go on
+ *  from it
  *  @property {Set<string>} mipmapped           outputs whose levels are made
  *  @property {Map<string, Texture>} copies     of outputs, with levels
  *  @property {Map<string, Float32Array>} read  of outputs, on the processor
