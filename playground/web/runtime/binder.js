@@ -35,6 +35,7 @@ export const createBinder = (context, textures, images) => {
     const levels = linear ? gl.LINEAR_MIPMAP_LINEAR : gl.NEAREST_MIPMAP_NEAREST;
     gl.samplerParameteri(made, gl.TEXTURE_WRAP_S, around);
     gl.samplerParameteri(made, gl.TEXTURE_WRAP_T, around);
+    gl.samplerParameteri(made, gl.TEXTURE_WRAP_R, around);
     gl.samplerParameteri(made, gl.TEXTURE_MAG_FILTER, far === "linear" ? gl.LINEAR : gl.NEAREST);
     gl.samplerParameteri(made, gl.TEXTURE_MIN_FILTER, mipmap ? levels : linear ? gl.LINEAR : gl.NEAREST);
     samplers.set(key, made);
@@ -106,7 +107,7 @@ export const createBinder = (context, textures, images) => {
     constants.clear();
   };
 
-  return { bind, texture, constant, isUnfiltered, clear };
+  return { bind, texture, constant, samplerOf, isUnfiltered, clear };
 };
 
 /** @param {[number, number]} a @param {[number, number]} b */

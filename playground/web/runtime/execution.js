@@ -30,6 +30,7 @@ import { continuedOf } from "./staleness.js";
  *  @property {import("./textures.js").Textures} textures
  *  @property {import("./kernels.js").Kernels} kernels
  *  @property {ReturnType<typeof import("./draws.js").createDraws>} draws
+ *  @property {ReturnType<typeof import("./plain.js").createPlain>} plain
  *  @property {import("./images.js").Images} images
  *  @property {WebGL2RenderingContext} gl
  *  @property {(step: Step, frame: number | null) => Object<string, any>} given
@@ -69,7 +70,7 @@ export const readWithLevels = (nodes) => {
 
 /** @param {Plan} plan @param {PlanNode[]} nodes what to run of it @param {Around} around */
 export const createExecution = (plan, nodes, around) => {
-  const { keys, cache, textures, kernels, draws, images, gl } = around;
+  const { keys, cache, textures, kernels, draws, plain, images, gl } = around;
   /** @type {Map<string, Result>} by the step's path */
   const results = new Map();
   /** @type {string[]} */
@@ -177,7 +178,7 @@ export const createExecution = (plan, nodes, around) => {
       given: around.given(step, loops ? loops.frame : null), keepsSurface: continued.has(step.path),
       time: plan.time, rows: (width, height) => around.rows(text, width, height),
     };
-    return yield* (kind === "draw" ? draws : kernels).run(job);
+    return yield* (kind === "draw" ? draws : kind === "plain_fragment" ? plain : kernels).run(job);
   };
 
   /** Draw again what a draw goes on from, where its samples went on into an earlier run of this draw.

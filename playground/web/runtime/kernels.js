@@ -12,7 +12,7 @@ import { stagesOf } from "./kernel_texts.js";
 import { isSize, PLAIN } from "./binder.js";
 import { setUniform } from "./programs.js";
 import { toES } from "./es.js";
-import { ownNames } from "./planner.js";
+import { ownNames } from "./counts.js";
 
 /** @typedef {import("./textures.js").Result} Result */
 /** @typedef {import("./textures.js").Texture} Texture */

@@ -9,6 +9,7 @@ import { readKernel } from "./kernel_texts.js";
 import { makePlan } from "./planner.js";
 import { isLoop, needed, stepsOf } from "./plan_nodes.js";
 import { keysOf } from "./staleness.js";
+import { usualOf } from "./usual.js";
 import { PLAIN } from "./binder.js";
 
 /** @typedef {import("./planner.js").Plan} Plan */
@@ -64,14 +65,17 @@ export const createPlayer = (engine, sketch, onClose) => {
 
   /** Return what the engine gives a step besides its parameters, where its text names it.
    *  @param {Plan} plan @returns {(step: Step, frame?: number | null) => Object<string, any>} */
-  const givenBy = ({ time, terrain, eye }) => {
+  const givenBy = (plan) => {
+    const { time, terrain, eye } = plan;
     /** @type {Object<string, any>} */
     const all = {
       time, extent: terrain.extent, relief: terrain.relief, base_elevation: terrain.base_elevation, eye: [...eye.eye],
       clip_from_world: [...eye.clipFromWorld], world_from_clip: [...eye.worldFromClip],
     };
-    return ({ kernel, leaf, size }, frame = null) => {
+    return (step, frame = null) => {
+      const { kernel, leaf, size } = step;
       if (kernel.kind === "source") return { data: leaf?.data || [] };
+      if (kernel.kind === "plain_fragment") return usualOf(plan, step, frame, player.state.live ?? {});
       /** @type {Object<string, any>} */
       const found = {};
       for (const name of textOf(kernel).given) {
