@@ -13,6 +13,7 @@ import { axesOf, makePad } from "./pads.js";
  *  @typedef {{words: Object<string, string>, changed: Changed, reset: () => void, press: (down: boolean) => void}} Acts */
 
 const STEPS = 1000; // of a slider without steps of its own
+const SHORT = 4; // letters of a unit that is written after the number, and not after the label
 
 /** A number with its slider, where it has a range; else one to drag.
  *  @param {Shown} one @param {number} part @param {() => number} largest @param {(number: number) => void} changed
@@ -51,7 +52,7 @@ function numberLine(one, part, largest, changed, name = "", unit = unitOf(one)) 
   const show = (/** @type {number} */ number) => {
     now = number;
     const text = written(one, number, part);
-    field.value = text + (unit.length < 3 ? unit : "");
+    field.value = text + (unit.length < SHORT ? unit : "");
     if (!slider || !scale) return;
     slider.value = String(scale.share(number));
     slider.style.setProperty("--share", String(scale.share(number)));
@@ -75,7 +76,7 @@ function dragged(line, moved) {
 /** A number, or the parts of a vector one below the other.
  *  @param {Shown} one @param {Acts} acts @param {string[]} [names] @param {string[]} [units] @returns {Control} */
 function numbers(one, { changed }, names = partNames(one), units = []) {
-  const box = make("div", { className: "numbers" });
+  const box = make("div", { className: names.length ? "numbers named" : "numbers" });
   /** @type {number[]} */
   let now = [0];
   const largest = () => Math.max(...now.map(Math.abs));
@@ -148,7 +149,7 @@ const KINDS = {
     const box = make("div", { className: "colour" }, well, field, ...(one.type === "vec4" ? [alpha.line] : []));
     return { element: box, show };
   },
-  file(one) {
+  file() {
     const field = make("input", { type: "text", readOnly: true, className: "file" });
     return { element: field, show: (value) => { field.value = String(value); } };
   },
@@ -161,9 +162,9 @@ export function makeRow(one, label, acts) {
   const control = (KINDS[one.widget] ?? numbers)(one, acts);
   const about = [one.description, one.locked].filter(Boolean).join(" ");
   const name = make("span", { className: "name", title: [about, one.path].filter(Boolean).join("\n") }, label);
-  if (one.unit.length > 2) name.append(make("small", {}, ` ${one.unit}`));
+  if (unitOf(one).length >= SHORT) name.append(make("small", {}, ` ${one.unit}`));
   const back = button("×", acts.reset, { className: "reset", title: words.reset, "aria-label": `${words.reset}: ${label}` });
-  const note = make("p", { className: "note", hidden: true }, about);
+  const note = make("p", { className: "note", hidden: !one.locked }, one.locked || one.description);
   const row = make("div", { className: `row is-${one.widget}`, role: "group", "aria-label": label }, name, control.element, back, note);
   row.dataset.path = one.path;
   if (about) {

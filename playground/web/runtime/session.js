@@ -44,7 +44,9 @@ export function createSession(sketches, first = 0) {
   /** @type {Step} */
   let now = { index: first, edits: new Map(), steps: new Map() };
   /** @type {Step[]} */
-  let before = [], after = [];
+  let before = [];
+  /** @type {Step[]} */
+  let after = [];
   /** @type {Map<string, Shown>} */
   let rows = new Map();
   /** @type {Map<string, Value>} */
@@ -57,7 +59,7 @@ export function createSession(sketches, first = 0) {
   let camera = null;
   /** @type {MapShown | null} */
   let map = null;
-  let time = sketches[first].time, changing = "", changedAt = 0;
+  let time = sketches[first].time, interpolated = true, changing = "", changedAt = 0;
 
   const tell = (/** @type {News} */ news) => listeners.forEach((listener) => listener(news));
   const sketch = () => sketches[now.index];
@@ -121,6 +123,8 @@ export function createSession(sketches, first = 0) {
     get time() { return time; },
     get camera() { return camera; },
     get map() { return map; },
+    get interpolated() { return interpolated; },
+    set interpolated(/** @type {boolean} */ wanted) { interpolated = wanted; tell("values"); },
     get canUndo() { return before.length > 0; },
     get canRedo() { return after.length > 0; },
     rows: () => [...rows.values()],
@@ -131,8 +135,9 @@ export function createSession(sketches, first = 0) {
 
     /** @param {string} path @param {Value} given what fits; else nothing happens */
     set: (path, given) => go({ ...now, edits: edited([[path, given]]) }, path),
-    /** As one step. @param {Iterable<[string, Value]>} values */
-    setAll: (values) => go({ ...now, edits: edited(values) }),
+    /** As one step; changes of one `group` that follow each other closely are one step too.
+     *  @param {Iterable<[string, Value]>} values @param {string} [group] */
+    setAll: (values, group) => go({ ...now, edits: edited(values) }, group),
     /** @param {string[]} paths */
     reset: (...paths) => go({ ...now, edits: edited(paths.map((path) => [path, /** @type {Shown} */ (rows.get(path)).value])) }),
     resetAll: () => go({ index: first, edits: new Map(), steps: new Map() }),
@@ -184,7 +189,7 @@ export function createSession(sketches, first = 0) {
       /** @type {Object<string, any>} */
       const terrain = { size, extent, relief, base_elevation };
       for (const name of TERRAIN) if (now.edits.has(name)) terrain[name] = now.edits.get(name);
-      return { values, terrain, camera, time, map, steps: { ...sketch().steps, ...Object.fromEntries(now.steps) } };
+      return { values, terrain, camera, time, map, interpolated, steps: { ...sketch().steps, ...Object.fromEntries(now.steps) } };
     },
     /** Take up what a link says, as the beginning. @param {{index: number, values: [string, Value][], camera: Camera | null, time: number | null}} link */
     begin(link) {
