@@ -98,7 +98,8 @@ export const ENGLISH = {
   arrows: "Arrows",
   shiftArrows: "Shift+arrows",
   space: "Space",
-  mouse: "With the mouse: drag to orbit, right drag or Shift+drag to move, wheel to zoom, double click to reset.",
+  mouse:
+    "With the mouse: drag to orbit, right drag or Shift+drag to move, wheel to zoom, double click to reset.",
   touch: "By touch: one finger orbits, two fingers move and zoom, a double tap resets.",
   rows: "In the panel: double click on a row resets it; drag on a name without a slider changes its number.",
 };
@@ -192,9 +193,13 @@ export const FRENCH = {
   arrows: "Flèches",
   shiftArrows: "Maj+flèches",
   space: "Espace",
-  mouse: "À la souris : glisser pour tourner, glisser à droite ou avec Maj pour se déplacer, molette pour zoomer, double clic pour rétablir.",
+  mouse:
+    "À la souris : glisser pour tourner, glisser du bouton droit ou avec Maj pour se déplacer, " +
+    "molette pour zoomer, double clic pour rétablir.",
   touch: "Au doigt : un doigt tourne, deux doigts déplacent et zooment, un double appui rétablit.",
-  rows: "Dans le panneau : un double clic sur une ligne la rétablit ; glisser sur un nom sans curseur change son nombre.",
+  rows:
+    "Dans le panneau : un double clic sur une ligne la rétablit ; " +
+    "glisser sur un nom sans curseur change son nombre.",
 };
 
 /** The words of a language, by its tag; English where there are none.
@@ -207,4 +212,9 @@ export const fill = (text, values) => text.replace(/\{(\w+)\}/g, (_, name) => St
 
 /** A number of metres, or another number that is read, in as many digits as it needs.
  *  @param {number} number */
-export const measured = (number) => (Math.abs(number) >= 1000 ? number.toFixed(0) : Math.abs(number) >= 10 ? number.toFixed(1) : number.toFixed(2));
+export const measured = (number) =>
+  Math.abs(number) >= 1000
+    ? number.toFixed(0)
+    : Math.abs(number) >= 10
+      ? number.toFixed(1)
+      : number.toFixed(2);
