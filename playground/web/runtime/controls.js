@@ -46,7 +46,7 @@ function numbers(one, acts, names = partNames(one), units = []) {
  *  @param {Shown} one @param {Acts} acts @returns {Control} */
 function withPad(one, acts) {
   const sky = one.widget === "direction", { azimuth, elevation } = acts.words;
-  const named = one.parts.length ? one.parts : sky ? [azimuth, elevation] : ["x", "y"];
+  const named = sky ? [azimuth, elevation] : one.parts.length ? one.parts : ["x", "y"];
   const ranged = sky ? one : { ...one, ranges: axesOf(one), step: null };
   const pad = makePad(one, acts.changed);
   const fields = numbers(ranged, acts, named, sky ? ["°", "°"] : [" E", " N"]);

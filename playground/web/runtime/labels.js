@@ -10,13 +10,9 @@ export const labelOf = (name) =>
 /** @param {string} heading @param {string} title */
 const under = (heading, title) => `${heading}: ${title.charAt(0).toLowerCase()}${title.slice(1)}`;
 
-/** What a sketch is about, each once: of a row and one inside that it stands for, the outer.
+/** What a sketch is about, in its own order.
  *  @param {Shown[]} rows */
-export function mainRows(rows) {
-  const main = rows.filter((row) => row.main);
-  const outer = new Set(main.filter((row) => row.exported).flatMap((row) => row.targets));
-  return main.filter((row) => row.exported || !outer.has(row.targets[0]));
-}
+export const mainRows = (rows) => rows.filter((row) => row.main).sort((a, b) => a.main - b.main);
 
 /** Labels of main parameters, by path: group or pass named where a label alone would not say what is meant.
  *  @param {Shown[]} rows @returns {Map<string, string>} */

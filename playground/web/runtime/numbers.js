@@ -62,14 +62,28 @@ export function decimals(one, part = 0) {
   return fine > 0 ? placesOf(10 ** Math.floor(Math.log10(fine) + 1e-9)) : 3;
 }
 
+const BEYOND = 40; // digits that tell a half from what is nearly one
+
+/** Whether the digits that a number has beyond those that are written are exactly a half, to be rounded down.
+ *  @param {string} exact its digits, BEYOND too many */
+const isHalfDown = (exact) => /^50*$/.test(exact.slice(-BEYOND)) && /[02468]\.?$/.test(exact.slice(0, -BEYOND));
+
+/** Write a number with so many places after the point as C's %f does: halves go to the even digit.
+ *  @param {number} number @param {number} places */
+export function fixed(number, places) {
+  const exact = number.toFixed(places + BEYOND);
+  return isHalfDown(exact) ? exact.slice(0, -BEYOND).replace(/\.$/, "") : number.toFixed(places);
+}
+
 /** Write a number in so many digits as C's %g does.
  *  @param {number} number @param {number} digits */
 export function general(number, digits) {
   if (!Number.isFinite(number)) return Number.isNaN(number) ? "nan" : number > 0 ? "inf" : "-inf";
-  const [mantissa, exponent] = number.toExponential(digits - 1).split("e");
-  const power = +exponent,
-    tidy = (/** @type {string} */ text) => (text.includes(".") ? text.replace(/\.?0+$/, "") : text);
-  if (power >= -4 && power < digits) return tidy(number.toFixed(digits - 1 - power));
+  const [exact, there] = number.toExponential(digits - 1 + BEYOND).split("e");
+  const [near, exponent] = number.toExponential(digits - 1).split("e");
+  const [mantissa, power] = isHalfDown(exact) ? [exact.slice(0, -BEYOND), +there] : [near, +exponent];
+  const tidy = (/** @type {string} */ text) => (text.includes(".") ? text.replace(/\.?0+$/, "") : text);
+  if (power >= -4 && power < digits) return tidy(fixed(number, digits - 1 - power));
   return `${tidy(mantissa)}e${power < 0 ? "-" : "+"}${String(Math.abs(power)).padStart(2, "0")}`;
 }
 
@@ -79,7 +93,7 @@ export function written(one, number, part = 0) {
   if (isWhole(one.type)) return String(Math.trunc(number));
   return one.widget === "log_slider" || !rangeOf(one, part)
     ? general(number, one.widget === "log_slider" ? 4 : 6)
-    : number.toFixed(decimals(one, part));
+    : fixed(number, decimals(one, part));
 }
 
 /** The unit as it follows a number: degrees close up, others after a space.

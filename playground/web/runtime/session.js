@@ -43,7 +43,7 @@ export function terrainRows(sketch) {
       parts: type.endsWith("2") ? ["east", "north"] : [],
       ranges: /** @type {[number, number][]} */ (ranged ? spans : []),
       exported: true,
-      main: false,
+      main: 0,
       locked: name === "size" ? terrain.locked : "",
       value,
       targets: [],
