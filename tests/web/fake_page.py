@@ -1,4 +1,4 @@
-"""A page with every widget, over a player that draws without WebGL (fake_page.js): one file, as an export is."""
+"""A page with every widget, over a player that draws without WebGL (fake_page.js): one file, as an export."""
 
 from __future__ import annotations
 

@@ -39,8 +39,8 @@ def parameters() -> dict[str, tuple[Sketch, str, Parameter, dict[str, Any]]]:
         for shown in shown_parameters(sketch):
             targets = tuple(target.path for target in resolve(sketch.graph, shown.path))
             data = row(shown, shown.parameter.default, targets)
-            key = f"{shown.parameter.name} {shown.parameter.type} {shown.parameter.widget} {shown.parameter.step}"
-            found[key] = sketch, shown.path, shown.parameter, data
+            one = shown.parameter
+            found[f"{one.name} {one.type} {one.widget} {one.step}"] = sketch, shown.path, one, data
     return found
 
 
@@ -114,7 +114,8 @@ def test_a_slider_reaches_its_ends_and_comes_back(node: Node):
         const { scaleOf } = await load("numbers.js");
         return rows.map((one) => {
             const scale = scaleOf(one), shares = [0, 0.2, 0.5, 0.9, 1];
-            return [shares.map(scale.value), shares.map((share) => scale.value(scale.share(scale.value(share))))];
+            const there = shares.map(scale.value);
+            return [there, there.map((value) => scale.value(scale.share(value)))];
         });
     }"""
     for data, (there, again) in zip(rows, node.run(script, rows), strict=True):

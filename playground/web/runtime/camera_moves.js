@@ -4,7 +4,7 @@ import { orbit, pan, zoom } from "./camera.js";
 import { clamp } from "./numbers.js";
 
 /** @typedef {import("./schema.js").Camera} Camera */
-/** @typedef {{distance: number, target: [number, number, number]}} Eye */
+/** @typedef {import("./camera.js").Eye} Eye */
 
 /** [degrees] that a drag over the picture's whole height turns the terrain. */
 export const HALF_TURN = 180;

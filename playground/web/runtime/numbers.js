@@ -66,7 +66,8 @@ const BEYOND = 40; // digits that tell a half from what is nearly one
 
 /** Whether the digits that a number has beyond those that are written are exactly a half, to be rounded down.
  *  @param {string} exact its digits, BEYOND too many */
-const isHalfDown = (exact) => /^50*$/.test(exact.slice(-BEYOND)) && /[02468]\.?$/.test(exact.slice(0, -BEYOND));
+const isHalfDown = (exact) =>
+  /^50*$/.test(exact.slice(-BEYOND)) && /[02468]\.?$/.test(exact.slice(0, -BEYOND));
 
 /** Write a number with so many places after the point as C's %f does: halves go to the even digit.
  *  @param {number} number @param {number} places */

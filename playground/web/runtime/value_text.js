@@ -6,6 +6,8 @@ import { general, isWhole, lengthOf, rangeOf } from "./numbers.js";
 /** @typedef {import("./schema.js").Shown} Shown */
 /** @typedef {import("./schema.js").Value} Value */
 
+const LARGEST = 1e9; // [m] of the terrain
+
 /** Six digits where they say the same, else all there are.
  *  @param {number} number */
 export function digits(number) {
@@ -53,36 +55,31 @@ export function read(one, text) {
   return parts.length === count && fits(one, value) ? value : undefined;
 }
 
+/** What a number of a parameter may be; of the terrain more than its slider has.
+ *  @param {Shown} one @param {number} part @returns {[number, number]} */
+function limits(one, part) {
+  if (one.widget === "direction") return part ? [-90, 90] : [-720, 720];
+  if (one.path === "relief") return [0, LARGEST];
+  if (one.path === "extent") return [Number.MIN_VALUE, LARGEST];
+  const [low, high] = rangeOf(one, part) ?? [-Infinity, Infinity];
+  const slack = 1e-6 * Math.max(Math.abs(low), Math.abs(high));
+  if (!isWhole(one.type)) return low === -Infinity ? [low, high] : [low - slack, high + slack];
+  const whole = one.type.startsWith("u") ? [0, 2 ** 32 - 1] : [-(2 ** 31), 2 ** 31 - 1];
+  return [Math.max(low, whole[0]), Math.min(high, whole[1])];
+}
+
 /** Whether a value is one that a parameter takes, in its range.
  *  @param {Shown} one @param {unknown} value @returns {value is Value} */
 export function fits(one, value) {
   if (one.type === "bool") return typeof value === "boolean";
   if (one.widget === "file" || one.type === "sampler2D") return typeof value === "string";
-  const count = lengthOf(one.type),
-    numbers = count === 1 ? [value] : Array.isArray(value) ? value : [];
-  if (one.widget === "menu")
-    return Number.isInteger(value) && Number(value) >= 0 && Number(value) < one.choices.length;
-  return (
-    numbers.length === count &&
-    numbers.every((number, part) => {
-      if (typeof number !== "number" || !Number.isFinite(number)) return false;
-      const ends = isWhole(one.type)
-        ? one.type.startsWith("u")
-          ? [0, 2 ** 32 - 1]
-          : [-(2 ** 31), 2 ** 31 - 1]
-        : null;
-      if (ends && !(Number.isInteger(number) && number >= ends[0] && number <= ends[1])) return false;
-      const [low, high] =
-        one.widget === "direction"
-          ? [
-              [-720, 720],
-              [-90, 90],
-            ][part]
-          : (rangeOf(one, part) ?? [-Infinity, Infinity]);
-      const slack = Number.isFinite(low) ? 1e-6 * Math.max(Math.abs(low), Math.abs(high)) : 0;
-      return number >= low - slack && number <= high + slack;
-    })
-  );
+  if (one.widget === "menu") return Number.isInteger(value) && one.choices[Number(value)] !== undefined;
+  const count = lengthOf(one.type), numbers = count === 1 ? [value] : Array.isArray(value) ? value : [];
+  return numbers.length === count && numbers.every((number, part) => {
+    if (typeof number !== "number" || !Number.isFinite(number)) return false;
+    const [low, high] = limits(one, part);
+    return number >= low && number <= high && (!isWhole(one.type) || Number.isInteger(number));
+  });
 }
 
 /** A value as TOML has it.
