@@ -31,7 +31,6 @@ import { ENGLISH, fill } from "./words.js";
  *  @property {HTMLImageElement | null} [poster]
  *  @property {number} [budget]         pixels of the picture at most
  *  @property {boolean} [inText]        a finger that goes up or down, and the wheel, scroll the page
- *  @property {(text: string, alarm?: boolean) => void} [say]
  *  @property {(player: Player) => void} [opened]  a player is there, its programs too
  *  @property {() => void} [drawn]      after each frame */
 
@@ -47,7 +46,8 @@ export function createFigure(host, engine, page, options = {}) {
   const canvas = make("canvas", { tabIndex: 0, role: "application", hidden: true });
   const message = make("p", { className: "message", role: "status" });
   const readout = make("p", { className: "readout", hidden: true });
-  const notes = make("div", { className: "notes" }, readout, message);
+  const notice = make("p", { className: "message", role: "status" });
+  const notes = make("div", { className: "notes" }, readout, notice, message);
   const stage = make("div", { className: "stage" }, ...(poster ? [poster] : []), canvas, notes);
   host.append(stage);
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
@@ -55,7 +55,7 @@ export function createFigure(host, engine, page, options = {}) {
   /** @type {Player | null} */
   let player = null;
   let asked = 0, askedAt = 0, opening = 0, resting = 0, last = 0, took = 0, speed = 1;
-  let inSight = true, closed = false, playing = false, moving = false, told = false;
+  let inSight = true, closed = false, playing = false, moving = false;
 
   /** @returns {[number, number]} CSS pixels */
   const box = () => [Math.max(stage.clientWidth, 1), Math.max(stage.clientHeight, 1)];
@@ -63,16 +63,12 @@ export function createFigure(host, engine, page, options = {}) {
   const map = createFigureMap(room);
   const steering = steerWith(canvas, session, map, { box, eye: () => player?.plan?.eye, inText });
 
-  const say = options.say ?? ((text, alarm = false) => {
-    message.textContent = text;
-    message.classList.toggle("alarm", alarm);
-  });
-
-  /** Say what is of a frame, or of what comes before one; nothing takes away no other's words. */
+  /** Say how far the picture is, or what is wrong with it. */
   function tell(/** @type {string} */ text, /** @type {unknown} */ error = null) {
     const reason = error instanceof Error ? error.message : String(error);
-    if (text || told) say(error ? fill(text, { reason }) : text, Boolean(error));
-    told = Boolean(text);
+    const whole = error ? fill(text, { reason }) : text;
+    if (message.textContent !== whole) message.textContent = whole;
+    message.classList.toggle("alarm", Boolean(error));
   }
 
   // ── what is drawn ──────────────────────────────────────────────────────────
@@ -203,7 +199,9 @@ export function createFigure(host, engine, page, options = {}) {
   document.addEventListener("visibilitychange", wake);
 
   return {
-    session, stage, canvas, say, ask, play, ...steering,
+    session, stage, canvas, ask, play, ...steering,
+    /** Show a notice. @param {string} text */
+    say(text) { notice.textContent = text; },
     showMap: map.show,
     fitMap: map.fit,
     get player() { return player; },

@@ -65,8 +65,7 @@ export function followGestures(element, meanings, { sideways = false, wheel = ()
     } catch {
       /* the gesture ends at the element's edge */
     }
-    element.focus({ preventScroll: true });
-    event.preventDefault();
+    if (event.button === 1) event.preventDefault(); // the page would scroll by itself
   });
   element.addEventListener("pointermove", (event) => {
     const { x, y, height } = place(event),

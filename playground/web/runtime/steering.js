@@ -18,8 +18,10 @@ export function steerWith(canvas, session, map, { box, eye, inText }) {
   let held = "";
   /** Keyframes' camera goes on from where it is. @param {(now: Camera, eye: Eye) => Camera} change */
   function steer(change) {
-    const from = eye();
-    if (from) session.setCamera(change(cameraAt(session.sketch, session.camera, session.time), from));
+    const from = eye(), now = cameraAt(session.sketch, session.camera, session.time);
+    // Several gestures may come between two frames: the eye is that of the last frame.
+    const distance = now.distance || from?.distance || 0, target = now.target ?? from?.target;
+    if (from && target) session.setCamera(change(now, { ...from, distance, target }));
   }
 
   const turn = (/** @type {number} */ across, /** @type {number} */ down) =>

@@ -71,6 +71,7 @@ export const ENGLISH = {
   keyframe: "keyframe",
   // maps
   map: "View",
+  mapShown: "Map",
   ownPicture: "The picture",
   mapLabel: "{label} from above, north on top. Drag to move, wheel to enlarge",
   under: "Texel {x}, {y}",
@@ -167,6 +168,7 @@ export const FRENCH = {
   speed: "Vitesse",
   keyframe: "image clé",
   map: "Vue",
+  mapShown: "Carte",
   ownPicture: "L'image",
   mapLabel: "{label} vu d'en haut, le nord en haut. Glisser pour déplacer, molette pour agrandir",
   under: "Texel {x}, {y}",
