@@ -19,6 +19,7 @@ import { ENGLISH, fill } from "./words.js";
  *  @property {any} plan
  *  @property {(onProgress?: (done: number, all: number) => void) => Promise<unknown>} load
  *  @property {() => unknown} render
+ *  @property {() => Promise<unknown>} [renderSoon]  in pieces; null where a later one has overtaken it
  *  @property {(context: CanvasRenderingContext2D) => void} drawTo
  *  @property {(source: {path: string, output: string}) => any} read
  *  @property {() => void} close */
@@ -36,6 +37,9 @@ import { ENGLISH, fill } from "./words.js";
 
 const EVERY = 1000; // [ms] of time that a frame may add: after a pause time goes on from where it was
 const FRAME = 17; // [ms] that a frame waits for the screen
+const PATIENT = 1500; // [ms] a picture that is made in pieces may take before other values overtake it
+const LONG = 150; // [ms] of a picture after which the next is made in pieces
+const SAID = 600; // [ms] until it is said that a picture is being made
 
 /** Make a figure in an element, whose size it fills. `start` opens the player.
  *  @param {HTMLElement} host @param {Engine} engine @param {{sketches: Sketch[]}} page
@@ -55,7 +59,10 @@ export function createFigure(host, engine, page, options = {}) {
   /** @type {Player | null} */
   let player = null;
   let asked = 0, askedAt = 0, opening = 0, resting = 0, last = 0, took = 0, speed = 1;
-  let inSight = true, closed = false, playing = false, moving = false;
+  let inSight = true, closed = false, playing = false, moving = false, long = true, again = false;
+  let overtaken = false; // values have changed since a picture was begun in pieces
+  /** @type {number | null} when the picture was begun that is made in pieces */
+  let begun = null;
 
   /** @returns {[number, number]} CSS pixels */
   const box = () => [Math.max(stage.clientWidth, 1), Math.max(stage.clientHeight, 1)];
@@ -89,30 +96,63 @@ export function createFigure(host, engine, page, options = {}) {
   function draw() {
     asked = 0;
     if (!player || closed || document.hidden || !inSight) return;
-    const start = performance.now(), late = Math.max(start - askedAt - FRAME, 0);
+    const start = performance.now();
+    again = begun !== null && !(overtaken && start - begun > PATIENT);
+    if (again) return;
+    const late = Math.max(start - askedAt - FRAME, 0), from = player, inPieces = long && from.renderSoon;
     if (playing) advance(start);
     try {
-      const size = takeState(player);
-      player.render();
-      if (session.map) map.drawn(player, size);
+      const size = takeState(from);
+      if (inPieces) drawInPieces(from, size, start);
       else {
-        if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
-        player.drawTo(context);
+        from.render();
+        show(from, size, start, late);
       }
-      took = performance.now() - start;
-      reveal();
-      tell("");
     } catch (error) {
       tell(canvas.hidden ? words.failed : words.kept, error);
     }
+    if (playing) ask();
+  }
+
+  /** What a value changes may take long: the page stays at hand meanwhile.
+   *  @param {Player} from @param {[number, number]} size @param {number} start */
+  async function drawInPieces(from, size, start) {
+    begun = start;
+    overtaken = false;
+    const slow = setTimeout(() => tell(words.working), SAID);
+    try {
+      const done = await from.renderSoon?.();
+      clearTimeout(slow);
+      if (!done || from !== player || closed) return;
+      show(from, size, start, 0);
+      long = overtaken || took > LONG;
+    } catch (error) {
+      tell(canvas.hidden ? words.failed : words.kept, error);
+    } finally {
+      clearTimeout(slow);
+      if (begun === start) begun = null;
+      if (again) ask();
+    }
+  }
+
+  /** @param {Player} from @param {[number, number]} size @param {number} start @param {number} late */
+  function show(from, size, start, late) {
+    if (session.map) map.drawn(from, size);
+    else {
+      if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
+      from.drawTo(context);
+    }
+    took = performance.now() - start;
+    canvas.hidden = false;
+    if (poster) poster.hidden = true;
+    name();
+    tell("");
     if (moving) quality.took(took + late);
-    if (session.drawn() || playing) ask();
+    if (session.drawn()) ask();
     options.drawn?.();
   }
 
-  function reveal() {
-    canvas.hidden = false;
-    if (poster) poster.hidden = true;
+  function name() {
     const title = session.sketch.title || session.sketch.name;
     const text = session.map ? fill(words.mapLabel, { label: map.label }) : fill(words.picture, { title });
     if (canvas.getAttribute("aria-label") !== text) canvas.setAttribute("aria-label", text);
@@ -186,6 +226,7 @@ export function createFigure(host, engine, page, options = {}) {
   // ── what it follows ────────────────────────────────────────────────────────
 
   const unfollow = session.follow((news) => {
+    if (news !== "camera" && news !== "time") long = overtaken = true;
     if (news === "sketch") open();
     else ask(news !== "map");
   });
