@@ -47,7 +47,7 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
 
   /** @param {Job} job @returns {Mesh} */
   const meshOf = (job) => {
-    const { step } = job, { kernel } = step, name = /** @type {string} */ (kernel.mesh), values = { ...step.values };
+    const { kernel } = job.step, name = /** @type {string} */ (kernel.mesh), values = { ...job.step.values };
     if (kernel.count !== undefined) values.count = whole(kernel.count, kernels.namesOf(job));
     const key = meshKey(name, values), known = meshes.get(key);
     meshes.delete(key);
@@ -113,7 +113,8 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
     const { step, given } = job, mesh = /** @type {string} */ (step.kernel.mesh);
     const tables = () => Object.fromEntries(CHOSEN_BY[mesh].map((name) => [name, tableOf(job, name)]));
     const view = {
-      clipFromWorld: given.clip_from_world, eye: given.eye, extent: given.extent, relief: given.relief, size: step.size,
+      clipFromWorld: given.clip_from_world, eye: given.eye, extent: given.extent, relief: given.relief,
+      size: step.size,
     };
     return choose(mesh, step.values, tables, view);
   };

@@ -137,7 +137,8 @@ export const createExecution = (plan, nodes, around) => {
     const raw = cache.get(/** @type {string} */ (keys.raw.get(step.path)), used);
     const from = raw ? [...raw.results.values()][0] : yield* computed(step);
     const { stride, form } = step.between, how = { k_stride: stride, k_form: form };
-    return keep(key, step, kernels.drawnOwn("fill_between.frag", from, how, step.kernel.outputs, isTall(step)));
+    const made = kernels.drawnOwn("fill_between.frag", from, how, step.kernel.outputs, isTall(step));
+    return keep(key, step, made);
   };
 
   /** Keep a result under its key, and return it. @param {string} key @param {Step} step
@@ -215,7 +216,7 @@ export const createExecution = (plan, nodes, around) => {
     return texture ? { result, texture, output: source.output } : null;
   };
 
-  // ── loops ────────────────────────────────────────────────────────────────
+  // ── loops ──
 
   /** Run a loop from the iteration that is known, or from an earlier one where that lies further on.
    *  @param {LoopStep} loop @returns {Working<void>} */
@@ -232,7 +233,8 @@ export const createExecution = (plan, nodes, around) => {
       ended = true;
     } finally {
       state.cancel = null;
-      if (!ended && taken && state.iterations === taken) setAside(loop, key, state); // it is what is fed back only
+      const isOnlyFed = taken > 0 && state.iterations === taken; // what a loop feeds back, and no more
+      if (!ended && isOnlyFed) setAside(loop, key, state);
     }
   };
 
@@ -292,7 +294,9 @@ export const createExecution = (plan, nodes, around) => {
     if (!loop.repeat && !state.results.size) state.results = initial(loop, changing, fed);
     state.results.forEach((result, path) => results.set(path, result));
     for (let iteration = state.iterations; iteration < loop.repeat; iteration++) {
-      if (iteration) for (const [name, , ref] of loop.feedback) fed.set(`${loop.path} ${name}`, wiredTo(ref, fed));
+      if (iteration) {
+        for (const [name, , ref] of loop.feedback) fed.set(`${loop.path} ${name}`, wiredTo(ref, fed));
+      }
       const at = { number: iteration, whole: loop.whole, frame: loop.countsFrames ? iteration : frame };
       /** @type {Map<string, Result>} */
       let made = new Map();
@@ -346,7 +350,8 @@ export const createExecution = (plan, nodes, around) => {
     if (found || !source || !("loop" in source)) return found;
     const declared = step.kernel.inputs.find((each) => each.name === name);
     if (!declared || !(step.kernel.dialect || declared.fallback === "zero")) return null;
-    const key = `${source.loop} ${source.name}`, [origin, output] = /** @type {[Step, string]} */ (fedFrom.get(key));
+    const key = `${source.loop} ${source.name}`;
+    const [origin, output] = /** @type {[Step, string]} */ (fedFrom.get(key));
     const result = zeros.get(key) || kernels.empty(origin, isTall(origin));
     zeros.set(key, result);
     return { result, texture: /** @type {any} */ (result.textures.get(output)), output };

@@ -56,8 +56,10 @@ export const createKeptStates = (limit, textures) => {
 
     /** Return the most iterations, up to `most`, after which there is a state; 0 for none.
      *  @param {string} path @param {string} key @param {number} most */
-    latest: (path, key, most) =>
-      Math.max(0, ...[...(known.get(path)?.get(key)?.states.keys() || [])].filter((number) => number <= most)),
+    latest: (path, key, most) => {
+      const numbers = [...(known.get(path)?.get(key)?.states.keys() || [])];
+      return Math.max(0, ...numbers.filter((number) => number <= most));
+    },
 
     /** Hand over a state that there is. @param {string} path @param {string} key @param {number} number */
     take: (path, key, number) => pop(/** @type {Kept} */ (known.get(path)?.get(key)), number),

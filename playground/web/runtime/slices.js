@@ -42,15 +42,18 @@ export const createClock = () => {
   /** Return what texels of a kernel will take [ms]; of one that was never measured, as the middle one.
    *  @param {KernelText} text @param {number} texels */
   const expected = ({ identity }, texels) => {
-    const known = costs.get(identity), all = known === undefined ? [...costs.values()].sort((a, b) => a - b) : [];
-    return texels * (known ?? all[all.length >> 1] ?? 0);
+    const known = costs.get(identity);
+    if (known !== undefined) return texels * known;
+    const all = [...costs.values()].sort((a, b) => a - b);
+    return texels * (all[all.length >> 1] ?? 0);
   };
 
   /** @param {Piece[]} pieces @param {number} milliseconds that all of them took */
   const note = (pieces, milliseconds) => {
-    const total = pieces.reduce((sum, { text, texels }) => sum + (expected(text, texels) || texels * 1e-9), 0);
-    for (const { text, texels } of pieces) {
-      const now = (milliseconds * ((expected(text, texels) || texels * 1e-9) / total)) / texels;
+    const shares = pieces.map(({ text, texels }) => expected(text, texels) || texels * 1e-9);
+    const total = shares.reduce((sum, share) => sum + share, 0);
+    for (const [i, { text, texels }] of pieces.entries()) {
+      const now = (milliseconds * shares[i]) / total / texels;
       const before = costs.get(text.identity);
       costs.set(text.identity, before === undefined ? now : (before + now) / 2);
     }
