@@ -21,7 +21,15 @@ from pathlib import Path
 
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.allowed_files import exists, is_file, is_inside, names_below, note, real
+from playground.sketch.allowed_files import (
+    exists,
+    is_file,
+    is_inside,
+    names_below,
+    note,
+    real,
+    texts_of_load,
+)
 from playground.sketch.libraries import how_to_name, libraries, library_around
 from playground.sketch.macro_calls import with_calls_joined
 
@@ -169,6 +177,15 @@ def read_text(path: Path, *, any_encoding: bool = False) -> str:
     With ``any_encoding``, a text that is no UTF-8 is taken as Latin-1, where each byte is a character.
     """
     note(path)
+    known = texts_of_load()
+    if known is None:
+        return _text(path, any_encoding)
+    if (path, any_encoding) not in known:
+        known[path, any_encoding] = _text(path, any_encoding)
+    return known[path, any_encoding]
+
+
+def _text(path: Path, any_encoding: bool) -> str:
     data = b""
     try:
         state = path.stat()
