@@ -15,6 +15,7 @@ from playground.sketch.allowed_files import (
     is_inside,
     is_variant,
     leads_outside,
+    looking_once,
     names_below,
     real,
     root_of,
@@ -80,6 +81,7 @@ def lonely_variant(path: Path) -> SketchError:
     )
 
 
+@looking_once()
 def shipped_techniques() -> list[str]:
     """List the names of the techniques in ``glsl/``: kernels, draws, sources and TOML techniques.
 
