@@ -262,7 +262,7 @@ def test_a_module_is_named_by_what_it_does():
     found |= {
         p.relative_to(PACKAGE).as_posix() + "/"
         for p in PACKAGE.rglob("*")
-        if p.is_dir() and p.name in UNCLEAR
+        if p.is_dir() and p.name in UNCLEAR and "node_modules" not in p.parts
     }
     shrinks("UNCLEAR_MODULES", found, UNCLEAR_MODULES, "has a name that says nothing")
 
@@ -302,7 +302,10 @@ def test_nothing_must_be_edited_in_two_places():
     wrong = []
     asks = re.compile(r"\bmust match\b|\bkeep (?:this |these |it )?in (?:sync|step)\b|\bsame as in\b", re.I)
     for path in (*PACKAGE.rglob("*"), *(ROOT / "glsl").rglob("*")):
-        if path.suffix not in (".py", ".js", ".css", ".glsl", ".comp", ".toml"):
+        if (
+            path.suffix not in (".py", ".js", ".css", ".glsl", ".comp", ".toml")
+            or "node_modules" in path.parts
+        ):
             continue
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
             comment = re.search(r"(?:#|//|/\*)(.*)", line)
