@@ -50,7 +50,9 @@ def page_html(
         width=width,
         height=height,
     )
-    without = "This picture is alive where scripts may run: allow them for this page, or open it in a browser."
+    without = (
+        "This picture is alive where scripts may run: allow them for this page, or open it in a browser."
+    )
     head = (
         Markup('<meta charset="utf-8">'),
         tag("meta", http_equiv="Content-Security-Policy", content=policy_of(script, style)),
