@@ -1,9 +1,9 @@
 """Make one HTML file of a page's data and the runtime, which opens from disk and asks nothing of a network.
 
-The data are JSON in an element that no browser runs; what does run, the runtime, is named in the page's
-policy by its hash, and nothing else may run or be fetched. What people wrote is escaped where it stands in
-the page itself (``markup``), and packed in the data. The poster is the picture for printing, and for
-browsers that cannot run the rest.
+The data are JSON in an element that no browser runs, and so is the runtime, packed. A script of a few lines
+unpacks it; the page's policy names both scripts by their hashes, and nothing else may run or be fetched.
+What people wrote is escaped where it stands in the page itself (``markup``), and packed in the data.
+The poster is the picture for printing, and for browsers that cannot run the rest.
 """
 
 from __future__ import annotations
@@ -14,12 +14,18 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from playground._version import __version__
 from playground.markup import Markup, tag
 
 _ICON = "data:,"  # or a browser would ask for favicon.ico
+_SCRIPTS_OFF = (
+    "This picture is alive where scripts may run: allow them for this page, or open it in a browser."
+)
+_TOO_OLD = "This browser is too old for the live picture: it cannot unpack it."
 
 
 @dataclass(frozen=True)
@@ -50,9 +56,6 @@ def page_html(
         width=width,
         height=height,
     )
-    without = (
-        "This picture is alive where scripts may run: allow them for this page, or open it in a browser."
-    )
     head = (
         Markup('<meta charset="utf-8">'),
         tag("meta", http_equiv="Content-Security-Policy", content=policy_of(script, style)),
@@ -65,9 +68,15 @@ def page_html(
         tag("style", Markup(style)),
     )
     body = (
-        tag("main", image, tag("noscript", tag("p", without)), id="playground"),
+        tag("main", image, id="playground"),
+        tag("noscript", tag("p", _SCRIPTS_OFF)),
+        tag("p", _TOO_OLD, id="playground-old", hidden=True),
+        "\n",
         tag("script", Markup(_json(packed(page))), type="application/json", id="playground-page"),
-        tag("script", Markup(script)),
+        "\n",
+        tag("script", _packed(script), type="application/gzip", id="playground-runtime"),
+        "\n",
+        tag("script", Markup(_loader())),
     )
     html = tag("html", tag("head", *head), "\n", tag("body", *body), lang=language)
     return f"<!doctype html>\n{html}\n"
@@ -77,21 +86,26 @@ def packed(page: Mapping[str, Any]) -> dict[str, Any]:
     """Return a page's data with all but its bytes packed: see ``PageFile`` in schema.js."""
     shared = {name: value for name, value in page["shared"].items() if name != "blobs"}
     text = json.dumps({**page, "shared": shared}, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    data = gzip.compress(text.encode(), compresslevel=9, mtime=0)
-    return {
-        "format": page["format"],
-        "packed": base64.b64encode(data).decode("ascii"),
-        "blobs": page["shared"]["blobs"],
-    }
+    return {"format": page["format"], "packed": _packed(text), "blobs": page["shared"]["blobs"]}
 
 
 def policy_of(script: str, style: str) -> str:
     """Return the page's Content-Security-Policy: its own script and style, and pictures that it makes."""
+    scripts = " ".join(f"'sha256-{_hash(text)}'" for text in (_loader(), script))
     return (
-        "default-src 'none';"
-        f" script-src 'sha256-{_hash(script)}'; style-src 'sha256-{_hash(style)}';"
+        f"default-src 'none'; script-src {scripts}; style-src 'sha256-{_hash(style)}';"
         " img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
+
+
+@cache
+def _loader() -> str:
+    return (Path(__file__).parent / "loader.js").read_text(encoding="utf-8")
+
+
+def _packed(text: str) -> str:
+    """Return a text as gzip in base64."""
+    return base64.b64encode(gzip.compress(text.encode(), compresslevel=9, mtime=0)).decode("ascii")
 
 
 def _json(value: Mapping[str, Any]) -> str:
