@@ -74,6 +74,7 @@ class _Writing:
     def data(self) -> dict[str, Any]:
         """Return the whole sketch."""
         sketch, plan, terrain = self.sketch, self.plan, self.plan.terrain
+        lacking = [sentence.partition(": see ")[0] for sentence in plan.lacking]  # files are not in a page
         nodes = [self._node(node) for node in self.flat.nodes]
         found = values_of(sketch) | self._constants()
         values = {path: self.written(path, value) for path, value in found.items()}
@@ -112,7 +113,7 @@ class _Writing:
             "textures": self._textures(),
             "map": self._map(),
             "choices": [],
-            "notes": [*plan.lacking, *self.notes, *self.locks.notes(), *preset_notes, *track_notes],
+            "notes": [*lacking, *self.notes, *self.locks.notes(), *preset_notes, *track_notes],
         }
 
     def written(self, path: str, value: Value) -> Any:

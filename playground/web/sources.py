@@ -1,8 +1,8 @@
 """Write down what the processor makes: the texels of sources, of a film or a sound frame by frame.
 
 A file that is played is written from its beginning as far as that fits into ``MOST_BYTES`` of a page
-and ``LONGEST`` seconds; what comes later stays as the last frame is. What a window feeds has
-nothing to show in a page.
+and ``LONGEST`` seconds; what comes later stays as the last frame is, and a sound that repeats begins in
+silence each time. What a window feeds has nothing to show in a page.
 """
 
 from __future__ import annotations
