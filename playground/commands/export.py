@@ -52,7 +52,7 @@ HELP = help_text(
     "playground export jacksboro --preset evening --light --to terrain.obj",
     "playground export fbm --texture height --to hills.json",
     "playground export deterministic_fractal --to fractal.fs",
-    "playground export jacksboro --to jacksboro.html",
+    "playground export jacksboro --to page.html",
     "playground export fbm --technique height=generation/fbm,generation/mixed --to noise.html",
 )
 
