@@ -16,6 +16,7 @@ from playground.engine.engine import Engine
 from playground.engine.planner import Planner
 from playground.gpu.textures import split_format
 from playground.images.files import read_image, write_png
+from playground.paths import SKETCHES
 from playground.sketch.assign import shown_parameters
 from playground.sketch.colour import srgb_to_linear
 from playground.sketch.load import load
@@ -23,6 +24,7 @@ from playground.sketch.model import Sketch
 from playground.web.page_data import page_data
 from playground.web.plan import KINDS
 
+from ..report import browser as browsers
 from ..sketch_texts import map_of, passes
 
 KINDS_OF_NUMBERS = {"f1": np.uint8, "nu2": np.uint16, "f2": np.float16, "f4": np.float32}
@@ -169,3 +171,41 @@ def test_a_fixed_image_is_not_locked_away_from_its_sentence():
     found = rows("drape")
     [why] = {row["locked"] for row in found.values() if row["widget"] == "file" and "image" in row["locked"]}
     assert why == "the image was chosen when the page was exported"
+
+
+# ── in a browser ─────────────────────────────────────────────────────────────
+
+DECODE = """
+const bytes = Uint8Array.from(atob(arguments[0]), (one) => one.charCodeAt(0));
+createImageBitmap(new Blob([bytes], { type: "image/webp" }),
+    { premultiplyAlpha: "none", colorSpaceConversion: "none" }).then((bitmap) => {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const { width, height } = bitmap;
+  gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+  gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+  const target = [gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D];
+  gl.framebufferTexture2D(...target, gl.getParameter(gl.TEXTURE_BINDING_2D), 0);
+  const texels = new Uint8Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, texels);
+  let text = "";
+  for (let at = 0; at < texels.length; at += 8192) {
+    text += String.fromCharCode(...texels.subarray(at, at + 8192));
+  }
+  window.decoded = btoa(text);
+});
+"""
+
+
+@pytest.mark.skipif(bool(browsers.MISSING), reason=browsers.MISSING)
+def test_a_browser_decodes_an_image_to_the_engines_texels(tmp_path: Path):
+    page = page_data([load("drape")])
+    [image] = [one for one in page["shared"]["images"].values() if one.get("file")]
+    [file] = (SKETCHES / "data").glob("jacksboro_from_above.jpg")
+    expected = read_image(file).pixels
+    with browsers.Browser(tmp_path / "profile") as browser:
+        browser.open("data:text/html,decode")
+        browser.run(DECODE, base64.b64encode(bytes_of(page, image["blob"])).decode())
+        found = base64.b64decode(browser.wait("window.decoded"))
+    np.testing.assert_array_equal(np.frombuffer(found, np.uint8).reshape(expected.shape), expected)
