@@ -9,7 +9,7 @@ from pathlib import Path
 from .node import RUNTIME
 
 LONGEST, WIDEST = 400, 110
-IMPORT = re.compile(r'^(?:import|export|\})[^;"]*?(?:\bfrom |^import )"([^"]+)";', re.MULTILINE)
+IMPORT = re.compile(r'^(?:import |(?:import|export)\b[^;"]*?\bfrom )"([^"]+)";', re.MULTILINE)
 # What makes code or markup of a text: a page's policy forbids the first, and texts of sketches are anyone's.
 UNSAFE = re.compile(
     r"\beval\(|\bnew Function\b|\b(?:inner|outer)HTML\b|\binsertAdjacentHTML\b|\bdocument\.write"
