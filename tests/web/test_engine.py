@@ -173,6 +173,54 @@ def test_work_in_slices_gives_the_same_and_an_estimate(pages: Pages, drawn: Engi
     assert estimate["isKnown"] and estimate["milliseconds"] > 0
 
 
+def test_large_passes_are_cut_into_bands(pages: Pages, drawn: Engine, sketch: Made):
+    """What was never measured begins with a band of it; the bits are those of one draw."""
+    whole = sketch(CHAIN).with_values({"size": "700"})
+    begun(pages, whole)
+    frame = drawn.render(whole, size=SIZE)
+    assert pages.picture(whole.name, soon=0.25).levels_off(frame.array) == 0
+    np.testing.assert_array_equal(
+        pages.read(whole.name, "spread", "soft")[..., 0], drawn.read(whole, "spread")
+    )
+
+
+def test_figures_draw_in_between_each_others_slices(pages: Pages, drawn: Engine, sketch: Made):
+    whole = sketch(CHAIN)
+    [data] = begun(pages, whole)
+    pages.open(data, "other")
+    script = """const { toy, other } = figures, states = [{ "seed.seed": 4 }, { "seed.seed": 5 }];
+    [toy.state.values, other.state.values] = states;
+    const both = [toy.renderSoon(0.25), other.renderSoon(0.25)];
+    await new Promise((resume) => setTimeout(resume, 1));
+    other.state.values = { "seed.seed": 6 };
+    other.render();
+    return (await both[0]).ran.length"""
+    assert pages.run(f"return (async () => {{ {script} }})()") == 4
+    for name, seed in (("toy", 4), ("other", 6)):
+        frame = drawn.render(whole.with_values({"seed.seed": seed}), size=SIZE)
+        picture = pages.picture(name)
+        assert picture.ran == []
+        assert picture.levels_off(frame.array) == 0
+
+
+def test_two_figures_of_one_loop_run_at_once(pages: Pages, drawn: Engine, sketch: Made):
+    """Both are at the same state of the loop: the one that comes to it later takes it over."""
+    loop = '[[pass]]\nname = "grow"\nuse = "./grows"\nrepeat = "frames"\nfeedback = { own = "state" }\n'
+    whole = sketch(loop + map_of("grow"))
+    [data] = begun(pages, whole)
+    pages.open(data, "other")
+    script = """const { toy, other } = figures;
+    toy.state.time = 1;
+    const soon = toy.renderSoon(0.25);
+    await new Promise((resume) => setTimeout(resume, 3));
+    other.state.time = 0.5;
+    other.render();
+    return (await soon).milliseconds"""
+    pages.run(f"return (async () => {{ {script} }})()")
+    for name, time in (("toy", 1.0), ("other", 0.5)):
+        assert pages.picture(name, time=time).levels_off(drawn.render(whole, size=SIZE, time=time).array) == 0
+
+
 def test_a_later_call_overtakes_one_in_slices(pages: Pages, drawn: Engine, sketch: Made):
     whole = sketch(CHAIN)
     begun(pages, whole)

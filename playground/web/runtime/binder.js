@@ -38,6 +38,7 @@ export const createBinder = (context, textures, images) => {
     gl.samplerParameteri(made, gl.TEXTURE_WRAP_R, around);
     gl.samplerParameteri(made, gl.TEXTURE_MAG_FILTER, far === "linear" ? gl.LINEAR : gl.NEAREST);
     gl.samplerParameteri(made, gl.TEXTURE_MIN_FILTER, mipmap ? levels : linear ? gl.LINEAR : gl.NEAREST);
+    if (linear && mipmap && context.anisotropy[1] > 1) gl.samplerParameterf(made, ...context.anisotropy);
     samplers.set(key, made);
     return made;
   };

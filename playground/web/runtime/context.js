@@ -12,6 +12,7 @@
  *  @property {boolean} floatBlend      whether draws on 32-bit floats may blend
  *  @property {EXT_texture_norm16 | null} norm16   null: formats of 16 bits are 32-bit floats
  *  @property {KHR_parallel_shader_compile | null} parallel
+ *  @property {[number, number]} anisotropy   of textures with mipmaps: the parameter's name, and how much
  *  @property {{size: number, units: number, spare: number, outputs: number}} limits   texels, texture units
  *  @property {number} objects          objects made so far
  *  @property {(kind: Kind, ...how: any[]) => any} make
@@ -19,9 +20,19 @@
  *  @property {() => Object<string, number>} counts   objects that live, by kind
  *  @property {(where: string) => void} check   raise what WebGL reports */
 
+const ANISOTROPY = 8; // of textures with mipmaps
+
 /** @param {string} code @param {string} sentence @param {object} [more] @returns {Failure} */
 export const failure = (code, sentence, more = {}) =>
   Object.assign(new Error(sentence), { code, sentence }, more);
+
+/** Whether a renderer is a program: there, anisotropy costs a hundred times as much.
+ *  @param {WebGL2RenderingContext} gl */
+const isSoftware = (gl) => {
+  const named = gl.getExtension("WEBGL_debug_renderer_info");
+  const name = gl.getParameter(named ? named.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
+  return /llvmpipe|softpipe|swiftshader|basic render|software/i.test(name);
+};
 
 /** Open a canvas's context; `without` lists extensions to do without.
  *  @param {HTMLCanvasElement | OffscreenCanvas} canvas
@@ -39,7 +50,7 @@ export const openContext = (canvas, { without = [] } = {}) => {
   /** @type {Object<string, number>} */
   const live = {};
   const any = /** @type {any} */ (gl);
-  const units = gl.getParameter(gl.MAX_TEXTURE_IMAGE_UNITS);
+  const anisotropic = extension("EXT_texture_filter_anisotropic");
   /** @type {Context} */
   const context = {
     gl,
@@ -47,9 +58,13 @@ export const openContext = (canvas, { without = [] } = {}) => {
     floatBlend: !!extension("EXT_float_blend"),
     norm16: extension("EXT_texture_norm16"),
     parallel: extension("KHR_parallel_shader_compile"),
+    anisotropy: isSoftware(gl) || !anisotropic ? [0, 1] : [
+      anisotropic.TEXTURE_MAX_ANISOTROPY_EXT,
+      Math.min(ANISOTROPY, gl.getParameter(anisotropic.MAX_TEXTURE_MAX_ANISOTROPY_EXT)),
+    ],
     limits: {
       size: gl.getParameter(gl.MAX_TEXTURE_SIZE),
-      units,
+      units: gl.getParameter(gl.MAX_TEXTURE_IMAGE_UNITS),
       spare: gl.getParameter(gl.MAX_COMBINED_TEXTURE_IMAGE_UNITS) - 1, // no sampler of ours reads this one
       outputs: gl.getParameter(gl.MAX_DRAW_BUFFERS),
     },

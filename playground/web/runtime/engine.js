@@ -2,7 +2,7 @@
 
 import { createBinder } from "./binder.js";
 import { createCache } from "./cache.js";
-import { openContext } from "./context.js";
+import { failure, openContext } from "./context.js";
 import { createDraws } from "./draws.js";
 import { createImages } from "./images.js";
 import { createKernels } from "./kernels.js";
@@ -39,6 +39,7 @@ import { createTextures } from "./textures.js";
  *  @property {() => boolean} isLost
  *  @property {() => Object<string, number>} counts   WebGL's objects that live, by kind
  *  @property {() => number} bytes             of textures that are kept
+ *  @property {() => void} trim                releases programs that no player needs, all but the latest
  *  @property {() => void} close */
 
 const BYTES = 384 * 2 ** 20;
@@ -80,6 +81,7 @@ export const createEngine = (canvas, shared, options = {}) => {
       return player;
     },
     restore: async () => {
+      if (engine.isLost()) throw failure("context-lost", "The graphics context is not back yet.");
       for (const player of players) player.forget();
       engine.parts = build();
       for (const player of players) await player.load();
@@ -87,6 +89,8 @@ export const createEngine = (canvas, shared, options = {}) => {
     isLost: () => engine.parts.context.gl.isContextLost(),
     counts: () => engine.parts.context.counts(),
     bytes: () => engine.parts.cache.bytes + engine.parts.textures.bytes,
+    trim: () =>
+      engine.parts.programs.trim(() => new Set([...players].flatMap((player) => player.programs()))),
     close: () => {
       for (const player of [...players]) player.close();
       const { cache, textures, images, binder, draws, plain, programs } = engine.parts;

@@ -35,6 +35,7 @@ import { PLAIN } from "./binder.js";
  *  @property {() => Uint8Array} picture             RGBA, row 0 south
  *  @property {(ref: Ref) => {size: [number, number], channels: number, data: Float32Array}} read
  *  @property {(file: string, text: string) => Promise<import("./edits.js").Edit>} edit
+ *  @property {() => import("./programs.js").Program[]} programs   that it may need again
  *  @property {() => void} forget                    what lived in a context that was lost
  *  @property {() => void} close */
 
@@ -93,7 +94,8 @@ export const createPlayer = (engine, sketch, onClose) => {
   const keysFor = (plan) => {
     const given = givenBy(plan);
     return keysOf(plan, {
-      given: (step) => (step.kernel.kind === "draw" ? { ...given(step), samples: samplesOf(step) } : given(step)),
+      given: (step) =>
+        (step.kernel.kind === "draw" ? { ...given(step), samples: samplesOf(step) } : given(step)),
       used: (kernel) => textOf(kernel).used,
       text: (kernel) => textOf(kernel).identity,
     });
@@ -133,7 +135,7 @@ export const createPlayer = (engine, sketch, onClose) => {
     const { execution, plan: drawn } = /** @type {NonNullable<typeof found>} */ (found);
     player.plan = drawn;
     shown = { execution, wired: execution.texture(drawn.picture) };
-    engine.parts.programs.trim(new Set([...read.values()].flatMap((each) => [...each.programs.values()])));
+    engine.trim();
     if (objects !== context.objects) context.check(sketch.name); // what ran without an error will do so again
     return ran;
 
@@ -276,6 +278,8 @@ export const createPlayer = (engine, sketch, onClose) => {
       }
       return found;
     },
+
+    programs: () => [...read.values()].flatMap((each) => [...each.programs.values()]),
 
     forget: () => {
       stop();

@@ -111,8 +111,10 @@ export const createPrograms = (context) => {
     known.delete(program.texts.join("\0"));
   };
 
-  /** Release programs that were used least recently, but those in use. @param {Set<Program>} used */
-  const trim = (used) => {
+  /** Release programs that were used least recently, but those in use. @param {() => Set<Program>} inUse */
+  const trim = (inUse) => {
+    if (known.size <= SPARE) return;
+    const used = inUse();
     const spare = [...known.values()].filter((each) => !used.has(each)).sort((a, b) => a.used - b.used);
     spare.splice(0, Math.max(spare.length - SPARE, 0)).forEach(release);
   };
