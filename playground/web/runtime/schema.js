@@ -79,11 +79,17 @@
  *  @property {[string, Source | null][]} inputs
  *  @property {Object<string, string>} values       parameter of the kernel → path in `Sketch.values`
  *  @property {string} base                         whose size it has: a path in `Sketch.passes`
- *  @property {DataTexture[]} [data]                of a source: its texels for now */
+ *  @property {DataTexture[]} [data]                of a source: its texels
+ *  @property {Clock} [clock]                       of a source that plays a file: which second of it shows */
 
-/** What the processor made, exported as texels.
+/** What the processor made, exported as texels. Of what plays a file, `frames` are blobs, of which each
+ *  shows from its second in `times` on, the first before that, and `length` are the file's seconds.
  *  @typedef {{output: string, format: string, size: [number, number], blob: string,
- *             times?: number[], frames?: string[]}} DataTexture */
+ *             times?: number[], frames?: string[], length?: number}} DataTexture */
+
+/** At a time shows the second `start + speed * time` of the file, modulo its length where `loop` is true:
+ *  paths in `Sketch.values`; without `speed` it is 1.
+ *  @typedef {{start: string, speed?: string, loop: string}} Clock */
 
 /** @typedef {{path: string, loop: true, repeat: Expression, countsFrames: boolean, followsTime: boolean,
  *             body: Node[], feedback: [string, Source | null, {path: string, output: string}][]}} Loop */
@@ -186,5 +192,9 @@
  *  @typedef {{format: 1, sketches: Sketch[], shared: Shared, pack?: Object<string, string>,
  *             poster?: string, labels?: Object<string, string>}} Page
  *  pack: names in the zip of "download my version" → text, or "blob:KEY" for bytes. */
+
+/** What an HTML file holds in its element #playground-page: a page, or (see page_file.js) one whose JSON,
+ *  but for `shared.blobs`, is packed: gzip in base64.
+ *  @typedef {{format: 1, packed: string, blobs: Object<string, string>}} PageFile */
 
 export {};
