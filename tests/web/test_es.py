@@ -6,6 +6,10 @@ import moderngl
 import pytest
 
 from playground.gpu.wrap import wrap
+from playground.sketch.find import shipped_sketches
+from playground.sketch.flat import leaves_of
+from playground.sketch.flatten import flatten
+from playground.sketch.load import load
 from playground.sketch.model import Kernel
 
 from ..cases import each
@@ -38,6 +42,18 @@ def test_every_program_of_the_library_compiles_as_es(node: Node, ctx: moderngl.C
             ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
         except moderngl.Error as error:
             raise AssertionError(name) from error
+
+
+@pytest.mark.slow
+def test_every_program_of_another_tool_that_ships_compiles_as_es(node: Node, ctx: moderngl.Context):
+    if "GL_ARB_ES3_compatibility" not in ctx.extensions:
+        pytest.skip("this driver compiles no GLSL ES")
+    leaves = [leaf for name in shipped_sketches() for leaf in leaves_of(flatten(load(name)).nodes)]
+    found = {leaf.kernel.name: leaf.kernel for leaf in leaves if leaf.kernel.kind == "plain_fragment"}
+    assert {kernel.dialect for kernel in found.values()} >= {"main", "shadertoy", "isf"}
+    for kernel in found.values():
+        vertex, fragment = (es(node, text) for text in stages_of(kernel))
+        ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
 
 
 def test_a_line_is_as_it_was_but_for_the_version_the_precisions_and_initial_values(node: Node):
@@ -143,10 +159,9 @@ def test_extensions_go_unless_they_are_asked_for(node: Node):
     assert found.split("\n")[1:] == [PRECISION, "#extension GL_EXT_y : require", "int x;", ""]
 
 
-def test_built_in_functions_are_replaced_by_those_handed_in(node: Node):
-    text = "#version 330\n\nint a = textureLod(textureLodOffset);\n"
-    by_hand = {"text": "int k_lod(int x) { return x; }", "names": {"textureLod": "k_lod"}}
-    assert es(node, text, byHand=by_hand).split("\n")[1:3] == [
-        f"{PRECISION} int k_lod(int x) {{ return x; }}",
-        "int a = k_lod(textureLodOffset);",
-    ]
+def test_declarations_that_are_handed_in_come_first(node: Node):
+    text = "#version 330\n#define A\n\nint a = f(1);\n"
+    found = es(node, text, declarations="int f(int x) { return x; }")
+    assert found == text.replace("330", "300 es").replace(
+        "A\n", f"A\n{PRECISION} int f(int x) {{ return x; }}", 1
+    )
