@@ -5,7 +5,6 @@ from __future__ import annotations
 import base64
 import io
 import os
-import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -61,13 +60,8 @@ def opened(browser: Browser, url: str) -> None:
 
 
 def at_rest(browser: Browser) -> None:
-    """Wait until the picture has stayed as it is for a while."""
-    shown, since = "", time.monotonic()
-    while time.monotonic() - since < 0.8:
-        now = browser.run("const c = document.querySelector('canvas'); return c.toDataURL()")
-        if now != shown:
-            shown, since = now, time.monotonic()
-        time.sleep(0.1)
+    """Wait until no other picture is to come."""
+    browser.wait("document.querySelector('.stage').getAttribute('aria-busy') === 'false'")
     assert browser.run("return document.querySelector('.notes .alarm')?.textContent ?? ''") == ""
 
 
