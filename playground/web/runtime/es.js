@@ -20,7 +20,8 @@ const DECLARATION = /\/\/.*|\/\*[^]*?\*\/|^[ \t]*#.*|\buniform\b[^;{=]*=/gm;
  *  @param {string} text @param {{extensions?: string[], byHand?: ByHand}} [options] @returns {string} */
 export function toES(text, { extensions = [], byHand } = {}) {
   let found = text.replace(VERSION, "").replace(EXTENSION, (line, name) => extensions.includes(name) ? line : "");
-  found = withoutInitialisers(found);
+  // Desktops take no notice of precisions; a browser may, and draw another picture.
+  found = withoutInitialisers(found).replace(/\b(?:lowp|mediump)\b/g, (word) => "highp".padEnd(word.length));
   for (const [name, instead] of Object.entries(byHand?.names ?? {})) {
     found = found.replace(new RegExp(`\\b${name}\\b`, "g"), instead);
   }
