@@ -40,14 +40,11 @@ vec2 kernel(ivec2 texel) {
     return steep * vec2(here, here - textureLod(field, place + 0.3 / vec2(size), 0.0).r);
 }
 """
-CHAIN = (
-    passes(
-        seed="./seed",
-        spread=("./spread", 'inputs = { initial = "seed" }'),
-        sloped=("./sloped", 'inputs = { field = "spread" }'),
-    )
-    + map_of("sloped")
-)
+CHAIN = passes(
+    seed="./seed",
+    spread=("./spread", 'inputs = { initial = "seed" }'),
+    sloped=("./sloped", 'inputs = { field = "spread" }'),
+) + map_of("sloped")
 STATE = """#pragma kernel(output = "state:r32f")
 uniform sampler2D own;     //! input("zero")
 uniform float rate = 3.7;  //! slider(3, 4)
@@ -83,7 +80,9 @@ def sketch(tmp_path: Path) -> Callable[..., Sketch]:
     return made
 
 
-def begun(pages: Pages, *sketches: Sketch, size: tuple[int, int] = SIZE, **options: Any) -> list[dict[str, Any]]:
+def begun(
+    pages: Pages, *sketches: Sketch, size: tuple[int, int] = SIZE, **options: Any
+) -> list[dict[str, Any]]:
     data = page_data(sketches, frame=size)
     pages.begin(data, **options)
     for one in data["sketches"]:
@@ -106,7 +105,14 @@ def test_what_runs_is_what_the_engine_would_run(pages: Pages, drawn: Engine, ske
     whole = sketch(CHAIN)
     begun(pages, whole)
     drawn.cache.clear()
-    for changes in ({}, {"sloped.steep": 2.5}, {"seed.seed": 5}, {"spread.count": 3}, {"spread.count": 9}, {}):
+    for changes in (
+        {},
+        {"sloped.steep": 2.5},
+        {"seed.seed": 5},
+        {"spread.count": 3},
+        {"spread.count": 9},
+        {},
+    ):
         frame = drawn.render(whole.with_values(changes), size=SIZE)
         picture = pages.picture(whole.name, values=changes)
         assert picture.levels_off(frame.array) == 0
@@ -141,7 +147,9 @@ def test_a_loop_feeds_back(pages: Pages, drawn: Engine, sketch: Callable[..., Sk
         assert picture.ran == drawn.ran
 
 
-def test_a_loop_that_counts_frames_goes_on_and_back(pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]):
+def test_a_loop_that_counts_frames_goes_on_and_back(
+    pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]
+):
     loop = '[[pass]]\nname = "grow"\nuse = "./grows"\nrepeat = "frames"\nfeedback = { own = "state" }\n'
     whole = sketch(loop + map_of("grow"))
     begun(pages, whole)
@@ -152,7 +160,9 @@ def test_a_loop_that_counts_frames_goes_on_and_back(pages: Pages, drawn: Engine,
         assert picture.ran == drawn.ran
 
 
-def test_work_in_slices_gives_the_same_and_an_estimate(pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]):
+def test_work_in_slices_gives_the_same_and_an_estimate(
+    pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]
+):
     whole = sketch(CHAIN)
     begun(pages, whole)
     assert not pages.run("return figures.toy.estimate().isKnown")

@@ -84,7 +84,9 @@ def settings_of(sketch: Sketch, data: dict[str, Any]) -> Iterator[Settings]:
         yield found
 
 
-def test_another_renderer_differs_in_its_rounding_only(tmp_path_factory: pytest.TempPathFactory, drawn: Engine):
+def test_another_renderer_differs_in_its_rounding_only(
+    tmp_path_factory: pytest.TempPathFactory, drawn: Engine
+):
     """SwiftShader rounds otherwise: less than 0.4 of a level in the mean, in few pixels by much."""
     if MISSING:
         pytest.skip(MISSING)

@@ -136,12 +136,13 @@ function globals(text) {
     const value = text.slice(tokens[at].at, tokens[end].at).replace(/[^\n]/g, "");
     edits.push({ at: tokens[at].at, end: tokens[end].at, text: value });
   });
+  const begin = edits.length;
   tokens.forEach((token, at) => {
-    if (!set || token.text !== "main" || tokens[at - 1]?.text !== "void") return;
+    if (token.text !== "main" || tokens[at - 1]?.text !== "void") return;
     const brace = closing(tokens, at + 1) + 1;
     if (tokens[brace]?.text === "{") edits.push({ at: tokens[brace].end, end: tokens[brace].end, text: set });
   });
-  return edited(text, edits);
+  return set && edits.length > begin ? edited(text, edits) : text;
 }
 
 /** Local constants that are worked out from variables are variables.

@@ -1,8 +1,9 @@
 // glsl_tokens.js -- cuts GLSL into tokens, and applies changes to it that leave its lines where they are.
 
 /** @typedef {{text: string, at: number, end: number}} Token */
-/** Text to put at a place, in place of what is up to `end`.
- *  @typedef {{at: number, end: number, text: string}} Edit */
+/** Text to put at a place, in place of what is up to `end`. One that `opens` goes around what others at its
+ *  place go around that were made before it.
+ *  @typedef {{at: number, end: number, text: string, opens?: boolean}} Edit */
 
 const TOKEN = new RegExp(
   [
@@ -33,12 +34,13 @@ export function macrosOf(text) {
   return found;
 }
 
-/** A text with changes; of those at one place the first comes first.
+/** A text with changes; of those at one place the first comes first, but for those that open.
  *  @param {string} text @param {Edit[]} edits */
 export function edited(text, edits) {
   let found = "", from = 0;
   const inOrder = edits.map((edit, index) => ({ edit, index }))
-    .sort((a, b) => a.edit.at - b.edit.at || a.index - b.index);
+    .sort((a, b) => a.edit.at - b.edit.at || Number(a.edit.opens ?? 0) - Number(b.edit.opens ?? 0)
+      || (a.edit.opens ? b.index - a.index : a.index - b.index));
   for (const { edit } of inOrder) {
     found += text.slice(from, edit.at) + edit.text;
     from = Math.max(edit.end, from);

@@ -6,6 +6,7 @@ import { flatten } from "./source.js";
 import { stageText } from "./wrap.js";
 import { toES } from "./es.js";
 import { declaredUniforms } from "./uniforms.js";
+import { withConversions } from "./conversions.js";
 import { withoutDesktopForms as forES } from "./desktop_glsl.js";
 import { filteredByHand } from "./linear_by_hand.js";
 
@@ -51,7 +52,7 @@ export const readKernel = (shared, kernel, texts) => {
 export const stagesOf = ({ kernel, flat, vertex }, byHand, atEnd) => {
   const stages = [kernel.vertex, kernel.fragment].map((stage, i) => {
     const { text, first } = stageText(stage, i ? flat : vertex);
-    const plain = kernel.kind === "plain_fragment" ? forES(text) : text;
+    const plain = kernel.kind === "plain_fragment" ? withConversions(forES(text)) : text;
     const filtered = byHand.size ? filteredByHand(plain, byHand) : { text: plain, functions: "" };
     const found = i && atEnd ? filtered.text.replace(/\}\s*$/, `${atEnd} }\n`) : filtered.text;
     return { text: toES(found, { extensions: kernel.extensions, byHand: { text: filtered.functions, names: {} } }), first };
