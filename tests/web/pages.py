@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import playground.web
+
 from ..report.browser import MESA, MISSING, Browser
 from .node import NODE
 
@@ -116,7 +117,7 @@ class Pages:
         return self._asked("pages.open", name or sketch["name"], sketch)
 
     def picture(self, name: str, soon: float = 0, **state: Any) -> Picture:
-        """Return the picture of an open sketch with more of its state set; with ``soon`` in such slices [ms]."""
+        """Return the picture of an open sketch with ``state`` set; with ``soon`` in slices of so many ms."""
         told = self._asked("pages.picture", name, state, soon)
         width, height = told["size"]
         texels = np.frombuffer(base64.b64decode(told["texels"]), np.uint8).reshape(height, width, 4)

@@ -17,6 +17,9 @@ from playground.web.page_data import page_data
 from ..sketch_texts import map_of, passes
 from .pages import PageError, Pages
 
+Made = Callable[..., Sketch]
+Exported = dict[str, Any]
+
 SIZE = (96, 64)
 SEED = """#pragma kernel(output = "height:r32f")
 uniform float level = 0.5;  //! slider(0, 2)
@@ -57,7 +60,8 @@ FLOW = """#pragma kernel(output = "flow:r32f")
 uniform sampler2D water;  //! input
 uniform sampler2D rough;  //! input
 float kernel(ivec2 texel) {
-    return 0.5 * texelFetch(water, texel, 0).r + 0.1 * texelFetch(rough, texel, 0).r + 0.01 * float(iteration);
+    float more = 0.1 * texelFetch(rough, texel, 0).r + 0.01 * float(iteration);
+    return 0.5 * texelFetch(water, texel, 0).r + more;
 }
 """
 FLOWS = (
@@ -68,7 +72,7 @@ GROWS = passes(state="./state") + '[inputs]\nown = "state.own"\n[outputs]\nstate
 
 
 @pytest.fixture
-def sketch(tmp_path: Path) -> Callable[..., Sketch]:
+def sketch(tmp_path: Path) -> Made:
     def made(body: str, **files: str) -> Sketch:
         texts = {"seed.glsl": SEED, "spread.glsl": SPREAD, "sloped.glsl": SLOPED, "state.glsl": STATE}
         texts |= {"flow.glsl": FLOW, "flows.toml": FLOWS, "grows.toml": GROWS}
@@ -101,7 +105,7 @@ def test_sketches_of_each_kind_are_drawn_with_the_engines_bits(pages: Pages, dra
         assert len(np.unique(picture.pixels)) > 16
 
 
-def test_what_runs_is_what_the_engine_would_run(pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]):
+def test_what_runs_is_what_the_engine_would_run(pages: Pages, drawn: Engine, sketch: Made):
     whole = sketch(CHAIN)
     begun(pages, whole)
     drawn.cache.clear()
@@ -120,7 +124,7 @@ def test_what_runs_is_what_the_engine_would_run(pages: Pages, drawn: Engine, ske
     assert pages.picture(whole.name).ran == []
 
 
-def test_a_repeat_stops_early_and_goes_on(pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]):
+def test_a_repeat_stops_early_and_goes_on(pages: Pages, drawn: Engine, sketch: Made):
     whole = sketch(CHAIN)
     begun(pages, whole)
     for count in (0, 2, 5, 4, 6):
@@ -135,7 +139,7 @@ def test_a_repeat_stops_early_and_goes_on(pages: Pages, drawn: Engine, sketch: C
         assert pages.picture(lattice.name, steps={path: count}).levels_off(frame.array) == 0
 
 
-def test_a_loop_feeds_back(pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]):
+def test_a_loop_feeds_back(pages: Pages, drawn: Engine, sketch: Made):
     loop = '[[pass]]\nname = "rain"\nuse = "./flows"\ninputs = { water = "seed" }\nrepeat = "7"\n'
     whole = sketch(passes(seed="./seed") + loop + 'feedback = { water = "water" }\n' + map_of("rain"))
     begun(pages, whole)
@@ -147,9 +151,7 @@ def test_a_loop_feeds_back(pages: Pages, drawn: Engine, sketch: Callable[..., Sk
         assert picture.ran == drawn.ran
 
 
-def test_a_loop_that_counts_frames_goes_on_and_back(
-    pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]
-):
+def test_a_loop_that_counts_frames_goes_on_and_back(pages: Pages, drawn: Engine, sketch: Made):
     loop = '[[pass]]\nname = "grow"\nuse = "./grows"\nrepeat = "frames"\nfeedback = { own = "state" }\n'
     whole = sketch(loop + map_of("grow"))
     begun(pages, whole)
@@ -160,9 +162,7 @@ def test_a_loop_that_counts_frames_goes_on_and_back(
         assert picture.ran == drawn.ran
 
 
-def test_work_in_slices_gives_the_same_and_an_estimate(
-    pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]
-):
+def test_work_in_slices_gives_the_same_and_an_estimate(pages: Pages, drawn: Engine, sketch: Made):
     whole = sketch(CHAIN)
     begun(pages, whole)
     assert not pages.run("return figures.toy.estimate().isKnown")
@@ -173,7 +173,7 @@ def test_work_in_slices_gives_the_same_and_an_estimate(
     assert estimate["isKnown"] and estimate["milliseconds"] > 0
 
 
-def test_a_later_call_overtakes_one_in_slices(pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]):
+def test_a_later_call_overtakes_one_in_slices(pages: Pages, drawn: Engine, sketch: Made):
     whole = sketch(CHAIN)
     begun(pages, whole)
     script = """const player = figures.toy, first = player.renderSoon(1);
@@ -184,9 +184,7 @@ def test_a_later_call_overtakes_one_in_slices(pages: Pages, drawn: Engine, sketc
     assert pages.picture(whole.name).ran == []
 
 
-def test_an_edited_text_is_drawn_and_a_wrong_one_told_by_line(
-    pages: Pages, drawn: Engine, sketch: Callable[..., Sketch]
-):
+def test_an_edited_text_is_drawn_and_a_wrong_one_told_by_line(pages: Pages, drawn: Engine, sketch: Made):
     whole = sketch(CHAIN)
     [data] = begun(pages, whole)
     file = next(kernel["file"] for kernel in data["kernels"] if kernel["file"].endswith("sloped.glsl"))
@@ -227,7 +225,7 @@ def test_a_context_that_was_lost_comes_back(pages: Pages):
     assert len(again.ran) == len(before.ran)
 
 
-def test_a_device_that_filters_no_floats_is_filtered_by_hand(pages: Pages, sketch: Callable[..., Sketch]):
+def test_a_device_that_filters_no_floats_is_filtered_by_hand(pages: Pages, sketch: Made):
     toy, land = sketch(CHAIN), load("geomipmap").with_values({"size": "65"})
     begun(pages, toy, land, size=(160, 90))
     pictures = {name: pages.picture(name) for name in (toy.name, land.name)}
@@ -238,7 +236,29 @@ def test_a_device_that_filters_no_floats_is_filtered_by_hand(pages: Pages, sketc
         assert len(np.unique(now.pixels)) > 16
 
 
-def test_a_device_without_16_bits_rounds_to_them(pages: Pages, sketch: Callable[..., Sketch]):
+def test_floats_that_are_not_filtered_have_levels_all_the_same(pages: Pages, sketch: Made):
+    """Shown from above, a texture is read with mipmaps: its levels are 16-bit floats there."""
+    whole = sketch(passes(seed="./seed") + map_of("seed"))
+    begun(pages, whole, size=(24, 20))
+    before = pages.picture(whole.name)
+    begun(pages, whole, size=(24, 20), without=["OES_texture_float_linear"])
+    now = pages.picture(whole.name)
+    assert now.levels_off(before.pixels) <= 3
+    assert len(np.unique(now.pixels)) > 16
+
+
+def test_any_texture_is_shown_from_above(pages: Pages, drawn: Engine, sketch: Made):
+    """Its levels are made where the sketch itself reads none."""
+    whole = sketch(CHAIN)
+    begun(pages, whole, size=(24, 20))
+    before = pages.picture(whole.name)
+    shown = {"path": "seed", "output": "height", "values": {}}
+    other = sketch(CHAIN.replace(map_of("sloped"), map_of("seed")))
+    assert pages.picture(whole.name, map=shown).levels_off(drawn.render(other, size=(24, 20)).array) == 0
+    assert pages.picture(whole.name, map=None).levels_off(before.pixels) == 0
+
+
+def test_a_device_without_16_bits_rounds_to_them(pages: Pages, sketch: Made):
     """Numbers beyond 0 to 1 stop there, as they do in the format itself."""
     sixteen = SEED.replace("r32f", "r16").replace("0.5;", "1.7;")
     whole = sketch(CHAIN, seed=sixteen)
@@ -250,7 +270,7 @@ def test_a_device_without_16_bits_rounds_to_them(pages: Pages, sketch: Callable[
     np.testing.assert_allclose(now, before, rtol=0, atol=1.01 / 65535)  # drivers round as they like
 
 
-def test_a_device_that_cannot_draw_floats_is_told(pages: Pages, sketch: Callable[..., Sketch]):
+def test_a_device_that_cannot_draw_floats_is_told(pages: Pages, sketch: Made):
     data = page_data([sketch(CHAIN)], frame=SIZE)
     with pytest.raises(PageError) as caught:
         pages.begin(data, without=["EXT_color_buffer_float"])
@@ -259,7 +279,7 @@ def test_a_device_that_cannot_draw_floats_is_told(pages: Pages, sketch: Callable
 
 
 @pytest.mark.slow
-def test_nothing_is_left_behind_by_a_thousand_changes(pages: Pages, sketch: Callable[..., Sketch]):
+def test_nothing_is_left_behind_by_a_thousand_changes(pages: Pages, sketch: Made):
     begun(pages, sketch(CHAIN))
     script = """const player = figures.toy, { state } = player, canvas = document.createElement("canvas");
     const context2d = canvas.getContext("2d");
@@ -278,7 +298,7 @@ def test_nothing_is_left_behind_by_a_thousand_changes(pages: Pages, sketch: Call
     assert bytes_after <= 1.05 * bytes_before
 
 
-def test_a_closed_engine_has_released_everything(pages: Pages, sketch: Callable[..., Sketch]):
+def test_a_closed_engine_has_released_everything(pages: Pages, sketch: Made):
     begun(pages, sketch(CHAIN), load("geomipmap").with_values({"size": "65"}))
     for name in ("toy", "geomipmap"):
         pages.picture(name)
@@ -286,7 +306,7 @@ def test_a_closed_engine_has_released_everything(pages: Pages, sketch: Callable[
     assert set(left.values()) == {0}
 
 
-def test_figures_share_programs_and_passes(pages: Pages, sketch: Callable[..., Sketch]):
+def test_figures_share_programs_and_passes(pages: Pages, sketch: Made):
     whole = sketch(CHAIN)
     [data] = begun(pages, whole)
     pages.picture(whole.name)

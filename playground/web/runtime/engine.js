@@ -59,7 +59,8 @@ export const createEngine = (canvas, shared, options = {}) => {
     const binder = createBinder(context, textures, images);
     const kernels = createKernels(context, textures, programs, binder, shared);
     const draws = createDraws(context, textures, programs, binder, kernels);
-    const plain = createPlain(context, textures, images, binder, kernels), cache = createCache(bytes, textures);
+    const plain = createPlain(context, textures, images, binder, kernels);
+    const cache = createCache(bytes, textures);
     return { context, textures, programs, images, binder, kernels, draws, plain, cache };
   };
 

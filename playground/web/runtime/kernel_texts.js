@@ -33,14 +33,15 @@ export const readKernel = (shared, kernel, texts) => {
     : flatten(shared, kernel.file, texts, { once: !!kernel.dialect });
   const once = { once: !!kernel.dialect }, own = kernel.vertex?.file;
   const vertex = own ? flatten(shared, own, texts, once) : flat;
-  const code = [flat, ...(own ? [vertex] : [])].flatMap(({ lines }) => lines.map((line) => line.code)).join("\n");
+  const lines = own ? [...flat.lines, ...vertex.lines] : flat.lines, code = lines.map((line) => line.code).join("\n");
   const given = Object.keys(shared.given).filter((name) => flat.names.has(name));
   const declared = new Set(kernel.parameters.map(({ name }) => name));
   return {
     kernel, flat, vertex, given, programs: new Map(), hands: new Map(),
     used: usedBy(kernel, code, given),
     identity: hash(JSON.stringify([kernel, code])),
-    own: declaredUniforms(flat.lines).flatMap(({ name, value }) => (value === null || declared.has(name) ? [] : [[name, value]])),
+    own: declaredUniforms(flat.lines).filter(({ name, value }) => value !== null && !declared.has(name))
+      .map(({ name, value }) => [name, value]),
   };
 };
 
@@ -55,7 +56,8 @@ export const stagesOf = ({ kernel, flat, vertex }, byHand, atEnd) => {
     const plain = kernel.kind === "plain_fragment" ? withConversions(forES(text)) : text;
     const filtered = byHand.size ? filteredByHand(plain, byHand) : { text: plain, functions: "" };
     const found = i && atEnd ? filtered.text.replace(/\}\s*$/, `${atEnd} }\n`) : filtered.text;
-    return { text: toES(found, { extensions: kernel.extensions, byHand: { text: filtered.functions, names: {} } }), first };
+    const how = { extensions: kernel.extensions, byHand: { text: filtered.functions, names: {} } };
+    return { text: toES(found, how), first };
   });
   return { texts: [stages[0].text, stages[1].text], first: [stages[0].first, stages[1].first] };
 };
