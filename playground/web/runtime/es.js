@@ -19,9 +19,10 @@ const DECLARATION = /\/\/.*|\/\*[^]*?\*\/|^[ \t]*#.*|\buniform\b[^;{=]*=/gm;
  *  Of the extensions that it asks for, those named in `extensions` stay.
  *  @param {string} text @param {{extensions?: string[], byHand?: ByHand}} [options] @returns {string} */
 export function toES(text, { extensions = [], byHand } = {}) {
-  let found = text.replace(VERSION, "").replace(EXTENSION, (line, name) => extensions.includes(name) ? line : "");
+  const other = text.replace(VERSION, "").replace(EXTENSION, (line, name) =>
+    (extensions.includes(name) ? line : ""));
   // Desktops take no notice of precisions; a browser may, and draw another picture.
-  found = withoutInitialisers(found).replace(/\b(?:lowp|mediump)\b/g, (word) => "highp".padEnd(word.length));
+  let found = withoutInitialisers(other).replace(/\b(?:lowp|mediump)\b/g, (word) => "highp".padEnd(word.length));
   for (const [name, instead] of Object.entries(byHand?.names ?? {})) {
     found = found.replace(new RegExp(`\\b${name}\\b`, "g"), instead);
   }
