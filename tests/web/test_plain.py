@@ -98,9 +98,9 @@ def test_a_plain_shader_alone_has_the_engines_bits(pages: Pages, drawn: Engine, 
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["life", "fluid", "reaction_diffusion"])
-def test_a_state_goes_on_with_the_time_and_back(pages: Pages, drawn: Engine, name: str):
-    agree(pages, drawn, load(name), 0.1, 0.5, 0.2, 0.21)
+@pytest.mark.parametrize("name", ["life", "fluid", "reaction_diffusion", "channels", "film_terrain"])
+def test_a_state_or_a_film_goes_on_with_the_time_and_back(pages: Pages, drawn: Engine, name: str):
+    agree(pages, drawn, load(name), 0.1, 0.5, 0.2, 13 / 60)
 
 
 POINTER = """void mainImage(out vec4 c, in vec2 p) {
