@@ -8,7 +8,7 @@ import { createEyeHeight } from "./eye_height.js";
 import { readKernel } from "./kernel_texts.js";
 import { makePlan } from "./planner.js";
 import { isLoop, needed, stepsOf } from "./plan_nodes.js";
-import { shownAt } from "./recordings.js";
+import { blobAt, playingOf } from "./recordings.js";
 import { keysOf } from "./staleness.js";
 import { usualOf } from "./usual.js";
 import { PLAIN } from "./binder.js";
@@ -77,7 +77,12 @@ export const createPlayer = (engine, sketch, onClose) => {
     return (step, frame = null) => {
       const { kernel, leaf, size } = step;
       const now = frame === null ? time : frame / 60;
-      if (kernel.kind === "source") return { moment: leaf ? shownAt(leaf, step.values, now) : [] };
+      if (kernel.kind === "source") {
+        const playing = leaf ? playingOf(leaf, step.values) : null;
+        return { moment: (leaf?.data ?? []).map((texture) => {
+          return { output: texture.output, format: texture.format, blob: blobAt(texture, playing, now) };
+        }) };
+      }
       if (kernel.kind === "plain_fragment") return usualOf(plan, step, frame, player.state.live ?? {});
       /** @type {Object<string, any>} */
       const found = {};

@@ -1,27 +1,37 @@
-// recordings.js -- which frame of what plays a file shows at a time: a film's, or a sound's.
+// recordings.js -- which frame of a film or a sound shows at a time: terrain/over_time.py over what was exported.
 
 /** @typedef {import("./schema.js").DataTexture} DataTexture */
-/** @typedef {import("./schema.js").Leaf} Leaf */
-/** @typedef {import("./schema.js").Value} Value */
 
-const MARGIN = 1e-6; // [s] what is rounded down to just before a frame's time is at it
+// [s] A time is meant to be that of the frame that begins so little later.
+const MARGIN = 1e-6;
 
-/** The texels of a source at a time [s], by output: of one that plays a file, the frame of then.
- *  @param {Leaf} leaf @param {Object<string, Value>} values of the source's parameters, by name
- *  @param {number} time @returns {{output: string, format: string, blob: string}[]} */
-export function shownAt({ data = [], clock, values: paths }, values, time) {
-  /** @param {string | undefined} path @param {Value} unset @returns {Value} */
-  const said = (path, unset) => {
-    const name = Object.keys(paths).find((each) => paths[each] === path);
-    return name === undefined ? unset : values[name];
-  };
-  const start = Number(said(clock?.start, 0)), speed = Number(said(clock?.speed, 1));
-  const loop = Boolean(said(clock?.loop, false));
-  return data.map(({ output, format, blob, times, frames, length = 0 }) => {
-    if (!times || !frames) return { output, format, blob };
-    let seconds = start + speed * time + MARGIN;
-    if (loop && length > 0) seconds = ((seconds % length) + length) % length;
-    const later = times.findIndex((each) => each > seconds);
-    return { output, format, blob: frames[Math.max((later < 0 ? frames.length : later) - 1, 0)] };
-  });
+/** Which second of the file shows, before it loops, and whether it does.
+ *  @typedef {{start: number, speed?: number, loop: boolean}} Playing */
+
+/** Return the blob that a texture of a source has at a time in seconds; of what does not play, its own.
+ *  @param {DataTexture} texture @param {Playing | null} playing @param {number} time @returns {string} */
+export function blobAt(texture, playing, time) {
+  const { times, frames, length = 0 } = texture;
+  if (!times || !frames || !playing) return texture.blob;
+  let second = playing.start + (playing.speed ?? 1) * time + MARGIN;
+  const before = second < 0 && playing.speed === undefined; // of a sound, which begins in silence
+  if (playing.loop && length > 0 && !before) second -= Math.floor(second / length) * length;
+  let low = 0, high = times.length; // as Python's bisect_right
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (second < times[middle]) high = middle;
+    else low = middle + 1;
+  }
+  return frames[Math.max(low - 1, 0)];
+}
+
+/** Return how a source plays its file; null of one that plays none.
+ *  @param {import("./schema.js").Leaf} leaf
+ *  @param {Object<string, import("./schema.js").Value>} values of its parameters, by name
+ *  @returns {Playing | null} */
+export function playingOf({ clock, values: paths }, values) {
+  if (!clock) return null;
+  const byPath = new Map(Object.entries(paths).map(([name, path]) => [path, values[name]]));
+  const speed = clock.speed === undefined ? undefined : Number(byPath.get(clock.speed));
+  return { start: Number(byPath.get(clock.start)), speed, loop: Boolean(byPath.get(clock.loop)) };
 }
