@@ -13,6 +13,7 @@ from playground.sketch.expressions import counts_frames, follows_time
 from playground.sketch.model import Kernel, Parameter, Sampling
 from playground.sketch.wiring import initial_names
 from playground.terrain.meshes import mesh_parameters
+from playground.web.es_lacks import lacking
 from playground.web.expression_trees import accepted, tree
 from playground.web.stages import stage_data
 from playground.web.texts import Texts
@@ -139,6 +140,8 @@ def _refuse(kernel: Kernel) -> None:
         raise kernel.error(f"{_name(kernel)} is a compute shader, which no web page can run")
     if kernel.kind == "source":
         return
+    if name := lacking(kernel.source.code):
+        raise kernel.error(f"{_name(kernel)} names {name}, which the GLSL of web pages has not")
     if kernel.blend != "none" and any(split_format(o.format)[1] == "f4" for o in kernel.outputs):
         raise kernel.error(f"{_name(kernel)} blends 32-bit floats, which many browsers cannot; 16f can")
     names = [declared.name for declared in kernel.inputs]

@@ -20,6 +20,7 @@ from ..dialect_texts import TEXTS
 from ..isf_texts import TEXTS as ISF
 from ..isf_texts import VERTEX
 from ..main_dialect_texts import MAIN_TEXTS
+from ..sketch_texts import map_of_height
 from ..toy_texts import EXPORTS, FOLDERS, VSCODE
 from .pages import Pages
 
@@ -128,3 +129,23 @@ def test_the_pointer_and_the_date_are_what_the_page_says(pages: Pages, drawn: En
     assert moved.levels_off(expected) == 0
     assert moved.levels_off(still.pixels) > 50
     assert moved.ran and pages.picture(sketch.name, live=live).ran == []
+
+
+LOOSE = """#pragma kernel(output = "height:r32f")
+uniform float steep = 2;     //! slider(0, 4)
+uniform int many = 3;        //! slider(1, 9)
+const float half_of_it = 1 / 2.0;
+float bent(float x, float by) { return pow(x, 2) * by; }
+float kernel(ivec2 texel) {
+    vec2 place = texel / vec2(size);
+    float sum = 0;
+    for (int i = 0; i < many; i++) sum += bent(place.x, i) + max(place.y, 0) * 2;
+    return texel.x > 20 ? sum * steep / many : half_of_it;
+}
+"""
+
+
+def test_a_kernel_of_ones_own_may_be_as_loose_as_desktops_are(pages: Pages, drawn: Engine, tmp_path: Path):
+    (tmp_path / "terrain.glsl").write_text(LOOSE, "utf-8")
+    (tmp_path / "loose.toml").write_text(f"format = 1\nsize = 33\n{map_of_height()}", "utf-8")
+    agree(pages, drawn, load(tmp_path / "loose.toml"), 0.0)

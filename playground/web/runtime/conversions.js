@@ -8,7 +8,7 @@ import { closing, edited, macrosOf, tokensOf } from "./glsl_tokens.js";
 import * as types from "./glsl_types.js";
 
 /** @typedef {import("./glsl_types.js").Type} Type */
-/** Of an expression, with its places in the text.
+/** Of an expression: places in the text, and its type.
  *  @typedef {{at: number, end: number, type: Type, literal?: boolean}} Value */
 /** @typedef {{parameters: {type: Type, out: boolean}[], type: Type}} Signature */
 
@@ -130,23 +130,19 @@ export function withConversions(text) {
   const called = (name, values) => {
     const given = values.map((value) => value.type), all = functions.get(name);
     if (!all) {
-      if (types.takesFloats(name, given)) {
-        for (const value of values.slice(/^tex/.test(name) ? 1 : 0)) convert(value, "float");
-      }
+      const first = /^tex/.test(name) ? 1 : 0; // a sampler
+      if (types.takesFloats(name, given)) values.slice(first).forEach((value) => convert(value, "float"));
       return macros.has(name) ? macroType(name) : types.givenBy(name, values.map((value) => value.type));
     }
     const fitting = all.filter(({ parameters }) => parameters.length === values.length);
-    const same = fitting.find(({ parameters }) =>
-      parameters.every(({ type }, index) => type === given[index]));
-    const close = fitting.find(({ parameters }) => parameters.every(({ type }, index) =>
-      !given[index] || type === given[index]
-      || types.isWidened(types.baseOf(given[index]), types.baseOf(type))));
-    if (!same && close) {
-      values.forEach((value, index) => {
-        const { type, out } = close.parameters[index];
-        convert(value, out ? "" : type);
-      });
-    }
+    const same = fitting.find((one) => one.parameters.every(({ type }, index) => type === given[index]));
+    const close = fitting.find((one) => one.parameters.every(({ type }, index) => {
+      const from = given[index];
+      return !from || type === from || types.isWidened(types.baseOf(from), types.baseOf(type));
+    }));
+    if (!same && close) close.parameters.forEach(({ type, out }, index) => {
+      if (!out) convert(values[index], type);
+    });
     return (same ?? close ?? fitting[0] ?? all[0]).type;
   };
 
@@ -177,8 +173,8 @@ export function withConversions(text) {
           value = { at: value.at, end: field.end, type };
         } else {
           const own = structures.get(value.type)?.find(({ name }) => name === field.text);
-          const parts = SWIZZLE.test(field.text) ? types.swizzled(value.type, field.text) : "";
-          const type = own ? own.type : parts;
+          const part = SWIZZLE.test(field.text) ? types.swizzled(value.type, field.text) : "";
+          const type = own ? own.type : part;
           value = { at: value.at, end: field.end, type };
         }
       } else if (peek() === "++" || peek() === "--") {

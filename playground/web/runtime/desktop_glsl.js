@@ -22,8 +22,8 @@ const BUILT_IN = new Set(("radians degrees sin cos tan asin acos atan sinh cosh 
   + "exp log exp2 log2 sqrt inversesqrt abs sign floor trunc round roundEven ceil fract mod modf min max "
   + "clamp mix step smoothstep isnan isinf length distance dot cross normalize faceforward reflect refract "
   + "matrixCompMult outerProduct transpose determinant inverse lessThan lessThanEqual greaterThan "
-  + "greaterThanEqual equal notEqual any all not dFdx dFdy fwidth floatBitsToInt floatBitsToUint "
-  + "intBitsToFloat uintBitsToFloat").split(" "));
+  + "greaterThanEqual equal notEqual any all not dFdx dFdy fwidth "
+  + "floatBitsToInt floatBitsToUint intBitsToFloat uintBitsToFloat").split(" "));
 const TYPE = /^(?:float|int|uint|bool|[iub]?vec[234]|mat[234](?:x[234])?)$/;
 const STORAGE = new Set("uniform in out inout const attribute varying layout precision".split(" "));
 
@@ -47,8 +47,8 @@ function blocks(text) {
     const end = closing(tokens, at + 2), instance = tokens[end + 1].text === ";" ? "" : tokens[end + 1].text;
     let last = end + 1;
     while (tokens[last].text !== ";") last++;
-    edits.push(
-      { at: word.at, end: brace.end, text: "" }, { at: tokens[end].at, end: tokens[last].end, text: "" });
+    edits.push({ at: word.at, end: brace.end, text: "" });
+    edits.push({ at: tokens[end].at, end: tokens[last].end, text: "" });
     let begins = true;
     for (let inside = at + 3; inside < end; inside++) {
       const token = tokens[inside], next = tokens[inside + 1].text;
@@ -64,8 +64,8 @@ function blocks(text) {
   if (!members.size) return found;
   const uses = tokensOf(found);
   return edited(found, uses.flatMap((token, at) => {
-    const isDotted = uses[at + 1]?.text === ".";
-    const dotted = isDotted ? members.get(`${token.text}.${uses[at + 2]?.text}`) : undefined;
+    const field = uses[at + 1]?.text === "." ? uses[at + 2]?.text : undefined;
+    const dotted = field ? members.get(`${token.text}.${field}`) : undefined;
     if (dotted) return [{ at: token.at, end: uses[at + 2].end, text: dotted }];
     const alone = uses[at - 1]?.text === "." ? undefined : members.get(token.text);
     return alone ? [{ at: token.at, end: token.end, text: alone }] : [];
@@ -136,10 +136,9 @@ function globals(text) {
     while (tokens[name].text === "]") while (tokens[name--].text !== "[");
     if (begins === "const") constant.add(tokens[name].text);
     if (STORAGE.has(begins) || !variables(tokens.slice(at + 1, end), constant).length) return;
-    const given = text.slice(tokens[at + 1].at, tokens[end].at).replace(/\s*\n\s*/g, " ");
-    set += ` ${tokens[name].text} = ${given};`;
-    const value = text.slice(tokens[at].at, tokens[end].at).replace(/[^\n]/g, "");
-    edits.push({ at: tokens[at].at, end: tokens[end].at, text: value });
+    const value = text.slice(tokens[at].at, tokens[end].at);
+    set += ` ${tokens[name].text} ${value.replace(/\s*\n\s*/g, " ")};`;
+    edits.push({ at: tokens[at].at, end: tokens[end].at, text: value.replace(/[^\n]/g, "") });
   });
   const begin = edits.length;
   tokens.forEach((token, at) => {
@@ -160,7 +159,7 @@ function constants(text) {
   tokens.forEach(({ text: word, at: from, end: to }, at) => {
     depth += word === "{" ? 1 : word === "}" ? -1 : 0;
     if (word !== "const" || !TYPE.test(tokens[at + 1]?.text ?? "")) return;
-    if (["(", ","].includes(tokens[at - 1]?.text)) return;
+    if (["(", ","].includes(tokens[at - 1]?.text)) return; // a function's parameter
     const end = tokens.findIndex((token, index) => index > at && token.text === ";");
     const name = tokens[at + 2].text;
     const equals = tokens.findIndex((token, index) => index > at && token.text === "=");

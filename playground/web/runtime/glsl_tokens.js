@@ -14,14 +14,23 @@ const TOKEN = new RegExp(
   ].join("|"), "g");
 const DIRECTIVE = /^[ \t]*#(?:\\\n|[^\n])*/gm;
 
+/** The text that was cut last: what changes nothing in it hands it on to the next.
+ *  @type {{text: string, tokens: Token[]}} */
+let last = { text: "", tokens: [] };
+
 /** The tokens of a text without its comments and directives.
  *  @param {string} text @returns {Token[]} */
 export function tokensOf(text) {
+  if (text !== last.text) last = { text, tokens: cut(text) };
+  return last.tokens;
+}
+
+/** @param {string} text @returns {Token[]} */
+function cut(text) {
   const plain = text.replace(/\/\*[^]*?\*\/|\/\/[^\n]*/g, (comment) => comment.replace(/[^\n]/g, " "))
     .replace(DIRECTIVE, (line) => line.replace(/[^\n]/g, " "));
-  return [...plain.matchAll(TOKEN)]
-    .filter(([, word, number, sign]) => word ?? number ?? sign)
-    .map((match) => ({ text: match[0], at: match.index, end: match.index + match[0].length }));
+  const found = [...plain.matchAll(TOKEN)].filter(([, word, number, sign]) => word ?? number ?? sign);
+  return found.map(({ 0: written, index }) => ({ text: written, at: index, end: index + written.length }));
 }
 
 /** The macros that a text defines: their parameters, null of one without any, and what stands for them.

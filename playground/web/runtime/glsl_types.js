@@ -62,8 +62,7 @@ const COMPARING = new Set(
 /** @type {Object<string, Type>} */
 const ALWAYS = {
   length: "float", distance: "float", dot: "float", determinant: "float", cross: "vec3", any: "bool",
-  all: "bool",
-  texelFetch: "vec4", texelFetchOffset: "vec4",
+  all: "bool", texelFetch: "vec4", texelFetchOffset: "vec4",
 };
 
 /** Whether a built-in function takes floats, so that its whole numbers become some.

@@ -8,7 +8,7 @@ import { stageText } from "./wrap.js";
 import { toES } from "./es.js";
 import { declaredUniforms } from "./uniforms.js";
 import { withConversions } from "./conversions.js";
-import { withoutDesktopForms as forES } from "./desktop_glsl.js";
+import { withoutDesktopForms } from "./desktop_glsl.js";
 import { filteredByHand } from "./linear_by_hand.js";
 
 /** @typedef {import("./schema.js").Kernel} Kernel */
@@ -18,6 +18,7 @@ import { filteredByHand } from "./linear_by_hand.js";
  *  @property {Kernel} kernel
  *  @property {import("./source.js").Flat} flat
  *  @property {import("./source.js").Flat} vertex   its author's own vertex shader's, else the same
+ *  @property {boolean} desktop        whether it may say what only desktop GLSL allows: not the library's
  *  @property {string[]} given         names that the engine gives it
  *  @property {Set<string>} used       names in its text besides their declaration, or in its header
  *  @property {string} identity        the same for the same header and text
@@ -42,6 +43,8 @@ export const readKernel = (shared, kernel, texts) => {
   const declared = new Set(kernel.parameters.map(({ name }) => name));
   return {
     kernel, flat, vertex, given, programs: new Map(), hands: new Map(),
+    desktop: kernel.kind === "plain_fragment"
+      || lines.some(({ file }) => file.startsWith("./") || file in texts),
     used: usedBy(kernel, code, given),
     identity: hash(JSON.stringify([kernel, code])),
     own: declaredUniforms(flat.lines).filter(({ name, value }) => value !== null && !declared.has(name))
@@ -54,11 +57,11 @@ export const readKernel = (shared, kernel, texts) => {
  *  @param {Map<string, import("./linear_by_hand.js").Wrap>} byHand samplers that are filtered in the text
  *  @param {string} atEnd of the fragment shader's main function
  *  @returns {{texts: [string, string], first: [number, number]}} */
-export const stagesOf = ({ kernel, flat, vertex }, byHand, atEnd) => {
+export const stagesOf = ({ kernel, flat, vertex, desktop }, byHand, atEnd) => {
   const stages = [kernel.vertex, kernel.fragment].map((stage, i) => {
     const { text, first } = stageText(stage, i ? flat : vertex);
-    const plain = kernel.kind === "plain_fragment" ? withConversions(forES(text)) : text;
-    const filtered = byHand.size ? filteredByHand(plain, byHand) : { text: plain, functions: "" };
+    const written = desktop ? withConversions(withoutDesktopForms(text)) : text;
+    const filtered = byHand.size ? filteredByHand(written, byHand) : { text: written, functions: "" };
     const found = i && atEnd ? filtered.text.replace(/\}\s*$/, `${atEnd} }\n`) : filtered.text;
     const how = { extensions: kernel.extensions, declarations: filtered.functions };
     return { text: toES(found, how), first };
