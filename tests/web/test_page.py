@@ -86,7 +86,7 @@ def unpacked(text: str) -> str:
 def test_what_people_wrote_is_text(evil: dict[str, Any]):
     page = Elements(page_of(evil))
     expected = "html head meta meta meta meta meta meta title link style body"
-    expected += " main img noscript p p script script script"
+    expected += " main img noscript p p script script script script"
     assert [tag for tag, _ in page.found] == expected.split()
     assert page.texts["title"] == EVIL
     [image] = [given for tag, given in page.found if tag == "img"]
@@ -114,10 +114,11 @@ def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]
         return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
     assert unpacked(page.texts["playground-runtime"]) == SCRIPT
+    assert unpacked(page.texts["playground-style"]) == STYLE
     assert rules == {
         "default-src": "'none'",
         "script-src": f"{digest(page.texts['script'])} {digest(SCRIPT)}",
-        "style-src": digest(STYLE),
+        "style-src": f"{digest(page.texts['style'])} {digest(STYLE)}",
         "img-src": "data: blob:",
         "base-uri": "'none'",
         "form-action": "'none'",
