@@ -153,14 +153,17 @@
  *  @property {Kernel[]} kernels
  *  @property {Node[]} nodes                        in an order that wiring allows
  *  @property {Object<string, Pass>} passes
- *  @property {Object<string, Value>} values        of each leaf parameter, by path; of a file its key in `Shared.images`
+ *  @property {Object<string, Value>} values        of each leaf parameter, by path; of a file its key in
+ *                                                  `Shared.images`
  *  @property {Shown[]} shown
- *  @property {{name: string, values: Object<string, Value>}[]} presets   by the paths of `shown`, "size", "relief" …
+ *  @property {{name: string, values: Object<string, Value>}[]} presets   by the paths of `shown`, "size",
+ *                                                  "relief" …
  *  @property {Track[]} tracks
  *  @property {number} duration                     time of the last keyframe; 0: none
  *  @property {boolean} moves                       its picture follows the time
  *  @property {Rule[]} rules
- *  @property {{ref: string, path: string, output: string, label: string, height: boolean}[]} textures  for maps
+ *  @property {{ref: string, path: string, output: string, label: string, height: boolean}[]} textures
+ *                                                  for maps
  *  @property {MapView} map
  *  @property {Choice[]} choices                    techniques that may be exchanged
  *  @property {string[]} notes                      what a page does otherwise, or cannot, a sentence each */
@@ -169,7 +172,8 @@
  *  @typedef {{kernel: number, input: string, values: Object<string, Value>, shown: Shown[]}} MapView */
 
 /** A technique menu: another sketch for each technique, with the same paths where they have the same names.
- *  @typedef {{pass: string, label: string, now: string, others: {use: string, title: string, sketch: number}[]}} Choice
+ *  @typedef {{pass: string, label: string, now: string,
+ *             others: {use: string, title: string, sketch: number}[]}} Choice
  *  sketch: index in `Page.sketches`. */
 
 /** What sketches share.
@@ -177,10 +181,11 @@
  *  @property {Object<string, string>} files        GLSL by name: "noise/hash.glsl", "./waves.glsl"
  *  @property {Object<string, Object<string, string>>} includes   file → what it writes → file
  *  @property {Object<string, [string, string]>} given   name → GLSL type and meaning (reserved_names.GIVEN)
- *  @property {Object<string, string>} own          the engine's own shaders: copy.frag, spread.frag, fill_between.frag
+ *  @property {Object<string, string>} own          the engine's own shaders: copy.frag, spread.frag,
+ *                                                  fill_between.frag
  *  @property {Object<string, {size: [number, number], kind: "rgba8" | "srgb8" | "rgba16f", blob: string,
- *             file?: string}>} images              image files by key; blob: raw texels, row 0 south, or (file)
- *                                                  the file itself, to be decoded by the browser
+ *             file?: string}>} images              image files by key; blob: raw texels, row 0 south, or
+ *                                                  (file) the file itself, to be decoded by the browser
  *  @property {Object<string, string>} blobs        gzip in base64, by key */
 
 /** A page: what one HTML file holds, or what a book's scripts put together.
