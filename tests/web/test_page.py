@@ -13,9 +13,8 @@ from typing import Any
 
 import pytest
 
-from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
-from playground.web.page import Poster, packed, page_html
+from playground.web.page import Poster, page_html
 from playground.web.page_data import page_data
 
 from ..report import browser as browsers
@@ -136,12 +135,6 @@ def test_it_is_read_as_it_was_written(node: Node, evil: dict[str, Any]):
 def test_the_same_sketch_gives_the_same_bytes():
     first, second = (page_of(page_data([load("delaunay_flips")])) for _ in range(2))
     assert first == second
-
-
-@pytest.mark.parametrize("name", shipped_sketches())
-def test_a_sketch_leaves_room_for_the_runtime(name: str):
-    """A page may have 120 KiB beside its bytes, its runtime included."""
-    assert len(packed(page_data([load(name)]))["packed"]) < 93 * 1024
 
 
 @pytest.mark.skipif(bool(browsers.MISSING), reason=browsers.MISSING)
