@@ -1,9 +1,10 @@
 """Make one HTML file of a page's data and the runtime, which opens from disk and asks nothing of a network.
 
-The data are JSON in an element that no browser runs, and so is the runtime, packed. A script of a few lines
-unpacks it; the page's policy names both scripts by their hashes, and nothing else may run or be fetched.
-What people wrote is escaped where it stands in the page itself (``markup``), and packed in the data.
-The poster is the picture for printing, and for browsers that cannot run the rest.
+The data are JSON in an element that no browser runs, and so are the runtime's style and script, packed. A
+script of a few lines unpacks those; the page's policy names all of them by their hashes, and nothing
+else may run or be fetched. What people wrote is escaped where it stands in the page itself
+(``markup``), and packed in the data. The poster is the picture for printing, and for browsers that cannot
+run the rest.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from playground._version import __version__
 from playground.markup import Markup, tag
 
 _ICON = "data:,"  # or a browser would ask for favicon.ico
+_POSTER_STYLE = "img{max-width:100%;height:auto}"
 _SCRIPTS_OFF = (
     "This picture is alive where scripts may run: allow them for this page, or open it in a browser."
 )
@@ -42,8 +44,7 @@ def page_html(
 ) -> str:
     """Return the whole page: one HTML file.
 
-    ``script`` and ``style`` are the runtime's (see ``bundle``), neither with an end of its own element
-    in it. The same arguments give the same text.
+    ``script`` and ``style`` are the runtime's (see ``bundle``). The same arguments give the same text.
     """
     sketch = page["sketches"][0]
     title = sketch["title"] or sketch["name"]
@@ -65,7 +66,7 @@ def page_html(
         tag("meta", name="generator", content=f"terrain shader playground {__version__}"),
         tag("title", title),
         tag("link", rel="icon", href=_ICON),
-        tag("style", Markup(style)),
+        tag("style", Markup(_POSTER_STYLE)),
     )
     body = (
         tag("main", image, id="playground"),
@@ -73,6 +74,8 @@ def page_html(
         tag("p", _TOO_OLD, id="playground-old", hidden=True),
         "\n",
         tag("script", Markup(_json(packed(page))), type="application/json", id="playground-page"),
+        "\n",
+        tag("script", _packed(style), type="application/gzip", id="playground-style"),
         "\n",
         tag("script", _packed(script), type="application/gzip", id="playground-runtime"),
         "\n",
@@ -91,9 +94,12 @@ def packed(page: Mapping[str, Any]) -> dict[str, Any]:
 
 def policy_of(script: str, style: str) -> str:
     """Return the page's Content-Security-Policy: its own script and style, and pictures that it makes."""
-    scripts = " ".join(f"'sha256-{_hash(text)}'" for text in (_loader(), script))
+    scripts, styles = (
+        " ".join(f"'sha256-{_hash(text)}'" for text in texts)
+        for texts in ((_loader(), script), (_POSTER_STYLE, style))
+    )
     return (
-        f"default-src 'none'; script-src {scripts}; style-src 'sha256-{_hash(style)}';"
+        f"default-src 'none'; script-src {scripts}; style-src {styles};"
         " img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
 

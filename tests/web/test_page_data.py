@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from playground.engine.plan import LoopStep
+from playground.engine.plan import LoopStep, Plan
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
 from playground.gpu.wrap import FRAGMENT, wrap
@@ -18,7 +18,9 @@ from playground.sketch import expressions
 from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
+from playground.web.page import packed
 from playground.web.page_data import page_data
+from playground.web.plan import KINDS
 
 from .. import dialect_texts, isf_texts
 from .node import Node
@@ -31,8 +33,22 @@ STAGES = """async (shared, kernels, load) => {
 
 
 @cache
+def shipped(name: str) -> Sketch:
+    return load(name)
+
+
+@cache
 def written(name: str) -> dict[str, Any]:
-    return page_data([load(name)], frame=(320, 180))
+    return page_data([shipped(name)], frame=(320, 180))
+
+
+@cache
+def planned(name: str) -> Plan:
+    return plan_of(shipped(name))
+
+
+def plan_of(sketch: Sketch) -> Plan:
+    return Planner().plan(sketch, frame_size=(320, 180), variants=KINDS)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -45,12 +61,16 @@ def test_it_is_json_and_says_nothing_of_this_machine(name: str):
 
 
 @pytest.mark.parametrize("name", NAMES)
+def test_its_plan_and_its_texts_are_small(name: str):
+    assert len(packed(written(name))["packed"]) < 96 * 1024
+
+
+@pytest.mark.parametrize("name", NAMES)
 def test_a_page_makes_the_engines_own_stages(node: Node, name: str):
-    check_stages(node, written(name), load(name))
+    check_stages(node, written(name), planned(name))
 
 
-def check_stages(node: Node, page: dict[str, Any], loaded: Sketch) -> None:
-    plan = Planner().plan(loaded, frame_size=(320, 180), variants=("passes",))
+def check_stages(node: Node, page: dict[str, Any], plan: Plan) -> None:
     [sketch] = page["sketches"]
     of = {leaf["path"]: sketch["kernels"][leaf["kernel"]] for leaf in leaves(sketch["nodes"])}
     asked, expected = [], []
@@ -80,7 +100,7 @@ def test_a_page_makes_the_stages_of_other_tools_shaders(node: Node, tmp_path: Pa
         pytest.skip("needs files of its own")
     page = page_data([sketch])
     assert str(tmp_path) not in json.dumps(page)
-    check_stages(node, page, sketch)
+    check_stages(node, page, plan_of(sketch))
 
 
 def leaves(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -144,7 +164,7 @@ class Numbers:
 @pytest.mark.parametrize("name", NAMES)
 def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str):
     [sketch] = written(name)["sketches"]
-    plan = Planner().plan(load(name), frame_size=(320, 180), variants=("passes",))
+    plan = planned(name)
     numbers = Numbers(plan, sketch)
     loops: dict[str, Any] = {}
 
@@ -167,8 +187,7 @@ def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str):
 def test_values_are_those_that_the_engine_gives(name: str):
     """Before keyframes and what follows: those the page works out by itself."""
     [sketch] = written(name)["sketches"]
-    found = load(name)
-    plan = Planner().plan(found, frame_size=(320, 180), variants=("passes",))
+    plan = planned(name)
     set_elsewhere = {path for track in sketch["tracks"] for path in track["targets"]}
     set_elsewhere |= {path for rule in sketch["rules"] for path in rule["targets"]}
     steps = {step.path: step for step in plan.walk()}

@@ -2,27 +2,16 @@
 
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
-import { unpacked } from "./images.js";
+import { readPage } from "./page_file.js";
 import { repeatsOf } from "./planner.js";
 import { createPage } from "./sketch_page.js";
 import { fill, wordsOf } from "./words.js";
 
-/** @typedef {import("./schema.js").Page} Page */
-
-/** What the page's file holds: its data as they are, or packed but for the bytes.
- *  @returns {Promise<Page>} */
-async function readPage() {
-  const data = JSON.parse(document.getElementById("playground-page")?.textContent ?? "");
-  if (!data.packed) return data;
-  const page = JSON.parse(new TextDecoder().decode(await unpacked(data.packed)));
-  page.shared.blobs = data.blobs;
-  return page;
-}
-
 async function start() {
   const main = /** @type {HTMLElement} */ (document.getElementById("playground"));
   const poster = /** @type {HTMLImageElement | null} */ (document.getElementById("playground-poster"));
-  const words = wordsOf(document.documentElement.lang), page = await readPage();
+  const words = wordsOf(document.documentElement.lang);
+  const page = await readPage(document.getElementById("playground-page")?.textContent ?? "");
   const canvas = document.createElement("canvas");
   let engine;
   try {
