@@ -19,6 +19,14 @@ from playground.sketch.source import Line, SourceText
 if TYPE_CHECKING:
     import moderngl
 
+FOREIGN = "the character U+{0}, {1}, is none of GLSL's: only comments may have it"
+"""Sentence for a character beyond ASCII; {0} is its number, {1} its name."""
+
+NAMELESS = "of no name"
+
+PAST_END = "{0}; is a bracket unclosed? the file needs {1}"
+"""Sentence for what a driver finds behind the last line; {1} is what the file is to define."""
+
 
 def compile_wrapped(ctx: moderngl.Context, wrapped: Wrapped) -> moderngl.Program | moderngl.ComputeShader:
     """Compile and link; raise ``ShaderError`` with one diagnostic for each of the driver's complaints."""
@@ -72,8 +80,8 @@ def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diag
     line = stage.locate(entry.line) if entry.line else _defined(entry.message, stage.source)
     if line is not None and entry.severity == "error" and (place := _beyond_ascii(line)) is not None:
         found = line.text[place]
-        message = f"the character U+{ord(found):04X}, {name_of(found, 'of no name')}, is none of GLSL's"
-        return line.diagnostic(f"{message}: only comments may have it", place + 1, entry.severity)
+        message = FOREIGN.format(f"{ord(found):04X}", name_of(found, NAMELESS))
+        return line.diagnostic(message, place + 1, entry.severity)
     more = guess(entry.message, stage.source, line) or hint(entry.message)
     message = f"{entry.message}; {more}" if more else entry.message
     if line is not None:
@@ -84,9 +92,7 @@ def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diag
     if entry.line and entry.line >= stage.first + len(stage.source.lines) - 1:
         # Past the last line: either an unclosed bracket, or the wrapper's call does not fit.
         last = next((ln for ln in reversed(stage.source.lines) if ln.code.strip()), stage.source.lines[-1])
-        return last.diagnostic(
-            f"{entry.message}; is a bracket unclosed? the file needs {stage.expected}", 0, entry.severity
-        )
+        return last.diagnostic(PAST_END.format(entry.message, stage.expected), 0, entry.severity)
     return Diagnostic(message, shown(wrapped.kernel.path), 0, 0, entry.severity)
 
 
@@ -101,7 +107,7 @@ def _defined(message: str, source: SourceText) -> Line | None:
 
     "function `float f(float)' has static recursion".
     """
-    match = _FUNCTION.search(message)
+    match = DEFINED.search(message)
     if match is None:
         return None
     wanted = [words.split()[0] for words in match.group(3).split(",") if words.split()]
@@ -115,7 +121,7 @@ def _defined(message: str, source: SourceText) -> Line | None:
     return near
 
 
-_FUNCTION = re.compile(r"function [`'\"](\w+) (\w+)\(([^)]*)\)[`'\"]")
+DEFINED = re.compile(r"function [`'\"](\w+) (\w+)\(([^)]*)\)[`'\"]")
 _QUALIFIERS = frozenset({"const", "in", "out", "inout", "lowp", "mediump", "highp"})
 
 
