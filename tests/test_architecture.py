@@ -302,7 +302,10 @@ def test_nothing_must_be_edited_in_two_places():
     wrong = []
     asks = re.compile(r"\bmust match\b|\bkeep (?:this |these |it )?in (?:sync|step)\b|\bsame as in\b", re.I)
     for path in (*PACKAGE.rglob("*"), *(ROOT / "glsl").rglob("*")):
-        if path.suffix not in (".py", ".js", ".css", ".glsl", ".comp", ".toml"):
+        if (
+            path.suffix not in (".py", ".js", ".css", ".glsl", ".comp", ".toml")
+            or "node_modules" in path.parts
+        ):
             continue
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
             comment = re.search(r"(?:#|//|/\*)(.*)", line)

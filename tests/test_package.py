@@ -52,6 +52,10 @@ def test_the_wheel_carries_every_file_of_the_library(wheel: Path):
         assert f"playground/shots/page/{path.name}" in inside
     shaders = list((ROOT / "playground/gpu/shaders").iterdir())
     assert shaders and inside >= {f"playground/gpu/shaders/{path.name}" for path in shaders}
+    web = {name for name in inside if name.startswith("playground/web/") and not name.endswith(".py")}
+    assert web == {
+        f"playground/web/bundle/{path.name}" for path in (ROOT / "playground/web/bundle").glob("*")
+    }
     assert not [name for name in inside if name.startswith(("tests/", "screenshots/"))]
 
 
