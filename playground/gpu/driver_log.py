@@ -314,10 +314,10 @@ HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
             "`%` is for whole numbers: write `mod(a, b)` for floats.",
         ),
         (
-            r"(?:if-statement|loop) condition must be scalar boolean",
+            r"(?:if-statement|loop) condition must be scalar boolean|boolean expression expected",
             "A condition is a bool: compare a number, as in `x > 0.0`.",
         ),
-        (r"recursion", "GLSL has no recursion: write a loop."),
+        (r"recursion|recursive function", "GLSL has no recursion: write a loop."),
         (r"C-style initialization", "Braces do not fill an array here: write `float[](1.0, 2.0)`."),
         (
             r"swizzle|field selection|cannot access field|unknown field|no such field",

@@ -57,6 +57,7 @@ def words() -> dict[str, object]:
         "definition": _pattern(names.DEFINITION),
         "runs": _pattern(names.RUNS),
         "defined": _pattern(program.DEFINED),
+        "chain": _pattern(program.CHAIN),
         "cast": _pattern(names.CAST),
         "types": list(names.TYPES),
         "near": names.NEAR,

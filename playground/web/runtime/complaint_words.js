@@ -104,10 +104,10 @@ export const WORDS = {
       "`%` is for whole numbers: write `mod(a, b)` for floats.",
     ],
     [
-      "(?:if-statement|loop) condition must be scalar boolean", "i",
+      "(?:if-statement|loop) condition must be scalar boolean|boolean expression expected", "i",
       "A condition is a bool: compare a number, as in `x > 0.0`.",
     ],
-    ["recursion", "i", "GLSL has no recursion: write a loop."],
+    ["recursion|recursive function", "i", "GLSL has no recursion: write a loop."],
     ["C-style initialization", "i", "Braces do not fill an array here: write `float[](1.0, 2.0)`."], [
       "swizzle|field selection|cannot access field|unknown field|no such field", "i",
       "These components do not exist here: a `vec3` has x y z (or r g b), a scalar has " +
@@ -202,6 +202,7 @@ export const WORDS = {
   ],
   runs: ["^\\s*#\\s*(?:pragma\\s+(?:kernel|source|draw|compute)\\b|version\\b)", "m"],
   defined: ["function [`'\\\"](\\w+) (\\w+)\\(([^)]*)\\)[`'\\\"]", ""],
+  chain: ["call chain: (\\w+)", ""],
   cast: ["(?<![\\w)\\]])\\(\\s*(float|int|uint|bool|[iub]?vec[234])\\s*\\)\\s*[\\w(.]", ""],
   types: [
     "float", "int", "uint", "bool", "void", "vec2", "vec3", "vec4", "ivec2", "ivec3", "ivec4", "uvec2",

@@ -20,7 +20,8 @@ const some = ([source, flags], more = "") => new RegExp(source, flags + more);
 const FORMATS = WORDS.formats.map(whole);
 const [BENIGN, FRAME, SUMMARY] = [WORDS.benign, WORDS.frame, WORDS.summary].map(whole);
 const HINTS = WORDS.hints.map(([source, flags, sentence]) => ({ pattern: some([source, flags]), sentence }));
-const [MISFIT, CALL, DEFINED] = [WORDS.misfit, WORDS.call, WORDS.defined].map((one) => some(one));
+const MISFIT = some(WORDS.misfit), CALL = some(WORDS.call);
+const DEFINED = some(WORDS.defined), CHAIN = some(WORDS.chain);
 const TYPE = some(WORDS.type, "g");
 const UNBROKEN = some(WORDS.unbroken, "g");
 
@@ -140,7 +141,10 @@ export function complaints(log, given) {
   /** @type {Map<string, Complaint>} */
   const found = new Map();
   for (const entry of parseLog(log)) {
-    const one = located(entry, given), key = [one.file, one.line, one.message].join("\n");
+    const one = located(entry, given);
+    // An open bracket makes everything behind the last line wrong: once is enough.
+    const past = entry.line >= given.first + given.lines.length && entry.severity === "error";
+    const key = [one.file, one.line, past ? "" : one.message].join("\n");
     if (!found.has(key)) found.set(key, one);
   }
   if ([...found.values()].some(({ severity }) => severity === "error")) return [...found.values()];
@@ -189,9 +193,10 @@ function beyondAscii({ code, raw }) {
 /** The line on which a function is defined that a message without a line names, as a linker's does.
  *  @param {string} message @param {FlatLine[]} lines @returns {number} */
 function defined(message, lines) {
-  const match = DEFINED.exec(message);
-  const begins = match && new RegExp(`\\b${match[1]}\\s+${match[2]}\\s*\\(`);
-  return begins ? lines.findIndex(({ code }) => begins.test(code)) : -1;
+  const match = DEFINED.exec(message), chain = CHAIN.exec(message);
+  if (!match && !chain) return -1;
+  const begins = match ? `\\b${match[1]}\\s+${match[2]}\\s*\\(` : `^\\s*\\w+\\s+${chain?.[1]}\\s*\\(`;
+  return lines.findIndex(({ code }) => new RegExp(begins).test(code));
 }
 
 /** @param {string} message @param {string} code @returns {number} of the name that a message quotes; 0 */

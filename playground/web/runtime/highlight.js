@@ -19,7 +19,8 @@ const KEYWORDS = new Set((
   "noinline public static extern external interface long short half fixed unsigned superp input output " +
   "filter sizeof cast namespace using").split(" "));
 const TYPE = new RegExp("^(?:void|bool|u?int|float|double|atomic_uint|[biudhf]?vec[234]|" +
-
+  "d?mat[234](?:x[234])?|sampler3DRect|" +
+  "[iu]?(?:sampler|image)(?:[123]D|Cube|2DRect|Buffer|2DMS)(?:Array)?(?:Shadow)?)$");
 const BUILTIN = new RegExp("^(?:gl_\\w*|radians|degrees|a?sinh?|a?cosh?|a?tanh?|pow|exp2?|log2?|sqrt|" +
   "inversesqrt|abs|sign|floor|trunc|round|roundEven|ceil|fract|modf?|min|max|clamp|mix|step|smoothstep|" +
   "isnan|isinf|floatBitsToU?[iI]nt|u?intBitsToFloat|length|distance|dot|cross|normalize|faceforward|" +
