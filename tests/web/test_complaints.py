@@ -25,6 +25,8 @@ from .planted_errors import PLANTED, in_es
 LOGS = Path(__file__).parent / "logs" / "angle.json"
 LIBRARY = {name: " or ".join(f'`#include "{f}"`' for f in files[:3]) for name, files in library().items()}
 
+WITH_TEXTS = """async (log, given, texts, load) =>
+    (await load("complaints.js")).complaints(log, { ...given, text: (file) => texts[file] })"""
 COMPILE = """
 const gl = document.createElement("canvas").getContext("webgl2");
 const shader = gl.createShader(gl.FRAGMENT_SHADER);
@@ -37,8 +39,7 @@ return gl.getShaderInfoLog(shader);
 def given(stage: ShaderStage, wrapped: Wrapped) -> dict[str, object]:
     """Return what JavaScript is told of a stage's text."""
     lines = [
-        {"code": line.code, "file": shown(line.file), "line": line.number, "raw": line.text}
-        for line in stage.source.lines
+        {"code": line.code, "file": shown(line.file), "line": line.number} for line in stage.source.lines
     ]
     whole = {"first": stage.first, "lines": lines, "expected": stage.expected, "library": LIBRARY}
     return {**whole, "file": shown(wrapped.kernel.path), "kernel": wrapped.kernel.name}
@@ -61,7 +62,8 @@ def test_the_module_of_words_is_up_to_date():
 def test_a_recorded_complaint_is_at_its_line_in_plain_words(node: Node, tmp_path: Path, name: str):
     planted, log = PLANTED[name], logs()[name]
     wrapped = planted.wrapped(tmp_path)
-    found = node.call("complaints.js", "complaints", log, given(wrapped.stages["fragment"], wrapped))
+    texts = {shown(f): Path(f).read_text(encoding="utf-8") for f in wrapped.kernel.source.files}
+    found = node.run(WITH_TEXTS, log, given(wrapped.stages["fragment"], wrapped), texts)
     assert (Path(found[0]["file"]).name, found[0]["line"]) == (planted.file, planted.line), log
     assert planted.part in found[0]["message"]
     assert found[0]["kernel"] == wrapped.kernel.name

@@ -3,8 +3,8 @@
 import { WORDS } from "./complaint_words.js";
 import { filled, guess } from "./name_suggestions.js";
 
-/** A line of a flat text: what the driver is given, and where it is from. `raw` is as written.
- *  @typedef {{code: string, file: string, line: number, raw?: string}} FlatLine */
+/** A line of a flat text: what the driver is given, and where it is from.
+ *  @typedef {{code: string, file: string, line: number}} FlatLine */
 
 /** What is wrong, and where; line 0: it is known of the file alone.
  *  @typedef {{file: string, line: number, column: number, message: string, kernel: string,
@@ -131,6 +131,7 @@ function types(text) {
  *  @property {string} file         the kernel's own file
  *  @property {string} kernel       its name
  *  @property {string} [expected]   what the file is to define, for what is found behind its end
+ *  @property {(file: string) => string | undefined} [text]   of a file, as it is written
  *  @property {Object<string, string>} [library]   function → what to include for it: libraryOf */
 
 /** Return the complaints of a log, each at its line of the kernel's files; never a line of the wrapper.
@@ -153,16 +154,17 @@ export function complaints(log, given) {
 }
 
 /** @param {LogEntry} entry @param {Given} given @returns {Complaint} */
-function located(entry, { first, lines, file, kernel, expected, library }) {
+function located(entry, { first, lines, file, kernel, expected, text, library }) {
   const { severity } = entry;
   const fetches = Object.entries(WORDS.fetches).sort().reverse();  // the longer first
   const message = fetches.reduce((text, [name, ours]) => text.replaceAll(ours, name), entry.message);
   const index = entry.line ? entry.line - first : defined(message, lines);
   const line = index >= 0 ? lines[index] : undefined;
   if (line) {
-    const at = severity === "error" ? beyondAscii(line) : -1;
+    const raw = text?.(line.file)?.split("\n")[line.line - 1] ?? "";
+    const at = severity === "error" ? beyondAscii(line.code, raw) : -1;
     const more = at < 0 ? guess(message, lines, line, library || {}) || hint(message) : "";
-    const told = at < 0 ? (more ? `${message}; ${more}` : message) : foreign(line.raw || "", at);
+    const told = at < 0 ? (more ? `${message}; ${more}` : message) : foreign(raw, at);
     const column = at < 0 ? columnOf(message, line.code) : at + 1;
     return { file: line.file, line: line.line, column, message: told, kernel, severity };
   }
@@ -183,9 +185,9 @@ function foreign(raw, at) {
   return filled(WORDS.foreign, code.toString(16).toUpperCase().padStart(4, "0"), name);
 }
 
-/** @param {FlatLine} line @returns {number} where it has a character that the driver was given as "?"; -1 */
-function beyondAscii({ code, raw }) {
-  if (raw === undefined) return -1;
+/** @param {string} code @param {string} raw
+ *  @returns {number} where a line has a character that the driver was given as "?"; -1 */
+function beyondAscii(code, raw) {
   for (let at = 0; at < code.length; at++) if (code[at] === "?" && raw.charCodeAt(at) > 127) return at;
   return -1;
 }
