@@ -61,7 +61,7 @@ def _names(text: str) -> tuple[str, ...]:
 
 
 def _evaluated(text: str, look_up: Callable[[str], Number], known: tuple[str, ...]) -> int:
-    value = _value_of(_parse(text), text, look_up, known)
+    value = _value_of(parsed(text), text, look_up, known)
     if isinstance(value, float) and value.is_integer():
         value = int(value)
     if not isinstance(value, int):
@@ -71,17 +71,17 @@ def _evaluated(text: str, look_up: Callable[[str], Number], known: tuple[str, ..
 
 def evaluate_number(text: str, names: Mapping[str, Number]) -> float:
     """Evaluate an expression to a number, whole or not. Raises ``ExpressionError`` in a sentence."""
-    return float(_value_of(_parse(text), text, names.__getitem__, tuple(names)))
+    return float(_value_of(parsed(text), text, names.__getitem__, tuple(names)))
 
 
 def evaluate_numbers(text: str, names: Mapping[str, Number]) -> list[float]:
     """Return the numbers of expressions separated by commas. Raises ``ExpressionError`` in a sentence."""
-    return [evaluate_number(part, names) for part in _parts(text)]
+    return [evaluate_number(part, names) for part in split_at_commas(text)]
 
 
 def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Number]) -> tuple[int, int]:
     """Evaluate the two integers of ``"w, h"``."""
-    parts = _parts(text)
+    parts = split_at_commas(text)
     if len(parts) != 2:
         raise ExpressionError(f"'{text}' should be two expressions separated by a comma")
     return evaluate(parts[0], names), evaluate(parts[1], names)
@@ -89,12 +89,12 @@ def evaluate_pair(text: str, names: Mapping[str, Number] | Callable[[str], Numbe
 
 def check(text: str, known: Collection[str], *, count: int = 1) -> None:
     """Raise ``ExpressionError`` where ``text`` is not ``count`` expressions of the names ``known``."""
-    parts = _parts(text)
+    parts = split_at_commas(text)
     if len(parts) != count:
         what = "one expression" if count == 1 else f"{count} expressions separated by a comma"
         raise ExpressionError(f"'{text}' should be {what}")
     for part in parts:
-        _value_of(_parse(part), part, dict.fromkeys(known, 1).__getitem__, tuple(known), dry=True)
+        _value_of(parsed(part), part, dict.fromkeys(known, 1).__getitem__, tuple(known), dry=True)
 
 
 def names_in(text: str) -> frozenset[str]:
@@ -105,8 +105,8 @@ def names_in(text: str) -> frozenset[str]:
         found.add(name)
         return 1
 
-    for part in _parts(text):
-        _value_of(_parse(part), part, look_up, (), dry=True)
+    for part in split_at_commas(text):
+        _value_of(parsed(part), part, look_up, (), dry=True)
     return frozenset(found)
 
 
@@ -139,7 +139,7 @@ def accepted_sizes(accepts: str, limit: int = LARGEST_SIDE) -> tuple[tuple[int, 
     values must grow with n, which goes from 0 up. ``"2**n or 2**n + 1"`` allows either, and
     ``"n up to 4097"`` none above.
     """
-    parts = _parts(accepts)
+    parts = split_at_commas(accepts)
     if len(parts) > 2:
         raise ExpressionError(f"'{accepts}' should be one expression of n, or two of n and m")
     axes = [_either(part, "n" if index == 0 else "m", limit) for index, part in enumerate(parts)]
@@ -149,7 +149,7 @@ def accepted_sizes(accepts: str, limit: int = LARGEST_SIDE) -> tuple[tuple[int, 
 def is_accepted(accepts: str, size: tuple[int, int]) -> bool:
     """Return whether a size is one of those that ``accepts`` allows."""
     xs, ys = accepted_sizes(accepts)
-    if len(_parts(accepts)) == 1 and size[0] != size[1]:
+    if len(split_at_commas(accepts)) == 1 and size[0] != size[1]:
         return False
     return size[0] in xs and size[1] in ys
 
@@ -157,7 +157,7 @@ def is_accepted(accepts: str, size: tuple[int, int]) -> bool:
 def nearest_accepted(accepts: str, size: tuple[int, int]) -> tuple[tuple[int, int], ...]:
     """Return the accepted sizes just below and just above ``size`` (one of them where it has no other)."""
     xs, ys = accepted_sizes(accepts)
-    if len(_parts(accepts)) == 1:
+    if len(split_at_commas(accepts)) == 1:
         size = (max(size), max(size))
     axes = list(zip((xs, ys), size, strict=True))
     below = tuple(max((v for v in axis if v <= s), default=axis[0]) for axis, s in axes)
@@ -166,8 +166,8 @@ def nearest_accepted(accepts: str, size: tuple[int, int]) -> tuple[tuple[int, in
 
 
 @lru_cache(maxsize=256)
-def _parts(text: str) -> tuple[str, ...]:
-    """Split at the commas that are in no bracket."""
+def split_at_commas(text: str) -> tuple[str, ...]:
+    """Split expressions at the commas that are in no bracket."""
     parts: list[str] = []
     depth, start = 0, 0
     for index, letter in enumerate(text):
@@ -207,7 +207,8 @@ def _values(text: str, variable: str, limit: int) -> tuple[int, ...]:
 
 
 @lru_cache(maxsize=1024)
-def _parse(text: str) -> ast.expr:
+def parsed(text: str) -> ast.expr:
+    """Parse an expression, which may be no expression of these; raise ``ExpressionError``."""
     if len(text) > _LONGEST:
         raise ExpressionError(f"an expression may not be longer than {_LONGEST} characters")
     try:

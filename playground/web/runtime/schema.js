@@ -3,14 +3,20 @@
 // Written by playground/web/*.py. Paths are those of the flat sketch ("height.sum"); texels have row 0
 // south; angles are degrees, lengths metres, times seconds.
 
-/** A number, a name, or an operation on others: see expressions.js.
+/** A number, a name, or an operation on others: see expressions.js. A number without a fraction is whole.
  *  Names: "size.x", "iteration", a parameter's own name (in a kernel's header), "time", "frames".
  *  Operations: ["+" | "-" | "*" | "/" | "//" | "%" | "**" | "<" | "<=" | ">" | ">=" | "==" | "!=", a, b],
  *  ["log2" | "bits" | "min" | "max" | "abs" | "floor" | "ceil", ...], ["if", test, then, otherwise],
  *  ["size", base, axis]      texels of a pass, by its path; of base "#terrain" or "#frame" those
  *  ["value", path]           what a uniform gets, by the path of the leaf's parameter
  *  ["picture", path, axis]   texels of the image file that a parameter names
+ *  ["float", 2]              a number that is a float although it has no fraction: 1 / 2.0 is not exact
+ *  ["text", words, a]        a, with the words that messages call it by: as its author wrote it
  *  @typedef {number | string | Array<any>} Expression */
+
+/** The sizes that a kernel takes, along x and then, where it has others there, y: expressions of the name
+ *  "n" ("m" along y) that grow with it from 0 up, each with the largest value that it may give.
+ *  @typedef {[Expression, number][][]} Accepted */
 
 /** A texture: an output of a leaf, or what a loop feeds back under a name.
  *  @typedef {{path: string, output: string} | {loop: string, name: string}} Source */
@@ -33,7 +39,8 @@
  *  blanked (`without`) or names replaced (`replace`, where `replaceIf` holds); then `after`.
  *  `text` is a whole stage instead, made of no file.
  *  @typedef {{text?: string, before?: Array<{text: string, names?: string[]}>, after?: string,
- *             without?: string, replace?: Object<string, string>, keepsVersion?: boolean}} Stage */
+ *             without?: string, replace?: Object<string, string>, keepsVersion?: boolean,
+ *             file?: string}} Stage  file: of its lines, where they are not the kernel's own */
 
 /** A kernel, a draw, a source or a plain shader: what its header says.
  *  @typedef {object} Kernel
@@ -52,6 +59,7 @@
  *  @property {Expression} [atOnce]
  *  @property {"" | "squares" | "triangles"} [between]
  *  @property {string} [accepts]                    as the header has it
+ *  @property {Accepted} [accepted]                 the same, to be evaluated
  *  @property {string} [mesh]                       of a draw
  *  @property {Expression} [count]                  of a draw
  *  @property {"none" | "add" | "alpha"} [blend]
@@ -119,7 +127,9 @@
  *  @typedef {{targets: string[], default: Value, direction: string, menu: string, choice: number}} Rule */
 
 /** @typedef {{size: [number, number], extent: [number, number], relief: number, base_elevation: number,
- *             locked: string}} Terrain  locked: why its size cannot be changed; "": it can */
+ *             locked: string, extentFollows?: boolean}} Terrain
+ *  locked: why its size cannot be changed; "": it can. extentFollows: nothing says the extent, so that its
+ *  sides are to each other as the size's are. */
 
 /** One way to make the picture: a graph with its passes in order.
  *  @typedef {object} Sketch

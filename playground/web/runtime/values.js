@@ -1,0 +1,55 @@
+// values.js -- the values of a sketch's parameters and its camera at a time, as keyframes and a user have them.
+
+import { follow } from "./follows.js";
+import { valueAt } from "./keyframes.js";
+
+/** @typedef {import("./schema.js").Sketch} Sketch */
+/** @typedef {import("./schema.js").Kernel} Kernel */
+/** @typedef {import("./schema.js").Uniform} Uniform */
+/** @typedef {import("./schema.js").Value} Value */
+/** @typedef {import("./schema.js").Camera} Camera */
+/** @typedef {import("./schema.js").Leaf} Leaf */
+
+/** Every leaf pass of a sketch, those inside loops included.
+ *  @param {import("./schema.js").Node[]} nodes @returns {Leaf[]} */
+export const leavesOf = (nodes) => nodes.flatMap((node) => ("loop" in node ? leavesOf(node.body) : [node]));
+
+/** @param {Value} a @param {Value} b */
+export const isSame = (a, b) =>
+  a === b || (Array.isArray(a) && Array.isArray(b) && a.length === b.length && a.every((n, k) => n === b[k]));
+
+/** The value of every leaf parameter, by its path: the sketch's own, under those of its keyframes, under those
+ *  that a user has set; then what follows a direction.
+ *  @param {Sketch} sketch @param {Object<string, Value>} given by path @param {number} time [s] */
+export function valuesAt(sketch, given, time) {
+  const found = { ...sketch.values };
+  for (const track of sketch.tracks) {
+    if (track.of !== "value") continue;
+    const value = valueAt(track, time);
+    for (const path of track.targets) found[path] = value;
+  }
+  Object.assign(found, given);
+  follow(sketch.rules, found);
+  return found;
+}
+
+/** The camera at a time: a user's, else the sketch's with what its keyframes say of it.
+ *  @param {Sketch} sketch @param {Camera | null} given @param {number} time [s] @returns {Camera} */
+export function cameraAt(sketch, given, time) {
+  if (given) return given;
+  const tracks = sketch.tracks.filter((track) => track.of === "camera");
+  return Object.assign({ ...sketch.camera }, ...tracks.map((track) => ({ [track.name]: valueAt(track, time) })));
+}
+
+/** What a uniform gets for a value: of a menu with values of its own the chosen one.
+ *  @param {Uniform} uniform @param {Value} value @returns {Value} */
+export const givenTo = (uniform, value) =>
+  uniform.values?.length && typeof value === "number" ? uniform.values[value] : value;
+
+/** A scalar as expressions have it: whole numbers as bigints; undefined for what is no number.
+ *  @param {string} type GLSL @param {Value} value @returns {number | bigint | undefined} */
+export function numberOf(type, value) {
+  if (typeof value === "boolean") return value ? 1n : 0n;
+  if (typeof value !== "number") return undefined;
+  return type === "float" ? value : BigInt(value);
+}
