@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
+from playground.web.packed import pack_blob
 from playground.web.plan import FORMAT, sketch_data
 from playground.web.shared import SharedData
 
@@ -16,13 +17,18 @@ def page_data(
     frame: tuple[int, int] = DEFAULT_PICTURE,
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
+    packed: bool = False,
 ) -> dict[str, Any]:
     """Return sketches as one page's data: JSON's own types only.
 
     ``frame`` in pixels, ``time`` in seconds, ``steps`` stops repeats early, by path, as in
-    ``Engine.render``. The same sketches give the same data. Raises ``PlaygroundError`` for any mistake
+    ``Engine.render``; ``packed``: with what "download my version" needs. The same sketches give the same
+    data. Raises ``PlaygroundError`` for any mistake
     in a sketch, and for what no page can run.
     """
     shared = SharedData()
     written = [sketch_data(one, shared, frame=frame, time=time, steps=steps) for one in sketches]
+    if packed:
+        for one, data in zip(sketches, written, strict=True):
+            data["pack"] = pack_blob(one, shared.texts.names, shared.blobs)
     return {"format": FORMAT, "sketches": written, "shared": shared.data()}

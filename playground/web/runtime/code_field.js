@@ -27,7 +27,8 @@ export function createCodeField(host, { label, hint, onInput }) {
   area.setAttribute("autocorrect", "off");
   const layer = make("div", { className: "code-layer", "aria-hidden": "true" });
   const gutter = make("div", { className: "code-gutter", "aria-hidden": "true" });
-  const box = make("div", { className: "code-field" }, gutter, make("div", { className: "code-pane" }, layer, area), told);
+  const pane = make("div", { className: "code-pane" }, layer, area);
+  const box = make("div", { className: "code-field" }, gutter, pane, told);
   host.append(box);
 
   let lines = [""], escaped = false, height = 20, asked = 0, drawn = "";
@@ -115,7 +116,8 @@ export function createCodeField(host, { label, hint, onInput }) {
     const { key, ctrlKey, metaKey, altKey, shiftKey } = event, command = ctrlKey || metaKey;
     const now = { text: area.value, start: area.selectionStart, end: area.selectionEnd };
     let done = false;
-    if (key === "Tab" && !escaped && !command && !altKey) done = apply(shiftKey ? outdented(now) : indented(now));
+    const tab = key === "Tab" && !escaped && !command && !altKey;
+    if (tab) done = apply(shiftKey ? outdented(now) : indented(now));
     else if (key === "Enter" && !command && !altKey) done = apply(newLine(now));
     else if (key === "/" && command) done = apply(commented(now));
     else if (key.length === 1 && "})]".includes(key) && !command) done = apply(closing(now, key));
@@ -157,7 +159,8 @@ export function createCodeField(host, { label, hint, onInput }) {
       marks = wanted;
       draw();
     },
-    /** Go to a line, from 1, and a column, from 1 or 0 for its beginning. @param {number} line @param {number} column */
+    /** Go to a line, from 1, and a column, from 1, or 0 for its beginning.
+     *  @param {number} line @param {number} column */
     go(line, column) {
       const before = lines.slice(0, line - 1).reduce((sum, one) => sum + one.length + 1, 0);
       const at = before + Math.max(column - 1, 0);

@@ -118,7 +118,8 @@ export function createEditor(host, player, options = {}) {
       programs = found.programs;
       if (!found.errors.length) await options.shown?.();
     } catch (error) {
-      problems.set(name, [{ file: name, line: 0, message: error instanceof Error ? error.message : String(error), kernel: "" }]);
+      const message = error instanceof Error ? error.message : String(error);
+      problems.set(name, [{ file: name, line: 0, message, kernel: "" }]);
     }
     options.guard?.worked(player.texts);
     if (closed) return;
@@ -132,7 +133,9 @@ export function createEditor(host, player, options = {}) {
   const all = () => {
     /** @type {Map<string, Complaint>} the same complaint of several passes is one */
     const found = new Map();
-    for (const one of [...problems.values()].flat()) found.set([one.file, one.line, one.message].join("\n"), one);
+    for (const one of [...problems.values()].flat()) {
+      found.set([one.file, one.line, one.message].join("\n"), one);
+    }
     return [...found.values()];
   };
 
@@ -143,7 +146,8 @@ export function createEditor(host, player, options = {}) {
       const text = shownName(option.value);
       if (option.text !== text) option.text = text;
     }
-    field.mark(new Map(now.filter((one) => one.file === file && one.line).map((one) => [one.line, one.message])));
+    const here = now.filter((one) => one.file === file && one.line);
+    field.mark(new Map(here.map((one) => [one.line, one.message])));
     list.replaceChildren(...now.map((one) => {
       const plain = one.file.replace(/^\.\//, "");
       const text = worded(one.line ? words.place : words.placeless, { ...one, file: plain });

@@ -39,27 +39,28 @@ export const EDITOR_WORDS = {
   noPack: "This page does not hold what a version needs",
   valuesAside: "A shader's file holds no settings. What was set in the page is in settings.txt.",
   // when there is no picture
-  noWebGL: "This browser offers no WebGL2, so the picture stands still. Update the browser, or allow hardware "
-    + "acceleration in its settings.",
-  noFloat: "This device cannot draw into floating-point textures, which the sketch needs, so the picture stands "
-    + "still.",
+  noWebGL: "This browser offers no WebGL2, so the picture stands still. Update the browser, or allow "
+    + "hardware acceleration in its settings.",
+  noFloat: "This device cannot draw into floating-point textures, which the sketch needs, so the picture "
+    + "stands still.",
   lacks: "This device cannot run the sketch, so the picture stands still: {reason}",
   lost: "The graphics device was lost; the picture is made again as soon as it is back.",
-  lostByEdit: "The graphics device gave up while {name} was tried: the last text that worked is back. Your text "
-    + "is in the editor; look for a loop that does not end.",
-  gone: "The graphics device was lost {count} times, so the picture stands still now. Reload the page to try again.",
+  lostByEdit: "The graphics device gave up while {name} was tried: the last text that worked is back. Your "
+    + "text is in the editor; look for a loop that does not end.",
+  gone: "The graphics device was lost {count} times, so the picture stands still now. Reload the page to try "
+    + "again.",
   restored: "The picture is made again.",
   slow: "At {size} this takes about {time} s a picture, and the browser may stop it.",
   smaller: "Draw it at {size}",
   anyway: "Draw it all the same",
-  hung: "The text of {name} was being tried when this page was closed: it may loop without end. The last text "
-    + "that worked is shown.",
+  hung: "The text of {name} was being tried when this page was closed: it may loop without end. The last "
+    + "text that worked is shown.",
   tryAgain: "Open the text that was tried",
   forget: "Forget it",
   notKept: "This browser keeps nothing for this page: after a reload, edits are gone.",
-  inAddress: "This browser keeps nothing for this page, so edits are kept in its address: reload it there.",
 };
 
 /** Fill a sentence's places, as {name}.
  *  @param {string} sentence @param {Object<string, string | number>} [given] */
-export const worded = (sentence, given = {}) => sentence.replace(/\{(\w+)\}/g, (_, name) => String(given[name] ?? ""));
+export const worded = (sentence, given = {}) =>
+  sentence.replace(/\{(\w+)\}/g, (_, name) => String(given[name] ?? ""));

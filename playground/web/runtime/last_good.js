@@ -14,7 +14,7 @@ const MOST = 2_000_000; // characters
 
 /** Make what keeps the texts of a page.
  *  @param {string} key                          of the sketch: see keyOf
- *  @param {{storage?: Storage | null, tab?: {name: string} | null}} [places]  for tests; else the tab's own */
+ *  @param {{storage?: Storage | null, tab?: {name: string} | null}} [places]  other than the tab's own */
 export function createGuard(key, places = {}) {
   const storage = places.storage === undefined ? ownStorage() : places.storage;
   const tab = places.tab === undefined ? globalThis.window ?? null : places.tab;
@@ -62,7 +62,8 @@ export function createGuard(key, places = {}) {
     get good() { return good; },
     /** The text that was being tried when the page was closed; null: none. */
     get left() { return left; },
-    /** A text is about to be compiled and drawn. @param {string} file @param {string} text @param {Texts} texts */
+    /** A text is about to be compiled and drawn.
+     *  @param {string} file @param {string} text @param {Texts} texts  that work so far */
     trying(file, text, texts) {
       good = { ...texts };
       left = { file, text };

@@ -1,5 +1,6 @@
 // my_version.js -- the zip of "download my version": a sketch with all that was changed in a page.
 
+import { copiesOf, isReached } from "./library_copies.js";
 import { fill, shotText } from "./toml_fill.js";
 import { shellWord, write } from "./value_text.js";
 import { through, zip } from "./zip.js";
@@ -34,7 +35,7 @@ export async function packOf(sketch, shared) {
 
 /** Return the files of the zip, by name.
  *  @param {Pack} pack @param {Sketch} sketch @param {Shared} shared @param {Made} made
- *  @returns {Promise<{files: Files, aside: string[]}>} aside: what the sketch's own files have no place for */
+ *  @returns {Promise<{files: Files, aside: string[]}>} aside: settings that its files have no place for */
 export async function versionFiles(pack, sketch, shared, made) {
   const { folder, main } = pack, texts = changedTexts(made.texts, shared);
   /** @type {Files} */
@@ -42,7 +43,9 @@ export async function versionFiles(pack, sketch, shared, made) {
   /** @type {Map<string, string>} the page's name of a file → its name in the folder */
   const names = new Map();
   for (const [name, [kind, key]] of Object.entries(pack.files)) if (ofPage(kind)) names.set(key, name);
-  const copies = copiesOf(Object.keys(texts).filter((file) => !names.has(file)), pack, shared);
+  const edited = Object.keys(texts).filter((file) => !names.has(file));
+  const reached = edited.filter((file) => isReached(file, pack, shared));
+  const lost = edited.filter((file) => !reached.includes(file)), copies = copiesOf(reached, pack, shared);
   const place = (/** @type {string} */ file) => names.get(file) ?? file.replace(/^\.\//, "");
   /** @param {string} from  where a technique is named */
   const use = (from) => (/** @type {string} */ of) => (copies.has(of) ? relative(from, place(of)) : null);
@@ -56,14 +59,17 @@ export async function versionFiles(pack, sketch, shared, made) {
     files.set(name, ofPage(kind) ? written(key) : kind === "blob" ? await unpacked(shared.blobs[key]) : key);
   }
   for (const file of copies) files.set(place(file), written(file));
+  for (const file of lost) {
+    files.set(`page/${file.replace(/^\.\//, "").replace(/[^\w./-]+/g, "-")}`, texts[file]);
+  }
   let aside = [...made.values.keys()];
   if (pack.toml) {
     const { text, left } = fill(pack.toml, { ...made, use: use(main) });
     files.set(main, text + shotOf(pack, sketch, made));
     aside = left;
   }
-  if (aside.length || (!pack.toml && (made.camera || isAtAnotherTime(made)))) {
-    files.set(SETTINGS, settings(pack, made, aside));
+  if (aside.length || lost.length || (!pack.toml && isAtAnotherTime(made))) {
+    files.set(SETTINGS, settings(pack, made, aside, lost));
   }
   const manifest = {
     format: pack.format, sketch: `${folder}/${main}`, version: pack.version,
@@ -72,7 +78,7 @@ export async function versionFiles(pack, sketch, shared, made) {
   /** @type {Files} */
   const all = new Map([[pack.manifest, `${JSON.stringify(manifest, null, 1)}\n`]]);
   for (const [name, data] of files) all.set(`${folder}/${name}`, data);
-  return { files: all, aside };
+  return { files: all, aside: [...aside, ...lost] };
 }
 
 /** Whether a file of the zip is one that the page knows. @param {string} kind */
@@ -86,30 +92,6 @@ export async function download(files, name) {
   link.download = name;
   link.click();
   setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
-}
-
-/** The files that come along with edited ones of the library: what includes or uses them, and what those
- *  include by a name that leads elsewhere from the sketch's folder.
- *  @param {string[]} edited @param {Pack} pack @param {Pick<Shared, "includes">} shared
- *  @returns {Set<string>} */
-export function copiesOf(edited, pack, shared) {
-  const found = new Set(edited);
-  for (let before = -1; before !== found.size;) {
-    before = found.size;
-    for (const [file, includes] of Object.entries(shared.includes)) {
-      if (Object.values(includes).some((target) => found.has(target))) found.add(file);
-    }
-    for (const [file, pieces] of Object.entries(pack.techniques)) {
-      const uses = pieces.some((piece) => typeof piece !== "string" && "use" in piece && found.has(piece.of));
-      if (uses) found.add(file);
-    }
-    for (const file of [...found]) {
-      const includes = Object.entries(shared.includes[file] ?? {});
-      for (const [name, target] of includes) if (name !== target) found.add(target);
-    }
-  }
-  const own = new Set(Object.values(pack.files).map(([, key]) => key));
-  return new Set([...found].filter((file) => !own.has(file)));
 }
 
 /** Without those that say the same as before. @param {Object<string, string>} texts @param {Shared} shared */
@@ -140,18 +122,20 @@ function shotOf(pack, sketch, made) {
 /** @param {Made} made */
 const isAtAnotherTime = (made) => made.time !== 0 || made.steps.size > 0;
 
-/** What a file of a shader cannot hold, as the command line takes it.
- *  @param {Pack} pack @param {Made} made @param {string[]} aside @returns {string} */
-function settings(pack, made, aside) {
+/** What the sketch's files have no place for: settings as the command line takes them, texts by name.
+ *  @param {Pack} pack @param {Made} made @param {string[]} aside @param {string[]} lost @returns {string} */
+function settings(pack, made, aside, lost) {
   const words = aside.map((path) => {
     const row = made.rows.get(path), value = made.values.get(path);
     const text = row && value !== undefined ? write(row, value) : String(value);
     return `--set ${shellWord(`${path}=${text}`)}`;
   });
-  if (made.time) words.push(`--time ${made.time}`);
-  for (const [path, count] of made.steps) words.push(`--steps ${shellWord(`${path}=${count}`)}`);
-  const command = ["playground render", pack.main, ...words].join(" ");
-  return `What was set in the page, and has no place in ${pack.main}:\n\n${command}\n`;
+  if (!pack.toml && made.time) words.push(`--time ${made.time}`);
+  const steps = pack.toml ? [] : [...made.steps];
+  words.push(...steps.map(([path, count]) => `--steps ${shellWord(`${path}=${count}`)}`));
+  const lines = words.length ? [`playground render ${pack.main} ${words.join(" ")}`] : [];
+  lines.push(...lost.map((file) => `${file}: its text is in the folder page, where no pass reads it`));
+  return `What was changed in the page, and has no place in ${pack.main}:\n\n${lines.join("\n")}\n`;
 }
 
 /** @param {string} base64  of gzip @returns {Promise<Uint8Array>} */

@@ -38,7 +38,7 @@ export async function estimate(player, done, { limit = LIMIT, now = () => perfor
   try {
     for (const share of SHARES) {
       const start = now();
-      state.frame = /** @type {[number, number]} */ (frame.map((side) => Math.max(Math.round(side * share), 1)));
+      state.frame = scaled(frame, share);
       state.terrain = { ...terrain, size: smallerTerrain(terrain.size, share) };
       try {
         player.render();
@@ -64,9 +64,12 @@ export async function estimate(player, done, { limit = LIMIT, now = () => perfor
 export function smallerFrame(seconds, frame, limit = LIMIT) {
   if (seconds <= limit) return null;
   const share = Math.sqrt(limit / 2 / seconds);
-  const [width, height] = frame.map((side) => Math.max(Math.round(side * share), 1));
-  return [width, height];
+  return scaled(frame, share);
 }
+
+/** @param {[number, number]} frame @param {number} share @returns {[number, number]} */
+const scaled = ([width, height], share) =>
+  [Math.max(Math.round(width * share), 1), Math.max(Math.round(height * share), 1)];
 
 /** A smaller terrain, of as many whole spacings: 2^n + 1 texels stay such a number.
  *  @param {[number, number]} size @param {number} share @returns {[number, number]} */

@@ -101,7 +101,7 @@ export function createRecovery(host, { words: given, poster, guard, reopen, limi
     const seconds = await estimate(player, done, { limit });
     const smaller = smallerFrame(seconds, frame, limit);
     if (!smaller) return null;
-    const size = frame.join(" \u00d7 "), time = seconds < 10 ? seconds.toFixed(1) : String(Math.round(seconds));
+    const size = frame.join(" \u00d7 "), time = seconds < 10 ? seconds.toFixed(1) : Math.round(seconds);
     return new Promise((resolve) => {
       const choose = (/** @type {[number, number] | null} */ wanted) => { clear(); resolve(wanted); };
       const less = worded(words.smaller, { size: smaller.join(" \u00d7 ") });

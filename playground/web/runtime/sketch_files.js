@@ -13,18 +13,24 @@ export function includedBy(shared, file) {
   return [...found];
 }
 
+/** The leaves of nodes, those in loops as well.
+ *  @param {import("./schema.js").Node[]} nodes @returns {import("./schema.js").Leaf[]} */
+const leavesOf = (nodes) => nodes.flatMap((node) => ("loop" in node ? leavesOf(node.body) : [node]));
+
 /** The files of a sketch in groups, in the order of its passes; none is empty.
  *  @param {Pick<Sketch, "kernels" | "nodes">} sketch @param {Pick<Shared, "files" | "includes">} shared
  *  @returns {FileGroup[]} */
 export function fileGroups(sketch, shared) {
-  const kernels = [...new Set(sketch.kernels.map(({ file }) => file))].filter((file) => isShader(shared, file));
-  const all = [...new Set(kernels.flatMap((file) => includedBy(shared, file)))].filter((file) => isShader(shared, file));
-  const own = all.filter((file) => file.startsWith("./"));
+  const there = (/** @type {string[]} */ files) =>
+    [...new Set(files)].filter((file) => isShader(shared, file));
+  const kernels = there(leavesOf(sketch.nodes).map(({ kernel }) => sketch.kernels[kernel].file));
+  const all = there(kernels.flatMap((file) => includedBy(shared, file)));
+  const own = all.filter((file) => file.startsWith("./") || file.startsWith("sketches/"));
   /** @type {FileGroup[]} */
   const groups = [
     { key: "ownFiles", files: own },
     { key: "kernelFiles", files: kernels.filter((file) => !own.includes(file)) },
-    { key: "libraryFiles", files: all.filter((file) => !own.includes(file) && !kernels.includes(file)).sort() },
+    { key: "libraryFiles", files: all.filter((file) => ![...own, ...kernels].includes(file)).sort() },
   ];
   return groups.filter(({ files }) => files.length);
 }

@@ -36,7 +36,8 @@ export function newLine({ text, start, end }) {
 }
 
 /** Close a bracket: on a line that is blank so far it is indented as the line that opens it.
- *  @param {Selected} now @param {string} bracket @returns {Change | null} null: it is written as any letter */
+ *  @param {Selected} now @param {string} bracket
+ *  @returns {Change | null} null: it is written as any letter */
 export function closing({ text, start, end }, bracket) {
   const from = lineStart(text, start), blank = text.slice(from, start);
   if (blank.trim() || start !== end) return null;
@@ -51,11 +52,13 @@ export function closing({ text, start, end }, bracket) {
 export function commented(now) {
   const from = lineStart(now.text, now.start), to = lineEnd(now);
   const lines = now.text.slice(from, to).split("\n").filter((line) => line.trim());
-  if (lines.every((line) => /^\s*\/\//.test(line))) return eachLine(now, (line) => line.replace(/\/\/ ?/, ""));
+  const all = lines.every((line) => /^\s*\/\//.test(line));
+  if (all) return eachLine(now, (line) => line.replace(/\/\/ ?/, ""));
   return eachLine(now, (line) => (line.trim() ? line.replace(/^(\s*)/, "$1// ") : line));
 }
 
-/** @param {string} insert @param {number} from @param {number} to @param {number} [caret] @returns {Change} */
+/** @param {string} insert @param {number} from @param {number} to @param {number} [caret]
+ *  @returns {Change} */
 function inserted(insert, from, to, caret = insert.length) {
   return { from, to, insert, start: from + caret, end: from + caret };
 }
