@@ -12,7 +12,7 @@ import { closing, commented, indented, newLine, outdented } from "./typing.js";
  *  @typedef {Map<number, string>} Marks */
 /** @typedef {ReturnType<typeof createCodeField>} CodeField */
 
-const MORE = 8; // lines drawn above and below the visible ones
+const MORE = 16; // lines drawn above and below the visible ones
 
 /** Make a field in a host.
  *  @param {HTMLElement} host
@@ -31,7 +31,11 @@ export function createCodeField(host, { label, hint, onInput }) {
   const box = make("div", { className: "code-field" }, gutter, pane, told);
   host.append(box);
 
-  let lines = [""], escaped = false, height = 20, asked = 0, drawn = "";
+  let lines = [""], escaped = false, height = 20, asked = 0, digits = 0;
+  /** What is drawn: from which line on, and what each of its lines was drawn of.
+   *  @type {string[]} */
+  let drawn = [];
+  let from = 0;
   /** What each line begins in; one more than there are lines.
    *  @type {LineState[]} */
   let states = ["", ""];
@@ -60,27 +64,51 @@ export function createCodeField(host, { label, hint, onInput }) {
     }
   }
 
+  /** Draw the visible lines: those that are drawn and have not changed stay as they are. */
   function draw() {
     asked = 0;
-    const top = area.scrollTop, first = Math.max(Math.floor(top / height) - MORE, 0);
-    const last = Math.min(Math.ceil((top + area.clientHeight) / height) + MORE, lines.length);
-    const rows = document.createDocumentFragment(), numbers = document.createDocumentFragment();
-    for (let at = first; at < last; at++) {
-      const mark = marks.get(at + 1), name = mark === undefined ? "line" : "line wrong";
-      const row = make("div", { className: name });
-      for (const [kind, text] of highlightLine(lines[at], states[at]).parts) {
-        row.append(kind ? make("span", { className: kind }, text) : text);
-      }
-      rows.append(row);
-      const edited = original.has(lines[at]) ? name : `${name} edited`;
-      numbers.append(make("div", { className: edited, title: mark ?? "" }, String(at + 1)));
+    const { scrollTop, scrollLeft, clientHeight } = area; // read before anything is written
+    const first = Math.floor(scrollTop / height), last = Math.ceil((scrollTop + clientHeight) / height);
+    if (first < from || Math.min(last, lines.length) > from + drawn.length) {
+      from = Math.max(first - MORE, 0);
+      drawn = [];
     }
-    layer.replaceChildren(rows);
-    gutter.replaceChildren(numbers);
-    layer.style.transform = `translate(${-area.scrollLeft}px, ${first * height - top}px)`;
-    gutter.style.transform = `translateY(${first * height - top}px)`;
+    const to = Math.min(Math.max(last + MORE, from + drawn.length), lines.length);
+    for (let at = from; at < to; at++) {
+      const mark = marks.get(at + 1), edited = !original.has(lines[at]);
+      const key = `${states[at]} ${edited} ${mark ?? ""} ${at} ${lines[at]}`;
+      if (drawn[at - from] !== key) put(at - from, row(at), number(at, mark, edited));
+      drawn[at - from] = key;
+    }
+    drawn.length = Math.max(to - from, 0);
+    for (const side of [layer, gutter]) while (side.children.length > drawn.length) side.lastChild?.remove();
+    const down = from * height - scrollTop;
+    layer.style.transform = `translate(${-scrollLeft}px, ${down}px)`;
+    gutter.style.transform = `translateY(${down}px)`;
     const wide = String(Math.max(lines.length, 99)).length;
-    if (drawn !== String(wide)) box.style.setProperty("--digits", (drawn = String(wide)));
+    if (digits !== wide) box.style.setProperty("--digits", String((digits = wide)));
+  }
+
+  /** @param {number} at @param {HTMLElement} line @param {HTMLElement} number */
+  function put(at, line, number) {
+    for (const [side, made] of /** @type {[HTMLElement, HTMLElement][]} */ ([[layer, line], [gutter, number]])) {
+      const before = side.children[at];
+      if (before) before.replaceWith(made);
+      else side.append(made);
+    }
+  }
+
+  /** @param {number} at @returns {HTMLElement} a line in colours */
+  function row(at) {
+    const parts = highlightLine(lines[at], states[at]).parts;
+    return make("div", { className: marks.has(at + 1) ? "line wrong" : "line" },
+      ...parts.map(([kind, text]) => (kind ? make("span", { className: kind }, text) : text)));
+  }
+
+  /** @param {number} at @param {string | undefined} mark @param {boolean} edited @returns {HTMLElement} */
+  function number(at, mark, edited) {
+    const className = `line${mark === undefined ? "" : " wrong"}${edited ? " edited" : ""}`;
+    return make("div", { className, title: mark ?? "" }, String(at + 1));
   }
 
   const show = () => { asked ||= requestAnimationFrame(draw); };
