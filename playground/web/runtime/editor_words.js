@@ -49,7 +49,7 @@ export const EDITOR_WORDS = {
     + "text is in the editor; look for a loop that does not end.",
   gone: "The graphics device was lost {count} times, so the picture stands still now. Reload the page to try "
     + "again.",
-  restored: "The picture is made again.",
+  notBack: "The graphics device was lost and has not come back: reload the page. Texts that worked are kept.",
   slow: "At {size} this takes about {time} s a picture, and the browser may stop it.",
   smaller: "Draw it at {size}",
   anyway: "Draw it all the same",

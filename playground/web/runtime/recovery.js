@@ -23,6 +23,7 @@ import { estimate, finished, smallerFrame } from "./pace.js";
 /** @typedef {ReturnType<typeof createRecovery>} Recovery */
 
 const MOST_LOSSES = 3;
+const PATIENCE = 6_000; // [ms] a browser that blocks a page after a crash never gives its context back
 const SOON = 60_000; // [ms] losses that follow so closely are counted together
 
 /** Make what speaks for a picture that fails; sentences appear in the host.
@@ -61,6 +62,7 @@ export function createRecovery(host, { words: given, poster, guard, reopen, limi
   function watch(canvas, { restore, player }) {
     /** @type {import("./last_good.js").Tried | null} */
     let blamed = null;
+    let late = 0;
     const lost = (/** @type {Event} */ event) => {
       const now = performance.now();
       losses = now - lastLoss < SOON ? losses + 1 : 1;
@@ -70,8 +72,11 @@ export function createRecovery(host, { words: given, poster, guard, reopen, limi
       if (losses > MOST_LOSSES) return say(worded(words.gone, { count: losses }));
       event.preventDefault(); // or it never comes back
       say(words.lost);
+      clearTimeout(late);
+      late = window.setTimeout(() => say(words.notBack), PATIENCE);
     };
     const restored = async () => {
+      clearTimeout(late);
       const now = player();
       try {
         if (blamed && now) takeBack(now, blamed.file, guard?.good ?? {});
@@ -88,6 +93,7 @@ export function createRecovery(host, { words: given, poster, guard, reopen, limi
     canvas.addEventListener("webglcontextlost", lost);
     canvas.addEventListener("webglcontextrestored", restored);
     return () => {
+      clearTimeout(late);
       canvas.removeEventListener("webglcontextlost", lost);
       canvas.removeEventListener("webglcontextrestored", restored);
     };
