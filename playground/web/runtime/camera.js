@@ -36,10 +36,10 @@ export function look(camera, extent, relief, size) {
   const far = away + 2 * radius;
   // At right angles to the eye's direction already, so that looking straight down is nothing special.
   const right = [-north, east, 0], up = [-east * rise, -north * rise, level];
-  const tall = halfHeight(camera);
+  const high = near * halfHeight(camera); // [m] half of what is in the picture, at the near plane
   // The rows of world to view, each scaled as the lens does.
-  const across = rowOf(right, 0, target, 1 / (tall * aspect));
-  const upright = rowOf(up, 0, target, 1 / tall);
+  const across = rowOf(right, 0, target, near / (high * aspect));
+  const upright = rowOf(up, 0, target, near / high);
   const behind = rowOf(towards, distance, target, 1);
   const depth = behind.map((each) => each * (-(far + near) / (far - near)));
   depth[3] += -2 * far * near / (far - near);
