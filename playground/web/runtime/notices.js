@@ -28,7 +28,8 @@ export function notices(original, text) {
 }
 
 /** @param {string} text @param {RegExp} of */
-const said = (text, of) => [...text.matchAll(of)].map(([one]) => one.replace(/\s+/g, " ").trim()).join("\n");
+const said = (text, of) =>
+  [...text.matchAll(of)].map(([one]) => one.replace(/\\\n|\s+/g, " ").replace(/ +/g, " ").trim()).join("\n");
 
 /** @param {string} text @returns {Map<string, string>} name → how it is declared */
 function uniforms(text) {
