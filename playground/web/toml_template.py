@@ -24,7 +24,8 @@ from playground.sketch.toml_places import Place, TomlPlaces
 Piece = str | dict[str, Any]
 """A part of the text, or a hole: ``{path, was}`` a parameter's value, ``{camera, was}`` and ``{terrain,
 was}`` likewise; ``{use, of}`` the name of a technique and its file; ``{into, open, join, close, was}`` the
-end of a table, where keys that the file has not yet go: of a pass, "#camera" or "#terrain"."""
+end of a table, where keys that the file has not yet go: of a pass, "#camera" or "#terrain"; ``{aside}`` a
+parameter that the file sets in parts."""
 
 TERRAIN, CAMERA = "#terrain", "#camera"
 
@@ -69,6 +70,8 @@ def sketch_pieces(text: str, sketch: Sketch, named: Callable[[str], str]) -> lis
         cuts += _known(
             text, places, table, ((key, {"path": rows[mine]}) for key, mine in keys if mine in rows)
         )
+        split = [rows[mine] for key, mine in keys if mine in rows and places.find(table, key) is None]
+        cuts += [_Cut(len(text), len(text), {"aside": path}) for path in split]
         cuts.append(_insertion(text, places, table, spec.name))
     return _pieces(text, cuts)
 

@@ -170,7 +170,7 @@
 /** A part of a TOML text, or what may stand in its place: see playground/web/toml_template.py.
  *  @typedef {string | {path: string, was: string} | {camera: string, was: string} | {terrain: string, was: string}
  *            | {use: string, of: string} | {into: string, open: string, join: string, close: string, was: string}
- *           } Piece */
+ *            | {aside: string}} Piece */
 
 /** What "download my version" writes: JSON among the page's bytes, see playground/web/packed.py.
  *  @typedef {object} Pack

@@ -23,12 +23,12 @@ const TERRAIN = ["size", "extent", "relief", "base_elevation"];
 export function fill(pieces, { values, camera, rows, use }) {
   const written = new Set();
   /** Names of one kind that the text has values of already.
-   *  @param {"path" | "camera" | "terrain"} kind */
+   *  @param {"path" | "camera" | "terrain" | "aside"} kind */
   const has = (kind) => new Set(pieces.flatMap((piece) => {
     const found = typeof piece === "string" ? undefined : new Map(Object.entries(piece)).get(kind);
     return found === undefined ? [] : [found];
   }));
-  const known = has("path"), cameraHas = has("camera"), terrainHas = has("terrain");
+  const known = new Set([...has("path"), ...has("aside")]), cameraHas = has("camera"), terrainHas = has("terrain");
   const view = camera ? cameraText(camera) : new Map();
   /** @param {string} into @returns {string[]} keys with their values */
   const added = (into) => {
@@ -46,6 +46,7 @@ export function fill(pieces, { values, camera, rows, use }) {
   };
   const text = pieces.map((piece) => {
     if (typeof piece === "string") return piece;
+    if ("aside" in piece) return "";
     if ("use" in piece) return use(piece.of) ?? piece.use;
     if ("camera" in piece) return view.get(piece.camera) ?? piece.was;
     if ("into" in piece) {
