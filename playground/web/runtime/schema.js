@@ -109,7 +109,7 @@
  *  @property {number | null} step
  *  @property {string[]} choices
  *  @property {boolean} exported                    an inner parameter otherwise
- *  @property {boolean} main                        the sketch is about it: shown first
+ *  @property {number} main                         its place among what the sketch is about, from 1; 0: none
  *  @property {string} locked                       why it cannot be changed in a page; "": it can
  *  @property {boolean} [raw]                       of a colour: as it is shown, not linear
  *  @property {Value} value                         at first

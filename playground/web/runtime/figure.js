@@ -1,0 +1,268 @@
+// figure.js -- one live picture in a page: the still picture until it is drawn, then what a session says.
+
+import { fieldFor } from "./camera_moves.js";
+import { make } from "./dom.js";
+import { createFigureMap } from "./figure_map.js";
+import { REST, createQuality, pixelsOf } from "./quality.js";
+import { createSession } from "./session.js";
+import { steerWith } from "./steering.js";
+import { cameraAt } from "./values.js";
+import { ENGLISH, fill } from "./words.js";
+
+/** @typedef {import("./schema.js").Sketch} Sketch */
+/** @typedef {import("./session.js").Session} Session */
+/** @typedef {ReturnType<typeof createFigure>} Figure */
+
+/** What figures need of a player: see engine.js.
+ *  @typedef {object} Player
+ *  @property {any} state
+ *  @property {any} plan
+ *  @property {(onProgress?: (done: number, all: number) => void) => Promise<unknown>} load
+ *  @property {() => unknown} render
+ *  @property {() => Promise<unknown>} [renderSoon]  in pieces; null where a later one has overtaken it
+ *  @property {(context: CanvasRenderingContext2D) => void} drawTo
+ *  @property {(source: {path: string, output: string}) => any} read
+ *  @property {() => void} close */
+/** @typedef {{open: (sketch: Sketch) => Player}} Engine */
+
+/** @typedef {object} Options
+ *  @property {Session} [session]       one that others share; else a new one
+ *  @property {number} [sketch]         which of the page's, at first
+ *  @property {Object<string, string>} [words]
+ *  @property {HTMLImageElement | null} [poster]
+ *  @property {number} [budget]         pixels of the picture at most
+ *  @property {boolean} [inText]        a finger that goes up or down, and the wheel, scroll the page
+ *  @property {(player: Player) => void} [opened]  a player is there, its programs too
+ *  @property {() => void} [drawn]      after each frame */
+
+const EVERY = 1000; // [ms] of time that a frame may add: after a pause time goes on from where it was
+const FRAME = 17; // [ms] that a frame waits for the screen
+const PATIENT = 1500; // [ms] a picture that is made in pieces may take before other values overtake it
+const LONG = 150; // [ms] of a picture after which the next is made in pieces
+const SAID = 600; // [ms] until it is said that a picture is being made
+
+/** Make a figure in an element, whose size it fills. `start` opens the player.
+ *  @param {HTMLElement} host @param {Engine} engine @param {{sketches: Sketch[]}} page
+ *  @param {Options} [options] */
+export function createFigure(host, engine, page, options = {}) {
+  const { words = ENGLISH, poster = null, budget = 2.1e6, inText = false } = options;
+  const session = options.session ?? createSession(page.sketches, options.sketch ?? 0);
+  const canvas = make("canvas", { tabIndex: 0, role: "application", hidden: true });
+  const message = make("p", { className: "message", role: "status" });
+  const readout = make("p", { className: "readout", hidden: true });
+  const notice = make("p", { className: "message", role: "status" });
+  const notes = make("div", { className: "notes" }, readout, notice, message);
+  const stage = make("div", { className: "stage" }, ...(poster ? [poster] : []), canvas, notes);
+  host.append(stage);
+  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  const quality = createQuality();
+  /** @type {Player | null} */
+  let player = null;
+  let asked = 0, askedAt = 0, opening = 0, resting = 0, last = 0, took = 0, speed = 1;
+  let inSight = true, closed = false, playing = false, moving = false, long = true, again = false;
+  let overtaken = false; // values have changed since a picture was begun in pieces
+  /** @type {number | null} when the picture was begun that is made in pieces */
+  let begun = null;
+
+  /** @returns {[number, number]} CSS pixels */
+  const box = () => [Math.max(stage.clientWidth, 1), Math.max(stage.clientHeight, 1)];
+  const room = { session, words, canvas, context, readout, box, budget: budget * 2, player: () => player };
+  const map = createFigureMap(room);
+  const steering = steerWith(canvas, session, map, { box, eye: () => player?.plan?.eye, inText });
+
+  /** Say how far the picture is, or what is wrong with it. */
+  function tell(/** @type {string} */ text, /** @type {unknown} */ error = null) {
+    const reason = error instanceof Error ? error.message : String(error);
+    const whole = error ? fill(text, { reason }) : text;
+    if (message.textContent !== whole) message.textContent = whole;
+    message.classList.toggle("alarm", Boolean(error));
+  }
+
+  // ── what is drawn ──────────────────────────────────────────────────────────
+
+  /** The camera as it is shown: opened where the room is narrower than the sketch's picture. */
+  function framed(/** @type {[number, number]} */ size) {
+    const camera = cameraAt(session.sketch, session.camera, session.time);
+    return { ...camera, field_of_view: fieldFor(camera.field_of_view, session.sketch.frame, size) };
+  }
+
+  function takeState(/** @type {Player} */ to) {
+    const scale = moving && !session.map ? quality.scale : 1;
+    const size = map.size() ?? pixelsOf(box(), devicePixelRatio || 1, budget, scale);
+    Object.assign(to.state, session.state(), { frame: size, camera: framed(size) });
+    return size;
+  }
+
+  function draw() {
+    asked = 0;
+    if (!player || closed || document.hidden || !inSight) return;
+    const start = performance.now();
+    again = begun !== null && !(overtaken && start - begun > PATIENT);
+    if (again) return;
+    const late = Math.max(start - askedAt - FRAME, 0), from = player, inPieces = long && from.renderSoon;
+    if (playing) advance(start);
+    try {
+      const size = takeState(from);
+      if (inPieces) drawInPieces(from, size, start);
+      else {
+        from.render();
+        show(from, size, start, late);
+      }
+    } catch (error) {
+      tell(canvas.hidden ? words.failed : words.kept, error);
+    }
+    if (playing) ask();
+  }
+
+  /** What a value changes may take long: the page stays at hand meanwhile.
+   *  @param {Player} from @param {[number, number]} size @param {number} start */
+  async function drawInPieces(from, size, start) {
+    begun = start;
+    overtaken = false;
+    const slow = setTimeout(() => tell(words.working), SAID);
+    try {
+      const done = await from.renderSoon?.();
+      clearTimeout(slow);
+      if (!done || from !== player || closed) return;
+      show(from, size, start, 0);
+      long = overtaken || took > LONG;
+    } catch (error) {
+      tell(canvas.hidden ? words.failed : words.kept, error);
+    } finally {
+      clearTimeout(slow);
+      if (begun === start) begun = null;
+      if (again) ask();
+    }
+  }
+
+  /** @param {Player} from @param {[number, number]} size @param {number} start @param {number} late */
+  function show(from, size, start, late) {
+    if (session.map) map.drawn(from, size);
+    else {
+      if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
+      from.drawTo(context);
+    }
+    took = performance.now() - start;
+    canvas.hidden = false;
+    if (poster) poster.hidden = true;
+    name();
+    tell("");
+    if (moving) quality.took(took + late);
+    if (session.drawn()) ask();
+    options.drawn?.();
+  }
+
+  function name() {
+    const title = session.sketch.title || session.sketch.name;
+    const text = session.map ? fill(words.mapLabel, { label: map.label }) : fill(words.picture, { title });
+    if (canvas.getAttribute("aria-label") !== text) canvas.setAttribute("aria-label", text);
+  }
+
+  /** Ask for a frame; `motion`: others follow soon, so that it may have fewer pixels. */
+  function ask(motion = false) {
+    if (motion || playing) {
+      if (!moving) quality.begin();
+      moving = true;
+      settle();
+    }
+    if (asked || closed) return;
+    askedAt = performance.now();
+    asked = requestAnimationFrame(draw);
+  }
+
+  function settle() {
+    clearTimeout(resting);
+    resting = setTimeout(() => {
+      if (playing) return;
+      moving = false;
+      if (quality.scale < 1) ask();
+      quality.rest();
+    }, REST);
+  }
+
+  async function open() {
+    const mine = ++opening;
+    tell(words.loading);
+    try {
+      const made = engine.open(session.sketch);
+      takeState(made);
+      await made.load((done, all) => {
+        if (mine === opening) tell(fill(words.compiling, { done, all }));
+      });
+      if (mine !== opening || closed) return made.close();
+      player?.close();
+      player = made;
+      quality.forget();
+      options.opened?.(made);
+      ask();
+    } catch (error) {
+      if (mine === opening) tell(words.failed, error);
+    }
+    return undefined;
+  }
+
+  // ── time ───────────────────────────────────────────────────────────────────
+
+  function advance(/** @type {number} */ now) {
+    const passed = last ? Math.min(now - last, EVERY) / 1000 : 0, { duration } = session.sketch;
+    last = now;
+    const time = session.time + passed * speed;
+    session.setTime(duration > 0 && time > duration ? time % duration : time);
+  }
+
+  function play(/** @type {boolean} */ on) {
+    playing = on;
+    last = 0;
+    settle();
+    ask();
+  }
+
+  /** Time goes on from here. */
+  function wake() {
+    last = 0;
+    if (!document.hidden && inSight) ask();
+  }
+
+  // ── what it follows ────────────────────────────────────────────────────────
+
+  const unfollow = session.follow((news) => {
+    if (news !== "camera" && news !== "time") long = overtaken = true;
+    if (news === "sketch") open();
+    else ask(news !== "map");
+  });
+  const sizes = new ResizeObserver(() => ask());
+  const sights = new IntersectionObserver(([entry]) => {
+    inSight = entry.isIntersecting;
+    wake();
+  });
+  sizes.observe(stage);
+  sights.observe(stage);
+  document.addEventListener("visibilitychange", wake);
+
+  return {
+    session, stage, canvas, ask, play, ...steering,
+    /** Show a notice. @param {string} text */
+    say(text) { notice.textContent = text; },
+    showMap: map.show,
+    fitMap: map.fit,
+    get player() { return player; },
+    get playing() { return playing; },
+    get speed() { return speed; },
+    set speed(/** @type {number} */ wanted) { speed = wanted; },
+    /** [ms] that the last frame took. */
+    get took() { return took; },
+    /** Open the player, and draw. */
+    start: open,
+    close() {
+      closed = true;
+      cancelAnimationFrame(asked);
+      clearTimeout(resting);
+      unfollow();
+      sizes.disconnect();
+      sights.disconnect();
+      document.removeEventListener("visibilitychange", wake);
+      player?.close();
+      stage.remove();
+    },
+  };
+}
