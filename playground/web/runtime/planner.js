@@ -39,8 +39,6 @@ import { cameraAt, givenTo, isSame, leavesOf, valuesAt } from "./values.js";
 
 /** @typedef {{plan: Plan, values: Object<string, Value>, place: string}} Last */
 
-export { ownNames };
-
 const MAX_REPEAT = 1_000_000;
 const MAP = "#map"; // the path of the step that shows a texture from above
 

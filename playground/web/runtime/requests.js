@@ -22,7 +22,8 @@ import { isSame, leavesOf } from "./values.js";
  *  @property {number} [time]                   seconds
  *  @property {Object<string, number>} [steps]  iterations after which a repeat stops, by path
  *  @property {boolean} [interpolated]          what a stopped repeat has not computed is filled in
- *  @property {{path: string, output: string, values: Object<string, Value>} | null} [map] */
+ *  @property {{path: string, output: string, values: Object<string, Value>} | null} [map]
+ *  @property {import("./usual.js").Live} [live]  what the pointer and the clock of the page say */
 
 /** @param {number} time */
 export function checkedTime(time) {
