@@ -18,7 +18,7 @@ from playground.web import complaint_words
 
 from ..gpu.test_logs import EXPECTED
 from ..gpu.test_logs import LOGS as OTHERS
-from ..report.browser import MISSING, Browser
+from ..report.browser import MISSING, SWIFTSHADER, Browser
 from .node import Node
 from .planted_errors import PLANTED, in_es
 
@@ -138,9 +138,7 @@ def test_a_page_knows_what_its_library_defines(node: Node):
 @pytest.mark.skipif(bool(MISSING), reason=MISSING)
 def test_this_machine_s_browser_complains_as_recorded(tmp_path: Path):
     found = {}
-    with Browser(
-        tmp_path / "profile", flags="--use-angle=swiftshader --enable-unsafe-swiftshader"
-    ) as browser:
+    with Browser(tmp_path / "profile", flags=SWIFTSHADER) as browser:
         for name, planted in PLANTED.items():
             folder = tmp_path / name
             folder.mkdir()

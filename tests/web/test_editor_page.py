@@ -13,13 +13,12 @@ import pytest
 
 import playground.web
 
-from ..report.browser import MISSING, Browser
+from ..report.browser import MESA, MISSING, Browser
 from .node import NODE
 from .planted_errors import WAVES
 
 WEB = Path(playground.web.__file__).parent
 HERE = Path(__file__).parent
-LLVMPIPE = "--use-gl=angle --use-angle=gl-egl --ignore-gpu-blocklist"
 KERNEL = """\
 // k.glsl -- waves.
 #include "waves.glsl"
@@ -60,7 +59,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Browser]:
-    with Browser(tmp_path_factory.mktemp("profile"), 1100, 900, LLVMPIPE) as found:
+    with Browser(tmp_path_factory.mktemp("profile"), 1100, 900, MESA) as found:
         yield found
 
 
