@@ -179,7 +179,8 @@ PACED = """async (constant, perPixel, limit, load) => {
         drawn.push([...state.frame, ...state.terrain.size]);
         clock += 1000 * (constant + perPixel * state.frame[0] * state.frame[1]);
     };
-    const seconds = await estimate({ state, render }, async () => {}, { limit, now: () => clock });
+    const player = { state, sketch: state, render };
+    const seconds = await estimate(player, async () => {}, { limit, now: () => clock });
     return { seconds, drawn, state, smaller: smallerFrame(seconds, state.frame, limit) };
 }"""
 

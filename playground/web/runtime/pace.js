@@ -1,8 +1,9 @@
 // pace.js -- how long a picture will take, told by smaller ones, before a browser stops it.
 
 /** @typedef {{size: [number, number]}} Sized */
-/** What is asked of a player: its state and its pictures.
- *  @typedef {{state: {frame: [number, number], terrain: Sized}, render: () => unknown}} Paced */
+/** What is asked of a player: its state, over what its sketch says, and its pictures.
+ *  @typedef {{state: {frame?: [number, number], terrain?: Sized}, render: () => unknown,
+ *             sketch: {frame: [number, number], terrain: Sized}}} Paced */
 
 const SHARES = [1 / 16, 1 / 8, 1 / 4]; // of a side; the first makes the driver compile what it puts off
 const LIMIT = 4; // [s] a picture; drivers of Windows end a draw after 2, browsers a frame after 10
@@ -32,18 +33,19 @@ export function finished(gl) {
  *  @param {{limit?: number, now?: () => number}} [options]   limit in seconds: no larger one is drawn then
  *  @returns {Promise<number>} seconds */
 export async function estimate(player, done, { limit = LIMIT, now = () => performance.now() } = {}) {
-  const { state } = player, { frame, terrain } = state;
+  const { state, sketch } = player, { frame, terrain } = state;
+  const whole = frame ?? sketch.frame, ground = terrain ?? sketch.terrain;
   /** @type {number[]} */
   const took = [];
   try {
     for (const share of SHARES) {
       const start = now();
-      state.frame = scaled(frame, share);
-      state.terrain = { ...terrain, size: smallerTerrain(terrain.size, share) };
+      state.frame = scaled(whole, share);
+      state.terrain = { ...ground, size: smallerTerrain(ground.size, share) };
       try {
         player.render();
       } catch {
-        state.terrain = terrain; // a kernel that takes some sizes only
+        state.terrain = ground; // a kernel that takes some sizes only
         player.render();
       }
       await done();
@@ -51,7 +53,7 @@ export async function estimate(player, done, { limit = LIMIT, now = () => perfor
       if (took[took.length - 1] > limit) return took[took.length - 1] / share ** 2;
     }
   } finally {
-    [state.frame, state.terrain] = [frame, terrain];
+    Object.assign(state, { frame, terrain });
   }
   const [, less, more] = took, [, a, b] = SHARES;
   const slope = Math.max((more - less) / (b ** 2 - a ** 2), 0);

@@ -8,7 +8,8 @@ import { estimate, finished, smallerFrame } from "./pace.js";
 
 /** What is asked of a player.
  *  @typedef {object} Recoverable
- *  @property {{frame: [number, number], terrain: {size: [number, number]}}} state
+ *  @property {{frame?: [number, number], terrain?: any}} state
+ *  @property {{frame: [number, number], terrain: any}} sketch
  *  @property {() => unknown} render
  *  @property {Object<string, string>} texts
  *  @property {(file: string, text: string) => Promise<{errors: unknown[], programs: number}>} edit */
@@ -103,7 +104,7 @@ export function createRecovery(host, { words: given, poster, guard, reopen, limi
    *  @param {Recoverable} player @param {() => Promise<void>} done  waits for what was drawn
    *  @returns {Promise<[number, number] | null>} the size to draw at; null: as it is */
   async function pace(player, done) {
-    const { frame } = player.state;
+    const frame = player.state.frame ?? player.sketch.frame;
     const seconds = await estimate(player, done, { limit });
     const smaller = smallerFrame(seconds, frame, limit);
     if (!smaller) return null;
