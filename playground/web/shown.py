@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from playground.sketch.assign import Shown, check_value, current_path, resolve, shown_parameters
+from playground.sketch.assign import Shown, check_value, current_path, find_targets, resolve, shown_parameters
 from playground.sketch.described_parameter import described
 from playground.sketch.flat import Flat
 from playground.sketch.keyframes import Track, tracks_of
@@ -53,6 +53,9 @@ def presets_data(
     for preset in sketch.presets:
         values = {}
         for path, given in preset.values:
+            if "." in path and not find_targets(sketch.graph, path):
+                notes.append(f"preset '{preset.name}' leaves {path} out: this technique does not have it")
+                continue
             value = check_value(sketch, path, given)
             name = current_path(sketch.graph, path)
             if "." not in name:

@@ -14,6 +14,7 @@ from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
 from playground.sketch.catalogue import load, shipped_sketches
 from playground.sketch.model import Sketch
+from playground.terrain.sources import source_kind
 from playground.web.page_data import page_data
 from playground.web.plan import KINDS
 
@@ -76,9 +77,12 @@ def settings_of(sketch: Sketch, data: dict[str, Any]) -> Iterator[Settings]:
     """Yield settings at random, the same in every run, in sizes that are drawn at once."""
     chance = random.Random(sketch.name)
     plan = Planner().plan(sketch, frame_size=SIZE, variants=KINDS)
+    sources = [step.kernel.registry for step in plan.walk() if step.kernel.kind == "source"]
     for _ in range(SETTINGS):
         found = random_settings(chance, data, plan)
         found.frame = SIZE
+        if any(source_kind(name).moment for name in sources):
+            found.time = 0.0  # a page has the texels of the moment of its export
         if "size" in found.terrain:
             found.terrain["size"] = chance.choice(SIZES)
         yield found

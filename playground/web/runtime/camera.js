@@ -109,7 +109,8 @@ export function pan(camera, eye, right, up) {
 /** By elimination, each column's pivot its largest number.
  *  @param {number[]} matrix @returns {number[]} */
 function inverse(matrix) {
-  const rows = [0, 1, 2, 3].map((i) => [...matrix.slice(4 * i, 4 * i + 4), ...[0, 1, 2, 3].map((j) => +(i === j))]);
+  const four = [0, 1, 2, 3];
+  const rows = four.map((i) => [...matrix.slice(4 * i, 4 * i + 4), ...four.map((j) => Number(i === j))]);
   for (let column = 0; column < 4; column++) {
     let pivot = column;
     for (let row = column + 1; row < 4; row++) {

@@ -106,7 +106,9 @@ export function createPanel(session, { words, labels = {}, link, copied, say, fi
     const made = make("div");
     return rows.keep(made, () => {
       made.hidden = !session.map;
-      if (session.map && !made.firstChild) made.append(fold(words.mapShown, true, () => rows.mapRows(fitMap)));
+      if (session.map && !made.firstChild) {
+        made.append(fold(words.mapShown, true, () => rows.mapRows(fitMap)));
+      }
     });
   }
 
