@@ -341,7 +341,7 @@ def test_resets_and_undo(page: Page):
     assert page.value("height.seed") == 9
     page.keys("z", held=CTRL + SHIFT)
     assert page.value("height.seed") is None
-    page.browser.click(".panel-head .line:first-child button:nth-child(3)")
+    page.browser.click(".head-line:first-child button:nth-child(3)")
     page.at_rest()
     assert page.state(".values") == {}
 

@@ -32,6 +32,7 @@ import { ENGLISH, fill } from "./words.js";
  *  @property {HTMLImageElement | null} [poster]
  *  @property {number} [budget]         pixels of the picture at most
  *  @property {boolean} [inText]        a finger that goes up or down, and the wheel, scroll the page
+ *  @property {(player: Player) => unknown} [prepare]  what a player needs before its first picture
  *  @property {(player: Player) => void} [opened]  a player is there, its programs too
  *  @property {() => void} [drawn]      after each frame */
 
@@ -61,6 +62,8 @@ export function createFigure(host, engine, page, options = {}) {
   let asked = 0, askedAt = 0, opening = 0, resting = 0, last = 0, took = 0, speed = 1;
   let inSight = true, closed = false, playing = false, moving = false, long = true, again = false;
   let overtaken = false; // values have changed since a picture was begun in pieces
+  /** @type {(() => void)[]} who waits for the next picture */
+  const waiting = [];
   /** @type {number | null} when the picture was begun that is made in pieces */
   let begun = null;
 
@@ -119,7 +122,7 @@ export function createFigure(host, engine, page, options = {}) {
   async function drawInPieces(from, size, start) {
     begun = start;
     overtaken = false;
-    const slow = setTimeout(() => tell(words.working), SAID);
+    const slow = setTimeout(() => { if (!playing) tell(words.working); }, SAID);
     try {
       const done = await from.renderSoon?.();
       clearTimeout(slow);
@@ -149,6 +152,7 @@ export function createFigure(host, engine, page, options = {}) {
     tell("");
     if (moving) quality.took(took + late);
     if (session.drawn()) ask();
+    waiting.splice(0).forEach((resolve) => resolve());
     options.drawn?.();
   }
 
@@ -189,6 +193,7 @@ export function createFigure(host, engine, page, options = {}) {
       await made.load((done, all) => {
         if (mine === opening) tell(fill(words.compiling, { done, all }));
       });
+      if (mine === opening) await options.prepare?.(made);
       if (mine !== opening || closed) return made.close();
       player?.close();
       player = made;
@@ -253,6 +258,18 @@ export function createFigure(host, engine, page, options = {}) {
     get took() { return took; },
     /** Open the player, and draw. */
     start: open,
+    /** Draw anew; done when the picture is there. @returns {Promise<void>} */
+    redraw() {
+      long = true;
+      ask();
+      return new Promise((resolve) => { waiting.push(resolve); });
+    },
+    /** Show the still picture in place of the live one, or no longer. @param {boolean} still */
+    showPoster(still) {
+      if (!poster) return;
+      poster.hidden = !still;
+      canvas.hidden = still;
+    },
     close() {
       closed = true;
       cancelAnimationFrame(asked);

@@ -72,8 +72,8 @@ export function createPanel(session, { words, labels = {}, link, copied, say, fi
 
   const list = make("div", { className: "list" }), found = make("div", { className: "list" });
   const head = make("div", { className: "panel-head" },
-    make("div", { className: "line" }, undo, redo, all, copies),
-    make("div", { className: "line" }, preset, search));
+    make("div", { className: "head-line" }, undo, redo, all, copies),
+    make("div", { className: "head-line" }, preset, search));
   const element = make("div", { className: "panel" }, head, list, found);
 
   // ── the passes ─────────────────────────────────────────────────────────────
@@ -106,9 +106,8 @@ export function createPanel(session, { words, labels = {}, link, copied, say, fi
     const made = make("div");
     return rows.keep(made, () => {
       made.hidden = !session.map;
-      if (session.map && !made.firstChild) {
-        made.append(fold(words.mapShown, true, () => rows.mapRows(fitMap)));
-      }
+      if (!session.map || made.firstChild) return;
+      made.append(fold(words.mapShown, true, () => rows.mapRows(fitMap)));
     });
   }
 

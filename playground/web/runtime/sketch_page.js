@@ -21,7 +21,8 @@ import { ENGLISH, fill } from "./words.js";
 /** @typedef {object} PageOptions
  *  @property {Object<string, string>} [words]
  *  @property {HTMLImageElement | null} [poster]
- *  @property {(player: Player) => Map<string, number>} repeats      iterations in all, by path
+ *  @property {(player: Player) => unknown} [prepare]            what a player needs before its first picture
+ *  @property {(player: Player) => Map<string, number>} repeats  iterations in all, by path
  *  @property {(host: HTMLElement, player: Player, figure: Figure) => void} [openCode]
  *                                                     fills the code's tab, once for each player */
 
@@ -30,7 +31,8 @@ const OFTEN = 250; // [ms] between two reports of a picture that moves
 
 /** Fill a page's main element. @param {HTMLElement} main @param {Page} page @param {Engine} engine
  *  @param {PageOptions} options */
-export function createPage(main, page, engine, { words = ENGLISH, poster = null, repeats, openCode }) {
+export function createPage(main, page, engine, options) {
+  const { words = ENGLISH, poster = null, prepare, repeats, openCode } = options;
   const session = createSession(page.sketches);
   const still = matchMedia("(prefers-reduced-motion: reduce)");
   const view = make("section", { className: "view", "aria-label": words.ownPicture });
@@ -40,7 +42,8 @@ export function createPage(main, page, engine, { words = ENGLISH, poster = null,
 
   // ── the picture ────────────────────────────────────────────────────────────
 
-  const figure = createFigure(view, engine, page, { session, words, poster, opened: showCode, drawn });
+  const hooks = { prepare, opened: fillCode, drawn };
+  const figure = createFigure(view, engine, page, { session, words, poster, ...hooks });
   const timeline = createTimeline(figure, words);
 
   function drawn() {
@@ -116,7 +119,8 @@ export function createPage(main, page, engine, { words = ENGLISH, poster = null,
   panel.element.id = "playground-panel";
   /** @type {Player | null} */
   let opened = null;
-  function showCode() {
+  /** Once it is looked at; of another player anew. */
+  function fillCode() {
     const { player } = figure;
     if (!openCode || code.hidden || !player || player === opened) return;
     opened = player;
@@ -124,7 +128,10 @@ export function createPage(main, page, engine, { words = ENGLISH, poster = null,
     openCode(code, player, figure);
   }
   const header = make("header", {}, title);
-  const tabs = openCode && createTabs([[words.parameters, panel.element], [words.code, code]], showCode);
+  const tabs = openCode && createTabs([[words.parameters, panel.element], [words.code, code]], (at) => {
+    main.classList.toggle("coding", at === 1);
+    fillCode();
+  });
   if (tabs) header.append(tabs.element);
   const side = make("section", { className: "side", "aria-label": words.parameters });
   side.append(header, panel.element, code, info);
@@ -171,5 +178,5 @@ export function createPage(main, page, engine, { words = ENGLISH, poster = null,
   }, figure.canvas);
   recallTheme();
   address.read();
-  return { figure, panel, session, timeline };
+  return { figure, panel, session, timeline, showCode: () => tabs?.select(1) };
 }

@@ -3,7 +3,7 @@
 import { make } from "./dom.js";
 
 /** Make the tabs; each element has an id. @param {[string, HTMLElement][]} pages
- *  @param {() => void} changed */
+ *  @param {(chosen: number) => void} changed */
 export function createTabs(pages, changed) {
   const tabs = pages.map(([label, page], at) => {
     const tab = make("button", { type: "button", role: "tab", "aria-controls": page.id }, label);
@@ -23,7 +23,7 @@ export function createTabs(pages, changed) {
       tabs[at].setAttribute("aria-selected", String(at === chosen));
       tabs[at].tabIndex = at === chosen ? 0 : -1;
     });
-    changed();
+    changed(chosen);
     return tabs[chosen];
   }
   select(0);

@@ -17,6 +17,7 @@ export const ENGLISH = {
   // the bar over the picture
   save: "Save picture",
   saved: "Saved {name}",
+  notSaved: "This page does not hold what a version needs",
   full: "Full screen",
   leaveFull: "Leave full screen",
   resetView: "Reset the view",
@@ -118,7 +119,8 @@ export const FRENCH = {
   frameTook: "{size}, {time} ms",
   still: "Cette image est fixe : {reason}",
   save: "Enregistrer l'image",
-  saved: "{name} enregistrée",
+  saved: "{name} enregistré",
+  notSaved: "Cette page ne contient pas ce qu'il faut pour une version",
   full: "Plein écran",
   leaveFull: "Quitter le plein écran",
   resetView: "Rétablir la vue",
