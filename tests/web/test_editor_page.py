@@ -117,7 +117,7 @@ def test_a_kernel_is_broken_and_repaired(page: Browser):
     )
     typed(page, "levle", "0.5 * level")
     assert not problems(page) and pixel(page) == [64, 64, 128, 255]
-    assert status(page).startswith("Compiled in") and "(edited)" in page.run(
+    assert status(page).startswith("Compiled and drawn in") and "(edited)" in page.run(
         "return document.querySelector('select').selectedOptions[0].text"
     )
     page.click(".editor-reset")

@@ -14,11 +14,10 @@ export const EDITOR_WORDS = {
   field: "Text of {name}",
   keys: "Tab inserts spaces; press Esc, then Tab, to leave the field. Ctrl+/ makes lines comments.",
   resetFile: "Reset this file",
-  resetFiles: "Reset all files",
   download: "Download my version",
   unedited: "As in the sketch. What you type is compiled at once.",
   compiling: "Compiling",
-  compiled: "Compiled in {time} ms",
+  compiled: "Compiled and drawn in {time} ms",
   unused: "Compiled: no pass of the picture uses it",
   problem: "1 error: the picture is the last that worked",
   problems: "{count} errors: the picture is the last that worked",
@@ -57,7 +56,6 @@ export const EDITOR_WORDS = {
     + "text that worked is shown.",
   tryAgain: "Open the text that was tried",
   forget: "Forget it",
-  notKept: "This browser keeps nothing for this page: after a reload, edits are gone.",
 };
 
 /** Fill a sentence's places, as {name}.

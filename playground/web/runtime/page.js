@@ -4,6 +4,7 @@ import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
 import { unpacked } from "./images.js";
 import { repeatsOf } from "./planner.js";
+import { createCode } from "./page_code.js";
 import { createPage } from "./sketch_page.js";
 import { fill, wordsOf } from "./words.js";
 
@@ -33,12 +34,16 @@ async function start() {
     return main.append(make("p", { role: "alert" }, fill(words.still, { reason })));
   }
   const repeats = (/** @type {any} */ player) => (player.plan ? repeatsOf(player.plan) : new Map());
-  const { figure } = createPage(main, page, engine, { words, poster, repeats });
-  canvas.addEventListener("webglcontextlost", () => figure.showPoster(true));
-  canvas.addEventListener("webglcontextrestored", async () => {
-    await engine.restore();
-    await figure.redraw();
+  const notices = make("div", { className: "recoveries" });
+  /** @type {() => import("./page_code.js").CodeFigure} */
+  const shown = () => made.figure;
+  const code = createCode(engine, notices, { figure: shown });
+  const made = createPage(main, page, engine, {
+    words, poster, repeats, prepare: (player) => code.prepare(/** @type {any} */ (player)),
+    openCode: (tab, player) => void code.open(tab, /** @type {any} */ (player)),
   });
+  made.figure.stage.append(notices);
+  code.watch();
   return undefined;
 }
 

@@ -17,7 +17,7 @@ import { estimate, finished, smallerFrame } from "./pace.js";
 /** @typedef {object} RecoveryOptions
  *  @property {Object<string, string>} [words]     over EDITOR_WORDS
  *  @property {(still: boolean) => void} poster    shows the poster in place of the picture, or no more
- *  @property {Guard} [guard]
+ *  @property {() => Guard | undefined} [guard]    of the player that is shown
  *  @property {(text: string, file: string) => void} [reopen]  puts a text into the editor
  *  @property {number} [limit]                     [s] what a picture may take without a question */
 
@@ -29,7 +29,7 @@ const SOON = 60_000; // [ms] losses that follow so closely are counted together
 
 /** Make what speaks for a picture that fails; sentences appear in the host.
  *  @param {HTMLElement} host @param {RecoveryOptions} options */
-export function createRecovery(host, { words: given, poster, guard, reopen, limit }) {
+export function createRecovery(host, { words: given, poster, guard = () => undefined, reopen, limit }) {
   const words = { ...EDITOR_WORDS, ...given };
   let losses = 0, lastLoss = -Infinity;
   /** @type {HTMLElement | null} */
@@ -68,7 +68,7 @@ export function createRecovery(host, { words: given, poster, guard, reopen, limi
       const now = performance.now();
       losses = now - lastLoss < SOON ? losses + 1 : 1;
       lastLoss = now;
-      blamed = guard?.left ?? blamed;
+      blamed = guard()?.left ?? blamed;
       poster(true);
       if (losses > MOST_LOSSES) return say(worded(words.gone, { count: losses }));
       event.preventDefault(); // or it never comes back
@@ -80,13 +80,13 @@ export function createRecovery(host, { words: given, poster, guard, reopen, limi
       clearTimeout(late);
       const now = player();
       try {
-        if (blamed && now) takeBack(now, blamed.file, guard?.good ?? {});
+        if (blamed && now) takeBack(now, blamed.file, guard()?.good ?? {});
         await restore();
         poster(false);
         if (blamed) say(worded(words.lostByEdit, { name: plain(blamed.file) }));
         else clear();
         blamed = null;
-        guard?.forget();
+        guard()?.forget();
       } catch (error) {
         lacks(error);
       }
@@ -121,23 +121,18 @@ export function createRecovery(host, { words: given, poster, guard, reopen, limi
   /** Go on with the texts that worked before a reload; of one that was being tried say so.
    *  @param {Recoverable} player before its first picture */
   async function resume(player) {
-    const { left, good } = guard ?? { left: null, good: {} };
+    const kept = guard(), { left, good } = kept ?? { left: null, good: {} };
     for (const [file, text] of Object.entries(good)) await player.edit(file, text);
-    if (!left || !guard) return;
+    if (!left || !kept) return;
     const { file, text } = left;
-    guard.forget();
+    kept.forget();
     say(worded(words.hung, { name: plain(file) }), [
       ...(reopen ? [button(words.tryAgain, () => { clear(); reopen(text, file); })] : []),
       button(words.forget, clear),
     ]);
   }
 
-  /** Say so where the browser keeps nothing; edits are gone after a reload then. */
-  function storageNote() {
-    return guard && !guard.place ? words.notKept : "";
-  }
-
-  return { lacks, watch, pace, resume, storageNote, say, clear };
+  return { lacks, watch, pace, resume, say, clear };
 }
 
 /** Put the text back that worked, without a context to compile it in.
