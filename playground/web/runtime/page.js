@@ -5,8 +5,9 @@ import { createEngine } from "./engine.js";
 import { unpacked } from "./images.js";
 import { repeatsOf } from "./planner.js";
 import { createCode } from "./page_code.js";
+import { createRecovery } from "./recovery.js";
 import { createPage } from "./sketch_page.js";
-import { fill, wordsOf } from "./words.js";
+import { wordsOf } from "./words.js";
 
 /** @typedef {import("./schema.js").Page} Page */
 
@@ -30,8 +31,7 @@ async function start() {
     engine = createEngine(canvas, page.shared);
   } catch (error) {
     main.classList.add("still");
-    const reason = error instanceof Error ? error.message : String(error);
-    return main.append(make("p", { role: "alert" }, fill(words.still, { reason })));
+    return createRecovery(main, { poster: () => {} }).lacks(error);
   }
   const repeats = (/** @type {any} */ player) => (player.plan ? repeatsOf(player.plan) : new Map());
   const notices = make("div", { className: "recoveries" });

@@ -96,8 +96,5 @@ export function createCode(engine, host, { words: given, figure }) {
       const guard = () => (player() ? guardOf(player()) : undefined);
       return createRecovery(host, { words, poster, guard }).watch(canvas, { player, restore });
     },
-
-    /** Say why there is no picture at all. @param {unknown} error */
-    lacks: (error) => createRecovery(host, { words, poster: () => {} }).lacks(error),
   };
 }

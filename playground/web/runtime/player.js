@@ -93,7 +93,8 @@ export const createPlayer = (engine, sketch, onClose) => {
   const keysFor = (plan) => {
     const given = givenBy(plan);
     return keysOf(plan, {
-      given: (step) => (step.kernel.kind === "draw" ? { ...given(step), samples: samplesOf(step) } : given(step)),
+      given: (step) => (
+        step.kernel.kind === "draw" ? { ...given(step), samples: samplesOf(step) } : given(step)),
       used: (kernel) => textOf(kernel).used,
       text: (kernel) => textOf(kernel).identity,
     });

@@ -1,4 +1,4 @@
-// recordings.js -- which frame of a film or a sound shows at a time: terrain/over_time.py over what was exported.
+// recordings.js -- which frame of a film or a sound shows at a time, of those exported: terrain/over_time.py.
 
 /** @typedef {import("./schema.js").DataTexture} DataTexture */
 
