@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import subprocess
+import sys
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
@@ -138,3 +139,45 @@ def test_a_slow_picture_is_asked_about(page: Browser):
     width, height = page.wait("window.chosen")[0]
     assert 1 <= width < 160 and 1 <= height < 90
     assert page.run("return page.player.state.frame ?? page.player.sketch.frame") == [160, 90]
+
+
+CODE = "[...document.querySelectorAll('[role=tab]')].find((tab) => tab.textContent === 'Code').click()"
+DRAWN = "document.querySelector('.stage canvas')?.hidden === false"
+
+
+def replaced(page: Browser, old: str, new: str) -> None:
+    """Select a part of the text and type over it."""
+    page.run(
+        "const area = document.querySelector('.code-text'), at = area.value.indexOf(arguments[0]);"
+        "area.focus(); area.setSelectionRange(at, at + arguments[0].length);",
+        old,
+    )
+    page.press(*new)
+
+
+def test_an_exported_page_is_broken_repaired_saved_and_loaded_again(tmp_path: Path):
+    path = tmp_path / "page.html"
+    command = [sys.executable, "-m", "playground", "export", "diamond_square", "--to", str(path)]
+    subprocess.run([*command, "--set", "size=65"], check=True, capture_output=True)
+    with Browser(tmp_path / "profile", 1280, 900, MESA) as page:
+        page.open(path.as_uri())
+        page.wait(DRAWN)
+        page.run(CODE)
+        page.wait("document.querySelector('.code-text')")
+        menu = "const menu = document.querySelector('.editor select');"
+        page.run(f"{menu} menu.value = arguments[0]; menu.onchange()", "generation/diamond_square/raw.glsl")
+        replaced(page, "return total", "return totl")
+        said = page.wait("document.querySelector('.editor-problems li')?.textContent")
+        assert said.startswith("generation/diamond_square/raw.glsl:80: ") and "did you mean `total`?" in said
+        replaced(page, "totl", "0.5 * total")
+        page.wait("/^Compiled/.test(document.querySelector('.editor-status').textContent)")
+        page.click(".editor-download")
+        page.wait("/my-version.zip is saved/.test(document.querySelector('.editor-status').textContent)")
+        page.open(path.as_uri())
+        page.wait(DRAWN)
+        page.run(CODE)
+        options = "[...document.querySelectorAll('.editor option')].map((one) => one.text)"
+        listed = page.wait(f"document.querySelector('.code-text') && {options}")
+        edited = [name for name in listed if name.endswith("(edited)")]
+        assert edited == ["generation/diamond_square/raw.glsl (edited)"]
+        assert page.log() == []
