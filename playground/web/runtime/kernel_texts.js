@@ -7,6 +7,8 @@ import { flatten } from "./source.js";
 import { stageText } from "./wrap.js";
 import { toES } from "./es.js";
 import { declaredUniforms } from "./uniforms.js";
+import { withConversions } from "./conversions.js";
+import { withoutDesktopForms as forES } from "./desktop_glsl.js";
 import { filteredByHand } from "./linear_by_hand.js";
 
 /** @typedef {import("./schema.js").Kernel} Kernel */
@@ -55,7 +57,8 @@ export const readKernel = (shared, kernel, texts) => {
 export const stagesOf = ({ kernel, flat, vertex }, byHand, atEnd) => {
   const stages = [kernel.vertex, kernel.fragment].map((stage, i) => {
     const { text, first } = stageText(stage, i ? flat : vertex);
-    const filtered = byHand.size ? filteredByHand(text, byHand) : { text, functions: "" };
+    const plain = kernel.kind === "plain_fragment" ? withConversions(forES(text)) : text;
+    const filtered = byHand.size ? filteredByHand(plain, byHand) : { text: plain, functions: "" };
     const found = i && atEnd ? filtered.text.replace(/\}\s*$/, `${atEnd} }\n`) : filtered.text;
     const how = { extensions: kernel.extensions, declarations: filtered.functions };
     return { text: toES(found, how), first };

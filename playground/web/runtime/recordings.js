@@ -24,3 +24,14 @@ export function blobAt(texture, playing, time) {
   }
   return frames[Math.max(low - 1, 0)];
 }
+
+/** Return how a source plays its file; null of one that plays none.
+ *  @param {import("./schema.js").Leaf} leaf
+ *  @param {Object<string, import("./schema.js").Value>} values of its parameters, by name
+ *  @returns {Playing | null} */
+export function playingOf({ clock, values: paths }, values) {
+  if (!clock) return null;
+  const byPath = new Map(Object.entries(paths).map(([name, path]) => [path, values[name]]));
+  const speed = clock.speed === undefined ? undefined : Number(byPath.get(clock.speed));
+  return { start: Number(byPath.get(clock.start)), speed, loop: Boolean(byPath.get(clock.loop)) };
+}
