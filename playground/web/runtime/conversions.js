@@ -1,17 +1,19 @@
 // conversions.js -- writes out the conversions that desktop GLSL does by itself and GLSL ES leaves undone.
 //
-// There a whole number becomes a float where one is wanted, "f.xx" of a number is a vector, "{ a, b }" a value.
-// The text is read as far as types need it; what is not understood, such as a macro that takes types, stays.
+// There a whole number becomes a float where one is wanted, "f.xx" of a number is a vector, "{ a, b }" a
+// value. The text is read as far as types need it; what is not understood, such as a macro that takes types,
+// stays.
 
 import { closing, edited, macrosOf, tokensOf } from "./glsl_tokens.js";
 import * as types from "./glsl_types.js";
 
 /** @typedef {import("./glsl_types.js").Type} Type */
-/** @typedef {{at: number, end: number, type: Type, literal?: boolean}} Value  of an expression; places in the text */
+/** Of an expression, with its places in the text.
+ *  @typedef {{at: number, end: number, type: Type, literal?: boolean}} Value */
 /** @typedef {{parameters: {type: Type, out: boolean}[], type: Type}} Signature */
 
-const QUALIFIERS = new Set(("const in out inout uniform varying attribute centroid flat smooth noperspective invariant "
-  + "highp mediump lowp precise patch sample").split(" "));
+const QUALIFIERS = new Set(("const in out inout uniform varying attribute centroid flat smooth noperspective "
+  + "invariant highp mediump lowp precise patch sample").split(" "));
 const BASIC = /^(?:void|float|int|uint|bool|[iub]?vec[234]|mat[234](?:x[234])?|[iu]?sampler\w+)$/;
 const SWIZZLE = /^(?:[xyzw]{1,4}|[rgba]{1,4}|[stpq]{1,4})$/;
 /** @type {Object<string, number>} */
@@ -128,18 +130,28 @@ export function withConversions(text) {
   const called = (name, values) => {
     const given = values.map((value) => value.type), all = functions.get(name);
     if (!all) {
-      if (types.takesFloats(name, given)) for (const value of values.slice(/^tex/.test(name) ? 1 : 0)) convert(value, "float");
+      if (types.takesFloats(name, given)) {
+        for (const value of values.slice(/^tex/.test(name) ? 1 : 0)) convert(value, "float");
+      }
       return macros.has(name) ? macroType(name) : types.givenBy(name, values.map((value) => value.type));
     }
     const fitting = all.filter(({ parameters }) => parameters.length === values.length);
-    const same = fitting.find(({ parameters }) => parameters.every(({ type }, index) => type === given[index]));
-    const close = fitting.find(({ parameters }) => parameters.every(({ type }, index) => !given[index] || type === given[index]
+    const same = fitting.find(({ parameters }) =>
+      parameters.every(({ type }, index) => type === given[index]));
+    const close = fitting.find(({ parameters }) => parameters.every(({ type }, index) =>
+      !given[index] || type === given[index]
       || types.isWidened(types.baseOf(given[index]), types.baseOf(type))));
-    if (!same && close) values.forEach((value, index) => convert(value, close.parameters[index].out ? "" : close.parameters[index].type));
+    if (!same && close) {
+      values.forEach((value, index) => {
+        const { type, out } = close.parameters[index];
+        convert(value, out ? "" : type);
+      });
+    }
     return (same ?? close ?? fitting[0] ?? all[0]).type;
   };
 
-  /** What a macro with parameters gives, where it is a value of a type. @param {string} name @returns {Type} */
+  /** What a macro with parameters gives, where it is a value of a type.
+   *  @param {string} name @returns {Type} */
   const macroType = (name) => {
     const made = /^\s*\(?\s*(\w+)\s*\(/.exec(macros.get(name)?.body ?? "")?.[1] ?? "";
     return BASIC.test(made) ? made : "";
@@ -165,7 +177,8 @@ export function withConversions(text) {
           value = { at: value.at, end: field.end, type };
         } else {
           const own = structures.get(value.type)?.find(({ name }) => name === field.text);
-          const type = own ? own.type : SWIZZLE.test(field.text) ? types.swizzled(value.type, field.text) : "";
+          const parts = SWIZZLE.test(field.text) ? types.swizzled(value.type, field.text) : "";
+          const type = own ? own.type : parts;
           value = { at: value.at, end: field.end, type };
         }
       } else if (peek() === "++" || peek() === "--") {

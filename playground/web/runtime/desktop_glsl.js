@@ -18,13 +18,14 @@ const LINES = "vec4 k_line(sampler2D k_s, float k_p) { return texture(k_s, vec2(
 const LINE_FUNCTIONS = {
   texture: "k_line", textureLod: "k_lineLod", texelFetch: "k_lineFetch", textureSize: "k_lineSize",
 };
-const BUILT_IN = new Set(("radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2 "
-  + "log2 sqrt inversesqrt abs sign floor trunc round roundEven ceil fract mod modf min max clamp mix step smoothstep "
-  + "isnan isinf length distance dot cross normalize faceforward reflect refract matrixCompMult outerProduct "
-  + "transpose determinant inverse lessThan lessThanEqual greaterThan greaterThanEqual equal notEqual any all not "
-  + "dFdx dFdy fwidth floatBitsToInt floatBitsToUint intBitsToFloat uintBitsToFloat").split(" "));
+const BUILT_IN = new Set(("radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow "
+  + "exp log exp2 log2 sqrt inversesqrt abs sign floor trunc round roundEven ceil fract mod modf min max "
+  + "clamp mix step smoothstep isnan isinf length distance dot cross normalize faceforward reflect refract "
+  + "matrixCompMult outerProduct transpose determinant inverse lessThan lessThanEqual greaterThan "
+  + "greaterThanEqual equal notEqual any all not dFdx dFdy fwidth floatBitsToInt floatBitsToUint "
+  + "intBitsToFloat uintBitsToFloat").split(" "));
 const TYPE = /^(?:float|int|uint|bool|[iub]?vec[234]|mat[234](?:x[234])?)$/;
-const STORAGE = new Set(["uniform", "in", "out", "inout", "const", "attribute", "varying", "layout", "precision"]);
+const STORAGE = new Set("uniform in out inout const attribute varying layout precision".split(" "));
 
 /** A stage's text, as desktop GLSL has it, without what GLSL ES has not; its lines stay.
  *  @param {string} text @returns {string} */
@@ -46,7 +47,8 @@ function blocks(text) {
     const end = closing(tokens, at + 2), instance = tokens[end + 1].text === ";" ? "" : tokens[end + 1].text;
     let last = end + 1;
     while (tokens[last].text !== ";") last++;
-    edits.push({ at: word.at, end: brace.end, text: "" }, { at: tokens[end].at, end: tokens[last].end, text: "" });
+    edits.push(
+      { at: word.at, end: brace.end, text: "" }, { at: tokens[end].at, end: tokens[last].end, text: "" });
     let begins = true;
     for (let inside = at + 3; inside < end; inside++) {
       const token = tokens[inside], next = tokens[inside + 1].text;
@@ -62,7 +64,8 @@ function blocks(text) {
   if (!members.size) return found;
   const uses = tokensOf(found);
   return edited(found, uses.flatMap((token, at) => {
-    const dotted = uses[at + 1]?.text === "." ? members.get(`${token.text}.${uses[at + 2]?.text}`) : undefined;
+    const isDotted = uses[at + 1]?.text === ".";
+    const dotted = isDotted ? members.get(`${token.text}.${uses[at + 2]?.text}`) : undefined;
     if (dotted) return [{ at: token.at, end: uses[at + 2].end, text: dotted }];
     const alone = uses[at - 1]?.text === "." ? undefined : members.get(token.text);
     return alone ? [{ at: token.at, end: token.end, text: alone }] : [];
@@ -74,7 +77,8 @@ function blocks(text) {
 function lines(text) {
   const tokens = tokensOf(text);
   if (!tokens.some((token) => token.text === "sampler1D")) return text;
-  const names = new Set(tokens.filter((_, at) => tokens[at - 1]?.text === "sampler1D").map((token) => token.text));
+  const named = tokens.filter((_, at) => tokens[at - 1]?.text === "sampler1D");
+  const names = new Set(named.map((token) => token.text));
   /** @type {Edit[]} */
   const edits = tokens.flatMap((token, at) => {
     if (token.text === "sampler1D") return [{ at: token.at, end: token.end, text: "sampler2D" }];
@@ -132,7 +136,8 @@ function globals(text) {
     while (tokens[name].text === "]") while (tokens[name--].text !== "[");
     if (begins === "const") constant.add(tokens[name].text);
     if (STORAGE.has(begins) || !variables(tokens.slice(at + 1, end), constant).length) return;
-    set += ` ${tokens[name].text} = ${text.slice(tokens[at + 1].at, tokens[end].at).replace(/\s*\n\s*/g, " ")};`;
+    const given = text.slice(tokens[at + 1].at, tokens[end].at).replace(/\s*\n\s*/g, " ");
+    set += ` ${tokens[name].text} = ${given};`;
     const value = text.slice(tokens[at].at, tokens[end].at).replace(/[^\n]/g, "");
     edits.push({ at: tokens[at].at, end: tokens[end].at, text: value });
   });
@@ -154,7 +159,8 @@ function constants(text) {
   let depth = 0;
   tokens.forEach(({ text: word, at: from, end: to }, at) => {
     depth += word === "{" ? 1 : word === "}" ? -1 : 0;
-    if (word !== "const" || !TYPE.test(tokens[at + 1]?.text ?? "") || ["(", ","].includes(tokens[at - 1]?.text)) return;
+    if (word !== "const" || !TYPE.test(tokens[at + 1]?.text ?? "")) return;
+    if (["(", ","].includes(tokens[at - 1]?.text)) return;
     const end = tokens.findIndex((token, index) => index > at && token.text === ";");
     const name = tokens[at + 2].text;
     const equals = tokens.findIndex((token, index) => index > at && token.text === "=");

@@ -21,7 +21,8 @@ export function toES(text, { extensions = [], declarations = "" } = {}) {
   const other = text.replace(VERSION, "").replace(EXTENSION, (line, name) =>
     (extensions.includes(name) ? line : ""));
   // Desktops take no notice of precisions; a browser may, and draw another picture.
-  const found = withoutInitialisers(other).replace(/\b(?:lowp|mediump)\b/g, (word) => "highp".padEnd(word.length));
+  const found = withoutInitialisers(other)
+    .replace(/\b(?:lowp|mediump)\b/g, (word) => "highp".padEnd(word.length));
   const lines = found.split("\n");
   if (!BLANK.test(lines[0])) throw new Error("the first line of a stage's text is its version, or blank");
   lines[0] = "#version 300 es";

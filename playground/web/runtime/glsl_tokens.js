@@ -19,9 +19,9 @@ const DIRECTIVE = /^[ \t]*#(?:\\\n|[^\n])*/gm;
 export function tokensOf(text) {
   const plain = text.replace(/\/\*[^]*?\*\/|\/\/[^\n]*/g, (comment) => comment.replace(/[^\n]/g, " "))
     .replace(DIRECTIVE, (line) => line.replace(/[^\n]/g, " "));
-  return [...plain.matchAll(TOKEN)].filter(([, word, number, sign]) => word ?? number ?? sign).map((match) => {
-    return { text: match[0], at: match.index, end: match.index + match[0].length };
-  });
+  return [...plain.matchAll(TOKEN)]
+    .filter(([, word, number, sign]) => word ?? number ?? sign)
+    .map((match) => ({ text: match[0], at: match.index, end: match.index + match[0].length }));
 }
 
 /** The macros that a text defines: their parameters, null of one without any, and what stands for them.
@@ -29,7 +29,8 @@ export function tokensOf(text) {
 export function macrosOf(text) {
   const found = new Map();
   for (const [, name, list, body] of text.matchAll(/^[ \t]*#[ \t]*define[ \t]+(\w+)(\([^)\n]*\))?(.*)$/gm)) {
-    found.set(name, { parameters: list ? list.slice(1, -1).split(",").map((one) => one.trim()) : null, body });
+    const parameters = list ? list.slice(1, -1).split(",").map((one) => one.trim()) : null;
+    found.set(name, { parameters, body });
   }
   return found;
 }

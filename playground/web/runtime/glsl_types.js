@@ -52,15 +52,17 @@ export function given(sign, left, right) {
 /** @param {string[]} two @returns {[string, string]} */
 const pair = (two) => [two[0], two[1]];
 
-const FLOATS = new Set(("radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp log exp2 "
-  + "log2 sqrt inversesqrt floor trunc round roundEven ceil fract mod mix step smoothstep length distance dot cross "
-  + "normalize faceforward reflect refract dFdx dFdy fwidth fma").split(" "));
+const FLOATS = new Set(("radians degrees sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh pow exp "
+  + "log exp2 log2 sqrt inversesqrt floor trunc round roundEven ceil fract mod mix step smoothstep length "
+  + "distance dot cross normalize faceforward reflect refract dFdx dFdy fwidth fma").split(" "));
 const ANY = new Set(["abs", "sign", "min", "max", "clamp"]);
 const WITH_FLOATS = /^texture(?:Proj|Lod|Grad|ProjLod|Offset|LodOffset)?$/;
-const COMPARING = new Set(["lessThan", "lessThanEqual", "greaterThan", "greaterThanEqual", "equal", "notEqual", "not"]);
+const COMPARING = new Set(
+  "lessThan lessThanEqual greaterThan greaterThanEqual equal notEqual not".split(" "));
 /** @type {Object<string, Type>} */
 const ALWAYS = {
-  length: "float", distance: "float", dot: "float", determinant: "float", cross: "vec3", any: "bool", all: "bool",
+  length: "float", distance: "float", dot: "float", determinant: "float", cross: "vec3", any: "bool",
+  all: "bool",
   texelFetch: "vec4", texelFetchOffset: "vec4",
 };
 
@@ -84,7 +86,8 @@ export function givenBy(name, types) {
   const bits = /^(?:floatBitsTo(Int|Uint)|u?intBitsTo(Float))$/.exec(name);
   if (bits) return typeOf((bits[1] ?? bits[2]).toLowerCase(), size);
   if (FLOATS.has(name)) return types.every((type) => type) ? typeOf("float", size) : "";
-  return ANY.has(name) && types.every((type) => type) ? typeOf(takesFloats(name, types) ? "float" : baseOf(types[0]), size) : "";
+  if (!ANY.has(name) || !types.every((type) => type)) return "";
+  return typeOf(takesFloats(name, types) ? "float" : baseOf(types[0]), size);
 }
 
 /** What a field of a vector is: "v.xy" of a "vec3" a "vec2".
