@@ -12,9 +12,9 @@ import pytest
 
 from playground import cli
 from playground.capture.pack import pack
-from playground.engine.packed_files import contents
 from playground.engine.check import find_files
 from playground.engine.engine import Engine
+from playground.engine.packed_files import contents
 from playground.errors import DataError
 from playground.images.files import write_values
 from playground.live.drops import Drops, opened_from

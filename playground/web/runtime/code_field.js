@@ -91,7 +91,9 @@ export function createCodeField(host, { label, hint, onInput }) {
 
   /** @param {number} at @param {HTMLElement} line @param {HTMLElement} number */
   function put(at, line, number) {
-    for (const [side, made] of /** @type {[HTMLElement, HTMLElement][]} */ ([[layer, line], [gutter, number]])) {
+    /** @type {[HTMLElement, HTMLElement][]} */
+    const pairs = [[layer, line], [gutter, number]];
+    for (const [side, made] of pairs) {
       const before = side.children[at];
       if (before) before.replaceWith(made);
       else side.append(made);

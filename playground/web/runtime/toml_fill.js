@@ -28,7 +28,8 @@ export function fill(pieces, { values, camera, rows, use }) {
     const found = typeof piece === "string" ? undefined : new Map(Object.entries(piece)).get(kind);
     return found === undefined ? [] : [found];
   }));
-  const known = new Set([...has("path"), ...has("aside")]), cameraHas = has("camera"), terrainHas = has("terrain");
+  const known = new Set([...has("path"), ...has("aside")]);
+  const cameraHas = has("camera"), terrainHas = has("terrain");
   const view = camera ? cameraText(camera) : new Map();
   /** @param {string} into @returns {string[]} keys with their values */
   const added = (into) => {
