@@ -325,8 +325,10 @@ def test_line_numbers_survive_any_source_number(wording: str) -> None:
     assert {entry.severity for entry in entries} == {"warning" if "warning" in wording.lower() else "error"}
 
 
-def test_no_text_makes_the_reader_raise() -> None:
-    rng = random.Random(7)
+# A quarter of the texts every day, for they are made by chance: the others are no different.
+@pytest.mark.parametrize("seed", [7, *(pytest.param(n, marks=pytest.mark.slow) for n in (107, 207, 307))])
+def test_no_text_makes_the_reader_raise(seed: int) -> None:
+    rng = random.Random(seed)
     pieces = [
         *"0123456789:(),.;'\"`#-= \t\n\r\0\x0b\x85\u2028\u0663é",
         "0:12(8): error:",
@@ -350,7 +352,7 @@ def test_no_text_makes_the_reader_raise() -> None:
         "syntax error",
         "no matching function for call to `f(int)'",
     ]
-    for _ in range(3000):
+    for _ in range(750):
         text = "".join(rng.choices(pieces, k=rng.randrange(30)))
         _, log = split_moderngl(text)
         for entry in (*parse_log(text), *parse_log(log)):

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import Any
 
 from mido.ports import BaseInput
 
 DEVICES: dict[str, list[bytes]] = {}  # by name: what is still to be read
 TAKEN: set[str] = set()
+ASKED: Counter[str] = Counter()  # how often a device was asked while nothing of it was left to be read
 
 
 def get_devices(**_: Any) -> list[dict[str, Any]]:
@@ -23,5 +25,6 @@ class Input(BaseInput):
 
     def _receive(self, block: bool = True) -> None:
         data = DEVICES[self.name]  # KeyError: it was pulled out
+        ASKED[self.name] += not data
         while data:
             self._parser.feed(data.pop(0))

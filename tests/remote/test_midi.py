@@ -42,11 +42,15 @@ class Device:
     def raw(self, *data: int) -> None:
         """Send bytes, and wait until the window has done what they say."""
         self.data.append(bytes(data))
-        end = time.monotonic() + 10
+        end = time.monotonic() + 60
         while self.data:
             assert time.monotonic() < end
             time.sleep(0.001)
-        time.sleep(0.02)
+        (name,) = (name for name, left in fake_midi.DEVICES.items() if left is self.data)
+        asked = fake_midi.ASKED[name]
+        while fake_midi.ASKED[name] == asked:  # it is asked again when all that it said is passed on
+            assert time.monotonic() < end
+            time.sleep(0.001)
         self.desk.frame()
         self.desk.frame()
 

@@ -194,8 +194,10 @@ def test_what_is_no_expression_is_one_sentence_and_quick(text):
     assert time.process_time() - start < 5.0  # [s] of this process; a hostile text takes hours
 
 
-def test_rubbish_raises_nothing_else():
-    rng = random.Random(8)
+# A quarter of the texts every day, for they are made by chance: the others are no different.
+@pytest.mark.parametrize("seed", [8, *(pytest.param(n, marks=pytest.mark.slow) for n in (108, 208, 308))])
+def test_rubbish_raises_nothing_else(seed):
+    rng = random.Random(seed)
     pieces = [
         *"0123456789.+-*/%()<>=,'\"[]{}~ \\\t\n#:@",
         "**",
@@ -207,7 +209,7 @@ def test_rubbish_raises_nothing_else():
         "é",
         "1e9",
     ]
-    for _ in range(1500):
+    for _ in range(375):
         text = "".join(rng.choice(pieces) for _ in range(rng.randint(1, 14)))
         for function in (lambda t: evaluate(t, NAMES), names_in, lambda t: check(t, NAMES), accepted_sizes):
             try:

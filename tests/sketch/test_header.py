@@ -465,11 +465,13 @@ def test_no_line_is_too_long_for_its_pattern(parse):
             pass
 
 
-def test_mutated_headers_raise_nothing_but_sentences(parse):
-    rng = random.Random(5)
+# A quarter of the texts every day, for they are made by chance: the others are no different.
+@pytest.mark.parametrize("seed", [5, *(pytest.param(n, marks=pytest.mark.slow) for n in (105, 205, 305))])
+def test_mutated_headers_raise_nothing_but_sentences(parse, seed):
+    rng = random.Random(seed)
     texts = [p.read_text() for p in sorted(GLSL.rglob("*.glsl"))[:40]]
     texts = ["\n".join(line for line in t.split("\n") if "include" not in line)[:3000] for t in texts]
-    for _ in range(1500):
+    for _ in range(375):
         letters = list(rng.choice(texts))
         for _ in range(rng.randint(1, 6)):
             if rng.random() < 0.5 or not letters:

@@ -628,8 +628,10 @@ def test_what_the_user_types_may_lie_anywhere(folder, tmp_path: Path):
 # Anything at all
 
 
-def test_mutated_sketches_raise_nothing_but_sentences(folder):
-    rng = random.Random(7)
+# A quarter of the texts every day, for they are made by chance: the others are no different.
+@pytest.mark.parametrize("seed", [7, *(pytest.param(n, marks=pytest.mark.slow) for n in (107, 207, 307))])
+def test_mutated_sketches_raise_nothing_but_sentences(folder, seed):
+    rng = random.Random(seed)
     folder.write("t.toml", "[[pass]]\nname = 'a'\nuse = './terrain'\n[parameters]\nsteep = 'a.rise'\n")
     folder.write("back.glsl", TERRAIN + "uniform sampler2D before; //! input\n")
     valid = """\
@@ -688,7 +690,7 @@ preset = "p"
         "#",
     ]
     loaded = 0
-    for _ in range(2500):
+    for _ in range(625):
         text = valid
         for _ in range(rng.randint(1, 3)):
             at = rng.randrange(len(text))
@@ -709,7 +711,7 @@ preset = "p"
             loaded += 1
         except PlaygroundError as error:
             assert error.diagnostics[0].file and "\n" not in error.diagnostics[0].message
-    assert loaded > 10
+    assert loaded > 2
 
 
 @pytest.mark.parametrize(

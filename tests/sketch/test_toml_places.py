@@ -121,9 +121,11 @@ def test_what_is_not_toml_gives_what_there_is(text):
     assert places.lines["first",] == 1 and places.pairs["first",].value == len("first = ")
 
 
-def test_any_text_ends_soon_and_raises_nothing():
-    rng = random.Random(2)
-    for _ in range(3000):
+# A quarter of the texts every day, for they are made by chance: the others are no different.
+@pytest.mark.parametrize("seed", [2, *(pytest.param(n, marks=pytest.mark.slow) for n in (102, 202, 302))])
+def test_any_text_ends_soon_and_raises_nothing(seed):
+    rng = random.Random(seed)
+    for _ in range(750):
         letters = list(TEXT)
         for _ in range(rng.randint(1, 12)):
             at = rng.randrange(len(letters))

@@ -85,7 +85,7 @@ def page(**more: Any) -> dict[str, Any]:
             "field_of_view": 40,
         },
         "picture": {"path": "picture", "output": "frame"},
-        "kernels": [],
+        "kernels": [{"repeat": 24}],
         "nodes": [],
         "passes": {
             "height": {"base": "#terrain", "where": ""},

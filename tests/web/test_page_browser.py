@@ -6,7 +6,6 @@ The player is one that draws without WebGL what its state says, so that it is th
 from __future__ import annotations
 
 import os
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -62,13 +61,8 @@ class Page:
         return self.run(f"return {STATE}.values[arguments[0]] ?? null", path)
 
     def at_rest(self) -> None:
-        """Wait until no frame follows; one at rest may follow a motion by 0.3 s."""
-        count, since = -1, time.monotonic()
-        while time.monotonic() - since < 0.4:
-            now = self.run("return probe.frames.length")
-            if now != count:
-                count, since = now, time.monotonic()
-            time.sleep(0.05)
+        """Wait until no other picture is to come."""
+        self.browser.wait("document.querySelector('.stage').getAttribute('aria-busy') === 'false'")
 
     def keys(self, *names: str, held: str = "") -> None:
         """Press keys, others held meanwhile."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tomllib
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -28,26 +29,35 @@ from playground.workbench.sun_drag import turned
 
 from .node import Node
 
-SKETCHES = [load(name) for name in shipped_sketches()]
 RANDOM = np.random.default_rng(16)
 
 
-def parameters() -> dict[str, tuple[Sketch, str, Parameter, dict[str, Any]]]:
+Known = tuple[Sketch, str, Parameter, dict[str, Any]]
+
+
+@cache
+def sketches() -> list[Sketch]:
+    """Return the shipped sketches."""
+    return [load(name) for name in shipped_sketches()]
+
+
+@cache
+def parameters() -> list[Known]:
     """Return each different parameter of the shipped sketches once, with its row of a page."""
-    found: dict[str, tuple[Sketch, str, Parameter, dict[str, Any]]] = {}
-    for sketch in SKETCHES:
+    found: dict[str, Known] = {}
+    for sketch in sketches():
         for shown in shown_parameters(sketch):
             targets = tuple(target.path for target in resolve(sketch.graph, shown.path))
             data = row(shown, shown.parameter.default, targets)
             one = shown.parameter
             found[f"{one.name} {one.type} {one.widget} {one.step}"] = sketch, shown.path, one, data
-    return found
+    return list(found.values())
 
 
-PARAMETERS = list(parameters().values())
-NUMBERS = [
-    p for p in PARAMETERS if p[2].widget.kind in ("number", "slider", "log_slider", "angle", "divider")
-]
+def numbers() -> list[Known]:
+    """Return those that are written as numbers."""
+    kinds = ("number", "slider", "log_slider", "angle", "divider")
+    return [known for known in parameters() if known[2].widget.kind in kinds]
 
 
 def some_value(parameter: Parameter) -> Value:
@@ -73,7 +83,7 @@ def some_value(parameter: Parameter) -> Value:
 
 
 def test_there_are_parameters_of_every_widget():
-    kinds = {parameter.widget.kind for _, _, parameter, _ in PARAMETERS}
+    kinds = {parameter.widget.kind for _, _, parameter, _ in parameters()}
     assert kinds >= {
         "number",
         "slider",
@@ -85,12 +95,12 @@ def test_there_are_parameters_of_every_widget():
         "checkbox",
         "file",
     }
-    assert len(PARAMETERS) > 300
+    assert len(parameters()) > 300
 
 
 def test_numbers_are_written_and_snapped_as_in_the_window(node: Node):
     asked, expected = [], []
-    for _, _, parameter, data in NUMBERS:
+    for _, _, parameter, data in numbers():
         low, high = parameter.widget.ends()
         for share in (0.0, 0.123, 0.5, 0.77777, 1.0):
             number = -3.0 + share * 11 if low is None or high is None else low + share * (high - low)
@@ -109,7 +119,7 @@ def test_numbers_are_written_and_snapped_as_in_the_window(node: Node):
 
 
 def test_a_slider_reaches_its_ends_and_comes_back(node: Node):
-    rows = [data for _, _, parameter, data in NUMBERS if parameter.widget.ends()[1] is not None]
+    rows = [data for _, _, parameter, data in numbers() if parameter.widget.ends()[1] is not None]
     script = """async (rows, load) => {
         const { scaleOf } = await load("numbers.js");
         return rows.map((one) => {
@@ -163,14 +173,14 @@ def test_what_is_no_colour_is_none(node: Node, text: str):
 
 def test_values_as_text_are_what_python_reads(node: Node):
     """Links, --set and TOML: what a page writes, Python takes, exactly; and the page itself."""
-    chosen = [p for p in PARAMETERS if p[2].widget.kind not in ("file", "button")]
+    chosen = [p for p in parameters() if p[2].widget.kind not in ("file", "button")]
     asked = [[data, some_value(parameter)] for _, _, parameter, data in chosen for _ in range(3)]
     script = """async (asked, load) => {
         const { fits, read, toml, write } = await load("value_text.js");
         return asked.map(([one, value]) => [
             write(one, value), toml(one, value), read(one, write(one, value)), fits(one, value)]);
     }"""
-    of = {id(data): (sketch, path, parameter) for sketch, path, parameter, data in PARAMETERS}
+    of = {id(data): (sketch, path, parameter) for sketch, path, parameter, data in parameters()}
     for (data, value), (text, toml, read, fits) in zip(asked, node.run(script, asked), strict=True):
         sketch, path, parameter = of[id(data)]
         assert fits, (path, value)
@@ -183,12 +193,14 @@ def test_values_as_text_are_what_python_reads(node: Node):
 
 def test_values_out_of_range_are_refused_as_python_refuses_them(node: Node):
     asked = []
-    for _, _, parameter, data in NUMBERS:
+    for _, _, parameter, data in numbers():
         low, high = parameter.widget.ends()
         if low is not None and high is not None:
-            numbers = [low - 0.1 * (high - low) - 1, high + 0.1 * (high - low) + 1, math.nan]
-            asked += [[data, ",".join([repr(n)] * length_of(parameter.type))] for n in numbers]
-    asked += [[PARAMETERS[0][3], text] for text in ("", "x", "1,2,3,4,5,6", "[]", "{}", "__proto__", "1e999")]
+            outside = [low - 0.1 * (high - low) - 1, high + 0.1 * (high - low) + 1, math.nan]
+            asked += [[data, ",".join([repr(n)] * length_of(parameter.type))] for n in outside]
+    asked += [
+        [parameters()[0][3], text] for text in ("", "x", "1,2,3,4,5,6", "[]", "{}", "__proto__", "1e999")
+    ]
     script = "async (asked, load) => { const { read } = await load('value_text.js');"
     script += " return asked.map(([one, text]) => read(one, text) === undefined); }"
     refused = node.run(script, asked)
@@ -272,7 +284,7 @@ def test_main_parameters_have_the_windows_labels(node: Node):
         return [...mainLabels(mainRows(rows))];
     }"""
     seen = 0
-    for sketch in SKETCHES:
+    for sketch in sketches():
         if not sketch.main:
             continue
         wanted = {item.path: item.title for item in Listing().main(Draft(sketch, sketch))}

@@ -121,6 +121,8 @@ export function createPanel(session, { words, labels = {}, link, copied, say, fi
     for (const { pass } of sketch.choices) if (!passes.has(pass)) passes.set(pass, []);
     const mine = () => main.map((row) => rows.labelled(row, named(titles.get(row.path) ?? row.label)));
     const stopped = Object.keys(sketch.steps).length > 0;
+    const isLoop = (/** @type {object} */ node) => "loop" in node;
+    const repeated = sketch.kernels.some(({ repeat }) => repeat !== 1) || sketch.nodes.some(isLoop);
     const notes = sketch.notes.map((note) => make("p", {}, note));
     const terrain = session.rows().filter((row) => !row.targets.length);
     const sections = [
@@ -128,7 +130,7 @@ export function createPanel(session, { words, labels = {}, link, copied, say, fi
       main.length ? fold(words.main, true, mine) : null,
       ...[...passes].map(([pass, items]) => section(pass, items, !main.length)),
       fold(words.terrain, false, () => terrain.map(rows.rowOf)),
-      fold(words.iterations, stopped, () => iterationRows(session, words, rows, repeats)),
+      repeated ? fold(words.iterations, stopped, () => iterationRows(session, words, rows, repeats)) : null,
       notes.length ? fold(words.notes, false, () => notes) : null,
     ];
     list.replaceChildren(...sections.filter((one) => one !== null));
