@@ -58,7 +58,7 @@ def prepare_page(
     """
     size, stops = frame or DEFAULT_PICTURE, dict(steps or {})
     script, style = read_bundle("page.js"), read_bundle("page.css")
-    data = page_data([sketch], frame=size, time=time, steps=stops, techniques=techniques)
+    data = page_data([sketch], frame=size, time=time, steps=stops, techniques=techniques, packed=True)
     bytes_of_data = sum(map(len, data["shared"]["blobs"].values()))
     if bytes_of_data > LARGEST:
         largest = f"at most {LARGEST // 2**20} MiB; a smaller terrain, image or film would do"

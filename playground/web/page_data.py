@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
+from playground.web.packed import pack_blob
 from playground.web.plan import FORMAT, sketch_data
 from playground.web.shared import SharedData
 from playground.web.techniques import technique_menus
@@ -18,13 +19,15 @@ def page_data(
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
     techniques: Mapping[str, Sequence[str]] | None = None,
+    packed: bool = False,
 ) -> dict[str, Any]:
     """Return sketches as one page's data: JSON's own types only.
 
     ``frame`` in pixels, ``time`` in seconds, ``steps`` stops repeats early, by path, as in
     ``Engine.render``. ``techniques`` lists by pass what else may fill it in the first sketch (an empty
-    list: all that fits), for a page with menus of them. The same sketches give the same data. Raises
-    ``PlaygroundError`` for any mistake in a sketch, and for what no page can run.
+    list: all that fits), for a page with menus of them; ``packed``: with what "download my version" needs.
+    The same sketches give the same data. Raises ``PlaygroundError`` for any mistake in a sketch, and for
+    what no page can run.
     """
     shared = SharedData()
     menus: list[list[dict[str, Any]]] = [[] for _ in sketches]
@@ -34,4 +37,7 @@ def page_data(
     written = [sketch_data(one, shared, frame=frame, time=time, steps=steps) for one in sketches]
     for one, choices in zip(written, menus, strict=True):
         one["choices"] = choices
+    if packed:
+        for sketch, one in zip(sketches, written, strict=True):
+            one["pack"] = pack_blob(sketch, shared.texts.names, shared.blobs)
     return {"format": FORMAT, "sketches": written, "shared": shared.data()}

@@ -43,6 +43,11 @@ class Texts:
         self.files[name] = text
         return name
 
+    @property
+    def names(self) -> dict[str, str]:
+        """The names of files by absolute path, and of rewritten texts by what else they are known by."""
+        return dict(self._names)
+
     def _rewritten(self, source: SourceText, folder: str, label: str) -> str:
         text = "\n".join(map(_with_comment, source.lines))
         known = f"{source.path}{PART_OF_FILE}{label}"

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from playground import cli
-from playground.capture.pack import contents, pack
+from playground.capture.pack import pack
 from playground.engine.check import find_files
 from playground.engine.engine import Engine
+from playground.engine.packed_files import contents
 from playground.errors import DataError
 from playground.images.files import write_values
 from playground.live.drops import Drops, opened_from

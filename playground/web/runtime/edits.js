@@ -1,14 +1,15 @@
 // edits.js -- tries an edited text: all kernels that it is part of are compiled, and what is wrong is told
 // by line.
 
+import { complaints } from "./complaints.js";
 import { readKernel, stagesOf } from "./kernel_texts.js";
+import { libraryOf } from "./name_suggestions.js";
 
-/** @typedef {{file: string, line: number, message: string, kernel: string}} Complaint  line 0: of no line */
+/** @typedef {{file: string, line: number, column?: number, message: string, kernel: string}} Complaint
+ *  line 0: of no line */
 /** @typedef {{errors: Complaint[], programs: number}} Edit  programs: how many were compiled */
 /** @typedef {import("./kernel_texts.js").KernelText} KernelText */
 /** @typedef {import("./schema.js").Kernel} Kernel */
-
-const ERROR = /^ERROR: \d+:(\d+): (.*)$/gm; // as browsers write it, whatever the driver
 
 /** Compile what edited texts change; nothing else changes.
  *  @param {import("./engine.js").Engine} engine @param {Kernel[]} all
@@ -35,30 +36,33 @@ export const tried = async (engine, all, before, texts) => {
   }
   await programs.wait(asked.map(({ program }) => program));
   for (const { text, program } of asked.filter((each) => each.program.state === "failed")) {
-    errors.push(...complaintsOf(text, program));
+    errors.push(...complaintsOf(text, program, engine.shared, texts));
     programs.release(program);
   }
   const changed = [...new Set(asked.map(({ text }) => text))];
   return { errors: distinct(errors), programs: programs.compiled - compiled, kernels: changed };
 };
 
-/** Return what a driver says of a program, at the lines of its files.
- *  @param {KernelText} text @param {import("./programs.js").Program} program @returns {Complaint[]} */
-export const complaintsOf = (text, program) => {
-  const { first } = stagesOf(text, new Map(), ""), { lines } = text.flat, { name, file } = text.kernel;
-  const found = program.logs.flatMap((log, stage) => [...log.matchAll(ERROR)].map(([, number, message]) => {
-    const line = first[stage] ? lines[+number - first[stage]] : undefined;
-    return { file: line ? line.file : file, line: line ? line.line : 0, message, kernel: name };
-  }));
-  const rest = [...program.logs, program.link].join("\n").trim();
-  const message = rest || "The driver refused it without a word.";
-  return found.length ? found : [{ file, line: 0, message, kernel: name }];
+/** Return what a driver says of a program, at the lines of its files, in plain words.
+ *  @param {KernelText} text @param {import("./programs.js").Program} program
+ *  @param {import("./schema.js").Shared} shared @param {Object<string, string>} texts edited files
+ *  @returns {Complaint[]} */
+export const complaintsOf = (text, program, shared, texts) => {
+  const { first } = stagesOf(text, new Map(), ""), { kernel, flat } = text;
+  const about = {
+    lines: flat.lines, file: kernel.file, kernel: kernel.name, library: libraryOf(shared.files),
+    text: (/** @type {string} */ file) => texts[file] ?? shared.files[file],
+  };
+  const logs = program.logs.flatMap((log, stage) => (log.trim() ? [{ log, first: first[stage] }] : []));
+  if (!logs.length) logs.push({ log: program.link, first: first[1] });
+  return logs.flatMap(({ log, first: line }) => complaints(log, { ...about, first: line }))
+    .filter(({ severity }) => severity === "error");
 };
 
-/** @param {Complaint[]} complaints */
-const distinct = (complaints) => {
+/** @param {Complaint[]} found */
+const distinct = (found) => {
   const known = new Set();
-  return complaints.filter(({ file, line, message }) => {
+  return found.filter(({ file, line, message }) => {
     const key = `${file}:${line}:${message}`, isNew = !known.has(key);
     known.add(key);
     return isNew;

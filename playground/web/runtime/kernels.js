@@ -157,7 +157,7 @@ export const createKernels = (context, textures, programs, binder, shared) => {
 
   /** @param {import("./kernel_texts.js").KernelText} text @param {Program} program */
   const refused = (text, program) => {
-    const complaints = complaintsOf(text, program), [{ file, line, message }] = complaints;
+    const complaints = complaintsOf(text, program, shared, {}), [{ file, line, message }] = complaints;
     return failure("shader", `${file}:${line}: ${message}`, { complaints });
   };
 

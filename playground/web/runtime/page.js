@@ -4,8 +4,10 @@ import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
 import { readPage } from "./page_file.js";
 import { repeatsOf } from "./planner.js";
+import { createCode } from "./page_code.js";
+import { createRecovery } from "./recovery.js";
 import { createPage } from "./sketch_page.js";
-import { fill, wordsOf } from "./words.js";
+import { wordsOf } from "./words.js";
 
 async function start() {
   const main = /** @type {HTMLElement} */ (document.getElementById("playground"));
@@ -18,16 +20,19 @@ async function start() {
     engine = createEngine(canvas, page.shared);
   } catch (error) {
     main.classList.add("still");
-    const reason = error instanceof Error ? error.message : String(error);
-    return main.append(make("p", { role: "alert" }, fill(words.still, { reason })));
+    return createRecovery(main, { poster: () => {} }).lacks(error);
   }
   const repeats = (/** @type {any} */ player) => (player.plan ? repeatsOf(player.plan) : new Map());
-  const { figure } = createPage(main, page, engine, { words, poster, repeats });
-  canvas.addEventListener("webglcontextlost", () => figure.showPoster(true));
-  canvas.addEventListener("webglcontextrestored", async () => {
-    await engine.restore();
-    await figure.redraw();
+  const notices = make("div", { className: "recoveries" });
+  /** @type {() => import("./page_code.js").CodeFigure} */
+  const shown = () => made.figure;
+  const code = createCode(engine, notices, { figure: shown });
+  const made = createPage(main, page, engine, {
+    words, poster, repeats, prepare: (player) => code.prepare(/** @type {any} */ (player)),
+    openCode: (tab, player) => void code.open(tab, /** @type {any} */ (player)),
   });
+  made.figure.stage.append(notices);
+  code.watch();
   return undefined;
 }
 

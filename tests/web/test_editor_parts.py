@@ -1,0 +1,202 @@
+"""What the editor is made of, without a page: keys, notices, groups of files, what worked, how long."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from .node import Node
+
+CARET = "|"
+
+
+def press(node: Node, name: str, text: str, *more: str) -> str | None:
+    """Return a text after a key; carets are bars, two of them a selection."""
+    start = text.index(CARET)
+    end = text.rindex(CARET) - (text.count(CARET) == 2)
+    plain = text.replace(CARET, "")
+    change = node.call("typing.js", name, {"text": plain, "start": start, "end": end}, *more)
+    if change is None:
+        return None
+    done = plain[: change["from"]] + change["insert"] + plain[change["to"] :]
+    first, last = change["start"], change["end"]
+    marked = done[:last] + CARET + done[last:]
+    return marked if first == last else marked[:first] + CARET + marked[first:]
+
+
+@pytest.mark.parametrize(
+    ("name", "before", "after"),
+    [
+        ("indented", "a|b", "a   |b"),
+        ("indented", "    |", "        |"),
+        ("indented", "|a\nb|\nc", "    |a\n    b|\nc"),
+        ("indented", "|a\n\n|c", "    |a\n\n|c"),
+        ("outdented", "    a|\n", "a|\n"),
+        ("outdented", "|      a\n\tb|", "|  a\nb|"),
+        ("outdented", "a|", "a|"),
+        ("newLine", "    x;|", "    x;\n    |"),
+        ("newLine", "f() {|", "f() {\n    |"),
+        ("newLine", "  f() {|}", "  f() {\n      |\n  }"),
+        ("newLine", "f(); // {|", "f(); // {\n|"),
+        ("newLine", "|x", "\n|x"),
+        ("commented", "  a|;\nb", "  // a|;\nb"),
+        ("commented", "|a\n  b|", "// |a\n  // b|"),
+        ("commented", "|// a\n  // b|", "|a\n  b|"),
+    ],
+)
+def test_a_key_does_what_an_editor_does(node: Node, name: str, before: str, after: str):
+    assert press(node, name, before) == after
+
+
+def test_a_bracket_closes_at_the_depth_where_it_opens(node: Node):
+    assert press(node, "closing", "f() {\n  if (a) {\n        |", "}") == "f() {\n  if (a) {\n  }|"
+    assert press(node, "closing", "f() {\n    x;|", "}") is None
+    assert press(node, "closing", "    |", "}") is None
+
+
+HEADER = """#pragma kernel(output = "h:r32f", \\
+               repeat = "4")
+uniform float level = 0.5; //! slider(0, 1) How high
+uniform sampler2D height;
+// uniform float not_this = 1.0;
+float kernel(ivec2 texel) { return level; }
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "found"),
+    [
+        ("return level", "return 2.0 * level", []),
+        ('repeat = "4"', 'repeat = "5"', [("header", [])]),
+        ("\\\n               repeat", "repeat", []),
+        ("slider(0, 1)", "slider(0, 2)", [("annotation", [])]),
+        ("0.5;", "0.75;", [("initial", ["level"])]),
+        (
+            "uniform sampler2D",
+            "uniform vec2 a = vec2(1.0, 2.0), b;\nuniform sampler2D",
+            [("added", ["a", "b"])],
+        ),
+        ("uniform float level = 0.5;", "", [("removed", ["level"])]),
+        ("not_this = 1.0", "not_this = 2.0", []),
+        ("uniform sampler2D height", "uniform sampler2D other", []),
+    ],
+)
+def test_what_python_reads_is_noticed(node: Node, old: str, new: str, found: list[tuple[str, list[str]]]):
+    assert old in HEADER
+    said = node.call("notices.js", "notices", HEADER, HEADER.replace(old, new))
+    assert [(one["key"], one["names"]) for one in said] == found
+
+
+def test_files_are_in_groups_own_ones_first(node: Node):
+    shared = {
+        "files": {
+            "./a.glsl": "",
+            "g/k.glsl": "",
+            "n/h.glsl": "",
+            "n/b.glsl": "",
+            "m/map.glsl": "",
+            "x.toml": "",
+        },
+        "includes": {"g/k.glsl": {"n/h.glsl": "n/h.glsl"}, "n/h.glsl": {"n/b.glsl": "n/b.glsl"}},
+    }
+    kernels = [{"file": "g/k.glsl"}, {"file": "./a.glsl"}, {"file": "m/map.glsl"}, {"file": "x.toml"}]
+    nodes = [
+        {"path": "a", "kernel": 0},
+        {"loop": True, "body": [{"path": "l", "kernel": 1}, {"path": "s", "kernel": 3}]},
+    ]
+    found = node.call("sketch_files.js", "fileGroups", {"kernels": kernels, "nodes": nodes}, shared)
+    assert found == [
+        {"key": "ownFiles", "files": ["./a.glsl"]},
+        {"key": "kernelFiles", "files": ["g/k.glsl"]},
+        {"key": "libraryFiles", "files": ["n/b.glsl", "n/h.glsl"]},
+    ]
+
+
+GUARD = """async (steps, refuse, load) => {
+    const { createGuard } = await load("last_good.js");
+    const kept = new Map(), tab = { name: "" };
+    const storage = refuse === "storage" || refuse === "both" ? null : {
+        getItem: (key) => kept.get(key) ?? null, removeItem: (key) => kept.delete(key),
+        setItem: (key, value) => { if (refuse === "writing") throw new Error("full"); kept.set(key, value); },
+    };
+    const open = (key = "k") => createGuard(key, { storage, tab: refuse === "both" ? null : tab });
+    let guard = open();
+    for (const [name, ...values] of steps) {
+        if (name === "reload") guard = open(...values);
+        else guard[name](...values);
+    }
+    return { place: guard.place, good: guard.good, left: guard.left, size: kept.size, name: tab.name };
+}"""
+
+
+@pytest.mark.parametrize("refuse", ["", "storage", "writing"])
+def test_what_was_tried_is_known_after_a_reload(node: Node, refuse: str):
+    steps: list[Any] = [
+        ["trying", "a", "1", {}],
+        ["worked", {"a": "1"}],
+        ["trying", "a", "endless", {"a": "1"}],
+        ["reload"],
+    ]
+    if (
+        refuse == "writing"
+    ):  # the first write tells that there is no room: from then on the tab's name is used
+        steps[-1] = ["trying", "a", "endless", {"a": "1"}]
+        found = node.run(GUARD, steps, refuse)
+        assert found["place"] == "name" and "endless" in found["name"]
+        return
+    found = node.run(GUARD, steps, refuse)
+    assert found["left"] == {"file": "a", "text": "endless"} and found["good"] == {"a": "1"}
+    assert found["place"] == ("name" if refuse else "storage")
+    after = node.run(GUARD, [*steps, ["forget"], ["reload"]], refuse)
+    assert after["left"] is None and after["good"] == {"a": "1"}
+    clean = node.run(GUARD, [*steps, ["worked", {}], ["reload"]], refuse)
+    assert clean["good"] == {} and clean["size"] == 0 and clean["name"] == ""
+
+
+def test_another_page_s_texts_are_left_alone(node: Node):
+    found = node.run(GUARD, [["trying", "a", "1", {}], ["reload", "another"]], "storage")
+    assert found["left"] is None and found["name"].startswith("playground k ")
+    assert node.run(GUARD, [["worked", {"a": "1"}], ["reload"]], "both") == {
+        "place": "", "good": {}, "left": None, "size": 0, "name": ""
+    }  # fmt: skip
+
+
+def test_a_key_follows_the_texts(node: Node):
+    keys = [node.call("last_good.js", "keyOf", "s", files) for files in ({"a": "1"}, {"a": "2"}, {"b": "1"})]
+    assert len(set(keys)) == 3
+    assert node.call("last_good.js", "keyOf", "s", {"a": "1", "b": "2"}) == node.call(
+        "last_good.js", "keyOf", "s", {"b": "2", "a": "1"}
+    )
+
+
+# A clock and a player whose pictures take a constant and a share of their pixels.
+PACED = """async (constant, perPixel, limit, load) => {
+    const { estimate, smallerFrame } = await load("pace.js");
+    let clock = 0;
+    const drawn = [], state = { frame: [640, 360], terrain: { size: [513, 257] } };
+    const render = () => {
+        drawn.push([...state.frame, ...state.terrain.size]);
+        clock += 1000 * (constant + perPixel * state.frame[0] * state.frame[1]);
+    };
+    const player = { state, sketch: state, render };
+    const seconds = await estimate(player, async () => {}, { limit, now: () => clock });
+    return { seconds, drawn, state, smaller: smallerFrame(seconds, state.frame, limit) };
+}"""
+
+
+def test_a_time_is_told_from_smaller_pictures(node: Node):
+    per_pixel = 20 / (640 * 360)
+    found = node.run(PACED, 0.25, per_pixel, 4)
+    assert found["seconds"] == pytest.approx(20.25, rel=0.02)
+    assert found["drawn"] == [[40, 23, 33, 17], [80, 45, 65, 33], [160, 90, 129, 65]]
+    assert found["state"] == {"frame": [640, 360], "terrain": {"size": [513, 257]}}
+    width, height = found["smaller"]
+    assert width / height == pytest.approx(640 / 360, rel=0.01)
+    assert 0.25 + per_pixel * width * height == pytest.approx(2, rel=0.15)
+
+
+def test_a_quick_picture_is_not_asked_about_and_a_slow_one_not_tried_larger(node: Node):
+    assert node.run(PACED, 0.01, 1e-7, 4)["smaller"] is None
+    slow = node.run(PACED, 0, 0.02, 4)
+    assert len(slow["drawn"]) == 1 and slow["seconds"] > 1000
