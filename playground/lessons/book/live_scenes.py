@@ -7,7 +7,7 @@ lesson's data has few sketches, and for each scene a *setting*: a sketch's numbe
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from playground.lessons.model import Scene
@@ -15,7 +15,7 @@ from playground.web.plan import sketch_data
 from playground.web.shared import SharedData
 
 SET = ("terrain", "camera", "frame", "time", "steps")
-"""What a setting has as a whole; of a sketch's values, and of what its rows show, it has those that differ."""
+"""What a setting has as a whole where it differs; of values, rows and texels it has those that differ."""
 
 
 @dataclass
@@ -71,12 +71,23 @@ class Scenes:
         """Return the setting of a scene; raise ``PlaygroundError`` for what no page can run."""
         key = (scene.sketch, scene.pixels, scene.time, scene.steps)
         if key not in self._known:
+            sketch = replace(scene.sketch, presets=(), shots=())  # a figure offers none
             steps = dict(scene.steps)
             found = sketch_data(
-                scene.sketch, self.library.shared, frame=scene.pixels, time=scene.time, steps=steps
+                sketch, self.library.shared, frame=scene.pixels, time=scene.time, steps=steps
             )
             self._known[key] = self._written(found)
         return self._known[key]
+
+    def row(self, setting: dict[str, Any], path: str) -> dict[str, Any] | None:
+        """Return the panel's row of a parameter; None where the panel has none."""
+        rows = self.sketches[setting["sketch"]]["shown"]
+        return next((row for row in rows if row["path"] == path), None)
+
+    def value(self, setting: dict[str, Any], path: str) -> Any:
+        """Return what a row shows in a setting."""
+        row = self.row(setting, path)
+        return setting.get("shown", {}).get(path, row["value"] if row else None)
 
     def _written(self, sketch: dict[str, Any]) -> dict[str, Any]:
         sketch["kernels"] = [self.library.number(kernel) for kernel in sketch["kernels"]]
@@ -88,16 +99,29 @@ class Scenes:
         base = self.sketches[number]
         found: dict[str, Any] = {"sketch": number}
         found |= {name: sketch[name] for name in SET if sketch[name] != base[name]}
-        values = _differing(sketch["values"], base["values"])
-        shown = _differing(_rows(sketch), _rows(base))
-        return found | ({"values": values} if values else {}) | ({"shown": shown} if shown else {})
+        differing = {
+            "values": _differing(sketch["values"], base["values"]),
+            "shown": _differing(_rows(sketch), _rows(base)),
+            "data": _differing(_texels(sketch["nodes"]), _texels(base["nodes"])),
+        }
+        return found | {name: table for name, table in differing.items() if table}
 
 
 def _outline(sketch: dict[str, Any]) -> str:
     """Return what scenes of one sketch have in common, as text."""
     rows = [{name: of for name, of in row.items() if name != "value"} for row in sketch["shown"]]
     common = {name: of for name, of in sketch.items() if name not in (*SET, "values", "shown")}
+    common["nodes"] = [_without_texels(node) for node in sketch["nodes"]]
     return json.dumps([common, rows, sorted(sketch["values"]), sketch["terrain"]["locked"]])
+
+
+def _without_texels(node: dict[str, Any]) -> dict[str, Any]:
+    return {name: of for name, of in node.items() if name != "data"}
+
+
+def _texels(nodes: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return what sources give, by path; a source is never inside a loop."""
+    return {node["path"]: node["data"] for node in nodes if "data" in node}
 
 
 def _rows(sketch: dict[str, Any]) -> dict[str, Any]:
