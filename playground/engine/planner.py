@@ -26,22 +26,31 @@ from playground.engine.plan_request import (
     checked_steps,
 )
 from playground.engine.source_facts import described, given_values, own_sizes
-from playground.errors import DataError, ParameterError, PlaygroundError, SketchError, nearest
+from playground.errors import DataError, ParameterError, SketchError, nearest
 from playground.images.picture_size import picture_size
 from playground.paths import shown
 from playground.sketch import expressions
-from playground.sketch.assign import find_targets, resolve
+from playground.sketch.assign import resolve
 from playground.sketch.expressions import ExpressionError, Number
-from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, repeated_path, repeated_paths
+from playground.sketch.flat import Flat, Leaf, Loop, Node, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
+from playground.sketch.named_numbers import (
+    CLOCK,
+    COMPUTE,
+    FRAME,
+    PICTURE,
+    SIZE,
+    TERRAIN,
+    base_of,
+    named,
+)
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.sources import Terrain
 
 MAX_REPEAT = 1_000_000
-_AXES = {"x": 0, "y": 1}
 Names = Mapping[str, Number] | Callable[[str], Number]
 """The numbers of the names in an expression."""
 _MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
@@ -365,8 +374,7 @@ class _Planning:
         if path in self._open:
             raise spec.error(f"the sizes of {' and '.join(self._open)} depend on each other")
         self._open.append(path)
-        base = self._size_around(path, prefix)
-        size = base
+        size = self._size_around(base_of(path))
         if path in self.own:
             size = self.own[path]
             self._check_sides(spec, size)
@@ -387,49 +395,38 @@ class _Planning:
                 f"pass '{spec.name}': size {size[0]} x {size[1]}; 1 to {LARGEST_SIDE} a side were expected"
             )
 
-    def _size_around(self, path: str, prefix: str) -> tuple[int, int]:
-        """Return the size that a pass has unless it says another: that of the technique around it."""
-        if prefix:
-            return self.size_of(prefix)
+    def _size_around(self, base: str) -> tuple[int, int]:
+        """Return the size of a pass, or of a base: see ``named_numbers``."""
+        if base not in (TERRAIN, FRAME):
+            return self.size_of(base)
         assert self.terrain.size is not None
-        return self.request.frame_size if path == "view" else self.terrain.size
+        return self.request.frame_size if base == FRAME else self.terrain.size
 
     def _number(self, prefix: str, spec: PassSpec, name: str) -> Number:
         """Return the number of a name in an expression of a pass: a size, or a parameter around it.
 
         Raises ``KeyError`` for any other name.
         """
-        if name in expressions.CLOCKS:
+        kind, path, axis = named(self.flat, prefix, spec, name)
+        if kind == CLOCK:
             self.by_time = True
-            return self._clocks()[name]
-        head, _, axis = name.rpartition(".")
-        if axis in _AXES and head == "size":
-            return self._size_around(_inside(prefix, spec.name), prefix)[_AXES[axis]]
-        if axis in _AXES and head.endswith(".size"):
-            named = head.removesuffix(".size")
-            size = self._picture_size(prefix, named) or self.size_of(self._path_of(prefix, named))
-            return size[_AXES[axis]]
-        try:
-            target = resolve(self.flat.graphs[prefix], name)[0].path
-        except PlaygroundError:
-            if name != "compute":
-                raise KeyError(name) from None
+            return self._clocks()[path]
+        if kind == SIZE:
+            return self._size_around(path)[axis]
+        if kind == PICTURE:
+            return self._picture_size(path)[axis]
+        if kind == COMPUTE:
             if not self.request.compute:
                 self.lacking[prefix] = None
             return int(self.request.compute)
-        path = _inside(prefix, target)
         self.named.add(path)
         value = resolve(self.flat.graphs[prefix], name)[0].parameter.widget.given(self.flat.values[path])
         if not isinstance(value, int | float):
             raise KeyError(name)
         return value
 
-    def _picture_size(self, prefix: str, name: str) -> tuple[int, int] | None:
-        """Return the size of the picture that a parameter of a name reads; None where there is none."""
-        target = next(iter(find_targets(self.flat.graphs[prefix], name)), None)
-        if target is None or target.parameter.widget.kind != "file":
-            return None
-        path = _inside(prefix, target.path)
+    def _picture_size(self, path: str) -> tuple[int, int]:
+        """Return the size of the picture that the parameter of a path reads."""
         self.named.add(path)
         leaf, _, parameter = path.rpartition(".")
         file = Path(str(self._values[leaf][parameter]))
@@ -438,20 +435,3 @@ class _Planning:
         except DataError as error:
             raise placed(error, self.sketch, self.flat.user(leaf)) from error
         return self.pictures[file]
-
-    def _path_of(self, prefix: str, name: str) -> str:
-        """Return the path of the pass of a name, or of what feeds the technique's input of that name."""
-        path = _inside(prefix, name)
-        if path in self.flat.specs:
-            return path
-        source = self.flat.wires[prefix][name]
-        if isinstance(source, Fed):
-            output = dict(self.flat.specs[source.loop].feedback)[source.name]
-            source = self.flat.outputs[source.loop][output]
-        if source is None:
-            raise KeyError(name)
-        return source.path
-
-
-def _inside(prefix: str, name: str) -> str:
-    return f"{prefix}.{name}" if prefix else name

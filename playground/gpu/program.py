@@ -10,7 +10,8 @@ from unicodedata import name as name_of
 from playground.errors import Diagnostic, ShaderError
 from playground.gpu.driver_log import LogEntry, hint, parse_log, source_column, split_moderngl
 from playground.gpu.name_suggestions import guess
-from playground.gpu.wrap import COMPUTE, FRAGMENT, ShaderStage, Wrapped, version_line, wrap_library
+from playground.gpu.stage_recipe import version_line
+from playground.gpu.wrap import COMPUTE, FRAGMENT, ShaderStage, Wrapped, wrap_library
 from playground.paths import shown
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import FETCHES

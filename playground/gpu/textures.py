@@ -106,17 +106,22 @@ def write_texture(texture: moderngl.Texture, values: NDArray[Any]) -> None:
     r8 and r16 formats take 0..1, or whole numbers of their own kind; what is not a number
     becomes 0 there. Half floats stop at their largest.
     """
-    texture.write(_bytes_for(texture, values), alignment=1)
+    texture.write(texel_bytes(values, _NUMPY[texture.dtype]), alignment=1)
 
 
 def write_texels(texture: moderngl.Texture, corner: tuple[int, int], values: NDArray[Any]) -> None:
     """Write a block of texels, as ``write_texture`` writes all; ``corner`` is its south-west texel."""
     block = (*corner, values.shape[1], values.shape[0])
-    texture.write(_bytes_for(texture, values), viewport=block, alignment=1)
+    texture.write(texel_bytes(values, _NUMPY[texture.dtype]), viewport=block, alignment=1)
 
 
-def _bytes_for(texture: moderngl.Texture, values: NDArray[Any]) -> bytes:
-    wanted = _NUMPY[texture.dtype]
+def texels_in(form: str, values: NDArray[Any]) -> bytes:
+    """Return the texels of an array in a format such as ``rg16f``: what ``write_texture`` uploads."""
+    return texel_bytes(values, _NUMPY[split_format(form)[1]])
+
+
+def texel_bytes(values: NDArray[Any], wanted: np.dtype[Any]) -> bytes:
+    """Return an array's numbers as a texture of a kind of number holds them: see ``write_texture``."""
     if values.dtype.kind == "f":
         if wanted.kind == "u":
             top = np.iinfo(wanted).max

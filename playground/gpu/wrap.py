@@ -1,8 +1,8 @@
 """Wrap a kernel's text for a driver: the fragment driver (GL 3.3 up) or the compute driver (GL 4.3 up).
 
-Both drivers get the same lines; only what is before and after them differs. Each
-wrapped stage remembers where the kernel's own lines begin, so that a driver's log can be
-given back its file and line.
+Both drivers get the same lines; only what is before and after them differs, as the recipe of
+each stage says (see ``stage_recipe``). Each wrapped stage remembers where the kernel's own lines
+begin, so that a driver's log can be given back its file and line.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 from playground.errors import ShaderError
 from playground.gpu.own_shaders import TRIANGLE, own_part
+from playground.gpu.stage_recipe import SIGNATURE, Part, Recipe, version_line
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.reserved_names import (
     FETCHES,
@@ -34,11 +35,8 @@ LOCAL = 8
 CORNER = "k_corner"
 """What a vertex shader is handed where its version has no numbers of vertices: a vec2 in clip space."""
 
-_VERSION = re.compile(r"\s*#\s*version\b")
 _NUMBER = re.compile(r"#\s*version\s+(\d+)\s*(\w*)")
 _PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
-_FETCH = re.compile(rf"\b(?:{'|'.join(FETCHES)})\b")
-_SIGNATURE = r"\b(\w+)\s+{name}\s*\(([^)]*)\)\s*\{{"
 _PROTOTYPE = re.compile(r"^(\w+)\s+(\w+)\s*\(([^()]*)\)\s*;", re.MULTILINE)
 
 
@@ -72,21 +70,33 @@ def wrap(kernel: Kernel, driver: str, version_code: int = 330) -> Wrapped:
     ``version_code`` is the context's: of another tool's shader that names none it is the text's version.
     Raises ``ShaderError`` where the file's functions do not have the signatures its header asks for.
     """
+    runs_by, recipes = recipes_of(kernel, driver, version_code)
+    return Wrapped(kernel, runs_by, {name: _made(recipe) for name, recipe in recipes.items()})
+
+
+def recipes_of(kernel: Kernel, driver: str, version_code: int = 330) -> tuple[str, dict[str, Recipe]]:
+    """Return what runs a kernel (fragment, compute or draw), and the recipe of each stage."""
     if kernel.kind == "draw":
-        return _wrap_draw(kernel)
+        return "draw", _draw(kernel)
     if kernel.kind == "compute":
-        return _wrap_variant(kernel)
+        return COMPUTE, {"compute": _variant(kernel)}
     if kernel.dialect:
-        return _wrap_foreign(kernel, version_code)
+        return FRAGMENT, _foreign(kernel, version_code)
     if kernel.kind == "plain_fragment":
         version = version_line(kernel.source)
         assert version is not None  # or it would be no plain shader
-        stages = {"vertex": _quad(kernel, version.code.strip()), "fragment": _whole(kernel)}
-        return Wrapped(kernel, FRAGMENT, stages)
+        return FRAGMENT, {"vertex": _quad(kernel, version.code.strip()), "fragment": _whole(kernel)}
     if kernel.kind == "plain_compute":
-        return Wrapped(kernel, COMPUTE, {"compute": _whole(kernel)})
+        return COMPUTE, {"compute": _whole(kernel)}
     _check_signature(kernel)
-    return _wrap_compute(kernel) if driver == COMPUTE else _wrap_fragment(kernel)
+    if driver == COMPUTE:
+        return COMPUTE, {"compute": _compute(kernel)}
+    return FRAGMENT, {"vertex": _quad(kernel), "fragment": _fragment(kernel)}
+
+
+def _made(recipe: Recipe) -> ShaderStage:
+    text, first = recipe.make()
+    return ShaderStage(text, first, recipe.source, recipe.expected)
 
 
 def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrapped:
@@ -119,10 +129,10 @@ def wrap_library(kernel: Kernel, driver: str) -> Wrapped:
     if driver == COMPUTE:
         before = ["#version 430", "layout(local_size_x = 1) in;"]
         after = [*bodies, "void main() {}"]
-        return Wrapped(kernel, COMPUTE, {"compute": _stage(kernel, before, kernel.source.code, after, "")})
+        return Wrapped(kernel, COMPUTE, {"compute": _made(_recipe(kernel, before, after, ""))})
     after = [*bodies, "out vec4 k_out;", "void main() { k_out = vec4(0.0); }"]
-    stage = _stage(kernel, ["#version 330"], kernel.source.code, after, "")
-    return Wrapped(kernel, FRAGMENT, {"vertex": _quad(kernel), "fragment": stage})
+    stage = _made(_recipe(kernel, ["#version 330"], after, ""))
+    return Wrapped(kernel, FRAGMENT, {"vertex": _made(_quad(kernel)), "fragment": stage})
 
 
 def _missing_bodies(code: str) -> list[str]:
@@ -146,7 +156,7 @@ def previous_name(kernel: Kernel, output: Output) -> str:
     return "previous" if len(kernel.outputs) == 1 else f"previous_{output.name}"
 
 
-def _quad(kernel: Kernel, version: str = "#version 330") -> ShaderStage:
+def _quad(kernel: Kernel, version: str = "#version 330") -> Recipe:
     """Return the vertex shader that covers the picture, in the version of the fragment shader.
 
     Versions differ in their words, and those of OpenGL ES link with their own kind only.
@@ -154,35 +164,24 @@ def _quad(kernel: Kernel, version: str = "#version 330") -> ShaderStage:
     number = _NUMBER.match(version)
     is_old = number is not None and int(number.group(1)) < 130
     text = own_part("triangle_from_buffer.vert", corner=CORNER) if is_old else TRIANGLE
-    return ShaderStage(text.replace("#version 330", version), 0, kernel.source, "")
+    return Recipe(kernel.source, text=text.replace("#version 330", version))
 
 
-def _whole(kernel: Kernel) -> ShaderStage:
-    """Return a plain shader as it is, but // for blank lines above #version: Mesa does not count those."""
-    lines = [line.code for line in kernel.source.lines]
-    above = next((i for i, code in enumerate(lines) if code.strip()), 0)
-    text = "\n".join([*["//"] * above, *lines[above:]]) + "\n"
-    return ShaderStage(text, 1, kernel.source, "void main()")
+def _whole(kernel: Kernel) -> Recipe:
+    """Return a plain shader as it is."""
+    return Recipe(kernel.source, keeps_version=True, expected="void main()")
 
 
-def _wrap_foreign(kernel: Kernel, version_code: int) -> Wrapped:
+def _foreign(kernel: Kernel, version_code: int) -> dict[str, Recipe]:
     """Wrap another tool's shader: its own version or the context's, what its tool declares, its lines."""
     own = version_line(kernel.source)
     version = own.code.strip() if own else f"#version {400 if version_code >= 400 else 330}"
-    before = [
-        version,
-        "#extension GL_ARB_shading_language_420pack : enable",
-        *kernel.prelude,
-        f"uniform ivec2 {WINDOW};",
-        *map(own_part, kernel.helpers),
-    ]
-    lines = ["" if line is own else line.code for line in kernel.source.lines]
-    after = [own_part(kernel.epilogue, window=WINDOW)] if kernel.epilogue else []
-    text = "\n".join([*before, *lines, *after]) + "\n"
-    first = len("\n".join(before).split("\n")) + 1
+    begins = (version, "#extension GL_ARB_shading_language_420pack : enable")
+    before = [*begins, *kernel.prelude, f"uniform ivec2 {WINDOW};", *map(own_part, kernel.helpers)]
+    after = f"{own_part(kernel.epilogue, window=WINDOW)}\n" if kernel.epilogue else ""
     extensions = [line for line in kernel.prelude if line.startswith("#extension")]
     if kernel.vertex_source is not None:
-        vertex = _own_vertex(kernel, kernel.vertex_source, before[:2])
+        vertex = _own_vertex(kernel, kernel.vertex_source, begins)
     else:
         triangle = own_part(
             "triangle_with_outputs.vert",
@@ -191,33 +190,19 @@ def _wrap_foreign(kernel: Kernel, version_code: int) -> Wrapped:
             declarations="\n".join(declaration for declaration, _ in kernel.vertex),
             statements="\n    ".join(statements for _, statements in kernel.vertex),
         )
-        vertex = ShaderStage(triangle + "\n", 0, kernel.source, "")
+        vertex = Recipe(kernel.source, text=triangle + "\n")
     expected = "void mainImage(out vec4, in vec2)" if kernel.epilogue else "void main()"
     if "mainCubemap" in kernel.source.names and "cubemap" in kernel.epilogue:
         expected = "void mainCubemap(out vec4, in vec2, in vec3, in vec3)"
-    return Wrapped(
-        kernel,
-        FRAGMENT,
-        {
-            "vertex": vertex,
-            "fragment": ShaderStage(text, first, kernel.source, expected),
-        },
-    )
+    fragment = Recipe(kernel.source, tuple(map(Part, before)), after, expected=expected)
+    return {"vertex": vertex, "fragment": fragment}
 
 
-def _own_vertex(kernel: Kernel, source: SourceText, begins: Sequence[str]) -> ShaderStage:
+def _own_vertex(kernel: Kernel, source: SourceText, begins: Sequence[str]) -> Recipe:
     """Return the vertex stage of another tool's shader whose author wrote one."""
     before = [*begins, *kernel.vertex_prelude]
     before += [own_part(part, shares=PART) for part in kernel.vertex_helpers]
-    own = version_line(source)
-    lines = ["" if line is own else line.code for line in source.lines]
-    first = len("\n".join(before).split("\n")) + 1
-    return ShaderStage("\n".join([*before, *lines]) + "\n", first, source, "void main()")
-
-
-def version_line(source: SourceText) -> Line | None:
-    """Return the line of a plain shader that says its version; None for what has none."""
-    return next((line for line in source.lines if _VERSION.match(line.code)), None)
+    return Recipe(source, tuple(map(Part, before)), expected="void main()")
 
 
 def reads_unwired(kernel: Kernel) -> bool:
@@ -225,48 +210,55 @@ def reads_unwired(kernel: Kernel) -> bool:
     return any(i.fallback for i in kernel.inputs) and any(map(kernel.reads, FETCHES))
 
 
-def _stage(kernel: Kernel, before: list[str], code: str, after: list[str], expected: str) -> ShaderStage:
-    if reads_unwired(kernel):
+def _recipe(
+    kernel: Kernel, before: Sequence[str | Part], after: Sequence[str], expected: str, without: str = ""
+) -> Recipe:
+    """Return the recipe of a kernel's stage; where an input may stay unwired, fetches ask for that."""
+    parts = [part if isinstance(part, Part) else Part(part) for part in before]
+    replaced: tuple[tuple[str, str], ...] = ()
+    if any(declared.fallback for declared in kernel.inputs):
         fetch, offset = FETCHES.values()
-        before = [*before, own_part("fetch_unwired.glsl", unwired=UNWIRED, fetch=fetch, fetch_offset=offset)]
-        code = _FETCH.sub(lambda match: FETCHES[match.group()], code)
-    head = "\n".join(before) + "\n"
-    return ShaderStage(head + code + "\n".join(after) + "\n", head.count("\n") + 1, kernel.source, expected)
+        text = own_part("fetch_unwired.glsl", unwired=UNWIRED, fetch=fetch, fetch_offset=offset)
+        parts.append(Part(text, tuple(FETCHES)))
+        replaced = tuple(FETCHES.items())
+    return Recipe(
+        kernel.source,
+        tuple(parts),
+        "\n".join(after) + "\n",
+        without=without,
+        replaced=replaced,
+        expected=expected,
+    )
 
 
-def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[str]:
-    found = [(kind, name) for name, (kind, _) in GIVEN.items() if kernel.reads(name) or name in always]
-    wanted = [f"{begins}{i.name}" for i in kernel.inputs for begins in (WIRED, MATCHES)]
-    found += [("bool", name) for name in wanted if kernel.reads(name)]
-    found += [
-        ("vec3", f"{TOWARDS}{p.name}")
-        for p in kernel.parameters
-        if p.widget.kind == "direction" and kernel.reads(f"{TOWARDS}{p.name}")
-    ]
-    if kernel.reads(WINDOW):
-        found.append(("ivec2", WINDOW))
-    return [f"uniform {kind} {name};" for kind, name in found]
+def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[Part]:
+    """Return the declarations of what the engine gives: each where the text names it, or ``always``."""
+    found = [(kind, name) for name, (kind, _) in GIVEN.items()]
+    found += [("bool", f"{begins}{i.name}") for i in kernel.inputs for begins in (WIRED, MATCHES)]
+    found += [("vec3", f"{TOWARDS}{p.name}") for p in kernel.parameters if p.widget.kind == "direction"]
+    found.append(("ivec2", WINDOW))
+    return [Part(f"uniform {kind} {name};", () if name in always else (name,)) for kind, name in found]
 
 
-def _wrap_fragment(kernel: Kernel) -> Wrapped:
+def _fragment(kernel: Kernel) -> Recipe:
     strides = bool(kernel.stride)
-    before = ["#version 330", *_given(kernel, ("size",) if strides else ())]
+    before: list[str | Part] = ["#version 330", *_given(kernel, ("size",) if strides else ())]
     if strides:
         before.append("uniform int k_shift, k_previous_shift;")
-    for output in kernel.outputs:
-        if kernel.reads(previous_name(kernel, output)):
-            before.append(_previous(kernel, output, "strided" if strides else "sampler"))
+    before += [_previous(kernel, output, "strided" if strides else "sampler") for output in kernel.outputs]
     after = [f"layout(location = {i}) out {o.glsl} k_out_{o.name};" for i, o in enumerate(kernel.outputs)]
     shift = " << k_shift" if strides else ""
     after.append(own_part("main_fragment.glsl", shift=shift, call=_call(kernel)))
-    stage = _stage(kernel, before, kernel.source.code, after, signature(kernel))
-    return Wrapped(kernel, FRAGMENT, {"vertex": _quad(kernel), "fragment": stage})
+    return _recipe(kernel, before, after, signature(kernel))
 
 
-def _previous(kernel: Kernel, output: Output, where: str) -> str:
+def _previous(kernel: Kernel, output: Output, where: str) -> Part:
     """Return the function that reads an output's texel of the iteration before, and what it reads."""
-    names = {"output": output.name, "type": output.glsl, "previous": previous_name(kernel, output)}
-    return own_part(f"previous_{where}.glsl", swizzle={1: ".r", 2: ".rg", 4: ""}[output.components], **names)
+    name = previous_name(kernel, output)
+    swizzle = {1: ".r", 2: ".rg", 4: ""}[output.components]
+    part = f"previous_{where}.glsl"
+    text = own_part(part, swizzle=swizzle, output=output.name, type=output.glsl, previous=name)
+    return Part(text, (name,))
 
 
 def _call(kernel: Kernel) -> str:
@@ -275,8 +267,11 @@ def _call(kernel: Kernel) -> str:
     return f"{names[0]} = kernel(k_texel);" if len(names) == 1 else f"kernel(k_texel, {', '.join(names)});"
 
 
-def _wrap_compute(kernel: Kernel) -> Wrapped:
-    before = ["#version 430", f"layout(local_size_x = {LOCAL}, local_size_y = {LOCAL}) in;"]
+def _compute(kernel: Kernel) -> Recipe:
+    before: list[str | Part] = [
+        "#version 430",
+        f"layout(local_size_x = {LOCAL}, local_size_y = {LOCAL}) in;",
+    ]
     before += _given(kernel, ("size",))
     in_place = bool(kernel.visits)
     if in_place:
@@ -287,19 +282,17 @@ def _wrap_compute(kernel: Kernel) -> Wrapped:
         before.append(
             f"layout({output.format}, binding = {unit}) uniform {access}image2D k_image_{output.name};"
         )
-        if reads:
-            before.append(_previous(kernel, output, "image" if in_place else "sampler"))
+        before.append(_previous(kernel, output, "image" if in_place else "sampler"))
     lines = [f"{o.glsl} k_out_{o.name};" for o in kernel.outputs]
     lines.append(_call(kernel))
     lines += [f"imageStore(k_image_{o.name}, k_texel, k_filled(k_out_{o.name}));" for o in kernel.outputs]
     main = "main_compute_in_place.glsl" if in_place else "main_compute.glsl"
     after = [own_part(main, call="\n    ".join(lines))]
-    stage = _stage(kernel, before, kernel.source.code, after, signature(kernel))
-    return Wrapped(kernel, COMPUTE, {"compute": stage})
+    return _recipe(kernel, before, after, signature(kernel))
 
 
-def _wrap_variant(kernel: Kernel) -> Wrapped:
-    before = [
+def _variant(kernel: Kernel) -> Recipe:
+    before: list[str | Part] = [
         "#version 430",
         "#define COMPUTE_STAGE",
         f"layout(local_size_x = {kernel.local[0]}, local_size_y = {kernel.local[1]}) in;",
@@ -312,12 +305,10 @@ def _wrap_variant(kernel: Kernel) -> Wrapped:
     for unit, buffer in enumerate(kernel.buffers):
         block = f"buffer k_buffer_{buffer.name} {{ {buffer.type} {buffer.name}[]; }};"
         before.append(f"layout(std430, binding = {unit}) {block}")
-    stage = _stage(kernel, before, kernel.source.code, [], "void main()")
-    return Wrapped(kernel, COMPUTE, {"compute": stage})
+    return _recipe(kernel, before, [], "void main()")
 
 
-def _wrap_draw(kernel: Kernel) -> Wrapped:
-    code = kernel.source.code
+def _draw(kernel: Kernel) -> dict[str, Recipe]:
     vertex = _function(kernel, "vertex", "vec4 vertex(vec3 corner, out vec3 position)")
     fragment = _function(kernel, "fragment", "vec4 fragment(vec3 position)")
     varyings = {name: kind for way, kind, name in vertex if way == "out"}
@@ -329,7 +320,8 @@ def _wrap_draw(kernel: Kernel) -> Wrapped:
             raise line.error(f"fragment takes {kind} {name}, which vertex does not give; it gives {given}")
     expected = "vec4 vertex(…) and vec4 fragment(…)"
     # Draws of one mesh by several programs must agree to the last bit where depths are equal.
-    before = ["#version 330", "#define VERTEX_STAGE", "invariant gl_Position;", *_given(kernel)]
+    before: list[str | Part] = ["#version 330", "#define VERTEX_STAGE", "invariant gl_Position;"]
+    before += _given(kernel)
     after = [f"in {kind} k_in_{name};" for kind, name in attributes]
     after += [f"{_flat(kind)}out {kind} k_to_{name};" for name, kind in varyings.items()]
     arguments = [f"k_to_{name}" if way == "out" else f"k_in_{name}" for way, _, name in vertex]
@@ -338,12 +330,12 @@ def _wrap_draw(kernel: Kernel) -> Wrapped:
         "main_vertex.glsl", arguments=", ".join(arguments), zoom=zoom if kernel.reads(ZOOM) else ""
     )
     after.append(main)
-    first = _stage(kernel, before, _without(code, "fragment"), after, expected)
+    first = _recipe(kernel, before, after, expected, without="fragment")
     before = ["#version 330", "#define FRAGMENT_STAGE", *_given(kernel)]
     after = [f"{_flat(kind)}in {kind} k_to_{name};" for name, kind in varyings.items()]
     after.append(own_part("main_draw.glsl", arguments=", ".join(f"k_to_{name}" for _, _, name in fragment)))
-    second = _stage(kernel, before, _without(code, "vertex"), after, expected)
-    return Wrapped(kernel, "draw", {"vertex": first, "fragment": second})
+    second = _recipe(kernel, before, after, expected, without="vertex")
+    return {"vertex": first, "fragment": second}
 
 
 def _flat(kind: str) -> str:
@@ -352,7 +344,7 @@ def _flat(kind: str) -> str:
 
 def _function(kernel: Kernel, name: str, example: str) -> list[tuple[str, str, str]]:
     """Return (in | out, type, name) of each argument of a draw's function."""
-    match = re.search(_SIGNATURE.format(name=name), kernel.source.code)
+    match = re.search(SIGNATURE.format(name=name), kernel.source.code)
     if not match or match.group(1) != "vec4":
         raise _unsigned(kernel, f"a draw needs a function {example}")
     found = [_argument(part) for part in match.group(2).split(",") if part.strip()]
@@ -368,23 +360,9 @@ def _line_of(kernel: Kernel, name: str) -> Line:
     return next((line for line in kernel.source.lines if pattern.search(line.code)), kernel.source.lines[0])
 
 
-def _without(code: str, name: str) -> str:
-    """Blank a function's definition, not its line ends: what one stage calls may be missing in the other."""
-    match = re.search(_SIGNATURE.format(name=name), code)
-    if not match:
-        return code
-    depth, end = 0, match.end() - 1
-    for end in range(match.end() - 1, len(code)):
-        depth += {"{": 1, "}": -1}.get(code[end], 0)
-        if depth == 0:
-            break
-    blank = re.sub(r"[^\n]", " ", code[match.start() : end + 1])
-    return code[: match.start()] + blank + code[end + 1 :]
-
-
 def _check_signature(kernel: Kernel) -> None:
     code = kernel.source.code
-    match = re.search(_SIGNATURE.format(name="kernel"), code)
+    match = re.search(SIGNATURE.format(name="kernel"), code)
     if not match:
         raise _unsigned(kernel, f"there is no function {signature(kernel)}")
     single = len(kernel.outputs) == 1

@@ -12,8 +12,8 @@ from imgui_bundle import imgui
 
 from playground.live.keys import KEYS
 from playground.live.text_field import ctrl_held, keeps_keys
+from playground.sketch.traits import traits_of
 from playground.workbench.bench import Bench
-from playground.workbench.traits import traits_of
 
 _K = imgui.Key
 

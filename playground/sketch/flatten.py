@@ -149,7 +149,7 @@ def _filled(
     return tuple(found)
 
 
-def _is_exported(graph: Graph, path: str) -> bool:
+def is_exported(graph: Graph, path: str) -> bool:
     """Return whether a technique exports a parameter inside, and nothing else, by some name."""
     wanted = {target.path for target in find_targets(graph, path)}
     return any({t.path for t in find_targets(graph, e.name)} == wanted for e in graph.parameters)
@@ -211,7 +211,7 @@ class _Flattener:
         if spec is None or not isinstance(spec.technique, Graph) or "." not in rest:
             return
         here = _join(prefix, first)
-        if not _is_exported(spec.technique, rest):
+        if not is_exported(spec.technique, rest):
             self.opened.add(here)
         self._open_set(spec.technique, here, rest)
 

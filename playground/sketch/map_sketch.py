@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass, field, replace
 
 from playground.paths import GLSL
+from playground.sketch.flat import Flat
 from playground.sketch.model import Export, Graph, Kernel, PassSpec, Sketch, Value
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import input_names
@@ -70,6 +71,17 @@ def _within(sketch: Sketch, view: PassSpec, shown: Map) -> Sketch:
         for path, value in sketch.overrides
     )
     return replace(sketch, graph=replace(sketch.graph, passes=passes), overrides=overrides)
+
+
+def refs_of(flat: Flat) -> list[str]:
+    """List the textures that a map can show: those of the sketch's own passes, then inner ones."""
+    found = [
+        f"{path}:{output}"
+        for path, outputs in flat.outputs.items()
+        for output in outputs
+        if path.partition(".")[0] != "view"
+    ]
+    return sorted(found, key=lambda ref: ref.count("."))
 
 
 def map_kernel() -> Kernel:

@@ -68,6 +68,7 @@ class SourceText:
     path: str  # absolute path of the outermost file
     lines: tuple[Line, ...]
     files: tuple[str, ...] = ()  # absolute paths of every file read, outermost first
+    includes: tuple[tuple[str, str, str], ...] = ()  # file, what it writes, the file that this names
 
     def __hash__(self) -> int:
         # A string caches its hash; a thousand lines would be hashed each time.
@@ -75,7 +76,12 @@ class SourceText:
 
     def __getstate__(self) -> dict[str, object]:
         # What is computed from the lines is not sent to a child process.
-        return {"path": self.path, "lines": self.lines, "files": self.files}
+        return {
+            "path": self.path,
+            "lines": self.lines,
+            "files": self.files,
+            "includes": self.includes,
+        }
 
     @cached_property
     def code(self) -> str:
@@ -154,7 +160,8 @@ def read_source_and_origin(
         line if line.code == code else replace(line, code=code)
         for line, code in zip(reader.lines, codes, strict=True)
     )
-    source = SourceText(str(path), lines, tuple(reader.texts))
+    includes = tuple((file, name, target) for (file, name), target in reader.named.items())
+    source = SourceText(str(path), lines, tuple(reader.texts), includes)
     asked = tuple((name, reader.libraries.get(name)) for name in sorted(reader.asked))
     return source, Origin(tuple(reader.texts.items()), tuple(reader.looked_at.items()), asked)
 
@@ -212,6 +219,7 @@ class _Reader:
         self.texts: dict[str, str] = {}  # of each file read, outermost first
         self.looked_at: dict[Path, Path | None] = {}  # where includes may be, and what file is there
         self.includes = 0
+        self.named: dict[tuple[str, str], str] = {}  # file and what it writes → the file that it includes
         self.asked: set[str] = set()  # libraries that were looked for by name
 
     @cached_property
@@ -253,7 +261,7 @@ class _Reader:
         if self.includes > _MAX_INCLUDES:
             raise line.error(f"more than {_MAX_INCLUDES} includes; is something included over and over?")
         target = self.find(name, path, line)
-        key = str(target)
+        key = self.named[str(path), name] = str(target)
         if self.foreign and key in self.texts:
             return
         if key in stack:

@@ -21,39 +21,39 @@ const ENTRIES = {};
 
 /** A hash of the runtime's files and of what bundles them: names and bytes, in the order of their names. */
 function hashOfSources() {
-    const names = readdirSync(join(HERE, "runtime")).filter((name) => /\.(js|css)$/.test(name)).sort();
-    const hash = createHash("sha256");
-    for (const name of ["build.mjs", "package-lock.json", ...names.map((name) => `runtime/${name}`)]) {
-        hash.update(`${name}\0`).update(readFileSync(join(HERE, name))).update("\0");
-    }
-    return hash.digest("hex").slice(0, 16);
+  const names = readdirSync(join(HERE, "runtime")).filter((name) => /\.(js|css)$/.test(name)).sort();
+  const hash = createHash("sha256");
+  for (const name of ["build.mjs", "package-lock.json", ...names.map((name) => `runtime/${name}`)]) {
+    hash.update(`${name}\0`).update(readFileSync(join(HERE, name))).update("\0");
+  }
+  return hash.digest("hex").slice(0, 16);
 }
 
 /** @param {string} entry @param {"iife" | "esm" | "css"} kind @param {string} outfile */
 function bundled(entry, kind, outfile) {
-    const style = kind === "css";
-    return build({
-        entryPoints: [entry],
-        outfile,
-        bundle: true,
-        minify: true,
-        target: "es2022",
-        charset: "utf8",
-        legalComments: "none",
-        logLevel: "warning",
-        ...(style ? {} : { format: kind }),
-        ...(kind === "iife" ? { globalName: "playground" } : {}),
-        banner: { [style ? "css" : "js"]: `/* sources ${hashOfSources()} */` },
-    });
+  const style = kind === "css";
+  return build({
+    entryPoints: [entry],
+    outfile,
+    bundle: true,
+    minify: true,
+    target: "es2022",
+    charset: "utf8",
+    legalComments: "none",
+    logLevel: "warning",
+    ...(style ? {} : { format: kind }),
+    ...(kind === "iife" ? { globalName: "playground" } : {}),
+    banner: { [style ? "css" : "js"]: `/* sources ${hashOfSources()} */` },
+  });
 }
 
 const [file, out] = process.argv.slice(2);
 if (file && out) {
-    await bundled(file, "iife", out);
+  await bundled(file, "iife", out);
 } else {
-    rmSync(join(HERE, "bundle"), { recursive: true, force: true });
-    mkdirSync(join(HERE, "bundle"));
-    for (const [name, kind] of Object.entries(ENTRIES)) {
-        await bundled(join(HERE, "runtime", name), kind, join(HERE, "bundle", name));
-    }
+  rmSync(join(HERE, "bundle"), { recursive: true, force: true });
+  mkdirSync(join(HERE, "bundle"));
+  for (const [name, kind] of Object.entries(ENTRIES)) {
+    await bundled(join(HERE, "runtime", name), kind, join(HERE, "bundle", name));
+  }
 }

@@ -11,7 +11,7 @@ from playground.paths import GLSL, current_folder, without_part
 from playground.sketch.allowed_files import Signature
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
-from playground.workbench.traits import traits_of
+from playground.sketch.traits import traits_of
 
 
 def files_of(sketch: Sketch) -> frozenset[Path]:

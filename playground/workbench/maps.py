@@ -2,17 +2,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import NDArray
 
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Graph, Sketch, Technique, Value
 from playground.sketch.wiring import output_names
-
-if TYPE_CHECKING:
-    from playground.engine.plan import Plan
 
 
 def in_view(sketch: Sketch, ref: str) -> bool:
@@ -26,17 +21,6 @@ def in_view(sketch: Sketch, ref: str) -> bool:
             return False
         found = spec.technique
     return found is not None and output in output_names(found)
-
-
-def refs_of(plan: Plan) -> list[str]:
-    """List the textures of a plan that a map can show: those of the sketch's own passes, then inner ones."""
-    found = [
-        f"{path}:{output}"
-        for path, outputs in plan.flat.outputs.items()
-        for output in outputs
-        if path.partition(".")[0] != "view"
-    ]
-    return sorted(found, key=lambda ref: ref.count("."))
 
 
 def fitted(shown: Map, values: NDArray[np.float32]) -> Map:

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
+from playground.sketch.traits import traits_of
 from playground.terrain.meshes import mesh_parameters
-from playground.workbench.traits import traits_of
 
 GRID = 129  # vertices a side
 _RESOLUTION = "grid"  # the draw's parameter that sets the resolution of its mesh

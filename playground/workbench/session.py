@@ -24,8 +24,9 @@ from playground.engine.plan import Plan
 from playground.errors import ContextError, PlaygroundError
 from playground.sketch.assign import find_targets, resolve
 from playground.sketch.find import find
-from playground.sketch.map_sketch import Map
+from playground.sketch.map_sketch import Map, refs_of
 from playground.sketch.model import Sketch, Value
+from playground.sketch.traits import has_moving_counts, is_animated, traits_of
 from playground.workbench.catch_up import CatchUp
 from playground.workbench.checks import Checks
 from playground.workbench.clock import Clock
@@ -34,12 +35,11 @@ from playground.workbench.drafts import Drafts
 from playground.workbench.edits import Draft
 from playground.workbench.framing import framed
 from playground.workbench.last_frame import Painter, Picture
-from playground.workbench.maps import fitted, in_view, refs_of
+from playground.workbench.maps import fitted, in_view
 from playground.workbench.preview import as_preview
 from playground.workbench.reload_stages import Reload, ReloadStage, Sandbox
 from playground.workbench.resume import StoredEdits
 from playground.workbench.sun_arc import sun_off_arc
-from playground.workbench.traits import has_moving_counts, is_animated, traits_of
 from playground.workbench.view import View, steps_of_repeats
 
 if TYPE_CHECKING:
@@ -138,7 +138,7 @@ class Session:
     @property
     def refs(self) -> list[str]:
         """Every texture that a map can show."""
-        return refs_of(self.plan) if self.plan is not None else []
+        return refs_of(self.plan.flat) if self.plan is not None else []
 
     @property
     def repeats(self) -> dict[str, int]:

@@ -21,7 +21,7 @@ from playground.sketch.dialects.foreign import unfed_warnings
 from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 from playground.sketch.text_overrides import with_texts
-from playground.workbench.traits import traits_of
+from playground.sketch.traits import traits_of
 from tests.dialect_texts import TEXTS, with_mistake
 
 SIZE = (32, 18)

@@ -9,7 +9,7 @@ from playground.engine.engine import Engine
 from playground.errors import ShaderError
 from playground.sketch.load import load
 from playground.sketch.reserved_names import CLOCKED
-from playground.workbench.traits import has_moving_counts, is_animated
+from playground.sketch.traits import has_moving_counts, is_animated
 
 from ..sketch_texts import passes
 

@@ -15,7 +15,7 @@ from playground.media.camera import camera
 from playground.media.live_inputs import Keyboard, KeysNow
 from playground.media.microphone import microphone
 from playground.sketch.load import load
-from playground.workbench.traits import traits_of
+from playground.sketch.traits import traits_of
 
 SPACE, A, LEFT = 32, 65, 37
 SKETCH = """format = 1

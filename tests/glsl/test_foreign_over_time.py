@@ -14,7 +14,7 @@ from playground.engine.disk_cache_choice import passing
 from playground.errors import ContextError, DataError, ShaderError
 from playground.media import analysis
 from playground.sketch.load import load
-from playground.workbench.traits import is_animated
+from playground.sketch.traits import is_animated
 from tests.media.films import RATE, colour, own_film, sound, uneven_film
 
 SKETCH = """format = 1

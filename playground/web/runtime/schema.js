@@ -39,7 +39,8 @@
  *  blanked (`without`) or names replaced (`replace`, where `replaceIf` holds); then `after`.
  *  `text` is a whole stage instead, made of no file.
  *  @typedef {{text?: string, before?: Array<{text: string, names?: string[]}>, after?: string,
- *             without?: string, replace?: Object<string, string>, keepsVersion?: boolean}} Stage */
+ *             without?: string, replace?: Object<string, string>, keepsVersion?: boolean,
+ *             file?: string}} Stage  file: of its lines, where they are not the kernel's own */
 
 /** A kernel, a draw, a source or a plain shader: what its header says.
  *  @typedef {object} Kernel

@@ -12,11 +12,11 @@ from typing import Any
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
 from playground.sketch.assign import TERRAIN_KEYS, find_targets
+from playground.sketch.described_parameter import part_names
 from playground.sketch.model import Graph, Parameter, Value
 from playground.sketch.values import is_whole, tidied
 from playground.workbench.control.controls import Controls
 from playground.workbench.control.items import items_of, values_of
-from playground.workbench.control.shares import part_names
 
 OWN = "/playground/"
 """What addresses begin with that are no parameter's."""

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from playground.errors import ParameterError, PlaygroundError, nearest
 from playground.paths import GLSL, shown
+from playground.sketch.described_parameter import part_names
 from playground.sketch.model import Parameter, Value
 from playground.workbench.control.controller_file import (
     Binding,
@@ -28,7 +29,6 @@ from playground.workbench.control.shares import (
     HALF,
     check_shares,
     is_switch,
-    part_names,
     share_of,
     with_share,
 )

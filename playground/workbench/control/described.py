@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
+from playground.sketch.assign import Shown
+from playground.sketch.described_parameter import described, range_of
 from playground.sketch.model import Parameter, Value
 from playground.sketch.values import expected, shortest, write
-from playground.sketch.widgets import WIDGETS
 from playground.workbench.bench import Bench
 from playground.workbench.control.items import items_of, values_of
-from playground.workbench.control.shares import part_names, range_of
 from playground.workbench.parameter_list import Item, Values
 from playground.workbench.problems import Problems
 from playground.workbench.session import Session
@@ -60,30 +60,16 @@ def errors_of(problems: Problems) -> list[dict[str, Any]]:
 
 def _described(item: Item, values: Values) -> dict[str, Any]:
     parameter = item.parameter
-    widget, kind = parameter.widget, WIDGETS[parameter.widget.kind]
-    value = values.of[item.path]
-    ends = range_of(parameter)
-    return {
-        "path": item.path,
+    value, ends = values.of[item.path], range_of(parameter)
+    return described(Shown(item.path, parameter, item.exported)) | {
         "label": item.title,
-        "pass": item.path.partition(".")[0],
-        "group": parameter.group,
-        "description": parameter.tooltip,
-        "widget": widget.kind,
-        "type": parameter.type,
         "value": plain(parameter, value),
         "text": write(parameter, value),
         "default": plain(parameter, parameter.default),
         "file": plain(parameter, values.in_file[item.path]),
         "low": ends[0] if ends else None,
         "high": ends[1] if ends else None,
-        "ranges": [range_of(parameter, part) for part in range(max(len(part_names(parameter)), 1))],
-        "step": parameter.step,
-        "unit": parameter.unit or kind.unit,
-        "choices": list(widget.choices),
-        "parts": list(part_names(parameter)),
         "takes": expected(parameter),
-        "exported": item.exported,
         "changed": item.path in values.changed,
         "locked": item.path in values.locked,
     }

@@ -11,35 +11,13 @@ import math
 
 from playground.errors import ParameterError
 from playground.sketch.colour import linear_to_srgb, srgb_to_linear
+from playground.sketch.described_parameter import range_of
 from playground.sketch.model import Parameter, Value
-from playground.sketch.values import is_whole, length_of
-from playground.sketch.widgets import WIDGETS
+from playground.sketch.values import is_whole
 from playground.workbench.number_format import decimals
 
 HALF = 64 / 127
 """From which share on a checkbox is on, and a button pressed: 64 of MIDI's 127."""
-_DIRECTION = ((0.0, 360.0), (0.0, 90.0))  # [degrees] azimuth, elevation: the sky
-
-
-def part_names(parameter: Parameter) -> tuple[str, ...]:
-    """Return what the parts of a vector are called; nothing for a scalar."""
-    if length_of(parameter.type) == 1 or parameter.widget.kind == "file":
-        return ()
-    if parameter.parts:
-        return parameter.parts
-    if parameter.widget.kind == "direction":
-        return ("azimuth", "elevation")
-    return tuple(("rgba" if parameter.widget.kind == "colour" else "xyzw")[: length_of(parameter.type)])
-
-
-def range_of(parameter: Parameter, part: int = 0) -> tuple[float, float] | None:
-    """Return the range of a parameter's number, or of one of its parts; None where it has none."""
-    if parameter.widget.kind == "direction":
-        return _DIRECTION[part]
-    low, high = parameter.widget.ends(part)
-    if low is not None and high is not None:
-        return low, high
-    return WIDGETS[parameter.widget.kind].range
 
 
 def check_shares(parameter: Parameter, path: str) -> None:

@@ -19,6 +19,7 @@ from playground.engine.plan import Plan
 from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
+from playground.sketch.traits import is_animated
 from playground.workbench.data_files import hash_of
 from playground.workbench.edits import Draft
 from playground.workbench.inspect.blend import Blend
@@ -27,7 +28,6 @@ from playground.workbench.memory import Compared
 from playground.workbench.preview import as_preview
 from playground.workbench.resume import StoredEdits, first_draft
 from playground.workbench.session import Session
-from playground.workbench.traits import is_animated
 
 if TYPE_CHECKING:
     import moderngl

@@ -1,0 +1,27 @@
+"""Hold bytes once each, as text that a page can hold: gzip in base64, by a hash of the bytes."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import hashlib
+
+
+class Blobs:
+    """What a page holds besides its JSON."""
+
+    def __init__(self) -> None:
+        self.texts: dict[str, str] = {}  # by key
+
+    def add(self, data: bytes) -> str:
+        """Return the key of some bytes; the same bytes are held once, and give the same text."""
+        key = hashlib.blake2b(data, digest_size=8).hexdigest()
+        if key not in self.texts:
+            packed = gzip.compress(data, compresslevel=9, mtime=0)
+            self.texts[key] = base64.b64encode(packed).decode("ascii")
+        return key
+
+    @property
+    def size(self) -> int:
+        """Bytes that the texts take in a page."""
+        return sum(map(len, self.texts.values()))

@@ -1,0 +1,119 @@
+"""Say what cannot be changed in a page, and why: what the processor makes is exported as it is.
+
+A source's texels depend on its own parameters and on its size; whatever that size depends on is locked
+with them. Where a fast variant runs in place of a technique, its inner parameters that it does not
+have are locked as well: setting them would need another plan.
+"""
+
+from __future__ import annotations
+
+from playground.engine.plan import Plan
+from playground.sketch import named_numbers
+from playground.sketch.expressions import names_in
+from playground.sketch.flat import Leaf
+from playground.sketch.flatten import is_exported
+from playground.sketch.model import Graph
+from playground.sketch.named_numbers import FRAME, TERRAIN, base_of, named
+from playground.sketch.variant_check import INSIDE
+from playground.terrain.sources import source_kind
+
+
+class Locks:
+    """The locks of one planned sketch."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.plan = plan
+        self.flat = plan.flat
+        self.sources = {leaf.path: leaf for leaf in self.flat.leaves if leaf.kernel.kind == "source"}
+        self._own = {path: self._has_own_size(leaf) for path, leaf in self.sources.items()}
+        self._needed_by: dict[str, str] = {}  # path of a value, or a base → the source whose size it sets
+        for path in self.sources:
+            if not self._own[path]:
+                self._note(path, path, set())
+        self._replaced = {
+            path.partition(f".{INSIDE}.")[0] for path in self.flat.specs if f".{INSIDE}." in f"{path}."
+        }
+
+    def own_size(self, path: str) -> bool:
+        """Return whether a leaf has a size of its own, as a film has."""
+        return self._own.get(path, False)
+
+    def of_parameter(self, path: str, targets: tuple[str, ...]) -> str:
+        """Return why a parameter cannot be changed; "": it can."""
+        for target in targets:
+            leaf, _, name = target.rpartition(".")
+            if leaf in self.sources:
+                return f"{_made(self.sources[leaf])} was made when the page was exported"
+            if target in self._needed_by:
+                made = _made(self.sources[self._needed_by[target]])
+                return f"{made} was made in this size when the page was exported"
+            kernel = next((one.kernel for one in self.flat.leaves if one.path == leaf), None)
+            parameter = kernel.parameter(name) if kernel else None
+            if parameter is not None and parameter.widget.kind == "file":
+                return "the image was chosen when the page was exported"
+        return self._replaced_around(path)
+
+    def of_terrain(self) -> str:
+        """Return why the terrain's size cannot be changed; "": it can."""
+        if TERRAIN not in self._needed_by:
+            return ""
+        made = _made(self.sources[self._needed_by[TERRAIN]])
+        return f"{made} was made in this size when the page was exported"
+
+    def notes(self) -> list[str]:
+        """Return a sentence on each source whose texels the page has as they were."""
+        found = [f"{path}: {_made(leaf)} is exported as it is" for path, leaf in self.sources.items()]
+        if FRAME in self._needed_by:
+            path = self._needed_by[FRAME]
+            found.append(f"{path}: {_made(self.sources[path])} has the size of the picture at export")
+        return found
+
+    def _replaced_around(self, path: str) -> str:
+        """Return why an inner parameter of a technique that a fast variant replaces cannot be set."""
+        if path.count(".") < 2:
+            return ""
+        for around in self._replaced:
+            rest = path.removeprefix(f"{around}.")
+            technique = self.flat.specs[around].technique
+            if rest != path and isinstance(technique, Graph) and not is_exported(technique, rest):
+                return f"a faster form of {around} runs in this page, which does not have it"
+        return ""
+
+    def _has_own_size(self, leaf: Leaf) -> bool:
+        if leaf.spec.size is not None or leaf.path == "view":
+            return False
+        step = self.plan.step(leaf.path)
+        return step is not None and source_kind(leaf.kernel.registry).size(step.values) is not None
+
+    def _note(self, path: str, source: str, known: set[str]) -> None:
+        """Note the values and bases that the size of a pass depends on, for a source."""
+        if path in known:
+            return
+        known.add(path)
+        if path in (TERRAIN, FRAME):
+            self._needed_by.setdefault(path, source)
+            return
+        spec = self.flat.specs[path]
+        if spec.size is None:
+            self._note(base_of(path), source, known)
+            return
+        for word in sorted(name for text in spec.size for name in names_in(text)):
+            kind, where, _ = named(self.flat, path.rpartition(".")[0], spec, word)
+            if kind == named_numbers.SIZE:
+                self._note(where, source, known)
+            elif kind == named_numbers.VALUE:
+                self._needed_by.setdefault(self.flat.shape.copied.get(where, where), source)
+
+
+def _made(leaf: Leaf) -> str:
+    """Return what a source makes, in words."""
+    return {
+        "elevation_file": "the elevation file's terrain",
+        "delaunay": "the triangulation",
+        "mask_file": "the mask",
+        "video_file": "the film",
+        "sound_file": "the sound",
+        "keyboard": "the keyboard",
+        "microphone": "the microphone",
+        "camera": "the camera",
+    }.get(leaf.kernel.registry, leaf.kernel.registry)

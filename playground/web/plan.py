@@ -1,0 +1,214 @@
+"""Write down a sketch so that a browser can plan and run it: see ``Sketch`` in schema.js.
+
+The flat sketch is written with its sizes and repeats as expressions, not as the numbers of one plan,
+so that a page makes plans of its own. Fast variants that need no compute shaders run, as they do
+in an engine of the fragment driver.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from playground.engine.files import find_file
+from playground.engine.plan import Plan
+from playground.engine.planner import Planner
+from playground.engine.view_inputs import view_height
+from playground.paths import GLSL, shown
+from playground.sketch.assign import Shown, values_of
+from playground.sketch.expressions import counts_frames, follows_time
+from playground.sketch.flat import Fed, Leaf, Loop, Node, Source
+from playground.sketch.map_sketch import map_kernel, refs_of
+from playground.sketch.model import DEFAULT_PICTURE, Sketch, Value
+from playground.sketch.named_numbers import base_of
+from playground.sketch.source import read_text
+from playground.sketch.traits import is_animated
+from playground.web.kernels import Kernels
+from playground.web.locks import Locks
+from playground.web.pass_trees import pass_tree
+from playground.web.shared import SharedData
+from playground.web.shown import presets_data, row, rules_data, shown_data, tracks_data
+from playground.web.sources import source_data
+
+FORMAT = 1
+KINDS = ("passes",)
+"""The kinds of fast variants that run in a page."""
+
+
+def sketch_data(
+    sketch: Sketch,
+    shared: SharedData,
+    *,
+    frame: tuple[int, int] = DEFAULT_PICTURE,
+    time: float = 0.0,
+    steps: Mapping[str, int] | None = None,
+) -> dict[str, Any]:
+    """Return a sketch as data; what several have in common goes into ``shared``.
+
+    ``frame`` in pixels, ``time`` in seconds, ``steps`` stops repeats early, by path. Raises
+    ``PlaygroundError`` for any mistake in the sketch, and for what no page can run.
+    """
+    plan = Planner().plan(sketch, frame_size=frame, time=time, variants=KINDS, steps=steps, interpolated=True)
+    return _Writing(sketch, plan, shared).data()
+
+
+class _Writing:
+    """One sketch being written."""
+
+    def __init__(self, sketch: Sketch, plan: Plan, shared: SharedData) -> None:
+        self.sketch = sketch
+        self.plan = plan
+        self.flat = plan.flat
+        self.shared = shared
+        self.kernels = Kernels(shared.texts, sketch.folder)
+        self.leaves = {leaf.path: leaf for leaf in self.flat.leaves}
+        self.steps = {step.path: step for step in plan.walk()}
+        self.locks = Locks(plan)
+
+    def data(self) -> dict[str, Any]:
+        """Return the whole sketch."""
+        sketch, plan, terrain = self.sketch, self.plan, self.plan.terrain
+        nodes = [self._node(node) for node in self.flat.nodes]
+        found = values_of(sketch) | self._constants()
+        values = {path: self.written(path, value) for path, value in found.items()}
+        rows = shown_data(sketch, values, self.locks.of_parameter)
+        presets, preset_notes = presets_data(sketch, rows, self.written)
+        tracks, track_notes = tracks_data(sketch, self.locks.of_parameter, self.written)
+        return {
+            "format": FORMAT,
+            "name": sketch.name,
+            "title": sketch.title,
+            "file": self._file(),
+            "frame": list(plan.frame_size),
+            "time": plan.time,
+            "steps": dict(plan.steps),
+            "samples": sketch.samples,
+            "terrain": {
+                "size": list(terrain.size or ()),
+                "extent": list(terrain.extent or ()),
+                "relief": terrain.relief,
+                "base_elevation": terrain.base_elevation,
+                "locked": self.locks.of_terrain(),
+                "extentFollows": sketch.extent is None,
+            },
+            "camera": asdict(sketch.camera),
+            "picture": _ref(plan.picture),
+            "kernels": self.kernels.data,
+            "nodes": nodes,
+            "passes": self._passes(),
+            "values": values,
+            "shown": rows,
+            "presets": presets,
+            "tracks": tracks,
+            "duration": sketch.duration,
+            "moves": is_animated(sketch),
+            "rules": rules_data(self.flat),
+            "textures": self._textures(),
+            "map": self._map(),
+            "choices": [],
+            "notes": [*plan.lacking, *self.locks.notes(), *preset_notes, *track_notes],
+        }
+
+    def written(self, path: str, value: Value) -> Any:
+        """Return the value of a leaf parameter as a page has it: of an image file its key."""
+        leaf = self.leaves.get(path.rpartition(".")[0])
+        parameter = leaf.kernel.parameter(path.rpartition(".")[2]) if leaf else None
+        if parameter is None or parameter.widget.kind != "file":
+            return Path(value).name if isinstance(value, str) else value
+        assert leaf is not None
+        if leaf.kernel.kind == "source":
+            return Path(str(value)).name
+        file = Path(str(self.steps[leaf.path].values[parameter.name]))
+        if value != self.flat.values[path]:
+            file = find_file(str(value), leaf.folder, parameter.file, path)
+        plain = leaf.kernel.kind.startswith("plain")
+        return self.shared.images.add(file, encoded=plain and not parameter.sampling.decode)
+
+    def _constants(self) -> dict[str, Value]:
+        """Return the values of fast variants' own passes that are their own."""
+        shape = self.flat.shape
+        return {path: value for path, value in shape.constants.items() if path not in shape.copied}
+
+    def _file(self) -> str:
+        text = read_text(Path(self.sketch.file), any_encoding=True)
+        return self.shared.texts.add_file(self.sketch.file, text, self.sketch.folder)
+
+    def _node(self, node: Node) -> dict[str, Any]:
+        if isinstance(node, Loop):
+            return {
+                "path": node.path,
+                "loop": True,
+                "repeat": pass_tree(node.repeat, self.flat, node.path, node.spec),
+                "countsFrames": counts_frames(node.repeat),
+                "followsTime": follows_time(node.repeat),
+                "body": [self._node(inside) for inside in node.body],
+                "feedback": [[name, _source(first), _ref(ref)] for name, first, ref in node.feedback],
+            }
+        return self._leaf(node)
+
+    def _leaf(self, leaf: Leaf) -> dict[str, Any]:
+        copied = self.flat.shape.copied
+        paths = {name: copied.get(path, path) for name, path in self.flat.shape.paths[leaf.path]}
+        found: dict[str, Any] = {
+            "path": leaf.path,
+            "kernel": self.kernels.add(leaf.kernel),
+            "inputs": [[name, _source(source)] for name, source in leaf.inputs],
+            "values": paths,
+            "base": leaf.path,
+        }
+        if leaf.kernel.kind == "source":
+            found["data"] = source_data(self.steps[leaf.path], self.plan.time, self.shared.blobs)
+        return found
+
+    def _passes(self) -> dict[str, dict[str, Any]]:
+        """Return the size of every pass at every level."""
+        found = {}
+        for path, spec in self.flat.specs.items():
+            base = base_of(path)
+            one: dict[str, Any] = {"base": base, "where": self._place(spec.file, spec.line)}
+            if path in self.leaves and self.locks.own_size(path):
+                one["own"] = list(self.steps[path].size)
+            elif spec.size is not None:
+                one["size"] = [pass_tree(text, self.flat, path, spec) for text in spec.size]
+            found[path] = one
+        return found
+
+    def _place(self, file: str, line: int) -> str:
+        """Return where a pass is written, without where that lies on a disk."""
+        path = Path(file) if Path(file).is_absolute() else None
+        if path is not None and path.is_relative_to(GLSL):
+            file = shown(path)
+        return f"{file if path is None or path.is_relative_to(GLSL) else path.name}:{line}"
+
+    def _textures(self) -> list[dict[str, Any]]:
+        height = view_height(self.plan)
+        found = []
+        for ref in refs_of(self.flat):
+            path, _, output = ref.partition(":")
+            label = path if path.rpartition(".")[2] == output else ref
+            is_height = bool(height) and self.flat.ref(ref, "") == self.flat.ref(height, "")
+            found.append({"ref": ref, **_ref(self.flat.ref(ref, "")), "label": label, "height": is_height})
+        return found
+
+    def _map(self) -> dict[str, Any]:
+        kernel = map_kernel()
+        values = {p.name: p.default for p in kernel.parameters}
+        rows = [row(Shown(f"map.{p.name}", p, True), p.default, (p.name,)) for p in kernel.parameters]
+        return {
+            "kernel": self.kernels.add(kernel),
+            "input": kernel.inputs[0].name,
+            "values": values,
+            "shown": rows,
+        }
+
+
+def _ref(ref: Any) -> dict[str, str]:
+    return {"path": ref.path, "output": ref.output}
+
+
+def _source(source: Source | None) -> dict[str, str] | None:
+    if source is None:
+        return None
+    return {"loop": source.loop, "name": source.name} if isinstance(source, Fed) else _ref(source)

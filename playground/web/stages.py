@@ -1,0 +1,26 @@
+"""Write a recipe of a shader stage as data: see ``Stage`` in schema.js."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from playground.gpu.stage_recipe import Recipe
+
+
+def stage_data(recipe: Recipe, file: str = "") -> dict[str, Any]:
+    """Return a recipe as data; ``file``: the name of its lines' file where it is not the kernel's own."""
+    if recipe.text:
+        return {"text": recipe.text}
+    before = [
+        {"text": part.text, **({"names": list(part.names)} if part.names else {})} for part in recipe.before
+    ]
+    found: dict[str, Any] = {"before": before, "after": recipe.after.removesuffix("\n")}
+    if recipe.without:
+        found["without"] = recipe.without
+    if recipe.replaced:
+        found["replace"] = dict(recipe.replaced)
+    if recipe.keeps_version:
+        found["keepsVersion"] = True
+    if file:
+        found["file"] = file
+    return found

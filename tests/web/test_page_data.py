@@ -1,0 +1,166 @@
+"""Every shipped sketch is written down: as JSON's own types, with texts that are the engine's."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from playground.engine.plan import LoopStep
+from playground.engine.planner import Planner
+from playground.gpu.wrap import FRAGMENT, wrap
+from playground.paths import GLSL
+from playground.sketch import expressions
+from playground.sketch.find import shipped_sketches
+from playground.sketch.load import load
+from playground.web.page_data import page_data
+
+from .node import Node
+
+NAMES = shipped_sketches()
+STAGES = """async (shared, kernels, load) => {
+    const { flatten } = await load("source.js"), { stageText } = await load("wrap.js");
+    return kernels.map(({ kernel, stage, file }) => stageText(stage, flatten(shared, file)));
+}"""
+
+
+@cache
+def written(name: str) -> dict[str, Any]:
+    return page_data([load(name)], frame=(320, 180))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_it_is_json_and_says_nothing_of_this_machine(name: str):
+    page = written(name)
+    text = json.dumps(page, allow_nan=False)
+    assert json.dumps(json.loads(text)) == text
+    for folder in (GLSL, Path.home(), Path.cwd()):
+        assert str(folder) not in text
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_page_makes_the_engines_own_stages(node: Node, name: str):
+    page, plan = written(name), Planner().plan(load(name), frame_size=(320, 180), variants=("passes",))
+    [sketch] = page["sketches"]
+    of = {leaf["path"]: sketch["kernels"][leaf["kernel"]] for leaf in leaves(sketch["nodes"])}
+    asked, expected = [], []
+    for step in plan.walk():
+        kernel = of[step.path]
+        if step.kernel.kind == "source":
+            continue
+        for stage, made in wrap(step.kernel, FRAGMENT).stages.items():
+            data = kernel[stage]
+            asked.append({"stage": data, "file": data.get("file", kernel["file"])})
+            expected.append({"text": made.text, "first": made.first})
+    assert node.run(STAGES, page["shared"], asked) == expected
+
+
+def leaves(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    found = []
+    for node in nodes:
+        found += leaves(node["body"]) if "body" in node else [node]
+    return found
+
+
+class Numbers:
+    """What names of trees stand for in a plan, and trees evaluated, slowly."""
+
+    def __init__(self, plan: Any, sketch: dict[str, Any]) -> None:
+        self.plan, self.sketch = plan, sketch
+
+    def size(self, path: str) -> tuple[int, int]:
+        """Return a size from nothing but the data."""
+        if path[0] == "#":
+            size = self.plan.terrain.size if path == "#terrain" else self.plan.frame_size
+            assert size
+            return size
+        one = self.sketch["passes"][path]
+        if "own" in one:
+            return tuple(one["own"])
+        if "size" not in one:
+            return self.size(one["base"])
+        x, y = (self.whole(tree) for tree in one["size"])
+        return x, y
+
+    def whole(self, tree: Any) -> int:
+        """Return what a tree gives: put into names, and the rest is Python's evaluation of its text."""
+        names: dict[str, Any] = {}
+        text = self.text(tree, names)
+        return expressions.evaluate(text, names)
+
+    def text(self, tree: Any, names: dict[str, Any]) -> str:
+        """Return a tree as an expression again, its absolute names as names of ``names``."""
+        if not isinstance(tree, list):
+            return str(tree) if not isinstance(tree, str) else self.clock(tree, names)
+        kind, *of = tree
+        if kind == "text":
+            return self.text(of[1], names)
+        if kind == "float":
+            return f"{of[0]:.1f}"
+        if kind in ("size", "value", "picture"):
+            name = f"n{len(names)}"
+            names[name] = self.size(of[0])[of[1]] if kind == "size" else self.sketch["values"][of[0]]
+            return name
+        parts = [f"({self.text(part, names)})" for part in of]
+        if kind == "if":
+            return f"{parts[1]} if {parts[0]} else {parts[2]}"
+        if kind.isidentifier() or kind == "log2":
+            return f"{kind}({', '.join(parts)})"
+        return f"{parts[0]} {kind} {parts[1]}"
+
+    def clock(self, name: str, names: dict[str, Any]) -> str:
+        names |= {"time": self.plan.time, "frames": expressions.frames_at(self.plan.time)}
+        return name
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str):
+    [sketch] = written(name)["sketches"]
+    plan = Planner().plan(load(name), frame_size=(320, 180), variants=("passes",))
+    numbers = Numbers(plan, sketch)
+    loops: dict[str, Any] = {}
+
+    def look(nodes: list[dict[str, Any]]) -> None:
+        for one in nodes:
+            if "body" in one:
+                loops[one["path"]] = one["repeat"]
+                look(one["body"])
+
+    look(sketch["nodes"])
+    for step in plan.walk():
+        assert numbers.size(step.path) == step.size
+    for node in plan.nodes:
+        if isinstance(node, LoopStep):
+            assert numbers.whole(loops[node.path]) == node.whole
+    assert sketch["picture"] == {"path": plan.picture.path, "output": plan.picture.output}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_values_are_those_that_the_engine_gives(name: str):
+    """Before keyframes and what follows: those the page works out by itself."""
+    [sketch] = written(name)["sketches"]
+    found = load(name)
+    plan = Planner().plan(found, frame_size=(320, 180), variants=("passes",))
+    set_elsewhere = {path for track in sketch["tracks"] for path in track["targets"]}
+    set_elsewhere |= {path for rule in sketch["rules"] for path in rule["targets"]}
+    steps = {step.path: step for step in plan.walk()}
+    for leaf in leaves(sketch["nodes"]):
+        step = steps[leaf["path"]]
+        assert leaf["values"].keys() == step.values.keys()
+        for parameter in step.kernel.parameters:
+            path = leaf["values"][parameter.name]
+            value = sketch["values"][path]
+            if path in set_elsewhere:
+                continue
+            if parameter.widget.kind == "file":
+                assert value in page_images(name) or step.kernel.kind == "source"
+            else:
+                assert parameter.widget.given(value) == step.values[parameter.name]
+
+
+def page_images(name: str) -> dict[str, Any]:
+    images: dict[str, Any] = written(name)["shared"]["images"]
+    return images
