@@ -1,0 +1,92 @@
+// fake_page.js -- a page over a player that draws with two dimensions what its state says: for tests without WebGL.
+
+import { createPage } from "../../playground/web/runtime/sketch_page.js";
+import { ENGLISH } from "../../playground/web/runtime/words.js";
+
+/** What a test looks at, and what it may ask for: [ms] a frame of a million pixels takes, an error to throw. */
+const probe = { slow: 0, error: "", frames: [], states: [], opened: [], page: null };
+globalThis.probe = probe;
+
+const REPEATS = 24;
+
+function open(sketch) {
+  probe.opened.push(sketch.name);
+  const state = {}, sheet = document.createElement("canvas");
+  const value = (path) => state.values[path] ?? sketch.values[path];
+  const player = {
+    state,
+    get plan() {
+      const camera = state.camera ?? sketch.camera;
+      return {
+        eye: { distance: camera.distance || 4000, target: camera.target ?? [2048, 2048, 400] },
+        terrain: state.terrain, time: state.time, frame: state.frame,
+        steps: new Map([["height", { size: state.terrain.size, repeat: REPEATS, whole: REPEATS }], ["picture", { size: state.frame, repeat: 1, whole: 1 }]]),
+      };
+    },
+    async load(progress) {
+      for (let done = 0; done <= 3; done++) {
+        progress?.(done, 3);
+        await new Promise((next) => setTimeout(next, 10));
+      }
+    },
+    render() {
+      if (probe.error) throw new Error(probe.error);
+      const [width, height] = state.frame, end = performance.now() + (probe.slow * width * height) / 1e6;
+      while (performance.now() < end);
+      probe.frames.push([width, height]);
+      probe.states.push(structuredClone(state));
+      [sheet.width, sheet.height] = state.frame;
+      const context = sheet.getContext("2d");
+      state.map ? drawMap(context, width, height) : drawHills(context, width, height);
+      return { ran: ["picture"], milliseconds: 1 };
+    },
+    drawTo(context) { context.drawImage(sheet, 0, 0); },
+    read({ path }) {
+      const [wide, high] = path === "picture" ? state.frame : state.terrain.size;
+      const data = new Float32Array(wide * high);
+      for (let y = 0; y < high; y++) for (let x = 0; x < wide; x++) data[y * wide + x] = height(x / wide, y / high);
+      return { size: [wide, high], channels: 1, data };
+    },
+    close() {},
+  };
+  const height = (x, y) => 0.5 + 0.25 * Math.sin(9 * x + 3 * y) + 0.2 * Math.sin(14 * y - 5 * x);
+
+  function drawMap(context, width, high) {
+    const picture = context.createImageData(width, high);
+    for (let y = 0; y < high; y++) for (let x = 0; x < width; x++) {
+      const grey = 255 * height(x / width, 1 - y / high);
+      picture.data.set([grey, grey, grey, 255], 4 * (y * width + x));
+    }
+    context.putImageData(picture, 0, 0);
+  }
+
+  function drawHills(context, width, high) {
+    const { azimuth } = state.camera ?? sketch.camera, [sun] = value("light.sun"), [r, g, b] = value("ground.grass");
+    const sky = context.createLinearGradient(0, 0, 0, high);
+    sky.addColorStop(0, "#4b6f9c");
+    sky.addColorStop(1, "#c9d6dd");
+    context.fillStyle = sky;
+    context.fillRect(0, 0, width, high);
+    for (let ridge = 0; ridge < 5; ridge++) {
+      context.fillStyle = `rgb(${255 * r ** 0.45 * (0.6 + 0.12 * ridge)} ${255 * g ** 0.45 * (0.6 + 0.12 * ridge)} ${255 * b ** 0.45 * (0.6 + 0.1 * ridge)})`;
+      context.beginPath();
+      context.moveTo(0, high);
+      for (let x = 0; x <= width; x += 4) {
+        const place = x / high + azimuth / 40 + ridge * 1.7 + sun / 500, up = value("height.level") * (0.2 * Math.sin(3 * place) + 0.08 * Math.sin(9 * place + state.time));
+        context.lineTo(x, high * (0.42 + 0.12 * ridge - up));
+      }
+      context.lineTo(width, high);
+      context.fill();
+    }
+  }
+  return player;
+}
+
+addEventListener("DOMContentLoaded", () => {
+  const data = JSON.parse(document.getElementById("playground-page").textContent);
+  probe.page = createPage(document.getElementById("playground"), data, { open }, {
+    words: ENGLISH,
+    poster: document.getElementById("playground-poster"),
+    createEditor(host) { host.append(Object.assign(document.createElement("textarea"), { value: "vec4 kernel(ivec2 texel)" })); },
+  });
+});
