@@ -12,27 +12,22 @@ packed it or when. (Deflate is zlib's: another version of it may write other byt
 from __future__ import annotations
 
 import json
-import re
 import zipfile
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from pathlib import Path
 
 from playground._version import __version__
-from playground.engine.files import find_file
+from playground.engine.packed_files import contents, folder_of
 from playground.errors import DataError
 from playground.images.files import reason, replacing
-from playground.paths import GLSL, SKETCHES, shown
-from playground.sketch.allowed_files import is_inside
-from playground.sketch.assign import resolve, values_of
-from playground.sketch.libraries import libraries, libraries_of, library_around
-from playground.sketch.load import is_technique
-from playground.sketch.model import Sketch, Value, kernels_of
+from playground.paths import shown
+from playground.sketch.libraries import libraries_of
+from playground.sketch.model import Sketch
 from playground.sketch.unpack import FORMAT, MANIFEST, MOST_BYTES, MOST_FILES
 
 _DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can say
 _PLAIN_FILE = 0o100644 << 16
 _UNIX = 3
-_DOCUMENTS = ("README*", "readme*", "LICENSE*", "LICENCE*")
 
 
 def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] = ()) -> Path:
@@ -44,7 +39,7 @@ def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] =
     """
     files, main, shipped = contents(sketch)
     for file, name in further:
-        files.setdefault(f"{_folder_of(sketch)}/{name}", file)
+        files.setdefault(f"{folder_of(sketch)}/{name}", file)
     manifest = {"format": FORMAT, "sketch": main, "version": __version__, "shipped": shipped}
     if left_out := sorted(libraries_of(sketch.files)):
         manifest["libraries"] = left_out
@@ -65,61 +60,6 @@ def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] =
     except OSError as error:
         raise DataError(f"cannot be packed: {reason(error)}", file=error.filename or path) from None
     return Path(path)
-
-
-def contents(sketch: Sketch) -> tuple[dict[str, Path], str, list[str]]:
-    """Return the files to pack by their name in the zip, the name of the one to open, what ships.
-
-    The last are files of ``glsl/``, named from there. Files of libraries that the user named are left out.
-    """
-    main, folder, top = Path(sketch.file), Path(sketch.folder), _folder_of(sketch)
-    alone = main.suffix != ".toml" or is_technique(main)
-    # So that the folder opens by its own name, wherever it is unpacked by hand.
-    first = main.relative_to(folder).as_posix() if alone else "sketch.toml"
-    files, shipped = {f"{top}/{first}": main}, set[str]()
-    for file in dict.fromkeys([*map(Path, sketch.files), *_data(sketch)]):
-        if file == main:
-            continue
-        own = file.is_relative_to(folder) and (not file.is_relative_to(GLSL) or file.is_relative_to(SKETCHES))
-        if own:
-            if not is_inside(file, (folder,)):
-                raise DataError(f"leads out of the sketch's folder, {shown(folder)}", file=shown(file))
-            files[f"{top}/{file.relative_to(folder).as_posix()}"] = file
-        elif is_inside(file, (GLSL,)):
-            shipped.add(file.resolve().relative_to(GLSL.resolve()).as_posix())
-        elif not library_around(file, libraries()):
-            message = f"lies outside the sketch's folder, {shown(folder)}; copy it there to pack the sketch"
-            raise DataError(message, file=shown(file))
-    if not folder.is_relative_to(GLSL):
-        for pattern in _DOCUMENTS:
-            for file in sorted(folder.glob(pattern)):
-                if file.is_file() and is_inside(file, (folder,)):
-                    files[f"{top}/{file.name}"] = file
-    return files, f"{top}/{first}", sorted(shipped)
-
-
-def _folder_of(sketch: Sketch) -> str:
-    return re.sub(r'[\x00-\x1f<>:"|?*\\/]+', "-", sketch.name).strip(" .") or "sketch"
-
-
-def _data(sketch: Sketch) -> Iterator[Path]:
-    """Yield the files that parameters name: as the sketch is, and in its presets, shots and keyframes."""
-    values = values_of(sketch)
-    declared = {
-        f"{prefix}.{parameter.name}": parameter
-        for prefix, kernel in kernels_of(sketch.graph)
-        for parameter in kernel.parameters
-        if parameter.widget.kind == "file"
-    }
-    named: list[tuple[str, Value]] = [(path, values[path]) for path in declared]
-    groups = [some.values for kind in (sketch.presets, sketch.shots, sketch.keyframes) for some in kind]
-    for path, value in (pair for group in groups for pair in group):
-        if isinstance(value, str):
-            named += [(target.path, value) for target in resolve(sketch.graph, path)]
-    for path, value in named:
-        if value and path in declared:
-            parameter = declared[path]
-            yield find_file(str(value), sketch.folder, parameter.file, parameter.name)
 
 
 def _entry(name: str) -> zipfile.ZipInfo:

@@ -73,7 +73,7 @@ def split_moderngl(text: str) -> tuple[str, str]:
 
 _NUMBER = r"[0-9]{1,9}"
 _KIND = r"(?P<kind>(?:preprocessor |fatal |internal )?(?:error|warning)|note|info)"
-_FORMATS = tuple(
+FORMATS = tuple(
     re.compile(pattern)
     for pattern in (
         # Mesa, Intel on Linux        0:12(8): preprocessor error: message
@@ -96,13 +96,13 @@ _FORMATS = tuple(
 )
 
 # Lines that say that nothing is wrong.
-_BENIGN = re.compile(r"No errors\.?|.{0,80} was successfully compiled to run on hardware\.?|Success\.?", re.I)
+BENIGN = re.compile(r"No errors\.?|.{0,80} was successfully compiled to run on hardware\.?|Success\.?", re.I)
 
 # Lines that only frame others.
-_FRAME = re.compile(r"[-=^~]{2,}|\^|[\w ()]{1,40} info|-- error message --", re.I)
+FRAME = re.compile(r"[-=^~]{2,}|\^|[\w ()]{1,40} info|-- error message --", re.I)
 
 # Summaries: worth showing only when there is nothing else.
-_SUMMARY = re.compile(
+SUMMARY = re.compile(
     r"compilation terminated\.?"
     r"|[0-9]+ compilation errors?\. *No code generated\.?"
     r"|(?:[0-9]+ (?:errors?|warnings?)(?: and )?){1,2} generated\.?"
@@ -116,8 +116,8 @@ _SUMMARY = re.compile(
     re.I,
 )
 
-_ASSEMBLY = "-- internal assembly text --"  # NVIDIA: a dump of thousands of lines follows
-_UNBROKEN = re.compile(r"(?<=\))(?=(?:error|warning): )")  # Mesa: two link errors on one line
+ASSEMBLY = "-- internal assembly text --"  # NVIDIA: a dump of thousands of lines follows
+UNBROKEN = re.compile(r"(?<=\))(?=(?:error|warning): )")  # Mesa: two link errors on one line
 
 
 @dataclass(slots=True)
@@ -147,13 +147,13 @@ def parse_log(log: str) -> tuple[LogEntry, ...]:
     entry of line 0, and so does a log that is not understood at all. Never raises.
     """
     text = log.replace("\0", "").replace("\r\n", "\n").replace("\r", "\n")
-    text = _UNBROKEN.sub("\n", text.split(_ASSEMBLY)[0])
+    text = UNBROKEN.sub("\n", text.split(ASSEMBLY)[0])
     drafts: list[_Draft] = []
     for raw in text.split("\n"):
         line = raw.strip()
-        if line and not _BENIGN.fullmatch(line) and not _FRAME.fullmatch(line):
+        if line and not BENIGN.fullmatch(line) and not FRAME.fullmatch(line):
             _take(drafts, line, indented=raw[0].isspace())
-    entries = [draft for draft in drafts if not _SUMMARY.fullmatch(draft.head)] or drafts
+    entries = [draft for draft in drafts if not SUMMARY.fullmatch(draft.head)] or drafts
     return tuple(dict.fromkeys(draft.entry() for draft in entries))
 
 
@@ -163,9 +163,9 @@ def _take(drafts: list[_Draft], line: str, indented: bool) -> None:
     draft = _recognise(line)
     if draft is None:
         head = _clean(line)
-        if last is None or (last.known and not indented) or _SUMMARY.fullmatch(head):
+        if last is None or (last.known and not indented) or SUMMARY.fullmatch(head):
             drafts.append(_Draft(0, 0, "error", head, known=False))
-        elif _SUMMARY.fullmatch(last.head):
+        elif SUMMARY.fullmatch(last.head):
             drafts.append(_Draft(0, 0, "error", head, known=False))
         else:
             last.more.append(head)
@@ -179,7 +179,7 @@ def _take(drafts: list[_Draft], line: str, indented: bool) -> None:
 
 
 def _recognise(line: str) -> _Draft | None:
-    for pattern in _FORMATS:
+    for pattern in FORMATS:
         found = pattern.fullmatch(line)
         if found is None:
             continue
@@ -242,7 +242,7 @@ _UNKNOWN = r"(?:undeclared|undefined|no function|no matching|not known|removed|d
 
 # (pattern, sentence): the first pattern found gives the sentence; {0} is its group, {1} that in lower case.
 # More telling mistakes come first: `texture2D` is also an undeclared identifier.
-_HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
+HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     (re.compile(pattern, re.IGNORECASE), sentence)
     for pattern, sentence in (
         (
@@ -314,10 +314,10 @@ _HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
             "`%` is for whole numbers: write `mod(a, b)` for floats.",
         ),
         (
-            r"(?:if-statement|loop) condition must be scalar boolean",
+            r"(?:if-statement|loop) condition must be scalar boolean|boolean expression expected",
             "A condition is a bool: compare a number, as in `x > 0.0`.",
         ),
-        (r"recursion", "GLSL has no recursion: write a loop."),
+        (r"recursion|recursive function", "GLSL has no recursion: write a loop."),
         (r"C-style initialization", "Braces do not fill an array here: write `float[](1.0, 2.0)`."),
         (
             r"swizzle|field selection|cannot access field|unknown field|no such field",
@@ -364,73 +364,74 @@ _HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     )
 )
 
-_MISFIT = re.compile(
+MISFIT = re.compile(
     r"no matching|could not implicitly convert|cannot be assigned to variable|cannot convert|wrong operand"
     r"|does not operate on|incompatible type|implicit (?:cast|narrowing)|invalid operands|overloaded function"
     r"|with wrong type|size mismatch|dimension mismatch|non-matching types|must be (?:an )?integer"
     r"|wrong type",
     re.I,
 )
-_CALL = re.compile(
+CALL = re.compile(
     rf"(?:call to|overloaded function(?: found:| reference)?) {_Q}?(?!found\b|reference\b)(\w+)"
     r"(?:\(([^()]*)\))?"
     rf"|{_Q}(\w+){_Q} ?: no matching"
 )
-_TYPE = re.compile(
+TYPE = re.compile(
     r"(?:(?P<size>[234])-component vector of )?(?:(?:low|medium|high)p )?"
     r"\b(?P<word>float|double|unsigned int|uint|int|bool|[biud]?vec[234]|[d]?mat[234](?:x[234])?)\b"
 )
-_BASES = {"f": "float", "d": "float", "v": "float", "m": "float", "i": "int", "u": "uint", "b": "bool"}
+BASES = {"f": "float", "d": "float", "v": "float", "m": "float", "i": "int", "u": "uint", "b": "bool"}
+
+# What is wrong with types that do not fit → the sentence; {0} is a function, {1} what it was given.
+MISFITS = {
+    "whole call": "No form of `{0}` takes ({1}): most built-in functions want floats, so write 2.0 for 2, or "
+    "float(...).",
+    "call": "No form of `{0}` takes these arguments: check its spelling, their number, order and types.",
+    "bool": "A bool is not a number: compare to get one, or convert with float(...) or int(...).",
+    "float": "Whole and decimal numbers do not mix: write 2.0 for 2, or convert with float(...) or int(...).",
+    "sign": "Signed and unsigned do not mix: write 2u for 2, or convert with uint(...) or int(...).",
+    "size": "The two sides differ in size: pick components with a swizzle such as .xyz, or build the vector.",
+    "types": "The types on the two sides do not fit: convert one of them, as in float(...) or vec3(...).",
+}
 
 
 def hint(message: str) -> str:
     """Return in one sentence what a message usually means, or "" where nothing useful is known."""
     head = message.split("\n", 1)[0][:600]
-    for pattern, sentence in _HINTS:
+    for pattern, sentence in HINTS:
         found = pattern.search(head)
         if found:
             name = next((group for group in found.groups() if group), "")
             return sentence.format(name, name.lower())
     # Mesa's type "error" marks what follows from a mistake already reported.
-    if _MISFIT.search(head) and not re.search(r"\berror\b", head):
+    if MISFIT.search(head) and not re.search(r"\berror\b", head):
         return _misfit(head)
     return ""
 
 
 def _misfit(head: str) -> str:
     """Explain types that do not fit together."""
-    call = _CALL.search(head)
+    call = CALL.search(head)
     if call is not None:
         name, given = call[1] or call[3], call[2] or ""
         if any(base in ("int", "uint") for base, _ in _types(given)):
-            return (
-                f"No form of `{name}` takes ({given}): most built-in functions want floats, "
-                "so write 2.0 for 2, or float(...)."
-            )
-        return (
-            f"No form of `{name}` takes these arguments: check its spelling, their number, order and types."
-        )
+            return MISFITS["whole call"].format(name, given)
+        return MISFITS["call"].format(name)
     types = _types(head)
     bases = {base for base, _ in types}
     if "bool" in bases and len(bases) > 1:
-        return "A bool is not a number: compare to get one, or convert with float(...) or int(...)."
+        return MISFITS["bool"]
     if "float" in bases and len(bases) > 1:
-        return (
-            "Whole and decimal numbers do not mix: write 2.0 for 2, or convert with float(...) or int(...)."
-        )
+        return MISFITS["float"]
     if bases == {"int", "uint"}:
-        return "Signed and unsigned do not mix: write 2u for 2, or convert with uint(...) or int(...)."
-    if len({size for _, size in types}) > 1 or "mismatch" in head:
-        return (
-            "The two sides differ in size: pick components with a swizzle such as .xyz, or build the vector."
-        )
-    return "The types on the two sides do not fit: convert one of them, as in float(...) or vec3(...)."
+        return MISFITS["sign"]
+    return MISFITS["size" if len({size for _, size in types}) > 1 or "mismatch" in head else "types"]
 
 
 def _types(text: str) -> list[tuple[str, str]]:
     """Find the types named in a text, as (kind of number, size)."""
     found: list[tuple[str, str]] = []
-    for match in _TYPE.finditer(text):
+    for match in TYPE.finditer(text):
         word = match["word"]
         if "mat" in word:
             size = word[word.index("mat") :]
@@ -438,5 +439,5 @@ def _types(text: str) -> list[tuple[str, str]]:
             size = word[-1]
         else:
             size = match["size"] or "1"
-        found.append((_BASES["u" if word.startswith("uns") else word[0]], size))
+        found.append((BASES["u" if word.startswith("uns") else word[0]], size))
     return found

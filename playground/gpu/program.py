@@ -20,6 +20,14 @@ from playground.sketch.source import Line, SourceText
 if TYPE_CHECKING:
     import moderngl
 
+FOREIGN = "the character U+{0}, {1}, is none of GLSL's: only comments may have it"
+"""Sentence for a character beyond ASCII; {0} is its number, {1} its name."""
+
+NAMELESS = "of no name"
+
+PAST_END = "{0}; is a bracket unclosed? the file needs {1}"
+"""Sentence for what a driver finds behind the last line; {1} is what the file is to define."""
+
 
 def compile_wrapped(ctx: moderngl.Context, wrapped: Wrapped) -> moderngl.Program | moderngl.ComputeShader:
     """Compile and link; raise ``ShaderError`` with one diagnostic for each of the driver's complaints."""
@@ -59,7 +67,10 @@ def explain(text: str, wrapped: Wrapped) -> ShaderError:
             found[("", 0, "")] = foreign.diagnostic(f"this driver refuses the version: {entry.message}")
             break
         diagnostic = diagnostic_of(entry, stage, wrapped)
-        found.setdefault((diagnostic.file, diagnostic.line, diagnostic.message), diagnostic)
+        # An open bracket makes everything behind the last line wrong: once is enough.
+        past = _is_past_end(entry, stage) and diagnostic.severity == "error"
+        key = (diagnostic.file, diagnostic.line, "" if past else diagnostic.message)
+        found.setdefault(key, diagnostic)
     if not any(d.severity == "error" for d in found.values()):
         message = log.strip() or "the driver refused the shader and gave no reason"
         found[("", 0, "")] = Diagnostic(message, shown(wrapped.kernel.path))
@@ -73,8 +84,8 @@ def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diag
     line = stage.locate(entry.line) if entry.line else _defined(entry.message, stage.source)
     if line is not None and entry.severity == "error" and (place := _beyond_ascii(line)) is not None:
         found = line.text[place]
-        message = f"the character U+{ord(found):04X}, {name_of(found, 'of no name')}, is none of GLSL's"
-        return line.diagnostic(f"{message}: only comments may have it", place + 1, entry.severity)
+        message = FOREIGN.format(f"{ord(found):04X}", name_of(found, NAMELESS))
+        return line.diagnostic(message, place + 1, entry.severity)
     more = guess(entry.message, stage.source, line) or hint(entry.message)
     message = f"{entry.message}; {more}" if more else entry.message
     if line is not None:
@@ -82,13 +93,16 @@ def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diag
             source_column(line.code, entry.column) if entry.column else _column_of(entry.message, line.code)
         )
         return line.diagnostic(message, min(column, len(line.text) + 1), entry.severity)
-    if entry.line and entry.line >= stage.first + len(stage.source.lines) - 1:
+    if _is_past_end(entry, stage):
         # Past the last line: either an unclosed bracket, or the wrapper's call does not fit.
         last = next((ln for ln in reversed(stage.source.lines) if ln.code.strip()), stage.source.lines[-1])
-        return last.diagnostic(
-            f"{entry.message}; is a bracket unclosed? the file needs {stage.expected}", 0, entry.severity
-        )
+        return last.diagnostic(PAST_END.format(entry.message, stage.expected), 0, entry.severity)
     return Diagnostic(message, shown(wrapped.kernel.path), 0, 0, entry.severity)
+
+
+def _is_past_end(entry: LogEntry, stage: ShaderStage) -> bool:
+    """Return whether a complaint is of what stands behind the kernel's last line."""
+    return bool(entry.line) and entry.line >= stage.first + len(stage.source.lines)
 
 
 def _beyond_ascii(line: Line) -> int | None:
@@ -100,11 +114,13 @@ def _beyond_ascii(line: Line) -> int | None:
 def _defined(message: str, source: SourceText) -> Line | None:
     """Return the line on which the function is defined that a message without a line speaks of, as Mesa does.
 
-    "function `float f(float)' has static recursion".
+    "function `float f(float)' has static recursion"; of ANGLE it is the first of "call chain: f -> g".
     """
-    match = _FUNCTION.search(message)
+    match = DEFINED.search(message)
     if match is None:
-        return None
+        chain = CHAIN.search(message)
+        begins = re.compile(rf"^\s*\w+\s+{chain[1]}\s*\(") if chain else None
+        return next((line for line in source.lines if begins and begins.match(line.code)), None)
     wanted = [words.split()[0] for words in match.group(3).split(",") if words.split()]
     code, near = source.code, None
     for found in re.finditer(rf"\b{match.group(1)}\s+{match.group(2)}\s*\(([^)]*)\)\s*\{{", code):
@@ -116,7 +132,8 @@ def _defined(message: str, source: SourceText) -> Line | None:
     return near
 
 
-_FUNCTION = re.compile(r"function [`'\"](\w+) (\w+)\(([^)]*)\)[`'\"]")
+DEFINED = re.compile(r"function [`'\"](\w+) (\w+)\(([^)]*)\)[`'\"]")
+CHAIN = re.compile(r"call chain: (\w+)")
 _QUALIFIERS = frozenset({"const", "in", "out", "inout", "lowp", "mediump", "highp"})
 
 

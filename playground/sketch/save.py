@@ -58,7 +58,7 @@ def saved_text(text: str, file: Sketch, wanted: Sketch) -> str:
             text = _with_pass(text, wanted, spec)
             continue
         if spec.use != was.use:
-            text = _with_technique(_view(text, file, spec.name), _table(file, spec.name), was, spec)
+            text = _with_technique(with_view(text, file, spec.name), table_of(file, spec.name), was, spec)
         text = _with_feed(text, file, wanted, was, spec)
     if wanted.main != file.main:  # what another technique lacks is gone from it
         text = put(text, (), "main", f"[{', '.join(map(text_of, wanted.main))}]")
@@ -136,14 +136,14 @@ def save_copy(file: Sketch, wanted: Sketch, folder: Path) -> Path:
 # ── what is written ──────────────────────────────────────────────────────────
 
 
-def _table(file: Sketch, name: str) -> Place:
+def table_of(file: Sketch, name: str) -> Place:
     """Return the place of a pass's table."""
     if name == "view":
         return ("view",)
     return ("pass", [spec.name for spec in file.graph.passes].index(name))
 
 
-def _view(text: str, file: Sketch, name: str) -> str:
+def with_view(text: str, file: Sketch, name: str) -> str:
     """Return the text with a [view], where the pass is the view and the file leaves that out."""
     if name != "view" or "view" in tomllib.loads(normalised(text)):
         return text
@@ -182,16 +182,16 @@ def _with_feed(text: str, file: Sketch, wanted: Sketch, was: PassSpec, now: Pass
     for name, source in now.inputs:
         if before.get(name) != source:
             text = put(
-                _view(text, file, was.name), (*_table(file, was.name), "inputs"), name, text_of(source)
+                with_view(text, file, was.name), (*table_of(file, was.name), "inputs"), name, text_of(source)
             )
     if now.size is None:
-        text = drop(text, _table(file, was.name), "size") if was.size is not None else text
+        text = drop(text, table_of(file, was.name), "size") if was.size is not None else text
     elif now.size != was.size:
-        text = put(text, _table(file, was.name), "size", written_size(now.size))
+        text = put(text, table_of(file, was.name), "size", written_size(now.size))
     for path, value in now.values:
         if (path, value) not in was.values:
             written = written_value(wanted, f"{now.name}.{path}", value, "")
-            text = put(text, (*_table(file, was.name), "set"), path, written)
+            text = put(text, (*table_of(file, was.name), "set"), path, written)
     return text
 
 
@@ -206,10 +206,10 @@ def _with_value(text: str, file: Sketch, wanted: Sketch, path: str, value: Value
     name, _, inner = path.partition(".")
     spec = wanted.graph.find(name)
     assert spec is not None
-    text = _view(text, file, name)
+    text = with_view(text, file, name)
     mine = {target.path for target in resolve(spec.technique, inner)}
     names = [key for key, _ in spec.values if {t.path for t in resolve(spec.technique, key)} == mine]
-    table = (*_table(wanted, name), "set")
+    table = (*table_of(wanted, name), "set")
     for key in names or [inner]:
         written = written_value(wanted, f"{name}.{key}", value, written_so_far(text, table, key))
         text = put(text, table, key, written)
@@ -217,7 +217,7 @@ def _with_value(text: str, file: Sketch, wanted: Sketch, path: str, value: Value
 
 
 def _with_camera(text: str, file: Sketch, camera: Camera) -> str:
-    text = _view(text, file, "view")
+    text = with_view(text, file, "view")
     table: Place = ("view", "camera")
     for part in fields(Camera):
         value = getattr(camera, part.name)

@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from playground import cli
-from playground.capture.pack import contents, pack
+from playground.capture.pack import pack
+from playground.engine.packed_files import contents
 from playground.engine.check import find_files
 from playground.engine.engine import Engine
 from playground.errors import DataError

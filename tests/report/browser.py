@@ -22,14 +22,14 @@ CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", 
 DRIVER = shutil.which("chromedriver")
 MISSING = "" if CHROMIUM and DRIVER and os.name == "posix" else "needs Chromium and chromedriver, on POSIX"
 
-_OPTIONS = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking"
+_OPTIONS = "--headless --no-sandbox --no-first-run --disable-background-networking"
 _OPTIONS += " --disable-component-update --disable-sync --hide-scrollbars"
 
 
 class Browser:
     """One window, until the block ends."""
 
-    def __init__(self, folder: Path, width: int = 1280, height: int = 900) -> None:
+    def __init__(self, folder: Path, width: int = 1280, height: int = 900, flags: str = "--disable-gpu") -> None:
         assert DRIVER and CHROMIUM
         self._driver = subprocess.Popen(
             [DRIVER, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
@@ -41,7 +41,7 @@ class Browser:
             assert line, "chromedriver ended"
             port = re.search(r"successfully on port (\d+)", line)
         self._base = f"http://127.0.0.1:{port[1]}/session"
-        arguments = [*_OPTIONS.split(), f"--window-size={width},{height}", f"--user-data-dir={folder}"]
+        arguments = [*_OPTIONS.split(), *flags.split(), f"--window-size={width},{height}", f"--user-data-dir={folder}"]
         options = {"browserName": "chrome", "goog:chromeOptions": {"binary": CHROMIUM, "args": arguments}}
         options["goog:loggingPrefs"] = {"browser": "ALL"}
         try:

@@ -157,6 +157,7 @@
  *  @property {{ref: string, path: string, output: string, label: string, height: boolean}[]} textures  for maps
  *  @property {MapView} map
  *  @property {Choice[]} choices                    techniques that may be exchanged
+ *  @property {string} [pack]                       key in `Shared.blobs` of its Pack, as JSON
  *  @property {string[]} notes                      what a page does otherwise, or cannot, a sentence each */
 
 /** How any texture is shown from above: the kernel view/map, whose input `shown` is wired when asked for.
@@ -165,6 +166,27 @@
 /** A technique menu: another sketch for each technique, with the same paths where they have the same names.
  *  @typedef {{pass: string, label: string, now: string, others: {use: string, title: string, sketch: number}[]}} Choice
  *  sketch: index in `Page.sketches`. */
+
+/** A part of a TOML text, or what may stand in its place: see playground/web/toml_template.py.
+ *  @typedef {string | {path: string, was: string} | {camera: string, was: string} | {terrain: string, was: string}
+ *            | {use: string, of: string} | {into: string, open: string, join: string, close: string, was: string}
+ *           } Piece */
+
+/** What "download my version" writes: JSON among the page's bytes, see playground/web/packed.py.
+ *  @typedef {object} Pack
+ *  @property {string} folder        of the zip that all files are in
+ *  @property {string} main          the file that opens, in the folder
+ *  @property {string} manifest      the file in which a zip says what it is
+ *  @property {number} format
+ *  @property {string} version       of the playground
+ *  @property {string[]} shipped     files of the library that it needs
+ *  @property {string[]} libraries   named by the user, which are not in it
+ *  @property {Object<string, ["file" | "pieces" | "text" | "blob", string]>} files   name in the folder → a key
+ *                                   of `Shared.files`, of `techniques`, the text itself, a key of `Shared.blobs`
+ *  @property {string[]} leftOut     files of data that are too large for a page
+ *  @property {Piece[] | null} toml  the sketch's own; null: it has none
+ *  @property {Object<string, Piece[]>} techniques   TOML of several passes, by the page's name of the file
+ *  @property {string[]} shots       names that are taken */
 
 /** What sketches share.
  *  @typedef {object} Shared

@@ -1,0 +1,134 @@
+"""Write down what is known of drivers' logs as a JavaScript module: patterns and sentences, as data.
+
+``runtime/complaint_words.js`` is what ``module`` returns, so that an error in a page has the words
+that it has in a terminal. ``python -m playground.web.complaint_words`` writes it again.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import unicodedata
+from pathlib import Path
+
+from playground.gpu import driver_log, name_suggestions, program
+from playground.sketch.reserved_names import FETCHES, GIVEN, GIVEN_INSTEAD, GLSL_WORDS
+
+FILE = Path(__file__).parent / "runtime" / "complaint_words.js"
+
+# What comes into a text by copying it from a page or a document: blanks, quotes, dashes, signs.
+_COPIED = (
+    "\u00a0\u00ad\u2002\u2003\u2007\u2009\u200a\u200b\u202f\u2060\u3000\ufeff"
+    "\u2018\u2019\u201a\u201c\u201d\u201e\u00ab\u00bb\u2032\u2033\u00b4"
+    "\u2010\u2011\u2012\u2013\u2014\u2015\u2212\u00d7\u00f7\u00b7\u2022\u2026\u2215\u2217"
+    "\u037e\uff08\uff09\uff0c\uff1b\u00b0\u00b2\u00b3\u2264\u2265\u2260\u00b1"
+)
+
+# Logs that browsers give: ANGLE's compiler, the same on Direct3D, Mesa's linker, and others'.
+_IN_BROWSERS = (
+    "ERROR: 0:12: 'x' : undeclared identifier",
+    "C:\\fakepath(249,9-30): error X3004: undeclared identifier",
+    "0:12(8): error: `x' undeclared",
+    "error: too many uniforms",
+)
+_WIDTH = 108
+
+
+def words() -> dict[str, object]:
+    """Return the patterns, as ``[source, flags]`` of a JavaScript ``RegExp``, and the sentences."""
+    log, names = driver_log, name_suggestions
+    return {
+        "formats": [_pattern(one) for one in log.FORMATS if any(map(one.fullmatch, _IN_BROWSERS))],
+        "benign": _pattern(log.BENIGN),
+        "frame": _pattern(log.FRAME),
+        "summary": _pattern(log.SUMMARY),
+        "unbroken": _pattern(log.UNBROKEN),
+        "hints": [[*_pattern(pattern), sentence] for pattern, sentence in log.HINTS],
+        "misfit": _pattern(log.MISFIT),
+        "call": _pattern(log.CALL),
+        "type": _pattern(log.TYPE),
+        "bases": log.BASES,
+        "misfits": log.MISFITS,
+        "unknown": _pattern(names.UNKNOWN),
+        "unread": _pattern(names.UNREAD),
+        "function": _pattern(names.FUNCTION),
+        "variable": _pattern(names.VARIABLE),
+        "define": _pattern(names.DEFINE),
+        "definition": _pattern(names.DEFINITION),
+        "runs": _pattern(names.RUNS),
+        "defined": _pattern(program.DEFINED),
+        "chain": _pattern(program.CHAIN),
+        "cast": _pattern(names.CAST),
+        "types": list(names.TYPES),
+        "near": names.NEAR,
+        "elsewhere": names.ELSEWHERE,
+        "guesses": names.GUESSES,
+        "instead": GIVEN_INSTEAD,
+        "given": list(GIVEN),
+        "known": " ".join(sorted(GLSL_WORDS)),
+        "fetches": FETCHES,
+        "foreign": program.FOREIGN,
+        "nameless": program.NAMELESS,
+        "characters": {c: unicodedata.name(c, program.NAMELESS) for c in _COPIED},
+        "pastEnd": program.PAST_END,
+    }
+
+
+def module() -> str:
+    """Return the text of the module."""
+    rows = [row for name, value in words().items() for row in _rows(f"  {name}: ", value)]
+    return (
+        "// complaint_words.js -- what Python knows of drivers' logs: written by"
+        " playground/web/complaint_words.py.\n\n"
+        "export const WORDS = {\n" + "\n".join(rows) + "\n};\n"
+    )
+
+
+def _pattern(pattern: re.Pattern[str]) -> list[str]:
+    """Return a pattern as JavaScript writes it: names of groups, and case, which Python may set inside."""
+    source = pattern.pattern.replace("(?P<", "(?<")
+    flags = ("i" if pattern.flags & re.IGNORECASE else "") + ("m" if pattern.flags & re.MULTILINE else "")
+    if source.startswith("(?-i:") and source.endswith(")"):
+        source, flags = source[5:-1], flags.replace("i", "")
+    if "(?-" in source or "\\Z" in source or "\\A" in source:
+        raise ValueError(f"JavaScript has no such pattern: {source}")
+    return [source, flags]
+
+
+def _rows(head: str, value: object) -> list[str]:
+    """Return a value behind its name as rows of JavaScript: parts of it, or of a long text, on each."""
+    if len(row := f"{head}{json.dumps(value)},") <= _WIDTH:
+        return [row]
+    inside = " " * (len(head) - len(head.lstrip()) + 2)
+    if isinstance(value, str):
+        size = _WIDTH - len(inside) - 20  # what escapes add
+        parts = [json.dumps(value[at : at + size]) for at in range(0, len(value), size)]
+        return [head.rstrip(), *_texts(parts, inside)] if head.strip() else _texts(parts, inside[2:])
+    if isinstance(value, dict):
+        pairs = [row for key, one in value.items() for row in _rows(f"{inside}{json.dumps(key)}: ", one)]
+        return [f"{head}{{", *_together(pairs, inside), f"{inside[2:]}}},"]
+    assert isinstance(value, list)
+    items = [row for one in value for row in _rows(inside, one)]
+    return [f"{head}[", *_together(items, inside), f"{inside[2:]}],"]
+
+
+def _texts(parts: list[str], inside: str) -> list[str]:
+    return [f"{inside}{part}{' +' if part is not parts[-1] else ','}" for part in parts]
+
+
+def _together(rows: list[str], inside: str) -> list[str]:
+    """Put short rows of the same depth on one line."""
+    found: list[str] = []
+    for row in rows:
+        short = row.startswith(inside) and row[len(inside)] not in " ]}" and row[-2:-1] not in "[{"
+        last = found[-1] if found else ""
+        if short and last.endswith(",") and last.startswith(inside) and last[len(inside)] not in " ]}":
+            if len(last) + len(row.strip()) + 1 <= _WIDTH:
+                found[-1] = f"{last} {row.strip()}"
+                continue
+        found.append(row)
+    return found
+
+
+if __name__ == "__main__":
+    FILE.write_text(module(), encoding="utf-8", newline="\n")

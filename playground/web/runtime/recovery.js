@@ -1,0 +1,146 @@
+// recovery.js -- what a page does where a picture fails: a sentence, the poster, and the way on.
+
+import { button, make } from "./dom.js";
+import { EDITOR_WORDS, worded } from "./editor_words.js";
+import { estimate, finished, smallerFrame } from "./pace.js";
+
+/** @typedef {import("./last_good.js").Guard} Guard */
+
+/** What is asked of a player.
+ *  @typedef {object} Recoverable
+ *  @property {{frame: [number, number], terrain: {size: [number, number]}}} state
+ *  @property {() => unknown} render
+ *  @property {Object<string, string>} texts
+ *  @property {(file: string, text: string) => Promise<{errors: unknown[], programs: number}>} edit */
+
+/** @typedef {object} RecoveryOptions
+ *  @property {Object<string, string>} [words]     over EDITOR_WORDS
+ *  @property {(still: boolean) => void} poster    shows the poster in place of the picture, or no more
+ *  @property {Guard} [guard]
+ *  @property {(text: string, file: string) => void} [reopen]  puts a text into the editor
+ *  @property {number} [limit]                     [s] what a picture may take without a question */
+
+/** @typedef {ReturnType<typeof createRecovery>} Recovery */
+
+const MOST_LOSSES = 3;
+const SOON = 60_000; // [ms] losses that follow so closely are counted together
+
+/** Make what speaks for a picture that fails; sentences appear in the host.
+ *  @param {HTMLElement} host @param {RecoveryOptions} options */
+export function createRecovery(host, { words: given, poster, guard, reopen, limit }) {
+  const words = { ...EDITOR_WORDS, ...given };
+  let losses = 0, lastLoss = -Infinity;
+  /** @type {HTMLElement | null} */
+  let box = null;
+
+  function clear() {
+    box?.remove();
+    box = null;
+  }
+
+  /** @param {string} sentence @param {HTMLButtonElement[]} [choices] */
+  function say(sentence, choices = []) {
+    clear();
+    box = make("div", { className: "recovery", role: "alert" }, make("p", {}, sentence), ...choices);
+    host.append(box);
+  }
+
+  /** Say why there is no picture, and show the poster.
+   *  @param {unknown} error  one of the engine's, with its code, or any other */
+  function lacks(error) {
+    const { code = "", sentence = "", message = "" } = /** @type {Object<string, string>} */ (error ?? {});
+    const known = { "no-webgl2": words.noWebGL, "no-float-targets": words.noFloat }[code];
+    say(known ?? worded(words.lacks, { reason: sentence || message || String(error) }));
+    poster(true);
+  }
+
+  /** Watch a canvas's context: when it is back, the picture is made again from its plan and values.
+   *  @param {HTMLCanvasElement | OffscreenCanvas} canvas
+   *  @param {{restore: () => Promise<void> | void, player: () => Recoverable | null}} how
+   *  @returns {() => void} ends it */
+  function watch(canvas, { restore, player }) {
+    /** @type {import("./last_good.js").Tried | null} */
+    let blamed = null;
+    const lost = (/** @type {Event} */ event) => {
+      const now = performance.now();
+      losses = now - lastLoss < SOON ? losses + 1 : 1;
+      lastLoss = now;
+      blamed = guard?.left ?? blamed;
+      poster(true);
+      if (losses > MOST_LOSSES) return say(worded(words.gone, { count: losses }));
+      event.preventDefault(); // or it never comes back
+      say(words.lost);
+    };
+    const restored = async () => {
+      const now = player();
+      try {
+        if (blamed && now) takeBack(now, blamed.file, guard?.good ?? {});
+        await restore();
+        poster(false);
+        if (blamed) say(worded(words.lostByEdit, { name: plain(blamed.file) }));
+        else clear();
+        blamed = null;
+        guard?.forget();
+      } catch (error) {
+        lacks(error);
+      }
+    };
+    canvas.addEventListener("webglcontextlost", lost);
+    canvas.addEventListener("webglcontextrestored", restored);
+    return () => {
+      canvas.removeEventListener("webglcontextlost", lost);
+      canvas.removeEventListener("webglcontextrestored", restored);
+    };
+  }
+
+  /** Ask, where a picture of this size would take too long, whether a smaller one will do.
+   *  @param {Recoverable} player @param {() => Promise<void>} done  waits for what was drawn
+   *  @returns {Promise<[number, number] | null>} the size to draw at; null: as it is */
+  async function pace(player, done) {
+    const { frame } = player.state;
+    const seconds = await estimate(player, done, { limit });
+    const smaller = smallerFrame(seconds, frame, limit);
+    if (!smaller) return null;
+    const size = frame.join(" \u00d7 "), time = seconds < 10 ? seconds.toFixed(1) : String(Math.round(seconds));
+    return new Promise((resolve) => {
+      const choose = (/** @type {[number, number] | null} */ wanted) => { clear(); resolve(wanted); };
+      const less = worded(words.smaller, { size: smaller.join(" \u00d7 ") });
+      say(worded(words.slow, { size, time }), [
+        button(less, () => choose(smaller)), button(words.anyway, () => choose(null)),
+      ]);
+    });
+  }
+
+  /** Go on with the texts that worked before a reload; of one that was being tried say so.
+   *  @param {Recoverable} player before its first picture */
+  async function resume(player) {
+    const { left, good } = guard ?? { left: null, good: {} };
+    for (const [file, text] of Object.entries(good)) await player.edit(file, text);
+    if (!left || !guard) return;
+    const { file, text } = left;
+    guard.forget();
+    say(worded(words.hung, { name: plain(file) }), [
+      ...(reopen ? [button(words.tryAgain, () => { clear(); reopen(text, file); })] : []),
+      button(words.forget, clear),
+    ]);
+  }
+
+  /** Say so where the browser keeps nothing; edits are gone after a reload then. */
+  function storageNote() {
+    return guard && !guard.place ? words.notKept : "";
+  }
+
+  return { lacks, watch, pace, resume, storageNote, say, clear };
+}
+
+/** Put the text back that worked, without a context to compile it in.
+ *  @param {Recoverable} player @param {string} file @param {Object<string, string>} good */
+function takeBack(player, file, good) {
+  if (file in good) player.texts[file] = good[file];
+  else delete player.texts[file];
+}
+
+/** @param {string} file */
+const plain = (file) => file.replace(/^\.\//, "");
+
+export { finished };

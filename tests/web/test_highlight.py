@@ -1,0 +1,104 @@
+"""The page colours a GLSL text as Pygments does, character for character."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+import pytest
+from pygments.lexers.graphics import GLShaderLexer
+from pygments.token import Comment, Keyword, Number
+
+from playground.paths import GLSL
+
+from .node import Node
+
+FILES = sorted([*GLSL.rglob("*.glsl"), *GLSL.rglob("*.frag"), *GLSL.rglob("*.comp")])
+OF_PYGMENTS = (
+    (Comment.Preproc, "directive"),
+    (Comment, "comment"),
+    (Keyword, "keyword"),
+    (Number, "number"),
+)
+OURS = {"annotation": "comment", "pragma": "directive", "type": "keyword", "builtin": ""}
+# In a line of text: a directive that Pygments takes to its end, with the comment behind it.
+_DIRECTIVE = re.compile(r"^[ \t]*#(?:.*\\\n)*.*$", re.MULTILINE)
+# Suffixes of numbers, exponents without a point, hexadecimals that end in u: Pygments takes these for names.
+_NUMBER = re.compile(r"(?<![\w.])(?:0[xX][0-9a-fA-F]+u?|(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?[uf]?)")
+
+
+def by_pygments(text: str) -> list[str]:
+    """Return what each character is."""
+    found: list[str] = []
+    for token, part in GLShaderLexer(stripnl=False, stripall=False, ensurenl=False).get_tokens(text):
+        kind = next((name for known, name in OF_PYGMENTS if token in known), "")
+        found += [kind] * len(part)
+    assert len(found) == len(text)
+    for match in _NUMBER.finditer(text):
+        if found[match.start()] == "number":
+            found[match.start() : match.end()] = ["number"] * len(match.group())
+    return found
+
+
+def by_page(node: Node, text: str) -> list[str]:
+    lines = node.call("highlight.js", "highlight", text.split("\n"))
+    found: list[str] = []
+    for line in lines:
+        for kind, part in line["parts"]:
+            found += [OURS.get(kind, kind)] * len(part)
+        found.append("\n")
+    return found[:-1]
+
+
+def judged(text: str) -> Iterator[int]:
+    """Yield the places that both judge alike: no blanks, and of directives the first word."""
+    apart: set[int] = set()
+    for match in _DIRECTIVE.finditer(text):
+        head = re.match(r"\s*#\s*\w*", match.group())
+        assert head
+        apart |= set(range(match.start() + head.end(), match.end()))
+    yield from (at for at, character in enumerate(text) if not character.isspace() and at not in apart)
+
+
+def test_every_shipped_text_is_coloured_as_by_pygments(node: Node):
+    assert len(FILES) > 200
+    seen: dict[str, int] = {}
+    for path in FILES:
+        text = path.read_text(encoding="utf-8").rstrip("\n")
+        theirs, ours = by_pygments(text), by_page(node, text)
+        assert len(theirs) == len(ours)
+        for at in judged(text):
+            line = text.count("\n", 0, at) + 1
+            assert ours[at] == theirs[at], f"{path}:{line}: {text[max(at - 20, 0) : at + 20]!r}"
+            seen[ours[at]] = seen.get(ours[at], 0) + 1
+    assert all(seen.get(kind, 0) > 1000 for kind in ("", "comment", "keyword", "number", "directive"))
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["", "\n\n", "/* a\nb */ float x;", "a /* b", "#define F(x) \\\n  (x) // y", "é ½ \t;", "//! slider"],
+)
+def test_no_character_is_lost(node: Node, text: str):
+    lines = node.call("highlight.js", "highlight", text.split("\n"))
+    assert "\n".join("".join(part for _, part in line["parts"]) for line in lines) == text
+
+
+def test_a_pragma_of_the_playground_and_an_annotation_stand_out(node: Node):
+    text = (
+        '#pragma kernel(output = "h:r32f", \\\n  where = "n // 2; \\\n  m") // no\nuniform int a; //! slider'
+    )
+    kinds = [
+        [kind for kind, _ in line["parts"]]
+        for line in node.call("highlight.js", "highlight", text.split("\n"))
+    ]
+    assert kinds[:3] == [["pragma"], ["pragma"], ["pragma", "comment"]]
+    assert kinds[3][-1] == "annotation" and kinds[3][0] == "keyword"
+
+
+def test_a_line_begins_in_what_the_line_before_left_open(node: Node):
+    assert node.call("highlight.js", "highlightLine", "a */ b", "comment")["next"] == ""
+    assert node.call("highlight.js", "highlightLine", "a", "comment") == {
+        "parts": [["comment", "a"]],
+        "next": "comment",
+    }
+    assert node.call("highlight.js", "highlightLine", "#define A \\", "")["next"] == "directive"
