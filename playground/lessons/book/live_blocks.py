@@ -92,16 +92,16 @@ def _break(block: model.Break, scene: model.Scene, scenes: Scenes) -> LiveData:
     }
 
 
-def _exercise(scene: model.Scene, scenes: Scenes) -> LiveData:
-    """Give the solution's scene, and the one to begin from where that is another."""
+def _exercise(scene: model.Scene, scenes: Scenes) -> LiveData | None:
+    """Give the solution's scene, and the one to begin from; nothing where that is the same."""
     solution = scenes.setting(scene)
     begin = scenes.setting(replace(scene, sketch=beginning(scene)))
     paths = [path for path, _ in scene.values if "." in path]
-    found: LiveData = {"kind": "exercise", "scenes": [solution], "rows": []}
     if begin == solution or begin["sketch"] != solution["sketch"] or "data" in {**begin, **solution}:
-        return found
+        return None
     rows = [row["path"] for row in scenes.sketches[solution["sketch"]]["shown"] if row["main"]]
-    return found | {"begin": begin, "rows": list(dict.fromkeys([*paths, *rows]))}
+    rows = list(dict.fromkeys([*paths, *rows]))
+    return {"kind": "exercise", "scenes": [solution], "begin": begin, "rows": rows}
 
 
 def beginning(scene: model.Scene) -> Sketch:
