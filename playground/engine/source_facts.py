@@ -16,9 +16,8 @@ Values = Mapping[str, Mapping[str, Value]]
 """The values of each leaf, by its path."""
 
 
-def described(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
-    """Return the terrain with every field known: by the sketch, else by its first source that knows."""
-    known = Terrain()
+def known_by_sources(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
+    """Return what the first source that knows anything of the terrain says of it."""
     for leaf in flat.leaves:
         if leaf.kernel.kind == "source":
             _check_source(leaf)
@@ -27,7 +26,19 @@ def described(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
             except DataError as error:
                 raise placed(error, sketch, flat.user(leaf.path)) from error
             if known != Terrain():
-                break
+                return known
+    return Terrain()
+
+
+def extent_follows_size(sketch: Sketch, flat: Flat, values: Values) -> bool:
+    """Return whether nothing says the terrain's metres: its sides are to each other as its texels are."""
+    known = known_by_sources(sketch, flat, values)
+    return sketch.extent is None and known.extent is None and known.size is None
+
+
+def described(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
+    """Return the terrain with every field known: by the sketch, else by its first source that knows."""
+    known = known_by_sources(sketch, flat, values)
     size = sketch.size or flat.accepted(known.size or DEFAULT_SIZE)
     extent = sketch.extent or known.extent
     if extent is None:

@@ -15,6 +15,7 @@ from typing import Any
 from playground.engine.files import find_file
 from playground.engine.plan import Plan
 from playground.engine.planner import Planner
+from playground.engine.source_facts import extent_follows_size
 from playground.engine.view_inputs import view_height
 from playground.paths import GLSL, shown
 from playground.sketch.assign import Shown, values_of
@@ -65,6 +66,7 @@ class _Writing:
         self.kernels = Kernels(shared.texts, sketch.folder)
         self.leaves = {leaf.path: leaf for leaf in self.flat.leaves}
         self.steps = {step.path: step for step in plan.walk()}
+        self.given = {path: step.values for path, step in self.steps.items()}
         self.locks = Locks(plan)
 
     def data(self) -> dict[str, Any]:
@@ -91,7 +93,7 @@ class _Writing:
                 "relief": terrain.relief,
                 "base_elevation": terrain.base_elevation,
                 "locked": self.locks.of_terrain(),
-                "extentFollows": sketch.extent is None,
+                "extentFollows": extent_follows_size(sketch, self.flat, self.given),
             },
             "camera": asdict(sketch.camera),
             "picture": _ref(plan.picture),

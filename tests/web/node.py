@@ -7,7 +7,7 @@ import json
 import math
 import shutil
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -61,6 +61,14 @@ class Node:
         Raises ``NodeError`` with what the function threw.
         """
         return self._ask({"module": module, "name": name, "values": values})
+
+    def each(self, module: str, name: str, cases: Iterable[Sequence[object]]) -> list[Any]:
+        """Return what a function of a module returns for each case, a list of its values."""
+        script = "async (cases, [module, name], load) => {"
+        script += " const found = (await load(module))[name]; return cases.map((case_) => found(...case_)); }"
+        found = self.run(script, list(cases), [module, name])
+        assert isinstance(found, list)
+        return found
 
     def run(self, script: str, *values: object) -> Any:
         """Return what a function returns, written as text: of the values, and of what imports a module.

@@ -13,7 +13,7 @@ from .node import Node, NodeError
 from .texts import kernels
 
 PRECISION = "precision highp float; precision highp int;"
-MANY = "async (texts, load) => texts.map(((m) => (text) => m.toES(text))(await load('es.js')))"
+
 VERTEX = "#version 300 es\nvoid main() { gl_Position = vec4(0.0); }\n"
 
 
@@ -32,7 +32,7 @@ def test_every_program_of_the_library_compiles_as_es(node: Node, ctx: moderngl.C
     if "GL_ARB_ES3_compatibility" not in ctx.extensions:
         pytest.skip("this driver compiles no GLSL ES")
     texts = [text for kernel in kernels().values() for text in stages_of(kernel)]
-    found = node.run(MANY, texts)
+    found = node.each("es.js", "toES", [[text] for text in texts])
     for name, vertex, fragment in zip(kernels(), found[::2], found[1::2], strict=True):
         try:
             ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
@@ -43,7 +43,7 @@ def test_every_program_of_the_library_compiles_as_es(node: Node, ctx: moderngl.C
 def test_a_line_is_as_it_was_but_for_the_version_the_precisions_and_initial_values(node: Node):
     texts = [text for kernel in kernels().values() for text in stages_of(kernel)]
     initialised = 0
-    for text, found in zip(texts, node.run(MANY, texts), strict=True):
+    for text, found in zip(texts, node.each("es.js", "toES", [[text] for text in texts]), strict=True):
         before, after = text.split("\n"), found.split("\n")
         assert len(before) == len(after)
         assert (before[0], after[0]) == ("#version 330", "#version 300 es")

@@ -13,13 +13,14 @@ import { arithmetic, bitLength, compared, float, floor, general, power } from ".
  *  @property {(path: string, axis: number) => number | bigint} [picture]  texels of an image file
  *  @property {(name: string) => number | bigint | undefined} [name]       "iteration", "time", …  */
 
-/** A mistake that a sentence can explain; `where`: "file:line" where that is known.
- *  @typedef {Error & {where: string}} PlanError */
+/** A mistake that a sentence can explain. `where`: its place, as "file:line", "" where it has none; undefined
+ *  of a mistake in an expression that nothing has placed yet.
+ *  @typedef {Error & {where: string | undefined}} PlanError */
 
 const LIMIT = 2n ** 62n, LARGEST_BASE = 2n ** 31n;
 
 /** @param {string} message @param {string} [where] @returns {PlanError} */
-export const planError = (message, where = "") => Object.assign(new Error(message), { name: "PlanError", where });
+export const planError = (message, where) => Object.assign(new Error(message), { name: "PlanError", where });
 
 /** Whether something thrown is a mistake of a sketch and not of this program.
  *  @param {unknown} error @returns {error is PlanError} */
@@ -103,7 +104,7 @@ function valueOf(expression, names, text) {
 /** An expression as its author wrote it, where that is known.
  *  @param {Expression} expression */
 export const textOf = (expression) =>
-  Array.isArray(expression) && expression[0] === "text" ? expression[1] : JSON.stringify(expression);
+  Array.isArray(expression) ? (expression[0] === "text" ? expression[1] : JSON.stringify(expression)) : String(expression);
 
 /** Evaluate an expression to a whole number. Throws a `PlanError` in a sentence.
  *  @param {Expression} expression @param {Names} names @returns {bigint} */

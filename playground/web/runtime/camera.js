@@ -1,0 +1,141 @@
+// camera.js -- turns a camera that orbits the terrain into matrices: terrain/camera.py.
+//
+// World space: metres of the terrain, x east, y north, z up from height 0; the south-west corner is the
+// origin. Matrices here have 16 numbers, row after row, and act on columns; those of an eye are as WebGL
+// takes them, column after column. The same operations in the same order as Python's, so that both have the
+// same matrices to the last bit.
+
+import { cosSin } from "./directions.js";
+
+/** @typedef {import("./schema.js").Camera} Camera */
+/** @typedef {[number, number, number]} Vector */
+
+/** A camera over one terrain, seen in one picture. Positions in metres.
+ *  @typedef {{clipFromWorld: Float32Array, worldFromClip: Float32Array, eye: Vector, target: Vector,
+ *             distance: number}} Eye */
+
+const MARGIN = 1.06; // air around a terrain that just fills the picture
+
+/** The eye of a camera over a terrain of an extent and a relief [m], in a picture of a size [pixels].
+ *  @param {Camera} camera @param {number[]} extent @param {number} relief @param {number[]} size
+ *  @returns {Eye} */
+export function look(camera, extent, relief, size) {
+  const aspect = size[0] / size[1];
+  const radius = 0.5 * length(...extent, relief);
+  /** @type {Vector} */
+  const target = camera.target ?? [extent[0] / 2, extent[1] / 2, relief / 2];
+  const distance = camera.distance || fit(camera, extent, relief, aspect);
+  const [north, east] = cosSin(camera.azimuth), [level, rise] = cosSin(camera.elevation);
+  const towards = [east * level, north * level, rise]; // the eye, from the target
+  /** @type {Vector} */
+  const eye = [
+    target[0] + distance * towards[0], target[1] + distance * towards[1], target[2] + distance * towards[2],
+  ];
+  const away = length(eye[0] - extent[0] / 2, eye[1] - extent[1] / 2, eye[2] - relief / 2);
+  const near = Math.max(away - 1.2 * radius, 0.002 * distance, 1e-3);
+  const far = away + 2 * radius;
+  // At right angles to the eye's direction already, so that looking straight down is nothing special.
+  const right = [-north, east, 0], up = [-east * rise, -north * rise, level];
+  const tall = halfHeight(camera);
+  // The rows of world to view, each scaled as the lens does.
+  const across = rowOf(right, 0, target, 1 / (tall * aspect));
+  const upright = rowOf(up, 0, target, 1 / tall);
+  const behind = rowOf(towards, distance, target, 1);
+  const depth = behind.map((each) => each * (-(far + near) / (far - near)));
+  depth[3] += -2 * far * near / (far - near);
+  const matrix = [...across, ...upright, ...depth, ...behind.map((each) => -each)].map(Math.fround);
+  return {
+    clipFromWorld: columnsOf(matrix), worldFromClip: columnsOf(inverse(matrix)), eye, target, distance,
+  };
+}
+
+/** A row that gives how far places are along an axis from the eye, which is `distance` from the target
+ *  along it.
+ *  @param {number[]} axis @param {number} distance @param {Vector} target @param {number} scale */
+function rowOf([x, y, z], distance, target, scale) {
+  const offset = -(x * target[0] + y * target[1] + z * target[2]) - distance;
+  return [x * scale, y * scale, z * scale, offset * scale];
+}
+
+/** Half the height of what is in the picture, over its depth.
+ *  @param {Camera} camera */
+function halfHeight(camera) {
+  const [cosine, sine] = cosSin(camera.field_of_view / 2);
+  return sine / cosine;
+}
+
+/** The distance [m] from the terrain's middle at which all of it is in the picture, whatever the azimuth:
+ *  Python's docstring derives it.
+ *  @param {Camera} camera @param {number[]} extent @param {number} relief @param {number} aspect */
+export function fit(camera, extent, relief, aspect) {
+  const radius = length(...extent) / 2, up = relief / 2;
+  const tall = halfHeight(camera);
+  const [cosine, sine] = cosSin(camera.elevation);
+  const sideways = radius * length(cosine, 1 / (tall * aspect)) + up * Math.abs(sine);
+  const upwards = Math.max(...[-1, 1].map((sign) =>
+    radius * Math.abs(cosine + sign * sine / tall) + up * Math.abs(sine - sign * cosine / tall)));
+  return Math.max(MARGIN * Math.max(sideways, upwards), 1e-2);
+}
+
+/** The camera turned by so many degrees; the eye stays 89 degrees or less from the horizon.
+ *  @param {Camera} camera @param {number} azimuth @param {number} elevation @returns {Camera} */
+export function orbit(camera, azimuth, elevation) {
+  const turned = (camera.azimuth + azimuth) % 360;
+  return {
+    ...camera,
+    azimuth: (turned < 0 ? 360 : 0) + turned,
+    elevation: Math.min(Math.max(camera.elevation + elevation, -89), 89),
+  };
+}
+
+/** The camera `factor` times as far from its target as `distance` metres.
+ *  @param {Camera} camera @param {number} factor @param {number} distance @returns {Camera} */
+export function zoom(camera, factor, distance) {
+  return { ...camera, distance: Math.min(Math.max(distance * factor, 1e-2), 1e8) };
+}
+
+/** The camera moved over the terrain: `right`, and `up` along the ground, in shares of the picture's height.
+ *  @param {Camera} camera @param {Eye} eye @param {number} right @param {number} up @returns {Camera} */
+export function pan(camera, eye, right, up) {
+  const [cosine, sine] = cosSin(camera.azimuth);
+  const scale = 2 * eye.distance * halfHeight(camera);
+  // The picture's right is a quarter turn counter-clockwise from the eye's place, seen from above.
+  const east = -cosine * right - sine * up;
+  const north = sine * right - cosine * up;
+  const [x, y, z] = eye.target;
+  return { ...camera, target: [x + scale * east, y + scale * north, z] };
+}
+
+/** By elimination, each column's pivot its largest number.
+ *  @param {number[]} matrix @returns {number[]} */
+function inverse(matrix) {
+  const rows = [0, 1, 2, 3].map((i) => [...matrix.slice(4 * i, 4 * i + 4), ...[0, 1, 2, 3].map((j) => +(i === j))]);
+  for (let column = 0; column < 4; column++) {
+    let pivot = column;
+    for (let row = column + 1; row < 4; row++) {
+      if (Math.abs(rows[row][column]) > Math.abs(rows[pivot][column])) pivot = row;
+    }
+    [rows[column], rows[pivot]] = [rows[pivot], rows[column]];
+    for (let row = column + 1; row < 4; row++) {
+      const factor = rows[row][column] / rows[column][column];
+      for (let k = column; k < 8; k++) rows[row][k] -= factor * rows[column][k];
+    }
+  }
+  for (let row = 3; row >= 0; row--) {
+    for (let k = 4; k < 8; k++) {
+      for (let later = row + 1; later < 4; later++) rows[row][k] -= rows[row][later] * rows[later][k];
+      rows[row][k] /= rows[row][row];
+    }
+  }
+  return rows.flatMap((row) => row.slice(4));
+}
+
+/** @param {number[]} matrix */
+function columnsOf(matrix) {
+  return Float32Array.from(matrix, (_, at) => matrix[4 * (at % 4) + Math.floor(at / 4)]);
+}
+
+/** @param {number[]} parts */
+function length(...parts) {
+  return Math.sqrt(parts.reduce((sum, part) => sum + part * part, 0));
+}

@@ -1,0 +1,56 @@
+// plan_nodes.js -- the steps and loops of a plan: what they are, and how to go through them.
+
+/** @typedef {import("./schema.js").Source} Source */
+/** @typedef {import("./schema.js").Value} Value */
+/** @typedef {{path: string, output: string}} Ref */
+
+/** How the texels that a stopped run knows are joined: texels from one node of the lattice to the next;
+ *  form 0: squares, 1: triangles, 2: squares of which only corners and centres are known.
+ *  @typedef {{stride: number, form: 0 | 1 | 2}} Between */
+
+/** A leaf pass made concrete.
+ *  @typedef {object} Step
+ *  @property {string} path
+ *  @property {import("./schema.js").Kernel} kernel
+ *  @property {import("./schema.js").Leaf | null} leaf   null: of a map
+ *  @property {Object<string, Value>} values             what uniforms get, by parameter; of a file its key
+ *  @property {[string, Source | null][]} inputs
+ *  @property {[number, number]} size                    texels
+ *  @property {number} repeat                            iterations to run
+ *  @property {number} whole                             iterations in all
+ *  @property {Between | null} between */
+
+/** A loop made concrete.
+ *  @typedef {{path: string, loop: true, repeat: number, whole: number, countsFrames: boolean, followsTime: boolean,
+ *             body: PlanNode[], feedback: [string, Source | null, Ref][]}} LoopStep */
+
+/** @typedef {Step | LoopStep} PlanNode */
+
+/** @param {PlanNode} node @returns {node is LoopStep} */
+export const isLoop = (node) => "loop" in node;
+
+/** @param {Source | null} source @returns {source is Ref} */
+export const isRef = (source) => source !== null && "path" in source;
+
+/** Every step, those inside loops included.
+ *  @param {PlanNode[]} nodes @returns {Step[]} */
+export const stepsOf = (nodes) => nodes.flatMap((node) => (isLoop(node) ? stepsOf(node.body) : [node]));
+
+/** What a node reads, what the passes of a loop read from each other included.
+ *  @param {PlanNode} node @returns {Source[]} */
+export function sourcesOf(node) {
+  const own = isLoop(node) ? node.feedback.map(([, first]) => first) : node.inputs.map(([, source]) => source);
+  const found = own.filter((source) => source !== null);
+  return isLoop(node) ? [...found, ...node.body.flatMap(sourcesOf)] : found;
+}
+
+/** The nodes that a texture depends on, in order.
+ *  @param {PlanNode[]} nodes @param {Ref} ref @returns {PlanNode[]} */
+export function needed(nodes, ref) {
+  const wanted = new Set([ref.path]);
+  return [...nodes].reverse().filter((node) => {
+    if (!stepsOf([node]).some((step) => wanted.has(step.path))) return false;
+    for (const source of sourcesOf(node)) if (isRef(source)) wanted.add(source.path);
+    return true;
+  }).reverse();
+}

@@ -1,0 +1,180 @@
+// staleness.js -- works out what each step's textures depend on: playground/engine/cache_keys.py.
+//
+// A step is stale where its key changes. The key holds its text, the values and given names that the text
+// uses, its size and count of iterations, and the keys of what it reads. Inside a loop, what is fed back has
+// a name in place of a key, so that a loop can go on from the iteration that is cached. The time, the mouse
+// and all else that belongs to a frame are in no key where a loop counts frames: they are its iterations'.
+
+import { hash } from "./hash.js";
+import { isLoop, isRef, sourcesOf, stepsOf } from "./plan_nodes.js";
+
+/** @typedef {import("./schema.js").Kernel} Kernel */
+/** @typedef {import("./schema.js").Source} Source */
+/** @typedef {import("./plan_nodes.js").Step} Step */
+/** @typedef {import("./plan_nodes.js").LoopStep} LoopStep */
+/** @typedef {import("./plan_nodes.js").PlanNode} PlanNode */
+
+/** What an engine knows of steps and kernels.
+ *  @typedef {object} Known
+ *  @property {(step: Step) => Object<string, any>} given  what the engine gives a step besides its parameters,
+ *      of a draw with its samples: by name; a pressed button as "pressed NAME"
+ *  @property {(kernel: Kernel) => Set<string>} used       see `usedBy`
+ *  @property {(kernel: Kernel) => string} text            what tells a kernel's text and header from others */
+
+/** Keys of one plan. `steps` and `loops` by path; `raw` the same of what a step has where more is shown;
+ *  `unfinished` after any number of iterations; `changes`: the paths of the loops around a node whose
+ *  iterations change it.
+ *  @typedef {{steps: Map<string, string>, raw: Map<string, string>, unfinished: Map<string, string>,
+ *             loops: Map<string, string>, changes: Map<PlanNode, Set<string>>}} Keys */
+
+/** The loops around a node, by their paths: the innermost, and the innermost that counts frames.
+ *  @typedef {{innermost: string, frames: string}} Around */
+
+/** What belongs to one frame: see CLOCKED in playground/sketch/reserved_names.py. */
+const CLOCKED = new Set([
+  "time", "frame", "frame_of_time", "delta", "date", "date_from_1", "mouse", "hover", "hover_share", "drag",
+  "buttons", "bands", "moment",
+]);
+const PRESSED = "pressed ";
+
+/** The names that a kernel's textures depend on: in its text besides their declaration, or in its header.
+ *  @param {Kernel} kernel @param {string} code its text without comments @param {string[]} given
+ *      names that the engine gives (schema.js `Shared.given`) @returns {Set<string>} */
+export function usedBy(kernel, code, given) {
+  /** @type {Map<string, number>} */
+  const times = new Map();
+  for (const name of code.match(/[A-Za-z_]\w*/g) ?? []) times.set(name, (times.get(name) ?? 0) + 1);
+  const used = new Set(kernel.used ?? []);
+  for (const [name, count] of times) if (count > 1) used.add(name);
+  for (const name of given) if (times.has(name)) used.add(name);
+  for (const { name } of kernel.parameters) {
+    // What another tool declares is not in its text; all that a source is given counts.
+    const counts = kernel.kind === "source" || times.has(`towards_${name}`) || (kernel.dialect && times.has(name));
+    if (counts) used.add(name);
+  }
+  return used;
+}
+
+/** The keys of a step for what it was last known to read: of the next plan they are the same if that is.
+ *  @type {WeakMap<Step, {reads: string, unfinished: string, raw: string, shown: string}>} */
+const lastKeys = new WeakMap();
+
+/** Work out the keys of a plan.
+ *  @param {{nodes: PlanNode[]}} plan @param {Known} known @returns {Keys} */
+export function keysOf(plan, known) {
+  /** @type {Keys} */
+  const keys = { steps: new Map(), raw: new Map(), unfinished: new Map(), loops: new Map(), changes: new Map() };
+  const continued = continuedOf(plan.nodes);
+  /** Loops that a step changes with, for its next reader.
+   *  @type {Map<string, Set<string>>} */
+  const varies = new Map();
+
+  /** @param {Source | null} source @param {Map<string, string>} fed @returns {string} */
+  const keyOf = (source, fed) => {
+    if (!source) return "";
+    if (isRef(source)) return `${keys.steps.get(source.path)}:${source.output}`;
+    return /** @type {string} */ (fed.get(`${source.loop} ${source.name}`));
+  };
+  /** @param {Source | null} source @param {Map<string, Set<string>>} varying @returns {Iterable<string>} */
+  const variesOf = (source, varying) => {
+    if (!source) return [];
+    return (isRef(source) ? varies.get(source.path) : varying.get(`${source.loop} ${source.name}`)) ?? [];
+  };
+
+  /** Add a node with the loops around it; `fed` names what they feed back, `varying` what that changes with.
+   *  @param {PlanNode} node @param {Around} around @param {Map<string, string>} fed
+   *  @param {Map<string, Set<string>>} varying */
+  function add(node, around, fed, varying) {
+    if (isLoop(node)) addLoop(node, around, fed, varying);
+    else addStep(node, around, fed, varying);
+  }
+
+  /** @param {Step} step @param {Around} around @param {Map<string, string>} fed
+   *  @param {Map<string, Set<string>>} varying */
+  function addStep(step, around, fed, varying) {
+    const { kernel, path } = step, used = known.used(kernel);
+    const sources = step.inputs.map(([name, source]) => [name, keyOf(source, fed)]);
+    const all = known.given(step), counts = kernel.countsFrames;
+    const clocked = around.frames || counts ? clockedOf(kernel, all) : new Set();
+    const given = Object.entries(all).filter(([name]) => !clocked.has(name));
+    const reads = JSON.stringify([known.text(kernel), sources, given, continued.has(path), [...clocked]]);
+    let found = lastKeys.get(step);
+    if (!found || found.reads !== reads) {
+      const values = kernel.parameters.filter((one) => {
+        return one.widget === "file" || (used.has(one.name) && !clocked.has(one.name));
+      });
+      /** @type {any[]} */
+      const parts = [reads, step.size, values.map((one) => [one.name, step.values[one.name]])];
+      if (used.has("iterations")) parts.push(step.whole);
+      const raw = hash(JSON.stringify([step.repeat, parts]));
+      const { between } = step;
+      const shown = between ? hash(JSON.stringify([raw, between.stride, between.form])) : raw;
+      found = { reads, unfinished: hash(JSON.stringify([path, parts])), raw, shown };
+      lastKeys.set(step, found);
+    }
+    keys.unfinished.set(path, found.unfinished);
+    keys.raw.set(path, found.raw);
+    keys.steps.set(path, found.shown);
+    const changes = new Set(step.inputs.flatMap(([, source]) => [...variesOf(source, varying)]));
+    if (around.innermost && kernel.repeat === 1 && used.has("iteration")) changes.add(around.innermost);
+    if (around.frames && clocked.size && !counts) changes.add(around.frames);
+    varies.set(path, changes);
+    keys.changes.set(step, changes);
+  }
+
+  /** @param {LoopStep} loop @param {Around} around @param {Map<string, string>} fed
+   *  @param {Map<string, Set<string>>} varying */
+  function addLoop(loop, around, fed, varying) {
+    const { path } = loop, steps = stepsOf(loop.body);
+    const inside = [...new Set(steps.map((step) => step.path))].sort(), own = loopsIn(loop);
+    const outer = new Set(sourcesOf(loop).flatMap((source) => {
+      const within = isRef(source) ? inside.includes(source.path) : own.has(source.loop);
+      return within ? [] : [...variesOf(source, varying)];
+    }));
+    const names = new Map(fed), changes = new Map(varying);
+    for (const [name] of loop.feedback) {
+      names.set(`${path} ${name}`, `fed back: ${path} ${name}`);
+      changes.set(`${path} ${name}`, new Set([...outer, path]));
+    }
+    const within = { innermost: path, frames: loop.countsFrames ? path : around.frames };
+    for (const node of loop.body) add(node, within, names, changes);
+    /** @type {any[]} */
+    const parts = [path, inside.map((each) => keys.steps.get(each))];
+    parts.push(loop.feedback.map(([name, first, ref]) => [name, keyOf(first, fed), ref.path, ref.output]));
+    if (steps.some((step) => known.used(step.kernel).has("iterations"))) parts.push(loop.whole);
+    const key = hash(JSON.stringify(parts));
+    keys.loops.set(path, key);
+    keys.changes.set(loop, outer);
+    for (const each of inside) {
+      const changing = /** @type {Set<string>} */ (varies.get(each));
+      if (!changing.has(path)) continue;
+      keys.steps.set(each, hash(JSON.stringify([key, each, loop.repeat]))); // what reads it sees the last iteration
+      varies.set(each, new Set([...changing].filter((one) => one !== path)));
+    }
+  }
+
+  for (const node of plan.nodes) add(node, { innermost: "", frames: "" }, new Map(), new Map());
+  return keys;
+}
+
+/** The paths of the draws that a later draw goes on from, with their samples and depth.
+ *  @param {PlanNode[]} nodes @returns {Set<string>} */
+export function continuedOf(nodes) {
+  const draws = stepsOf(nodes).filter((step) => step.kernel.kind === "draw");
+  const first = draws.flatMap((step) => step.inputs.filter(([name]) => name in step.kernel.initial));
+  return new Set(first.flatMap(([, source]) => (isRef(source) ? [source.path] : [])));
+}
+
+/** What a step reads that belongs to one frame: given names, and buttons among its parameters.
+ *  @param {Kernel} kernel @param {Object<string, any>} given */
+function clockedOf(kernel, given) {
+  const buttons = kernel.parameters.filter((one) => one.widget === "button").map((one) => one.name);
+  const named = Object.keys(given).filter((name) => CLOCKED.has(name));
+  return new Set([...named, ...buttons, ...buttons.map((name) => `${PRESSED}${name}`)]);
+}
+
+/** @param {LoopStep} loop @returns {Set<string>} */
+function loopsIn(loop) {
+  const inner = loop.body.filter(isLoop).flatMap((node) => [...loopsIn(node)]);
+  return new Set([loop.path, ...inner]);
+}

@@ -1,0 +1,229 @@
+"""A page plans a sketch as the engine does: sizes, counts, values, order, what is stale, mistakes."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+
+from playground.engine.cache_keys import KeyMaker
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node
+from playground.engine.planner import Planner
+from playground.errors import PlaygroundError
+from playground.sketch.catalogue import load, shipped_sketches
+from playground.sketch.model import Camera, Kernel, Sketch
+from playground.web import texts
+from playground.web.blobs import Blobs
+from playground.web.plan import KINDS, sketch_data
+from playground.web.shared import SharedData
+
+from .node import Node
+from .random_settings import Settings, random_settings
+
+SETTINGS = 3
+ASK = """async (sketch, shared, states, load) => {
+    const { makePlan } = await load("planner.js");
+    const flat = (node) => node.loop
+        ? [["loop", node.path, node.repeat, node.whole, node.countsFrames], ...node.body.flatMap(flat)]
+        : [[node.kernel.name, node.path, node.repeat, node.whole, node.size,
+            node.between && [node.between.stride, node.between.form], node.values]];
+    return states.map((state) => {
+        try {
+            const plan = makePlan(sketch, shared, state), { eye, target, distance } = plan.eye;
+            return { nodes: plan.nodes.flatMap(flat), eye: [...eye, ...target, distance],
+                     terrain: Object.values(plan.terrain).flat() };
+        } catch (error) {
+            return `${error.name}: ${error.message}`;
+        }
+    });
+}"""
+
+
+STALE = """async (sketch, shared, states, known, load) => {
+    const [{ makePlan }, { keysOf }] = [await load("planner.js"), await load("staleness.js")];
+    const { usedBy } = await load("staleness.js"), { stepsOf } = await load("plan_nodes.js");
+    const every = (nodes) => nodes.flatMap((node) => (node.loop ? [node, ...every(node.body)] : [node]));
+    const used = Object.fromEntries(Object.entries(known).map(([path, { code, names }]) => {
+        const kernel = sketch.kernels[stepsOf(sketch.nodes).find((leaf) => leaf.path === path).kernel];
+        return [path, usedBy(kernel, code, names)];
+    }));
+    const pathOf = new Map(stepsOf(sketch.nodes).map((leaf) => [sketch.kernels[leaf.kernel], leaf.path]));
+    const keys = states.map((state) => {
+        const plan = makePlan(sketch, shared, state), { eye, target, distance } = plan.eye;
+        const camera = [eye, target, distance, plan.frame];
+        const all = { ...plan.terrain, time: plan.time, eye };
+        all.clip_from_world = all.world_from_clip = camera;
+        const found = keysOf(plan, {
+            text: (kernel) => known[pathOf.get(kernel)].text,
+            used: (kernel) => used[pathOf.get(kernel)],
+            given: (step) => {
+                const given = Object.fromEntries(known[step.path].given.map((name) => [name, all[name]]));
+                if ("spacing" in given) given.spacing = [plan.terrain.extent, step.size];
+                return given;
+            },
+        });
+        const changes = every(plan.nodes).map((node) => [node.path, [...found.changes.get(node)].sort()]);
+        return { ...found, changes };
+    });
+    return { keys, used };
+}"""
+
+
+@pytest.fixture(scope="module")
+def shared() -> Iterator[SharedData]:
+    """Give what all sketches share, without texels: a plan needs the sizes of images only."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(texts, "_is_as_written", lambda *_: True)
+        patch.setattr(Blobs, "add", lambda *_: "texels")
+        patch.setattr("playground.web.images._lossless", lambda _: b"")
+        yield SharedData()
+
+
+_WRITTEN: dict[str, dict[str, Any]] = {}
+
+
+def exported(sketch: Sketch, shared: SharedData) -> tuple[dict[str, Any], dict[str, Any]]:
+    if sketch.name not in _WRITTEN:
+        _WRITTEN[sketch.name] = sketch_data(sketch, shared)
+    data = _WRITTEN[sketch.name]
+    return data, {"images": {key: {"size": one["size"]} for key, one in shared.images.data.items()}}
+
+
+def python(sketch: Sketch, settings: Settings) -> Plan | str:
+    try:
+        return Planner().plan(
+            settings.of(sketch),
+            frame_size=settings.frame,
+            time=settings.time,
+            steps=settings.steps,
+            variants=KINDS,
+            interpolated=True,
+        )
+    except PlaygroundError as error:
+        return f"PlanError: {error.diagnostics[0].message}"
+
+
+def flat(node: PlanNode) -> list[list[Any]]:
+    if isinstance(node, LoopStep):
+        inside = [one for each in node.body for one in flat(each)]
+        return [["loop", node.path, node.repeat, node.whole, node.counts_frames], *inside]
+    between = list(node.between) if node.between else None
+    files = {p.name for p in node.kernel.parameters if p.widget.kind == "file"}
+    values = {name: _as_json(value) for name, value in node.values.items() if name not in files}
+    return [[node.kernel.name, node.path, node.repeat, node.whole, list(node.size), between, values]]
+
+
+def _as_json(value: Any) -> Any:
+    return list(value) if isinstance(value, tuple) else value
+
+
+@pytest.mark.parametrize("name", shipped_sketches())
+def test_every_shipped_sketch_is_planned_as_the_engine_plans_it(node: Node, shared: SharedData, name: str):
+    sketch = load(name)
+    data, images = exported(sketch, shared)
+    chance = random.Random(name)
+    first = python(sketch, Settings())
+    assert isinstance(first, Plan)
+    several = [Settings(), *(random_settings(chance, data, first) for _ in range(SETTINGS))]
+    answers = node.run(ASK, data, images, [settings.state(data) for settings in several])
+    for settings, found in zip(several, answers, strict=True):
+        expected = python(sketch, settings)
+        if isinstance(expected, str):
+            assert found == expected, settings
+            continue
+        assert not isinstance(found, str), (found, settings)
+        nodes = [one for each in expected.nodes for one in flat(each)]
+        assert [one[:2] for one in found["nodes"]] == [one[:2] for one in nodes]
+        for one, other in zip(found["nodes"], nodes, strict=True):
+            values = {name: one[-1][name] for name in other[-1]} if len(one) > 5 else one[-1]
+            assert [*one[:-1], values] == other, settings
+        metres = [*expected.terrain.size, *expected.terrain.extent, expected.terrain.relief]
+        assert found["terrain"] == [*metres, expected.terrain.base_elevation]
+        eye = [*expected.eye.position, *expected.eye.target, expected.eye.distance]
+        np.testing.assert_allclose(found["eye"], eye, rtol=1e-12, atol=1e-8)
+
+
+def given(plan: Plan, step: Step) -> dict[str, Any]:
+    """Return what an engine gives a step, as far as that takes no window: see ``Runner.given_for``."""
+    eye, terrain = plan.eye, plan.terrain
+    all_of_it = {
+        "time": plan.time,
+        "extent": terrain.extent,
+        "relief": terrain.relief,
+        "base_elevation": terrain.base_elevation,
+        "clip_from_world": eye.clip_from_world.tolist(),
+        "world_from_clip": eye.world_from_clip.tolist(),
+        "eye": eye.position,
+        "spacing": (terrain.extent, step.size),
+    }
+    return {name: all_of_it[name] for name in names_given(step.kernel)}
+
+
+def names_given(kernel: Kernel) -> list[str]:
+    return [
+        name for name in kernel.given if name not in ("size", "iteration", "iterations", "stage", "until")
+    ]
+
+
+def classes(keys: list[dict[str, dict[str, str]]]) -> list[list[tuple[str, int]]]:
+    """Return which keys of several plans are equal: for each plan and path the number of its class."""
+    numbers: dict[str, int] = {}
+    return [
+        [
+            (f"{kind} {path}", numbers.setdefault(f"{kind} {key}", len(numbers)))
+            for kind in ("steps", "raw", "unfinished", "loops")
+            for path, key in sorted(found[kind].items())
+        ]
+        for found in keys
+    ]
+
+
+def neighbours(
+    chance: random.Random, settings: Settings, data: dict[str, Any], first: Plan
+) -> list[Settings]:
+    """Return settings that differ from some in one thing each, then the same again."""
+    found = [replace(settings, values={path: value}) for path, value in list(settings.values.items())[:3]]
+    found += [replace(settings, time=settings.time + 0.25), replace(settings, frame=(40, 30))]
+    found += [replace(settings, camera=Camera(10.0)), replace(settings, steps={}), replace(settings)]
+    other = random_settings(chance, data, first)
+    return [*found, replace(settings, steps=other.steps), replace(settings, values=other.values)]
+
+
+@pytest.mark.parametrize("name", shipped_sketches())
+def test_what_is_stale_in_a_page_is_what_is_stale_in_the_engine(node: Node, shared: SharedData, name: str):
+    sketch = load(name)
+    data, images = exported(sketch, shared)
+    chance = random.Random(f"{name} stale")
+    first = python(sketch, Settings())
+    assert isinstance(first, Plan)
+    settings = replace(random_settings(chance, data, first), terrain={})
+    several, plans = [], []
+    for each in [settings, *neighbours(chance, settings, data, first)]:
+        if isinstance(plan := python(sketch, each), Plan):
+            several.append(each)
+            plans.append(plan)
+    maker = KeyMaker()
+    expected = [maker.keys_of(plan, lambda _: "fragment", partial(given, plan)) for plan in plans]
+    known = {
+        step.path: {
+            "text": maker.text_of(step.kernel).digest,
+            "code": step.kernel.source.code,
+            "names": [*names_given(step.kernel), "iteration", "iterations"],
+            "given": names_given(step.kernel),
+        }
+        for step in first.walk()
+    }
+    found = node.run(STALE, data, images, [each.state(data) for each in several], known)
+    assert classes(found["keys"]) == classes([vars(keys) for keys in expected])
+    for keys, plan, answer in zip(expected, plans, found["keys"], strict=True):
+        changes = [[node.path, sorted(keys.changes[id(node)])] for node in every_node(plan.nodes)]
+        assert answer["changes"] == changes
+    for step in first.walk():
+        text = maker.text_of(step.kernel)
+        parameters = {p.name for p in step.kernel.parameters}
+        assert found["used"][step.path] & parameters == text.used & parameters, step.path
