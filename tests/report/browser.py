@@ -11,6 +11,7 @@ import subprocess
 import time
 import urllib.error
 import urllib.request
+from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -25,11 +26,19 @@ MISSING = "" if CHROMIUM and DRIVER and os.name == "posix" else "needs Chromium 
 _OPTIONS = "--headless --no-sandbox --no-first-run --disable-background-networking"
 _OPTIONS += " --disable-component-update --disable-sync --hide-scrollbars"
 
+NO_GPU = ("--disable-gpu",)
+MESA = ("--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist")
+"""WebGL2 on Mesa: the renderer of the engine's own tests."""
+SWIFTSHADER = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
+"""WebGL2 on the renderer that Chromium brings along."""
+
 
 class Browser:
     """One window, until the block ends."""
 
-    def __init__(self, folder: Path, width: int = 1280, height: int = 900, flags: str = "--disable-gpu") -> None:
+    def __init__(
+        self, folder: Path, width: int = 1280, height: int = 900, flags: Sequence[str] = NO_GPU
+    ) -> None:
         assert DRIVER and CHROMIUM
         self._driver = subprocess.Popen(
             [DRIVER, "--port=0"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
@@ -41,7 +50,7 @@ class Browser:
             assert line, "chromedriver ended"
             port = re.search(r"successfully on port (\d+)", line)
         self._base = f"http://127.0.0.1:{port[1]}/session"
-        arguments = [*_OPTIONS.split(), *flags.split(), f"--window-size={width},{height}", f"--user-data-dir={folder}"]
+        arguments = [*_OPTIONS.split(), f"--window-size={width},{height}", f"--user-data-dir={folder}", *flags]
         options = {"browserName": "chrome", "goog:chromeOptions": {"binary": CHROMIUM, "args": arguments}}
         options["goog:loggingPrefs"] = {"browser": "ALL"}
         try:

@@ -1,0 +1,99 @@
+// cache.js -- keeps the results of passes by key, under a budget; the least recently used goes first.
+
+import { createKeptStates } from "./kept_states.js";
+
+/** The results of one pass, or of all passes of a loop after some iteration, by the pass's path;
+ *  `cancel` ends the run that is at it.
+ *  @typedef {{results: Map<string, import("./textures.js").Result>, iterations: number,
+ *             cancel?: (() => void) | null}} Cached */
+/** @typedef {ReturnType<typeof createCache>} Cache */
+
+const MOST = 1024; // results of any size: a driver spends memory on each texture besides its texels
+const SHARE_OF_STATES = 4; // a quarter of the budget may be earlier states of loops
+
+/** @param {number} limit bytes @param {import("./textures.js").Textures} textures */
+export const createCache = (limit, textures) => {
+  const states = createKeptStates(limit / SHARE_OF_STATES, textures);
+  /** @type {Map<string, Cached>} in the order of their last use */
+  const known = new Map();
+  /** What runs that have not ended use: it stays. @type {Set<Set<string>>} */
+  const pinned = new Set();
+  /** How far a pass that may go on has come. @type {Map<string, [string, string, number]>} */
+  const latest = new Map();
+
+  /** @param {string} key */
+  const isPinned = (key) => [...pinned].some((keys) => keys.has(key));
+
+  /** @param {string} key */
+  const drop = (key) => {
+    known.get(key)?.results.forEach(textures.give);
+    known.delete(key);
+  };
+
+  const bytes = () => {
+    let total = states.bytes;
+    for (const { results } of known.values()) for (const result of results.values()) total += result.of ? 0 : textures.bytesOf(result);
+    return total;
+  };
+
+  /** Drop what was used least recently, then earlier states, until the budget holds. */
+  const trim = () => {
+    let now = bytes();
+    for (const [key, { results }] of known) {
+      if (now <= limit && known.size <= MOST) return;
+      if (isPinned(key)) continue;
+      for (const result of results.values()) now -= textures.bytesOf(result);
+      drop(key);
+    }
+    while (bytes() > limit && states.thin());
+  };
+
+  return {
+    states, pinned, drop, trim,
+    get bytes() { return bytes(); },
+    get size() { return known.size; },
+
+    /** @param {string} key @returns {Cached | undefined} */
+    peek: (key) => known.get(key),
+
+    /** Return what is known, as used now. @param {string} key @param {Set<string>} used */
+    get: (key, used) => {
+      const found = known.get(key);
+      used.add(key);
+      if (!found) return undefined;
+      known.delete(key);
+      known.set(key, found);
+      return found;
+    },
+
+    /** Keep what was computed, and return it; what another run has computed meanwhile stays instead.
+     *  @param {string} key @param {Cached} cached @param {Set<string>} used @returns {Cached} */
+    put: (key, cached, used) => {
+      const before = known.get(key), found = before || cached;
+      if (before) cached.results.forEach(textures.give);
+      known.set(key, found);
+      used.add(key);
+      trim();
+      return found;
+    },
+
+    /** @param {string} path @param {string} unfinished @param {string} key @param {number} iterations */
+    noteProgress: (path, unfinished, key, iterations) => latest.set(path, [unfinished, key, iterations]),
+
+    /** Hand over the same pass after fewer iterations, if no run uses it.
+     *  @param {string} path @param {string} unfinished @param {number} iterations */
+    takeEarlier: (path, unfinished, iterations) => {
+      const [before, key, done] = latest.get(path) || ["", "", 0];
+      const cached = known.get(key);
+      if (before !== unfinished || done >= iterations || isPinned(key) || !cached) return null;
+      known.delete(key);
+      return [...cached.results.values()][0];
+    },
+
+    clear: () => {
+      [...known.keys()].forEach(drop);
+      states.clear();
+      latest.clear();
+    },
+  };
+};

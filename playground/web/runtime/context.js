@@ -1,0 +1,80 @@
+// context.js -- a WebGL2 context: what it can do, what it lacks, and how many of its objects live.
+
+/** An error that a page can tell: a code for its own words, and a sentence.
+ *  @typedef {Error & {code: string, sentence: string}} Failure */
+
+/** @typedef {"Texture" | "Framebuffer" | "Renderbuffer" | "Buffer" | "VertexArray" | "Program" | "Shader" |
+ *            "Sampler"} Kind */
+
+/** @typedef {object} Context
+ *  @property {WebGL2RenderingContext} gl
+ *  @property {boolean} floatLinear     whether textures of 32-bit floats are filtered
+ *  @property {boolean} floatBlend      whether draws on 32-bit floats may blend
+ *  @property {EXT_texture_norm16 | null} norm16   null: formats of 16 bits are 32-bit floats
+ *  @property {KHR_parallel_shader_compile | null} parallel
+ *  @property {{size: number, units: number, spare: number, outputs: number}} limits   texels, texture units
+ *  @property {number} objects          objects made so far
+ *  @property {(kind: Kind, ...how: any[]) => any} make
+ *  @property {(kind: Kind, object: any) => void} drop
+ *  @property {() => Object<string, number>} counts   objects that live, by kind
+ *  @property {(where: string) => void} check   raise what WebGL reports */
+
+/** @param {string} code @param {string} sentence @param {object} [more] @returns {Failure} */
+export const failure = (code, sentence, more = {}) => Object.assign(new Error(sentence), { code, sentence }, more);
+
+/** Open a canvas's context; `without` lists extensions to do without.
+ *  @param {HTMLCanvasElement | OffscreenCanvas} canvas
+ *  @param {{without?: string[]}} [options]
+ *  @returns {Context} */
+export const openContext = (canvas, { without = [] } = {}) => {
+  const how = { antialias: false, alpha: false, depth: false, stencil: false, powerPreference: "high-performance" };
+  const gl = /** @type {WebGL2RenderingContext | null} */ (canvas.getContext("webgl2", how));
+  if (!gl) throw failure("no-webgl2", "This browser offers no WebGL2.");
+  /** @param {string} name */
+  const extension = (name) => (without.includes(name) ? null : gl.getExtension(name));
+  if (!extension("EXT_color_buffer_float") && !gl.isContextLost())
+    throw failure("no-float-targets", "This device cannot draw into textures of floating-point numbers.");
+  /** @type {Object<string, number>} */
+  const live = {};
+  const any = /** @type {any} */ (gl);
+  const units = gl.getParameter(gl.MAX_TEXTURE_IMAGE_UNITS);
+  /** @type {Context} */
+  const context = {
+    gl,
+    floatLinear: !!extension("OES_texture_float_linear"),
+    floatBlend: !!extension("EXT_float_blend"),
+    norm16: extension("EXT_texture_norm16"),
+    parallel: extension("KHR_parallel_shader_compile"),
+    limits: {
+      size: gl.getParameter(gl.MAX_TEXTURE_SIZE),
+      units,
+      spare: gl.getParameter(gl.MAX_COMBINED_TEXTURE_IMAGE_UNITS) - 1, // no sampler of ours reads this one
+      outputs: gl.getParameter(gl.MAX_DRAW_BUFFERS),
+    },
+    objects: 0,
+    make: (kind, ...how) => {
+      const made = any[`create${kind}`](...how);
+      if (!made) throw failure("context-lost", "The graphics context was lost.");
+      live[kind] = (live[kind] || 0) + 1;
+      context.objects++;
+      return made;
+    },
+    drop: (kind, object) => {
+      any[`delete${kind}`](object);
+      live[kind]--;
+    },
+    counts: () => ({ ...live }),
+    check: (where) => {
+      const error = gl.getError();
+      if (!error) return;
+      while (!gl.isContextLost() && gl.getError());
+      if (error === gl.CONTEXT_LOST_WEBGL) throw failure("context-lost", "The graphics context was lost.");
+      if (error === gl.OUT_OF_MEMORY) throw failure("out-of-memory", `${where}: the graphics memory is full.`);
+      throw failure("webgl", `${where}: WebGL reports error 0x${error.toString(16)}.`);
+    },
+  };
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+  gl.pixelStorei(gl.PACK_ALIGNMENT, 1);
+  gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+  return context;
+};

@@ -1,0 +1,214 @@
+// draws.js -- draws meshes: samples of colour and depth, blending, resolved into a texture at the end.
+//
+// A draw that begins with an earlier draw's samples and depth goes on in them, since WebGL cannot copy samples:
+// the earlier draw is drawn again where only the later one is stale (see execution.js).
+
+import { failure } from "./context.js";
+import { whole } from "./expressions.js";
+import { isSize } from "./binder.js";
+import { buildMesh, meshKey } from "./meshes.js";
+import { choose, inputsOf } from "./level_of_detail.js";
+import { ranges } from "./tiles.js";
+
+/** @typedef {import("./kernels.js").Job} Job */
+/** @typedef {import("./kernels.js").Work} Work */
+/** @typedef {import("./textures.js").Result} Result */
+/** @typedef {import("./programs.js").Program} Program */
+/** @typedef {{key: string, attributes: [string, number, WebGLBuffer][], indices: WebGLBuffer, length: number,
+ *             tiles: WebGLBuffer | null}} Mesh */
+
+const MOST_MESHES = 16;
+
+/** @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures
+ *  @param {import("./programs.js").Programs} programs @param {import("./binder.js").Binder} binder
+ *  @param {import("./kernels.js").Kernels} kernels */
+export const createDraws = (context, textures, programs, binder, kernels) => {
+  const { gl, make, drop } = context;
+  /** @type {Map<string, Mesh>} */
+  const meshes = new Map();
+
+  /** @param {number} target @param {ArrayBufferView} data */
+  const buffer = (target, data) => {
+    const made = make("Buffer");
+    gl.bindVertexArray(null);
+    gl.bindBuffer(target, made);
+    gl.bufferData(target, data, gl.STATIC_DRAW);
+    return made;
+  };
+
+  /** @param {Mesh} mesh */
+  const release = (mesh) => {
+    programs.forgetMesh(mesh.key);
+    [...mesh.attributes.map((each) => each[2]), mesh.indices, ...(mesh.tiles ? [mesh.tiles] : [])]
+      .forEach((each) => drop("Buffer", each));
+    meshes.delete(mesh.key);
+  };
+
+  /** @param {Job} job @returns {Mesh} */
+  const meshOf = (job) => {
+    const { step } = job, { kernel } = step, name = /** @type {string} */ (kernel.mesh), values = { ...step.values };
+    if (kernel.count !== undefined) values.count = whole(kernel.count, kernels.namesOf(job));
+    const key = `${name} ${JSON.stringify(meshKey(name, values))}`, known = meshes.get(key);
+    meshes.delete(key);
+    if (known) {
+      meshes.set(key, known);
+      return known;
+    }
+    const { attributes, indices } = buildMesh(name, values);
+    /** @type {Mesh} */
+    const made = {
+      key, length: indices.length,
+      attributes: Object.entries(attributes).map(([attribute, { size, data }]) =>
+        [attribute, size, buffer(gl.ARRAY_BUFFER, data)]),
+      indices: buffer(gl.ELEMENT_ARRAY_BUFFER, indices),
+      tiles: inputsOf(name) ? make("Buffer") : null,
+    };
+    meshes.set(key, made);
+    if (meshes.size > MOST_MESHES) release(/** @type {Mesh} */ (meshes.values().next().value));
+    return made;
+  };
+
+  /** Bind the vertex array of a mesh for a program. @param {Program} program @param {Mesh} mesh */
+  const bindArray = (program, mesh) => {
+    const known = program.arrays.get(mesh.key);
+    if (known) {
+      gl.bindVertexArray(known);
+      return;
+    }
+    const made = make("VertexArray");
+    program.arrays.set(mesh.key, made);
+    gl.bindVertexArray(made);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, mesh.indices);
+    for (const [name, size, data] of mesh.attributes) attribute(program, name, size, data, 0);
+    if (mesh.tiles) attribute(program, "tile", 4, mesh.tiles, 1);
+  };
+
+  /** @param {Program} program @param {string} name @param {number} size @param {WebGLBuffer} data
+   *  @param {number} divisor */
+  const attribute = (program, name, size, data, divisor) => {
+    const at = gl.getAttribLocation(program.program, `k_in_${name}`);
+    if (at < 0) return;
+    gl.bindBuffer(gl.ARRAY_BUFFER, data);
+    gl.enableVertexAttribArray(at);
+    gl.vertexAttribPointer(at, size, gl.FLOAT, false, 0, 0);
+    gl.vertexAttribDivisor(at, divisor);
+  };
+
+  /** Return the texels of an input, read once each time that they are computed. @param {Job} job
+   *  @param {string} name */
+  const tableOf = ({ step, inputs }, name) => {
+    const wired = inputs.get(name);
+    if (!wired) {
+      const which = `mesh '${step.kernel.mesh}' at this detail`;
+      throw failure("sketch", `pass '${step.path}': ${which} needs the input '${name}' wired`);
+    }
+    const { read } = wired.result;
+    if (!read.has(wired.output)) read.set(wired.output, readTexture(context, textures, wired.texture));
+    return { size: wired.texture.size, data: /** @type {Float32Array} */ (read.get(wired.output)) };
+  };
+
+  /** Return what to draw of a mesh with levels of detail. @param {Job} job */
+  const chosenOf = (job) => {
+    const { step, given } = job, mesh = /** @type {string} */ (step.kernel.mesh);
+    const tables = () => Object.fromEntries((inputsOf(mesh) || []).map((name) => [name, tableOf(job, name)]));
+    const view = {
+      clipFromWorld: given.clip_from_world, eye: given.eye, extent: given.extent, relief: given.relief, size: step.size,
+    };
+    return choose(mesh, step.values, tables, view);
+  };
+
+  /** Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing. @param {Job} job */
+  const begun = (job) => {
+    const { step, samples, inputs } = job, { format } = step.kernel.outputs[0];
+    const wired = inputs.get("initial"), owner = wired && (wired.result.of || wired.result);
+    if (owner && owner.surface && isSize(owner.surface.size, step.size)) {
+      const { surface } = owner;
+      owner.surface = null;
+      return surface;
+    }
+    const surface = textures.surface(step.size, format, samples);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, surface.target);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    if (wired) kernels.copy(surface.target, step.size, wired.texture);
+    return surface;
+  };
+
+  /** Draw a mesh over what the draw begins with; the result is the caller's. @param {Job} job @returns {Work} */
+  const run = function* (job) {
+    const { step, text } = job, { kernel, size } = step, [{ format }] = kernel.outputs;
+    if (kernel.blend !== "none" && !context.floatBlend && textures.formats(format).float32)
+      throw failure("no-float-blend", `pass '${step.path}': this device cannot blend 32-bit numbers.`);
+    const program = kernels.programOf(job), reads = kernels.readsOf(job), mesh = meshOf(job);
+    const chosen = mesh.tiles && step.repeat ? chosenOf(job) : null;
+    const surface = begun(job);
+    /** @type {Result | null} */
+    let result = null;
+    const begin = () => {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, surface.target);
+      gl.viewport(0, 0, ...size);
+      binder.bind(program, job, reads);
+      bindArray(program, mesh);
+      if (kernel.depth !== "none") gl.enable(gl.DEPTH_TEST);
+      if (kernel.blend !== "none") gl.enable(gl.BLEND);
+      gl.depthFunc(kernel.depth === "equal" ? gl.EQUAL : gl.LESS);
+      if (kernel.blend === "add") gl.blendFunc(gl.ONE, gl.ONE);
+      else gl.blendFuncSeparate(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA, gl.ONE, gl.ONE_MINUS_SRC_ALPHA);
+    };
+    const end = () => {
+      gl.disable(gl.DEPTH_TEST);
+      gl.disable(gl.BLEND);
+      gl.bindVertexArray(null);
+    };
+    try {
+      begin();
+      for (let iteration = 0; iteration < step.repeat; iteration++) {
+        kernels.count(program, job, iteration);
+        if (chosen) drawTiles(mesh, chosen);
+        else gl.drawElements(gl.TRIANGLES, mesh.length, gl.UNSIGNED_INT, 0);
+        end();
+        yield { step, text, texels: size[0] * size[1] };
+        if (iteration + 1 < step.repeat) begin();
+      }
+      result = textures.take(size, kernel.outputs, job.tall);
+      textures.drawTo(result);
+      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, surface.target);
+      gl.blitFramebuffer(0, 0, ...size, 0, 0, ...size, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+      if (job.keepsSurface) result.surface = surface;
+      return result;
+    } finally {
+      end();
+      if (!result || !result.surface) textures.giveSurface(surface);
+    }
+  };
+
+  /** Draw each piece once for all of its tiles.
+   *  @param {Mesh} mesh @param {{runs: [string, number][], places: Float32Array}} chosen */
+  const drawTiles = (mesh, { runs, places }) => {
+    let done = 0;
+    for (const [piece, count] of runs) {
+      const [first, length] = ranges()[piece] || [0, mesh.length];
+      gl.bindBuffer(gl.ARRAY_BUFFER, mesh.tiles);
+      gl.bufferData(gl.ARRAY_BUFFER, places.subarray(4 * done, 4 * (done + count)), gl.DYNAMIC_DRAW);
+      gl.drawElementsInstanced(gl.TRIANGLES, length, gl.UNSIGNED_INT, 4 * first, count);
+      done += count;
+    }
+  };
+
+  return { run, clear: () => [...meshes.values()].forEach(release) };
+};
+
+/** Return the texels of a texture as floats; those of normalised formats are 0..1.
+ *  @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures
+ *  @param {import("./textures.js").Texture} texture @returns {Float32Array} */
+export const readTexture = ({ gl }, textures, texture) => {
+  const { channels, type } = textures.formats(texture.format), [width, height] = texture.size;
+  const bytes = type === gl.UNSIGNED_BYTE, shorts = type === gl.UNSIGNED_SHORT;
+  const all = new (bytes ? Uint8Array : shorts ? Uint16Array : Float32Array)(4 * width * height);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, textures.targetOf(texture));
+  gl.readPixels(0, 0, width, height, gl.RGBA, bytes || shorts ? type : gl.FLOAT, all);
+  const found = new Float32Array(channels * width * height), top = bytes ? 255 : shorts ? 65535 : 1;
+  for (let i = 0; i < width * height; i++)
+    for (let c = 0; c < channels; c++) found[channels * i + c] = all[4 * i + c] / top;
+  return found;
+};

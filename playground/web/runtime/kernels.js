@@ -1,0 +1,308 @@
+// kernels.js -- runs kernels: a triangle over the whole target, once for each iteration.
+//
+// A kernel that repeats writes two sets of textures alternately. One whose iterations fill a lattice ever more
+// closely fills as small a part of its textures as that takes.
+
+import { failure } from "./context.js";
+import { whole } from "./expressions.js";
+import { roundedOutputs } from "./formats.js";
+import { complaintsOf } from "./edits.js";
+import { stagesOf } from "./kernel_texts.js";
+import { isSize, PLAIN } from "./binder.js";
+import { setUniform } from "./programs.js";
+import { toES } from "./es.js";
+import { ownNames } from "./planner.js";
+
+/** @typedef {import("./textures.js").Result} Result */
+/** @typedef {import("./textures.js").Texture} Texture */
+/** @typedef {import("./binder.js").Wired} Wired */
+/** @typedef {import("./programs.js").Program} Program */
+/** @typedef {ReturnType<typeof createKernels>} Kernels */
+
+/** What is yielded after each piece of work: whose, and how much. What is sent back says whether others may
+ *  have used the context meanwhile.
+ *  @typedef {Generator<{step: import("./plan_nodes.js").Step, text: import("./kernel_texts.js").KernelText,
+ *                       texels: number}, Result, boolean | undefined>} Work */
+
+/** A step about to run, with all it reads.
+ *  @typedef {object} Job
+ *  @property {import("./plan_nodes.js").Step} step
+ *  @property {import("./kernel_texts.js").KernelText} text
+ *  @property {Object<string, any>} given
+ *  @property {Map<string, Wired | null>} inputs
+ *  @property {{number: number, whole: number, frame: number | null} | null} around   where its loops are
+ *  @property {Result | null} start            the same step after fewer iterations; it is used up
+ *  @property {number} samples                 of a draw
+ *  @property {boolean} keepsSurface           a later draw goes on from it
+ *  @property {(name: string) => boolean} tall whether an output is read with levels
+ *  @property {number} time                    of the picture
+ *  @property {(width: number, height: number) => number} rows   how many of so many to draw at once */
+
+const TRIANGLE = "#version 330\nvoid main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1)"
+  + " * 4.0 - 1.0, 0.0, 1.0); }\n";
+const SHOW = "#version 330\nuniform sampler2D k_picture; uniform int k_channels; out vec4 k_out; void main() {"
+  + " vec4 k_all = texelFetch(k_picture, ivec2(gl_FragCoord.xy), 0); k_all = mix(vec4(0.0), k_all, equal(k_all, k_all));"
+  + " k_out = vec4(k_channels == 1 ? k_all.rrr : k_all.rgb, k_channels == 4 ? k_all.a : 1.0); }\n";
+const ROWS = 64; // a band's rows are a multiple of these: no tile or quad of pixels is cut
+
+/** @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures
+ *  @param {import("./programs.js").Programs} programs @param {import("./binder.js").Binder} binder
+ *  @param {import("./schema.js").Shared} shared */
+export const createKernels = (context, textures, programs, binder, shared) => {
+  const { gl } = context;
+  /** @type {Map<string, Program>} */
+  const owns = new Map();
+
+  /** Return a fragment shader of the engine's own. @param {string} name */
+  const own = (name) => {
+    let found = owns.get(name);
+    if (!found || found.state === "gone") owns.set(name, (found = programs.ask([toES(TRIANGLE), toES(shared.own[name] || SHOW)])));
+    if (!programs.finish(found)) throw failure("shader", `${name}: ${found.logs.join("")}${found.link}`);
+    return found;
+  };
+
+  const fill = () => {
+    gl.bindVertexArray(null);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+  };
+
+  /** Fill what is bound by one of the engine's own shaders, which reads a texture.
+   *  @param {string} shader @param {[number, number]} size @param {Texture} source
+   *  @param {Object<string, any>} uniforms */
+  const drawOwn = (shader, size, source, uniforms) => {
+    const program = own(shader);
+    gl.useProgram(program.program);
+    binder.texture(program, "k_picture", 0, source, PLAIN);
+    for (const name in uniforms) setUniform(gl, program, name, uniforms[name]);
+    gl.viewport(0, 0, ...size);
+    fill();
+  };
+
+  /** Fill a framebuffer with a texture, nearest texel for nearest.
+   *  @param {WebGLFramebuffer | null} target @param {[number, number]} size @param {Texture} source */
+  const copy = (target, size, source) => {
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    drawOwn("copy.frag", size, source, { k_size: size });
+  };
+
+  /** Return new textures, each filled from that of a result.
+   *  @param {string} shader @param {Result} result @param {Object<string, any>} uniforms
+   *  @param {Job["step"]["kernel"]["outputs"]} outputs @param {Job["tall"]} tall */
+  const drawnOwn = (shader, result, uniforms, outputs, tall) => {
+    const found = textures.take(result.size, outputs, tall);
+    for (const [name, texture] of found.textures) {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, textures.targetOf(texture));
+      drawOwn(shader, result.size, /** @type {Texture} */ (result.textures.get(name)), uniforms);
+    }
+    return found;
+  };
+
+  /** Return the textures of a step, all zeros. @param {Job["step"]} step @param {Job["tall"]} tall */
+  const empty = (step, tall) => {
+    const result = textures.take(step.size, step.kernel.outputs, tall);
+    textures.drawTo(result);
+    gl.clearColor(0, 0, 0, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT);
+    return result;
+  };
+
+  /** Return a wired texture with its levels: a copy where it has none, or none that are filtered.
+   *  @param {Wired} wired */
+  const withLevels = ({ result, texture, output }) => {
+    const byHand = binder.isUnfiltered(texture);
+    if (texture.levels > 1 && !byHand) {
+      if (!result.mipmapped.has(output)) textures.buildLevels(texture);
+      result.mipmapped.add(output);
+      return texture;
+    }
+    let made = result.copies.get(output);
+    if (!made) {
+      made = textures.texture(texture.size, byHand ? texture.format.replace(/32f|16$/, "16f") : texture.format, true);
+      result.copies.set(output, made);
+      copy(textures.targetOf(made), made.size, texture);
+      textures.buildLevels(made);
+    }
+    return made;
+  };
+
+  /** Return what the inputs of a step read. @param {Job} job */
+  const readsOf = ({ step, inputs }) => {
+    /** @type {Map<string, Texture>} */
+    const found = new Map();
+    for (const { name, sampling } of step.kernel.inputs) {
+      const wired = inputs.get(name);
+      if (wired) found.set(name, sampling.mipmap ? withLevels(wired) : wired.texture);
+    }
+    return found;
+  };
+
+  /** Return the program of a step as its inputs are wired. @param {Job} job */
+  const programOf = ({ step, text, inputs }) => {
+    const byHand = new Map();
+    if (!context.floatLinear) for (const { name, sampling } of step.kernel.inputs) {
+      const wired = inputs.get(name);
+      if (wired && !sampling.mipmap && sampling.filter === "linear" && binder.isUnfiltered(wired.texture))
+        byHand.set(name, sampling.wrap);
+    }
+    const program = ask(text, byHand);
+    if (!programs.finish(program)) throw refused(text, program);
+    return program;
+  };
+
+  /** @param {import("./kernel_texts.js").KernelText} text @param {Program} program */
+  const refused = (text, program) => {
+    const complaints = complaintsOf(text, program), [{ file, line, message }] = complaints;
+    return failure("shader", `${file}:${line}: ${message}`, { complaints });
+  };
+
+  /** Begin to compile a kernel. @param {import("./kernel_texts.js").KernelText} text
+   *  @param {Map<string, import("./linear_by_hand.js").Wrap>} byHand @returns {Program} */
+  const ask = (text, byHand) => {
+    const key = [...byHand].join();
+    let found = text.programs.get(key);
+    if (!found || found.state === "gone") {
+      const { texts } = stagesOf(text, byHand, roundedOutputs(text.kernel.outputs, textures.formats));
+      text.programs.set(key, (found = programs.ask(texts)));
+      text.hands.set(key, byHand);
+    }
+    programs.touch(found);
+    return found;
+  };
+
+  /** Set a kernel's iteration: its own where it repeats, else that of the loop around it.
+   *  @param {Program} program @param {Job} job @param {number} iteration @param {number} [atOnce] */
+  const count = (program, { step, around }, iteration, atOnce = 1) => {
+    const outer = step.kernel.repeat === 1 && around && around.whole ? around : null;
+    const now = outer ? outer.number : iteration;
+    setUniform(gl, program, "iteration", now);
+    setUniform(gl, program, "iterations", outer ? outer.whole : step.whole);
+    setUniform(gl, program, "until", now + atOnce);
+    if (step.kernel.countsFrames) setUniform(gl, program, "time", now / 60);
+  };
+
+  /** Return what the expressions of a step's header mean. @param {Job} job @param {Object<string, bigint>} [more] */
+  const namesOf = ({ step, time }, more = {}) =>
+    ({ name: ownNames(step.kernel, step.size, step.values, time, more) });
+
+  /** Run a kernel; the result is the caller's. @param {Job} job @returns {Work} */
+  const run = function* (job) {
+    const { step, start } = job, { kernel, size } = step, state = initial(job);
+    if (!step.repeat) return untouched(job, state);
+    const program = programOf(job), reads = readsOf(job);
+    let unit = binder.bind(program, job, reads);
+    const atOnce = kernel.atOnce === undefined ? 1 : Math.max(whole(kernel.atOnce, namesOf(job)), 1);
+    const lattice = kernel.stride !== undefined && !state.size;
+    let before = start, iteration = start ? start.iterations : 0, shift = 0;
+    /** @type {Result | null} */
+    let result = null;
+    try {
+      while (iteration < step.repeat) {
+        const turns = Math.min(atOnce, step.repeat - iteration), was = shift;
+        if (lattice) shift = shiftOf(job, iteration);
+        const target = result = textures.take(size, kernel.outputs, job.tall), from = before;
+        const [width, height] = size.map((side) => ((side - 1) >> shift) + 1), now = iteration;
+        const begin = () => {
+          let next = unit;
+          for (const { name } of kernel.outputs) if (program.uniforms.has(`k_previous_${name}`)) {
+            const texture = from ? from.textures.get(name) : state.get(name);
+            next = binder.texture(program, `k_previous_${name}`, next, texture || binder.constant("zero"), PLAIN);
+          }
+          count(program, job, now, turns);
+          setUniform(gl, program, "k_previous_shift", was);
+          setUniform(gl, program, "k_shift", shift);
+          textures.drawTo(target);
+          gl.viewport(0, 0, width, height);
+        };
+        begin();
+        const again = () => {
+          unit = binder.bind(program, job, reads);
+          begin();
+        };
+        if (yield* filled(job, width, height, again)) unit = binder.bind(program, job, reads);
+        if (before) textures.give(before);
+        before = result;
+        result = null;
+        iteration += turns;
+      }
+      let done = /** @type {Result} */ (before);
+      if (shift) { // each texel of the lattice goes to its place, with zeros between
+        const spread = drawnOwn("spread.frag", done, { k_shift: shift }, kernel.outputs, job.tall);
+        textures.give(done);
+        done = spread;
+      }
+      before = null;
+      done.iterations = step.repeat;
+      return done;
+    } finally {
+      if (result) textures.give(result);
+      if (before) textures.give(before);
+    }
+  };
+
+  /** Fill what is bound, in bands where it takes long; return whether others may have used the context since.
+   *  @param {Job} job @param {number} width @param {number} height @param {() => void} again binds all again
+   *  @returns {Generator<any, boolean, boolean | undefined>} */
+  const filled = function* ({ step, text, rows }, width, height, again) {
+    let paused = false;
+    for (let low = 0; low < height;) {
+      const high = Math.min(low + Math.ceil(rows(width, height - low) / ROWS) * ROWS, height), part = high - low < height;
+      if (paused) again();
+      if (part) gl.enable(gl.SCISSOR_TEST);
+      gl.scissor(0, low, width, high - low);
+      fill();
+      if (part) gl.disable(gl.SCISSOR_TEST);
+      paused = !!(yield { step, text, texels: width * (high - low) });
+      low = high;
+    }
+    return paused;
+  };
+
+  /** Return the power of two that texels known after an iteration lie apart.
+   *  @param {Job} job @param {number} iteration */
+  const shiftOf = (job, iteration) => {
+    const { step } = job, counts = { iteration: BigInt(iteration), iterations: BigInt(step.whole) };
+    const stride = whole(/** @type {any} */ (step.kernel.stride), namesOf(job, counts));
+    if (stride < 1 || stride & (stride - 1)) {
+      const where = `pass '${step.path}': stride gives ${stride} for iteration ${iteration}`;
+      throw failure("sketch", `${where}; a power of two was expected`);
+    }
+    return 31 - Math.clz32(stride);
+  };
+
+  /** Return the state before the first iteration to run, by output; what is missing is zero.
+   *  @param {Job} job @returns {Map<string, Texture>} */
+  const initial = ({ step, inputs, start }) => {
+    if (start) return new Map(start.textures);
+    const found = new Map();
+    for (const [input, output] of Object.entries(step.kernel.initial)) {
+      const wired = inputs.get(input);
+      if (!wired) continue;
+      if (!isSize(wired.texture.size, step.size)) {
+        const [are, is] = [wired.texture.size, step.size].map((size) => size.join(" × "));
+        throw failure("sketch", `pass '${step.path}': ${input} is ${are} texels, the pass ${is}; they must agree`);
+      }
+      found.set(output, wired.texture);
+    }
+    return found;
+  };
+
+  /** Return the state before the first iteration, in textures of its own.
+   *  @param {Job} job @param {Map<string, Texture>} state */
+  const untouched = ({ step, tall }, state) => {
+    const result = empty(step, tall);
+    for (const [name, texture] of result.textures) {
+      const from = state.get(name);
+      if (from) copy(textures.targetOf(texture), step.size, from);
+    }
+    return result;
+  };
+
+  /** Fill a framebuffer with a texture as a picture: one channel is grey, without a fourth it is opaque.
+   *  @param {WebGLFramebuffer | null} target @param {Texture} source */
+  const show = (target, source) => {
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    drawOwn("show", source.size, source, { k_channels: textures.formats(source.format).channels });
+  };
+
+  return { run, show, refused, ask, programOf, readsOf, copy, drawnOwn, empty, count, namesOf, own };
+};

@@ -1,0 +1,232 @@
+// textures.js -- textures and what draws to them; spare ones are used again, under a budget.
+
+import { failure } from "./context.js";
+import { formatsOf } from "./formats.js";
+
+/** @typedef {{texture: WebGLTexture, size: [number, number], format: string, levels: number, bytes: number,
+ *             target: WebGLFramebuffer | null}} Texture */
+
+/** Samples of colour and depth that a draw draws on.
+ *  @typedef {{target: WebGLFramebuffer, buffers: WebGLRenderbuffer[], size: [number, number], format: string,
+ *             samples: number, bytes: number}} Surface */
+
+/** The textures that one pass computed.
+ *  @typedef {object} Result
+ *  @property {[number, number]} size
+ *  @property {Map<string, Texture>} textures   by output
+ *  @property {WebGLFramebuffer | null} target  of several outputs
+ *  @property {number} iterations               done, of a pass that repeats
+ *  @property {number} number                   of all that were handed out: textures are used again, it is not
+ *  @property {Surface | null} surface          a draw's samples and depth, while a later draw may go on from it
+ *  @property {Set<string>} mipmapped           outputs whose levels are made
+ *  @property {Map<string, Texture>} copies     of outputs, with levels
+ *  @property {Map<string, Float32Array>} read  of outputs, on the processor
+ *  @property {Result | null} of                the result whose textures and surface these are
+ *  @property {boolean} gone                    its textures are others' by now */
+
+/** @typedef {ReturnType<typeof createTextures>} Textures */
+
+const SURFACES = 2;
+
+/** @param {import("./context.js").Context} context @param {number} limit bytes of spare textures */
+export const createTextures = (context, limit) => {
+  const { gl, make, drop } = context, formats = formatsOf(context);
+  /** @type {Set<string>} */
+  const complete = new Set();
+  /** @type {Result[]} */
+  const spare = [];
+  /** @type {Surface[]} */
+  const surfaces = [];
+  let bytes = 0, taken = 0;
+
+  /** Bind a texture where no sampler reads it. @param {WebGLTexture} texture */
+  const hold = (texture) => {
+    gl.activeTexture(gl.TEXTURE0 + context.limits.spare);
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+  };
+
+  /** @param {[number, number]} size @param {string} format @param {boolean} [levels] whether it has mipmaps
+   *  @returns {Texture} */
+  const texture = (size, format, levels = false) => {
+    if (Math.max(...size) > context.limits.size) {
+      const sides = size.join(" × ");
+      throw failure("too-large", `${sides} texels; this device takes no more than ${context.limits.size} a side.`);
+    }
+    const made = make("Texture"), many = levels ? 1 + Math.floor(Math.log2(Math.max(...size))) : 1;
+    const { internal, bytes: each } = formats(format), flat = size[0] * size[1] * each;
+    hold(made);
+    gl.texStorage2D(gl.TEXTURE_2D, many, internal, ...size);
+    return { texture: made, size, format, levels: many, bytes: many > 1 ? Math.ceil(flat * 4 / 3) : flat, target: null };
+  };
+
+  /** @param {Texture} made @param {ArrayBufferView | ImageBitmap} texels */
+  const write = (made, texels) => {
+    const { external, type } = formats(made.format);
+    hold(made.texture);
+    gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, ...made.size, external, type, /** @type {any} */ (texels));
+  };
+
+  /** @param {Texture} made */
+  const buildLevels = (made) => {
+    hold(made.texture);
+    gl.generateMipmap(gl.TEXTURE_2D);
+  };
+
+  /** @param {Texture} made */
+  const release = (made) => {
+    if (made.target) drop("Framebuffer", made.target);
+    drop("Texture", made.texture);
+  };
+
+  /** Bind a framebuffer, and ask once for each kind whether it is complete.
+   *  @param {string} kind */
+  const checked = (kind) => {
+    if (complete.has(kind)) return;
+    const status = gl.checkFramebufferStatus(gl.FRAMEBUFFER);
+    if (status !== gl.FRAMEBUFFER_COMPLETE && !gl.isContextLost())
+      throw failure("no-target", `This device cannot draw into ${kind} (0x${status.toString(16)}).`);
+    complete.add(kind);
+  };
+
+  /** @param {Texture[]} textures */
+  const framebuffer = (textures) => {
+    const made = make("Framebuffer");
+    gl.bindFramebuffer(gl.FRAMEBUFFER, made);
+    textures.forEach((each, i) =>
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + i, gl.TEXTURE_2D, each.texture, 0));
+    if (textures.length > 1) gl.drawBuffers(textures.map((_, i) => gl.COLOR_ATTACHMENT0 + i));
+    checked(textures.map((each) => each.format).join(", "));
+    return made;
+  };
+
+  /** @param {Texture} made */
+  const targetOf = (made) => (made.target ||= framebuffer([made]));
+
+  /** Bind what draws to all textures of a result. @param {Result} result */
+  const drawTo = (result) => {
+    const all = [...result.textures.values()];
+    const target = all.length === 1 ? targetOf(all[0]) : (result.target ||= framebuffer(all));
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+  };
+
+  /** @param {Result} result */
+  const bytesOf = (result) => {
+    let total = result.surface ? result.surface.bytes : 0;
+    for (const each of result.textures.values()) total += each.bytes;
+    for (const each of result.copies.values()) total += each.bytes;
+    return total;
+  };
+
+  /** @param {[number, number]} size @param {Map<string, Texture>} textures @param {Partial<Result>} [more]
+   *  @returns {Result} */
+  const result = (size, textures, more) => ({
+    size, textures, target: null, iterations: 0, number: ++taken, surface: null, mipmapped: new Set(), copies: new Map(),
+    read: new Map(), of: null, gone: false, ...more,
+  });
+
+  /** Return textures with undefined texels; `tall` says which outputs have levels.
+   *  @param {[number, number]} size @param {{name: string, format: string}[]} outputs
+   *  @param {(name: string) => boolean} tall @returns {Result} */
+  const take = (size, outputs, tall) => {
+    const kinds = outputs.map(({ name, format }) => `${format} ${Math.max(...size) > 1 && tall(name)}`).join();
+    for (let i = spare.length - 1; i >= 0; i--) {
+      const found = spare[i], all = [...found.textures.values()];
+      if (found.size[0] !== size[0] || found.size[1] !== size[1]) continue;
+      if (all.map((each) => `${each.format} ${each.levels > 1}`).join() !== kinds) continue;
+      spare.splice(i, 1);
+      bytes -= bytesOf(found);
+      return result(size, new Map(outputs.map(({ name }, k) => [name, all[k]])), { target: found.target });
+    }
+    const made = new Map();
+    try {
+      for (const { name, format } of outputs) made.set(name, texture(size, format, tall(name)));
+    } catch (error) {
+      made.forEach(release);
+      throw error;
+    }
+    return result(size, made);
+  };
+
+  /** @param {Result} dropped */
+  const destroy = (dropped) => {
+    if (dropped.target) drop("Framebuffer", dropped.target);
+    dropped.textures.forEach(release);
+  };
+
+  /** Take back what is no longer read. @param {Result} given */
+  const give = (given) => {
+    if (given.gone) return;
+    given.gone = true;
+    if (given.of) return;
+    if (given.surface) giveSurface(given.surface);
+    given.surface = null;
+    given.copies.forEach(release);
+    given.copies.clear();
+    given.read.clear();
+    spare.push({ ...given });
+    bytes += bytesOf(given);
+    trim(limit);
+  };
+
+  /** @param {number} most bytes */
+  const trim = (most) => {
+    while (bytes > most && spare.length) {
+      const oldest = /** @type {Result} */ (spare.shift());
+      bytes -= bytesOf(oldest);
+      destroy(oldest);
+    }
+  };
+
+  /** @param {[number, number]} size @param {string} format @param {number} wanted samples
+   *  @returns {Surface} */
+  const surface = (size, format, wanted) => {
+    const { internal, bytes: each } = formats(format);
+    const samples = wanted > 1 ? samplesOf(format, wanted) : 0;
+    const at = surfaces.findIndex((known) =>
+      known.size[0] === size[0] && known.size[1] === size[1] && known.format === format && known.samples === samples);
+    if (at >= 0) return surfaces.splice(at, 1)[0];
+    const target = make("Framebuffer"), buffers = [make("Renderbuffer"), make("Renderbuffer")];
+    gl.bindFramebuffer(gl.FRAMEBUFFER, target);
+    [gl.COLOR_ATTACHMENT0, gl.DEPTH_ATTACHMENT].forEach((where, i) => {
+      gl.bindRenderbuffer(gl.RENDERBUFFER, buffers[i]);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, i ? gl.DEPTH_COMPONENT24 : internal, ...size);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, where, gl.RENDERBUFFER, buffers[i]);
+    });
+    checked(`${format} of ${samples} samples`);
+    return { target, buffers, size, format, samples, bytes: size[0] * size[1] * (each + 4) * (samples || 1) };
+  };
+
+  /** @type {Map<string, number[]>} */
+  const offered = new Map();
+  /** Return how many samples a format has here: those wanted, or the next that is offered, or the most.
+   *  @param {string} format @param {number} wanted */
+  const samplesOf = (format, wanted) => {
+    const { internal } = formats(format);
+    let list = offered.get(format);
+    if (!list) offered.set(format, (list = [...gl.getInternalformatParameter(gl.RENDERBUFFER, internal, gl.SAMPLES)]));
+    const least = list.filter((many) => many >= wanted).sort((a, b) => a - b)[0];
+    return least ?? Math.max(0, ...list);
+  };
+
+  /** @param {Surface} given */
+  const giveSurface = (given) => {
+    surfaces.push(given);
+    while (surfaces.length > SURFACES) releaseSurface(/** @type {Surface} */ (surfaces.shift()));
+  };
+
+  /** @param {Surface} given */
+  const releaseSurface = (given) => {
+    drop("Framebuffer", given.target);
+    given.buffers.forEach((each) => drop("Renderbuffer", each));
+  };
+
+  const clear = () => {
+    trim(-1);
+    surfaces.splice(0).forEach(releaseSurface);
+  };
+
+  return {
+    formats, texture, write, buildLevels, release, targetOf, drawTo, bytesOf, result, take, give, surface, giveSurface,
+    clear, get bytes() { return bytes; },
+  };
+};

@@ -1,0 +1,148 @@
+"""Run the page runtime in a browser: sketches are opened in one page, their pictures come back as arrays."""
+
+from __future__ import annotations
+
+import base64
+import json
+import shutil
+import subprocess
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import playground.web
+from tests.report.browser import MESA, MISSING, Browser
+from tests.web.node import NODE
+
+HOME = Path(playground.web.__file__).parent
+ESBUILD = HOME / "node_modules" / "esbuild"
+if not MISSING and not (NODE and ESBUILD.exists()):
+    MISSING = "needs Node, and npm ci in playground/web"
+
+_HARNESS = """
+window.pages = {
+  figures: {},
+  bytes(array) {
+    const all = new Uint8Array(array.buffer, array.byteOffset, array.byteLength);
+    let text = "";
+    for (let i = 0; i < all.length; i += 32768) text += String.fromCharCode(...all.subarray(i, i + 32768));
+    return btoa(text);
+  },
+  told(error) {
+    const { message, code, sentence, complaints, where, stack } = error;
+    return { error: { message, code, sentence, complaints, where, stack } };
+  },
+  async begin(shared, options) {
+    window.pages.engine?.close();
+    window.pages.canvas = document.createElement("canvas");
+    try {
+      window.pages.engine = playground.createEngine(window.pages.canvas, shared, options);
+    } catch (error) {
+      return window.pages.told(error);
+    }
+    return {};
+  },
+  async open(name, sketch) {
+    const start = performance.now(), player = window.pages.engine.open(sketch);
+    window.pages.figures[name] = player;
+    try {
+      await player.load();
+    } catch (error) {
+      return window.pages.told(error);
+    }
+    return { compile: performance.now() - start };
+  },
+  async picture(name, state, soon) {
+    const player = window.pages.figures[name];
+    Object.assign(player.state, state);
+    try {
+      const done = soon ? await player.renderSoon(soon) : player.render();
+      const texels = player.picture(), { frame, picture } = player.plan;
+      const size = player.plan.steps.get(picture.path).size;
+      return { ...done, size, frame, texels: window.pages.bytes(texels) };
+    } catch (error) {
+      return window.pages.told(error);
+    }
+  },
+};
+"""
+
+
+class PageError(Exception):
+    """What the runtime threw."""
+
+    def __init__(self, told: Mapping[str, Any]) -> None:
+        super().__init__(str(told.get("message")))
+        self.told = dict(told)
+        self.add_note(str(told.get("stack")))
+
+
+def script_of(folder: Path) -> Path:
+    """Return the runtime with its engine as one script, bundled into a folder."""
+    made = folder / "engine.js"
+    command = [str(NODE or shutil.which("node")), "build.mjs", "runtime/engine.js", str(made)]
+    subprocess.run(command, cwd=HOME, check=True, capture_output=True)
+    return made
+
+
+class Pages:
+    """One page with the runtime in it, until the block ends."""
+
+    def __init__(self, folder: Path, flags: Sequence[str] = MESA) -> None:
+        script = script_of(folder).read_text(encoding="utf-8")
+        page = folder / "page.html"
+        page.write_text(f"<!doctype html><meta charset=utf-8><script>{script}\n{_HARNESS}</script>", "utf-8")
+        self.browser = Browser(folder / "profile", 640, 480, flags)
+        self.browser.open(page.as_uri())
+
+    def begin(self, page: Mapping[str, Any], **options: Any) -> None:
+        """Open an engine for a page's sketches, in place of the one before."""
+        self._asked("pages.begin", page["shared"], options)
+
+    def open(self, sketch: Mapping[str, Any], name: str = "") -> dict[str, Any]:
+        """Open a sketch under its name or another, compiled and with its data loaded."""
+        return self._asked("pages.open", name or sketch["name"], sketch)
+
+    def picture(self, name: str, soon: float = 0, **state: Any) -> Picture:
+        """Return the picture of an open sketch with more of its state set; with ``soon`` in such slices [ms]."""
+        told = self._asked("pages.picture", name, state, soon)
+        width, height = told["size"]
+        texels = np.frombuffer(base64.b64decode(told["texels"]), np.uint8).reshape(height, width, 4)
+        return Picture(texels[::-1], told["ran"], told["milliseconds"])
+
+    def run(self, script: str, *values: object) -> Any:
+        """Return what a function's body returns; `figures` are the players by name, `engine` theirs."""
+        return self.browser.run(f"const {{ figures, engine }} = pages; {script}", *values)
+
+    def _asked(self, function: str, *values: object) -> dict[str, Any]:
+        text = json.dumps(values)  # as text: a driver copies values slowly
+        told = self.browser.run(f"return {function}(...JSON.parse(arguments[0]))", text)
+        if "error" in told:
+            raise PageError(told["error"])
+        return dict(told)
+
+    def __enter__(self) -> Pages:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.browser.__exit__(kind, error, trace)
+
+
+class Picture:
+    """Pixels, (height, width, 4) bytes, top row first, and what ran for them."""
+
+    def __init__(self, pixels: NDArray[np.uint8], ran: list[str], milliseconds: float) -> None:
+        self.pixels = pixels
+        self.ran = ran
+        self.milliseconds = milliseconds
+
+    def levels_off(self, other: NDArray[np.uint8]) -> int:
+        """Return by how many levels of 255 the pixel differs that differs most."""
+        assert self.pixels.shape == other.shape
+        return int(np.abs(self.pixels.astype(int) - other).max())
