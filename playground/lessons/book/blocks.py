@@ -59,7 +59,7 @@ class Setting:
 
     def started(self, block: model.Named) -> dict[str, str | None]:
         """Return the attribute of an element whose pictures can be started."""
-        return {"data_live": block.name if block.name in self.live else None}
+        return {"data_block": block.name if block.name in self.live else None}
 
     def folded(self, key: str, *inside: Markup | None) -> Markup:
         """Return what is unfolded by its label."""

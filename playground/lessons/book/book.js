@@ -100,7 +100,7 @@
     added(make("link", { rel: "stylesheet", href: "../live.css" })),
     added(make("script", { src: "../live.js" })),
   ]);
-  for (const root of document.querySelectorAll("[data-live]")) {
+  for (const root of document.querySelectorAll("[data-block]")) {
     const still = root.querySelector(".still");
     const button = make("button", { type: "button", className: "start", textContent: `▶ ${words.live}`, title: words.liveGoal });
     button.addEventListener("click", async () => {

@@ -73,9 +73,7 @@ class Scenes:
         if key not in self._known:
             sketch = replace(scene.sketch, presets=(), shots=())  # a figure offers none
             steps = dict(scene.steps)
-            found = sketch_data(
-                sketch, self.library.shared, frame=scene.pixels, time=scene.time, steps=steps
-            )
+            found = sketch_data(sketch, self.library.shared, frame=scene.pixels, time=scene.time, steps=steps)
             self._known[key] = self._written(found)
         return self._known[key]
 

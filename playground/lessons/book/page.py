@@ -80,8 +80,8 @@ def lesson_page(book: Book, lesson: Lesson, setting: Setting) -> str:
         tag("p", label("stale"), class_="stale") if lesson.stale else None,
     )
     ending = (_play(book, lesson), _references(book, lesson, setting.anchor), _pager(book, lesson))
-    runs = {"data_lesson": lesson.name} if setting.live else {}
-    return _page(book, lesson.title, lesson.name, joined(head, *body, *ending), **runs)
+    runs = lesson.name if setting.live else None
+    return _page(book, lesson.title, lesson.name, joined(head, *body, *ending), runs=runs)
 
 
 def contents_page(book: Book, covers: Mapping[str, Markup]) -> str:
@@ -174,7 +174,7 @@ def _head(title: str, folder: str = "../") -> Markup:
 
 
 def _page(
-    book: Book, title: str, name: str, body: Markup, *, wide: bool = False, **attributes: str
+    book: Book, title: str, name: str, body: Markup, *, wide: bool = False, runs: str | None = None
 ) -> str:
     label = book.label
     others = [
@@ -192,15 +192,16 @@ def _page(
         class_="top",
         aria_label=label("contents"),
     )
-    scripted = ("live", "live_goal", "backward", "forward", "run", "stop", "side", "over", "copy", "copied", "theme")
+    scripted = ["backward", "forward", "run", "stop", "side", "over", "copy", "copied", "theme"]
+    scripted += ["live", "live_goal"]
     page = tag(
         "body",
         tag("a", label("skip"), href="#main", class_="skip"),
         top,
         tag("main", body, id="main", class_="wide" if wide else None),
         tag("footer", tag("p", label("made_by", version=__version__, renderer=book.renderer))),
+        data_lesson=runs,
         **{f"data_{key}": label[key] for key in scripted},
-        **attributes,
     )
     whole_title = f"{title} — {label('book')}" if name != "index" else title
     return _document(book.language, _head(whole_title), page)

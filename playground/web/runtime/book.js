@@ -29,7 +29,7 @@ async function engineFor(library) {
 }
 
 /** Start a block of a lesson in the place of its still pictures.
- *  @param {HTMLElement} root  with `data-live`, the block's name @param {string} folder @param {string} lesson */
+ *  @param {HTMLElement} root  with `data-block`, the block's name @param {string} folder @param {string} lesson */
 export async function start(root, folder, lesson) {
   const language = document.documentElement.lang, words = bookWords(language);
   const still = /** @type {HTMLElement} */ (root.querySelector(".still"));
@@ -38,7 +38,7 @@ export async function start(root, folder, lesson) {
   try {
     book ??= openBook(folder);
     const [library, data] = await Promise.all([book.library(), book.lesson(lesson)]);
-    const block = data.blocks[root.dataset.live ?? ""];
+    const block = data.blocks[root.dataset.block ?? ""];
     const sketch = (/** @type {import("./book_data.js").Setting} */ setting) => settled(data.sketches[setting.sketch], setting, library.kernels);
     const sketches = block.scenes.map(sketch), begin = block.begin ? sketch(block.begin) : null;
     await book.need(library, [...sketches, ...(begin ? [begin] : [])]);

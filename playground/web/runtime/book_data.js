@@ -39,7 +39,7 @@ import { unpacked } from "./images.js";
  *  @property {string} [broken]
  *  @property {Setting} [begin]         of an exercise */
 
-/** @typedef {Sketch & {kernels: any[]}} Stored  its kernels are numbers in the book */
+/** @typedef {Omit<Sketch, "kernels"> & {kernels: number[]}} Stored  its kernels are numbers in the book */
 /** @typedef {{sketches: Stored[], blocks: Object<string, LiveBlock>}} LessonData */
 /** @typedef {Shared & {kernels: Kernel[]}} Library */
 

@@ -3,6 +3,7 @@
 import { makeRow } from "./controls.js";
 import { button, make } from "./dom.js";
 import { createFigure } from "./figure.js";
+import { labelOf } from "./panel.js";
 import { createSession } from "./session.js";
 import { createTimeline, hasTime } from "./timeline.js";
 
@@ -55,7 +56,7 @@ export function makeRows(session, paths, words) {
   for (const path of paths) {
     const one = session.row(path);
     if (!one) continue;
-    const row = makeRow(one, one.label, {
+    const row = makeRow(one, labelOf(one.label), {
       words,
       changed: (value) => session.set(path, value),
       reset: () => session.reset(path),
