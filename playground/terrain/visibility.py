@@ -1,7 +1,12 @@
-"""Find which boxes around tiles a view sees, how deep they lie, and how long a metre looks there."""
+"""Find which boxes around tiles a view sees, how deep they lie, and how long a metre looks there.
+
+Like the camera's, these numbers are the same on every machine and in a browser (visibility.js).
+"""
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -32,9 +37,9 @@ class View:
     @property
     def near(self) -> float:
         """Depth [m] of the plane before which nothing is drawn."""
-        ahead = self.clip_from_world[3, :3]
-        along = float(self.clip_from_world[2, :3] @ ahead / (ahead @ ahead))
-        return float(-(self.clip_from_world[2] @ (*self.eye, 1.0)) / (1.0 + along))
+        ahead, depth = self._row(3), self._row(2)
+        along = _dot(depth, ahead) / _dot(ahead, ahead)
+        return -(_dot(depth, self.eye) + depth[3]) / (1.0 + along)
 
     @property
     def pixels(self) -> float:
@@ -44,23 +49,25 @@ class View:
         middle. Moved by a short way (a, b, c) at depth z it moves by (a - x c, b - y c) / z,
         whose length is greatest in a corner of the picture.
         """
-        across, upright, ahead = (self.clip_from_world[k, :3] for k in (0, 1, 3))
-        wide, tall = 1.0 / np.linalg.norm(across), 1.0 / np.linalg.norm(upright)
-        scale = self.size[0] / (2.0 * wide), self.size[1] / (2.0 * tall)
-        moved = across[2] * wide, upright[2] * tall, ahead[2]
-        corners = ((x, y) for x in (-wide, wide) for y in (-tall, tall))
-        return float(
-            max(
-                np.hypot(scale[0] * (moved[0] - x * moved[2]), scale[1] * (moved[1] - y * moved[2]))
-                for x, y in corners
-            )
-        )
+        across, upright, ahead = (self._row(k) for k in (0, 1, 3))
+        wide, tall = 1.0 / math.sqrt(_dot(across, across)), 1.0 / math.sqrt(_dot(upright, upright))
+        lengths = []
+        for x in (-wide, wide):
+            for y in (-tall, tall):
+                right = (self.size[0] / (2.0 * wide)) * (across[2] * wide - x * ahead[2])
+                up = (self.size[1] / (2.0 * tall)) * (upright[2] * tall - y * ahead[2])
+                lengths.append(math.sqrt(right * right + up * up))
+        return max(lengths)
 
     @property
     def stretch(self) -> float:
         """How much further than it is deep a place in the picture may be."""
-        across, upright = (self.clip_from_world[k, :3] for k in (0, 1))
-        return float(np.sqrt(1.0 + 1.0 / (across @ across) + 1.0 / (upright @ upright)))
+        across, upright = self._row(0), self._row(1)
+        return math.sqrt(1.0 + 1.0 / _dot(across, across) + 1.0 / _dot(upright, upright))
+
+    def _row(self, number: int) -> list[float]:
+        row: list[float] = self.clip_from_world[number].tolist()
+        return row
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +94,8 @@ class Boxes:
     @property
     def longest(self) -> float:
         """The largest that a diagonal of any box can be [m]."""
-        return float(
-            np.linalg.norm([np.ptp(side, axis=0).max() for side in (self.east, self.north, self.up)])
-        )
+        x, y, z = (float(np.ptp(side, axis=0).max()) for side in (self.east, self.north, self.up))
+        return math.sqrt(x * x + y * y + z * z)
 
     def distances(self, eye: tuple[float, float, float]) -> tuple[Floats, Floats]:
         """Return how far [m] the eye is from each box's nearest place, and from its furthest."""
@@ -113,6 +119,11 @@ class Boxes:
         How deep a wall goes is the draw's to say; none goes deeper than this, or than the terrain itself.
         """
         return replace(self, up=np.stack([np.minimum(self.up[0], -max(view.extent)), self.up[1]]))
+
+
+def _dot(one: Sequence[float], other: Sequence[float]) -> float:
+    """Return the product of the first three numbers of each."""
+    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
 
 
 def _length(east: Floats, north: Floats, up: Floats) -> Floats:
