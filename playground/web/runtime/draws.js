@@ -7,7 +7,7 @@ import { failure } from "./context.js";
 import { whole } from "./expressions.js";
 import { isSize } from "./binder.js";
 import { buildMesh, meshKey } from "./meshes.js";
-import { choose, inputsOf } from "./level_of_detail.js";
+import { choose, CHOSEN_BY } from "./detail.js";
 import { ranges } from "./tiles.js";
 
 /** @typedef {import("./kernels.js").Job} Job */
@@ -48,7 +48,7 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
   const meshOf = (job) => {
     const { step } = job, { kernel } = step, name = /** @type {string} */ (kernel.mesh), values = { ...step.values };
     if (kernel.count !== undefined) values.count = whole(kernel.count, kernels.namesOf(job));
-    const key = `${name} ${JSON.stringify(meshKey(name, values))}`, known = meshes.get(key);
+    const key = meshKey(name, values), known = meshes.get(key);
     meshes.delete(key);
     if (known) {
       meshes.set(key, known);
@@ -61,7 +61,7 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
       attributes: Object.entries(attributes).map(([attribute, { size, data }]) =>
         [attribute, size, buffer(gl.ARRAY_BUFFER, data)]),
       indices: buffer(gl.ELEMENT_ARRAY_BUFFER, indices),
-      tiles: inputsOf(name) ? make("Buffer") : null,
+      tiles: name in CHOSEN_BY ? make("Buffer") : null,
     };
     meshes.set(key, made);
     if (meshes.size > MOST_MESHES) release(/** @type {Mesh} */ (meshes.values().next().value));
@@ -110,7 +110,7 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
   /** Return what to draw of a mesh with levels of detail. @param {Job} job */
   const chosenOf = (job) => {
     const { step, given } = job, mesh = /** @type {string} */ (step.kernel.mesh);
-    const tables = () => Object.fromEntries((inputsOf(mesh) || []).map((name) => [name, tableOf(job, name)]));
+    const tables = () => Object.fromEntries(CHOSEN_BY[mesh].map((name) => [name, tableOf(job, name)]));
     const view = {
       clipFromWorld: given.clip_from_world, eye: given.eye, extent: given.extent, relief: given.relief, size: step.size,
     };
@@ -185,9 +185,10 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
   /** Draw each piece once for all of its tiles.
    *  @param {Mesh} mesh @param {{runs: [string, number][], places: Float32Array}} chosen */
   const drawTiles = (mesh, { runs, places }) => {
+    const known = ranges();
     let done = 0;
     for (const [piece, count] of runs) {
-      const [first, length] = ranges()[piece] || [0, mesh.length];
+      const [first, length] = known.get(piece) || [0, mesh.length];
       gl.bindBuffer(gl.ARRAY_BUFFER, mesh.tiles);
       gl.bufferData(gl.ARRAY_BUFFER, places.subarray(4 * done, 4 * (done + count)), gl.DYNAMIC_DRAW);
       gl.drawElementsInstanced(gl.TRIANGLES, length, gl.UNSIGNED_INT, 4 * first, count);
