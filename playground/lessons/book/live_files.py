@@ -2,8 +2,8 @@
 
 live.js, live.css   the runtime, once for all pages
 glsl.js             shaders, kernels and what else all lessons share
-data/LESSON.js      the sketches and blocks of a lesson
-data/KEY.js         bytes: what sources give, images
+data/LESSON.js      the sketches and blocks of a lesson, and bytes that are few
+data/KEY.js         other bytes: what sources give, images
 
 A page opened from disk may add scripts and fetch nothing. So data are scripts of one line, and each
 holds gzip in base64.
@@ -25,6 +25,10 @@ from playground.web.bundle import read_bundle
 
 BUNDLES = {"live.js": "book.js", "live.css": "book.css"}
 """File of a book → bundle of the runtime."""
+
+
+FEW = 4096
+"""Letters of bytes that a lesson's own script holds, so that a book has no hundred small files."""
 
 
 @dataclass(frozen=True)
@@ -49,10 +53,25 @@ def live_book(lessons: Sequence[Lesson]) -> LiveBook:
 
 def _scripts(data: dict[str, dict[str, Any]], library: Library) -> Iterator[tuple[str, str]]:
     yield "glsl.js", script("glsl", packed(library.data()))
+    texts = library.shared.blobs.texts
+    few = {key for key, text in texts.items() if len(text) <= FEW}
     for lesson, found in data.items():
-        yield f"data/{lesson}.js", script(f"data/{lesson}", packed(found))
-    for key, text in library.shared.blobs.texts.items():
-        yield f"data/{key}.js", script(f"data/{key}", text)
+        blobs = {key: texts[key] for key in sorted(few & blobs_in(found, library))}
+        yield f"data/{lesson}.js", script(f"data/{lesson}", packed({**found, "blobs": blobs}))
+    for key in texts.keys() - few:
+        yield f"data/{key}.js", script(f"data/{key}", texts[key])
+
+
+def blobs_in(data: Any, library: Library) -> set[str]:
+    """Return the keys of the bytes that are named anywhere in a lesson's data, by themselves or by an image."""
+    if isinstance(data, dict):
+        return set().union(*(blobs_in(of, library) for of in data.values()))
+    if isinstance(data, list):
+        return set().union(*(blobs_in(of, library) for of in data))
+    if not isinstance(data, str):
+        return set()
+    image = library.shared.images.data.get(data)
+    return {image["blob"]} if image else {data} & library.shared.blobs.texts.keys()
 
 
 def packed(data: Any) -> str:

@@ -38,6 +38,7 @@ export async function start(root, folder, lesson) {
   try {
     book ??= openBook(folder);
     const [library, data] = await Promise.all([book.library(), book.lesson(lesson)]);
+    Object.assign(library.blobs, data.blobs);
     const block = data.blocks[root.dataset.block ?? ""];
     const sketch = (/** @type {import("./book_data.js").Setting} */ setting) => settled(data.sketches[setting.sketch], setting, library.kernels);
     const sketches = block.scenes.map(sketch), begin = block.begin ? sketch(block.begin) : null;

@@ -40,7 +40,7 @@ import { unpacked } from "./images.js";
  *  @property {Setting} [begin]         of an exercise */
 
 /** @typedef {Omit<Sketch, "kernels"> & {kernels: number[]}} Stored  its kernels are numbers in the book */
-/** @typedef {{sketches: Stored[], blocks: Object<string, LiveBlock>}} LessonData */
+/** @typedef {{sketches: Stored[], blocks: Object<string, LiveBlock>, blobs: Object<string, string>}} LessonData */
 /** @typedef {Shared & {kernels: Kernel[]}} Library */
 
 /** A scene as a sketch of its own.
@@ -115,7 +115,7 @@ export function openBook(folder) {
     },
     /** @param {string} name @returns {Promise<LessonData>} */
     lesson: (name) => json(`data/${name}`),
-    /** Load the bytes that sketches need into what they share. @param {Library} library @param {Sketch[]} sketches */
+    /** Load the bytes that sketches need into what they share, but for those that are there. @param {Library} library @param {Sketch[]} sketches */
     async need(library, sketches) {
       const keys = new Set(sketches.flatMap((sketch) => blobsOf(sketch, library)));
       await Promise.all([...keys].map(async (key) => { library.blobs[key] ??= await text(`data/${key}`); }));

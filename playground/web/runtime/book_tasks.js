@@ -50,7 +50,7 @@ export async function liveBreak(room) {
   editor.append(status, problems);
   host.append(make("div", { className: "buttons" }, button(words.restore, () => field.replace(broken)), makeReset(session, words)));
   field.open(broken, words.lines, broken);
-  field.area.rows = broken.split("\n").length + 1;
+  editor.style.setProperty("--lines", String(broken.split("\n").length));
   const check = await createCheck(engine, sketches[0], session.state());
   await figure.start();
   await tried();
