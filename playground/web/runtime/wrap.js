@@ -13,7 +13,8 @@ export function stageText(stage, flat) {
   const before = (stage.before ?? [])
     .filter(({ names }) => !names || names.some((name) => flat.names.has(name)))
     .map(({ text }) => `${text}\n`).join("");
-  return { text: before + linesOf(stage, flat) + (stage.after ?? ""), first: before.split("\n").length };
+  const after = stage.after ? `${stage.after}\n` : "";
+  return { text: before + linesOf(stage, flat) + after, first: before.split("\n").length };
 }
 
 /** The kernel's lines as a stage has them.
