@@ -63,7 +63,7 @@ def _scripts(data: dict[str, dict[str, Any]], library: Library) -> Iterator[tupl
 
 
 def blobs_in(data: Any, library: Library) -> set[str]:
-    """Return the keys of the bytes that are named anywhere in a lesson's data, by themselves or by an image."""
+    """Return the keys of the bytes that a lesson's data name, by themselves or by an image."""
     if isinstance(data, dict):
         return set().union(*(blobs_in(of, library) for of in data.values()))
     if isinstance(data, list):
