@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 from collections import Counter
 from collections.abc import Generator, Iterator
 from pathlib import Path
@@ -13,6 +14,11 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.gpu.context import open_context
+
+# Where Mesa puts compiled shaders without this variable, named so that a test or a process of one with
+# a home or caches of its own finds there what is compiled already: that takes most of a cold run.
+MESA_CACHE = os.environ.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
+os.environ.setdefault("MESA_SHADER_CACHE_DIR", MESA_CACHE)
 
 pytest_plugins = ["pytester"]
 
@@ -30,6 +36,32 @@ OBJECTS = (
     moderngl.ComputeShader,
     moderngl.Sampler,
 )
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--once-below",
+        metavar="FOLDER",
+        action="append",
+        default=[],
+        help="below this folder run each test with its first parameters only; may be given several times",
+    )
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave out what ``--once-below`` leaves out, of those that markers have left."""
+    folders = [(ROOT / name).resolve() for name in config.getoption("--once-below")]
+    met: set[str] = set()
+    run, again = [], []
+    for item in items:
+        test = item.nodeid.partition("[")[0]
+        once = any(item.path.is_relative_to(folder) for folder in folders)
+        (again if once and test in met else run).append(item)
+        met.add(test)
+    if again:
+        config.hook.pytest_deselected(items=again)
+        items[:] = run
 
 
 @pytest.hookimpl(wrapper=True)

@@ -175,7 +175,7 @@ def test_only_live_has_a_window():
 FRESH = """
 import sys
 import playground
-slow = {"moderngl", "glcontext", "glfw", "numpy", "imgui_bundle", "PIL", "typer", "rich"}
+slow = {"moderngl", "glcontext", "glfw", "numpy", "imgui_bundle", "PIL", "pyrr", "typer", "rich"}
 heavy = sorted(slow & set(sys.modules))
 print(",".join(heavy), playground.__version__)
 """

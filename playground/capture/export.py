@@ -20,13 +20,24 @@ from playground.api import headless
 from playground.capture.atomic_group import write_together
 from playground.capture.export_options import Form, bits_for, check, sidecar_paths
 from playground.capture.export_textures import height_of, kind_of
-from playground.capture.extensions import COLOUR, HEIGHT, MESHES, NUMBERS, PICTURES, RAW, SHADERS, USUAL_GRID
+from playground.capture.extensions import (
+    COLOUR,
+    HEIGHT,
+    MESHES,
+    NUMBERS,
+    PAGES,
+    PICTURES,
+    RAW,
+    SHADERS,
+    USUAL_GRID,
+)
 from playground.capture.gltf import encode_glb
 from playground.capture.mesh import grid_of, sampled, terrain_mesh
 from playground.capture.obj import encode_mtl, encode_obj
 from playground.capture.shader_export.es_check import check_es
 from playground.capture.shader_export.export import ShaderFiles, shader_files
 from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode, encode_picture
+from playground.capture.web_page import WebPage, page_bytes, prepare_page
 from playground.engine.engine import Engine, opened
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import view_input
@@ -61,6 +72,7 @@ class ExportJob:
     height: str = ""  # of a mesh
     light: str = ""  # to bake in
     shader: ShaderFiles | None = None  # its text, where it is a shader
+    page: WebPage | None = None  # its data, where it is a web page
 
     @property
     def ending(self) -> str:
@@ -78,6 +90,7 @@ def export(
     span: tuple[float, float] | None = None,
     grid: int = 0,
     light: bool = False,
+    techniques: Mapping[str, tuple[str, ...]] | None = None,
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
     engine: Engine | None = None,
@@ -86,14 +99,22 @@ def export(
 
     ``.png``, ``.r16``, ``.r32``, ``.tif``, ``.exr`` and ``.npy`` hold the heights, in metres, or
     the ``texture`` named; ``.webp`` and ``.jpg`` colours; ``.glb`` and ``.obj`` the terrain with its
-    texture; ``.fs``, ``.frag``, ``.json`` and ``.glsl`` the picture, or a texture, as a shader. Rows come
-    from the north. The other arguments are those of ``Form``; ``time``, in seconds, and ``steps`` are as
-    in ``Engine.render``. A file of that name is replaced, whole or not at all. Without an ``engine`` one
-    is opened.
+    texture; ``.fs``, ``.frag``, ``.json`` and ``.glsl`` the picture, or a texture, as a shader; ``.html`` is
+    a web page in which the whole sketch runs. Rows come from the north. The other arguments are those
+    of ``Form``; ``time``, in seconds, and ``steps`` are as in ``Engine.render``. A file of that name is
+    replaced, whole or not at all. Without an ``engine`` one is opened.
 
     Raises ``PlaygroundError`` for any mistake in the arguments, or a file that cannot be written.
     """
-    form = Form(texture=texture, kind=kind, bits=bits, span=span, grid=grid, light=light)
+    form = Form(
+        texture=texture,
+        kind=kind,
+        bits=bits,
+        span=span,
+        grid=grid,
+        light=light,
+        techniques=techniques or {},
+    )
     found = opened(sketch)
     check(Path(path), form)
     with nullcontext(engine) if engine is not None else headless() as used:
@@ -108,9 +129,17 @@ def prepare(
     *,
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
+    frame: tuple[int, int] | None = None,
 ) -> ExportJob:
-    """Resolve the textures that an export needs; raise ``PlaygroundError`` where there are none."""
+    """Resolve the textures that an export needs; raise ``PlaygroundError`` where there are none.
+
+    ``frame`` is the size in pixels that a web page begins with, where it is not the usual one.
+    """
     check(path, form)
+    if path.suffix.lower() in PAGES:
+        plan = engine.plan_for(sketch, frame or DEFAULT_PICTURE, time, steps)
+        page = prepare_page(sketch, path, form.techniques, frame=frame, time=time, steps=steps)
+        return ExportJob(sketch=sketch, path=path, form=form, plan=plan, texture="", kind="", page=page)
     if path.suffix.lower() in SHADERS:
         return _prepare_shader(engine, sketch, path, form, time, steps)
     plan = engine.plan_for(sketch, DEFAULT_PICTURE, time, steps)
@@ -172,6 +201,10 @@ def run(engine: Engine, job: ExportJob) -> Exported:
         write_together(job.shader.files)
         sidecars = tuple(path for path in job.shader.files if path != job.path)
         return Exported(job.path, job.shader.summary, sidecars, job.shader.warnings)
+    if job.page is not None:
+        html, summary = page_bytes(engine, job.sketch, job.page)
+        write_together({job.path: html})
+        return Exported(job.path, summary, (), job.page.warnings)
     return _write_mesh(engine, job) if job.ending in MESHES else _write_values(engine, job)
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.capture.atomic_group import refuse_foreign_files
@@ -14,6 +15,7 @@ from playground.capture.extensions import (
     KINDS,
     MESHES,
     NUMBERS,
+    PAGES,
     RAW,
     SHADERS,
     VALUES,
@@ -33,6 +35,8 @@ class Form:
     span: tuple[float, float] | None = None  # what 0 and the largest whole number mean
     grid: int = 0  # vertices of a mesh's longer side; 0: as many as the terrain has texels, up to 513
     light: bool = False  # multiply a mesh's texture by the light
+    techniques: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # of a web page: what else may
+    # fill a pass, by the pass; none listed: all that fits
 
 
 def check(path: Path, form: Form) -> None:
@@ -50,7 +54,11 @@ def check(path: Path, form: Form) -> None:
         low, high = form.span
         if not (math.isfinite(low) and math.isfinite(high) and low < high):
             raise ParameterError(f"a range from {low:g} to {high:g}; expected two numbers, the lower first")
-    if ending in SHADERS:
+    if form.techniques and ending not in PAGES:
+        raise DataError("menus of techniques are for a web page: .html", file=path)
+    if ending in PAGES:
+        _check_page(path, form)
+    elif ending in SHADERS:
         _check_shader(path, form)
     elif ending in MESHES:
         _check_mesh(path, form)
@@ -63,7 +71,13 @@ def _no_ending(ending: str) -> str:
     listed = f"; expected one of {', '.join(ENDINGS)}"
     if not ending:
         return f"the name has no ending{listed}"
-    usual = {".gltf": ".glb", ".isf": ".fs", ".shadertoy": ".json", ".fragment": ".frag"}.get(ending)
+    usual = {
+        ".gltf": ".glb",
+        ".isf": ".fs",
+        ".shadertoy": ".json",
+        ".fragment": ".frag",
+        ".htm": ".html",
+    }.get(ending)
     near = f"; did you mean '{usual}'?" if usual else nearest(ending, ENDINGS)
     return f"nothing is exported as '{ending}'{near if 'did you mean' in near else listed}"
 
@@ -75,6 +89,20 @@ def _check_mesh(path: Path, form: Form) -> None:
         raise ParameterError(f"a grid of {form.grid} vertices a side: {ending} takes 2 to {most}")
     if form.bits or form.span:
         raise DataError("a mesh has no bits and no range to choose; its heights are floats", file=path)
+
+
+def _check_page(path: Path, form: Form) -> None:
+    for name, value in (
+        ("one texture", form.texture or form.kind),
+        ("a grid", form.grid),
+        ("light baked in", form.light),
+        ("bits", form.bits),
+        ("a range", form.span),
+    ):
+        if value:
+            raise DataError(
+                f"a web page has the whole sketch; {name} is nothing it could be given", file=path
+            )
 
 
 def _check_shader(path: Path, form: Form) -> None:

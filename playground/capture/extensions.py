@@ -37,7 +37,10 @@ USUAL_GRID = 513
 ISF, SHADERTOY_TEXT, SHADERTOY_EXPORT, STANDALONE = SHADERS = (".fs", ".frag", ".json", ".glsl")
 """Shaders of other tools: ISF, one Shadertoy pass, a Shadertoy export, a fragment shader of its own."""
 
-ENDINGS = (*VALUES, *MESHES, *SHADERS)
+PAGES = (".html",)
+"""A web page: one file in which the sketch runs."""
+
+ENDINGS = (*VALUES, *MESHES, *SHADERS, *PAGES)
 
 
 def whole_numbers(ending: str, bits: int) -> bool:

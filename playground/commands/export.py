@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from playground.capture.extensions import KINDS, MESHES, SHADERS, USUAL_GRID, VALUES
+from playground.capture.extensions import ENDINGS, KINDS, USUAL_GRID
 from playground.commands import options
 from playground.commands.arguments import (
     Moment,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 
 HELP = help_text(
-    "Export a sketch's terrain, or its shader, for other programs, and print the paths of the files.\n\n"
+    "Export a sketch's terrain, its shader, or all of it as a web page, and print the paths of the files.\n\n"
     "Without --texture, .png, .tif, .r16, .raw, .r32, .exr and .npy hold the heights: metres above sea"
     " level as floats, or 16-bit numbers from the lowest to the highest, and a note says which heights those"
     " are. With it, they hold that texture; .png, .webp and .jpg encode colours as sRGB. The first row is"
@@ -41,7 +41,9 @@ HELP = help_text(
     " the terrain's middle at x = z = 0, sea level at y = 0.\n\n"
     ".fs (ISF), .frag (a Shadertoy text of one pass), .json (a Shadertoy export: up to four buffers, an Image"
     " and what they share) and .glsl (a fragment shader of its own) hold the picture as a shader, or with"
-    " --texture one texture. What cannot leave is named, and nothing is written.",
+    " --texture one texture. What cannot leave is named, and nothing is written.\n\n"
+    ".html is a web page: one file that anybody can open, without a network, in which the sketch runs, can"
+    " be turned, set and edited. With --technique the page has menus of techniques.",
     "playground export jacksboro",
     "playground export jacksboro --to terrain.png --to terrain.tif",
     "playground export diamond_square --set size=1025 --to terrain.r16",
@@ -50,6 +52,8 @@ HELP = help_text(
     "playground export jacksboro --preset evening --light --to terrain.obj",
     "playground export fbm --texture height --to hills.json",
     "playground export deterministic_fractal --to fractal.fs",
+    "playground export jacksboro --to page.html",
+    "playground export fbm --technique height=generation/fbm,generation/mixed --to noise.html",
 )
 
 
@@ -60,7 +64,7 @@ def export(
         list[str] | None,
         value(
             "-o --to FILE",
-            f"A file to write, ending in {either([*VALUES, *MESHES, *SHADERS])}. May be repeated."
+            f"A file to write, ending in {either(ENDINGS)}. May be repeated."
             " Without it, a .glb of a new name in this folder.",
         ),
     ] = None,
@@ -96,6 +100,14 @@ def export(
     light: Annotated[
         bool, flag("--light", "Bake the light into a mesh's texture, and ask for no other light.")
     ] = False,
+    technique: Annotated[
+        list[str] | None,
+        value(
+            "--technique PASS[=NAME,…]",
+            "In a web page, a menu of techniques for this pass: those named, or all that fit."
+            " May be repeated.",
+        ),
+    ] = None,
     settings: options.Set = None,
     shot: Annotated[str, value("--shot NAME", "Export the terrain of a shot of the sketch.")] = "",
     preset: options.Preset = "",
@@ -117,6 +129,7 @@ def export(
         span=_read_span(span),
         grid=_read_whole("--grid", grid),
         light=light,
+        techniques=_read_techniques(technique or []),
     )
     values, stops, seconds = read_values(settings), read_steps(steps), read_seconds(time)
     runs_by = read_driver(driver)
@@ -143,7 +156,10 @@ def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: 
         stack.enter_context(busy(f"exporting {sketch.name}"))
         engine = stack.enter_context(renderer.open_engine(driver=driver))
         # Every file is prepared before the first is written.
-        jobs = [prepare(engine, sketch, path, form, time=moment.time, steps=moment.steps) for path in paths]
+        jobs = [
+            prepare(engine, sketch, path, form, time=moment.time, steps=moment.steps, frame=moment.size)
+            for path in paths
+        ]
         for job in jobs:
             done = run(engine, job)
             note(f"{done.path.name}: {done.summary}")
@@ -167,6 +183,23 @@ def _refuse_twins(paths: list[Path]) -> None:
 
 def _read_whole(name: str, text: str) -> int:
     return read_option(name, text, within(1, 10**6 - 1), "a whole number above 0") or 0
+
+
+def _read_techniques(texts: list[str]) -> dict[str, tuple[str, ...]]:
+    """Return techniques by pass; none for a pass: all that fit."""
+    found: dict[str, tuple[str, ...]] = {}
+    for text in texts:
+        name, equals, listed = text.partition("=")
+        uses = tuple(use.strip() for use in listed.split(",") if use.strip())
+        if not name.strip() or (equals and not uses):
+            message = f"--technique {text}: expected a pass, as height, or with techniques,"
+            raise ParameterError(f"{message} as height=generation/fbm,generation/mixed")
+        if name.strip() in found:
+            raise ParameterError(
+                f"--technique {name.strip()} is given twice; list its techniques with commas"
+            )
+        found[name.strip()] = uses
+    return found
 
 
 def _read_span(text: str) -> tuple[float, float] | None:

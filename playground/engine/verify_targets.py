@@ -10,7 +10,7 @@ from playground.engine.verify import Place, Verdict, places_in, places_of
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.images.files import replacing
 from playground.paths import GLSL, shown
-from playground.sketch.allowed_files import FAST, canonical_of, is_variant, root_of
+from playground.sketch.allowed_files import FAST, canonical_of, is_variant, looking_once, root_of
 from playground.sketch.find import find, shipped_names, shipped_sketches
 from playground.sketch.load import load
 from playground.sketch.model import Graph, Technique, Variant
@@ -27,6 +27,7 @@ class Subject:
     places: tuple[Place, ...]
 
 
+@looking_once()
 def subjects(what: str, picture: Path) -> list[Subject]:
     """Return the fast variants that ``what`` means; raise ``SketchError`` where there are none.
 

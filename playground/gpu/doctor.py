@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import moderngl
 
 PACKAGES = (
-    "moderngl", "glcontext", "glfw", "imgui-bundle", "numpy", "pillow", "rich", "tifffile", "typer",
+    "moderngl", "glcontext", "glfw", "imgui-bundle", "numpy", "pillow", "pyrr", "rich", "tifffile", "typer",
     "watchfiles",
 )  # fmt: skip
 _LIMITS = {

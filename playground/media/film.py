@@ -85,6 +85,11 @@ class Film:
         """How many frames it has."""
         return len(self._index.times)
 
+    @property
+    def times(self) -> tuple[float, ...]:
+        """Seconds after the first frame's time at which each frame begins."""
+        return self._index.times
+
     def frame_at(self, seconds: float, *, loop: bool) -> int:
         """Return which frame, from 0, is shown at a time after the first frame's.
 

@@ -7,9 +7,11 @@ that the user types are the user's own affair and are not judged here.
 from __future__ import annotations
 
 import os
+import stat
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
+from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import TypeVar
 
@@ -28,14 +30,26 @@ FAST = (".comp", ".fast.toml")
 """Endings of fast variants, in the folder of the technique of their name; the fastest first."""
 
 _MOST_FOLDERS = 500
+_SPELLS_NAMES = os.name == "nt"  # following links there gives names as the disk spells them
 
 T = TypeVar("T")
 
 Signature = tuple[int, int, int]
 """Inode, time of change [ns] and size of a file: what differs when it was saved since."""
 
+
+@dataclass(slots=True)
+class _State:
+    """What one load has found out about files."""
+
+    links: dict[Path, Path | None] = field(default_factory=dict)  # where paths lead
+    files: dict[Path, bool] = field(default_factory=dict)  # whether a file is there
+    texts: dict[tuple[Path, bool], str] = field(default_factory=dict)  # by path and whether in any encoding
+    signatures: dict[Path, Signature | None] = field(default_factory=dict)  # from before the first look
+
+
 _noted: ContextVar[dict[Path, Signature | None] | None] = ContextVar("noted", default=None)
-_led: ContextVar[dict[Path, Path | None] | None] = ContextVar("led", default=None)
+_state: ContextVar[_State | None] = ContextVar("state", default=None)
 
 
 @contextmanager
@@ -43,22 +57,30 @@ def noting_places() -> Iterator[dict[Path, Signature | None]]:
     """Note every place where a file was looked for, and the signature of what was there, None for nothing.
 
     The same places give the same sketch: who watches them misses no file that comes, goes or
-    changes, nor one that takes precedence over another from then on. Meanwhile links are
-    followed once each.
+    changes, nor one that takes precedence over another from then on. Meanwhile each file is
+    looked at once.
     """
     found: dict[Path, Signature | None] = {}
-    with _set(_noted, found), _set(_led, {}):
+    with _set(_noted, found), _set(_state, _State()):
         yield found
 
 
 @contextmanager
-def following_links_once() -> Iterator[None]:
-    """Follow the links of each path once, from here on until the outermost of these ends.
+def looking_once() -> Iterator[None]:
+    """Follow links, look for files and read texts once each, from here on until the outermost of these ends.
 
     A sketch names hundreds of places in a few folders, most of them several times.
     """
-    with _set(_led, {} if (known := _led.get()) is None else known):
+    with _set(_state, _State() if (known := _state.get()) is None else known):
         yield
+
+
+def texts_of_load() -> dict[tuple[Path, bool], str] | None:
+    """Return the texts that this load has read, to be added to: by path and whether in any encoding.
+
+    None outside of a load, where a file is read each time.
+    """
+    return None if (state := _state.get()) is None else state.texts
 
 
 @contextmanager
@@ -92,36 +114,76 @@ def note_again(places: Mapping[Path, Signature | None]) -> None:
 def note(path: Path) -> None:
     """Note that a file is looked for at a place; before it is read, so that no save falls in between."""
     noted = _noted.get()
-    if noted is not None and path not in noted:
+    if noted is None or path in noted:
+        return
+    state = _state.get()
+    if state is None:
         noted[path] = signature(path)
+        return
+    if path not in state.signatures:  # what was found out before is of a time that no signature tells
+        state.signatures[path] = signature(path)
+        state.files.pop(path, None)
+        for any_encoding in (False, True):
+            state.texts.pop((path, any_encoding), None)
+    noted[path] = state.signatures[path]
 
 
 def signature(path: Path) -> Signature | None:
     """Return a file's signature; None where there is none."""
     try:
-        stat = path.stat()
+        found = path.stat()
     except (OSError, ValueError):
         return None
-    return stat.st_ino, stat.st_mtime_ns, stat.st_size
+    return found.st_ino, found.st_mtime_ns, found.st_size
 
 
 def real(path: Path) -> Path | None:
     """Return a path with its links followed; None for what can name no file (a NUL, links in a circle)."""
-    led = _led.get()
-    if led is not None and path in led:
-        return led[path]
+    state = _state.get()
+    if state is None:
+        return _followed(path)
+    if path not in state.links:
+        state.links[path] = _followed_from_folder(path, state)
+    return state.links[path]
+
+
+def _followed_from_folder(path: Path, state: _State) -> Path | None:
+    """Return what ``_followed`` does, by where the path's folder leads, which most others have in common."""
+    folder = real(path.parent) if path.is_absolute() and path.name not in ("", "..") else None
+    if folder is None or _SPELLS_NAMES:
+        return _followed(path)
     try:
-        found = path.resolve()
-    except (OSError, ValueError, RuntimeError):
-        found = None
-    if led is not None:
-        led[path] = found
+        mode = path.lstat().st_mode
+    except OSError:  # nothing is there
+        mode = 0
+    except ValueError:  # a NUL
+        return None
+    if stat.S_ISLNK(mode):
+        return _followed(path)
+    found = folder / path.name
+    state.files[path] = state.files[found] = stat.S_ISREG(mode)
     return found
+
+
+def _followed(path: Path) -> Path | None:
+    try:
+        return path.resolve()
+    except (OSError, ValueError, RuntimeError):
+        return None
 
 
 def is_file(path: Path) -> bool:
     """Return whether a file is there, also for names that no file can have."""
     note(path)
+    state = _state.get()
+    if state is None:
+        return _is_file(path)
+    if path not in state.files:
+        state.files[path] = _is_file(path)
+    return state.files[path]
+
+
+def _is_file(path: Path) -> bool:
     try:
         return path.is_file()
     except (OSError, ValueError):

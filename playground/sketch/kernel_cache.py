@@ -17,7 +17,7 @@ from playground.sketch.header import parse_kernel
 from playground.sketch.model import Kernel, Variant
 from playground.sketch.source import Origin, read_source_and_origin
 
-_MOST = 256
+_MOST = 1024  # the library has some three hundred, each read in its sketches' folders as well
 
 _parsed: OrderedDict[tuple[str, Path, tuple[Path, ...]], tuple[Kernel | None, Origin]] = OrderedDict()
 # What each was made of is referenced too, so that its identity is not given to another object.

@@ -13,10 +13,10 @@ from playground.errors import SketchError
 from playground.paths import DEFAULT_SKETCH, GLSL, SKETCHES, shown
 from playground.sketch.allowed_files import (
     SHADERS,
-    following_links_once,
     is_absolute,
     is_file,
     is_variant,
+    looking_once,
     root_of,
 )
 from playground.sketch.assign import effective_values, shown_parameters
@@ -51,7 +51,7 @@ def load(name: str | Path = "", *, dialect: str = "") -> Sketch:
     return load_with(Techniques(check_name(dialect)), name)
 
 
-@following_links_once()
+@looking_once()
 def load_with(techniques: Techniques, name: str | Path = "", text: str | None = None) -> Sketch:
     """Load a sketch as ``load`` does, but read again no technique that these techniques have read.
 

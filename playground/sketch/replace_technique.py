@@ -7,19 +7,19 @@ found out by drawing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
-from playground.sketch.allowed_files import TECHNIQUES
+from playground.sketch.allowed_files import TECHNIQUES, looking_once
 from playground.sketch.assign import current_path, find_targets, resolve
 from playground.sketch.composed import first_input, is_foreign, parts_of
 from playground.sketch.find import is_part, shipped_names
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Kernel, PassSpec, Sketch, Technique, Value
-from playground.sketch.techniques import read_technique
+from playground.sketch.techniques import Techniques
 from playground.sketch.values import coerce
 from playground.sketch.wiring import output_names, outputs_with_formats, takes_input
 
@@ -27,6 +27,7 @@ _ADAPTERS = "foreign/"
 """The folder of ``glsl/`` whose techniques with an input make something of another tool's picture."""
 
 
+@looking_once()
 def choices(sketch: Sketch, pass_name: str) -> list[str]:
     """List what may fill a pass, as ``use`` names it: the shipped, then the sketch's own (``./x``).
 
@@ -37,8 +38,9 @@ def choices(sketch: Sketch, pass_name: str) -> list[str]:
     outputs = set(output_names(spec.technique))
     whole = [name for name in shipped_names() if not is_part(name)]
     own = _own_names(sketch)
-    uses = dict.fromkeys([*whole, *own, *_adapted(sketch, spec, own, whole), spec.use])
-    return [use for use in uses if use == spec.use or _fits(sketch, spec, use, outputs)]
+    read = _reader(sketch)
+    uses = dict.fromkeys([*whole, *own, *_adapted(read, spec, own, whole), spec.use])
+    return [use for use in uses if use == spec.use or _fits(sketch, spec, use, outputs, read)]
 
 
 def with_technique(sketch: Sketch, pass_name: str, use: str) -> Sketch:
@@ -50,7 +52,7 @@ def with_technique(sketch: Sketch, pass_name: str, use: str) -> Sketch:
     spec = _pass(sketch, pass_name)
     if use == spec.use:
         return sketch
-    return _refilled(sketch, spec, use, _read(sketch, use))
+    return _refilled(sketch, spec, use, _reader(sketch)(use))
 
 
 def _pass(sketch: Sketch, name: str) -> PassSpec:
@@ -62,9 +64,10 @@ def _pass(sketch: Sketch, name: str) -> PassSpec:
     return spec
 
 
-def _read(sketch: Sketch, use: str) -> Technique:
-    folder = Path(sketch.folder)
-    return read_technique(use, folder, folder)
+def _reader(sketch: Sketch) -> Callable[[str], Technique]:
+    """Return what reads what ``use`` names in a sketch's folder, each technique once."""
+    folder, techniques = Path(sketch.folder), Techniques()
+    return lambda use: techniques.read(use, folder, folder)
 
 
 def _own_names(sketch: Sketch) -> list[str]:
@@ -73,33 +76,37 @@ def _own_names(sketch: Sketch) -> list[str]:
     return sorted({f"./{p.stem}" for p in files if p.is_file()})
 
 
-def _adapted(sketch: Sketch, spec: PassSpec, own: Sequence[str], whole: Sequence[str]) -> Iterator[str]:
+def _adapted(
+    read: Callable[[str], Technique], spec: PassSpec, own: Sequence[str], whole: Sequence[str]
+) -> Iterator[str]:
     """Yield other tools' shaders in the sketch's folder as they could fill a pass.
 
     In the view each is laid over what is there now, as a filter; elsewhere a technique of the library
     makes of its picture what the pass gives.
     """
-    foreign = [use for use in own if (found := _found(sketch, use)) is not None and is_foreign(found)]
+    foreign = [use for use in own if (found := _found(read, use)) is not None and is_foreign(found)]
     if spec.name == "view":
         parts = parts_of(spec.use)
-        under = parts[1] if parts and is_foreign(_read(sketch, parts[0])) else spec.use
+        under = parts[1] if parts and is_foreign(read(parts[0])) else spec.use
         yield under
-        yield from (f"{use}({under})" for use in foreign if use != under and first_input(_read(sketch, use)))
+        yield from (f"{use}({under})" for use in foreign if use != under and first_input(read(use)))
         return
-    adapters = [use for use in whole if use.startswith(_ADAPTERS) and first_input(_read(sketch, use))]
+    adapters = [use for use in whole if use.startswith(_ADAPTERS) and first_input(read(use))]
     yield from (f"{adapter}({use})" for adapter in adapters for use in foreign)
 
 
-def _found(sketch: Sketch, use: str) -> Technique | None:
+def _found(read: Callable[[str], Technique], use: str) -> Technique | None:
     """Return what ``use`` names; None where its files are wrong."""
     with suppress(PlaygroundError):
-        return _read(sketch, use)
+        return read(use)
     return None
 
 
-def _fits(sketch: Sketch, spec: PassSpec, use: str, outputs: set[str]) -> bool:
+def _fits(
+    sketch: Sketch, spec: PassSpec, use: str, outputs: set[str], read: Callable[[str], Technique]
+) -> bool:
     try:
-        technique = _read(sketch, use)
+        technique = read(use)
         if set(output_names(technique)) != outputs:
             return False
         if spec.name == "view" and _formats(technique) != _formats(spec.technique):

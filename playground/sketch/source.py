@@ -16,12 +16,21 @@ import stat
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.allowed_files import exists, is_file, is_inside, names_below, note, real
+from playground.sketch.allowed_files import (
+    exists,
+    is_file,
+    is_inside,
+    names_below,
+    note,
+    real,
+    texts_of_load,
+)
 from playground.sketch.libraries import how_to_name, libraries, library_around
 from playground.sketch.macro_calls import with_calls_joined
 
@@ -37,6 +46,7 @@ _MAX_DEPTH = 32
 _MAX_LINES = 200_000
 _MAX_INCLUDES = 4_096
 _MAX_BYTES = 8 * 2**20
+_SHORT = 2**16  # characters; what is in the lines of a longer text is not kept
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,6 +186,15 @@ def read_text(path: Path, *, any_encoding: bool = False) -> str:
     With ``any_encoding``, a text that is no UTF-8 is taken as Latin-1, where each byte is a character.
     """
     note(path)
+    known = texts_of_load()
+    if known is None:
+        return _text(path, any_encoding)
+    if (path, any_encoding) not in known:
+        known[path, any_encoding] = _text(path, any_encoding)
+    return known[path, any_encoding]
+
+
+def _text(path: Path, any_encoding: bool) -> str:
     data = b""
     try:
         state = path.stat()
@@ -228,28 +247,30 @@ class _Reader:
 
     def flatten(self, path: Path, text: str, chain: tuple[str, ...], stack: tuple[str, ...]) -> None:
         self.texts[str(path)] = text
-        in_block = False
-        physical = text.split("\n")
+        raw = text.split("\n")
+        file = str(path)
         number = 1
-        while number <= len(physical):
-            joined, count = _joined(physical, number - 1)
-            code, comment, in_block = _split_comments(joined, in_block)
-            include = _INCLUDE.match(code)
-            pragma = code.strip() if _OWN_PRAGMA.match(code) else ""
-            left_out = bool(_LINE.match(code))
-            blank = include or pragma or left_out
-            code = "" if blank else _BEYOND_ASCII.sub("?", code.translate(_WHITE))
-            line = Line(physical[number - 1], code, comment, str(path), number, chain, pragma, left_out)
+        for split in _split(text) if len(text) <= _SHORT else _split.__wrapped__(text):
+            line = Line(
+                raw[number - 1],
+                split.code,
+                split.comment,
+                file,
+                number,
+                chain,
+                split.pragma,
+                split.left_out,
+            )
             self.lines.append(line)
-            rest = physical[number : number + count - 1]
-            self.lines += [Line(raw, "", "", str(path), number + i, chain) for i, raw in enumerate(rest, 1)]
+            after = number + split.lines
+            self.lines += [Line(raw[i - 1], "", "", file, i, chain) for i in range(number + 1, after)]
             if len(self.lines) > _MAX_LINES:
                 raise line.error(
                     f"more than {_MAX_LINES} lines with its includes; is something included over and over?"
                 )
-            if include:
-                self.include(include, line, path, chain, stack)
-            number += count
+            if split.include:
+                self.include(split.include, line, path, chain, stack)
+            number = after
 
     def include(
         self, match: re.Match[str], line: Line, path: Path, chain: tuple[str, ...], stack: tuple[str, ...]
@@ -338,6 +359,35 @@ def _file_at(place: Path) -> Path | None:
     note(place)
     found = real(place)
     return found if found is not None and is_file(found) else None
+
+
+class _Split(NamedTuple):
+    """What is in a line, with those that its backslashes join to it."""
+
+    code: str
+    comment: str
+    include: re.Match[str] | None
+    pragma: str
+    left_out: bool
+    lines: int  # how many lines of the text
+
+
+@lru_cache(maxsize=512)
+def _split(text: str) -> tuple[_Split, ...]:
+    """Return what is in each line of a text: once, for many files include the same few."""
+    found = []
+    lines, index, in_block = text.split("\n"), 0, False
+    while index < len(lines):
+        joined, count = _joined(lines, index)
+        code, comment, in_block = _split_comments(joined, in_block)
+        include = _INCLUDE.match(code)
+        pragma = code.strip() if _OWN_PRAGMA.match(code) else ""
+        left_out = bool(_LINE.match(code))
+        blank = include or pragma or left_out
+        code = "" if blank else _BEYOND_ASCII.sub("?", code.translate(_WHITE))
+        found.append(_Split(code, comment, include, pragma, left_out, count))
+        index += count
+    return tuple(found)
 
 
 def _joined(lines: list[str], index: int) -> tuple[str, int]:

@@ -15,7 +15,9 @@ from playground.sketch.allowed_files import (
     is_inside,
     is_variant,
     leads_outside,
+    looking_once,
     names_below,
+    real,
     root_of,
 )
 from playground.sketch.canonical import content_of
@@ -79,6 +81,7 @@ def lonely_variant(path: Path) -> SketchError:
     )
 
 
+@looking_once()
 def shipped_techniques() -> list[str]:
     """List the names of the techniques in ``glsl/``: kernels, draws, sources and TOML techniques.
 
@@ -130,7 +133,7 @@ class Techniques:
 
         ``dialect`` is that of another tool, or "" to go by the text.
         """
-        path, kernel = path.resolve(), None
+        path, kernel = _followed(path), None
         wrong: ShaderError | EncodingError | None = None
         if dialect in ("", OWN):
             try:
@@ -149,7 +152,7 @@ class Techniques:
 
     def kernel(self, path: Path, folder: Path) -> Kernel | None:
         """Return the kernel of one GLSL file, as ``read_kernel`` does."""
-        path = path.resolve()
+        path = _followed(path)
         kernel = parsed_kernel(name_of(path), path, (folder,))
         if kernel is None:
             return None
@@ -162,11 +165,11 @@ class Techniques:
     def graph(self, path: Path, name: str, root: Path) -> Graph:
         """Return a technique of several passes, by the path of its TOML, with its fast variants."""
         graph = self._graph(path, name, root)
-        variants = self._variants(path.resolve(), graph, root)
+        variants = self._variants(_followed(path), graph, root)
         return replace(graph, variants=variants) if variants else graph
 
     def _graph(self, path: Path, name: str, root: Path) -> Graph:
-        path = path.resolve()
+        path = _followed(path)
         if path in self.open:
             circle = [*self.open[self.open.index(path) :], path]
             raise SketchError("techniques use each other in a circle: " + " → ".join(map(shown, circle)))
@@ -201,6 +204,10 @@ class Techniques:
         if agreed is None or agreed[0] == content_of(of):
             check_shape(found, of)  # else it is left out anyway
         return Variant(found, agreed, record)
+
+
+def _followed(path: Path) -> Path:
+    return real(path) or path.resolve()
 
 
 def name_of(path: Path) -> str:
@@ -252,7 +259,7 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
     if len(present) > 1:
         raise SketchError(f"use = '{use}' is both {shown(present[0])} and {shown(present[1])}; remove one")
     if present:
-        return present[0].resolve(), limit
+        return _followed(present[0]), limit
     ending = f" (without '{base.suffix}')" if base.suffix in TECHNIQUES else ""
     files = names_below((folder,), TECHNIQUES) if own else []
     names = [f"./{name.rpartition('.')[0]}" for name in files] if own else shipped_names()

@@ -6,6 +6,7 @@ import math
 import re
 import tomllib
 from collections.abc import Callable, Collection, Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +29,17 @@ _NOUNS = {
 }
 
 
+@lru_cache(maxsize=512)
+def _places_in(text: str) -> TomlPlaces:
+    """Return where everything is in a text: once, for a sketch is loaded again at every save."""
+    return TomlPlaces(text)
+
+
+@lru_cache(maxsize=512)
+def _table_of(text: str) -> Mapping[str, Any]:
+    return tomllib.loads(text)
+
+
 class TomlFile:
     """One TOML file being read; a place in it is keys and numbers, as ``"pass", 0, "use"``."""
 
@@ -43,9 +55,9 @@ class TomlFile:
         self._before = before
         if text is None:
             text = read_text(self.path)
-        self._places = TomlPlaces(text)
+        self._places = _places_in(text)
         try:
-            self.table: dict[str, Any] = tomllib.loads(text)
+            self.table: Mapping[str, Any] = _table_of(text)  # shared: never changed in place
         except tomllib.TOMLDecodeError as error:
             raise self._syntax(error, text) from None
         except RecursionError:

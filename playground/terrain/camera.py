@@ -13,6 +13,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+import pyrr
 from numpy.typing import NDArray
 
 from playground.sketch.model import Camera
@@ -64,13 +65,17 @@ def look(camera: Camera, extent: tuple[float, float], relief: float, size: tuple
     far = away + 2.0 * radius
     # At right angles to the eye's direction already, so that looking straight down is nothing special.
     right, up = (-north, east, 0.0), (-east * rise, -north * rise, level)
-    tall = _half_height(camera)
+    high = near * _half_height(camera)  # [m] half the height of what is in the picture, at the near plane
+    wide = high * aspect
+    lens = pyrr.matrix44.create_perspective_projection_from_bounds(
+        -wide, wide, -high, high, near, far, dtype=np.float64
+    ).tolist()  # its rows are columns here
     # The rows of world to view, each scaled as the lens does.
-    across = _row(right, 0.0, target, 1 / (tall * aspect))
-    upright = _row(up, 0.0, target, 1 / tall)
+    across = _row(right, 0.0, target, lens[0][0])
+    upright = _row(up, 0.0, target, lens[1][1])
     behind = _row(towards, distance, target, 1.0)
-    depth = [each * (-(far + near) / (far - near)) for each in behind]
-    depth[3] += -2 * far * near / (far - near)
+    depth = [each * lens[2][2] for each in behind]
+    depth[3] += lens[3][2]
     matrix = np.array([across, upright, depth, [-each for each in behind]], np.float32)
     return Eye(matrix, position, target, distance)
 

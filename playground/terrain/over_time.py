@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from math import floor
+from collections.abc import Iterator, Mapping
+from math import ceil, floor
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +14,11 @@ from playground.media import analysis
 from playground.media.film import Film, film_of
 from playground.media.now import Now
 from playground.media.sound import RATE, Sound, sound_of
+from playground.sketch.expressions import FRAME_RATE
 from playground.sketch.model import Value
 
 OUTPUT = "channel_texels"
+_EVERYTHING = 2**62  # [samples]
 _CHANNEL, _WAVES, _SPECTRUM = range(3)  # the choices of ``content``
 
 
@@ -40,6 +42,20 @@ def make_video(
 ) -> dict[str, NDArray[np.uint8]]:
     """Return the frame that ``moment_of_video`` named."""
     return {OUTPUT: _film(values).pixels(moment, size)}
+
+
+def frames_of_video(
+    values: Mapping[str, Value], size: tuple[int, int]
+) -> Iterator[tuple[float, Mapping[str, NDArray[np.uint8]]]]:
+    """Yield each frame of a film with the second at which it begins, from the film's beginning."""
+    film = _film(values)
+    for number, time in enumerate(film.times):
+        yield time, {OUTPUT: film.pixels(number, size)}
+
+
+def length_of_video(values: Mapping[str, Value]) -> float:
+    """Return the seconds of a film."""
+    return _film(values).duration
 
 
 def _sound(values: Mapping[str, Value]) -> Sound:
@@ -70,6 +86,26 @@ def make_sound(
     """Return what is shown of a sound before a sample: see ``media.analysis``."""
     heard = _sound(values).heard(moment, max(analysis.SPAN, size[0]), loop=bool(values["loop"]))
     return {OUTPUT: shown_of(heard, int(values["content"]), size)}  # type: ignore[arg-type]
+
+
+def frames_of_sound(
+    values: Mapping[str, Value], size: tuple[int, int]
+) -> Iterator[tuple[float, Mapping[str, NDArray[np.uint8]]]]:
+    """Yield what is shown of a sound at each sixtieth of a second from its beginning to its end."""
+    number, last = 0, None
+    while last is None or number <= last:
+        end = floor(number / FRAME_RATE * RATE + 1e-6)
+        length = _sound(values).length(end)
+        last = last if length is None else ceil((length + analysis.SPAN) / RATE * FRAME_RATE)
+        yield number / FRAME_RATE, make_sound(values, size, end)
+        number += 1
+
+
+def length_of_sound(values: Mapping[str, Value]) -> float:
+    """Return the seconds of a sound, all of which is decoded for it."""
+    sound = _sound(values)
+    sound.decode_until(_EVERYTHING)
+    return (sound.length(_EVERYTHING) or 0) / RATE
 
 
 def shown_of(heard: NDArray[np.float32], content: int, size: tuple[int, int]) -> NDArray[np.uint8]:

@@ -31,6 +31,10 @@ from playground.terrain.gaps import Voids, fill_no_data
 from playground.terrain.grid import Packing
 from playground.terrain.masks import read_mask
 from playground.terrain.over_time import (
+    frames_of_sound,
+    frames_of_video,
+    length_of_sound,
+    length_of_video,
     make_sound,
     make_video,
     moment_of_sound,
@@ -60,6 +64,22 @@ class Make(Protocol):
         """Return an array (ny, nx) or (ny, nx, channels) for each output: 0..1, or bytes of r8 formats."""
 
 
+Frames = Iterator[tuple[float, Mapping[str, NDArray[Any]]]]
+"""What a source makes, frame by frame, each with the second of the source's own at which it begins."""
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """What a source that plays a file has to play, whatever the time is: for who plays it elsewhere.
+
+    At a time it shows the second ``start + speed * time`` of the file, again and again where it loops.
+    """
+
+    frames: Callable[[Mapping[str, Value], tuple[int, int]], Frames]  # from the file's beginning
+    length: Callable[[Mapping[str, Value]], float]  # [s]
+    clock: Mapping[str, str]  # start, speed, loop → the parameters that say them
+
+
 @dataclass(frozen=True, slots=True)
 class SourceKind:
     """One entry of the registry."""
@@ -73,6 +93,7 @@ class SourceKind:
     # the image whose channels, where it has this size, are the texels of the one output as they are
     # What of now the texels depend on: its ``repr`` says all of it, and ``make`` gets it. None: nothing.
     moment: Callable[[Mapping[str, Value], Now], object] | None = None
+    recording: Recording | None = None  # of what plays a file
     # Texels, where the pass says none; None: those of the terrain.
     size: Callable[[Mapping[str, Value]], tuple[int, int] | None] = lambda values: None
     # Why nothing comes, where a window feeds it; "": something may.
@@ -211,6 +232,9 @@ SOURCES: dict[str, SourceKind] = {
         ("video",),
         ("video", "start", "speed", "loop"),
         moment=moment_of_video,
+        recording=Recording(
+            frames_of_video, length_of_video, {"start": "start", "speed": "speed", "loop": "loop"}
+        ),
         size=size_of_video,
     ),
     "sound_file": SourceKind(
@@ -219,6 +243,7 @@ SOURCES: dict[str, SourceKind] = {
         ("sound",),
         ("sound", "start", "loop", "content"),
         moment=moment_of_sound,
+        recording=Recording(frames_of_sound, length_of_sound, {"start": "start", "loop": "loop"}),
         size=size_of_sound,
     ),
     "keyboard": SourceKind(

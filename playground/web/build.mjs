@@ -8,7 +8,7 @@
 
 import { build } from "esbuild";
 import { createHash } from "node:crypto";
-import { mkdirSync, readFileSync, readdirSync, rmSync } from "node:fs";
+import { mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 
@@ -17,7 +17,7 @@ const HERE = dirname(fileURLToPath(import.meta.url));
 /** What runtime/ is bundled to: a classic script (iife) may be in a page that is opened from disk, where a
  *  module (esm) is refused.
  *  @type {Object<string, "iife" | "esm" | "css">} */
-const ENTRIES = { "book.js": "iife", "book.css": "css" };
+const ENTRIES = { "page.js": "iife", "page.css": "css", "book.js": "iife", "book.css": "css", "notebook.js": "esm", "notebook.css": "css" };
 
 /** A hash of the runtime's files and of what bundles them: names and bytes, in the order of their names. */
 function hashOfSources() {
@@ -29,31 +29,42 @@ function hashOfSources() {
   return hash.digest("hex").slice(0, 16);
 }
 
-/** @param {string} entry @param {"iife" | "esm" | "css"} kind @param {string} outfile */
-function bundled(entry, kind, outfile) {
-  const style = kind === "css";
-  return build({
+/** @param {string} entry @param {"iife" | "esm" | "css"} kind
+ *  @param {Partial<import("esbuild").BuildOptions>} more */
+async function bundled(entry, kind, more) {
+  const made = await build({
     entryPoints: [entry],
-    outfile,
     bundle: true,
-    minify: true,
+    write: false,
     target: "es2022",
     charset: "utf8",
     legalComments: "none",
     logLevel: "warning",
-    ...(style ? {} : { format: kind }),
+    ...(kind === "css" ? {} : { format: kind }),
     ...(kind === "iife" ? { globalName: "playground" } : {}),
-    banner: { [style ? "css" : "js"]: `/* sources ${hashOfSources()} */` },
+    ...more,
   });
+  return made.outputFiles[0].text;
+}
+
+/** A bundle as it ships: terser's is 6 % smaller, gzipped, than esbuild's, and takes a hundred times as long.
+ *  @param {string} entry @param {"iife" | "esm" | "css"} kind */
+async function smallest(entry, kind) {
+  if (kind === "css") return bundled(entry, kind, { minify: true });
+  const { minify } = await import("terser");
+  const text = await bundled(entry, kind, { minifySyntax: true });
+  const { code } = await minify(text, { ecma: 2020, module: kind === "esm", compress: { passes: 3 } });
+  return `${code}\n`;
 }
 
 const [file, out] = process.argv.slice(2);
 if (file && out) {
-  await bundled(file, "iife", out);
+  writeFileSync(out, await bundled(file, "iife", { minify: true }));
 } else {
   rmSync(join(HERE, "bundle"), { recursive: true, force: true });
   mkdirSync(join(HERE, "bundle"));
   for (const [name, kind] of Object.entries(ENTRIES)) {
-    await bundled(join(HERE, "runtime", name), kind, join(HERE, "bundle", name));
+    const text = await smallest(join(HERE, "runtime", name), kind);
+    writeFileSync(join(HERE, "bundle", name), `/* sources ${hashOfSources()} */\n${text}`);
   }
 }

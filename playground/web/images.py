@@ -66,5 +66,5 @@ def _lossless(pixels: NDArray[Any]) -> bytes:
         return b""
     stream = io.BytesIO()
     picture = PIL.Image.fromarray(np.ascontiguousarray(pixels[..., :3]))
-    picture.save(stream, "WEBP", lossless=True, quality=100, method=6)
+    picture.save(stream, "WEBP", lossless=True, quality=75, method=4)
     return stream.getvalue()

@@ -46,7 +46,7 @@ class Kernels:
         found: dict[str, Any] = {
             "name": _name(kernel),
             "kind": kernel.kind,
-            "file": self.texts.add(kernel.source, self.folder, kernel.name),
+            "file": self.texts.add(kernel.source, self.folder, _name(kernel)),
             "title": kernel.title,
             "outputs": [{"name": output.name, "format": output.format} for output in kernel.outputs],
             "inputs": [
@@ -91,7 +91,7 @@ class Kernels:
         found = {}
         for name, recipe in recipes.items():
             own = kernel.vertex_source if name == "vertex" else None
-            file = self.texts.add(own, self.folder, f"{kernel.name} vertex") if own else ""
+            file = self.texts.add(own, self.folder, f"{_name(kernel)} vertex") if own else ""
             found[name] = stage_data(recipe, file)
         return found
 

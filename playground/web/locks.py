@@ -42,10 +42,10 @@ class Locks:
         """Return why a parameter cannot be changed; "": it can."""
         for target in targets:
             leaf, _, name = target.rpartition(".")
-            if leaf in self.sources:
-                return f"{_made(self.sources[leaf])} was made when the page was exported"
+            if leaf in self.sources and not self._plays_by(leaf, name):
+                return f"{made_by(self.sources[leaf])} was made when the page was exported"
             if target in self._needed_by:
-                made = _made(self.sources[self._needed_by[target]])
+                made = made_by(self.sources[self._needed_by[target]])
                 return f"{made} was made in this size when the page was exported"
             kernel = next((one.kernel for one in self.flat.leaves if one.path == leaf), None)
             parameter = kernel.parameter(name) if kernel else None
@@ -57,16 +57,20 @@ class Locks:
         """Return why the terrain's size cannot be changed; "": it can."""
         if TERRAIN not in self._needed_by:
             return ""
-        made = _made(self.sources[self._needed_by[TERRAIN]])
+        made = made_by(self.sources[self._needed_by[TERRAIN]])
         return f"{made} was made in this size when the page was exported"
 
     def notes(self) -> list[str]:
-        """Return a sentence on each source whose texels the page has as they were."""
-        found = [f"{path}: {_made(leaf)} is exported as it is" for path, leaf in self.sources.items()]
-        if FRAME in self._needed_by:
-            path = self._needed_by[FRAME]
-            found.append(f"{path}: {_made(self.sources[path])} has the size of the picture at export")
-        return found
+        """Return a sentence on each source that a page has in the size of the picture at export."""
+        if FRAME not in self._needed_by:
+            return []
+        path = self._needed_by[FRAME]
+        return [f"{path}: {made_by(self.sources[path])} has the size of the picture at export"]
+
+    def _plays_by(self, path: str, parameter: str) -> bool:
+        """Return whether a parameter of a source says which second of a file shows: that a page works out."""
+        recording = source_kind(self.sources[path].kernel.registry).recording
+        return recording is not None and parameter in recording.clock.values()
 
     def _replaced_around(self, path: str) -> str:
         """Return why an inner parameter of a technique that a fast variant replaces cannot be set."""
@@ -105,7 +109,7 @@ class Locks:
                 self._needed_by.setdefault(self.flat.shape.copied.get(where, where), source)
 
 
-def _made(leaf: Leaf) -> str:
+def made_by(leaf: Leaf) -> str:
     """Return what a source makes, in words."""
     return {
         "elevation_file": "the elevation file's terrain",

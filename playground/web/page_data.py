@@ -8,6 +8,7 @@ from typing import Any
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 from playground.web.plan import FORMAT, sketch_data
 from playground.web.shared import SharedData
+from playground.web.techniques import technique_menus
 
 
 def page_data(
@@ -16,13 +17,21 @@ def page_data(
     frame: tuple[int, int] = DEFAULT_PICTURE,
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
+    techniques: Mapping[str, Sequence[str]] | None = None,
 ) -> dict[str, Any]:
     """Return sketches as one page's data: JSON's own types only.
 
     ``frame`` in pixels, ``time`` in seconds, ``steps`` stops repeats early, by path, as in
-    ``Engine.render``. The same sketches give the same data. Raises ``PlaygroundError`` for any mistake
-    in a sketch, and for what no page can run.
+    ``Engine.render``. ``techniques`` lists by pass what else may fill it in the first sketch (an empty
+    list: all that fits), for a page with menus of them. The same sketches give the same data. Raises
+    ``PlaygroundError`` for any mistake in a sketch, and for what no page can run.
     """
     shared = SharedData()
+    menus: list[list[dict[str, Any]]] = [[] for _ in sketches]
+    if techniques:
+        made, first = technique_menus(sketches[0], techniques)
+        sketches, menus = [*made, *sketches[1:]], [*first, *menus[1:]]
     written = [sketch_data(one, shared, frame=frame, time=time, steps=steps) for one in sketches]
+    for one, choices in zip(written, menus, strict=True):
+        one["choices"] = choices
     return {"format": FORMAT, "sketches": written, "shared": shared.data()}

@@ -26,8 +26,9 @@ from playground.sketch.model import DEFAULT_PICTURE, Sketch, Value
 from playground.sketch.named_numbers import base_of
 from playground.sketch.source import read_text
 from playground.sketch.traits import is_animated
+from playground.terrain.sources import source_kind
 from playground.web.kernels import Kernels
-from playground.web.locks import Locks
+from playground.web.locks import Locks, made_by
 from playground.web.pass_trees import pass_tree
 from playground.web.shared import SharedData
 from playground.web.shown import presets_data, row, rules_data, shown_data, tracks_data
@@ -68,10 +69,12 @@ class _Writing:
         self.steps = {step.path: step for step in plan.walk()}
         self.given = {path: step.values for path, step in self.steps.items()}
         self.locks = Locks(plan)
+        self.notes: list[str] = []
 
     def data(self) -> dict[str, Any]:
         """Return the whole sketch."""
         sketch, plan, terrain = self.sketch, self.plan, self.plan.terrain
+        lacking = [sentence.partition(": see ")[0] for sentence in plan.lacking]  # files are not in a page
         nodes = [self._node(node) for node in self.flat.nodes]
         found = values_of(sketch) | self._constants()
         values = {path: self.written(path, value) for path, value in found.items()}
@@ -110,7 +113,7 @@ class _Writing:
             "textures": self._textures(),
             "map": self._map(),
             "choices": [],
-            "notes": [*plan.lacking, *self.locks.notes(), *preset_notes, *track_notes],
+            "notes": [*lacking, *self.notes, *self.locks.notes(), *preset_notes, *track_notes],
         }
 
     def written(self, path: str, value: Value) -> Any:
@@ -161,7 +164,12 @@ class _Writing:
             "base": leaf.path,
         }
         if leaf.kernel.kind == "source":
-            found["data"] = source_data(self.steps[leaf.path], self.plan.time, self.shared.blobs)
+            made = source_data(self.steps[leaf.path], made_by(leaf), self.shared.blobs)
+            self.notes.append(made.note)
+            found["data"] = made.textures
+            recording = source_kind(leaf.kernel.registry).recording
+            if recording is not None:
+                found["clock"] = {what: paths[name] for what, name in recording.clock.items()}
         return found
 
     def _passes(self) -> dict[str, dict[str, Any]]:

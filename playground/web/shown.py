@@ -6,7 +6,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import asdict
 from typing import Any
 
-from playground.sketch.assign import Shown, check_value, current_path, resolve, shown_parameters
+from playground.sketch.assign import Shown, check_value, current_path, find_targets, resolve, shown_parameters
 from playground.sketch.described_parameter import described
 from playground.sketch.flat import Flat
 from playground.sketch.keyframes import Track, tracks_of
@@ -21,12 +21,15 @@ Locked = Callable[[str, tuple[str, ...]], str]
 
 def shown_data(sketch: Sketch, values: Mapping[str, Any], locked: Locked) -> list[dict[str, Any]]:
     """Return every parameter of a sketch as the panel has it: see ``Shown`` in schema.js."""
-    main = {target.path for path in sketch.main for target in resolve(sketch.graph, path)}
     found = []
     for shown in shown_parameters(sketch):
         targets = tuple(target.path for target in resolve(sketch.graph, shown.path))
         found.append(row(shown, values[targets[0]], targets, locked(shown.path, targets)))
-        found[-1]["main"] = not main.isdisjoint(targets)
+    named = {one["path"]: one for one in found}
+    by_leaf = {one["targets"][0]: one for one in found}  # a row inside may be named by an outer path
+    for place, path in enumerate(sketch.main, 1):
+        main = named.get(path) or by_leaf[resolve(sketch.graph, path)[0].path]
+        main["main"] = main["main"] or place
     return found
 
 
@@ -34,7 +37,7 @@ def row(shown: Shown, value: Any, targets: tuple[str, ...], locked: str = "") ->
     """Return one parameter as a page shows it."""
     found = described(shown)
     found["ranges"] = [list(ends) if ends else [None, None] for ends in found["ranges"]]
-    found |= {"main": False, "locked": locked, "value": value, "targets": list(targets)}
+    found |= {"main": 0, "locked": locked, "value": value, "targets": list(targets)}
     if shown.parameter.widget.raw:
         found["raw"] = True
     return found
@@ -50,6 +53,9 @@ def presets_data(
     for preset in sketch.presets:
         values = {}
         for path, given in preset.values:
+            if "." in path and not find_targets(sketch.graph, path):
+                notes.append(f"preset '{preset.name}' leaves {path} out: this technique does not have it")
+                continue
             value = check_value(sketch, path, given)
             name = current_path(sketch.graph, path)
             if "." not in name:

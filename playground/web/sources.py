@@ -1,25 +1,73 @@
-"""Write down what the processor makes: the texels of sources as they are for one moment."""
+"""Write down what the processor makes: the texels of sources, of a film or a sound frame by frame.
+
+A file that is played is written from its beginning as far as that fits into ``MOST_BYTES`` of a page
+and ``LONGEST`` seconds; what comes later stays as the last frame is, and a sound that repeats begins in
+silence each time. What a window feeds has nothing to show in a page.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
+
+from numpy.typing import NDArray
 
 from playground.engine.plan import Step
 from playground.gpu.textures import texels_in
 from playground.media.live_inputs import LiveInputs
 from playground.media.now import Now
-from playground.terrain.sources import source_kind
+from playground.terrain.sources import Recording, source_kind
 from playground.web.blobs import Blobs
 
+MOST_BYTES = 3 * 2**20
+"""Bytes of a page that the frames of one source may take."""
+LONGEST = 10.0
+"""[s] of a file that is played that a page has at most."""
 
-def source_data(step: Step, time: float, blobs: Blobs) -> list[dict[str, Any]]:
-    """Return the texels of a source at a time in seconds: see ``DataTexture`` in schema.js.
 
-    What a window feeds has nothing to show. Raises ``DataError`` for a file that cannot be read.
+@dataclass(frozen=True)
+class SourceData:
+    """What a page has of a source."""
+
+    textures: list[dict[str, Any]]  # see ``DataTexture`` in schema.js
+    note: str  # a sentence on what that is
+
+
+def source_data(step: Step, what: str, blobs: Blobs) -> SourceData:
+    """Return the texels of a source; ``what`` it makes, in words.
+
+    Raises ``DataError`` for a file that cannot be read.
     """
     kind = source_kind(step.kernel.registry)
-    moment = kind.moment(step.values, Now(time, LiveInputs())) if kind.moment else None
-    arrays = kind.make(step.values, step.size, moment)
+    if kind.recording is not None:
+        return _recorded(kind.recording, step, what, blobs)
+    moment = kind.moment(step.values, Now(0.0, LiveInputs())) if kind.moment else None
+    textures = _textures(step, kind.make(step.values, step.size, moment), blobs)
+    if kind.moment is not None:
+        return SourceData(textures, f"{step.path}: {what} feeds nothing in a page")
+    return SourceData(textures, f"{step.path}: {what} is exported as it is")
+
+
+def _recorded(recording: Recording, step: Step, what: str, blobs: Blobs) -> SourceData:
+    found: list[dict[str, Any]] = []
+    times: list[float] = []
+    length, limit = recording.length(step.values), blobs.size + MOST_BYTES
+    for time, arrays in recording.frames(step.values, step.size):
+        if times and (blobs.size >= limit or time > LONGEST):
+            note = f"{step.path}: of {what}, {length:.3g} s long, the page has the first {time:.3g} s"
+            break
+        now = _textures(step, arrays, blobs)
+        found = found or [one | {"times": times, "frames": [], "length": length} for one in now]
+        times.append(time)
+        for one, other in zip(found, now, strict=True):
+            one["frames"].append(other["blob"])
+    else:
+        note = f"{step.path}: {what} is exported as it is, {length:.3g} s"
+    return SourceData(found, note)
+
+
+def _textures(step: Step, arrays: Mapping[str, NDArray[Any]], blobs: Blobs) -> list[dict[str, Any]]:
     return [
         {
             "output": output.name,

@@ -138,21 +138,14 @@ def test_there_are_commands_and_each_reason_is_still_needed():
     assert not unused
 
 
-@pytest.fixture(scope="module")
-def mesa_cache(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Give a folder for Mesa's compiled shaders, which would else be in each test's own cache."""
-    return tmp_path_factory.mktemp("mesa")
-
-
 @pytest.fixture
-def folder(tmp_path: Path, mesa_cache: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """Give a folder that is the present one, with caches and memories of its own."""
     here = tmp_path / "here"
     here.mkdir()
     monkeypatch.chdir(here)
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
-    monkeypatch.setenv("MESA_SHADER_CACHE_DIR", str(mesa_cache))
     monkeypatch.setenv("COLUMNS", "200")
     monkeypatch.delenv("PLAYGROUND_CACHE", raising=False)
     return here
@@ -334,6 +327,7 @@ def test_every_other_program_is_known():
     assert {"pytest hills", UPDATE} <= set(IN_HILLS)
 
 
+@pytest.mark.slow  # three seconds of a program whose parts tests/truth tests every day
 def test_the_truth_is_printed():
     done = run(ROOT, ["python", "tests/truth", "--size", "25", "L·N"])
     assert done.returncode == 0, done.stderr

@@ -50,7 +50,12 @@ class Browser:
             assert line, "chromedriver ended"
             port = re.search(r"successfully on port (\d+)", line)
         self._base = f"http://127.0.0.1:{port[1]}/session"
-        arguments = [*_OPTIONS.split(), f"--window-size={width},{height}", f"--user-data-dir={folder}", *flags]
+        arguments = [
+            *_OPTIONS.split(),
+            f"--window-size={width},{height}",
+            f"--user-data-dir={folder}",
+            *flags,
+        ]
         options = {"browserName": "chrome", "goog:chromeOptions": {"binary": CHROMIUM, "args": arguments}}
         options["goog:loggingPrefs"] = {"browser": "ALL"}
         try:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import sys
+import os
 from collections import Counter
 from pathlib import Path
 
@@ -10,8 +10,17 @@ import pytest
 
 from playground.errors import ShaderError
 from playground.paths import GLSL
-from playground.sketch.allowed_files import noting_places, real, root_of
+from playground.sketch.allowed_files import (
+    is_file,
+    looking_once,
+    noting_part,
+    noting_places,
+    real,
+    root_of,
+    signature,
+)
 from playground.sketch.load import load
+from playground.sketch.source import read_text
 
 KERNEL = """#include "../lib.glsl"
 #pragma kernel(output = "height:r32f")
@@ -72,6 +81,50 @@ def test_links_are_followed_once_in_a_load_and_anew_in_the_next(tmp_path):
     assert real(link) == second
 
 
+def test_a_load_reads_a_text_once_and_its_parts_note_the_signature_of_what_was_read(tmp_path):
+    file = tmp_path / "text.glsl"
+    file.write_text("first")
+    before = signature(file)
+    with noting_places() as places:
+        assert read_text(file) == "first"
+        file.write_text("second, longer")
+        with noting_part() as part:
+            assert is_file(file)
+            assert read_text(file) == "first", "one load sees one state"
+        assert places[file] == part[file] == before, "so that the save is seen"
+    assert read_text(file) == "second, longer"
+
+
+def test_what_was_read_before_places_are_noted_is_read_again(tmp_path):
+    file, late = tmp_path / "text.glsl", tmp_path / "late.glsl"
+    file.write_text("first")
+    with looking_once():
+        assert read_text(file) == read_text(file, any_encoding=True) == "first"
+        assert real(late) == late
+        assert not is_file(late)
+        file.write_text("second, longer")
+        late.touch()
+        with noting_part() as part:
+            assert read_text(file) == read_text(file, any_encoding=True) == "second, longer"
+            assert is_file(late)
+        assert part == {file: signature(file), late: signature(late)}
+
+
+@pytest.mark.parametrize(
+    "name", ["no\0name", "x" * 300, "file/below", "..", "gone/..", "circle", "dangling", "."]
+)
+def test_in_a_load_any_name_leads_where_it_leads_without_one(tmp_path, name):
+    (tmp_path / "file").touch()
+    link_to(tmp_path / "circle", tmp_path / "circle")
+    link_to(tmp_path / "dangling", tmp_path / "nowhere")
+    link_to(tmp_path / "here", tmp_path)
+    for path in (tmp_path / name, tmp_path / "here" / name, Path(os.path.relpath(tmp_path)) / name):
+        expected, there = real(path), is_file(path)
+        with looking_once():
+            assert (real(path), is_file(path)) == (expected, there)
+            assert (real(path), is_file(path)) == (expected, there), "the second time too"
+
+
 def link_to(link: Path, target: Path) -> None:
     try:
         link.symlink_to(target, target_is_directory=True)
@@ -79,21 +132,28 @@ def link_to(link: Path, target: Path) -> None:
         pytest.skip("this system makes no links")
 
 
-def test_a_load_follows_the_links_of_a_path_once_and_the_next_load_follows_them_anew(
+def test_a_load_looks_at_a_path_and_reads_a_text_once_and_the_next_load_does_it_anew(
     hills: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    followed: Counter[Path] = Counter()
-    resolve = Path.resolve
+    looked: Counter[Path] = Counter()
+    texts: Counter[Path] = Counter()
+    lstat, read_bytes = Path.lstat, Path.read_bytes
 
-    def counted(path: Path, strict: bool = False) -> Path:
-        if sys._getframe(1).f_code is real.__code__:
-            followed[path] += 1
-        return resolve(path, strict)
+    def counted(path: Path) -> os.stat_result:
+        looked[path] += 1
+        return lstat(path)
 
-    monkeypatch.setattr(Path, "resolve", counted)
+    def counted_text(path: Path) -> bytes:
+        texts[path] += 1
+        return read_bytes(path)
+
+    monkeypatch.setattr(Path, "lstat", counted)
+    monkeypatch.setattr(Path, "read_bytes", counted_text)
     view = '[view]\nuse = "view/map"\ninputs = { shown = "height" }\n'
     (hills / "sketch.toml").write_text(f'format = 1\n[[pass]]\nname = "height"\nuse = "./parts/k"\n{view}')
+    kernel = hills / "parts" / "k.glsl"
     load(hills)
-    assert followed[hills / "parts" / "k.glsl"] == 1 and set(followed.values()) == {1}
+    assert looked[kernel] == texts[kernel] == 1
+    assert set(looked.values()) == set(texts.values()) == {1}
     load(hills)
-    assert followed[hills / "parts" / "k.glsl"] == 2
+    assert looked[kernel] == texts[kernel] == 2

@@ -1,12 +1,16 @@
-"""One Node process for each module of tests."""
+"""One Node process, one page in a browser and one engine for each module of tests."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
+import moderngl
 import pytest
 
+from playground.engine.engine import Engine
+
 from . import node as processes
+from .pages import MISSING, Pages
 
 
 @pytest.fixture(scope="module")
@@ -16,3 +20,21 @@ def node() -> Iterator[processes.Node]:
         pytest.skip(processes.MISSING)
     with processes.Node() as found:
         yield found
+
+
+@pytest.fixture(scope="module")
+def pages(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Pages]:
+    """Give a page with the runtime in it, in a browser on the engine's own renderer."""
+    if MISSING:
+        pytest.skip(MISSING)
+    with Pages(tmp_path_factory.mktemp("page")) as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def drawn(shared_context: moderngl.Context, pages: Pages) -> Iterator[Engine]:
+    """Give an engine that draws as pages do: by fragment shaders, on the renderer that they are on."""
+    with Engine(shared_context, driver="fragment", notice=lambda _: None) as made:
+        if "llvmpipe" not in made.info.renderer or "llvmpipe" not in pages.renderer():
+            pytest.skip("needs llvmpipe in the browser and in the engine")
+        yield made

@@ -1,9 +1,9 @@
-// fake_page.js -- a page over a player that draws with two dimensions what its state says: for tests without WebGL.
+// fake_page.js -- a page over a player that draws without WebGL what its state says, for tests.
 
 import { createPage } from "../../playground/web/runtime/sketch_page.js";
 import { ENGLISH } from "../../playground/web/runtime/words.js";
 
-/** What a test looks at, and what it may ask for: [ms] a frame of a million pixels takes, an error to throw. */
+/** What a test looks at, and what it asks for: [ms] a million pixels take, an error to throw. */
 const probe = { slow: 0, error: "", frames: [], states: [], opened: [], page: null };
 globalThis.probe = probe;
 
@@ -15,12 +15,13 @@ function open(sketch) {
   const value = (path) => state.values[path] ?? sketch.values[path];
   const player = {
     state,
+    repeats: new Map([["height", REPEATS], ["picture", 1]]),
     get plan() {
       const camera = state.camera ?? sketch.camera;
       return {
         eye: { distance: camera.distance || 4000, target: camera.target ?? [2048, 2048, 400] },
         terrain: state.terrain, time: state.time, frame: state.frame,
-        steps: new Map([["height", { size: state.terrain.size, repeat: REPEATS, whole: REPEATS }], ["picture", { size: state.frame, repeat: 1, whole: 1 }]]),
+        steps: new Map([["height", { size: state.terrain.size }], ["picture", { size: state.frame }]]),
       };
     },
     async load(progress) {
@@ -44,7 +45,7 @@ function open(sketch) {
     read({ path }) {
       const [wide, high] = path === "picture" ? state.frame : state.terrain.size;
       const data = new Float32Array(wide * high);
-      for (let y = 0; y < high; y++) for (let x = 0; x < wide; x++) data[y * wide + x] = height(x / wide, y / high);
+      data.forEach((_, at) => { data[at] = height((at % wide) / wide, Math.floor(at / wide) / high); });
       return { size: [wide, high], channels: 1, data };
     },
     close() {},
@@ -61,18 +62,19 @@ function open(sketch) {
   }
 
   function drawHills(context, width, high) {
-    const { azimuth } = state.camera ?? sketch.camera, [sun] = value("light.sun"), [r, g, b] = value("ground.grass");
+    const { azimuth } = state.camera, [sun] = value("light.sun"), grass = value("ground.grass");
     const sky = context.createLinearGradient(0, 0, 0, high);
     sky.addColorStop(0, "#4b6f9c");
     sky.addColorStop(1, "#c9d6dd");
     context.fillStyle = sky;
     context.fillRect(0, 0, width, high);
     for (let ridge = 0; ridge < 5; ridge++) {
-      context.fillStyle = `rgb(${255 * r ** 0.45 * (0.6 + 0.12 * ridge)} ${255 * g ** 0.45 * (0.6 + 0.12 * ridge)} ${255 * b ** 0.45 * (0.6 + 0.1 * ridge)})`;
+      context.fillStyle = `rgb(${grass.map((light) => 255 * light ** 0.45 * (0.6 + 0.12 * ridge)).join(" ")})`;
       context.beginPath();
       context.moveTo(0, high);
       for (let x = 0; x <= width; x += 4) {
-        const place = x / high + azimuth / 40 + ridge * 1.7 + sun / 500, up = value("height.level") * (0.2 * Math.sin(3 * place) + 0.08 * Math.sin(9 * place + state.time));
+        const place = x / high + azimuth / 40 + ridge * 1.7 + sun / 500;
+        const up = value("height.level") * (0.2 * Math.sin(3 * place) + 0.08 * Math.sin(9 * place + state.time));
         context.lineTo(x, high * (0.42 + 0.12 * ridge - up));
       }
       context.lineTo(width, high);
@@ -87,6 +89,7 @@ addEventListener("DOMContentLoaded", () => {
   probe.page = createPage(document.getElementById("playground"), data, { open }, {
     words: ENGLISH,
     poster: document.getElementById("playground-poster"),
-    createEditor(host) { host.append(Object.assign(document.createElement("textarea"), { value: "vec4 kernel(ivec2 texel)" })); },
+    repeats: (player) => player.repeats,
+    openCode: (host) => host.append(Object.assign(document.createElement("textarea"), { value: "void main" })),
   });
 });

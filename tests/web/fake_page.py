@@ -1,4 +1,4 @@
-"""A page with every widget, over a player that draws without WebGL (fake_page.js): one file, as an export is."""
+"""A page with every widget, over a player that draws without WebGL (fake_page.js): one file, as an export."""
 
 from __future__ import annotations
 
@@ -24,29 +24,29 @@ def row(path: str, type: str, widget: str, value: object, **more: Any) -> dict[s
     pass_, _, name = path.rpartition(".")
     found = {"path": path, "pass": pass_.split(".")[0], "label": name.replace("_", " ").capitalize()}
     found |= {"type": type, "widget": widget, "unit": "", "group": "", "description": "", "parts": []}
-    found |= {"ranges": [], "step": None, "choices": [], "exported": pass_.count(".") == 0, "main": False}
+    found |= {"ranges": [], "step": None, "choices": [], "exported": pass_.count(".") == 0, "main": 0}
     return found | {"locked": "", "value": value, "targets": [path]} | more
 
 
 def rows() -> list[dict[str, Any]]:
     """Return one row of each widget, and some inside."""
-    level = row("height.level", "float", "slider", 0.25, ranges=[[0, 1]], unit="m", main=True)
+    level = row("height.level", "float", "slider", 0.25, ranges=[[0, 1]], unit="m", main=1)
     level |= {"description": "How high the hills are.", "targets": ["height.level", "height.inner.level"]}
     return [
         level,
-        row("height.seed", "int", "slider", 3, ranges=[[0, 10]], main=True),
-        row("height.scale", "float", "log_slider", 10.0, ranges=[[1, 1000]], unit="m", main=True),
+        row("height.seed", "int", "slider", 3, ranges=[[0, 10]], main=1),
+        row("height.scale", "float", "log_slider", 10.0, ranges=[[1, 1000]], unit="m", main=1),
         row("height.free", "float", "number", 2.5),
         row("height.offset", "vec2", "slider", [0.25, 0.5], ranges=[[0, 1], [0, 1]], parts=["from", "to"]),
         row("height.inner.level", "float", "slider", 0.25, ranges=[[0, 1]], exported=False),
         row("height.inner.octaves", "int", "slider", 4, ranges=[[1, 12]], exported=False, group="Detail"),
-        row("ground.grass", "vec3", "colour", [0.25, 0.35, 0.1], main=True),
+        row("ground.grass", "vec3", "colour", [0.25, 0.35, 0.1], main=1),
         row("ground.haze", "vec4", "colour", [0.5, 0.5, 0.5, 1.0], raw=True, group="Far away"),
         row("ground.kind", "int", "menu", 0, choices=["soft", "sharp"], group="Far away"),
         row("ground.rocks", "bool", "checkbox", True),
         row("ground.middle", "vec2", "point", [0.5, 0.5]),
         row("ground.photo", "sampler2D", "file", "photo.jpg", locked="An image file is part of the page."),
-        row("light.sun", "vec2", "direction", [120.0, 40.0], unit="degrees", main=True),
+        row("light.sun", "vec2", "direction", [120.0, 40.0], unit="degrees", main=1),
         row("light.turn", "float", "angle", 0.0, ranges=[[-360, 360]]),
         row("light.flash", "bool", "button", False),
         row("view.divide", "float", "divider", 0.5, ranges=[[0, 1]]),

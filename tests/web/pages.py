@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import playground.web
-from tests.report.browser import MESA, MISSING, Browser
-from tests.web.node import NODE
+
+from ..report.browser import MESA, MISSING, Browser
+from .node import NODE
 
 HOME = Path(playground.web.__file__).parent
 ESBUILD = HOME / "node_modules" / "esbuild"
@@ -68,6 +69,14 @@ window.pages = {
       return window.pages.told(error);
     }
   },
+  read(name, path, output) {
+    try {
+      const { size, channels, data } = window.pages.figures[name].read({ path, output });
+      return { size, channels, texels: window.pages.bytes(data) };
+    } catch (error) {
+      return window.pages.told(error);
+    }
+  },
 };
 """
 
@@ -108,11 +117,26 @@ class Pages:
         return self._asked("pages.open", name or sketch["name"], sketch)
 
     def picture(self, name: str, soon: float = 0, **state: Any) -> Picture:
-        """Return the picture of an open sketch with more of its state set; with ``soon`` in such slices [ms]."""
+        """Return the picture of an open sketch with ``state`` set; with ``soon`` in slices of so many ms."""
         told = self._asked("pages.picture", name, state, soon)
         width, height = told["size"]
         texels = np.frombuffer(base64.b64decode(told["texels"]), np.uint8).reshape(height, width, 4)
         return Picture(texels[::-1], told["ran"], told["milliseconds"])
+
+    def read(self, name: str, path: str, output: str) -> NDArray[np.float32]:
+        """Return the texels of an open sketch's texture, (ny, nx, channels), row 0 south."""
+        told = self._asked("pages.read", name, path, output)
+        (width, height), channels = told["size"], told["channels"]
+        return np.frombuffer(base64.b64decode(told["texels"]), "<f4").reshape(height, width, channels)
+
+    def renderer(self) -> str:
+        """Return what WebGL says it draws on."""
+        script = """const gl = document.createElement("canvas").getContext("webgl2");
+        const named = gl && gl.getExtension("WEBGL_debug_renderer_info");
+        const found = named ? gl.getParameter(named.UNMASKED_RENDERER_WEBGL) : "";
+        gl?.getExtension("WEBGL_lose_context")?.loseContext();
+        return found"""
+        return str(self.browser.run(script))
 
     def run(self, script: str, *values: object) -> Any:
         """Return what a function's body returns; `figures` are the players by name, `engine` theirs."""

@@ -6,6 +6,10 @@ import moderngl
 import pytest
 
 from playground.gpu.wrap import wrap
+from playground.sketch.find import shipped_sketches
+from playground.sketch.flat import leaves_of
+from playground.sketch.flatten import flatten
+from playground.sketch.load import load
 from playground.sketch.model import Kernel
 
 from ..cases import each
@@ -38,6 +42,18 @@ def test_every_program_of_the_library_compiles_as_es(node: Node, ctx: moderngl.C
             ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
         except moderngl.Error as error:
             raise AssertionError(name) from error
+
+
+@pytest.mark.slow
+def test_every_program_of_another_tool_that_ships_compiles_as_es(node: Node, ctx: moderngl.Context):
+    if "GL_ARB_ES3_compatibility" not in ctx.extensions:
+        pytest.skip("this driver compiles no GLSL ES")
+    leaves = [leaf for name in shipped_sketches() for leaf in leaves_of(flatten(load(name)).nodes)]
+    found = {leaf.kernel.name: leaf.kernel for leaf in leaves if leaf.kernel.kind == "plain_fragment"}
+    assert {kernel.dialect for kernel in found.values()} >= {"main", "shadertoy", "isf"}
+    for kernel in found.values():
+        vertex, fragment = (es(node, text) for text in stages_of(kernel))
+        ctx.program(vertex_shader=vertex, fragment_shader=fragment).release()
 
 
 def test_a_line_is_as_it_was_but_for_the_version_the_precisions_and_initial_values(node: Node):

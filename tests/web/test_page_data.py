@@ -11,13 +11,16 @@ import pytest
 
 from playground.engine.plan import LoopStep
 from playground.engine.planner import Planner
+from playground.errors import PlaygroundError
 from playground.gpu.wrap import FRAGMENT, wrap
 from playground.paths import GLSL
 from playground.sketch import expressions
 from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
+from playground.sketch.model import Sketch
 from playground.web.page_data import page_data
 
+from .. import dialect_texts, isf_texts
 from .node import Node
 
 NAMES = shipped_sketches()
@@ -43,7 +46,11 @@ def test_it_is_json_and_says_nothing_of_this_machine(name: str):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_page_makes_the_engines_own_stages(node: Node, name: str):
-    page, plan = written(name), Planner().plan(load(name), frame_size=(320, 180), variants=("passes",))
+    check_stages(node, written(name), load(name))
+
+
+def check_stages(node: Node, page: dict[str, Any], loaded: Sketch) -> None:
+    plan = Planner().plan(loaded, frame_size=(320, 180), variants=("passes",))
     [sketch] = page["sketches"]
     of = {leaf["path"]: sketch["kernels"][leaf["kernel"]] for leaf in leaves(sketch["nodes"])}
     asked, expected = [], []
@@ -56,6 +63,24 @@ def test_a_page_makes_the_engines_own_stages(node: Node, name: str):
             asked.append({"stage": data, "file": data.get("file", kernel["file"])})
             expected.append({"text": made.text, "first": made.first})
     assert node.run(STAGES, page["shared"], asked) == expected
+
+
+@pytest.mark.parametrize("name", [*dialect_texts.TEXTS, *isf_texts.TEXTS])
+def test_a_page_makes_the_stages_of_other_tools_shaders(node: Node, tmp_path: Path, name: str):
+    folder = tmp_path / "here"
+    folder.mkdir()
+    is_isf = name not in dialect_texts.TEXTS
+    path = folder / f"{name}.{'fs' if is_isf else 'frag'}"
+    path.write_text((isf_texts if is_isf else dialect_texts).TEXTS[name], encoding="utf-8")
+    if name in isf_texts.VERTEX:
+        path.with_suffix(".vs").write_text(isf_texts.VERTEX[name], encoding="utf-8")
+    try:
+        sketch = load(path)
+    except PlaygroundError:
+        pytest.skip("needs files of its own")
+    page = page_data([sketch])
+    assert str(tmp_path) not in json.dumps(page)
+    check_stages(node, page, sketch)
 
 
 def leaves(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 
 from playground.engine.cache_keys import KeyMaker
-from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node, needed
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
 from playground.sketch.catalogue import load, shipped_sketches
+from playground.sketch.map_sketch import Map
 from playground.sketch.model import Camera, Kernel, Sketch
 from playground.web import texts
 from playground.web.blobs import Blobs
@@ -187,11 +188,10 @@ def neighbours(
     chance: random.Random, settings: Settings, data: dict[str, Any], first: Plan
 ) -> list[Settings]:
     """Return settings that differ from some in one thing each, then the same again."""
-    found = [replace(settings, values={path: value}) for path, value in list(settings.values.items())[:3]]
+    found = [replace(settings, values={path: value}) for path, value in list(settings.values.items())[:2]]
     found += [replace(settings, time=settings.time + 0.25), replace(settings, frame=(40, 30))]
     found += [replace(settings, camera=Camera(10.0)), replace(settings, steps={}), replace(settings)]
-    other = random_settings(chance, data, first)
-    return [*found, replace(settings, steps=other.steps), replace(settings, values=other.values)]
+    return [*found, replace(settings, steps=random_settings(chance, data, first).steps)]
 
 
 @pytest.mark.parametrize("name", shipped_sketches())
@@ -227,3 +227,51 @@ def test_what_is_stale_in_a_page_is_what_is_stale_in_the_engine(node: Node, shar
         text = maker.text_of(step.kernel)
         parameters = {p.name for p in step.kernel.parameters}
         assert found["used"][step.path] & parameters == text.used & parameters, step.path
+
+
+INCREMENTAL = """async (sketch, shared, first, second, load) => {
+    const { makePlan } = await load("planner.js");
+    const before = makePlan(sketch, shared, first), after = makePlan(sketch, shared, second);
+    const other = [...after.steps].filter(([path, step]) => before.steps.get(path) !== step);
+    return { other: other.map(([path]) => path), nodes: before.nodes === after.nodes };
+}"""
+
+
+def test_a_moved_camera_leaves_every_step_as_it_is(node: Node, shared: SharedData):
+    data, images = exported(load("jacksboro"), shared)
+    moved = Settings(camera=Camera(10.0, 20.0)).state(data)
+    found = node.run(INCREMENTAL, data, images, Settings().state(data), moved)
+    assert found == {"other": [], "nodes": True}
+
+
+def test_a_moved_slider_makes_only_the_steps_anew_that_have_its_value(node: Node, shared: SharedData):
+    data, images = exported(load("jacksboro"), shared)
+    row = next(row for row in data["shown"] if row["path"] == "colour.grass_below")
+    moved = Settings(values={row["path"]: row["value"] + 1.0}).state(data)
+    found = node.run(INCREMENTAL, data, images, Settings().state(data), moved)
+    assert found["other"] == list(dict.fromkeys(path.rpartition(".")[0] for path in row["targets"]))
+
+
+def test_another_size_makes_the_plan_anew(node: Node, shared: SharedData):
+    data, images = exported(load("diamond_square"), shared)
+    larger = Settings(terrain={"size": (257, 257)}).state(data)
+    assert not node.run(INCREMENTAL, data, images, Settings().state(data), larger)["nodes"]
+
+
+@pytest.mark.parametrize(("name", "ref"), [("l_dot_n", "height"), ("splat", "weights")])
+def test_a_map_takes_the_place_of_the_view(node: Node, shared: SharedData, name: str, ref: str):
+    sketch = load(name)
+    data, images = exported(sketch, shared)
+    texture = next(one for one in data["textures"] if one["ref"].partition(":")[0].partition(".")[0] == ref)
+    state = Settings().state(data) | {"map": {**texture, "values": {"gain": 2.0}}}
+    script = """async (sketch, shared, state, load) => {
+        const { makePlan } = await load("planner.js"), { needed } = await load("plan_nodes.js");
+        const plan = makePlan(sketch, shared, state);
+        return [plan.picture, needed(plan.nodes, plan.picture).map((node) => [node.path, node.size])];
+    }"""
+    picture, nodes = node.run(script, data, images, state)
+    of = Map(texture["ref"]).of(sketch)
+    plan = Planner().plan(of, frame_size=(64, 36), variants=KINDS, wanted=texture["ref"])
+    expected = [node.path for node in needed(plan.nodes, plan.picture)]
+    assert picture["path"] == nodes[-1][0] == "#map" and nodes[-1][1] == [64, 36]
+    assert [path for path, _ in nodes[:-1]] == expected[:-1]

@@ -22,12 +22,12 @@ def lesson_data(lesson: model.Lesson, library: Library) -> LiveData:
     scenes = Scenes(library)
     blocks = {}
     for block in lesson.blocks:
-        if isinstance(block, model.Named) and (found := _tried(block, scenes)):
+        if isinstance(block, model.Named) and (found := block_data(block, scenes)):
             blocks[block.name] = found
     return {"sketches": scenes.sketches, "blocks": blocks}
 
 
-def _tried(block: model.Named, scenes: Scenes) -> LiveData | None:
+def block_data(block: model.Named, scenes: Scenes) -> LiveData | None:
     """Return what a block is in a page, if it can be live there."""
     try:
         return _data(block, scenes)

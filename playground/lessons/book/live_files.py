@@ -18,9 +18,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from playground.lessons.book.live_blocks import lesson_data
-from playground.lessons.book.live_scenes import Library
-from playground.lessons.model import Lesson
+from playground.lessons.book.live_blocks import block_data, lesson_data
+from playground.lessons.book.live_scenes import Library, Scenes
+from playground.lessons.model import Lesson, Named
 from playground.web.bundle import read_bundle
 
 BUNDLES = {"live.js": "book.js", "live.css": "book.css"}
@@ -49,6 +49,17 @@ def live_book(lessons: Sequence[Lesson]) -> LiveBook:
     files = {name: read_bundle(bundle) for name, bundle in BUNDLES.items()}
     files |= dict(_scripts(data, library))
     return LiveBook(blocks, files)
+
+
+def widget_page(block: Named) -> str:
+    """Return all that a notebook's widget needs to run one block, packed; "" for one that cannot be live."""
+    library = Library()
+    scenes = Scenes(library)
+    found = block_data(block, scenes)
+    if found is None:
+        return ""
+    shared = {**library.data(), "blobs": library.shared.blobs.texts}
+    return packed({"block": found, "sketches": scenes.sketches, "library": shared})
 
 
 def _scripts(data: dict[str, dict[str, Any]], library: Library) -> Iterator[tuple[str, str]]:

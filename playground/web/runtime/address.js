@@ -1,4 +1,4 @@
-// address.js -- the part of a page's address after "#": what differs from the sketch, read with care; copies as text.
+// address.js -- what differs from a sketch, as the end of an address, read with care; as TOML; as words.
 
 import { quoted, read, shellWord, toml, write } from "./value_text.js";
 
@@ -7,6 +7,9 @@ import { quoted, read, shellWord, toml, write } from "./value_text.js";
 /** @typedef {import("./schema.js").Shown} Shown */
 /** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./session.js").Session} Session */
+
+/** @typedef {{index: number, values: [string, Value][], camera: Camera | null, time: number | null,
+ *             refused: string[]}} Link */
 
 const LONGEST = 32768; // characters that are read
 const CAMERA = 7; // numbers: azimuth, elevation, distance, target, field of view
@@ -42,18 +45,24 @@ export function fragmentOf(session, { time }) {
 }
 
 /** Read what an address says; what is unknown, of another type or out of range is left out and listed.
- *  @param {string} fragment with or without its "#" @param {Sketch[]} sketches @param {(sketch: Sketch) => Shown[]} rowsOf
- *  @returns {{index: number, values: [string, Value][], camera: Camera | null, time: number | null, refused: string[]}} */
+ *  @param {string} fragment with or without its "#" @param {Sketch[]} sketches
+ *  @param {(sketch: Sketch) => Shown[]} rowsOf @returns {Link} */
 export function readFragment(fragment, sketches, rowsOf) {
-  const pairs = fragment.replace(/^#/, "").slice(0, LONGEST).split("&").filter(Boolean).map((pair) => {
-    const at = pair.indexOf("=");
-    return at < 0 ? [unescaped(pair), ""] : [unescaped(pair.slice(0, at)), unescaped(pair.slice(at + 1))];
-  });
-  /** @type {ReturnType<typeof readFragment>} */
+  const pairs = fragment
+    .replace(/^#/, "")
+    .slice(0, LONGEST)
+    .split("&")
+    .filter(Boolean)
+    .map((pair) => {
+      const at = pair.indexOf("=");
+      return at < 0 ? [unescaped(pair), ""] : [unescaped(pair.slice(0, at)), unescaped(pair.slice(at + 1))];
+    });
+  /** @type {Link} */
   const found = { index: 0, values: [], camera: null, time: null, refused: [] };
   const wanted = pairs.find(([name]) => name === "sketch");
   if (wanted && /^\d{1,3}$/.test(wanted[1]) && sketches[+wanted[1]]) found.index = +wanted[1];
-  const sketch = sketches[found.index], rows = new Map(rowsOf(sketch).map((row) => [row.path, row]));
+  const sketch = sketches[found.index],
+    rows = new Map(rowsOf(sketch).map((row) => [row.path, row]));
   for (const [name, text] of pairs) {
     const row = rows.get(name);
     const value = row && !row.locked ? read(row, text) : undefined;
@@ -68,21 +77,30 @@ export function readFragment(fragment, sketches, rowsOf) {
 /** @param {string} text @param {Camera} usual @returns {Camera | null} */
 function readCamera(text, usual) {
   const numbers = text.split(",").map(Number);
-  if (![CAMERA, CAMERA - 3].includes(numbers.length) || !numbers.every((n) => Number.isFinite(n) && Math.abs(n) < 1e9)) return null;
-  const [azimuth, elevation, distance] = numbers, field = numbers[numbers.length - 1];
+  if (
+    ![CAMERA, CAMERA - 3].includes(numbers.length) ||
+    !numbers.every((n) => Number.isFinite(n) && Math.abs(n) < 1e9)
+  )
+    return null;
+  const [azimuth, elevation, distance] = numbers,
+    field = numbers[numbers.length - 1];
   if (Math.abs(elevation) > 90 || distance < 0 || field < 1 || field > 170) return null;
-  const target = numbers.length === CAMERA ? /** @type {[number, number, number]} */ (numbers.slice(3, 6)) : usual.target;
+  const target =
+    numbers.length === CAMERA ? /** @type {[number, number, number]} */ (numbers.slice(3, 6)) : usual.target;
   return { azimuth, elevation, distance, target, field_of_view: field };
 }
 
 /** What is edited, as words of the command line: "--set height.seed=3 --set …".
  *  @param {Session} session */
 export function asWords(session) {
-  return listed(session).map(([row, value]) => `--set ${shellWord(`${row.path}=${terrainText(row, value)}`)}`).join(" ");
+  return listed(session)
+    .map(([row, value]) => `--set ${shellWord(`${row.path}=${terrainText(row, value)}`)}`)
+    .join(" ");
 }
 
 /** @param {Shown} row @param {Value} value as --set takes it: a size and an extent as 513x257 */
-const terrainText = (row, value) => (row.targets.length ? write(row, value) : write(row, value).replace(",", "x"));
+const terrainText = (row, value) =>
+  row.targets.length ? write(row, value) : write(row, value).replace(",", "x");
 
 /** What is edited, as a preset of the sketch's file.
  *  @param {Session} session @param {string} name */

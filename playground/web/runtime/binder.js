@@ -35,6 +35,7 @@ export const createBinder = (context, textures, images) => {
     const levels = linear ? gl.LINEAR_MIPMAP_LINEAR : gl.NEAREST_MIPMAP_NEAREST;
     gl.samplerParameteri(made, gl.TEXTURE_WRAP_S, around);
     gl.samplerParameteri(made, gl.TEXTURE_WRAP_T, around);
+    gl.samplerParameteri(made, gl.TEXTURE_WRAP_R, around);
     gl.samplerParameteri(made, gl.TEXTURE_MAG_FILTER, far === "linear" ? gl.LINEAR : gl.NEAREST);
     gl.samplerParameteri(made, gl.TEXTURE_MIN_FILTER, mipmap ? levels : linear ? gl.LINEAR : gl.NEAREST);
     samplers.set(key, made);
@@ -44,13 +45,12 @@ export const createBinder = (context, textures, images) => {
   /** Whether a texture can only be filtered by hand. @param {Texture} texture */
   const isUnfiltered = (texture) => !context.floatLinear && textures.formats(texture.format).float32;
 
-  /** @param {Program} program @param {string} name @param {number} unit @param {Texture} texture
+  /** @param {Program} program @param {string} name @param {number} unit @param {Texture} read
    *  @param {Sampling} sampling @returns {number} the next unit */
-  const texture = (program, name, unit, { texture, format }, sampling) => {
-    const unfiltered = !context.floatLinear && textures.formats(format).float32;
+  const texture = (program, name, unit, read, sampling) => {
     gl.activeTexture(gl.TEXTURE0 + unit);
-    gl.bindTexture(gl.TEXTURE_2D, texture);
-    gl.bindSampler(unit, samplerOf(sampling, unfiltered));
+    gl.bindTexture(gl.TEXTURE_2D, read.texture);
+    gl.bindSampler(unit, samplerOf(sampling, isUnfiltered(read)));
     setUniform(gl, program, name, unit);
     return unit + 1;
   };
@@ -77,10 +77,11 @@ export const createBinder = (context, textures, images) => {
     for (const [name, value] of text.own) set(name, value);
     for (const name in given) set(name, given[name]);
     set("size", size);
-    for (const { name, widget, sampling } of kernel.parameters) {
+    for (const { name, widget, sampling = PLAIN } of kernel.parameters) {
       const value = values[name];
       if (widget === "file") {
-        if (program.uniforms.has(name)) unit = texture(program, name, unit, images.get(String(value), sampling || PLAIN), sampling || PLAIN);
+        const read = program.uniforms.has(name) ? images.get(String(value), sampling) : null;
+        if (read) unit = texture(program, name, unit, read, sampling);
         continue;
       }
       set(name, value);
@@ -106,7 +107,7 @@ export const createBinder = (context, textures, images) => {
     constants.clear();
   };
 
-  return { bind, texture, constant, isUnfiltered, clear };
+  return { bind, texture, constant, samplerOf, isUnfiltered, clear };
 };
 
 /** @param {[number, number]} a @param {[number, number]} b */

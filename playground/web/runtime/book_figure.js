@@ -109,5 +109,5 @@ export function liveFigure(room) {
   const figure = makePicture(room, host, session, { poster: still.querySelector("img") });
   if (hasTime(session.sketch)) host.append(createTimeline(figure, words).element);
   host.append(makeRows(session, block.rows ?? [], words), makeReset(session, words));
-  return figure.start();
+  return figure.start().then(() => figure);
 }

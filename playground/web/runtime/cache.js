@@ -32,7 +32,9 @@ export const createCache = (limit, textures) => {
 
   const bytes = () => {
     let total = states.bytes;
-    for (const { results } of known.values()) for (const result of results.values()) total += result.of ? 0 : textures.bytesOf(result);
+    for (const { results } of known.values()) {
+      for (const result of results.values()) total += textures.bytesOf(result);
+    }
     return total;
   };
 

@@ -36,10 +36,10 @@ export function look(camera, extent, relief, size) {
   const far = away + 2 * radius;
   // At right angles to the eye's direction already, so that looking straight down is nothing special.
   const right = [-north, east, 0], up = [-east * rise, -north * rise, level];
-  const tall = halfHeight(camera);
+  const high = near * halfHeight(camera); // [m] half of what is in the picture, at the near plane
   // The rows of world to view, each scaled as the lens does.
-  const across = rowOf(right, 0, target, 1 / (tall * aspect));
-  const upright = rowOf(up, 0, target, 1 / tall);
+  const across = rowOf(right, 0, target, near / (high * aspect));
+  const upright = rowOf(up, 0, target, near / high);
   const behind = rowOf(towards, distance, target, 1);
   const depth = behind.map((each) => each * (-(far + near) / (far - near)));
   depth[3] += -2 * far * near / (far - near);
@@ -109,7 +109,8 @@ export function pan(camera, eye, right, up) {
 /** By elimination, each column's pivot its largest number.
  *  @param {number[]} matrix @returns {number[]} */
 function inverse(matrix) {
-  const rows = [0, 1, 2, 3].map((i) => [...matrix.slice(4 * i, 4 * i + 4), ...[0, 1, 2, 3].map((j) => +(i === j))]);
+  const four = [0, 1, 2, 3];
+  const rows = four.map((i) => [...matrix.slice(4 * i, 4 * i + 4), ...four.map((j) => Number(i === j))]);
   for (let column = 0; column < 4; column++) {
     let pivot = column;
     for (let row = column + 1; row < 4; row++) {

@@ -1,10 +1,10 @@
-// camera_moves.js -- what a gesture or a key makes of a camera: as workbench/camera_drag.py, framing.py, sun_drag.py.
+// camera_moves.js -- what gestures make of a camera and a sun, as workbench/camera_drag.py and others.
 
 import { orbit, pan, zoom } from "./camera.js";
 import { clamp } from "./numbers.js";
 
 /** @typedef {import("./schema.js").Camera} Camera */
-/** @typedef {{distance: number, target: [number, number, number]}} Eye */
+/** @typedef {import("./camera.js").Eye} Eye */
 
 /** [degrees] that a drag over the picture's whole height turns the terrain. */
 export const HALF_TURN = 180;
@@ -17,10 +17,13 @@ const DEGREE = Math.PI / 180;
 /** @param {Camera} camera @param {number} across @param {number} down shares of the picture's height */
 export const turned = (camera, across, down) => orbit(camera, across * HALF_TURN, down * HALF_TURN);
 
-/** @param {Camera} camera @param {Eye} eye of the picture that is shown @param {number} field its vertical field of view
+/** @param {Camera} camera @param {Eye} eye of the picture that is shown
+ *  @param {number} field its vertical field of view
  *  @param {number} across @param {number} down */
-export const moved = (camera, eye, field, across, down) =>
-  ({ ...pan({ ...camera, field_of_view: field }, eye, -across, down), field_of_view: camera.field_of_view });
+export const moved = (camera, eye, field, across, down) => ({
+  ...pan({ ...camera, field_of_view: field }, eye, -across, down),
+  field_of_view: camera.field_of_view,
+});
 
 /** @param {Camera} camera @param {Eye} eye @param {number} notches nearer */
 export const zoomed = (camera, eye, notches) => zoom(camera, NOTCH ** notches, eye.distance);
@@ -35,7 +38,8 @@ export function fieldFor(degrees, wanted, room) {
 }
 
 /** A direction after a drag, to the right and upwards in shares of the picture's height.
- *  @param {number[]} sun azimuth, elevation @param {number} across @param {number} up @returns {[number, number]} */
+ *  @param {number[]} sun azimuth, elevation @param {number} across @param {number} up
+ *  @returns {[number, number]} */
 export function sunMoved(sun, across, up) {
   const azimuth = (((sun[0] + across * HALF_TURN) % 360) + 360) % 360;
   return [+azimuth.toFixed(2), clamp(+(sun[1] + (up * HALF_TURN) / 2).toFixed(2), LOWEST, 90)];

@@ -20,14 +20,16 @@
  *  @property {(where: string) => void} check   raise what WebGL reports */
 
 /** @param {string} code @param {string} sentence @param {object} [more] @returns {Failure} */
-export const failure = (code, sentence, more = {}) => Object.assign(new Error(sentence), { code, sentence }, more);
+export const failure = (code, sentence, more = {}) =>
+  Object.assign(new Error(sentence), { code, sentence }, more);
 
 /** Open a canvas's context; `without` lists extensions to do without.
  *  @param {HTMLCanvasElement | OffscreenCanvas} canvas
  *  @param {{without?: string[]}} [options]
  *  @returns {Context} */
 export const openContext = (canvas, { without = [] } = {}) => {
-  const how = { antialias: false, alpha: false, depth: false, stencil: false, powerPreference: "high-performance" };
+  const plain = { antialias: false, alpha: false, depth: false, stencil: false };
+  const how = { ...plain, powerPreference: "high-performance" };
   const gl = /** @type {WebGL2RenderingContext | null} */ (canvas.getContext("webgl2", how));
   if (!gl) throw failure("no-webgl2", "This browser offers no WebGL2.");
   /** @param {string} name */
@@ -69,7 +71,8 @@ export const openContext = (canvas, { without = [] } = {}) => {
       if (!error) return;
       while (!gl.isContextLost() && gl.getError());
       if (error === gl.CONTEXT_LOST_WEBGL) throw failure("context-lost", "The graphics context was lost.");
-      if (error === gl.OUT_OF_MEMORY) throw failure("out-of-memory", `${where}: the graphics memory is full.`);
+      const full = `${where}: the graphics memory is full.`;
+      if (error === gl.OUT_OF_MEMORY) throw failure("out-of-memory", full);
       throw failure("webgl", `${where}: WebGL reports error 0x${error.toString(16)}.`);
     },
   };

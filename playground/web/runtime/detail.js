@@ -11,7 +11,7 @@ import { morph } from "./morph.js";
  *  @type {Object<string, string[]>} */
 export const CHOSEN_BY = { land: ["spans", "errors"] };
 
-/** Chooses what to draw of a mesh; a full grid is drawn whole, once. `tables` downloads what the choice reads.
+/** Chooses what to draw of a mesh; a full grid is drawn whole, once. `tables` downloads what it reads.
  *  @param {string} mesh @param {Object<string, any>} values @param {() => Object<string, Table>} tables
  *  @param {View} view @returns {Chosen} */
 export function choose(mesh, values, tables, view) {

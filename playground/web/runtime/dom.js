@@ -25,12 +25,15 @@ export function svg(kind, attributes, ...inside) {
 
 /** A push button with a label.
  *  @param {string} label @param {() => void} act @param {Object<string, any>} [properties] */
-export const button = (label, act, properties = {}) => make("button", { type: "button", onclick: act, ...properties }, label);
+export const button = (label, act, properties = {}) =>
+  make("button", { type: "button", onclick: act, ...properties }, label);
 
 /** Whether keys pressed there are typed into a field.
  *  @param {EventTarget | null} target */
 export const isTyping = (target) =>
-  target instanceof HTMLElement && (target.matches("textarea, select, input:not([type=range]):not([type=checkbox])") || target.isContentEditable);
+  target instanceof HTMLElement &&
+  (target.matches("textarea, select, input:not([type=range]):not([type=checkbox])") ||
+    target.isContentEditable);
 
 /** Put a text on the clipboard; false where the browser allows none.
  *  @param {string} text */

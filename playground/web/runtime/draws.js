@@ -1,6 +1,7 @@
 // draws.js -- draws meshes: samples of colour and depth, blending, resolved into a texture at the end.
 //
-// A draw that begins with an earlier draw's samples and depth goes on in them, since WebGL cannot copy samples:
+// A draw that begins with an earlier draw's samples and depth goes on in them, since WebGL cannot copy
+// samples:
 // the earlier draw is drawn again where only the later one is stale (see execution.js).
 
 import { failure } from "./context.js";
@@ -46,7 +47,7 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
 
   /** @param {Job} job @returns {Mesh} */
   const meshOf = (job) => {
-    const { step } = job, { kernel } = step, name = /** @type {string} */ (kernel.mesh), values = { ...step.values };
+    const { kernel } = job.step, name = /** @type {string} */ (kernel.mesh), values = { ...job.step.values };
     if (kernel.count !== undefined) values.count = whole(kernel.count, kernels.namesOf(job));
     const key = meshKey(name, values), known = meshes.get(key);
     meshes.delete(key);
@@ -112,12 +113,14 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
     const { step, given } = job, mesh = /** @type {string} */ (step.kernel.mesh);
     const tables = () => Object.fromEntries(CHOSEN_BY[mesh].map((name) => [name, tableOf(job, name)]));
     const view = {
-      clipFromWorld: given.clip_from_world, eye: given.eye, extent: given.extent, relief: given.relief, size: step.size,
+      clipFromWorld: given.clip_from_world, eye: given.eye, extent: given.extent, relief: given.relief,
+      size: step.size,
     };
     return choose(mesh, step.values, tables, view);
   };
 
-  /** Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing. @param {Job} job */
+  /** Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing.
+   *  @param {Job} job */
   const begun = (job) => {
     const { step, samples, inputs } = job, { format } = step.kernel.outputs[0];
     const wired = inputs.get("initial"), owner = wired && (wired.result.of || wired.result);
@@ -134,7 +137,8 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
     return surface;
   };
 
-  /** Draw a mesh over what the draw begins with; the result is the caller's. @param {Job} job @returns {Work} */
+  /** Draw a mesh over what the draw begins with; the result is the caller's. @param {Job} job
+   *  @returns {Work} */
   const run = function* (job) {
     const { step, text } = job, { kernel, size } = step, [{ format }] = kernel.outputs;
     if (kernel.blend !== "none" && !context.floatBlend && textures.formats(format).float32)

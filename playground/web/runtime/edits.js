@@ -1,4 +1,5 @@
-// edits.js -- tries an edited text: all kernels that it is part of are compiled, and what is wrong is told by line.
+// edits.js -- tries an edited text: all kernels that it is part of are compiled, and what is wrong is told
+// by line.
 
 import { readKernel, stagesOf } from "./kernel_texts.js";
 
@@ -10,7 +11,8 @@ import { readKernel, stagesOf } from "./kernel_texts.js";
 const ERROR = /^ERROR: \d+:(\d+): (.*)$/gm; // as browsers write it, whatever the driver
 
 /** Compile what edited texts change; nothing else changes.
- *  @param {import("./engine.js").Engine} engine @param {Kernel[]} all @param {(kernel: Kernel) => KernelText} before
+ *  @param {import("./engine.js").Engine} engine @param {Kernel[]} all
+ *  @param {(kernel: Kernel) => KernelText} before
  *  @param {Object<string, string>} texts @returns {Promise<Edit & {kernels: KernelText[]}>} */
 export const tried = async (engine, all, before, texts) => {
   const { kernels, programs } = engine.parts;
@@ -27,13 +29,17 @@ export const tried = async (engine, all, before, texts) => {
       const hands = was.hands.size ? [...was.hands.values()] : [new Map()];
       for (const byHand of hands) asked.push({ text, program: kernels.ask(text, byHand) });
     } catch (error) {
-      errors.push({ file: kernel.file, line: 0, .../** @type {any} */ (error), message: String(/** @type {Error} */ (error).message), kernel: kernel.name });
+      const { message, file = kernel.file, line = 0 } = /** @type {any} */ (error);
+      errors.push({ file, line, message, kernel: kernel.name });
     }
   }
   await programs.wait(asked.map(({ program }) => program));
-  for (const { text, program } of asked) if (program.state === "failed") errors.push(...complaintsOf(text, program));
-  if (errors.length) for (const { program } of asked) if (program.state === "failed") programs.release(program);
-  return { errors: distinct(errors), programs: programs.compiled - compiled, kernels: [...new Set(asked.map(({ text }) => text))] };
+  for (const { text, program } of asked.filter((each) => each.program.state === "failed")) {
+    errors.push(...complaintsOf(text, program));
+    programs.release(program);
+  }
+  const changed = [...new Set(asked.map(({ text }) => text))];
+  return { errors: distinct(errors), programs: programs.compiled - compiled, kernels: changed };
 };
 
 /** Return what a driver says of a program, at the lines of its files.
@@ -45,7 +51,8 @@ export const complaintsOf = (text, program) => {
     return { file: line ? line.file : file, line: line ? line.line : 0, message, kernel: name };
   }));
   const rest = [...program.logs, program.link].join("\n").trim();
-  return found.length ? found : [{ file, line: 0, message: rest || "The driver refused it without a word.", kernel: name }];
+  const message = rest || "The driver refused it without a word.";
+  return found.length ? found : [{ file, line: 0, message, kernel: name }];
 };
 
 /** @param {Complaint[]} complaints */

@@ -6,6 +6,7 @@ import { openContext } from "./context.js";
 import { createDraws } from "./draws.js";
 import { createImages } from "./images.js";
 import { createKernels } from "./kernels.js";
+import { createPlain } from "./plain.js";
 import { createPlayer } from "./player.js";
 import { createPrograms } from "./programs.js";
 import { createClock } from "./slices.js";
@@ -25,6 +26,7 @@ import { createTextures } from "./textures.js";
  *  @property {import("./binder.js").Binder} binder
  *  @property {import("./kernels.js").Kernels} kernels
  *  @property {ReturnType<typeof createDraws>} draws
+ *  @property {ReturnType<typeof createPlain>} plain
  *  @property {import("./cache.js").Cache} cache */
 
 /** @typedef {object} Engine
@@ -57,7 +59,9 @@ export const createEngine = (canvas, shared, options = {}) => {
     const binder = createBinder(context, textures, images);
     const kernels = createKernels(context, textures, programs, binder, shared);
     const draws = createDraws(context, textures, programs, binder, kernels);
-    return { context, textures, programs, images, binder, kernels, draws, cache: createCache(bytes, textures) };
+    const plain = createPlain(context, textures, images, binder, kernels);
+    const cache = createCache(bytes, textures);
+    return { context, textures, programs, images, binder, kernels, draws, plain, cache };
   };
 
   /** @param {Event} event */
@@ -85,8 +89,8 @@ export const createEngine = (canvas, shared, options = {}) => {
     bytes: () => engine.parts.cache.bytes + engine.parts.textures.bytes,
     close: () => {
       for (const player of [...players]) player.close();
-      const { cache, textures, images, binder, draws, programs } = engine.parts;
-      for (const part of [cache, textures, images, binder, draws, programs]) part.clear();
+      const { cache, textures, images, binder, draws, plain, programs } = engine.parts;
+      for (const part of [cache, textures, images, binder, draws, plain, programs]) part.clear();
       canvas.removeEventListener("webglcontextlost", keep);
     },
   };

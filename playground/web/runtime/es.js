@@ -19,8 +19,9 @@ const DECLARATION = /\/\/.*|\/\*[^]*?\*\/|^[ \t]*#.*|\buniform\b[^;{=]*=/gm;
  *  Of the extensions that it asks for, those named in `extensions` stay.
  *  @param {string} text @param {{extensions?: string[], byHand?: ByHand}} [options] @returns {string} */
 export function toES(text, { extensions = [], byHand } = {}) {
-  let found = text.replace(VERSION, "").replace(EXTENSION, (line, name) => extensions.includes(name) ? line : "");
-  found = withoutInitialisers(found);
+  const other = text.replace(VERSION, "").replace(EXTENSION, (line, name) =>
+    (extensions.includes(name) ? line : ""));
+  let found = withoutInitialisers(other);
   for (const [name, instead] of Object.entries(byHand?.names ?? {})) {
     found = found.replace(new RegExp(`\\b${name}\\b`, "g"), instead);
   }

@@ -1,6 +1,8 @@
-// execution.js -- runs the passes of one plan in order: known results are taken, stale ones computed, loops iterate.
+// execution.js -- runs the passes of one plan in order: known results are taken, stale ones computed,
+// loops iterate.
 //
-// What an iteration of a loop computes belongs to the loop until its next iteration is done; all else belongs to
+// What an iteration of a loop computes belongs to the loop until its next iteration is done; all else
+// belongs to
 // the cache. A pass inside a loop that does not change with it runs once.
 
 import { failure } from "./context.js";
@@ -28,6 +30,7 @@ import { continuedOf } from "./staleness.js";
  *  @property {import("./textures.js").Textures} textures
  *  @property {import("./kernels.js").Kernels} kernels
  *  @property {ReturnType<typeof import("./draws.js").createDraws>} draws
+ *  @property {ReturnType<typeof import("./plain.js").createPlain>} plain
  *  @property {import("./images.js").Images} images
  *  @property {WebGL2RenderingContext} gl
  *  @property {(step: Step, frame: number | null) => Object<string, any>} given
@@ -67,7 +70,7 @@ export const readWithLevels = (nodes) => {
 
 /** @param {Plan} plan @param {PlanNode[]} nodes what to run of it @param {Around} around */
 export const createExecution = (plan, nodes, around) => {
-  const { keys, cache, textures, kernels, draws, images, gl } = around;
+  const { keys, cache, textures, kernels, draws, plain, images, gl } = around;
   /** @type {Map<string, Result>} by the step's path */
   const results = new Map();
   /** @type {string[]} */
@@ -116,7 +119,8 @@ export const createExecution = (plan, nodes, around) => {
   /** Whether what is wired is a draw's. @param {Wired} wired */
   const continuesFrom = ({ result }) => !!pathOf(result);
 
-  /** The path of the draw that a result is of, if it is a draw's that others go on from. @param {Result} result */
+  /** The path of the draw that a result is of, if it is a draw's that others go on from.
+   *  @param {Result} result */
   const pathOf = (result) => {
     const owner = result.of || result;
     for (const path of continued)
@@ -133,16 +137,19 @@ export const createExecution = (plan, nodes, around) => {
     const raw = cache.get(/** @type {string} */ (keys.raw.get(step.path)), used);
     const from = raw ? [...raw.results.values()][0] : yield* computed(step);
     const { stride, form } = step.between, how = { k_stride: stride, k_form: form };
-    return keep(key, step, kernels.drawnOwn("fill_between.frag", from, how, step.kernel.outputs, isTall(step)));
+    const made = kernels.drawnOwn("fill_between.frag", from, how, step.kernel.outputs, isTall(step));
+    return keep(key, step, made);
   };
 
-  /** Keep a result under its key, and return it. @param {string} key @param {Step} step @param {Result} made */
+  /** Keep a result under its key, and return it. @param {string} key @param {Step} step
+   *  @param {Result} made */
   const keep = (key, step, made) => {
     const { results } = cache.put(key, { results: new Map([[step.path, made]]), iterations: 0 }, used);
     return /** @type {Result} */ (results.values().next().value);
   };
 
-  /** Run a step, from where its earlier iterations are known. @param {Step} step @returns {Working<Result>} */
+  /** Run a step, from where its earlier iterations are known. @param {Step} step
+   *  @returns {Working<Result>} */
   const computed = function* (step) {
     const key = /** @type {string} */ (keys.raw.get(step.path));
     const unfinished = /** @type {string} */ (keys.unfinished.get(step.path));
@@ -172,7 +179,7 @@ export const createExecution = (plan, nodes, around) => {
       given: around.given(step, loops ? loops.frame : null), keepsSurface: continued.has(step.path),
       time: plan.time, rows: (width, height) => around.rows(text, width, height),
     };
-    return yield* (kind === "draw" ? draws : kernels).run(job);
+    return yield* (kind === "draw" ? draws : kind === "plain_fragment" ? plain : kernels).run(job);
   };
 
   /** Draw again what a draw goes on from, where its samples went on into an earlier run of this draw.
@@ -209,7 +216,7 @@ export const createExecution = (plan, nodes, around) => {
     return texture ? { result, texture, output: source.output } : null;
   };
 
-  // ── loops ────────────────────────────────────────────────────────────────
+  // ── loops ──
 
   /** Run a loop from the iteration that is known, or from an earlier one where that lies further on.
    *  @param {LoopStep} loop @returns {Working<void>} */
@@ -226,11 +233,13 @@ export const createExecution = (plan, nodes, around) => {
       ended = true;
     } finally {
       state.cancel = null;
-      if (!ended && taken && state.iterations === taken) setAside(loop, key, state); // it is what is fed back only
+      const isOnlyFed = taken > 0 && state.iterations === taken; // what a loop feeds back, and no more
+      if (!ended && isOnlyFed) setAside(loop, key, state);
     }
   };
 
-  /** Set a loop back where it is too far, or on to a later state that was kept; return the iterations of that.
+  /** Set a loop back where it is too far, or on to a later state that was kept; return the iterations of
+   *  that.
    *  @param {LoopStep} loop @param {string} key @param {Cached} state */
   const goBack = (loop, key, state) => {
     if (state.iterations === loop.repeat) return 0;
@@ -285,7 +294,9 @@ export const createExecution = (plan, nodes, around) => {
     if (!loop.repeat && !state.results.size) state.results = initial(loop, changing, fed);
     state.results.forEach((result, path) => results.set(path, result));
     for (let iteration = state.iterations; iteration < loop.repeat; iteration++) {
-      if (iteration) for (const [name, , ref] of loop.feedback) fed.set(`${loop.path} ${name}`, wiredTo(ref, fed));
+      if (iteration) {
+        for (const [name, , ref] of loop.feedback) fed.set(`${loop.path} ${name}`, wiredTo(ref, fed));
+      }
       const at = { number: iteration, whole: loop.whole, frame: loop.countsFrames ? iteration : frame };
       /** @type {Map<string, Result>} */
       let made = new Map();
@@ -339,7 +350,8 @@ export const createExecution = (plan, nodes, around) => {
     if (found || !source || !("loop" in source)) return found;
     const declared = step.kernel.inputs.find((each) => each.name === name);
     if (!declared || !(step.kernel.dialect || declared.fallback === "zero")) return null;
-    const key = `${source.loop} ${source.name}`, [origin, output] = /** @type {[Step, string]} */ (fedFrom.get(key));
+    const key = `${source.loop} ${source.name}`;
+    const [origin, output] = /** @type {[Step, string]} */ (fedFrom.get(key));
     const result = zeros.get(key) || kernels.empty(origin, isTall(origin));
     zeros.set(key, result);
     return { result, texture: /** @type {any} */ (result.textures.get(output)), output };

@@ -20,7 +20,8 @@ import { arithmetic, bitLength, compared, float, floor, general, power } from ".
 const LIMIT = 2n ** 62n, LARGEST_BASE = 2n ** 31n;
 
 /** @param {string} message @param {string} [where] @returns {PlanError} */
-export const planError = (message, where) => Object.assign(new Error(message), { name: "PlanError", where });
+export const planError = (message, where) =>
+  Object.assign(new Error(message), { name: "PlanError", where });
 
 /** Whether something thrown is a mistake of a sketch and not of this program.
  *  @param {unknown} error @returns {error is PlanError} */
@@ -54,7 +55,10 @@ const FUNCTIONS = {
   },
   min: (...values) => values.reduce((least, value) => (compared(value, least) < 0 ? value : least)),
   max: (...values) => values.reduce((most, value) => (compared(value, most) > 0 ? value : most)),
-  abs: (value) => (compared(value, 0n) < 0 ? arithmetic("*", value, -1n) : typeof value === "number" ? Math.abs(value) : value),
+  abs: (value) => {
+    if (typeof value === "number") return Math.abs(value);
+    return compared(value, 0n) < 0 ? arithmetic("*", value, -1n) : value;
+  },
   floor,
   ceil: (value) => -floor(arithmetic("*", value, -1n)),
   "**": (base, exponent) => {
@@ -63,16 +67,16 @@ const FUNCTIONS = {
     if (large || exponent > 62n || exponent < -62n) throw planError("a power may not be that large");
     if (!compared(base, 0n) && exponent < 0n) throw planError("division by zero");
     const found = power(base, exponent);
-    if (typeof found === "number" && !Number.isFinite(found)) throw planError("a power may not be that large");
-    return found;
+    if (typeof found !== "number" || Number.isFinite(found)) return found;
+    throw planError("a power may not be that large");
   },
 };
 
 /** @param {Exact} value @param {string} text what the expression is called in messages @returns {Exact} */
 function checked(value, text) {
   const within = compared(value, LIMIT) <= 0 && compared(value, -LIMIT) >= 0;
-  if (!within || (typeof value === "object" && value.d > LIMIT)) throw planError(`'${text}' grows beyond 2**62`);
-  return value;
+  if (within && (typeof value !== "object" || value.d <= LIMIT)) return value;
+  throw planError(`'${text}' grows beyond 2**62`);
 }
 
 /** @param {Expression} expression @param {Names} names @param {string} text @returns {Exact} */
@@ -103,8 +107,10 @@ function valueOf(expression, names, text) {
 
 /** An expression as its author wrote it, where that is known.
  *  @param {Expression} expression */
-export const textOf = (expression) =>
-  Array.isArray(expression) ? (expression[0] === "text" ? expression[1] : JSON.stringify(expression)) : String(expression);
+export function textOf(expression) {
+  if (!Array.isArray(expression)) return String(expression);
+  return expression[0] === "text" ? expression[1] : JSON.stringify(expression);
+}
 
 /** Evaluate an expression to a whole number. Throws a `PlanError` in a sentence.
  *  @param {Expression} expression @param {Names} names @returns {bigint} */
@@ -124,7 +130,7 @@ export const whole = (expression, names) => Number(integer(expression, names));
 export const number = (expression, names) => float(valueOf(expression, names, textOf(expression)));
 
 /** What an expression asks its names for: kinds with their arguments, each once.
- *  @param {Expression} expression @returns {string[][]} ["name", "time"], ["size", base], ["value", path] … */
+ *  @param {Expression} expression @returns {string[][]} ["name", "time"], ["size", base] … */
 export function namesIn(expression) {
   /** @type {Map<string, string[]>} */
   const found = new Map();

@@ -1,15 +1,14 @@
 // figure.js -- one live picture in a page: the still picture until it is drawn, then what a session says.
 
-import { fieldFor, moved, sunMoved, turned, zoomed } from "./camera_moves.js";
+import { fieldFor } from "./camera_moves.js";
 import { make } from "./dom.js";
-import { followGestures } from "./gestures.js";
-import { WHOLE, fitted, followsFrame, linesAt, movedView, paintMap, sheetOf, texelAt, zoomedView } from "./map_view.js";
+import { createFigureMap } from "./figure_map.js";
 import { REST, createQuality, pixelsOf } from "./quality.js";
 import { createSession } from "./session.js";
+import { steerWith } from "./steering.js";
 import { cameraAt } from "./values.js";
 import { ENGLISH, fill } from "./words.js";
 
-/** @typedef {import("./schema.js").Camera} Camera */
 /** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./session.js").Session} Session */
 /** @typedef {ReturnType<typeof createFigure>} Figure */
@@ -18,8 +17,9 @@ import { ENGLISH, fill } from "./words.js";
  *  @typedef {object} Player
  *  @property {any} state
  *  @property {any} plan
- *  @property {(onProgress?: (done: number, all: number) => void) => Promise<void>} load
- *  @property {() => {ran: string[], milliseconds: number}} render
+ *  @property {(onProgress?: (done: number, all: number) => void) => Promise<unknown>} load
+ *  @property {() => unknown} render
+ *  @property {() => Promise<unknown>} [renderSoon]  in pieces; null where a later one has overtaken it
  *  @property {(context: CanvasRenderingContext2D) => void} drawTo
  *  @property {(source: {path: string, output: string}) => any} read
  *  @property {() => void} close */
@@ -32,109 +32,133 @@ import { ENGLISH, fill } from "./words.js";
  *  @property {HTMLImageElement | null} [poster]
  *  @property {number} [budget]         pixels of the picture at most
  *  @property {boolean} [inText]        a finger that goes up or down, and the wheel, scroll the page
- *  @property {(text: string, alarm?: boolean) => void} [say]
+ *  @property {(player: Player) => unknown} [prepare]  what a player needs before its first picture
  *  @property {(player: Player) => void} [opened]  a player is there, its programs too
  *  @property {() => void} [drawn]      after each frame */
 
-const GRAB = 6; // [CSS pixels] from a line between two pictures
 const EVERY = 1000; // [ms] of time that a frame may add: after a pause time goes on from where it was
+const FRAME = 17; // [ms] that a frame waits for the screen
+const PATIENT = 1500; // [ms] a picture that is made in pieces may take before other values overtake it
+const LONG = 150; // [ms] of a picture after which the next is made in pieces
+const SAID = 600; // [ms] until it is said that a picture is being made
 
 /** Make a figure in an element, whose size it fills. `start` opens the player.
- *  @param {HTMLElement} host @param {Engine} engine @param {{sketches: Sketch[]}} page @param {Options} [options] */
+ *  @param {HTMLElement} host @param {Engine} engine @param {{sketches: Sketch[]}} page
+ *  @param {Options} [options] */
 export function createFigure(host, engine, page, options = {}) {
   const { words = ENGLISH, poster = null, budget = 2.1e6, inText = false } = options;
   const session = options.session ?? createSession(page.sketches, options.sketch ?? 0);
-  const title = () => session.sketch.title || session.sketch.name;
   const canvas = make("canvas", { tabIndex: 0, role: "application", hidden: true });
   const message = make("p", { className: "message", role: "status" });
   const readout = make("p", { className: "readout", hidden: true });
-  const notes = make("div", { className: "notes" }, readout, message);
+  const notice = make("p", { className: "message", role: "status" });
+  const notes = make("div", { className: "notes" }, readout, notice, message);
   const stage = make("div", { className: "stage" }, ...(poster ? [poster] : []), canvas, notes);
   host.append(stage);
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-  const sheet = document.createElement("canvas"), sheetContext = /** @type {CanvasRenderingContext2D} */ (sheet.getContext("2d"));
   const quality = createQuality();
   /** @type {Player | null} */
   let player = null;
-  /** @type {any} */
-  let texels = null;
-  /** @type {[number, number] | null} */
-  let pointer = null;
-  let asked = 0, askedAt = 0, opening = 0, resting = 0, last = 0, inSight = true, closed = false;
-  let playing = false, speed = 1, moving = false, view = WHOLE, fits = false, took = 0;
+  let asked = 0, askedAt = 0, opening = 0, resting = 0, last = 0, took = 0, speed = 1;
+  let inSight = true, closed = false, playing = false, moving = false, long = true, again = false;
+  let overtaken = false; // values have changed since a picture was begun in pieces
+  /** @type {(() => void)[]} who waits for the next picture */
+  const waiting = [];
+  /** @type {number | null} when the picture was begun that is made in pieces */
+  let begun = null;
 
-  const say = options.say ?? ((text, alarm = false) => {
-    message.textContent = text;
-    message.classList.toggle("alarm", alarm);
-  });
-  let told = false; // what stands there is of a frame, or of what comes before one
-  const tell = (/** @type {string} */ text, alarm = false) => {
-    if (text || told) say(text, alarm);
-    told = Boolean(text);
-  };
-  const reason = (/** @type {unknown} */ error) => (error instanceof Error ? error.message : String(error));
+  /** @returns {[number, number]} CSS pixels */
+  const box = () => [Math.max(stage.clientWidth, 1), Math.max(stage.clientHeight, 1)];
+  const room = { session, words, canvas, context, readout, box, budget: budget * 2, player: () => player };
+  const map = createFigureMap(room);
+  const steering = steerWith(canvas, session, map, { box, eye: () => player?.plan?.eye, inText });
+
+  /** Say how far the picture is, or what is wrong with it. */
+  function tell(/** @type {string} */ text, /** @type {unknown} */ error = null) {
+    const reason = error instanceof Error ? error.message : String(error);
+    const whole = error ? fill(text, { reason }) : text;
+    if (message.textContent !== whole) message.textContent = whole;
+    message.classList.toggle("alarm", Boolean(error));
+  }
 
   // ── what is drawn ──────────────────────────────────────────────────────────
 
-  /** @returns {[number, number]} */
-  const box = () => [Math.max(stage.clientWidth, 1), Math.max(stage.clientHeight, 1)];
-  const cameraNow = () => cameraAt(session.sketch, session.camera, session.time);
-
   /** The camera as it is shown: opened where the room is narrower than the sketch's picture. */
   function framed(/** @type {[number, number]} */ size) {
-    const camera = cameraNow();
+    const camera = cameraAt(session.sketch, session.camera, session.time);
     return { ...camera, field_of_view: fieldFor(camera.field_of_view, session.sketch.frame, size) };
   }
 
-  const texture = () => session.sketch.textures.find((one) => one.path === session.map?.path && one.output === session.map.output);
-
-  /** @returns {[number, number]} */
-  function frameSize() {
-    const { map } = session, step = map && player?.plan?.steps?.get(map.path);
-    if (map && step && !followsFrame(session.sketch, map.path)) return sheetOf(step.size);
-    return pixelsOf(box(), devicePixelRatio || 1, budget, moving && !map ? quality.scale : 1);
+  function takeState(/** @type {Player} */ to) {
+    const scale = moving && !session.map ? quality.scale : 1;
+    const size = map.size() ?? pixelsOf(box(), devicePixelRatio || 1, budget, scale);
+    Object.assign(to.state, session.state(), { frame: size, camera: framed(size) });
+    return size;
   }
 
   function draw() {
     asked = 0;
     if (!player || closed || document.hidden || !inSight) return;
-    const start = performance.now(), late = Math.max(start - askedAt - 17, 0);
-    if (playing) {
-      const passed = last ? Math.min(start - last, EVERY) / 1000 : 0;
-      last = start;
-      advance(passed * speed);
-    }
-    const size = frameSize();
-    Object.assign(player.state, session.state(), { frame: size, camera: framed(size) });
+    const start = performance.now();
+    again = begun !== null && !(overtaken && start - begun > PATIENT);
+    if (again) return;
+    const late = Math.max(start - askedAt - FRAME, 0), from = player, inPieces = long && from.renderSoon;
+    if (playing) advance(start);
     try {
-      const { map } = session;
-      player.render();
-      texels = null;
-      if (map && !fits) fitMap();
-      else if (map) {
-        [sheet.width, sheet.height] = size;
-        player.drawTo(sheetContext);
-        paint();
-      } else {
-        if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
-        player.drawTo(context);
+      const size = takeState(from);
+      if (inPieces) drawInPieces(from, size, start);
+      else {
+        from.render();
+        show(from, size, start, late);
       }
-      took = performance.now() - start;
-      tell("");
     } catch (error) {
-      tell(fill(words.kept, { reason: reason(error) }), true);
+      tell(canvas.hidden ? words.failed : words.kept, error);
     }
-    reveal();
+    if (playing) ask();
+  }
+
+  /** What a value changes may take long: the page stays at hand meanwhile.
+   *  @param {Player} from @param {[number, number]} size @param {number} start */
+  async function drawInPieces(from, size, start) {
+    begun = start;
+    overtaken = false;
+    const slow = setTimeout(() => { if (!playing) tell(words.working); }, SAID);
+    try {
+      const done = await from.renderSoon?.();
+      clearTimeout(slow);
+      if (!done || from !== player || closed) return;
+      show(from, size, start, 0);
+      long = overtaken || took > LONG;
+    } catch (error) {
+      tell(canvas.hidden ? words.failed : words.kept, error);
+    } finally {
+      clearTimeout(slow);
+      if (begun === start) begun = null;
+      if (again) ask();
+    }
+  }
+
+  /** @param {Player} from @param {[number, number]} size @param {number} start @param {number} late */
+  function show(from, size, start, late) {
+    if (session.map) map.drawn(from, size);
+    else {
+      if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
+      from.drawTo(context);
+    }
+    took = performance.now() - start;
+    canvas.hidden = false;
+    if (poster) poster.hidden = true;
+    name();
+    tell("");
     if (moving) quality.took(took + late);
-    if (session.drawn() || playing) ask();
-    point();
+    if (session.drawn()) ask();
+    waiting.splice(0).forEach((resolve) => resolve());
     options.drawn?.();
   }
 
-  function reveal() {
-    canvas.hidden = false;
-    if (poster) poster.hidden = true;
-    const text = session.map ? fill(words.mapLabel, { label: texture()?.label ?? "" }) : fill(words.picture, { title: title() });
+  function name() {
+    const title = session.sketch.title || session.sketch.name;
+    const text = session.map ? fill(words.mapLabel, { label: map.label }) : fill(words.picture, { title });
     if (canvas.getAttribute("aria-label") !== text) canvas.setAttribute("aria-label", text);
   }
 
@@ -143,21 +167,21 @@ export function createFigure(host, engine, page, options = {}) {
     if (motion || playing) {
       if (!moving) quality.begin();
       moving = true;
-      clearTimeout(resting);
-      resting = setTimeout(rest, REST);
+      settle();
     }
     if (asked || closed) return;
     askedAt = performance.now();
     asked = requestAnimationFrame(draw);
   }
 
-  function rest() {
-    if (playing) return;
-    moving = false;
-    if (quality.scale < 1) {
+  function settle() {
+    clearTimeout(resting);
+    resting = setTimeout(() => {
+      if (playing) return;
+      moving = false;
       quality.rest();
-      ask();
-    }
+      if (!session.map && canvas.width !== pixelsOf(box(), devicePixelRatio || 1, budget)[0]) ask();
+    }, REST);
   }
 
   async function open() {
@@ -165,8 +189,11 @@ export function createFigure(host, engine, page, options = {}) {
     tell(words.loading);
     try {
       const made = engine.open(session.sketch);
-      Object.assign(made.state, session.state(), { frame: frameSize() });
-      await made.load((done, all) => { if (mine === opening) tell(fill(words.compiling, { done, all })); });
+      takeState(made);
+      await made.load((done, all) => {
+        if (mine === opening) tell(fill(words.compiling, { done, all }));
+      });
+      if (mine === opening) await options.prepare?.(made);
       if (mine !== opening || closed) return made.close();
       player?.close();
       player = made;
@@ -174,129 +201,55 @@ export function createFigure(host, engine, page, options = {}) {
       options.opened?.(made);
       ask();
     } catch (error) {
-      if (mine === opening) tell(fill(words.failed, { reason: reason(error) }), true);
+      if (mine === opening) tell(words.failed, error);
     }
     return undefined;
   }
 
   // ── time ───────────────────────────────────────────────────────────────────
 
-  function advance(/** @type {number} */ seconds) {
-    const { duration } = session.sketch, time = session.time + seconds;
+  function advance(/** @type {number} */ now) {
+    const passed = last ? Math.min(now - last, EVERY) / 1000 : 0, { duration } = session.sketch;
+    last = now;
+    const time = session.time + passed * speed;
     session.setTime(duration > 0 && time > duration ? time % duration : time);
   }
 
   function play(/** @type {boolean} */ on) {
     playing = on;
     last = 0;
-    if (!on) resting = setTimeout(rest, REST);
+    settle();
     ask();
   }
 
-  // ── the camera, and maps ───────────────────────────────────────────────────
-
-  const eye = () => player?.plan?.eye;
-  /** @param {(now: Camera, eye: {distance: number, target: [number, number, number]}) => Camera} change */
-  function steer(change) {
-    const at = eye();
-    if (at) session.setCamera(change(cameraNow(), at)); // keyframes' camera goes on from where it is
+  /** Time goes on from here. */
+  function wake() {
+    last = 0;
+    if (!document.hidden && inSight) ask();
   }
-  /** @returns {[number, number]} */
-  const room = () => [canvas.width, canvas.height];
-  const density = () => canvas.width / box()[0];
-
-  function paint() {
-    const size = pixelsOf(box(), devicePixelRatio || 1, budget * 4);
-    if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
-    paintMap(context, sheet, [sheet.width, sheet.height], view);
-    point();
-  }
-  const look = (/** @type {import("./map_view.js").View} */ next) => { view = next; paint(); };
-
-  async function readTexels() {
-    if (!session.map || !player) return null;
-    texels ??= player.read({ path: session.map.path, output: session.map.output });
-    return (texels = await texels);
-  }
-
-  /** Choose the channel and the range of a map by what there is in it. */
-  async function fitMap() {
-    fits = true;
-    const map = session.map, found = await readTexels();
-    if (!map || session.map !== map || !found) return;
-    const values = { ...map.values };
-    for (const [name, value] of Object.entries(fitted(found))) {
-      const row = session.sketch.map.shown.find((one) => one.path.split(".").pop() === name);
-      for (const leaf of row?.targets ?? []) values[leaf] = value;
-    }
-    session.setMap({ ...map, values });
-  }
-
-  async function point() {
-    readout.hidden = !session.map;
-    if (!session.map) return;
-    const place = pointer && /** @type {[number, number]} */ (pointer.map((at) => at * density()));
-    const found = place && (await readTexels()), { map, sketch } = session;
-    const at = map && found && place && texelAt(place, room(), view, [sheet.width, sheet.height], found.size);
-    if (!map) return;
-    const { terrain } = player?.plan ?? session.state();
-    const lines = at ? linesAt(found, at, Boolean(texture()?.height), terrain, !followsFrame(sketch, map.path), words) : [words.pointAt];
-    readout.textContent = lines.join("\n");
-  }
-
-  const pixels = (/** @type {number} */ share) => share * canvas.height;
-  const turn = (/** @type {number} */ across, /** @type {number} */ down) => {
-    if (session.map) look(movedView(view, [sheet.width, sheet.height], room(), pixels(across), pixels(down)));
-    else steer((now) => turned(now, across, down));
-  };
-  const move = (/** @type {number} */ across, /** @type {number} */ down) => {
-    if (session.map) turn(across, down);
-    else steer((now, at) => moved(now, at, fieldFor(now.field_of_view, session.sketch.frame, box()), across, down));
-  };
-  const zoom = (/** @type {number} */ notches, x = box()[0] / 2, y = box()[1] / 2) => {
-    const at = /** @type {[number, number]} */ ([x * density(), y * density()]);
-    if (session.map) look(zoomedView(view, [sheet.width, sheet.height], room(), 0.88 ** -notches, at));
-    else steer((now, from) => zoomed(now, from, notches));
-  };
-  const resetView = () => (session.map ? look(WHOLE) : session.setCamera(null));
-
-  const rowsOf = (/** @type {string} */ widget) => session.sketch.shown.filter((row) => row.exported && row.widget === widget && !row.locked);
-  let held = "";
-  followGestures(canvas, {
-    turn, move, zoom, reset: resetView,
-    grab(x) {
-      const away = (/** @type {string} */ path) => Math.abs(Number(session.value(path)) * box()[0] - x);
-      const paths = session.map ? [] : rowsOf("divider").map((row) => row.path).sort((a, b) => away(a) - away(b));
-      held = paths.length && away(paths[0]) <= GRAB ? paths[0] : "";
-      return Boolean(held);
-    },
-    drag: (x) => session.set(held, +Math.min(Math.max(x / box()[0], 0), 1).toFixed(4)),
-    light(across, up) {
-      const suns = rowsOf("direction"), terrain = suns.filter((row) => row.pass !== "view");
-      const news = (terrain.length ? terrain : suns).map((row) => [row.path, sunMoved(/** @type {number[]} */ (session.value(row.path)), across, up)]);
-      if (news.length) session.setAll(/** @type {[string, any][]} */ (news), "light");
-    },
-    hover(place) { pointer = place ?? pointer; if (session.map) point(); },
-  }, { sideways: inText, wheel: () => !inText || document.activeElement === canvas });
 
   // ── what it follows ────────────────────────────────────────────────────────
 
   const unfollow = session.follow((news) => {
+    if (news !== "camera" && news !== "time") long = overtaken = true;
     if (news === "sketch") open();
-    else {
-      if (!session.map) view = WHOLE;
-      ask(news === "camera" || news === "values" || news === "time");
-    }
+    else ask(news !== "map");
   });
   const sizes = new ResizeObserver(() => ask());
+  const sights = new IntersectionObserver(([entry]) => {
+    inSight = entry.isIntersecting;
+    wake();
+  });
   sizes.observe(stage);
-  const sights = new IntersectionObserver(([entry]) => { inSight = entry.isIntersecting; last = 0; if (inSight) ask(); });
   sights.observe(stage);
-  const wake = () => { last = 0; if (!document.hidden) ask(); };
   document.addEventListener("visibilitychange", wake);
 
   return {
-    session, stage, canvas, say, ask, play, turn, move, zoom, resetView, fitMap,
+    session, stage, canvas, ask, play, ...steering,
+    /** Show a notice. @param {string} text */
+    say(text) { notice.textContent = text; },
+    showMap: map.show,
+    fitMap: map.fit,
     get player() { return player; },
     get playing() { return playing; },
     get speed() { return speed; },
@@ -305,18 +258,17 @@ export function createFigure(host, engine, page, options = {}) {
     get took() { return took; },
     /** Open the player, and draw. */
     start: open,
-    /** Show a texture from above, or the picture. @param {{path: string, output: string} | null} texture */
-    showMap(texture) {
-      fits = false;
-      view = WHOLE;
-      session.setMap(texture && { path: texture.path, output: texture.output, values: { ...session.sketch.map.values } });
+    /** Draw anew; done when the picture is there. @returns {Promise<void>} */
+    redraw() {
+      long = true;
+      ask();
+      return new Promise((resolve) => { waiting.push(resolve); });
     },
-    /** Repeats with more than one step, by path. */
-    repeats() {
-      /** @type {Map<string, number>} */
-      const found = new Map();
-      for (const [path, step] of player?.plan?.steps ?? []) if (step.whole > 1 || step.repeat > 1) found.set(path, Math.max(step.whole, step.repeat));
-      return found;
+    /** Show the still picture in place of the live one, or no longer. @param {boolean} still */
+    showPoster(still) {
+      if (!poster) return;
+      poster.hidden = !still;
+      canvas.hidden = still;
     },
     close() {
       closed = true;

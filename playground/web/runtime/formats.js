@@ -1,4 +1,5 @@
-// formats.js -- the formats of textures: what WebGL calls them, and what one without 16-bit channels takes instead.
+// formats.js -- the formats of textures: what WebGL calls them, and what one without 16-bit channels takes
+// instead.
 
 /** @typedef {object} Format
  *  @property {number} internal
@@ -24,7 +25,8 @@ export const formatsOf = ({ gl, norm16 }) => {
       : any[letters.toUpperCase() + kind.toUpperCase()];
     const type = { 8: gl.UNSIGNED_BYTE, 16: gl.UNSIGNED_SHORT, "16f": gl.HALF_FLOAT, "32f": gl.FLOAT }[kind];
     if (!internal || !type) throw new Error(`format ${name}`);
-    return { internal, external, type, channels, bytes: (channels * parseInt(kind)) / 8, float32: kind === "32f", steps: 0 };
+    const bytes = (channels * parseInt(kind)) / 8;
+    return { internal, external, type, channels, bytes, float32: kind === "32f", steps: 0 };
   };
   return (name) => {
     let found = known.get(name);

@@ -23,8 +23,8 @@ export function geomipmap({ tolerance }, { spans, errors }, view) {
   const sides = sidesOf(levels, nx, ny);
   const found = [gathered("fans", levels, nx, (tile) => (seen[tile] ? sides[tile] : -1))];
   for (const side of SIDES) {
-    const wanted = (/** @type {number} */ tile) => walled[tile] && isAtRim(side, Math.floor(tile / nx), tile % nx, ny, nx);
-    found.push(gathered("wall", levels, nx, (tile) => (wanted(tile) ? side : -1)));
+    found.push(gathered("wall", levels, nx, (tile) => (
+      walled[tile] && isAtRim(side, Math.floor(tile / nx), tile % nx, ny, nx) ? side : -1)));
   }
   return {
     runs: found.flatMap(({ runs }) => runs),
@@ -71,8 +71,9 @@ function sidesOf(levels, nx, ny) {
   });
 }
 
-/** The wanted tiles, those of one piece after another; `sideOf` a tile that is not wanted is -1.
- *  @param {string} kind @param {Int8Array} levels @param {number} nx @param {(tile: number) => number} sideOf */
+/** The wanted tiles, those of one piece after another; `sideOf` one that is not wanted is -1.
+ *  @param {string} kind @param {Int8Array} levels @param {number} nx
+ *  @param {(tile: number) => number} sideOf */
 function gathered(kind, levels, nx, sideOf) {
   /** @type {Map<number, number[]>} */
   const byCode = new Map();

@@ -1,4 +1,4 @@
-// gestures.js -- mouse, pen, fingers and wheel over an element, as what they mean: turn, move, zoom, reset, point.
+// gestures.js -- mouse, pen, fingers and wheel over an element, as what they mean: turn, move, zoom, reset.
 
 /** Places are CSS pixels from the element's upper left corner; differences are in shares of its height.
  *  @typedef {object} Meanings
@@ -6,7 +6,7 @@
  *  @property {(across: number, down: number) => void} move
  *  @property {(notches: number, x: number, y: number) => void} zoom   positive: nearer
  *  @property {() => void} reset                                        a double click or tap
- *  @property {(x: number, y: number) => boolean} [grab]                whether something else is held from there
+ *  @property {(x: number, y: number) => boolean} [grab]   whether something else is held from there
  *  @property {(x: number) => void} [drag]                              and is now there
  *  @property {(across: number, up: number) => void} [light]            a drag with Ctrl
  *  @property {(place: [number, number] | null) => void} [hover] */
@@ -18,18 +18,28 @@ const NEAR = 25; // [CSS pixels]
 
 /** @param {WheelEvent} event @returns {number} notches forward */
 export function notchesOf(event) {
-  const lines = event.deltaMode === 1 ? event.deltaY / LINES : event.deltaMode === 2 ? event.deltaY : event.deltaY / NOTCH;
+  const lines =
+    event.deltaMode === 1
+      ? event.deltaY / LINES
+      : event.deltaMode === 2
+        ? event.deltaY
+        : event.deltaY / NOTCH;
   // A pinch on a touchpad arrives as small scrolls with Ctrl.
   const notches = -lines * (event.ctrlKey && event.deltaMode === 0 && Math.abs(event.deltaY) < 50 ? 8 : 1);
   return Math.min(Math.max(notches, -4), 4);
 }
 
-/** Follow gestures. @param {HTMLElement} element @param {Meanings} meanings @param {{sideways?: boolean, wheel?: () => boolean}} [options]
+/** Follow gestures. @param {HTMLElement} element @param {Meanings} meanings
+ *  @param {{sideways?: boolean, wheel?: () => boolean}} [options]
  *  `sideways`: a finger that goes up or down scrolls the page; `wheel`: whether the wheel zooms now */
 export function followGestures(element, meanings, { sideways = false, wheel = () => true } = {}) {
   /** @type {Map<number, {x: number, y: number}>} */
   const fingers = new Map();
-  let mode = "", tapped = 0, tap = { x: 0, y: 0 }, far = 0, several = false;
+  let mode = "",
+    tapped = 0,
+    tap = { x: 0, y: 0 },
+    far = 0,
+    several = false;
   element.style.touchAction = sideways ? "pan-y" : "none";
   const place = (/** @type {MouseEvent} */ event) => {
     const box = element.getBoundingClientRect();
@@ -50,12 +60,16 @@ export function followGestures(element, meanings, { sideways = false, wheel = ()
     } else several = true;
     fingers.set(event.pointerId, { x, y });
     // A page that scripts drive may have no such pointer.
-    try { element.setPointerCapture(event.pointerId); } catch { /* the gesture ends at the element's edge */ }
-    element.focus({ preventScroll: true });
-    event.preventDefault();
+    try {
+      element.setPointerCapture(event.pointerId);
+    } catch {
+      /* the gesture ends at the element's edge */
+    }
+    if (event.button === 1) event.preventDefault(); // the page would scroll by itself
   });
   element.addEventListener("pointermove", (event) => {
-    const { x, y, height } = place(event), before = fingers.get(event.pointerId);
+    const { x, y, height } = place(event),
+      before = fingers.get(event.pointerId);
     if (!before) {
       if (event.pointerType !== "touch") meanings.hover?.([x, y]);
       return;
@@ -81,21 +95,33 @@ export function followGestures(element, meanings, { sideways = false, wheel = ()
   const end = (/** @type {PointerEvent} */ event) => {
     if (!fingers.delete(event.pointerId) || event.type !== "pointerup" || fingers.size) return;
     if (event.pointerType !== "touch" || several || far > NEAR / 2) return;
-    const { x, y } = place(event), near = Math.hypot(x - tap.x, y - tap.y) < NEAR;
+    const { x, y } = place(event),
+      near = Math.hypot(x - tap.x, y - tap.y) < NEAR;
     if (near && event.timeStamp - tapped < TWICE) {
       tapped = 0;
       meanings.reset();
     } else [tapped, tap] = [event.timeStamp, { x, y }];
     meanings.hover?.([x, y]);
   };
-  for (const name of /** @type {const} */ (["pointerup", "pointercancel"])) element.addEventListener(name, end);
-  element.addEventListener("pointerleave", (event) => event.pointerType !== "touch" && meanings.hover?.(null));
-  element.addEventListener("dblclick", (event) => { if (mode === "turn") meanings.reset(); event.preventDefault(); });
-  element.addEventListener("contextmenu", (event) => event.preventDefault());
-  element.addEventListener("wheel", (event) => {
-    if (!wheel()) return;
+  for (const name of /** @type {const} */ (["pointerup", "pointercancel"]))
+    element.addEventListener(name, end);
+  element.addEventListener(
+    "pointerleave",
+    (event) => event.pointerType !== "touch" && meanings.hover?.(null),
+  );
+  element.addEventListener("dblclick", (event) => {
+    if (mode === "turn") meanings.reset();
     event.preventDefault();
-    const { x, y } = place(event);
-    meanings.zoom(notchesOf(event), x, y);
-  }, { passive: false });
+  });
+  element.addEventListener("contextmenu", (event) => event.preventDefault());
+  element.addEventListener(
+    "wheel",
+    (event) => {
+      if (!wheel()) return;
+      event.preventDefault();
+      const { x, y } = place(event);
+      meanings.zoom(notchesOf(event), x, y);
+    },
+    { passive: false },
+  );
 }

@@ -15,6 +15,14 @@ const LINES = {
 /** A button with a picture; its label is for those who do not see it, and a tooltip.
  *  @param {keyof typeof LINES} name @param {string} label @param {() => void} act */
 export function iconButton(name, label, act) {
-  const drawn = svg("svg", { viewBox: "0 0 16 16", class: "icon", "aria-hidden": "true" }, svg("path", { d: LINES[name] }));
-  return make("button", { type: "button", className: `tool tool-${name}`, title: label, "aria-label": label, onclick: act }, drawn);
+  const drawn = svg(
+    "svg",
+    { viewBox: "0 0 16 16", class: "icon", "aria-hidden": "true" },
+    svg("path", { d: LINES[name] }),
+  );
+  return make(
+    "button",
+    { type: "button", className: `tool tool-${name}`, title: label, "aria-label": label, onclick: act },
+    drawn,
+  );
 }

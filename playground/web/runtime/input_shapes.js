@@ -1,5 +1,11 @@
 // input_shapes.js -- how textures of two dimensions hold cubes, volumes, arrays and lines: gpu/shapes.py.
 
+import { planError } from "./expressions.js";
+import { isRef } from "./plan_nodes.js";
+
+/** @typedef {import("./schema.js").Sketch} Sketch */
+/** @typedef {import("./schema.js").Leaf} Leaf */
+
 const FACES = 6;
 
 /** What size a texture of a shape should have, "" where `size` is one.
@@ -24,4 +30,33 @@ export function shapedSize(shape, [width, height]) {
   if (!shape) return [width, height, 1];
   const deep = shape === "volume" ? width : shape === "layers" ? Math.floor(height / width) : 1;
   return [width, shape === "line" ? 1 : width, deep];
+}
+
+/** Refuse what is wired to a cube map, a volume or an array and cannot be one.
+ *  @param {Sketch} sketch @param {Leaf} leaf @param {(path: string) => [number, number]} sizeOf */
+export function checkShapes(sketch, leaf, sizeOf) {
+  const shapes = new Map(sketch.kernels[leaf.kernel].inputs.map((input) => [input.name, input.shape]));
+  for (const [name, source] of leaf.inputs) {
+    const shape = shapes.get(name);
+    if (!source || !shape) continue;
+    const { path } = isRef(source) ? source : fedBy(sketch.nodes, source);
+    const size = sizeOf(path), wrong = misfit(shape, size);
+    if (wrong) {
+      const message = `${name} reads '${path}', ${size[0]} x ${size[1]} texels; ${wrong}`;
+      throw planError(`pass '${leaf.path}': ${message}`, sketch.passes[leaf.path.split(".")[0]].where);
+    }
+  }
+}
+
+/** The texture that a loop feeds back under a name.
+ *  @param {import("./schema.js").Node[]} nodes @param {{loop: string, name: string}} fed
+ *  @returns {{path: string, output: string}} */
+function fedBy(nodes, fed) {
+  for (const node of nodes) {
+    if (!("loop" in node)) continue;
+    const own = node.path === fed.loop && node.feedback.find(([name]) => name === fed.name);
+    if (own) return own[2];
+    if (fed.loop.startsWith(`${node.path}.`)) return fedBy(node.body, fed);
+  }
+  throw new Error(`no loop ${fed.loop}`);
 }

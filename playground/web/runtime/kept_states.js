@@ -1,6 +1,7 @@
 // kept_states.js -- keeps some earlier states of loops that follow the time, so that it may go back.
 //
-// A state is what a loop feeds back after some of its iterations. States are dense close to the present and ever
+// A state is what a loop feeds back after some of its iterations. States are dense close to the present
+// and ever
 // sparser away from it: the one that goes first is the one without which the longest run, measured by how far
 // away it is, grows least. Results do not depend on what is kept.
 
@@ -41,7 +42,8 @@ export const createKeptStates = (limit, textures) => {
     return numbers[costs.indexOf(Math.min(...costs))];
   };
 
-  /** Drop the state that is missed least, of the loop whose states are largest; return whether there was one. */
+  /** Drop the state that is missed least, of the loop whose states are largest; return whether there was
+   *  one. */
   const thin = () => {
     const largest = every().filter(({ states }) => states.size).sort((a, b) => weightOf(b) - weightOf(a))[0];
     if (largest) give(pop(largest, least(largest)));
@@ -54,14 +56,17 @@ export const createKeptStates = (limit, textures) => {
 
     /** Return the most iterations, up to `most`, after which there is a state; 0 for none.
      *  @param {string} path @param {string} key @param {number} most */
-    latest: (path, key, most) =>
-      Math.max(0, ...[...(known.get(path)?.get(key)?.states.keys() || [])].filter((number) => number <= most)),
+    latest: (path, key, most) => {
+      const numbers = [...(known.get(path)?.get(key)?.states.keys() || [])];
+      return Math.max(0, ...numbers.filter((number) => number <= most));
+    },
 
     /** Hand over a state that there is. @param {string} path @param {string} key @param {number} number */
     take: (path, key, number) => pop(/** @type {Kept} */ (known.get(path)?.get(key)), number),
 
     /** Take over a state after some iterations; `now` are those that are wanted.
-     *  @param {string} path @param {string} key @param {number} number @param {State} state @param {number} now */
+     *  @param {string} path @param {string} key @param {number} number @param {State} state
+     *  @param {number} now */
     keep: (path, key, number, state, now) => {
       const keys = known.get(path) || new Map(), kept = keys.get(key) || { now, states: new Map() };
       known.set(path, keys);

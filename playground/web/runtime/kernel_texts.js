@@ -14,6 +14,7 @@ import { filteredByHand } from "./linear_by_hand.js";
 /** @typedef {object} KernelText
  *  @property {Kernel} kernel
  *  @property {import("./source.js").Flat} flat
+ *  @property {import("./source.js").Flat} vertex   its author's own vertex shader's, else the same
  *  @property {string[]} given         names that the engine gives it
  *  @property {Set<string>} used       names in its text besides their declaration, or in its header
  *  @property {string} identity        the same for the same header and text
@@ -28,14 +29,17 @@ export const readKernel = (shared, kernel, texts) => {
   const source = kernel.kind === "source";
   const flat = source ? { lines: [], names: new Set() }
     : flatten(shared, kernel.file, texts, { once: !!kernel.dialect });
-  const code = flat.lines.map((line) => line.code).join("\n");
+  const once = { once: !!kernel.dialect }, own = kernel.vertex?.file;
+  const vertex = own ? flatten(shared, own, texts, once) : flat;
+  const lines = own ? [...flat.lines, ...vertex.lines] : flat.lines, code = lines.map((line) => line.code).join("\n");
   const given = Object.keys(shared.given).filter((name) => flat.names.has(name));
   const declared = new Set(kernel.parameters.map(({ name }) => name));
   return {
-    kernel, flat, given, programs: new Map(), hands: new Map(),
+    kernel, flat, vertex, given, programs: new Map(), hands: new Map(),
     used: usedBy(kernel, code, given),
     identity: hash(JSON.stringify([kernel, code])),
-    own: declaredUniforms(flat.lines).flatMap(({ name, value }) => (value === null || declared.has(name) ? [] : [[name, value]])),
+    own: declaredUniforms(flat.lines).filter(({ name, value }) => value !== null && !declared.has(name))
+      .map(({ name, value }) => [name, value]),
   };
 };
 
@@ -44,12 +48,13 @@ export const readKernel = (shared, kernel, texts) => {
  *  @param {Map<string, import("./linear_by_hand.js").Wrap>} byHand samplers that are filtered in the text
  *  @param {string} atEnd of the fragment shader's main function
  *  @returns {{texts: [string, string], first: [number, number]}} */
-export const stagesOf = ({ kernel, flat }, byHand, atEnd) => {
+export const stagesOf = ({ kernel, flat, vertex }, byHand, atEnd) => {
   const stages = [kernel.vertex, kernel.fragment].map((stage, i) => {
-    const { text, first } = stageText(stage, flat);
+    const { text, first } = stageText(stage, i ? flat : vertex);
     const filtered = byHand.size ? filteredByHand(text, byHand) : { text, functions: "" };
     const found = i && atEnd ? filtered.text.replace(/\}\s*$/, `${atEnd} }\n`) : filtered.text;
-    return { text: toES(found, { extensions: kernel.extensions, byHand: { text: filtered.functions, names: {} } }), first };
+    const how = { extensions: kernel.extensions, byHand: { text: filtered.functions, names: {} } };
+    return { text: toES(found, how), first };
   });
   return { texts: [stages[0].text, stages[1].text], first: [stages[0].first, stages[1].first] };
 };

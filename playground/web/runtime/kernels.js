@@ -1,6 +1,7 @@
 // kernels.js -- runs kernels: a triangle over the whole target, once for each iteration.
 //
-// A kernel that repeats writes two sets of textures alternately. One whose iterations fill a lattice ever more
+// A kernel that repeats writes two sets of textures alternately. One whose iterations fill a lattice ever
+// more
 // closely fills as small a part of its textures as that takes.
 
 import { failure } from "./context.js";
@@ -11,7 +12,7 @@ import { stagesOf } from "./kernel_texts.js";
 import { isSize, PLAIN } from "./binder.js";
 import { setUniform } from "./programs.js";
 import { toES } from "./es.js";
-import { ownNames } from "./planner.js";
+import { ownNames } from "./counts.js";
 
 /** @typedef {import("./textures.js").Result} Result */
 /** @typedef {import("./textures.js").Texture} Texture */
@@ -40,8 +41,9 @@ import { ownNames } from "./planner.js";
 
 const TRIANGLE = "#version 330\nvoid main() { gl_Position = vec4(vec2(gl_VertexID & 1, gl_VertexID >> 1)"
   + " * 4.0 - 1.0, 0.0, 1.0); }\n";
-const SHOW = "#version 330\nuniform sampler2D k_picture; uniform int k_channels; out vec4 k_out; void main() {"
-  + " vec4 k_all = texelFetch(k_picture, ivec2(gl_FragCoord.xy), 0); k_all = mix(vec4(0.0), k_all, equal(k_all, k_all));"
+const SHOW = "#version 330\nuniform sampler2D k_picture; uniform int k_channels; out vec4 k_out;"
+  + " void main() { vec4 k_all = texelFetch(k_picture, ivec2(gl_FragCoord.xy), 0);"
+  + " k_all = mix(vec4(0.0), k_all, equal(k_all, k_all));"
   + " k_out = vec4(k_channels == 1 ? k_all.rrr : k_all.rgb, k_channels == 4 ? k_all.a : 1.0); }\n";
 const ROWS = 64; // a band's rows are a multiple of these: no tile or quad of pixels is cut
 
@@ -56,7 +58,10 @@ export const createKernels = (context, textures, programs, binder, shared) => {
   /** Return a fragment shader of the engine's own. @param {string} name */
   const own = (name) => {
     let found = owns.get(name);
-    if (!found || found.state === "gone") owns.set(name, (found = programs.ask([toES(TRIANGLE), toES(shared.own[name] || SHOW)])));
+    if (!found || found.state === "gone") {
+      found = programs.ask([toES(TRIANGLE), toES(shared.own[name] || SHOW)]);
+      owns.set(name, found);
+    }
     if (!programs.finish(found)) throw failure("shader", `${name}: ${found.logs.join("")}${found.link}`);
     return found;
   };
@@ -117,7 +122,8 @@ export const createKernels = (context, textures, programs, binder, shared) => {
     }
     let made = result.copies.get(output);
     if (!made) {
-      made = textures.texture(texture.size, byHand ? texture.format.replace(/32f|16$/, "16f") : texture.format, true);
+      const format = byHand ? texture.format.replace(/32f|16$/, "16f") : texture.format;
+      made = textures.texture(texture.size, format, true);
       result.copies.set(output, made);
       copy(textures.targetOf(made), made.size, texture);
       textures.buildLevels(made);
@@ -180,7 +186,8 @@ export const createKernels = (context, textures, programs, binder, shared) => {
     if (step.kernel.countsFrames) setUniform(gl, program, "time", now / 60);
   };
 
-  /** Return what the expressions of a step's header mean. @param {Job} job @param {Object<string, bigint>} [more] */
+  /** Return what the expressions of a step's header mean. @param {Job} job
+   *  @param {Object<string, bigint>} [more] */
   const namesOf = ({ step, time }, more = {}) =>
     ({ name: ownNames(step.kernel, step.size, step.values, time, more) });
 
@@ -205,7 +212,8 @@ export const createKernels = (context, textures, programs, binder, shared) => {
           let next = unit;
           for (const { name } of kernel.outputs) if (program.uniforms.has(`k_previous_${name}`)) {
             const texture = from ? from.textures.get(name) : state.get(name);
-            next = binder.texture(program, `k_previous_${name}`, next, texture || binder.constant("zero"), PLAIN);
+            const read = texture || binder.constant("zero");
+            next = binder.texture(program, `k_previous_${name}`, next, read, PLAIN);
           }
           count(program, job, now, turns);
           setUniform(gl, program, "k_previous_shift", was);
@@ -245,7 +253,8 @@ export const createKernels = (context, textures, programs, binder, shared) => {
   const filled = function* ({ step, text, rows }, width, height, again) {
     let paused = false;
     for (let low = 0; low < height;) {
-      const high = Math.min(low + Math.ceil(rows(width, height - low) / ROWS) * ROWS, height), part = high - low < height;
+      const many = Math.ceil(rows(width, height - low) / ROWS) * ROWS, high = Math.min(low + many, height);
+      const part = high - low < height;
       if (paused) again();
       if (part) gl.enable(gl.SCISSOR_TEST);
       gl.scissor(0, low, width, high - low);
@@ -279,7 +288,8 @@ export const createKernels = (context, textures, programs, binder, shared) => {
       if (!wired) continue;
       if (!isSize(wired.texture.size, step.size)) {
         const [are, is] = [wired.texture.size, step.size].map((size) => size.join(" × "));
-        throw failure("sketch", `pass '${step.path}': ${input} is ${are} texels, the pass ${is}; they must agree`);
+        const message = `${input} is ${are} texels, the pass ${is}; they must agree`;
+        throw failure("sketch", `pass '${step.path}': ${message}`);
       }
       found.set(output, wired.texture);
     }

@@ -29,19 +29,26 @@ const KEYS = [
   ["?", "help", "keyHelp"],
 ];
 
-/** Act on keys, unless they are typed into a field. @param {Document} document @param {Acts} acts @param {HTMLElement} canvas */
+/** Act on keys, unless they are typed into a field. @param {Document} document @param {Acts} acts
+ *  @param {HTMLElement} canvas */
 export function followKeys(document, acts, canvas) {
   document.addEventListener("keydown", (event) => {
-    const { target, key } = event, ctrl = event.ctrlKey || event.metaKey;
+    const { target, key } = event,
+      ctrl = event.ctrlKey || event.metaKey;
     if (event.defaultPrevented || event.altKey || document.querySelector("dialog[open]")) return;
     if (isTyping(target)) {
       if (key === "Escape" && target instanceof HTMLElement) target.blur();
       return;
     }
     const act = () => {
-      if (ctrl) return { z: event.shiftKey ? acts.by.redo : acts.by.undo, y: acts.by.redo }[key.toLowerCase()];
-      const free = target === canvas || target === document.body, arrow = ARROWS[key];
-      if (arrow) return free ? () => (event.shiftKey ? acts.move(-arrow[0], -arrow[1]) : acts.turn(...arrow)) : undefined;
+      if (ctrl)
+        return { z: event.shiftKey ? acts.by.redo : acts.by.undo, y: acts.by.redo }[key.toLowerCase()];
+      const free = target === canvas || target === document.body,
+        arrow = ARROWS[key];
+      if (arrow)
+        return free
+          ? () => (event.shiftKey ? acts.move(-arrow[0], -arrow[1]) : acts.turn(...arrow))
+          : undefined;
       if (key === "+" || key === "=") return () => acts.zoom(1);
       if (key === "-") return () => acts.zoom(-1);
       if (key === " " && !free) return undefined;
@@ -57,15 +64,38 @@ export function followKeys(document, acts, canvas) {
 
 /** Make the list of keys, a dialog. @param {Words} words */
 export function keysDialog(words) {
-  const line = (/** @type {string} */ keys, /** @type {string} */ meaning) => [make("dt", {}, ...keys.split(" | ").map((key) => make("kbd", {}, key))), make("dd", {}, meaning)];
-  const named = new Map(KEYS.map(([, , meaning]) => [meaning, KEYS.filter((key) => key[2] === meaning).map(([key]) => (key === " " ? words.space : key.toUpperCase())).join(" | ")]));
+  const line = (/** @type {string} */ keys, /** @type {string} */ meaning) => [
+    make("dt", {}, ...keys.split(" | ").map((key) => make("kbd", {}, key))),
+    make("dd", {}, meaning),
+  ];
+  const named = new Map(
+    KEYS.map(([, , meaning]) => [
+      meaning,
+      KEYS.filter((key) => key[2] === meaning)
+        .map(([key]) => (key === " " ? words.space : key.toUpperCase()))
+        .join(" | "),
+    ]),
+  );
   const dialog = make("dialog", { className: "keys", "aria-label": words.keys });
   dialog.append(
     make("h2", {}, words.keys),
-    make("dl", {}, ...line(words.arrows, words.keyOrbit), ...line(words.shiftArrows, words.keyPan), ...line("+ | −", words.keyZoom),
-      ...[...named].flatMap(([meaning, keys]) => line(keys, words[meaning])), ...line("Ctrl+Z | Ctrl+Shift+Z", words.keyUndo), ...line("Esc", words.keyClose)),
-    make("p", {}, words.mouse), make("p", {}, words.touch), make("p", {}, words.rows),
-    button(words.close, () => dialog.close()));
-  dialog.onclick = (event) => { if (event.target === dialog) dialog.close(); };
+    make(
+      "dl",
+      {},
+      ...line(words.arrows, words.keyOrbit),
+      ...line(words.shiftArrows, words.keyPan),
+      ...line("+ | −", words.keyZoom),
+      ...[...named].flatMap(([meaning, keys]) => line(keys, words[meaning])),
+      ...line("Ctrl+Z | Ctrl+Shift+Z", words.keyUndo),
+      ...line("Esc", words.keyClose),
+    ),
+    make("p", {}, words.mouse),
+    make("p", {}, words.touch),
+    make("p", {}, words.rows),
+    button(words.close, () => dialog.close()),
+  );
+  dialog.onclick = (event) => {
+    if (event.target === dialog) dialog.close();
+  };
   return dialog;
 }

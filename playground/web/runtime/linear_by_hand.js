@@ -1,15 +1,18 @@
 // linear_by_hand.js -- filters textures of 32-bit floats in the shader, where the device does not.
 //
-// Phones lack OES_texture_float_linear: there such a texture reads as zeros wherever it is to be filtered. In a
-// program's text each texture(NAME, place) and its like becomes a function that mixes four texels, for samplers
+// Phones lack OES_texture_float_linear: there such a texture reads as zeros wherever it is to be filtered.
+// In a
+// program's text each texture(NAME, place) and its like becomes a function that mixes four texels, for
+// samplers
 // NAME that read such a texture and for the parameters of functions that they are handed to.
 
 /** @typedef {"clamp" | "repeat" | "mirror"} Wrap */
 
+const ROUND = "(k_i % (2 * k_n) + 2 * k_n) % (2 * k_n)";
 const MOVED = {
   clamp: "clamp(k_i, ivec2(0), k_n - 1)",
   repeat: "(k_i % k_n + k_n) % k_n",
-  mirror: "min((k_i % (2 * k_n) + 2 * k_n) % (2 * k_n), 2 * k_n - 1 - (k_i % (2 * k_n) + 2 * k_n) % (2 * k_n))",
+  mirror: `min(${ROUND}, 2 * k_n - 1 - ${ROUND})`,
 };
 
 /** @param {Wrap} wrap */
@@ -25,14 +28,16 @@ const functions = (wrap) => {
     + ` vec4 ${name}(sampler2D k_s, vec2 k_p, vec2 k_x, vec2 k_y) ${call} `;
 };
 
-/** Return a stage's text in which some samplers are filtered by hand, and the functions that it calls for that,
+/** Return a stage's text in which some samplers are filtered by hand, and the functions that it calls for
+ *  that,
  *  on one line; the text keeps its lines.
  *  @param {string} text without comments @param {Map<string, Wrap>} samplers */
 export const filteredByHand = (text, samplers) => {
   const names = reached(text, samplers), list = [...names.keys()].join("|");
   const calls = new RegExp(`\\btexture(?:Lod|Grad)?\\s*\\(\\s*(${list})\\b(?=\\s*,)`, "g");
   const changed = text.replace(calls, (_, name) => `k_linear_${names.get(name)}(${name}`);
-  return { text: changed, functions: changed === text ? "" : [...new Set(names.values())].map(functions).join("") };
+  const wraps = changed === text ? [] : [...new Set(names.values())];
+  return { text: changed, functions: wraps.map(functions).join("") };
 };
 
 /** Return the samplers and the functions' parameters that they reach.
@@ -40,13 +45,15 @@ export const filteredByHand = (text, samplers) => {
 const reached = (text, samplers) => {
   const found = new Map(samplers);
   const taking = [...text.matchAll(/\b(\w+)\s*\(([^()]*\bsampler2D\b[^()]*)\)\s*\{/g)].map((match) =>
-    ({ name: match[1], parameters: match[2].split(",").map((each) => /** @type {string} */ (each.trim().split(/\s+/).pop())) }));
+    ({ name: match[1], parameters: match[2].split(",").map((each) => each.trim().replace(/.*\s/, "")) }));
   for (let before = -1; before !== found.size;) {
     before = found.size;
-    for (const { name, parameters } of taking) for (const given of callsOf(text, name)) given.forEach((argument, i) => {
-      const wrap = found.get(argument);
-      if (wrap && parameters[i] && !found.has(parameters[i])) found.set(parameters[i], wrap);
-    });
+    for (const { name, parameters } of taking) {
+      for (const given of callsOf(text, name)) given.forEach((argument, i) => {
+        const wrap = found.get(argument);
+        if (wrap && parameters[i] && !found.has(parameters[i])) found.set(parameters[i], wrap);
+      });
+    }
   }
   return found;
 };

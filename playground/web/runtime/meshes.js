@@ -102,7 +102,8 @@ function triangles(count) {
     data[3 * vertex] = Math.floor(vertex / 3);
     data[3 * vertex + 1] = vertex % 3;
   }
-  return { attributes: { corner: { size: 3, data } }, indices: Uint32Array.from({ length: 3 * count }, (_, i) => i) };
+  const indices = Uint32Array.from({ length: 3 * count }, (_, vertex) => vertex);
+  return { attributes: { corner: { size: 3, data } }, indices };
 }
 
 /** One tile with every list of indices, one after another.

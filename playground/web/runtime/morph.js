@@ -11,8 +11,10 @@ import { FAR, boxesOf, distances, longest, pixels, stretch, visible, withWalls }
 /** @typedef {import("./visibility.js").Table} Table */
 /** @typedef {import("./tiles.js").Chosen} Chosen */
 
-const START = 0.8; // where vertices begin to slide, over a level's distance: MORPH_START in view/vertices.glsl
-const NEARLY = 0.8; // from where on a box counts, over the distance at which it needs a finer level
+// Where vertices begin to slide, over a level's distance: MORPH_START in view/vertices.glsl.
+const START = 0.8;
+// From where on a box counts, over the distance at which it needs a finer level.
+const NEARLY = 0.8;
 
 /** Chooses squares of a quadtree in the view, each cut in four where its children are drawn.
  *  @param {{tolerance: number}} values @param {{spans: Table, errors: Table}} tables @param {View} view
@@ -36,7 +38,8 @@ export function morph({ tolerance }, tables, view) {
       const i = square % nx, j = Math.floor(square / nx);
       const place = (/** @type {string} */ piece, /** @type {number} */ shown) => {
         const side = CELLS * 2 ** shown, up = shown - level;
-        found.get(piece)?.push(side * (i >> up), side * (j >> up), shown, ends[Math.min(shown, ends.length - 1)]);
+        const end = ends[Math.min(shown, ends.length - 1)];
+        found.get(piece)?.push(side * (i >> up), side * (j >> up), shown, end);
       };
       if (seen[square] && away[square] < ends[level]) place("fans 0 0", level);
       // What has become its parent's quarter altogether, and is drawn as that.

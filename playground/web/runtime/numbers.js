@@ -1,10 +1,14 @@
-// numbers.js -- a parameter's numbers: range, steps, places after the point, unit; as the window's panel has them.
+// numbers.js -- a parameter's numbers: range, steps, places after the point, unit, as the window has them.
 
 /** @typedef {import("./schema.js").Shown} Shown */
-/** @typedef {Pick<Shown, "type" | "widget" | "unit" | "parts" | "ranges" | "step" | "choices"> & {raw?: boolean}} Ranged */
+/** @typedef {Pick<Shown, "type" | "widget" | "unit" | "parts" | "ranges" | "step">} Ranged */
 
 /** A slider's way: `value` of a share of it from 0 to 1, `share` of a value.
- *  @typedef {{low: number, high: number, value: (share: number) => number, share: (value: number) => number}} Scale */
+ *  @typedef {object} Scale
+ *  @property {number} low
+ *  @property {number} high
+ *  @property {(share: number) => number} value
+ *  @property {(value: number) => number} share */
 
 /** @param {string} type @returns {boolean} whether its components are integers */
 export const isWhole = (type) => /^(u?int$|[iu]vec)/.test(type);
@@ -18,7 +22,8 @@ export const clamp = (number, low = 0, high = 1) => Math.min(Math.max(number, lo
 /** Round halves to the even neighbour, as Python does.
  *  @param {number} number */
 export function roundEven(number) {
-  const low = Math.floor(number), rest = number - low;
+  const low = Math.floor(number),
+    rest = number - low;
   return rest < 0.5 || (rest === 0.5 && low % 2 === 0) ? low : low + 1;
 }
 
@@ -40,7 +45,8 @@ export function rangeOf(one, part) {
  *  @param {number} step */
 function placesOf(step) {
   for (let places = 0; places < 7; places++) {
-    const scaled = step * 10 ** places, near = roundEven(scaled);
+    const scaled = step * 10 ** places,
+      near = roundEven(scaled);
     if (near && Math.abs(scaled - near) < 1e-6 * Math.max(scaled, 1)) return places;
   }
   return 6;
@@ -56,13 +62,29 @@ export function decimals(one, part = 0) {
   return fine > 0 ? placesOf(10 ** Math.floor(Math.log10(fine) + 1e-9)) : 3;
 }
 
+const BEYOND = 40; // digits that tell a half from what is nearly one
+
+/** Whether the digits that a number has beyond those that are written are exactly a half, to be rounded down.
+ *  @param {string} exact its digits, BEYOND too many */
+const isHalfDown = (exact) =>
+  /^50*$/.test(exact.slice(-BEYOND)) && /[02468]\.?$/.test(exact.slice(0, -BEYOND));
+
+/** Write a number with so many places after the point as C's %f does: halves go to the even digit.
+ *  @param {number} number @param {number} places */
+export function fixed(number, places) {
+  const exact = number.toFixed(places + BEYOND);
+  return isHalfDown(exact) ? exact.slice(0, -BEYOND).replace(/\.$/, "") : number.toFixed(places);
+}
+
 /** Write a number in so many digits as C's %g does.
  *  @param {number} number @param {number} digits */
 export function general(number, digits) {
   if (!Number.isFinite(number)) return Number.isNaN(number) ? "nan" : number > 0 ? "inf" : "-inf";
-  const [mantissa, exponent] = number.toExponential(digits - 1).split("e");
-  const power = +exponent, tidy = (/** @type {string} */ text) => (text.includes(".") ? text.replace(/\.?0+$/, "") : text);
-  if (power >= -4 && power < digits) return tidy(number.toFixed(digits - 1 - power));
+  const [exact, there] = number.toExponential(digits - 1 + BEYOND).split("e");
+  const [near, exponent] = number.toExponential(digits - 1).split("e");
+  const [mantissa, power] = isHalfDown(exact) ? [exact.slice(0, -BEYOND), +there] : [near, +exponent];
+  const tidy = (/** @type {string} */ text) => (text.includes(".") ? text.replace(/\.?0+$/, "") : text);
+  if (power >= -4 && power < digits) return tidy(fixed(number, digits - 1 - power));
   return `${tidy(mantissa)}e${power < 0 ? "-" : "+"}${String(Math.abs(power)).padStart(2, "0")}`;
 }
 
@@ -72,7 +94,7 @@ export function written(one, number, part = 0) {
   if (isWhole(one.type)) return String(Math.trunc(number));
   return one.widget === "log_slider" || !rangeOf(one, part)
     ? general(number, one.widget === "log_slider" ? 4 : 6)
-    : number.toFixed(decimals(one, part));
+    : fixed(number, decimals(one, part));
 }
 
 /** The unit as it follows a number: degrees close up, others after a space.
@@ -113,16 +135,20 @@ export function tidied(number) {
 export function scaleOf(one, part = 0) {
   const range = rangeOf(one, part);
   if (!range || !(range[1] > range[0])) return null;
-  const [low, high] = range, log = one.widget === "log_slider" && low > 0;
-  const at = (/** @type {number} */ share) => (log ? low * (high / low) ** share : low + share * (high - low));
+  const [low, high] = range,
+    log = one.widget === "log_slider" && low > 0;
+  const at = (/** @type {number} */ share) =>
+    log ? low * (high / low) ** share : low + share * (high - low);
   return {
-    low, high,
+    low,
+    high,
     value: (share) => {
       const exact = snapped(one, at(share), part);
       // In as many digits as the panel shows: what a thousandth of the way cannot tell apart is not said.
       return one.step || isWhole(one.type) ? exact : clamp(+written(one, exact, part), low, high);
     },
-    share: (value) => clamp(log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low)),
+    share: (value) =>
+      clamp(log ? Math.log(value / low) / Math.log(high / low) : (value - low) / (high - low)),
   };
 }
 

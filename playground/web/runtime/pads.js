@@ -41,17 +41,29 @@ export function makePad(one, changed) {
   const lines = sky
     ? [1, 2 / 3, 1 / 3].map((r) => svg("circle", { r, class: "line" }))
     : ["x", "y"].map(() => svg("line", { class: "line" }));
-  const ground = sky ? svg("circle", { r: 1, class: "ground" }) : svg("rect", { x: -1, y: -1, width: 2, height: 2, class: "ground" });
+  const ground = sky
+    ? svg("circle", { r: 1, class: "ground" })
+    : svg("rect", { x: -1, y: -1, width: 2, height: 2, class: "ground" });
   const ray = svg("line", { class: "ray" });
   const north = svg("path", { d: "M-.08-.72v-.2l.16.2v-.2", class: "line" });
   const element = /** @type {SVGElement} */ (
-    svg("svg", { viewBox: "-1.06 -1.06 2.12 2.12", class: "pad", "aria-hidden": "true" }, ground, ...lines, ...(sky ? [north, ray] : []), dot)
+    svg(
+      "svg",
+      { viewBox: "-1.06 -1.06 2.12 2.12", class: "pad", "aria-hidden": "true" },
+      ground,
+      ...lines,
+      ...(sky ? [north, ray] : []),
+      dot,
+    )
   );
   const point = (/** @type {PointerEvent} */ event) => {
     const box = element.getBoundingClientRect();
-    const right = 2.12 * ((event.clientX - box.left) / box.width - 0.5), up = 2.12 * (0.5 - (event.clientY - box.top) / box.height);
+    const right = 2.12 * ((event.clientX - box.left) / box.width - 0.5),
+      up = 2.12 * (0.5 - (event.clientY - box.top) / box.height);
     if (sky) return directionAt(right, up).map((degrees) => +degrees.toFixed(1));
-    return axesOf(one).map((range, at) => rounded(range[0] + ((at ? up : right) + 1) * 0.5 * (range[1] - range[0]), range));
+    return axesOf(one).map((range, at) =>
+      rounded(range[0] + ((at ? up : right) + 1) * 0.5 * (range[1] - range[0]), range),
+    );
   };
   element.onpointerdown = (event) => {
     if (one.locked || event.button) return;

@@ -21,8 +21,8 @@
  *  @property {Between | null} between */
 
 /** A loop made concrete.
- *  @typedef {{path: string, loop: true, repeat: number, whole: number, countsFrames: boolean, followsTime: boolean,
- *             body: PlanNode[], feedback: [string, Source | null, Ref][]}} LoopStep */
+ *  @typedef {{path: string, loop: true, repeat: number, whole: number, countsFrames: boolean,
+ *             followsTime: boolean, body: PlanNode[], feedback: [string, Source | null, Ref][]}} LoopStep */
 
 /** @typedef {Step | LoopStep} PlanNode */
 
@@ -39,8 +39,8 @@ export const stepsOf = (nodes) => nodes.flatMap((node) => (isLoop(node) ? stepsO
 /** What a node reads, what the passes of a loop read from each other included.
  *  @param {PlanNode} node @returns {Source[]} */
 export function sourcesOf(node) {
-  const own = isLoop(node) ? node.feedback.map(([, first]) => first) : node.inputs.map(([, source]) => source);
-  const found = own.filter((source) => source !== null);
+  const all = isLoop(node) ? node.feedback : node.inputs;
+  const found = all.map(([, source]) => source).filter((source) => source !== null);
   return isLoop(node) ? [...found, ...node.body.flatMap(sourcesOf)] : found;
 }
 

@@ -5,36 +5,26 @@
 
 import { isAccepted, nearestAccepted } from "./accepts.js";
 import { look } from "./camera.js";
-import { integer, isPlanError, namesIn, planError, textOf, whole } from "./expressions.js";
-import { misfit } from "./input_shapes.js";
-import { isRef, stepsOf } from "./plan_nodes.js";
-import { LARGEST_SIDE, framesAt, measure, nameOf } from "./sizes.js";
-import { cameraAt, givenTo, isSame, leavesOf, numberOf, valuesAt } from "./values.js";
+import { betweenOf, ownNames } from "./counts.js";
+import { integer, isPlanError, namesIn, planError, textOf } from "./expressions.js";
+import { checkShapes } from "./input_shapes.js";
+import { stepsOf } from "./plan_nodes.js";
+import { checkedFrame, checkedSteps, checkedTime, terrainOf } from "./requests.js";
+import { measure, nameOf } from "./sizes.js";
+import { cameraAt, givenTo, isSame, leavesOf, valuesAt } from "./values.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./schema.js").Shared} Shared */
 /** @typedef {import("./schema.js").Kernel} Kernel */
 /** @typedef {import("./schema.js").Value} Value */
 /** @typedef {import("./schema.js").Camera} Camera */
+/** @typedef {import("./requests.js").State} State */
+/** @typedef {import("./requests.js").Metres} Metres */
 /** @typedef {import("./schema.js").Leaf} Leaf */
 /** @typedef {import("./schema.js").Expression} Expression */
 /** @typedef {import("./plan_nodes.js").Step} Step */
 /** @typedef {import("./plan_nodes.js").PlanNode} PlanNode */
 /** @typedef {import("./plan_nodes.js").Ref} Ref */
-
-/** What a plan is made for: `values` by path over the sketch's, `steps` repeats that are stopped early,
- *  `map` a texture shown from above in place of the view, with values of the map's own parameters.
- *  @typedef {object} State
- *  @property {Object<string, Value>} [values]
- *  @property {{size: [number, number], extent: [number, number] | null, relief: number, base_elevation: number}} [terrain]
- *  @property {Camera | null} [camera]          null: as the sketch and its keyframes have it
- *  @property {[number, number]} [frame]        pixels
- *  @property {number} [time]                   seconds
- *  @property {Object<string, number>} [steps]  iterations after which a repeat stops, by path
- *  @property {boolean} [interpolated]          what a stopped repeat has not computed is filled in
- *  @property {{path: string, output: string, values: Object<string, Value>} | null} [map] */
-
-/** @typedef {{size: [number, number], extent: [number, number], relief: number, base_elevation: number}} Metres */
 
 /** @typedef {object} Plan
  *  @property {PlanNode[]} nodes      all of them; `needed` of plan_nodes.js tells those of a texture
@@ -59,20 +49,21 @@ const lastPlans = new WeakMap();
  *  @param {Sketch} sketch @param {Shared} shared @param {State} [state] @returns {Plan} */
 export function makePlan(sketch, shared, state = {}) {
   const time = checkedTime(state.time ?? sketch.time), frame = checkedFrame(state.frame ?? sketch.frame);
-  const values = valuesAt(sketch, state.values ?? {}, time), camera = cameraAt(sketch, state.camera ?? null, time);
-  const terrain = terrainOf(sketch, state), steps = checkedSteps(sketch, state.steps ?? sketch.steps);
+  const values = valuesAt(sketch, state.values ?? {}, time);
+  const camera = cameraAt(sketch, state.camera ?? null, time);
+  const terrain = terrainOf(sketch, state), stopped = checkedSteps(sketch, state.steps ?? sketch.steps);
   const map = state.map ?? null, fills = state.interpolated ?? true;
   const { paths, byTime } = namedBy(sketch);
   const named = paths.map((path) => values[path]);
-  const place = JSON.stringify([frame, terrain, steps, fills, map, named, byTime ? time : 0]);
+  const place = JSON.stringify([frame, terrain.size, stopped, fills, map, named, byTime ? time : 0]);
   const last = lastPlans.get(sketch);
   const eye = look(camera, terrain.extent, terrain.relief, frame);
   const known = last && last.place === place ? renewed(last, values) : null;
-  const nodes = known ?? planned({ sketch, shared, values, terrain, frame, time, stopped: steps, fills, map });
-  const picture = map ? { path: MAP, output: sketch.kernels[sketch.map.kernel].outputs[0].name } : sketch.picture;
-  const byPath = known && last && known === last.plan.nodes ? last.plan.steps
+  const nodes = known ?? planned({ sketch, shared, values, terrain, frame, time, stopped, fills, map });
+  const steps = last && nodes === last.plan.nodes ? last.plan.steps
     : new Map(stepsOf(nodes).map((step) => [step.path, step]));
-  const plan = { nodes, terrain, camera, eye, time, frame, picture, steps: byPath, stopped: steps };
+  const shown = map ? { path: MAP, output: sketch.kernels[sketch.map.kernel].outputs[0].name } : null;
+  const plan = { nodes, terrain, camera, eye, time, frame, picture: shown ?? sketch.picture, steps, stopped };
   lastPlans.set(sketch, { plan, values, place });
   return plan;
 }
@@ -90,65 +81,6 @@ export function repeatsOf(plan) {
   };
   plan.nodes.forEach(add);
   return found;
-}
-
-// ── what is asked for ────────────────────────────────────────────────────────
-
-/** @param {number} time */
-function checkedTime(time) {
-  if (!Number.isFinite(time)) throw planError(`time ${time}: expected a number of seconds`, "");
-  return time;
-}
-
-/** @param {[number, number]} frame @returns {[number, number]} */
-function checkedFrame([width, height]) {
-  const fits = [width, height].every((side) => Number.isInteger(side) && side >= 1 && side <= LARGEST_SIDE);
-  if (fits) return [width, height];
-  throw planError(`a picture of ${width} x ${height} pixels; 1 to ${LARGEST_SIDE} a side were expected`, "");
-}
-
-/** @param {Sketch} sketch @param {State} state @returns {Metres} */
-function terrainOf(sketch, state) {
-  const { size, extent, relief, base_elevation } = { ...sketch.terrain, ...state.terrain };
-  /** @param {boolean} fits @param {string} name @param {number | number[]} value @param {string} wanted */
-  const check = (fits, name, value, wanted) => {
-    if (!fits) throw planError(`${name} = '${[value].flat().join("x")}': expected ${wanted}`, "");
-  };
-  const sides = size.every((side) => Number.isInteger(side) && side >= 1 && side <= LARGEST_SIDE);
-  check(sides, "size", size, `1 to ${LARGEST_SIDE} texels a side, as 513 or 513x257`);
-  const own = sketch.terrain, follows = own.extentFollows && (!state.terrain?.extent || isSame(extent ?? [], own.extent));
-  const wide = extent ? extent[0] : own.extent[0];
-  const metres = follows ? [wide, wide * ((size[1] - 1) / Math.max(size[0] - 1, 1) || 1)] : extent ?? own.extent;
-  check(metres.every((side) => side > 0 && side < 1e9), "extent", metres, "metres above 0, as 10240 or 10240x8000");
-  check(relief >= 0 && relief < 1e9, "relief", relief, "a number of metres, 0 or more");
-  check(Math.abs(base_elevation) < 1e9, "base_elevation", base_elevation, "a number of metres");
-  return { size: [size[0], size[1]], extent: [metres[0], metres[1]], relief, base_elevation };
-}
-
-/** Return after how many iterations repeats stop, by the paths of what repeats.
- *  @param {Sketch} sketch @param {Object<string, number>} steps */
-function checkedSteps(sketch, steps) {
-  const repeated = repeatedPaths(sketch);
-  /** @type {Object<string, number>} */
-  const found = {};
-  for (const [path, count] of Object.entries(steps)) {
-    const inside = repeated.filter((name) => name.startsWith(`${path}.`));
-    const name = repeated.includes(path) ? path : inside.length === 1 ? inside[0] : "";
-    if (!name) throw planError(`steps: no repeated pass '${path}' in sketch ${sketch.name}`, "");
-    if (!Number.isInteger(count) || count < 0) {
-      throw planError(`steps: '${path}' stops after ${count} steps; expected a whole number from 0`, "");
-    }
-    found[name] = count;
-  }
-  return found;
-}
-
-/** @param {Sketch} sketch */
-function repeatedPaths(sketch) {
-  /** @param {import("./schema.js").Node[]} nodes @returns {string[]} */
-  const loops = (nodes) => nodes.flatMap((node) => ("loop" in node ? [node.path, ...loops(node.body)] : []));
-  const kernels = leavesOf(sketch.nodes).filter((leaf) => sketch.kernels[leaf.kernel].repeat !== 1);
-  return [...new Set([...loops(sketch.nodes), ...kernels.map((leaf) => leaf.path)])];
 }
 
 // ── what sizes and counts depend on ──────────────────────────────────────────
@@ -212,13 +144,15 @@ function renewed(last, values) {
 
 /** What a leaf's uniforms get, by parameter.
  *  @param {Kernel} kernel @param {Leaf} leaf @param {Object<string, Value>} values */
-const uniformValues = (kernel, leaf, values) =>
-  Object.fromEntries(kernel.parameters.map((uniform) => [uniform.name, givenTo(uniform, values[leaf.values[uniform.name]])]));
+const uniformValues = (kernel, leaf, values) => Object.fromEntries(kernel.parameters.map((uniform) => {
+  return [uniform.name, givenTo(uniform, values[leaf.values[uniform.name]])];
+}));
 
 // ── making it whole ──────────────────────────────────────────────────────────
 
-/** @param {{sketch: Sketch, shared: Shared, values: Object<string, Value>, terrain: Metres, frame: [number, number],
- *           time: number, stopped: Object<string, number>, fills: boolean, map: State["map"]}} now */
+/** @param {{sketch: Sketch, shared: Shared, values: Object<string, Value>, terrain: Metres, time: number,
+ *           frame: [number, number], stopped: Object<string, number>, fills: boolean,
+ *           map: State["map"]}} now */
 function planned(now) {
   const { sketch, values, time, map } = now;
   const { sizeOf, names } = measure(sketch, now.shared, { ...now, terrain: now.terrain.size });
@@ -236,7 +170,7 @@ function planned(now) {
     const { accepts, accepted, name } = sketch.kernels[leaf.kernel];
     if (!accepted || isAccepted(accepted, size)) return;
     const near = nearestAccepted(accepted, size).map(([x, y]) => `${x} x ${y}`).join(" or ");
-    const message = `takes ${accepts} texels a side, not ${size[0]} x ${size[1]}; the nearest it takes: ${near}`;
+    const message = `takes ${accepts} texels a side, not ${size.join(" x ")}; the nearest it takes: ${near}`;
     throw planError(`pass '${leaf.path}' (${name}) ${message}`, sketch.passes[leaf.path].where);
   }
 
@@ -290,72 +224,15 @@ function planned(now) {
   return map ? [...found, mapStep(sketch, map, sizeOf(ofView(map.path) ? "view" : "#frame"))] : found;
 }
 
-/** What the expressions of a kernel's header name.
- *  @param {Kernel} kernel @param {[number, number]} size @param {Object<string, Value>} values
- *  @param {number} time @param {Object<string, bigint>} [more] */
-export function ownNames(kernel, size, values, time, more = {}) {
-  const types = new Map(kernel.parameters.map((uniform) => [uniform.name, uniform.type]));
-  return (/** @type {string} */ name) => {
-    if (name in more) return more[name];
-    if (types.has(name)) return numberOf(/** @type {string} */ (types.get(name)), values[name]);
-    if (name === "size.x" || name === "size.y") return BigInt(size[name === "size.x" ? 0 : 1]);
-    return name === "time" ? time : name === "frames" ? BigInt(framesAt(time)) : undefined;
-  };
-}
-
-/** How the texels that are known after `repeat` iterations of `all` are joined; null where nothing is. A stride
- *  that stays for two iterations is that of a lattice of which the first sets the squares' centres.
- *  @param {Kernel} kernel @param {Leaf} leaf @param {number} repeat @param {number} all
- *  @param {(name: string) => number | bigint | undefined} own */
-function betweenOf(kernel, leaf, repeat, all, own) {
-  const begins = leaf.inputs.some(([name, source]) => source && name in kernel.initial);
-  if (!kernel.between || !(repeat > 0 && repeat < all) || begins) return null;
-  const [stride, coming] = [repeat - 1, repeat].map((iteration) => {
-    const counts = { iteration: BigInt(iteration), iterations: BigInt(all) };
-    const name = (/** @type {string} */ name) => counts[/** @type {"iteration"} */ (name)] ?? own(name);
-    return whole(kernel.stride ?? 1, { name });
-  });
-  if (stride < 1) {
-    const message = `stride '${textOf(kernel.stride ?? 1)}' gives ${stride} for iteration ${repeat - 1}`;
-    throw planError(`pass '${leaf.path}': ${message}`, kernel.file);
-  }
-  const form = stride === coming ? 2 : kernel.between === "triangles" ? 1 : 0;
-  return { stride, form: /** @type {0 | 1 | 2} */ (form) };
-}
-
-/** Refuse what is wired to a cube map, a volume or an array and cannot be one.
- *  @param {Sketch} sketch @param {Leaf} leaf @param {(path: string) => [number, number]} sizeOf */
-function checkShapes(sketch, leaf, sizeOf) {
-  const shapes = new Map(sketch.kernels[leaf.kernel].inputs.map((input) => [input.name, input.shape]));
-  for (const [name, source] of leaf.inputs) {
-    const shape = shapes.get(name);
-    if (!source || !shape) continue;
-    const { path } = isRef(source) ? source : fedBy(sketch.nodes, source);
-    const size = sizeOf(path), wrong = misfit(shape, size);
-    if (wrong) {
-      const message = `${name} reads '${path}', ${size[0]} x ${size[1]} texels; ${wrong}`;
-      throw planError(`pass '${leaf.path}': ${message}`, sketch.passes[leaf.path.split(".")[0]].where);
-    }
-  }
-}
-
-/** The texture that a loop feeds back under a name.
- *  @param {import("./schema.js").Node[]} nodes @param {{loop: string, name: string}} fed @returns {Ref} */
-function fedBy(nodes, fed) {
-  for (const node of nodes) {
-    if (!("loop" in node)) continue;
-    if (node.path === fed.loop) return /** @type {any} */ (node.feedback.find(([name]) => name === fed.name))[2];
-    if (fed.loop.startsWith(`${node.path}.`)) return fedBy(node.body, fed);
-  }
-  throw new Error(`no loop ${fed.loop}`);
-}
-
 /** The step that shows a texture from above.
- *  @param {Sketch} sketch @param {NonNullable<State["map"]>} map @param {[number, number]} size @returns {Step} */
+ *  @param {Sketch} sketch @param {NonNullable<State["map"]>} map @param {[number, number]} size
+ *  @returns {Step} */
 function mapStep(sketch, map, size) {
   const kernel = sketch.kernels[sketch.map.kernel];
   const chosen = { ...sketch.map.values, ...map.values };
-  const values = Object.fromEntries(kernel.parameters.map((one) => [one.name, givenTo(one, chosen[one.name])]));
+  const values = Object.fromEntries(kernel.parameters.map((uniform) => {
+    return [uniform.name, givenTo(uniform, chosen[uniform.name])];
+  }));
   /** @type {[string, import("./schema.js").Source | null][]} */
   const inputs = kernel.inputs.map(({ name }) => {
     return [name, name === sketch.map.input ? { path: map.path, output: map.output } : null];

@@ -9,6 +9,7 @@ import { readKernel } from "./kernel_texts.js";
 import { makePlan } from "./planner.js";
 import { isLoop, needed, stepsOf } from "./plan_nodes.js";
 import { keysOf } from "./staleness.js";
+import { usualOf } from "./usual.js";
 import { PLAIN } from "./binder.js";
 
 /** @typedef {import("./planner.js").Plan} Plan */
@@ -20,6 +21,7 @@ import { PLAIN } from "./binder.js";
 
 /** @typedef {object} Player
  *  @property {import("./schema.js").Sketch} sketch
+ *  @property {import("./schema.js").Shared} shared
  *  @property {import("./planner.js").State} state   may be changed at any time
  *  @property {Plan | null} plan                     of the last picture
  *  @property {number} raisedBy                      [m] by which its eye was raised out of the terrain
@@ -63,18 +65,23 @@ export const createPlayer = (engine, sketch, onClose) => {
 
   /** Return what the engine gives a step besides its parameters, where its text names it.
    *  @param {Plan} plan @returns {(step: Step, frame?: number | null) => Object<string, any>} */
-  const givenBy = ({ time, terrain, eye }) => {
+  const givenBy = (plan) => {
+    const { time, terrain, eye } = plan;
     /** @type {Object<string, any>} */
     const all = {
-      time, extent: terrain.extent, relief: terrain.relief, base_elevation: terrain.base_elevation, eye: [...eye.eye],
+      time, extent: terrain.extent, relief: terrain.relief, base_elevation: terrain.base_elevation,
+      eye: [...eye.eye],
       clip_from_world: [...eye.clipFromWorld], world_from_clip: [...eye.worldFromClip],
     };
-    return ({ kernel, leaf, size }, frame = null) => {
+    return (step, frame = null) => {
+      const { kernel, leaf, size } = step;
       if (kernel.kind === "source") return { data: leaf?.data || [] };
+      if (kernel.kind === "plain_fragment") return usualOf(plan, step, frame, player.state.live ?? {});
       /** @type {Object<string, any>} */
       const found = {};
       for (const name of textOf(kernel).given) {
-        if (name === "spacing") found[name] = terrain.extent.map((side, axis) => side / Math.max(size[axis] - 1, 1));
+        const { extent } = terrain;
+        if (name === "spacing") found[name] = extent.map((side, i) => side / Math.max(size[i] - 1, 1));
         else if (name === "time" && frame !== null) found[name] = frame / 60;
         else if (name in all) found[name] = all[name];
       }
@@ -127,13 +134,14 @@ export const createPlayer = (engine, sketch, onClose) => {
     player.plan = drawn;
     shown = { execution, wired: execution.texture(drawn.picture) };
     engine.parts.programs.trim(new Set([...read.values()].flatMap((each) => [...each.programs.values()])));
-    if (objects !== context.objects) context.check(sketch.name); // what ran without an error before will do so again
+    if (objects !== context.objects) context.check(sketch.name); // what ran without an error will do so again
     return ran;
 
     /** @param {import("./textures.js").Texture} texture @param {number[]} corner @param {number[]} size */
     function texelsOf(texture, [x, y], [width, height]) {
-      const { type } = textures.formats(texture.format), bytes = type === gl.UNSIGNED_BYTE;
-      const shorts = type === gl.UNSIGNED_SHORT, all = new (bytes ? Uint8Array : shorts ? Uint16Array : Float32Array)(16);
+      const { type } = textures.formats(texture.format);
+      const bytes = type === gl.UNSIGNED_BYTE, shorts = type === gl.UNSIGNED_SHORT;
+      const all = new (bytes ? Uint8Array : shorts ? Uint16Array : Float32Array)(16);
       gl.bindFramebuffer(gl.FRAMEBUFFER, textures.targetOf(texture));
       gl.readPixels(x, y, width, height, gl.RGBA, bytes || shorts ? type : gl.FLOAT, all);
       return [0, 4, 8, 12].map((at) => all[at] / (bytes ? 255 : shorts ? 65535 : 1));
@@ -167,7 +175,7 @@ export const createPlayer = (engine, sketch, onClose) => {
 
   /** @type {Player} */
   const player = {
-    sketch, state: {}, plan: null, texts: {}, render,
+    sketch, shared, state: {}, plan: null, texts: {}, render,
     get raisedBy() { return eyeHeight.raisedBy; },
 
     load: async (onProgress = () => {}) => {
@@ -176,7 +184,8 @@ export const createPlayer = (engine, sketch, onClose) => {
       const programs = [];
       for (const step of stepsOf(plan.nodes)) {
         if (step.kernel.kind === "source") continue;
-        programs.push({ kernel: step.kernel, program: parts.kernels.ask(textOf(step.kernel), byHandOf(plan, step)) });
+        const program = parts.kernels.ask(textOf(step.kernel), byHandOf(plan, step));
+        programs.push({ kernel: step.kernel, program });
       }
       await engine.parts.programs.wait(programs.map(({ program }) => program), onProgress);
       for (const { kernel, program } of programs) {
@@ -235,7 +244,8 @@ export const createPlayer = (engine, sketch, onClose) => {
     },
 
     picture: () => {
-      const { context: { gl }, textures, kernels } = engine.parts, source = texture(), [width, height] = source.size;
+      const { context: { gl }, textures, kernels } = engine.parts;
+      const source = texture(), [width, height] = source.size;
       const made = source.format === "rgba8" ? source : textures.texture(source.size, "rgba8");
       if (made !== source) kernels.show(textures.targetOf(made), source);
       const data = new Uint8Array(4 * width * height);
@@ -287,7 +297,8 @@ export const createPlayer = (engine, sketch, onClose) => {
     for (const { kernel, leaf, values } of stepsOf(plan.nodes)) {
       for (const { blob } of leaf?.data || []) waiting.push(images.loadBlob(blob));
       for (const { name, widget, sampling } of kernel.parameters) {
-        if (widget === "file" && kernel.kind !== "source") waiting.push(images.load(String(values[name]), sampling || PLAIN));
+        if (widget !== "file" || kernel.kind === "source") continue;
+        waiting.push(images.load(String(values[name]), sampling || PLAIN));
       }
     }
     await Promise.all(waiting);
@@ -299,8 +310,9 @@ export const createPlayer = (engine, sketch, onClose) => {
     if (context.floatLinear) return found;
     for (const { name, sampling } of step.kernel.inputs) {
       const source = step.inputs.find(([input]) => input === name)?.[1];
-      const outputs = source && "path" in source ? plan.steps.get(source.path)?.kernel.outputs : undefined;
-      const format = outputs?.find((each) => source && "path" in source && each.name === source.output)?.format;
+      if (!source || !("path" in source)) continue;
+      const outputs = plan.steps.get(source.path)?.kernel.outputs;
+      const format = outputs?.find((each) => each.name === source.output)?.format;
       if (format && sampling.filter === "linear" && !sampling.mipmap && textures.formats(format).float32)
         found.set(name, sampling.wrap);
     }

@@ -42,8 +42,8 @@ export const createPrograms = (context) => {
     compiled++;
     /** @type {Program} */
     const made = {
-      program, shaders, texts, uniforms: new Map(), arrays: new Map(), state: "asked", logs: ["", ""], link: "",
-      used: ++clock,
+      program, shaders, texts, uniforms: new Map(), arrays: new Map(), state: "asked", logs: ["", ""],
+      link: "", used: ++clock,
     };
     known.set(key, made);
     return made;
@@ -53,8 +53,11 @@ export const createPrograms = (context) => {
   const touch = (program) => { program.used = ++clock; };
 
   /** Whether a program can be used, or refused, without waiting for the driver. @param {Program} program */
-  const isDone = (program) => program.state !== "asked" || gl.isContextLost()
-    || (!!context.parallel && gl.getProgramParameter(program.program, context.parallel.COMPLETION_STATUS_KHR));
+  const isDone = (program) => {
+    const { parallel } = context;
+    if (program.state !== "asked" || gl.isContextLost()) return true;
+    return !!parallel && gl.getProgramParameter(program.program, parallel.COMPLETION_STATUS_KHR);
+  };
 
   /** Wait for a program; return whether it may be used. @param {Program} program */
   const finish = (program) => {
@@ -79,9 +82,10 @@ export const createPrograms = (context) => {
   const wait = async (all, onProgress = () => {}) => {
     const list = [...new Set(all)];
     for (;;) {
-      const next = list.find((program) => program.state === "asked" && (!context.parallel || isDone(program)));
+      const asked = list.filter((program) => program.state === "asked");
+      const next = context.parallel ? asked.find(isDone) : asked[0];
       if (next) finish(next);
-      const left = list.filter((program) => program.state === "asked").length;
+      const left = asked.length - (next ? 1 : 0);
       onProgress(list.length - left, list.length);
       if (!left) return;
       if (!next || !context.parallel) await new Promise((resume) => setTimeout(resume, next ? 0 : 5));

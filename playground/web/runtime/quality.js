@@ -1,4 +1,4 @@
-// quality.js -- how many pixels a picture gets: all of the screen's at rest, fewer in motion where frames are slow.
+// quality.js -- how many pixels a picture gets: all of the screen's at rest, fewer in a slow motion.
 
 const LEVELS = [1, 0.75, 0.5, 0.35, 0.25];
 /** [ms] a frame in motion may take before its picture gets fewer pixels. */
@@ -8,7 +8,8 @@ export const REST = 300;
 const GAIN = 0.85; // fewer pixels must make a frame so much faster at least, or they are given back
 
 /** The pixels of a picture that fills a box, sharp on a dense screen, within a budget.
- *  @param {[number, number]} box CSS pixels @param {number} density @param {number} budget @param {number} [scale]
+ *  @param {[number, number]} box CSS pixels @param {number} density @param {number} budget
+ *  @param {number} [scale]
  *  @returns {[number, number]} */
 export function pixelsOf(box, density, budget, scale = 1) {
   const area = box[0] * box[1] * density * density;
@@ -18,15 +19,23 @@ export function pixelsOf(box, density, budget, scale = 1) {
 
 /** Make a judge of frames: it is told how long each took, and says how large the next is to be. */
 export function createQuality() {
-  let level = 0, floor = LEVELS.length - 1, quick = 0;
+  let level = 0,
+    floor = LEVELS.length - 1,
+    quick = 0;
   /** @type {(number | undefined)[]} */
   let costs = [];
   return {
-    get scale() { return LEVELS[level]; },
-    /** The picture is at rest: the next is whole. What was learned of the sketch stays for the next motion. */
-    rest() { level = 0; },
+    get scale() {
+      return LEVELS[level];
+    },
+    /** The picture is at rest: the next is whole. What was learned stays for the next motion. */
+    rest() {
+      level = 0;
+    },
     /** A motion begins: as large as the last one ended. */
-    begin() { level = Math.min(quick, floor); },
+    begin() {
+      level = Math.min(quick, floor);
+    },
     /** A frame in motion took so long. @param {number} milliseconds */
     took(milliseconds) {
       costs[level] = milliseconds;
@@ -39,6 +48,8 @@ export function createQuality() {
       quick = level;
     },
     /** Another sketch, another cost. */
-    forget() { [level, floor, quick, costs] = [0, LEVELS.length - 1, 0, []]; },
+    forget() {
+      [level, floor, quick, costs] = [0, LEVELS.length - 1, 0, []];
+    },
   };
 }

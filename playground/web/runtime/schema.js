@@ -79,11 +79,17 @@
  *  @property {[string, Source | null][]} inputs
  *  @property {Object<string, string>} values       parameter of the kernel → path in `Sketch.values`
  *  @property {string} base                         whose size it has: a path in `Sketch.passes`
- *  @property {DataTexture[]} [data]                of a source: its texels for now */
+ *  @property {DataTexture[]} [data]                of a source: its texels
+ *  @property {Clock} [clock]                       of a source that plays a file: which second of it shows */
 
-/** What the processor made, exported as texels.
+/** What the processor made, exported as texels. Of what plays a file, `frames` are blobs, of which each
+ *  shows from its second in `times` on, the first before that, and `length` are the file's seconds.
  *  @typedef {{output: string, format: string, size: [number, number], blob: string,
- *             times?: number[], frames?: string[]}} DataTexture */
+ *             times?: number[], frames?: string[], length?: number}} DataTexture */
+
+/** At a time shows the second `start + speed * time` of the file, modulo its length where `loop` is true:
+ *  paths in `Sketch.values`; without `speed` it is 1.
+ *  @typedef {{start: string, speed?: string, loop: string}} Clock */
 
 /** @typedef {{path: string, loop: true, repeat: Expression, countsFrames: boolean, followsTime: boolean,
  *             body: Node[], feedback: [string, Source | null, {path: string, output: string}][]}} Loop */
@@ -109,7 +115,7 @@
  *  @property {number | null} step
  *  @property {string[]} choices
  *  @property {boolean} exported                    an inner parameter otherwise
- *  @property {boolean} main                        the sketch is about it: shown first
+ *  @property {number} main                         its place among what the sketch is about, from 1; 0: none
  *  @property {string} locked                       why it cannot be changed in a page; "": it can
  *  @property {boolean} [raw]                       of a colour: as it is shown, not linear
  *  @property {Value} value                         at first
@@ -147,14 +153,17 @@
  *  @property {Kernel[]} kernels
  *  @property {Node[]} nodes                        in an order that wiring allows
  *  @property {Object<string, Pass>} passes
- *  @property {Object<string, Value>} values        of each leaf parameter, by path; of a file its key in `Shared.images`
+ *  @property {Object<string, Value>} values        of each leaf parameter, by path; of a file its key in
+ *                                                  `Shared.images`
  *  @property {Shown[]} shown
- *  @property {{name: string, values: Object<string, Value>}[]} presets   by the paths of `shown`, "size", "relief" …
+ *  @property {{name: string, values: Object<string, Value>}[]} presets   by the paths of `shown`, "size",
+ *                                                  "relief" …
  *  @property {Track[]} tracks
  *  @property {number} duration                     time of the last keyframe; 0: none
  *  @property {boolean} moves                       its picture follows the time
  *  @property {Rule[]} rules
- *  @property {{ref: string, path: string, output: string, label: string, height: boolean}[]} textures  for maps
+ *  @property {{ref: string, path: string, output: string, label: string, height: boolean}[]} textures
+ *                                                  for maps
  *  @property {MapView} map
  *  @property {Choice[]} choices                    techniques that may be exchanged
  *  @property {string} [pack]                       key in `Shared.blobs` of its Pack, as JSON
@@ -164,7 +173,8 @@
  *  @typedef {{kernel: number, input: string, values: Object<string, Value>, shown: Shown[]}} MapView */
 
 /** A technique menu: another sketch for each technique, with the same paths where they have the same names.
- *  @typedef {{pass: string, label: string, now: string, others: {use: string, title: string, sketch: number}[]}} Choice
+ *  @typedef {{pass: string, label: string, now: string,
+ *             others: {use: string, title: string, sketch: number}[]}} Choice
  *  sketch: index in `Page.sketches`. */
 
 /** A part of a TOML text, or what may stand in its place: see playground/web/toml_template.py.
@@ -193,15 +203,20 @@
  *  @property {Object<string, string>} files        GLSL by name: "noise/hash.glsl", "./waves.glsl"
  *  @property {Object<string, Object<string, string>>} includes   file → what it writes → file
  *  @property {Object<string, [string, string]>} given   name → GLSL type and meaning (reserved_names.GIVEN)
- *  @property {Object<string, string>} own          the engine's own shaders: copy.frag, spread.frag, fill_between.frag
+ *  @property {Object<string, string>} own          the engine's own shaders: copy.frag, spread.frag,
+ *                                                  fill_between.frag
  *  @property {Object<string, {size: [number, number], kind: "rgba8" | "srgb8" | "rgba16f", blob: string,
- *             file?: string}>} images              image files by key; blob: raw texels, row 0 south, or (file)
- *                                                  the file itself, to be decoded by the browser
+ *             file?: string}>} images              image files by key; blob: raw texels, row 0 south, or
+ *                                                  (file) the file itself, to be decoded by the browser
  *  @property {Object<string, string>} blobs        gzip in base64, by key */
 
 /** A page: what one HTML file holds, or what a book's scripts put together.
  *  @typedef {{format: 1, sketches: Sketch[], shared: Shared, pack?: Object<string, string>,
  *             poster?: string, labels?: Object<string, string>}} Page
  *  pack: names in the zip of "download my version" → text, or "blob:KEY" for bytes. */
+
+/** What an HTML file holds in its element #playground-page: a page, or (see page_file.js) one whose JSON,
+ *  but for `shared.blobs`, is packed: gzip in base64.
+ *  @typedef {{format: 1, packed: string, blobs: Object<string, string>}} PageFile */
 
 export {};

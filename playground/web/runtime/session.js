@@ -1,4 +1,4 @@
-// session.js -- what a user has made of a sketch: values, terrain, time, camera, what is undone; without a page.
+// session.js -- what a user has made of a sketch: values, terrain, time, camera, steps to undo; no page.
 
 import { fits } from "./value_text.js";
 
@@ -22,21 +22,44 @@ export function terrainRows(sketch) {
   const { terrain } = sketch;
   /** @type {(name: "size" | "extent" | "relief" | "base_elevation", type: string, unit: string) => Shown} */
   const row = (name, type, unit) => {
-    const value = terrain[name], all = Array.isArray(value) ? value : [value];
-    const spans = name === "size" ? all.map((n) => [Math.min(16, n), Math.max(2049, n)]) : all.map((n) => [n / 10, n * 10]);
+    const value = terrain[name],
+      all = Array.isArray(value) ? value : [value];
+    const spans =
+      name === "size"
+        ? all.map((n) => [Math.min(16, n), Math.max(2049, n)])
+        : all.map((n) => [n / 10, n * 10]);
     const ranged = name !== "base_elevation" && all.every((n) => n > 0);
     return {
-      path: name, pass: "", label: name, type, unit, group: "", description: "", choices: [], step: null,
-      widget: ranged ? "log_slider" : "number", parts: type.endsWith("2") ? ["east", "north"] : [],
-      ranges: /** @type {[number, number][]} */ (ranged ? spans : []), exported: true, main: false,
-      locked: name === "size" ? terrain.locked : "", value, targets: [],
+      path: name,
+      pass: "",
+      label: name,
+      type,
+      unit,
+      group: "",
+      description: "",
+      choices: [],
+      step: null,
+      widget: ranged ? "log_slider" : "number",
+      parts: type.endsWith("2") ? ["east", "north"] : [],
+      ranges: /** @type {[number, number][]} */ (ranged ? spans : []),
+      exported: true,
+      main: 0,
+      locked: name === "size" ? terrain.locked : "",
+      value,
+      targets: [],
     };
   };
-  return [row("size", "ivec2", ""), row("extent", "vec2", "m"), row("relief", "float", "m"), row("base_elevation", "float", "m")];
+  return [
+    row("size", "ivec2", ""),
+    row("extent", "vec2", "m"),
+    row("relief", "float", "m"),
+    row("base_elevation", "float", "m"),
+  ];
 }
 
 /** @param {Value} a @param {Value | undefined} b */
-const same = (a, b) => a === b || (Array.isArray(a) && Array.isArray(b) && a.every((part, at) => part === b[at]));
+const same = (a, b) =>
+  a === b || (Array.isArray(a) && Array.isArray(b) && a.every((part, at) => part === b[at]));
 
 /** Make the session of a page's sketches; it begins with one of them.
  *  @param {Sketch[]} sketches @param {number} [first] */
@@ -59,7 +82,10 @@ export function createSession(sketches, first = 0) {
   let camera = null;
   /** @type {MapShown | null} */
   let map = null;
-  let time = sketches[first].time, interpolated = true, changing = "", changedAt = 0;
+  let time = sketches[first].time,
+    interpolated = true,
+    changing = "",
+    changedAt = 0;
 
   const tell = (/** @type {News} */ news) => listeners.forEach((listener) => listener(news));
   const sketch = () => sketches[now.index];
@@ -67,16 +93,19 @@ export function createSession(sketches, first = 0) {
   function take(/** @type {Step} */ step) {
     const news = rows.size === 0 || step.index !== now.index ? "sketch" : "values";
     now = step;
-    if (news === "sketch") rows = new Map([...sketch().shown, ...terrainRows(sketch())].map((row) => [row.path, row]));
+    if (news === "sketch")
+      rows = new Map([...sketch().shown, ...terrainRows(sketch())].map((row) => [row.path, row]));
     leaves = new Map();
-    for (const [path, value] of now.edits) for (const leaf of rows.get(path)?.targets ?? []) leaves.set(leaf, value);
+    for (const [path, value] of now.edits)
+      for (const leaf of rows.get(path)?.targets ?? []) leaves.set(leaf, value);
     return news;
   }
 
   /** Make a step that can be undone. */
   function go(/** @type {Step} */ step, group = "") {
     const moment = Date.now();
-    if (!group || group !== changing || moment - changedAt > AT_ONCE) before = [...before, now].slice(-LONGEST);
+    if (!group || group !== changing || moment - changedAt > AT_ONCE)
+      before = [...before, now].slice(-LONGEST);
     [changing, changedAt, after] = [group, moment, []];
     tell(take(step));
   }
@@ -96,9 +125,12 @@ export function createSession(sketches, first = 0) {
       const inside = new Set(row.targets);
       for (const other of edits.keys()) {
         const targets = rows.get(other)?.targets ?? [];
-        if (other === path || (targets.length && targets.every((leaf) => inside.has(leaf)))) edits.delete(other);
+        if (other === path || (targets.length && targets.every((leaf) => inside.has(leaf))))
+          edits.delete(other);
       }
-      const covered = [...edits.keys()].some((other) => rows.get(other)?.targets.some((leaf) => inside.has(leaf)));
+      const covered = [...edits.keys()].some((other) =>
+        rows.get(other)?.targets.some((leaf) => inside.has(leaf)),
+      );
       if (covered || !same(row.value, given)) edits.set(path, given);
     }
     return edits;
@@ -116,17 +148,40 @@ export function createSession(sketches, first = 0) {
   take(now);
   return {
     sketches,
-    get sketch() { return sketch(); },
-    get index() { return now.index; },
-    get edits() { return now.edits; },
-    get steps() { return now.steps; },
-    get time() { return time; },
-    get camera() { return camera; },
-    get map() { return map; },
-    get interpolated() { return interpolated; },
-    set interpolated(/** @type {boolean} */ wanted) { interpolated = wanted; tell("values"); },
-    get canUndo() { return before.length > 0; },
-    get canRedo() { return after.length > 0; },
+    get sketch() {
+      return sketch();
+    },
+    get index() {
+      return now.index;
+    },
+    get edits() {
+      return now.edits;
+    },
+    get steps() {
+      return now.steps;
+    },
+    get time() {
+      return time;
+    },
+    get camera() {
+      return camera;
+    },
+    get map() {
+      return map;
+    },
+    get interpolated() {
+      return interpolated;
+    },
+    set interpolated(/** @type {boolean} */ wanted) {
+      interpolated = wanted;
+      tell("values");
+    },
+    get canUndo() {
+      return before.length > 0;
+    },
+    get canRedo() {
+      return after.length > 0;
+    },
     rows: () => [...rows.values()],
     row: (/** @type {string} */ path) => rows.get(path),
     value,
@@ -139,10 +194,13 @@ export function createSession(sketches, first = 0) {
      *  @param {Iterable<[string, Value]>} values @param {string} [group] */
     setAll: (values, group) => go({ ...now, edits: edited(values) }, group),
     /** @param {string[]} paths */
-    reset: (...paths) => go({ ...now, edits: edited(paths.map((path) => [path, /** @type {Shown} */ (rows.get(path)).value])) }),
+    reset: (...paths) =>
+      go({ ...now, edits: edited(paths.map((path) => [path, /** @type {Shown} */ (rows.get(path)).value])) }),
     resetAll: () => go({ index: first, edits: new Map(), steps: new Map() }),
     /** The next change is a step of its own. */
-    settle: () => { changing = ""; },
+    settle: () => {
+      changing = "";
+    },
     undo: () => back(before, after),
     redo: () => back(after, before),
 
@@ -150,10 +208,12 @@ export function createSession(sketches, first = 0) {
     choose(index) {
       if (index === now.index || !sketches[index]) return;
       const known = new Map(sketches[index].shown.map((row) => [row.path, row]));
-      const edits = new Map([...now.edits].filter(([path, given]) => {
-        const row = known.get(path);
-        return TERRAIN.includes(path) || (row && !row.locked && fits(row, given));
-      }));
+      const edits = new Map(
+        [...now.edits].filter(([path, given]) => {
+          const row = known.get(path);
+          return TERRAIN.includes(path) || (row && !row.locked && fits(row, given));
+        }),
+      );
       map = null;
       go({ index, edits, steps: new Map() });
     },
@@ -166,7 +226,8 @@ export function createSession(sketches, first = 0) {
     },
     /** A button is held, or let go. @param {string} path @param {boolean} down */
     press(path, down) {
-      for (const leaf of rows.get(path)?.targets ?? []) if (down || pressed.has(leaf)) pressed.set(leaf, down);
+      for (const leaf of rows.get(path)?.targets ?? [])
+        if (down || pressed.has(leaf)) pressed.set(leaf, down);
       tell("values");
     },
     /** A frame was drawn: what was let go of is seen no longer; returns whether that asks for another. */
@@ -175,11 +236,23 @@ export function createSession(sketches, first = 0) {
       gone.forEach(([leaf]) => pressed.delete(leaf));
       return gone.length > 0;
     },
-    setCamera(/** @type {Camera | null} */ wanted) { camera = wanted; tell("camera"); },
-    setTime(/** @type {number} */ seconds) { time = Math.max(seconds, 0); tell("time"); },
-    setMap(/** @type {MapShown | null} */ wanted) { map = wanted; tell("map"); },
+    setCamera(/** @type {Camera | null} */ wanted) {
+      camera = wanted;
+      tell("camera");
+    },
+    setTime(/** @type {number} */ seconds) {
+      time = Math.max(seconds, 0);
+      tell("time");
+    },
+    setMap(/** @type {MapShown | null} */ wanted) {
+      map = wanted;
+      tell("map");
+    },
     /** Call a function at every change; returns one that ends it. @param {(news: News) => void} listener */
-    follow(listener) { listeners.add(listener); return () => listeners.delete(listener); },
+    follow(listener) {
+      listeners.add(listener);
+      return () => listeners.delete(listener);
+    },
 
     /** What a player's state is to be, but for its frame. */
     state() {
@@ -189,9 +262,18 @@ export function createSession(sketches, first = 0) {
       /** @type {Object<string, any>} */
       const terrain = { size, extent, relief, base_elevation };
       for (const name of TERRAIN) if (now.edits.has(name)) terrain[name] = now.edits.get(name);
-      return { values, terrain, camera, time, map, interpolated, steps: { ...sketch().steps, ...Object.fromEntries(now.steps) } };
+      return {
+        values,
+        terrain,
+        camera,
+        time,
+        map,
+        interpolated,
+        steps: { ...sketch().steps, ...Object.fromEntries(now.steps) },
+      };
     },
-    /** Take up what a link says, as the beginning. @param {{index: number, values: [string, Value][], camera: Camera | null, time: number | null}} link */
+    /** Take up what a link says, as the beginning.
+     *  @param {import("./address.js").Link} link */
     begin(link) {
       if (sketches[link.index]) take({ index: link.index, edits: new Map(), steps: new Map() });
       now = { ...now, edits: edited(link.values) };

@@ -11,9 +11,9 @@ import { givenTo, leavesOf, numberOf } from "./values.js";
 export const LARGEST_SIDE = 16384;
 const FRAME_RATE = 60;
 
-/** How many frames have run at a time [s], that of second 0 included.
+/** How many frames have run at a time [s], that of second 0 included: n / 60 is frame n, however rounded.
  *  @param {number} time */
-export const framesAt = (time) => Math.floor(FRAME_RATE * time + 1e-6) + 1; // n / 60 is frame n, however rounded
+export const framesAt = (time) => Math.floor(FRAME_RATE * time + 1e-6) + 1;
 
 /** The uniform whose value is at each path.
  *  @type {WeakMap<Sketch, Map<string, import("./schema.js").Uniform>>} */
@@ -64,7 +64,9 @@ export function measure(sketch, shared, now) {
     const before = sizes.get(path);
     if (before) return before;
     const { base, size, own, where } = sketch.passes[path];
-    if (open.includes(path)) throw planError(`the sizes of ${open.join(" and ")} depend on each other`, where);
+    if (open.includes(path)) {
+      throw planError(`the sizes of ${open.join(" and ")} depend on each other`, where);
+    }
     open.push(path);
     let found = own ?? sizeOf(base);
     if (own || size) found = checked(path, own ?? evaluated(path, size ?? []), where);

@@ -1,209 +1,182 @@
-// sketch_page.js -- a page about one sketch: the picture, its tools and time, the panel, the code, its address.
+// sketch_page.js -- a page about one sketch: the picture, its tools and time, the panel, the code.
 
-import { asToml, fragmentOf, readFragment } from "./address.js";
+import { asToml } from "./address.js";
 import { copy, make } from "./dom.js";
 import { createFigure } from "./figure.js";
 import { iconButton } from "./icons.js";
 import { followKeys, keysDialog } from "./keys.js";
+import { followAddress } from "./page_address.js";
+import { createFullScreen, recallTheme, switchTheme } from "./page_room.js";
 import { createPanel } from "./panel.js";
-import { createSession, terrainRows } from "./session.js";
+import { createSession } from "./session.js";
+import { createTabs } from "./tabs.js";
 import { createTimeline, hasTime, stepped } from "./timeline.js";
 import { ENGLISH, fill } from "./words.js";
 
 /** @typedef {import("./schema.js").Page} Page */
 /** @typedef {import("./figure.js").Engine} Engine */
+/** @typedef {import("./figure.js").Figure} Figure */
 /** @typedef {import("./figure.js").Player} Player */
-/** What makes the tab of the code; `close` where it has to end.
- *  @typedef {(host: HTMLElement, player: any, options: {words: Object<string, string>}) => ({close?: () => void} | void)} CreateEditor */
+
+/** @typedef {object} PageOptions
+ *  @property {Object<string, string>} [words]
+ *  @property {HTMLImageElement | null} [poster]
+ *  @property {(player: Player) => unknown} [prepare]            what a player needs before its first picture
+ *  @property {(player: Player) => Map<string, number>} repeats  iterations in all, by path
+ *  @property {(host: HTMLElement, player: Player, figure: Figure) => void} [openCode]
+ *                                                     fills the code's tab, once for each player */
 
 const STAYS = 4000; // [ms] of a notice
-const SETTLED = 400; // [ms] without a change until the address says it
+const OFTEN = 250; // [ms] between two reports of a picture that moves
 
 /** Fill a page's main element. @param {HTMLElement} main @param {Page} page @param {Engine} engine
- *  @param {{words?: Object<string, string>, createEditor?: CreateEditor, poster?: HTMLImageElement | null}} [options] */
-export function createPage(main, page, engine, { words = ENGLISH, createEditor, poster = null } = {}) {
+ *  @param {PageOptions} options */
+export function createPage(main, page, engine, options) {
+  const { words = ENGLISH, poster = null, prepare, repeats, openCode } = options;
   const session = createSession(page.sketches);
-  const root = document.documentElement;
   const still = matchMedia("(prefers-reduced-motion: reduce)");
+  const view = make("section", { className: "view", "aria-label": words.ownPicture });
+  const textures = make("select", { className: "textures", "aria-label": words.map, title: words.map });
+  const info = make("p", { className: "info" }), title = make("h1");
+  let began = false, reported = 0, noticed = 0;
 
   // ── the picture ────────────────────────────────────────────────────────────
 
-  const view = make("section", { className: "view", "aria-label": words.ownPicture });
-  const textures = make("select", { className: "textures", "aria-label": words.map, title: words.map });
-  const info = make("p", { className: "info" });
-  let began = false, shown = 0;
-  const figure = createFigure(view, engine, page, {
-    session, words, poster,
-    opened: (player) => { openCode(player); },
-    drawn() {
-      if (!began && hasTime(session.sketch) && !still.matches) timeline.play(true);
-      began = true;
-      if (performance.now() - shown < 250 && figure.playing) return;
-      shown = performance.now();
-      info.textContent = fill(words.frameTook, { size: `${figure.canvas.width} × ${figure.canvas.height}`, time: figure.took.toFixed(0) });
-      panel.refresh();
-    },
-  });
+  const hooks = { prepare, opened: fillCode, drawn };
+  const figure = createFigure(view, engine, page, { session, words, poster, ...hooks });
   const timeline = createTimeline(figure, words);
-  let notice = 0;
-  const say = (/** @type {string} */ text) => {
+
+  function drawn() {
+    if (!began && hasTime(session.sketch) && !still.matches) timeline.play(true);
+    began = true;
+    const now = performance.now();
+    if (now - reported < OFTEN && figure.playing) return;
+    reported = now;
+    const size = `${figure.canvas.width} × ${figure.canvas.height}`;
+    info.textContent = fill(words.frameTook, { size, time: figure.took.toFixed(0) });
+    panel.refresh();
+  }
+
+  function say(/** @type {string} */ text) {
     figure.say(text);
-    clearTimeout(notice);
-    notice = setTimeout(() => figure.say(""), STAYS);
-  };
+    clearTimeout(noticed);
+    noticed = setTimeout(() => figure.say(""), STAYS);
+  }
+
+  function shownTexture() {
+    const { map, sketch } = session;
+    return sketch.textures.findIndex(({ path, output }) => path === map?.path && output === map.output);
+  }
+  const showTexture = (/** @type {number} */ at) => figure.showMap(session.sketch.textures[at] ?? null);
 
   function listTextures() {
-    const { sketch } = session, now = session.map;
-    textures.replaceChildren(make("option", { value: "" }, words.ownPicture), ...sketch.textures.map((one, at) =>
-      make("option", { value: String(at), selected: one.path === now?.path && one.output === now.output }, one.label)));
-    textures.hidden = !sketch.textures.length;
+    const offered = session.sketch.textures.map(({ label }, at) =>
+      make("option", { value: String(at) }, label));
+    textures.replaceChildren(make("option", { value: "-1" }, words.ownPicture), ...offered);
+    textures.value = String(shownTexture());
+    textures.hidden = !offered.length;
   }
-  const chooseMap = (/** @type {number} */ at) => figure.showMap(session.sketch.textures[at] ?? null);
-  textures.onchange = () => chooseMap(textures.value === "" ? -1 : +textures.value);
+  textures.onchange = () => showTexture(+textures.value);
 
   function save() {
     figure.canvas.toBlob((blob) => {
       if (!blob) return;
-      const name = `${session.sketch.name.replace(/[^\w.-]+/g, "_") || "picture"}.png`, url = URL.createObjectURL(blob);
+      const name = `${session.sketch.name.replace(/[^\w.-]+/g, "_") || "picture"}.png`;
+      const url = URL.createObjectURL(blob);
       make("a", { href: url, download: name }).click();
       setTimeout(() => URL.revokeObjectURL(url), STAYS);
       say(fill(words.saved, { name }));
     });
   }
 
-  // ── the room ───────────────────────────────────────────────────────────────
-
-  const isFull = () => Boolean(document.fullscreenElement) || main.classList.contains("filled");
-  async function full() {
-    if (isFull()) {
-      main.classList.remove("filled");
-      if (document.fullscreenElement) await document.exitFullscreen();
-    } else if (main.requestFullscreen) await main.requestFullscreen().catch(() => main.classList.add("filled"));
-    else main.classList.add("filled"); // a phone that fills the screen with films only
-    filled();
-  }
-  function filled() {
-    main.classList.toggle("alone", isFull());
-    const tool = /** @type {HTMLElement} */ (tools.querySelector(".tool-full"));
-    tool.title = isFull() ? words.leaveFull : words.full;
-    tool.setAttribute("aria-label", tool.title);
-  }
-  document.addEventListener("fullscreenchange", filled);
-
-  function theme() {
-    const dark = (root.dataset.theme || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light")) === "dark";
-    root.dataset.theme = dark ? "light" : "dark";
-    try { localStorage.setItem("playground-theme", root.dataset.theme); } catch { /* it is not remembered */ }
-  }
-  try {
-    const known = localStorage.getItem("playground-theme");
-    if (known === "light" || known === "dark") root.dataset.theme = known;
-  } catch { /* none is remembered */ }
+  // ── its tools ──────────────────────────────────────────────────────────────
 
   const help = keysDialog(words);
+  const full = createFullScreen(main, (isFull) => {
+    fullTool.title = isFull ? words.leaveFull : words.full;
+    fullTool.setAttribute("aria-label", fullTool.title);
+  });
   const toggleHelp = () => (help.open ? help.close() : help.showModal());
   const togglePanel = () => main.classList.toggle("alone");
+  const fullTool = iconButton("full", words.full, full);
   const tools = make("div", { className: "tools", role: "toolbar", "aria-label": words.map },
-    textures, iconButton("view", `${words.resetView} (R)`, figure.resetView), iconButton("save", `${words.save} (S)`, save),
-    iconButton("full", words.full, full), iconButton("theme", words.theme, theme), iconButton("keys", `${words.keys} (?)`, toggleHelp),
+    textures, iconButton("view", `${words.resetView} (R)`, figure.resetView),
+    iconButton("save", `${words.save} (S)`, save), fullTool, iconButton("theme", words.theme, switchTheme),
+    iconButton("keys", `${words.keys} (?)`, toggleHelp),
     iconButton("panel", `${words.panel} (P)`, togglePanel));
   view.append(tools, timeline.element);
 
-  // ── the panel and the code ─────────────────────────────────────────────────
+  // ── the panel, the code, the address ───────────────────────────────────────
 
-  const panel = createPanel(figure, {
-    words, labels: page.labels, say,
-    link: () => (session.anyChanged() || session.camera ? `${location.href.split("#")[0]}#${fragment()}` : location.href.split("#")[0]),
+  const address = followAddress(session, () => !figure.playing && hasTime(session.sketch),
+    (names) => say(fill(words.refused, { names: names.slice(0, 5).join(", ") })));
+  const panel = createPanel(session, {
+    words, labels: page.labels, say, link: address.link, fitMap: figure.fitMap,
     copied: async (text) => say((await copy(text)) ? words.copied : words.notCopied),
+    repeats: () => (figure.player ? repeats(figure.player) : new Map()),
   });
-  const code = make("div", { className: "code", id: "playground-code", role: "tabpanel", hidden: true, "aria-label": words.code });
+  const code = make("div", { className: "code", id: "playground-code", hidden: true });
   panel.element.id = "playground-panel";
-  const tabs = createEditor ? tabsOf([[words.parameters, panel.element], [words.code, code]], () => openCode(figure.player)) : null;
-  if (tabs) panel.element.setAttribute("role", "tabpanel");
-  const title = make("h1", {}), side = make("section", { className: "side", "aria-label": words.parameters },
-    make("header", {}, title, ...(tabs ? [tabs] : [])), panel.element, code, info);
-  const values = make("pre", { className: "on-paper" });
-  main.append(view, side, help, values);
-
-  /** @type {{close?: () => void} | void} */
-  let editor;
   /** @type {Player | null} */
-  let edited = null;
-  /** Fill the code's tab, once it is looked at; of another player anew. @param {Player | null} player */
-  function openCode(player) {
-    if (!createEditor || code.hidden || !player || player === edited) return;
-    editor?.close?.();
+  let opened = null;
+  /** Once it is looked at; of another player anew. */
+  function fillCode() {
+    const { player } = figure;
+    if (!openCode || code.hidden || !player || player === opened) return;
+    opened = player;
     code.replaceChildren();
-    edited = player;
-    editor = createEditor(code, player, { words });
+    openCode(code, player, figure);
   }
-
-  // ── the address ────────────────────────────────────────────────────────────
-
-  let settling = 0;
-  const fragment = () => fragmentOf(session, { time: !figure.playing && hasTime(session.sketch) });
-  function address() {
-    const text = fragment();
-    try {
-      history.replaceState(null, "", text ? `#${text}` : location.pathname + location.search);
-    } catch { /* the browser keeps the address of this page as it is */ }
-  }
-  function readAddress() {
-    const link = readFragment(location.hash, page.sketches, (sketch) => [...sketch.shown, ...terrainRows(sketch)]);
-    session.begin(link);
-    if (link.refused.length) say(fill(words.refused, { names: link.refused.slice(0, 5).join(", ") }));
-  }
-  const settle = () => {
-    clearTimeout(settling);
-    settling = setTimeout(address, SETTLED);
-  };
+  const header = make("header", {}, title);
+  const tabs = openCode && createTabs([[words.parameters, panel.element], [words.code, code]], (at) => {
+    main.classList.toggle("coding", at === 1);
+    fillCode();
+  });
+  if (tabs) header.append(tabs.element);
+  const side = make("section", { className: "side", "aria-label": words.parameters });
+  side.append(header, panel.element, code, info);
+  const onPaper = make("pre", { className: "on-paper" });
+  main.append(view, side, help, onPaper);
+  addEventListener("beforeprint", () => {
+    const text = session.edits.size ? asToml(session, session.sketch.name) : "";
+    onPaper.textContent = text && `${words.changedValues}\n\n${text}`;
+  });
 
   session.follow((news) => {
+    const { sketch } = session;
     if (news === "sketch") {
-      document.title = title.textContent = session.sketch.title || session.sketch.name;
-      main.style.setProperty("--aspect", String(session.sketch.frame[0] / session.sketch.frame[1]));
+      document.title = title.textContent = sketch.title || sketch.name;
+      main.style.setProperty("--aspect", String(sketch.frame[0] / sketch.frame[1]));
     }
     if (news === "sketch" || news === "map") listTextures();
-    if (news !== "time" || !figure.playing) settle();
   });
-  addEventListener("hashchange", () => { if (location.hash.slice(1) !== fragment()) readAddress(); });
-  addEventListener("beforeprint", () => { values.textContent = session.anyChanged() ? `${words.changedValues}\n\n${asToml(session, session.sketch.name)}` : ""; });
 
-  const step = (/** @type {number} */ frames) => { timeline.play(false); session.setTime(stepped(session.time, frames)); };
+  // ── the keys ───────────────────────────────────────────────────────────────
+
+  function step(/** @type {number} */ frames) {
+    if (!hasTime(session.sketch)) return;
+    timeline.play(false);
+    session.setTime(stepped(session.time, frames));
+  }
   followKeys(document, {
     turn: figure.turn, move: figure.move, zoom: figure.zoom,
     by: {
-      resetView: figure.resetView, save, full, theme, panel: togglePanel, help: toggleHelp,
+      resetView: figure.resetView, save, full, panel: togglePanel, help: toggleHelp,
       play: () => { if (hasTime(session.sketch)) timeline.toggle(); },
-      back: () => step(-1), on: () => step(1), start: () => session.setTime(0),
-      map: () => chooseMap(session.sketch.textures.findIndex((one) => one.path === session.map?.path && one.output === session.map.output) + 1),
-      search: () => { main.classList.remove("alone"); panel.search.focus(); },
+      back: () => step(-1),
+      on: () => step(1),
+      start: () => session.setTime(0),
+      map: () => showTexture(shownTexture() + 1),
+      search() {
+        main.classList.remove("alone");
+        tabs?.select(0);
+        panel.search.focus();
+      },
       undo: () => { if (session.undo()) say(words.undone); },
       redo: () => { if (session.redo()) say(words.redone); },
     },
   }, figure.canvas);
-  readAddress();
-  return { figure, panel, session };
-}
-
-/** Tabs over elements of which one is shown. @param {[string, HTMLElement][]} pages @param {() => void} changed */
-function tabsOf(pages, changed) {
-  const tabs = pages.map(([label, page], at) => {
-    const tab = make("button", { type: "button", role: "tab", "aria-controls": page.id, "aria-selected": at === 0, tabIndex: at ? -1 : 0, onclick: () => select(at) }, label);
-    tab.onkeydown = (event) => {
-      const by = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
-      if (by) select((at + by + pages.length) % pages.length).focus();
-    };
-    return tab;
-  });
-  const select = (/** @type {number} */ chosen) => {
-    pages.forEach(([, page], at) => {
-      page.hidden = at !== chosen;
-      tabs[at].setAttribute("aria-selected", String(at === chosen));
-      tabs[at].tabIndex = at === chosen ? 0 : -1;
-    });
-    changed();
-    return tabs[chosen];
-  };
-  return make("div", { role: "tablist", className: "tabs" }, ...tabs);
+  recallTheme();
+  address.read();
+  return { figure, panel, session, timeline, showCode: () => tabs?.select(1) };
 }

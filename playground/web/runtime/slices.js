@@ -1,4 +1,5 @@
-// slices.js -- long work in slices: between them the browser draws and listens; what each kernel takes is measured.
+// slices.js -- long work in slices: between them the browser draws and listens; what each kernel takes is
+// measured.
 
 /** @typedef {import("./kernel_texts.js").KernelText} KernelText */
 /** @typedef {{text: KernelText, texels: number}} Piece */
@@ -41,15 +42,18 @@ export const createClock = () => {
   /** Return what texels of a kernel will take [ms]; of one that was never measured, as the middle one.
    *  @param {KernelText} text @param {number} texels */
   const expected = ({ identity }, texels) => {
-    const known = costs.get(identity), all = known === undefined ? [...costs.values()].sort((a, b) => a - b) : [];
-    return texels * (known ?? all[all.length >> 1] ?? 0);
+    const known = costs.get(identity);
+    if (known !== undefined) return texels * known;
+    const all = [...costs.values()].sort((a, b) => a - b);
+    return texels * (all[all.length >> 1] ?? 0);
   };
 
   /** @param {Piece[]} pieces @param {number} milliseconds that all of them took */
   const note = (pieces, milliseconds) => {
-    const total = pieces.reduce((sum, { text, texels }) => sum + (expected(text, texels) || texels * 1e-9), 0);
-    for (const { text, texels } of pieces) {
-      const now = (milliseconds * ((expected(text, texels) || texels * 1e-9) / total)) / texels;
+    const shares = pieces.map(({ text, texels }) => expected(text, texels) || texels * 1e-9);
+    const total = shares.reduce((sum, share) => sum + share, 0);
+    for (const [i, { text, texels }] of pieces.entries()) {
+      const now = (milliseconds * shares[i]) / total / texels;
       const before = costs.get(text.identity);
       costs.set(text.identity, before === undefined ? now : (before + now) / 2);
     }
@@ -62,7 +66,8 @@ export const createClock = () => {
     isKnown: ({ identity }) => costs.has(identity),
 
     /** Return how many rows of so many texels to draw at once.
-     *  @param {KernelText} text @param {number} width @param {number} height @param {number} budget [ms] 0: none */
+     *  @param {KernelText} text @param {number} width @param {number} height
+     *  @param {number} budget [ms] 0: none */
     rows: (text, width, height, budget) => {
       const known = costs.get(text.identity), limit = budget || LONGEST;
       if (known === undefined) return budget && width * height > 4 * PROBE ? PROBE / width : height;

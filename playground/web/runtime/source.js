@@ -1,7 +1,7 @@
 // source.js -- flattens a GLSL file's includes, so that each line knows its file and line: sketch/source.py.
 //
-// The driver is given `code`: comments, #include, #line and the project's pragmas are blanked, lines are kept.
-// A backslash at a line's end joins it to the next; the joined line is in the first one's place.
+// The driver is given `code`: comments, #include, #line and the project's pragmas are blanked, lines stay. A
+// backslash at a line's end joins it to the next; the joined line is in the first one's place.
 
 import { withCallsJoined } from "./macro_calls.js";
 
@@ -97,7 +97,8 @@ function errorAt(file, line, message) {
 
 /** The files that an include may mean: the exported one, or one as Python looks for it (an edit may name
  *  another file): in the includer's folder, in the sketch's own, which begins with "./", in the library.
- *  @param {Pick<Shared, "includes">} shared @param {string} includer @param {string} name @returns {string[]} */
+ *  @param {Pick<Shared, "includes">} shared @param {string} includer @param {string} name
+ *  @returns {string[]} */
 function placesOf(shared, includer, name) {
   const known = shared.includes[includer]?.[name];
   if (known !== undefined) return [known];

@@ -16,10 +16,10 @@ import { isLoop, isRef, sourcesOf, stepsOf } from "./plan_nodes.js";
 
 /** What an engine knows of steps and kernels.
  *  @typedef {object} Known
- *  @property {(step: Step) => Object<string, any>} given  what the engine gives a step besides its parameters,
- *      of a draw with its samples: by name; a pressed button as "pressed NAME"
+ *  @property {(step: Step) => Object<string, any>} given  what the engine gives a step besides its
+ *      parameters, of a draw with its samples: by name; a pressed button as "pressed NAME"
  *  @property {(kernel: Kernel) => Set<string>} used       see `usedBy`
- *  @property {(kernel: Kernel) => string} text            what tells a kernel's text and header from others */
+ *  @property {(kernel: Kernel) => string} text            what tells its text and header from others */
 
 /** Keys of one plan. `steps` and `loops` by path; `raw` the same of what a step has where more is shown;
  *  `unfinished` after any number of iterations; `changes`: the paths of the loops around a node whose
@@ -49,8 +49,8 @@ export function usedBy(kernel, code, given) {
   for (const name of given) if (times.has(name)) used.add(name);
   for (const { name } of kernel.parameters) {
     // What another tool declares is not in its text; all that a source is given counts.
-    const counts = kernel.kind === "source" || times.has(`towards_${name}`) || (kernel.dialect && times.has(name));
-    if (counts) used.add(name);
+    const own = kernel.kind === "source" || (kernel.dialect && times.has(name));
+    if (own || times.has(`towards_${name}`)) used.add(name);
   }
   return used;
 }
@@ -63,7 +63,9 @@ const lastKeys = new WeakMap();
  *  @param {{nodes: PlanNode[]}} plan @param {Known} known @returns {Keys} */
 export function keysOf(plan, known) {
   /** @type {Keys} */
-  const keys = { steps: new Map(), raw: new Map(), unfinished: new Map(), loops: new Map(), changes: new Map() };
+  const keys = {
+    steps: new Map(), raw: new Map(), unfinished: new Map(), loops: new Map(), changes: new Map(),
+  };
   const continued = continuedOf(plan.nodes);
   /** Loops that a step changes with, for its next reader.
    *  @type {Map<string, Set<string>>} */
@@ -148,7 +150,8 @@ export function keysOf(plan, known) {
     for (const each of inside) {
       const changing = /** @type {Set<string>} */ (varies.get(each));
       if (!changing.has(path)) continue;
-      keys.steps.set(each, hash(JSON.stringify([key, each, loop.repeat]))); // what reads it sees the last iteration
+      // What reads it from here on sees the last iteration.
+      keys.steps.set(each, hash(JSON.stringify([key, each, loop.repeat])));
       varies.set(each, new Set([...changing].filter((one) => one !== path)));
     }
   }

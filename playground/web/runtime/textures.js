@@ -16,8 +16,10 @@ import { formatsOf } from "./formats.js";
  *  @property {Map<string, Texture>} textures   by output
  *  @property {WebGLFramebuffer | null} target  of several outputs
  *  @property {number} iterations               done, of a pass that repeats
- *  @property {number} number                   of all that were handed out: textures are used again, it is not
- *  @property {Surface | null} surface          a draw's samples and depth, while a later draw may go on from it
+ *  @property {number} number                   of all that were handed out: textures are used again, it is
+ *  not
+ *  @property {Surface | null} surface          a draw's samples and depth, while a later draw may go on
+ *  from it
  *  @property {Set<string>} mipmapped           outputs whose levels are made
  *  @property {Map<string, Texture>} copies     of outputs, with levels
  *  @property {Map<string, Float32Array>} read  of outputs, on the processor
@@ -50,13 +52,15 @@ export const createTextures = (context, limit) => {
   const texture = (size, format, levels = false) => {
     if (Math.max(...size) > context.limits.size) {
       const sides = size.join(" × ");
-      throw failure("too-large", `${sides} texels; this device takes no more than ${context.limits.size} a side.`);
+      const most = `this device takes no more than ${context.limits.size} a side`;
+      throw failure("too-large", `${sides} texels; ${most}.`);
     }
     const made = make("Texture"), many = levels ? 1 + Math.floor(Math.log2(Math.max(...size))) : 1;
     const { internal, bytes: each } = formats(format), flat = size[0] * size[1] * each;
     hold(made);
     gl.texStorage2D(gl.TEXTURE_2D, many, internal, ...size);
-    return { texture: made, size, format, levels: many, bytes: many > 1 ? Math.ceil(flat * 4 / 3) : flat, target: null };
+    const bytes = many > 1 ? Math.ceil(flat * 4 / 3) : flat;
+    return { texture: made, size, format, levels: many, bytes, target: null };
   };
 
   /** @param {Texture} made @param {ArrayBufferView | ImageBitmap} texels */
@@ -120,15 +124,16 @@ export const createTextures = (context, limit) => {
   /** @param {[number, number]} size @param {Map<string, Texture>} textures @param {Partial<Result>} [more]
    *  @returns {Result} */
   const result = (size, textures, more) => ({
-    size, textures, target: null, iterations: 0, number: ++taken, surface: null, mipmapped: new Set(), copies: new Map(),
-    read: new Map(), of: null, gone: false, ...more,
+    size, textures, target: null, iterations: 0, number: ++taken, surface: null, mipmapped: new Set(),
+    copies: new Map(), read: new Map(), of: null, gone: false, ...more,
   });
 
   /** Return textures with undefined texels; `tall` says which outputs have levels.
    *  @param {[number, number]} size @param {{name: string, format: string}[]} outputs
    *  @param {(name: string) => boolean} tall @returns {Result} */
   const take = (size, outputs, tall) => {
-    const kinds = outputs.map(({ name, format }) => `${format} ${Math.max(...size) > 1 && tall(name)}`).join();
+    const many = Math.max(...size) > 1;
+    const kinds = outputs.map(({ name, format }) => `${format} ${many && tall(name)}`).join();
     for (let i = spare.length - 1; i >= 0; i--) {
       const found = spare[i], all = [...found.textures.values()];
       if (found.size[0] !== size[0] || found.size[1] !== size[1]) continue;
@@ -182,14 +187,15 @@ export const createTextures = (context, limit) => {
   const surface = (size, format, wanted) => {
     const { internal, bytes: each } = formats(format);
     const samples = wanted > 1 ? samplesOf(format, wanted) : 0;
-    const at = surfaces.findIndex((known) =>
-      known.size[0] === size[0] && known.size[1] === size[1] && known.format === format && known.samples === samples);
+    const at = surfaces.findIndex((known) => known.size[0] === size[0] && known.size[1] === size[1]
+      && known.format === format && known.samples === samples);
     if (at >= 0) return surfaces.splice(at, 1)[0];
     const target = make("Framebuffer"), buffers = [make("Renderbuffer"), make("Renderbuffer")];
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
     [gl.COLOR_ATTACHMENT0, gl.DEPTH_ATTACHMENT].forEach((where, i) => {
       gl.bindRenderbuffer(gl.RENDERBUFFER, buffers[i]);
-      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, i ? gl.DEPTH_COMPONENT24 : internal, ...size);
+      const stored = i ? gl.DEPTH_COMPONENT24 : internal;
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, stored, ...size);
       gl.framebufferRenderbuffer(gl.FRAMEBUFFER, where, gl.RENDERBUFFER, buffers[i]);
     });
     checked(`${format} of ${samples} samples`);
@@ -203,7 +209,10 @@ export const createTextures = (context, limit) => {
   const samplesOf = (format, wanted) => {
     const { internal } = formats(format);
     let list = offered.get(format);
-    if (!list) offered.set(format, (list = [...gl.getInternalformatParameter(gl.RENDERBUFFER, internal, gl.SAMPLES)]));
+    if (!list) {
+      list = [...gl.getInternalformatParameter(gl.RENDERBUFFER, internal, gl.SAMPLES)];
+      offered.set(format, list);
+    }
     const least = list.filter((many) => many >= wanted).sort((a, b) => a - b)[0];
     return least ?? Math.max(0, ...list);
   };
@@ -226,7 +235,7 @@ export const createTextures = (context, limit) => {
   };
 
   return {
-    formats, texture, write, buildLevels, release, targetOf, drawTo, bytesOf, result, take, give, surface, giveSurface,
-    clear, get bytes() { return bytes; },
+    formats, texture, write, buildLevels, release, targetOf, drawTo, bytesOf, result, take, give, surface,
+    giveSurface, clear, get bytes() { return bytes; },
   };
 };

@@ -36,7 +36,7 @@ export function pieces() {
   if (known) return known;
   known = new Map();
   for (let level = 0; level < LEVELS - 1; level++) {
-    for (let coarser = 0; coarser < 16; coarser++) known.set(`fans ${level} ${coarser}`, fans(level, coarser));
+    for (let sides = 0; sides < 16; sides++) known.set(`fans ${level} ${sides}`, fans(level, sides));
   }
   const [southWest, southEast, northEast, northWest] = [0, CELLS, ROW * ROW - 1, CELLS * ROW];
   known.set(`fans ${LEVELS - 1} 0`, [southWest, southEast, northEast, southWest, northEast, northWest]);

@@ -13,7 +13,8 @@ const FPS = 30; // frames of a film, as capture/film.py
 const EPSILON = 1e-6;
 
 /** Times of a sketch's keyframes, each once, in order. @param {Sketch} sketch */
-export const marksOf = (sketch) => [...new Set(sketch.tracks.flatMap((track) => track.times))].sort((a, b) => a - b);
+export const marksOf = (sketch) =>
+  [...new Set(sketch.tracks.flatMap((track) => track.times))].sort((a, b) => a - b);
 
 /** The last time on the bar, which begins at 0. @param {Sketch} sketch @param {number} time */
 export function spanOf(sketch, time) {
@@ -23,7 +24,8 @@ export function spanOf(sketch, time) {
 
 /** The time of the film's frame before or after. @param {number} time @param {number} frames */
 export function stepped(time, frames) {
-  const now = time * FPS, whole = frames > 0 ? Math.floor(now + EPSILON) : Math.ceil(now - EPSILON);
+  const now = time * FPS,
+    whole = frames > 0 ? Math.floor(now + EPSILON) : Math.ceil(now - EPSILON);
   return Math.max(whole + frames, 0) / FPS;
 }
 
@@ -37,12 +39,26 @@ export function createTimeline(figure, words) {
   const range = make("input", { type: "range", min: 0, step: "any", "aria-label": words.time });
   const marks = make("div", { className: "marks", "aria-hidden": "true" });
   const now = make("output", { className: "now" });
-  const speed = make("select", { "aria-label": words.speed, title: words.speed },
-    ...SPEEDS.map((times) => make("option", { value: String(times), selected: times === 1 }, `${times} ×`)));
-  const bar = make("div", { className: "timeline", role: "group", "aria-label": words.time }, run, make("div", { className: "track" }, marks, range), now, speed);
-  speed.onchange = () => { figure.speed = +speed.value; };
+  const speed = make(
+    "select",
+    { "aria-label": words.speed, title: words.speed },
+    ...SPEEDS.map((times) => make("option", { value: String(times), selected: times === 1 }, `${times} ×`)),
+  );
+  const bar = make(
+    "div",
+    { className: "timeline", role: "group", "aria-label": words.time },
+    run,
+    make("div", { className: "track" }, marks, range),
+    now,
+    speed,
+  );
+  speed.onchange = () => {
+    figure.speed = +speed.value;
+  };
   range.oninput = () => {
-    const time = +range.value, span = spanOf(session.sketch, session.time), near = marksOf(session.sketch).find((mark) => Math.abs(mark - time) < span / 100);
+    const time = +range.value,
+      span = spanOf(session.sketch, session.time),
+      near = marksOf(session.sketch).find((mark) => Math.abs(mark - time) < span / 100);
     session.setTime(near ?? time);
   };
 
@@ -53,7 +69,8 @@ export function createTimeline(figure, words) {
   }
 
   function show() {
-    const span = spanOf(session.sketch, session.time), text = fill(words.seconds, { time: session.time.toFixed(2) });
+    const span = spanOf(session.sketch, session.time),
+      text = fill(words.seconds, { time: session.time.toFixed(2) });
     range.max = String(span);
     range.value = String(session.time);
     range.style.setProperty("--share", String(clamp(session.time / span)));
@@ -62,16 +79,22 @@ export function createTimeline(figure, words) {
   }
 
   function rebuild() {
-    const { sketch } = session, span = spanOf(sketch, session.time);
+    const { sketch } = session,
+      span = spanOf(sketch, session.time);
     bar.hidden = !hasTime(sketch);
-    marks.replaceChildren(...marksOf(sketch).map((time) => {
-      const mark = make("span", { title: `${words.keyframe}, ${fill(words.seconds, { time })}` });
-      mark.style.setProperty("--at", String(time / span));
-      return mark;
-    }));
+    marks.replaceChildren(
+      ...marksOf(sketch).map((time) => {
+        const mark = make("span", { title: `${words.keyframe}, ${fill(words.seconds, { time })}` });
+        mark.style.setProperty("--at", String(time / span));
+        return mark;
+      }),
+    );
     show();
   }
-  session.follow((news) => { if (news === "time") show(); else if (news === "sketch") rebuild(); });
+  session.follow((news) => {
+    if (news === "time") show();
+    else if (news === "sketch") rebuild();
+  });
   rebuild();
   return { element: bar, play, toggle: () => play(!figure.playing) };
 }

@@ -6,6 +6,8 @@ import { general, isWhole, lengthOf, rangeOf } from "./numbers.js";
 /** @typedef {import("./schema.js").Shown} Shown */
 /** @typedef {import("./schema.js").Value} Value */
 
+const LARGEST = 1e9; // [m] of the terrain
+
 /** Six digits where they say the same, else all there are.
  *  @param {number} number */
 export function digits(number) {
@@ -19,7 +21,8 @@ export function write(one, value) {
   if (one.widget === "menu" && typeof value === "number") return one.choices[value] ?? String(value);
   if (!Array.isArray(value)) return typeof value === "number" ? digits(value) : String(value);
   if (one.widget === "colour") {
-    const text = toHex(value, one.raw), there = fromHex(text, one.raw) ?? [];
+    const text = toHex(value, one.raw),
+      there = fromHex(text, one.raw) ?? [];
     if (value.every((part, at) => Math.abs(part - (there[at] ?? 1)) <= 1e-7)) return text;
   }
   return value.map(digits).join(",");
@@ -37,7 +40,10 @@ export function read(one, text) {
   }
   if (one.type === "bool") {
     const word = text.toLowerCase();
-    return ["true", "on", "yes", "1"].includes(word) || (["false", "off", "no", "0"].includes(word) ? false : undefined);
+    return (
+      ["true", "on", "yes", "1"].includes(word) ||
+      (["false", "off", "no", "0"].includes(word) ? false : undefined)
+    );
   }
   const count = lengthOf(one.type);
   if (one.widget === "colour" && text.startsWith("#")) {
@@ -49,20 +55,30 @@ export function read(one, text) {
   return parts.length === count && fits(one, value) ? value : undefined;
 }
 
+/** What a number of a parameter may be; of the terrain more than its slider has.
+ *  @param {Shown} one @param {number} part @returns {[number, number]} */
+function limits(one, part) {
+  if (one.widget === "direction") return part ? [-90, 90] : [-720, 720];
+  if (one.path === "relief") return [0, LARGEST];
+  if (one.path === "extent") return [Number.MIN_VALUE, LARGEST];
+  const [low, high] = rangeOf(one, part) ?? [-Infinity, Infinity];
+  const slack = 1e-6 * Math.max(Math.abs(low), Math.abs(high));
+  if (!isWhole(one.type)) return low === -Infinity ? [low, high] : [low - slack, high + slack];
+  const whole = one.type.startsWith("u") ? [0, 2 ** 32 - 1] : [-(2 ** 31), 2 ** 31 - 1];
+  return [Math.max(low, whole[0]), Math.min(high, whole[1])];
+}
+
 /** Whether a value is one that a parameter takes, in its range.
  *  @param {Shown} one @param {unknown} value @returns {value is Value} */
 export function fits(one, value) {
   if (one.type === "bool") return typeof value === "boolean";
   if (one.widget === "file" || one.type === "sampler2D") return typeof value === "string";
+  if (one.widget === "menu") return Number.isInteger(value) && one.choices[Number(value)] !== undefined;
   const count = lengthOf(one.type), numbers = count === 1 ? [value] : Array.isArray(value) ? value : [];
-  if (one.widget === "menu") return Number.isInteger(value) && Number(value) >= 0 && Number(value) < one.choices.length;
   return numbers.length === count && numbers.every((number, part) => {
     if (typeof number !== "number" || !Number.isFinite(number)) return false;
-    const ends = isWhole(one.type) ? (one.type.startsWith("u") ? [0, 2 ** 32 - 1] : [-(2 ** 31), 2 ** 31 - 1]) : null;
-    if (ends && !(Number.isInteger(number) && number >= ends[0] && number <= ends[1])) return false;
-    const [low, high] = one.widget === "direction" ? [[-720, 720], [-90, 90]][part] : rangeOf(one, part) ?? [-Infinity, Infinity];
-    const slack = Number.isFinite(low) ? 1e-6 * Math.max(Math.abs(low), Math.abs(high)) : 0;
-    return number >= low - slack && number <= high + slack;
+    const [low, high] = limits(one, part);
+    return number >= low && number <= high && (!isWhole(one.type) || Number.isInteger(number));
   });
 }
 
@@ -91,4 +107,5 @@ export const quoted = (text) => JSON.stringify(text).replace(/\x7f/g, "\\u007f")
 
 /** A word of a command that any shell takes as it is: in quotes where it holds more than plain letters.
  *  @param {string} word */
-export const shellWord = (word) => (/^[\w.,=\-+/:]+$/.test(word) ? word : `"${word.replace(/[\\"$`]/g, "\\$&")}"`);
+export const shellWord = (word) =>
+  /^[\w.,=\-+/:]+$/.test(word) ? word : `"${word.replace(/[\\"$`]/g, "\\$&")}"`;

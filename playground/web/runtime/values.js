@@ -1,4 +1,4 @@
-// values.js -- the values of a sketch's parameters and its camera at a time, as keyframes and a user have them.
+// values.js -- the values of a sketch's parameters and its camera at a time: its own, keyframes', a user's.
 
 import { follow } from "./follows.js";
 import { valueAt } from "./keyframes.js";
@@ -18,7 +18,7 @@ export const leavesOf = (nodes) => nodes.flatMap((node) => ("loop" in node ? lea
 export const isSame = (a, b) =>
   a === b || (Array.isArray(a) && Array.isArray(b) && a.length === b.length && a.every((n, k) => n === b[k]));
 
-/** The value of every leaf parameter, by its path: the sketch's own, under those of its keyframes, under those
+/** The value of every leaf parameter, by its path: the sketch's own, under those of keyframes, under those
  *  that a user has set; then what follows a direction.
  *  @param {Sketch} sketch @param {Object<string, Value>} given by path @param {number} time [s] */
 export function valuesAt(sketch, given, time) {
@@ -38,7 +38,8 @@ export function valuesAt(sketch, given, time) {
 export function cameraAt(sketch, given, time) {
   if (given) return given;
   const tracks = sketch.tracks.filter((track) => track.of === "camera");
-  return Object.assign({ ...sketch.camera }, ...tracks.map((track) => ({ [track.name]: valueAt(track, time) })));
+  const found = Object.fromEntries(tracks.map((track) => [track.name, valueAt(track, time)]));
+  return { ...sketch.camera, ...found };
 }
 
 /** What a uniform gets for a value: of a menu with values of its own the chosen one.

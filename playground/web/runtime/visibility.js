@@ -50,7 +50,8 @@ export function stretch(view) {
 
 /** The boxes of squares whose lowest and highest heights are `spans`. `side` is theirs in cells; `tiles` says
  *  how many tiles, east and north, the terrain has, where that is not how many squares it has.
- *  @param {Table} spans @param {View} view @param {number} [side] @param {number[]} [tiles] @returns {Boxes} */
+ *  @param {Table} spans @param {View} view @param {number} [side] @param {number[]} [tiles]
+ *  @returns {Boxes} */
 export function boxesOf(spans, view, side = CELLS, tiles = spans.size) {
   const [nx, ny] = spans.size;
   const [east, north] = spans.size.map((count, axis) => {
@@ -102,8 +103,9 @@ export function longest({ east, north, up }) {
 
 /** How far [m] the eye is from each box's nearest place, and from its furthest.
  *  @param {Boxes} boxes @param {number[]} eye @returns {[Float64Array, Float64Array]} */
-export function distances({ nx, ny, east, north, up }, eye) {
-  const squares = [east, north, up].map(([low, high], axis) => {
+export function distances(boxes, eye) {
+  const { nx } = boxes;
+  const squares = [boxes.east, boxes.north, boxes.up].map(([low, high], axis) => {
     const at = eye[axis];
     const nearest = new Float64Array(low.length), furthest = new Float64Array(low.length);
     for (let k = 0; k < low.length; k++) {
@@ -114,8 +116,10 @@ export function distances({ nx, ny, east, north, up }, eye) {
     }
     return [nearest, furthest];
   });
-  const [nearest, furthest] = [0, 1].map((which) => Float64Array.from({ length: nx * ny }, (_, tile) =>
-    Math.sqrt(squares[0][which][tile % nx] + squares[1][which][Math.floor(tile / nx)] + squares[2][which][tile])));
+  const [nearest, furthest] = [0, 1].map((which) => {
+    const [east, north, up] = squares.map((each) => each[which]);
+    return up.map((each, tile) => Math.sqrt(east[tile % nx] + north[Math.floor(tile / nx)] + each));
+  });
   return [nearest, furthest];
 }
 

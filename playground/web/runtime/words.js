@@ -8,6 +8,7 @@ export const ENGLISH = {
   picture: "{title}: the picture. Drag to orbit, wheel to zoom; press ? for the keys",
   plainPicture: "{title}: the picture. Press ? for the keys",
   loading: "Making the picture",
+  working: "Computing",
   compiling: "Compiling {done} of {all} programs",
   failed: "The picture cannot be made: {reason}",
   kept: "This setting cannot be shown, the last picture stays: {reason}",
@@ -16,6 +17,7 @@ export const ENGLISH = {
   // the bar over the picture
   save: "Save picture",
   saved: "Saved {name}",
+  notSaved: "This page does not hold what a version needs",
   full: "Full screen",
   leaveFull: "Leave full screen",
   resetView: "Reset the view",
@@ -71,6 +73,7 @@ export const ENGLISH = {
   keyframe: "keyframe",
   // maps
   map: "View",
+  mapShown: "Map",
   ownPicture: "The picture",
   mapLabel: "{label} from above, north on top. Drag to move, wheel to enlarge",
   under: "Texel {x}, {y}",
@@ -98,7 +101,8 @@ export const ENGLISH = {
   arrows: "Arrows",
   shiftArrows: "Shift+arrows",
   space: "Space",
-  mouse: "With the mouse: drag to orbit, right drag or Shift+drag to move, wheel to zoom, double click to reset.",
+  mouse:
+    "With the mouse: drag to orbit, right drag or Shift+drag to move, wheel to zoom, double click to reset.",
   touch: "By touch: one finger orbits, two fingers move and zoom, a double tap resets.",
   rows: "In the panel: double click on a row resets it; drag on a name without a slider changes its number.",
 };
@@ -108,13 +112,15 @@ export const FRENCH = {
   picture: "{title} : l'image. Glisser pour tourner, molette pour zoomer ; ? montre les touches",
   plainPicture: "{title} : l'image. La touche ? montre les touches",
   loading: "L'image se prépare",
+  working: "Calcul en cours",
   compiling: "Compilation de {done} programmes sur {all}",
   failed: "L'image ne peut pas être faite : {reason}",
   kept: "Ce réglage ne peut pas être montré, la dernière image reste : {reason}",
   frameTook: "{size}, {time} ms",
   still: "Cette image est fixe : {reason}",
   save: "Enregistrer l'image",
-  saved: "{name} enregistrée",
+  saved: "{name} enregistré",
+  notSaved: "Cette page ne contient pas ce qu'il faut pour une version",
   full: "Plein écran",
   leaveFull: "Quitter le plein écran",
   resetView: "Rétablir la vue",
@@ -166,6 +172,7 @@ export const FRENCH = {
   speed: "Vitesse",
   keyframe: "image clé",
   map: "Vue",
+  mapShown: "Carte",
   ownPicture: "L'image",
   mapLabel: "{label} vu d'en haut, le nord en haut. Glisser pour déplacer, molette pour agrandir",
   under: "Texel {x}, {y}",
@@ -192,9 +199,13 @@ export const FRENCH = {
   arrows: "Flèches",
   shiftArrows: "Maj+flèches",
   space: "Espace",
-  mouse: "À la souris : glisser pour tourner, glisser à droite ou avec Maj pour se déplacer, molette pour zoomer, double clic pour rétablir.",
+  mouse:
+    "À la souris : glisser pour tourner, glisser du bouton droit ou avec Maj pour se déplacer, " +
+    "molette pour zoomer, double clic pour rétablir.",
   touch: "Au doigt : un doigt tourne, deux doigts déplacent et zooment, un double appui rétablit.",
-  rows: "Dans le panneau : un double clic sur une ligne la rétablit ; glisser sur un nom sans curseur change son nombre.",
+  rows:
+    "Dans le panneau : un double clic sur une ligne la rétablit ; " +
+    "glisser sur un nom sans curseur change son nombre.",
 };
 
 /** The words of a language, by its tag; English where there are none.
@@ -207,4 +218,9 @@ export const fill = (text, values) => text.replace(/\{(\w+)\}/g, (_, name) => St
 
 /** A number of metres, or another number that is read, in as many digits as it needs.
  *  @param {number} number */
-export const measured = (number) => (Math.abs(number) >= 1000 ? number.toFixed(0) : Math.abs(number) >= 10 ? number.toFixed(1) : number.toFixed(2));
+export const measured = (number) =>
+  Math.abs(number) >= 1000
+    ? number.toFixed(0)
+    : Math.abs(number) >= 10
+      ? number.toFixed(1)
+      : number.toFixed(2);

@@ -1,9 +1,10 @@
-// widget.js -- a picture with sliders in a notebook.
+// notebook_picture.js -- a picture with sliders in a notebook whose browser cannot draw: the kernel does.
 //
 // While one is dragged, a change is sent only when the one before has been answered: so the
 // newest position is drawn next, and none queue up. The answer is the message after the
 // picture; it comes also where the picture is the same, or there is none.
-function render({ model, el }) {
+/** @param {{model: any, el: HTMLElement}} cell */
+export function renderPicture({ model, el }) {
   const make = (name, properties = {}, ...inside) => {
     const element = Object.assign(document.createElement(name), properties);
     element.append(...inside);
@@ -75,4 +76,3 @@ function render({ model, el }) {
     if (url) URL.revokeObjectURL(url);
   };
 }
-export default { render };

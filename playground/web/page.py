@@ -1,0 +1,118 @@
+"""Make one HTML file of a page's data and the runtime, which opens from disk and asks nothing of a network.
+
+The data are JSON in an element that no browser runs, and so is the runtime, packed. A script of a few lines
+unpacks it; the page's policy names both scripts by their hashes, and nothing else may run or be fetched.
+What people wrote is escaped where it stands in the page itself (``markup``), and packed in the data.
+The poster is the picture for printing, and for browsers that cannot run the rest.
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from playground._version import __version__
+from playground.markup import Markup, tag
+
+_ICON = "data:,"  # or a browser would ask for favicon.ico
+_SCRIPTS_OFF = (
+    "This picture is alive where scripts may run: allow them for this page, or open it in a browser."
+)
+_TOO_OLD = "This browser is too old for the live picture: it cannot unpack it."
+
+
+@dataclass(frozen=True)
+class Poster:
+    """The picture that a page begins with."""
+
+    data: bytes
+    media_type: str  # as image/webp
+    size: tuple[int, int]  # pixels
+
+
+def page_html(
+    page: Mapping[str, Any], poster: Poster, *, script: str, style: str, language: str = "en"
+) -> str:
+    """Return the whole page: one HTML file.
+
+    ``script`` and ``style`` are the runtime's (see ``bundle``), neither with an end of its own element
+    in it. The same arguments give the same text.
+    """
+    sketch = page["sketches"][0]
+    title = sketch["title"] or sketch["name"]
+    width, height = poster.size
+    image = tag(
+        "img",
+        id="playground-poster",
+        src=f"data:{poster.media_type};base64,{base64.b64encode(poster.data).decode('ascii')}",
+        alt=title,
+        width=width,
+        height=height,
+    )
+    head = (
+        Markup('<meta charset="utf-8">'),
+        tag("meta", http_equiv="Content-Security-Policy", content=policy_of(script, style)),
+        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("meta", name="color-scheme", content="light dark"),
+        tag("meta", name="description", content=f"{title}: a terrain shader that runs in this page."),
+        tag("meta", name="generator", content=f"terrain shader playground {__version__}"),
+        tag("title", title),
+        tag("link", rel="icon", href=_ICON),
+        tag("style", Markup(style)),
+    )
+    body = (
+        tag("main", image, id="playground"),
+        tag("noscript", tag("p", _SCRIPTS_OFF)),
+        tag("p", _TOO_OLD, id="playground-old", hidden=True),
+        "\n",
+        tag("script", Markup(_json(packed(page))), type="application/json", id="playground-page"),
+        "\n",
+        tag("script", _packed(script), type="application/gzip", id="playground-runtime"),
+        "\n",
+        tag("script", Markup(_loader())),
+    )
+    html = tag("html", tag("head", *head), "\n", tag("body", *body), lang=language)
+    return f"<!doctype html>\n{html}\n"
+
+
+def packed(page: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a page's data with all but its bytes packed: see ``PageFile`` in schema.js."""
+    shared = {name: value for name, value in page["shared"].items() if name != "blobs"}
+    text = json.dumps({**page, "shared": shared}, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
+    return {"format": page["format"], "packed": _packed(text), "blobs": page["shared"]["blobs"]}
+
+
+def policy_of(script: str, style: str) -> str:
+    """Return the page's Content-Security-Policy: its own script and style, and pictures that it makes."""
+    scripts = " ".join(f"'sha256-{_hash(text)}'" for text in (_loader(), script))
+    return (
+        f"default-src 'none'; script-src {scripts}; style-src 'sha256-{_hash(style)}';"
+        " img-src data: blob:; base-uri 'none'; form-action 'none'"
+    )
+
+
+@cache
+def _loader() -> str:
+    return (Path(__file__).parent / "loader.js").read_text(encoding="utf-8")
+
+
+def _packed(text: str) -> str:
+    """Return a text as gzip in base64."""
+    return base64.b64encode(gzip.compress(text.encode(), compresslevel=9, mtime=0)).decode("ascii")
+
+
+def _json(value: Mapping[str, Any]) -> str:
+    """Return JSON in which nothing ends a script element, or begins a comment in one."""
+    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
+    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+
+
+def _hash(text: str) -> str:
+    return base64.b64encode(hashlib.sha256(text.encode()).digest()).decode("ascii")

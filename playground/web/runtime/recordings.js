@@ -1,0 +1,26 @@
+// recordings.js -- which frame of a film or a sound shows at a time: terrain/over_time.py over what was exported.
+
+/** @typedef {import("./schema.js").DataTexture} DataTexture */
+
+// [s] A time is meant to be that of the frame that begins so little later.
+const MARGIN = 1e-6;
+
+/** Which second of the file shows, before it loops, and whether it does.
+ *  @typedef {{start: number, speed?: number, loop: boolean}} Playing */
+
+/** Return the blob that a texture of a source has at a time in seconds; of what does not play, its own.
+ *  @param {DataTexture} texture @param {Playing | null} playing @param {number} time @returns {string} */
+export function blobAt(texture, playing, time) {
+  const { times, frames, length = 0 } = texture;
+  if (!times || !frames || !playing) return texture.blob;
+  let second = playing.start + (playing.speed ?? 1) * time + MARGIN;
+  const before = second < 0 && playing.speed === undefined; // of a sound, which begins in silence
+  if (playing.loop && length > 0 && !before) second -= Math.floor(second / length) * length;
+  let low = 0, high = times.length; // as Python's bisect_right
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (second < times[middle]) high = middle;
+    else low = middle + 1;
+  }
+  return frames[Math.max(low - 1, 0)];
+}

@@ -1,0 +1,76 @@
+"""Menus of techniques in a page: a sketch for each choice, and which of them is which."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from itertools import product
+from math import prod
+from typing import Any
+
+from playground.engine.planner import Planner
+from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
+from playground.sketch.model import DEFAULT_PICTURE, Sketch
+from playground.sketch.parameter import label_of
+from playground.sketch.replace_technique import choices, with_technique
+from playground.web.plan import KINDS
+
+MOST = 24
+"""Sketches that a page may hold: one for each combination of techniques."""
+
+
+def technique_menus(
+    sketch: Sketch, wanted: Mapping[str, Sequence[str]]
+) -> tuple[list[Sketch], list[list[dict[str, Any]]]]:
+    """Return a sketch for each combination of techniques, the sketch itself first, and the menus of each.
+
+    ``wanted`` lists techniques by pass, as ``use`` names them; none means all that fit and
+    can be planned. What fills a pass now is always among them. Raises ``ParameterError`` for more than
+    ``MOST`` combinations, ``SketchError`` for what does not fit.
+    """
+    lists = {name: _fitting(sketch, name, uses) for name, uses in wanted.items()}
+    count = prod(map(len, lists.values()))
+    if count > MOST:
+        listed = " x ".join(f"{len(uses)} of {name}" for name, uses in lists.items())
+        raise ParameterError(
+            f"{listed} are {count} sketches in one page; at most {MOST}: name fewer techniques"
+        )
+    chosen = list(product(*lists.values()))
+    numbers = {uses: number for number, uses in enumerate(chosen)}
+    sketches: list[Sketch] = []
+    menus: list[list[dict[str, Any]]] = []
+    for uses in chosen:
+        made = sketch
+        for name, use in zip(lists, uses, strict=True):
+            made = with_technique(made, name, use)
+        sketches.append(made)
+        menus.append([])
+        for at, name in enumerate(lists):
+            others = []
+            for use in lists[name]:
+                titled = with_technique(made, name, use).graph.find(name)
+                assert titled is not None
+                number = numbers[(*uses[:at], use, *uses[at + 1 :])]
+                others.append({"use": use, "title": titled.technique.title, "sketch": number})
+            menus[-1].append({"pass": name, "label": label_of(name), "now": uses[at], "others": others})
+    return sketches, menus
+
+
+def _fitting(sketch: Sketch, name: str, uses: Sequence[str]) -> list[str]:
+    """Return what fills a pass, and what else is wanted there."""
+    spec = sketch.graph.find(name)
+    known = choices(sketch, name)
+    assert spec is not None  # or ``choices`` has said so
+    for use in uses:
+        if use not in known:
+            raise SketchError(f"no technique '{use}' fits pass '{name}'{nearest(use, known)}")
+    found = uses or [use for use in known if _is_planned(sketch, name, use)]
+    return list(dict.fromkeys([spec.use, *found]))
+
+
+def _is_planned(sketch: Sketch, name: str, use: str) -> bool:
+    try:
+        changed = with_technique(sketch, name, use)
+        Planner().plan(changed, frame_size=DEFAULT_PICTURE, variants=KINDS)
+    except PlaygroundError:
+        return False
+    return True

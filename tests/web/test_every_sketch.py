@@ -1,0 +1,105 @@
+"""Every shipped sketch has the engine's bits in a page on the same renderer, whatever is set."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.planner import Planner
+from playground.errors import PlaygroundError
+from playground.sketch.catalogue import load, shipped_sketches
+from playground.sketch.model import Sketch
+from playground.terrain.sources import source_kind
+from playground.web.page_data import page_data
+from playground.web.plan import KINDS
+
+from ..report.browser import SWIFTSHADER
+from .pages import MISSING, Pages
+from .random_settings import Settings, random_settings
+
+pytestmark = pytest.mark.slow
+
+SIZE = (320, 180)
+SIZES = [(129, 129), (65, 65), (129, 65), (128, 128), (100, 77)]
+SETTINGS = 2
+OTHER_RENDERER = ("geomipmap", "fbm_curves", "contours_map", "diamond_square", "fourier", "triplanar",
+                  "lighting_hill", "height_blend", "wireframe", "splat")  # fmt: skip
+
+
+def small(name: str) -> Sketch:
+    """Return a sketch with a small terrain, where its size is free."""
+    sketch = load(name)
+    try:
+        smaller = sketch.with_values({"size": "129"})
+        Planner().plan(smaller, frame_size=SIZE, variants=KINDS)
+    except PlaygroundError:
+        return sketch
+    return smaller
+
+
+@pytest.fixture(scope="module")
+def written() -> dict[str, Any]:
+    """Give all sketches as one page has them, which shares their texts and images."""
+    return page_data([small(name) for name in shipped_sketches()], frame=SIZE)
+
+
+@pytest.fixture(scope="module")
+def every(pages: Pages, drawn: Engine, written: dict[str, Any]) -> Pages:
+    """Give a page that has all sketches' texts and images."""
+    pages.begin(written)
+    return pages
+
+
+@pytest.mark.parametrize("name", shipped_sketches())
+def test_a_page_draws_a_sketch_as_the_engine_does(
+    name: str, every: Pages, drawn: Engine, written: dict[str, Any]
+):
+    sketch, data = small(name), next(one for one in written["sketches"] if one["name"] == name)
+    every.open(data)
+    for settings in [Settings(frame=SIZE), *settings_of(sketch, data)]:
+        try:
+            frame = drawn.render(
+                settings.of(sketch), size=settings.frame, time=settings.time, steps=settings.steps
+            )
+        except PlaygroundError:
+            continue  # a setting that the sketch refuses: test_plan sees to that
+        picture = every.picture(name, **settings.state(data))
+        assert picture.levels_off(frame.array) == 0, settings
+    every.run("figures[arguments[0]].close()", name)
+
+
+def settings_of(sketch: Sketch, data: dict[str, Any]) -> Iterator[Settings]:
+    """Yield settings at random, the same in every run, in sizes that are drawn at once."""
+    chance = random.Random(sketch.name)
+    plan = Planner().plan(sketch, frame_size=SIZE, variants=KINDS)
+    sources = [step.kernel.registry for step in plan.walk() if step.kernel.kind == "source"]
+    for _ in range(SETTINGS):
+        found = random_settings(chance, data, plan)
+        found.frame = SIZE
+        if any(source_kind(name).moment for name in sources):
+            found.time = 0.0  # a page has the texels of the moment of its export
+        if "size" in found.terrain:
+            found.terrain["size"] = chance.choice(SIZES)
+        yield found
+
+
+def test_another_renderer_differs_in_its_rounding_only(
+    tmp_path_factory: pytest.TempPathFactory, drawn: Engine
+):
+    """SwiftShader rounds otherwise: less than 0.4 of a level in the mean, in few pixels by much."""
+    if MISSING:
+        pytest.skip(MISSING)
+    data = page_data([small(name) for name in OTHER_RENDERER], frame=SIZE)
+    with Pages(tmp_path_factory.mktemp("swiftshader"), SWIFTSHADER) as pages:
+        pages.begin(data)
+        for one in data["sketches"]:
+            pages.open(one)
+            frame = drawn.render(small(one["name"]), size=SIZE)
+            difference = np.abs(pages.picture(one["name"]).pixels.astype(int) - frame.array)[..., :3]
+            assert difference.mean() < 0.4, one["name"]
+            assert (difference.max(axis=2) > 8).mean() < 0.02, one["name"]

@@ -1,0 +1,211 @@
+"""What a page has as bytes is what the engine has as textures; what depends on it is locked."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import io
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PIL.Image
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.planner import Planner
+from playground.gpu.textures import split_format
+from playground.images.files import read_image, write_png
+from playground.paths import SKETCHES
+from playground.sketch.assign import shown_parameters
+from playground.sketch.colour import srgb_to_linear
+from playground.sketch.load import load
+from playground.sketch.model import Sketch
+from playground.web.page_data import page_data
+from playground.web.plan import KINDS
+
+from ..report import browser as browsers
+from ..sketch_texts import map_of, passes
+
+KINDS_OF_NUMBERS = {"f1": np.uint8, "nu2": np.uint16, "f2": np.float16, "f4": np.float32}
+
+
+def bytes_of(page: dict[str, Any], key: str) -> bytes:
+    return gzip.decompress(base64.b64decode(page["shared"]["blobs"][key]))
+
+
+@pytest.mark.parametrize("name", ["delaunay_flips", "jacksboro", "splat_mask"])
+def test_a_source_has_the_engines_texels(any_engine: Engine, name: str):
+    sketch = load(name)
+    page = page_data([sketch])
+    sources = [node for node in page["sketches"][0]["nodes"] if node.get("data")]
+    assert sources
+    for node in sources:
+        for texture in node["data"]:
+            components, kind = split_format(texture["format"])
+            data = np.frombuffer(bytes_of(page, texture["blob"]), KINDS_OF_NUMBERS[kind])
+            width, height = texture["size"]
+            found = data.reshape(height, width, components).astype(np.float32)
+            if data.dtype.kind == "u":
+                found /= np.float32(np.iinfo(data.dtype).max)
+            expected = any_engine.read(sketch, f"{node['path']}:{texture['output']}")
+            np.testing.assert_array_equal(found.reshape(expected.shape), expected)
+
+
+SKETCH = """format = 1
+[view]
+use = "./view"
+set = { photo = "photo.png" }
+"""
+VIEW = """#pragma kernel(output = "colour:rgba8")
+uniform sampler2D photo;  //! file("photo.png")
+vec4 kernel(ivec2 texel) { return texelFetch(photo, texel, 0); }
+"""
+
+
+@pytest.mark.parametrize("opaque", [True, False])
+def test_an_image_has_the_texels_of_its_file(tmp_path: Path, opaque: bool):
+    pixels = np.random.default_rng(3).integers(0, 256, (37, 53, 4), np.uint8)
+    pixels[..., 3] = 255 if opaque else pixels[..., 3]
+    write_png(tmp_path / "photo.png", pixels)
+    page = view_of(tmp_path)
+    [(key, image)] = page["shared"]["images"].items()
+    assert page["sketches"][0]["values"]["view.photo"] == key
+    assert image["size"] == [53, 37] and image["kind"] == "srgb8"
+    data = bytes_of(page, image["blob"])
+    if opaque:
+        assert image["file"] == "image/webp"
+        found = np.array(PIL.Image.open(io.BytesIO(data)).convert("RGBA"))
+    else:
+        assert "file" not in image
+        found = np.frombuffer(data, np.uint8).reshape(37, 53, 4)[::-1]
+    np.testing.assert_array_equal(found, pixels)
+
+
+def test_an_image_of_16_bits_has_the_engines_half_floats(tmp_path: Path):
+    from playground.images.files import encode_samples
+
+    samples = np.random.default_rng(4).integers(0, 65_536, (5, 7, 3), np.uint16)
+    (tmp_path / "photo.png").write_bytes(encode_samples(samples))
+    page = view_of(tmp_path)
+    [image] = page["shared"]["images"].values()
+    assert image["kind"] == "rgba16f"
+    found = np.frombuffer(bytes_of(page, image["blob"]), np.float16).reshape(5, 7, 4)[::-1]
+    linear = srgb_to_linear(read_image(tmp_path / "photo.png").pixels[..., :3].astype(np.float64))
+    np.testing.assert_array_equal(found[..., :3], linear.astype(np.float16))
+    assert (found[..., 3] == 1).all()
+
+
+def view_of(folder: Path) -> dict[str, Any]:
+    (folder / "view.glsl").write_text(VIEW)
+    (folder / "sketch.toml").write_text(SKETCH)
+    return page_data([load(folder)])
+
+
+# ── locks ────────────────────────────────────────────────────────────────────
+
+
+def rows(name: str) -> dict[str, dict[str, Any]]:
+    return {row["path"]: row for row in page_data([load(name)])["sketches"][0]["shown"]}
+
+
+def test_terrain_of_a_file_has_its_size_and_one_that_is_computed_has_any():
+    made, computed = (page_data([load(name)])["sketches"][0] for name in ("jacksboro", "fbm"))
+    assert made["terrain"]["locked"].startswith("the elevation file's terrain was made in this size")
+    assert computed["terrain"]["locked"] == ""
+    assert any("elevation" in note for note in made["notes"])
+
+
+def test_a_sources_own_parameters_are_locked_and_no_others():
+    found = rows("delaunay_flips")
+    source = {row["path"] for row in found.values() if "triangulation" in row["locked"]}
+    assert source and all(found[path]["locked"] for path in source)
+    assert [path for path, row in found.items() if not row["locked"]]
+
+
+BASE = """#pragma kernel(output = "height:r32f")
+uniform float rise = 1.0;  //! slider(0, 4) How high
+uniform float start = 0.0;  //! slider(0, 4) From where
+float kernel(ivec2 texel) { return start + rise * float(texel.x); }
+"""
+PASS = '[[pass]]\nname = "base"\nuse = "./{}"\n[parameters]\nrise = "base.rise"\n'
+
+
+@pytest.fixture
+def inner(tmp_path: Path, trusted_variants: None) -> Sketch:
+    """Return a sketch of a technique whose fast variant lacks a parameter that is inside."""
+    (tmp_path / "base.glsl").write_text(BASE)
+    (tmp_path / "quick.glsl").write_text(
+        "".join(BASE.splitlines(True)[:2] + BASE.splitlines(True)[3:]).replace("start + ", "")
+    )
+    (tmp_path / "around.toml").write_text(PASS.format("base"))
+    (tmp_path / "around.fast.toml").write_text('agrees = "1e-5"\n' + PASS.format("quick"))
+    (tmp_path / "sketch.toml").write_text("format = 1\n" + passes(height="./around") + map_of("height"))
+    return load(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["inner", "circles", "fault_formation", "layered_noise"])
+def test_what_would_need_another_plan_is_locked_and_nothing_else_is(name: str, inner: Sketch):
+    """Set each parameter: where a fast variant gives way to its technique, other passes run."""
+    sketch = inner if name == "inner" else load(name)
+    found = {row["path"]: row for row in page_data([sketch])["sketches"][0]["shown"]}
+
+    def run_with(values: dict[str, object]) -> list[str]:
+        plan = Planner().plan(sketch.with_values(values), frame_size=(64, 36), variants=KINDS)
+        return [step.path for step in plan.walk()]
+
+    usual = run_with({})
+    assert any(".fast." in path for path in usual)
+    locked = set()
+    for shown in shown_parameters(sketch):
+        row = found[shown.path]
+        needs_another = run_with({shown.path: row["value"]}) != usual
+        assert bool(row["locked"]) == needs_another, shown.path
+        locked |= {shown.path} if needs_another else set()
+    if name == "inner":
+        assert locked == {"height.base.start"}
+        assert found["height.base.start"]["locked"].startswith("a faster form of height runs in this page")
+
+
+def test_a_fixed_image_is_not_locked_away_from_its_sentence():
+    found = rows("drape")
+    [why] = {row["locked"] for row in found.values() if row["widget"] == "file" and "image" in row["locked"]}
+    assert why == "the image was chosen when the page was exported"
+
+
+# ── in a browser ─────────────────────────────────────────────────────────────
+
+DECODE = """
+const bytes = Uint8Array.from(atob(arguments[0]), (one) => one.charCodeAt(0));
+createImageBitmap(new Blob([bytes], { type: "image/webp" }),
+    { premultiplyAlpha: "none", colorSpaceConversion: "none" }).then((bitmap) => {
+  const gl = document.createElement("canvas").getContext("webgl2");
+  const { width, height } = bitmap;
+  gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+  gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, width, height, 0, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, gl.createFramebuffer());
+  const target = [gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D];
+  gl.framebufferTexture2D(...target, gl.getParameter(gl.TEXTURE_BINDING_2D), 0);
+  const texels = new Uint8Array(4 * width * height);
+  gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, texels);
+  let text = "";
+  for (let at = 0; at < texels.length; at += 8192) {
+    text += String.fromCharCode(...texels.subarray(at, at + 8192));
+  }
+  window.decoded = btoa(text);
+});
+"""
+
+
+@pytest.mark.skipif(bool(browsers.MISSING), reason=browsers.MISSING)
+def test_a_browser_decodes_an_image_to_the_engines_texels(tmp_path: Path):
+    page = page_data([load("drape")])
+    [image] = [one for one in page["shared"]["images"].values() if one.get("file")]
+    [file] = (SKETCHES / "data").glob("jacksboro_from_above.jpg")
+    expected = read_image(file).pixels
+    with browsers.Browser(tmp_path / "profile") as browser:
+        browser.open("data:text/html,decode")
+        browser.run(DECODE, base64.b64encode(bytes_of(page, image["blob"])).decode())
+        found = base64.b64decode(browser.wait("window.decoded"))
+    np.testing.assert_array_equal(np.frombuffer(found, np.uint8).reshape(expected.shape), expected)

@@ -1,0 +1,165 @@
+"""One HTML file: what people wrote is text in it, what runs is named by its hash, the bytes are the same."""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import hashlib
+import json
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from playground.sketch.find import shipped_sketches
+from playground.sketch.load import load
+from playground.web.page import Poster, packed, page_html
+from playground.web.page_data import page_data
+
+from ..report import browser as browsers
+from .node import Node
+
+EVIL = "</script></title><img src=x onerror=\"document.body.dataset.broken='1'\"><!--<script>"
+POSTER = Poster(
+    base64.b64decode("R0lGODlhAQABAIAAAAAAAP///yH5BAEAAAAALAAAAAABAAEAAAIBRAA7"), "image/gif", (1, 1)
+)
+SCRIPT = "document.documentElement.dataset.ran = 'yes';\n"
+STYLE = "body { color: rgb(1, 2, 3) }\n"
+KERNEL = f"""// {EVIL}
+#pragma kernel(output = "colour:rgba8")
+uniform float a = 0.5;  //! slider(0, 1) label("{EVIL.replace('"', "'")}") group("<b>") {EVIL}
+vec4 kernel(ivec2 texel) {{ return vec4(a); }}
+"""
+TOML = f"""format = 1
+title  = '''{EVIL}'''
+[view]
+use = "./<b>&evil"
+[[preset]]
+name = '''{EVIL}'''
+set  = {{ "view.a" = 0.25 }}
+"""
+
+
+@pytest.fixture
+def evil(tmp_path: Path) -> dict[str, Any]:
+    folder = tmp_path / "<img src=x onerror=alert(1)>"
+    folder.mkdir()
+    (folder / "<b>&evil.glsl").write_text(KERNEL)
+    (folder / "sketch.toml").write_text(TOML)
+    return page_data([load(folder)])
+
+
+def page_of(data: dict[str, Any]) -> str:
+    return page_html(data, POSTER, script=SCRIPT, style=STYLE)
+
+
+class Elements(HTMLParser):
+    """The elements of a page, and the texts of those that hold no markup."""
+
+    def __init__(self, html: str) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+        self.inside = ""
+        self.texts: dict[str, str] = {}
+        self.feed(html)
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.found.append((tag, dict(attrs)))
+        self.inside = dict(attrs).get("id") or tag
+
+    def handle_endtag(self, tag: str) -> None:
+        self.inside = ""
+
+    def handle_data(self, data: str) -> None:
+        self.texts[self.inside] = self.texts.get(self.inside, "") + data
+
+    def handle_comment(self, data: str) -> None:
+        raise AssertionError(f"a comment: {data}")
+
+
+def unpacked(text: str) -> str:
+    return gzip.decompress(base64.b64decode(text)).decode()
+
+
+def test_what_people_wrote_is_text(evil: dict[str, Any]):
+    page = Elements(page_of(evil))
+    expected = "html head meta meta meta meta meta meta title link style body"
+    expected += " main img noscript p p script script script"
+    assert [tag for tag, _ in page.found] == expected.split()
+    assert page.texts["title"] == EVIL
+    [image] = [given for tag, given in page.found if tag == "img"]
+    assert image["alt"] == EVIL and set(image) == {"id", "src", "alt", "width", "height"}
+    file = json.loads(page.texts["playground-page"])
+    assert json.loads(unpacked(file["packed"]))["sketches"][0]["title"] == EVIL
+    assert file["blobs"] == evil["shared"]["blobs"]
+
+
+def test_nothing_in_the_data_can_end_its_element(evil: dict[str, Any]):
+    evil["shared"]["blobs"][EVIL] = EVIL  # the one part that is not packed
+    html = page_of(evil)
+    start = html.index('id="playground-page">') + len('id="playground-page">')
+    text = html[start : html.index("</script>", start)]
+    assert "<" not in text and json.loads(text)["blobs"][EVIL] == EVIL
+
+
+def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]):
+    page = Elements(page_of(evil))
+    [policy] = [given["content"] for _, given in page.found if given.get("http-equiv")]
+    assert policy
+    rules = dict(rule.strip().split(" ", 1) for rule in policy.split(";"))
+
+    def digest(text: str) -> str:
+        return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
+
+    assert unpacked(page.texts["playground-runtime"]) == SCRIPT
+    assert rules == {
+        "default-src": "'none'",
+        "script-src": f"{digest(page.texts['script'])} {digest(SCRIPT)}",
+        "style-src": digest(STYLE),
+        "img-src": "data: blob:",
+        "base-uri": "'none'",
+        "form-action": "'none'",
+    }
+    assert not [given for _, given in page.found if any(name.startswith("on") for name in given)]
+
+
+def test_it_is_read_as_it_was_written(node: Node, evil: dict[str, Any]):
+    page = Elements(page_of(evil))
+    found = node.call("page_file.js", "readPage", page.texts["playground-page"])
+    assert found == json.loads(json.dumps(evil))
+    assert node.call("page_file.js", "readPage", json.dumps(evil)) == found, "one that is not packed, too"
+
+
+def test_the_same_sketch_gives_the_same_bytes():
+    first, second = (page_of(page_data([load("delaunay_flips")])) for _ in range(2))
+    assert first == second
+
+
+@pytest.mark.parametrize("name", shipped_sketches())
+def test_a_sketch_leaves_room_for_the_runtime(name: str):
+    """A page may have 120 KiB beside its bytes, its runtime included."""
+    assert len(packed(page_data([load(name)]))["packed"]) < 93 * 1024
+
+
+@pytest.mark.skipif(bool(browsers.MISSING), reason=browsers.MISSING)
+def test_a_browser_runs_the_runtime_and_nothing_that_was_put_in(tmp_path: Path, evil: dict[str, Any]):
+    path = tmp_path / "page.html"
+    path.write_text(page_of(evil), encoding="utf-8")
+    with browsers.Browser(tmp_path / "profile") as browser:
+        browser.open(path.as_uri())
+        browser.wait("document.documentElement.dataset.ran === 'yes'")
+        assert browser.log() == []
+        assert browser.run("return document.body.dataset.broken ?? ''") == ""
+        assert browser.run("return getComputedStyle(document.body).color") == "rgb(1, 2, 3)"
+        assert browser.run("return document.title").strip() == re.sub(r"\s+", " ", EVIL)
+        assert browser.run("return document.getElementById('playground-poster').naturalWidth") == 1
+        assert browser.run("return document.getElementById('playground-old').hidden") is True
+        assert browser.run("return performance.getEntriesByType('resource').length") == 0
+        browser.run(
+            "const put = document.createElement('script');"
+            "put.textContent = 'document.body.dataset.broken = 1'; document.body.append(put)"
+        )
+        assert browser.run("return document.body.dataset.broken ?? ''") == ""
+        assert any("Content Security Policy" in line for line in browser.log())

@@ -1,0 +1,282 @@
+"""Numbers, colours, values as text and gestures in a page are the window's: JavaScript against Python."""
+
+from __future__ import annotations
+
+import math
+import tomllib
+from typing import Any
+
+import numpy as np
+import pytest
+
+from playground.live import dome
+from playground.sketch.assign import check_value, resolve, shown_parameters, values_of
+from playground.sketch.colour import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
+from playground.sketch.find import shipped_sketches
+from playground.sketch.load import load
+from playground.sketch.model import Camera, Parameter, Sketch, Value
+from playground.sketch.values import coerce, is_whole, length_of, tidied
+from playground.terrain.camera import look
+from playground.web.shown import row, shown_data
+from playground.workbench.camera_drag import Gesture, steered
+from playground.workbench.edits import Draft
+from playground.workbench.framing import field_for
+from playground.workbench.inspect.time_range import stepped
+from playground.workbench.number_format import decimals, format_of, snapped, unit_of
+from playground.workbench.parameter_list import Listing
+from playground.workbench.sun_drag import turned
+
+from .node import Node
+
+SKETCHES = [load(name) for name in shipped_sketches()]
+RANDOM = np.random.default_rng(16)
+
+
+def parameters() -> dict[str, tuple[Sketch, str, Parameter, dict[str, Any]]]:
+    """Return each different parameter of the shipped sketches once, with its row of a page."""
+    found: dict[str, tuple[Sketch, str, Parameter, dict[str, Any]]] = {}
+    for sketch in SKETCHES:
+        for shown in shown_parameters(sketch):
+            targets = tuple(target.path for target in resolve(sketch.graph, shown.path))
+            data = row(shown, shown.parameter.default, targets)
+            one = shown.parameter
+            found[f"{one.name} {one.type} {one.widget} {one.step}"] = sketch, shown.path, one, data
+    return found
+
+
+PARAMETERS = list(parameters().values())
+NUMBERS = [
+    p for p in PARAMETERS if p[2].widget.kind in ("number", "slider", "log_slider", "angle", "divider")
+]
+
+
+def some_value(parameter: Parameter) -> Value:
+    """Return a value at random that a parameter takes."""
+    kind, count = parameter.widget.kind, length_of(parameter.type)
+    if parameter.type == "bool":
+        return bool(RANDOM.integers(2))
+    if kind == "menu":
+        return int(RANDOM.integers(len(parameter.widget.choices)))
+    if kind == "direction":
+        return tuple(RANDOM.uniform((0, -10), (360, 90)).round(1).tolist())
+    found = []
+    for part in range(count):
+        low, high = parameter.widget.ends(part)
+        low, high = (0.0, 1.0) if kind in ("colour", "point") and low is None else (low, high)
+        number = RANDOM.uniform(-40 if low is None else low, 40 if high is None else high)
+        if is_whole(parameter.type):
+            number = min(max(round(number), math.ceil(low or 0)), number if high is None else int(high))
+            found.append(int(number))
+        else:
+            found.append(snapped(parameter, tidied(number)))
+    return tuple(found) if count > 1 else found[0]
+
+
+def test_there_are_parameters_of_every_widget():
+    kinds = {parameter.widget.kind for _, _, parameter, _ in PARAMETERS}
+    assert kinds >= {
+        "number",
+        "slider",
+        "log_slider",
+        "angle",
+        "direction",
+        "colour",
+        "menu",
+        "checkbox",
+        "file",
+    }
+    assert len(PARAMETERS) > 300
+
+
+def test_numbers_are_written_and_snapped_as_in_the_window(node: Node):
+    asked, expected = [], []
+    for _, _, parameter, data in NUMBERS:
+        low, high = parameter.widget.ends()
+        for share in (0.0, 0.123, 0.5, 0.77777, 1.0):
+            number = -3.0 + share * 11 if low is None or high is None else low + share * (high - low)
+            near = snapped(parameter, number)
+            near = round(near) if is_whole(parameter.type) else near
+            asked.append([data, near, number])
+            expected.append([format_of(parameter) % near, decimals(parameter), unit_of(parameter), near])
+    script = """async (asked, load) => {
+        const { decimals, snapped, unitOf, written } = await load("numbers.js");
+        return asked.map(([one, number, any]) => [
+            written(one, number) + unitOf(one), decimals(one), unitOf(one), snapped(one, any)]);
+    }"""
+    for (data, _, _), found, wanted in zip(asked, node.run(script, asked), expected, strict=True):
+        free = data["ranges"][0][0] is None  # without a range the window writes as many digits as there are
+        assert found[free:] == wanted[free:], data["path"]
+
+
+def test_a_slider_reaches_its_ends_and_comes_back(node: Node):
+    rows = [data for _, _, parameter, data in NUMBERS if parameter.widget.ends()[1] is not None]
+    script = """async (rows, load) => {
+        const { scaleOf } = await load("numbers.js");
+        return rows.map((one) => {
+            const scale = scaleOf(one), shares = [0, 0.2, 0.5, 0.9, 1];
+            const there = shares.map(scale.value);
+            return [there, there.map((value) => scale.value(scale.share(value)))];
+        });
+    }"""
+    for data, (there, again) in zip(rows, node.run(script, rows), strict=True):
+        low, high = data["ranges"][0]
+        assert there[0] == low and there[-1] == high, data["path"]
+        assert there == sorted(there)
+        np.testing.assert_allclose(again, there, rtol=1e-12, atol=1e-12 * max(abs(low), abs(high)))
+
+
+def test_tidied_numbers_are_pythons(node: Node):
+    numbers = [0.37, 0.1, 1 / 3, 1e-30, 123456.789, -2.5, 0.0, 1e39, *RANDOM.normal(size=200).tolist()]
+    script = "async (n, load) => n.map((await load('numbers.js')).tidied)"
+    assert node.run(script, numbers) == [tidied(number) for number in numbers]
+
+
+def test_colours_are_pythons(node: Node):
+    bytes_ = [f"#{i:02x}{255 - i:02x}{(7 * i) % 256:02x}" for i in range(256)]
+    script = """async (texts, load) => {
+        const { fromHex, toHex } = await load("colours.js");
+        return texts.map((text) => {
+            const [linear, raw] = [fromHex(text), fromHex(text, true)];
+            return [linear, toHex(linear), raw, toHex(raw, true)];
+        });
+    }"""
+    for text, (linear, back, raw, raw_back) in zip(bytes_, node.run(script, bytes_), strict=True):
+        np.testing.assert_allclose(linear, parse_hex(text), rtol=4e-16, atol=0)
+        assert raw == list(parse_hex(text, raw=True))
+        assert back == raw_back == text
+    lights = np.linspace(0, 1, 1001)
+    shown = node.run("async (n, load) => n.map((await load('colours.js')).toShown)", lights.tolist())
+    np.testing.assert_allclose(shown, linear_to_srgb(lights), rtol=4e-16, atol=1e-16)
+    back = node.run("async (n, load) => n.map((await load('colours.js')).toLinear)", lights.tolist())
+    np.testing.assert_allclose(back, srgb_to_linear(lights), rtol=4e-16, atol=1e-16)
+    mixed = RANDOM.uniform(-0.1, 1.1, (200, 4)).tolist()
+    script = (
+        "async (n, load) => { const { toHex } = await load('colours.js'); return n.map((c) => toHex(c)); }"
+    )
+    assert node.run(script, mixed) == [to_hex(colour) for colour in mixed]
+
+
+@pytest.mark.parametrize("text", ["", "#12", "#1234", "#gggggg", "red", "#123456789", "123456"])
+def test_what_is_no_colour_is_none(node: Node, text: str):
+    assert node.run("async (t, load) => (await load('colours.js')).fromHex(t)", text) is None
+
+
+def test_values_as_text_are_what_python_reads(node: Node):
+    """Links, --set and TOML: what a page writes, Python takes, exactly; and the page itself."""
+    chosen = [p for p in PARAMETERS if p[2].widget.kind not in ("file", "button")]
+    asked = [[data, some_value(parameter)] for _, _, parameter, data in chosen for _ in range(3)]
+    script = """async (asked, load) => {
+        const { fits, read, toml, write } = await load("value_text.js");
+        return asked.map(([one, value]) => [
+            write(one, value), toml(one, value), read(one, write(one, value)), fits(one, value)]);
+    }"""
+    of = {id(data): (sketch, path, parameter) for sketch, path, parameter, data in PARAMETERS}
+    for (data, value), (text, toml, read, fits) in zip(asked, node.run(script, asked), strict=True):
+        sketch, path, parameter = of[id(data)]
+        assert fits, (path, value)
+        assert coerce(parameter, text) == value or data["widget"] == "colour", (path, text, value)
+        given = tomllib.loads(f"value = {toml}")["value"]
+        assert check_value(sketch, path, given) == coerce(parameter, text), (path, toml)
+        there = np.asarray(read, float) if not isinstance(read, str) else read
+        np.testing.assert_allclose(there, np.asarray(coerce(parameter, text), float), rtol=4e-16, atol=1e-16)
+
+
+def test_values_out_of_range_are_refused_as_python_refuses_them(node: Node):
+    asked = []
+    for _, _, parameter, data in NUMBERS:
+        low, high = parameter.widget.ends()
+        if low is not None and high is not None:
+            numbers = [low - 0.1 * (high - low) - 1, high + 0.1 * (high - low) + 1, math.nan]
+            asked += [[data, ",".join([repr(n)] * length_of(parameter.type))] for n in numbers]
+    asked += [[PARAMETERS[0][3], text] for text in ("", "x", "1,2,3,4,5,6", "[]", "{}", "__proto__", "1e999")]
+    script = "async (asked, load) => { const { read } = await load('value_text.js');"
+    script += " return asked.map(([one, text]) => read(one, text) === undefined); }"
+    refused = node.run(script, asked)
+    assert [text for (_, text), no in zip(asked, refused, strict=True) if not no] == []
+
+
+# ── gestures ─────────────────────────────────────────────────────────────────
+
+
+def test_a_dome_is_the_windows(node: Node):
+    places = RANDOM.uniform(-1.3, 1.3, (100, 2)).tolist()
+    script = "async (n, load) => { const { directionAt, dotOf } = await load('pads.js');"
+    script += " return n.map(([x, y]) => [directionAt(x, y), dotOf(...directionAt(x, y))]); }"
+    for place, (direction, dot) in zip(places, node.run(script, places), strict=True):
+        np.testing.assert_allclose(direction, dome.direction_at(*place), rtol=1e-12, atol=1e-12)
+        np.testing.assert_allclose(dot, dome.dot_of(*dome.direction_at(*place)), rtol=1e-12, atol=1e-12)
+
+
+def test_gestures_move_the_camera_as_the_mouse_does_in_the_window(node: Node):
+    extent, relief, size = (4096.0, 3000.0), 800.0, (960, 540)
+    script = """async (camera, eye, across, down, wheel, load) => {
+        const { moved, turned, zoomed } = await load("camera_moves.js");
+        const pan = moved(camera, eye, camera.field_of_view, across, down);
+        return [turned(camera, across, down), pan, zoomed(camera, eye, wheel)];
+    }"""
+    for _ in range(20):
+        azimuth, elevation, field = RANDOM.uniform((0, -80, 20), (360, 88, 90)).tolist()
+        camera = Camera(azimuth, elevation, float(RANDOM.uniform(0, 9000)), None, field)
+        eye, (across, down) = look(camera, extent, relief, size), RANDOM.uniform(-300, 300, 2).tolist()
+        wheel = float(RANDOM.integers(-3, 4))
+        wanted = [
+            steered(camera, eye, Gesture(size[1], across, down, orbiting=True)),
+            steered(camera, eye, Gesture(size[1], across, down, panning=True)),
+            steered(camera, eye, Gesture(size[1], wheel=wheel)),
+        ]
+        here = {"azimuth": azimuth, "elevation": elevation, "distance": camera.distance, "target": None}
+        here |= {"field_of_view": field}
+        there = {"distance": eye.distance, "target": list(eye.target)}
+        found = node.run(script, here, there, across / size[1], down / size[1], wheel)
+        for mine, theirs in zip(found, wanted, strict=True):
+            for name in ("azimuth", "elevation", "field_of_view"):
+                assert mine[name] == pytest.approx(getattr(theirs, name), rel=1e-12)
+        assert found[1]["target"] == pytest.approx(wanted[1].target, rel=1e-9)
+        if wheel:
+            assert found[2]["distance"] == pytest.approx(wanted[2].distance, rel=1e-12)
+
+
+def test_a_narrow_room_opens_the_view_as_in_the_window(node: Node):
+    rooms = [
+        ((960, 540), (300, 700)),
+        ((960, 540), (1600, 300)),
+        ((960, 540), (960, 540)),
+        ((800, 600), (10, 900)),
+    ]
+    script = "async (n, load) => { const { fieldFor } = await load('camera_moves.js');"
+    script += " return n.map(([wanted, room]) => fieldFor(40, wanted, room)); }"
+    assert node.run(script, rooms) == pytest.approx([field_for(40.0, *room) for room in rooms], rel=1e-12)
+
+
+def test_a_drag_with_ctrl_moves_a_sun_as_in_the_window(node: Node):
+    drags = RANDOM.uniform((-10, -10, -3, -3), (370, 90, 3, 3), (50, 4)).tolist()
+    script = "async (n, load) => { const { sunMoved } = await load('camera_moves.js');"
+    script += " return n.map(([a, e, across, up]) => sunMoved([a, e], across, up)); }"
+    wanted = [list(turned((a, e), across, up)) for a, e, across, up in drags]
+    np.testing.assert_allclose(node.run(script, drags), wanted, atol=0.0100001)
+
+
+def test_frames_of_time_are_the_windows(node: Node):
+    times = [(t, by) for t in (0.0, 0.01, 1 / 30, 0.5, 3.99999, 7 / 30) for by in (-1, 1)]
+    script = "async (n, load) => { const { stepped } = await load('timeline.js');"
+    script += " return n.map(([time, by]) => stepped(time, by)); }"
+    assert node.run(script, times) == [stepped(time, by) for time, by in times]
+
+
+# ── what a panel lists ───────────────────────────────────────────────────────
+
+
+def test_main_parameters_have_the_windows_labels(node: Node):
+    script = """async (rows, load) => {
+        const { mainLabels, mainRows } = await load("labels.js");
+        return [...mainLabels(mainRows(rows))];
+    }"""
+    seen = 0
+    for sketch in SKETCHES:
+        if not sketch.main:
+            continue
+        wanted = {item.path: item.title for item in Listing().main(Draft(sketch, sketch))}
+        rows = shown_data(sketch, values_of(sketch), lambda path, targets: "")
+        assert node.run(script, rows) == [list(item) for item in wanted.items()], sketch.name
+        seen += len(wanted)
+    assert seen > 50

@@ -1,0 +1,62 @@
+"""The runtime's shape, kept: modules of moderate size without a dependency, which introduce themselves."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from pathlib import Path
+
+from .node import RUNTIME
+
+LONGEST, WIDEST = 400, 110
+IMPORT = re.compile(r'^(?:import |(?:import|export)\b[^;"]*?\bfrom )"([^"]+)";', re.MULTILINE)
+# What makes code or markup of a text: a page's policy forbids the first, and texts of sketches are anyone's.
+UNSAFE = re.compile(
+    r"\beval\(|\bnew Function\b|\b(?:inner|outer)HTML\b|\binsertAdjacentHTML\b|\bdocument\.write"
+)
+
+
+@cache
+def modules() -> dict[str, str]:
+    """Return the modules' texts by name."""
+    return {path.name: path.read_text("utf-8") for path in sorted(RUNTIME.glob("*.js"))}
+
+
+def without_comments(text: str) -> str:
+    return re.sub(r"/\*[\s\S]*?\*/|^\s*//.*$", "", text, flags=re.MULTILINE)
+
+
+def test_a_module_begins_with_what_it_does():
+    wrong = [name for name, text in modules().items() if not text.startswith(f"// {name} -- ")]
+    assert not wrong
+
+
+def test_a_module_is_no_longer_and_no_wider_than_it_should_be():
+    long = {name: text.count("\n") for name, text in modules().items() if text.count("\n") > LONGEST}
+    wide = [
+        f"{name}:{number}"
+        for name, text in modules().items()
+        for number, line in enumerate(text.split("\n"), 1)
+        if len(line) > WIDEST
+    ]
+    assert not long and not wide
+
+
+def test_a_module_depends_on_other_modules_alone_and_never_on_itself():
+    found = {
+        name: [Path(path).name for path in IMPORT.findall(without_comments(text))]
+        for name, text in modules().items()
+    }
+    assert sum(map(len, found.values())) > 10
+    for name, text in modules().items():
+        assert all(path.startswith("./") for path in IMPORT.findall(without_comments(text))), name
+    left = dict(found)
+    while free := [name for name, imports in left.items() if not left.keys() & set(imports)]:
+        for name in free:
+            del left[name]
+    assert not left, f"import each other in a circle: {', '.join(left)}"
+
+
+def test_no_module_makes_code_or_markup_of_text():
+    wrong = [name for name, text in modules().items() if UNSAFE.search(without_comments(text))]
+    assert not wrong
