@@ -3,7 +3,7 @@
 import { makeRow } from "./controls.js";
 import { button, make } from "./dom.js";
 import { createFigure } from "./figure.js";
-import { labelOf } from "./panel.js";
+import { labelOf } from "./labels.js";
 import { createSession } from "./session.js";
 import { createTimeline, hasTime } from "./timeline.js";
 

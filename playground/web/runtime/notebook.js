@@ -36,7 +36,7 @@ function stillOf(model, url) {
 
 /** The values of a session by the keys of the controls. @param {Session} session @param {Model} model */
 function valuesOf(session, model) {
-  return Object.fromEntries(model.get("controls").map(({ key }) => {
+  return Object.fromEntries(model.get("controls").map((/** @type {{key: string}} */ { key }) => {
     const [path, part] = key.split(":"), value = session.value(path);
     return [key, Number(part === undefined ? value : /** @type {number[]} */ (value)[+part])];
   }));
@@ -73,7 +73,7 @@ function bind(model, host, figure, stops) {
     figure.session.follow((/** @type {string} */ news) => news === "values" && send(valuesOf(figure.session, model)));
     receive = () => { if (!same(valuesOf(figure.session, model), model.get("values"))) take(figure.session, model.get("values")); };
   } else if (range && stops.length) {
-    const frame = () => Math.max(stops.findLastIndex((stop) => stop <= +range.value), 0);
+    const frame = () => Math.max(stops.filter((stop) => stop <= +range.value).length - 1, 0);
     range.addEventListener("input", () => send({ frame: frame() }));
     receive = () => {
       if (model.get("values").frame === frame()) return;
