@@ -1,4 +1,4 @@
-"""A figure with sliders, in a notebook: live in its browser, by pictures of the kernel where that cannot draw."""
+"""A figure with sliders in a notebook: live in its browser, else by pictures that the kernel draws."""
 
 from __future__ import annotations
 
