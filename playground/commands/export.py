@@ -193,7 +193,7 @@ def _read_techniques(texts: list[str]) -> dict[str, tuple[str, ...]]:
         uses = tuple(use.strip() for use in listed.split(",") if use.strip())
         if not name.strip() or (equals and not uses):
             message = f"--technique {text}: expected a pass, as height, or with techniques,"
-            raise ParameterError(f"{message} as height=generation/fbm,generation/mixed")
+            raise ParameterError(f"{message} as height=FOLDER/FIRST,FOLDER/SECOND")
         if name.strip() in found:
             raise ParameterError(
                 f"--technique {name.strip()} is given twice; list its techniques with commas"

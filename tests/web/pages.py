@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 import playground.web
 
 from ..report.browser import MESA, MISSING, Browser
+from .firefox import Firefox
 from .node import NODE
 
 HOME = Path(playground.web.__file__).parent
@@ -101,11 +102,14 @@ def script_of(folder: Path) -> Path:
 class Pages:
     """One page with the runtime in it, until the block ends."""
 
-    def __init__(self, folder: Path, flags: Sequence[str] = MESA) -> None:
+    def __init__(
+        self, folder: Path, flags: Sequence[str] = MESA, browser: type[Firefox] | None = None
+    ) -> None:
         script = script_of(folder).read_text(encoding="utf-8")
         page = folder / "page.html"
         page.write_text(f"<!doctype html><meta charset=utf-8><script>{script}\n{_HARNESS}</script>", "utf-8")
-        self.browser = Browser(folder / "profile", 640, 480, flags)
+        profile = folder / "profile"
+        self.browser = browser(profile) if browser else Browser(profile, 640, 480, flags)
         self.browser.open(page.as_uri())
 
     def begin(self, page: Mapping[str, Any], **options: Any) -> None:

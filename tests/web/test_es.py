@@ -159,10 +159,9 @@ def test_extensions_go_unless_they_are_asked_for(node: Node):
     assert found.split("\n")[1:] == [PRECISION, "#extension GL_EXT_y : require", "int x;", ""]
 
 
-def test_built_in_functions_are_replaced_by_those_handed_in(node: Node):
-    text = "#version 330\n\nint a = textureLod(textureLodOffset);\n"
-    by_hand = {"text": "int k_lod(int x) { return x; }", "names": {"textureLod": "k_lod"}}
-    assert es(node, text, byHand=by_hand).split("\n")[1:3] == [
-        f"{PRECISION} int k_lod(int x) {{ return x; }}",
-        "int a = k_lod(textureLodOffset);",
-    ]
+def test_declarations_that_are_handed_in_come_first(node: Node):
+    text = "#version 330\n#define A\n\nint a = f(1);\n"
+    found = es(node, text, declarations="int f(int x) { return x; }")
+    assert found == text.replace("330", "300 es").replace(
+        "A\n", f"A\n{PRECISION} int f(int x) {{ return x; }}", 1
+    )

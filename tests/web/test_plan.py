@@ -6,12 +6,13 @@ import random
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from playground.engine.cache_keys import KeyMaker
+from playground.engine.cache_keys import KeyMaker, Keys
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node, needed
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
@@ -23,6 +24,7 @@ from playground.web.blobs import Blobs
 from playground.web.plan import KINDS, sketch_data
 from playground.web.shared import SharedData
 
+from ..sketch_texts import map_of, passes
 from .node import Node
 from .random_settings import Settings, random_settings
 
@@ -194,16 +196,13 @@ def neighbours(
     return [*found, replace(settings, steps=random_settings(chance, data, first).steps)]
 
 
-@pytest.mark.parametrize("name", shipped_sketches())
-def test_what_is_stale_in_a_page_is_what_is_stale_in_the_engine(node: Node, shared: SharedData, name: str):
-    sketch = load(name)
+def stale_as_in_the_engine(node: Node, shared: SharedData, sketch: Sketch, wanted: list[Settings]) -> Keys:
+    """Compare what changes between plans for some settings; return the engine's keys of the first."""
     data, images = exported(sketch, shared)
-    chance = random.Random(f"{name} stale")
     first = python(sketch, Settings())
     assert isinstance(first, Plan)
-    settings = replace(random_settings(chance, data, first), terrain={})
     several, plans = [], []
-    for each in [settings, *neighbours(chance, settings, data, first)]:
+    for each in wanted:
         if isinstance(plan := python(sketch, each), Plan):
             several.append(each)
             plans.append(plan)
@@ -227,6 +226,81 @@ def test_what_is_stale_in_a_page_is_what_is_stale_in_the_engine(node: Node, shar
         text = maker.text_of(step.kernel)
         parameters = {p.name for p in step.kernel.parameters}
         assert found["used"][step.path] & parameters == text.used & parameters, step.path
+    return expected[0]
+
+
+@pytest.mark.parametrize("name", shipped_sketches())
+def test_what_is_stale_in_a_page_is_what_is_stale_in_the_engine(node: Node, shared: SharedData, name: str):
+    sketch = load(name)
+    data, _ = exported(sketch, shared)
+    chance = random.Random(f"{name} stale")
+    first = python(sketch, Settings())
+    assert isinstance(first, Plan)
+    settings = replace(random_settings(chance, data, first), terrain={})
+    stale_as_in_the_engine(node, shared, sketch, [settings, *neighbours(chance, settings, data, first)])
+
+
+SEED = """#pragma kernel(output = "seed:r32f")
+uniform float level = 0.5;  //! slider(0, 2)
+float kernel(ivec2 texel) { return level * time; }
+"""
+FLOW = """#pragma kernel(output = "flow:r32f")
+uniform sampler2D water;     //! input("zero")
+uniform sampler2D rough;     //! input
+uniform bool drop = false;   //! button
+uniform float rate = 0.5;    //! slider(0, 1)
+float kernel(ivec2 texel) {
+    float now = texelFetch(water, texel, 0).r + rate * texelFetch(rough, texel, 0).r;
+    return drop ? 0.0 : now + time + 0.01 * float(iteration) + float(iterations);
+}
+"""
+COUNT = """#pragma kernel(output = "count:r32f")
+float kernel(ivec2 texel) { return float(iteration); }
+"""
+FLOWS = passes(count="./count", flow=("./flow", 'inputs = { rough = "count" }')) + (
+    '[parameters]\ndrop = ["flow.drop"]\nrate = ["flow.rate"]\n[inputs]\nwater = ["flow.water"]\n'
+    '[outputs]\nwater = "flow:flow"\n'
+)
+LOOP = """format = 1
+size = 9
+[[pass]]
+name = "seed"
+use = "./seed"
+[[pass]]
+name = "flow"
+use = "./flow"
+inputs = { rough = "seed" }
+repeat = "REPEAT"
+feedback = { water = "flow" }
+[[pass]]
+name = "both"
+use = "./flows"
+repeat = "REPEAT"
+feedback = { water = "water" }
+"""
+
+
+@pytest.mark.parametrize("repeat", ["frames", "7", "frames + 2"])
+def test_loops_change_with_what_theirs_are(node: Node, shared: SharedData, tmp_path: Path, repeat: str):
+    (tmp_path / "seed.glsl").write_text(SEED)
+    (tmp_path / "flow.glsl").write_text(FLOW)
+    (tmp_path / "count.glsl").write_text(COUNT)
+    (tmp_path / "flows.toml").write_text(FLOWS)
+    (tmp_path / "loop.toml").write_text(LOOP.replace("REPEAT", repeat) + map_of("both"))
+    sketch = replace(load(tmp_path / "loop.toml"), name=f"loop {repeat}")
+    several = [
+        Settings(),
+        Settings(time=0.5),
+        Settings(values={"flow.drop": True}),
+        Settings(values={"flow.drop": True}, time=0.5),
+        Settings(values={"flow.rate": 0.25}),
+        Settings(values={"both.rate": 0.25}),
+        Settings(values={"seed.level": 0.25}),
+        Settings(steps={"flow": 1}, time=0.5),
+        Settings(frame=(3, 3)),
+    ]
+    keys = stale_as_in_the_engine(node, shared, sketch, several)
+    assert any(keys.changes.values()), "something changes with the loop"
 
 
 INCREMENTAL = """async (sketch, shared, first, second, load) => {

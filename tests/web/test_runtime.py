@@ -8,7 +8,7 @@ from pathlib import Path
 
 from .node import RUNTIME
 
-LONGEST, WIDEST = 400, 110
+LONGEST, WIDEST = 500, 110
 IMPORT = re.compile(r'^(?:import |(?:import|export)\b[^;"]*?\bfrom )"([^"]+)";', re.MULTILINE)
 # What makes code or markup of a text: a page's policy forbids the first, and texts of sketches are anyone's.
 UNSAFE = re.compile(

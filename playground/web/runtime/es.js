@@ -11,24 +11,22 @@ const SAMPLER = /\b[iu]?sampler(?:3D|Cube|2D(?:Array)?)(?:Shadow)?\b/g;
 // Comments and directives are passed over, a declaration is looked at.
 const DECLARATION = /\/\/.*|\/\*[^]*?\*\/|^[ \t]*#.*|\buniform\b[^;{=]*=/gm;
 
-/** What replaces built-in functions: declarations on one line, and the functions' names with those instead.
- *  @typedef {{text: string, names: Object<string, string>}} ByHand */
-
 /** A stage's text in desktop GLSL 1.30 to 3.30 as GLSL ES 3.00, with as many lines.
  *
- *  Of the extensions that it asks for, those named in `extensions` stay.
- *  @param {string} text @param {{extensions?: string[], byHand?: ByHand}} [options] @returns {string} */
-export function toES(text, { extensions = [], byHand } = {}) {
+ *  Of the extensions that it asks for, those named in `extensions` stay; `declarations`, on one line, come
+ *  before its own.
+ *  @param {string} text @param {{extensions?: string[], declarations?: string}} [options]
+ *  @returns {string} */
+export function toES(text, { extensions = [], declarations = "" } = {}) {
   const other = text.replace(VERSION, "").replace(EXTENSION, (line, name) =>
     (extensions.includes(name) ? line : ""));
-  let found = withoutInitialisers(other);
-  for (const [name, instead] of Object.entries(byHand?.names ?? {})) {
-    found = found.replace(new RegExp(`\\b${name}\\b`, "g"), instead);
-  }
+  // Desktops take no notice of precisions; a browser may, and draw another picture.
+  const found = withoutInitialisers(other)
+    .replace(/\b(?:lowp|mediump)\b/g, (word) => "highp".padEnd(word.length));
   const lines = found.split("\n");
   if (!BLANK.test(lines[0])) throw new Error("the first line of a stage's text is its version, or blank");
   lines[0] = "#version 300 es";
-  declare(lines, [...precisions(found), byHand?.text ?? ""].join(" ").trim());
+  declare(lines, [...precisions(found), declarations].join(" ").trim());
   return lines.join("\n");
 }
 

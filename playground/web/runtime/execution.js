@@ -200,7 +200,7 @@ export const createExecution = (plan, nodes, around) => {
   /** Return a source's texels, which the page carries. @param {Step} step @param {Job["around"]} loops */
   const fromData = (step, loops) => {
     const result = textures.take(step.size, step.kernel.outputs, isTall(step));
-    for (const { output, format, blob } of around.given(step, loops ? loops.frame : null).data) {
+    for (const { output, format, blob } of around.given(step, loops ? loops.frame : null).moment) {
       const texture = result.textures.get(output);
       if (texture) textures.write(texture, texelsOf(gl, textures.formats(format), images.blob(blob)));
     }

@@ -81,6 +81,9 @@ export function createFigure(host, engine, page, options = {}) {
     message.classList.toggle("alarm", Boolean(error));
   }
 
+  /** Whether another picture is to come: who listens, or tests, waits for the last. */
+  const tellBusy = () => stage.setAttribute("aria-busy", String(asked !== 0 || begun !== null || moving));
+
   // ── what is drawn ──────────────────────────────────────────────────────────
 
   /** The camera as it is shown: opened where the room is narrower than the sketch's picture. */
@@ -115,6 +118,7 @@ export function createFigure(host, engine, page, options = {}) {
       tell(canvas.hidden ? words.failed : words.kept, error);
     }
     if (playing) ask();
+    tellBusy();
   }
 
   /** What a value changes may take long: the page stays at hand meanwhile.
@@ -135,6 +139,7 @@ export function createFigure(host, engine, page, options = {}) {
       clearTimeout(slow);
       if (begun === start) begun = null;
       if (again) ask();
+      tellBusy();
     }
   }
 
@@ -172,6 +177,7 @@ export function createFigure(host, engine, page, options = {}) {
     if (asked || closed) return;
     askedAt = performance.now();
     asked = requestAnimationFrame(draw);
+    tellBusy();
   }
 
   function settle() {
@@ -181,6 +187,7 @@ export function createFigure(host, engine, page, options = {}) {
       moving = false;
       quality.rest();
       if (!session.map && canvas.width !== pixelsOf(box(), devicePixelRatio || 1, budget)[0]) ask();
+      tellBusy();
     }, REST);
   }
 

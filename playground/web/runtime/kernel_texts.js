@@ -2,10 +2,13 @@
 
 import { hash } from "./hash.js";
 import { usedBy } from "./staleness.js";
+import { checkSignature } from "./signature.js";
 import { flatten } from "./source.js";
 import { stageText } from "./wrap.js";
 import { toES } from "./es.js";
 import { declaredUniforms } from "./uniforms.js";
+import { withConversions } from "./conversions.js";
+import { withoutDesktopForms as forES } from "./desktop_glsl.js";
 import { filteredByHand } from "./linear_by_hand.js";
 
 /** @typedef {import("./schema.js").Kernel} Kernel */
@@ -22,16 +25,19 @@ import { filteredByHand } from "./linear_by_hand.js";
  *  @property {Map<string, Map<string, import("./linear_by_hand.js").Wrap>>} hands   those ways
  *  @property {[string, any][]} own    uniforms with a value in the text that its header does not know */
 
-/** Read a kernel; throws where a file is missing, with `file` and `line`.
+/** Read a kernel; throws where a file is missing, or its function has another form than its header asks for,
+ *  with `file` and `line`.
  *  @param {Shared} shared @param {Kernel} kernel @param {Object<string, string>} texts edited files
  *  @returns {KernelText} */
 export const readKernel = (shared, kernel, texts) => {
   const source = kernel.kind === "source";
   const flat = source ? { lines: [], names: new Set() }
     : flatten(shared, kernel.file, texts, { once: !!kernel.dialect });
+  checkSignature(kernel, flat);
   const once = { once: !!kernel.dialect }, own = kernel.vertex?.file;
   const vertex = own ? flatten(shared, own, texts, once) : flat;
-  const lines = own ? [...flat.lines, ...vertex.lines] : flat.lines, code = lines.map((line) => line.code).join("\n");
+  const lines = own ? [...flat.lines, ...vertex.lines] : flat.lines;
+  const code = lines.map((line) => line.code).join("\n");
   const given = Object.keys(shared.given).filter((name) => flat.names.has(name));
   const declared = new Set(kernel.parameters.map(({ name }) => name));
   return {
@@ -51,9 +57,10 @@ export const readKernel = (shared, kernel, texts) => {
 export const stagesOf = ({ kernel, flat, vertex }, byHand, atEnd) => {
   const stages = [kernel.vertex, kernel.fragment].map((stage, i) => {
     const { text, first } = stageText(stage, i ? flat : vertex);
-    const filtered = byHand.size ? filteredByHand(text, byHand) : { text, functions: "" };
+    const plain = kernel.kind === "plain_fragment" ? withConversions(forES(text)) : text;
+    const filtered = byHand.size ? filteredByHand(plain, byHand) : { text: plain, functions: "" };
     const found = i && atEnd ? filtered.text.replace(/\}\s*$/, `${atEnd} }\n`) : filtered.text;
-    const how = { extensions: kernel.extensions, byHand: { text: filtered.functions, names: {} } };
+    const how = { extensions: kernel.extensions, declarations: filtered.functions };
     return { text: toES(found, how), first };
   });
   return { texts: [stages[0].text, stages[1].text], first: [stages[0].first, stages[1].first] };

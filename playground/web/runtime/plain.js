@@ -98,7 +98,8 @@ export const createPlain = (context, textures, images, binder, kernels) => {
     setUniform(gl, program, name, count * length === 1 ? all[0] : all);
   };
 
-  /** Run a plain shader; the result is the caller's. @param {Job} job @returns {import("./kernels.js").Work} */
+  /** Run a plain shader; the result is the caller's.
+   *  @param {Job} job @returns {import("./kernels.js").Work} */
   const run = function* (job) {
     const { step, text, given } = job, { kernel } = step;
     const program = kernels.programOf(job), reads = kernels.readsOf(job), inputs = new Map();
@@ -131,7 +132,8 @@ export const createPlain = (context, textures, images, binder, kernels) => {
     setUniform(gl, program, "k_window", [0, 0]);
     setUniform(gl, program, "k_part", [0, 0, 1, 1]);
     for (const [name, meaning] of kernel.usual ?? []) {
-      if (program.uniforms.has(name)) setFitting(program, name, given[meaning] ?? numbersOf(meaning, job, sizes));
+      if (!program.uniforms.has(name)) continue;
+      setFitting(program, name, given[meaning] ?? numbersOf(meaning, job, sizes));
     }
     for (const [name, { type, length }] of program.uniforms) {
       if (fed.has(name) || !(type in SHAPES)) continue;

@@ -8,6 +8,7 @@ import { createEyeHeight } from "./eye_height.js";
 import { readKernel } from "./kernel_texts.js";
 import { makePlan } from "./planner.js";
 import { isLoop, needed, stepsOf } from "./plan_nodes.js";
+import { blobAt, playingOf } from "./recordings.js";
 import { keysOf } from "./staleness.js";
 import { usualOf } from "./usual.js";
 import { PLAIN } from "./binder.js";
@@ -75,7 +76,13 @@ export const createPlayer = (engine, sketch, onClose) => {
     };
     return (step, frame = null) => {
       const { kernel, leaf, size } = step;
-      if (kernel.kind === "source") return { data: leaf?.data || [] };
+      const now = frame === null ? time : frame / 60;
+      if (kernel.kind === "source") {
+        const playing = leaf ? playingOf(leaf, step.values) : null;
+        return { moment: (leaf?.data ?? []).map((texture) => {
+          return { output: texture.output, format: texture.format, blob: blobAt(texture, playing, now) };
+        }) };
+      }
       if (kernel.kind === "plain_fragment") return usualOf(plan, step, frame, player.state.live ?? {});
       /** @type {Object<string, any>} */
       const found = {};
@@ -93,7 +100,8 @@ export const createPlayer = (engine, sketch, onClose) => {
   const keysFor = (plan) => {
     const given = givenBy(plan);
     return keysOf(plan, {
-      given: (step) => (step.kernel.kind === "draw" ? { ...given(step), samples: samplesOf(step) } : given(step)),
+      given: (step) => (
+        step.kernel.kind === "draw" ? { ...given(step), samples: samplesOf(step) } : given(step)),
       used: (kernel) => textOf(kernel).used,
       text: (kernel) => textOf(kernel).identity,
     });
@@ -295,7 +303,7 @@ export const createPlayer = (engine, sketch, onClose) => {
   const loadData = async (plan) => {
     const { images } = engine.parts, waiting = [];
     for (const { kernel, leaf, values } of stepsOf(plan.nodes)) {
-      for (const { blob } of leaf?.data || []) waiting.push(images.loadBlob(blob));
+      for (const { blob, frames = [blob] } of leaf?.data || []) waiting.push(...frames.map(images.loadBlob));
       for (const { name, widget, sampling } of kernel.parameters) {
         if (widget !== "file" || kernel.kind === "source") continue;
         waiting.push(images.load(String(values[name]), sampling || PLAIN));

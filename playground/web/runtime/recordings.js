@@ -1,4 +1,4 @@
-// recordings.js -- which frame of a film or a sound shows at a time: terrain/over_time.py over what was exported.
+// recordings.js -- which frame of a film or a sound shows at a time, of those exported: terrain/over_time.py.
 
 /** @typedef {import("./schema.js").DataTexture} DataTexture */
 
@@ -23,4 +23,15 @@ export function blobAt(texture, playing, time) {
     else low = middle + 1;
   }
   return frames[Math.max(low - 1, 0)];
+}
+
+/** Return how a source plays its file; null of one that plays none.
+ *  @param {import("./schema.js").Leaf} leaf
+ *  @param {Object<string, import("./schema.js").Value>} values of its parameters, by name
+ *  @returns {Playing | null} */
+export function playingOf({ clock, values: paths }, values) {
+  if (!clock) return null;
+  const byPath = new Map(Object.entries(paths).map(([name, path]) => [path, values[name]]));
+  const speed = clock.speed === undefined ? undefined : Number(byPath.get(clock.speed));
+  return { start: Number(byPath.get(clock.start)), speed, loop: Boolean(byPath.get(clock.loop)) };
 }

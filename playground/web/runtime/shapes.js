@@ -25,7 +25,8 @@ export const createShapes = ({ gl, make, limits }, textures) => {
     const target = targetOf(shape), [width, height, deep] = shapedSize(shape, source.size);
     const { internal, bytes } = textures.formats(source.format), texture = make("Texture");
     const longest = Math.max(width, height, shape === "volume" ? deep : 1);
-    const many = levels ? 1 + Math.floor(Math.log2(longest)) : 1, solid = shape === "volume" || shape === "layers";
+    const many = levels ? 1 + Math.floor(Math.log2(longest)) : 1;
+    const solid = shape === "volume" || shape === "layers";
     gl.activeTexture(gl.TEXTURE0 + limits.spare);
     gl.bindTexture(target, texture);
     if (solid) gl.texStorage3D(target, many, internal, width, height, deep);

@@ -39,7 +39,8 @@ export function bandsAt(time) {
 function sceneOf(plan) {
   const steps = stepsOf(plan.nodes), { forward } = NEUTRAL;
   const directions = steps.flatMap((step) => step.kernel.parameters
-    .filter((one) => one.widget === "direction").map((one) => ({ name: one.name, value: step.values[one.name] })));
+    .filter((one) => one.widget === "direction")
+    .map((one) => ({ name: one.name, value: step.values[one.name] })));
   const sun = directions.find(({ name }) => name === "sun") ?? directions[0];
   const drawn = steps.some((step) => step.kernel.kind === "draw");
   const light = sun ? unitVector(/** @type {[number, number]} */ (sun.value)) : forward;
@@ -56,7 +57,8 @@ export function usualOf(plan, step, frame, live) {
   /** @type {Object<string, number[]>} */
   const known = {
     time: [time], resolution: [width, height, 1], square_resolution: [width, width, 1],
-    buttons: [drag[2] > 0 ? 1 : 0, 0, 0, 0], mouse, drag, hover, hover_share: [hover[0] / width, hover[1] / height],
+    buttons: [drag[2] > 0 ? 1 : 0, 0, 0, 0], mouse, drag, hover,
+    hover_share: [hover[0] / width, hover[1] / height],
     delta: [frame === null ? live.delta ?? 1 / FRAME_RATE : 1 / FRAME_RATE],
     date, date_from_1: [date[0], date[1] + 1, ...date.slice(2)],
     frame: [shown], frame_of_time: [shown], bands: bandsAt(time), ...NEUTRAL,

@@ -1,0 +1,90 @@
+// signature.js -- finds a kernel's function that has not the form its header asks for: gpu/wrap.py.
+//
+// A driver would complain of the lines that call it, which no author has written.
+
+/** @typedef {import("./schema.js").Kernel} Kernel */
+/** @typedef {import("./source.js").Flat} Flat */
+
+const PRAGMA = /^\s*#\s*pragma\s+(?:kernel|draw|compute)\b/;
+const QUALIFIERS = ["const", "highp", "mediump", "lowp"];
+const EXAMPLES = [
+  ["vertex", "vec4 vertex(vec3 corner, out vec3 position)"], ["fragment", "vec4 fragment(vec3 position)"],
+];
+
+/** Throws an error with `file` and `line` where a kernel or a draw has no function as its header asks for, or
+ *  reads an iteration before where there is none.
+ *  @param {Pick<Kernel, "kind" | "outputs" | "repeat">} kernel @param {Flat} flat */
+export function checkSignature({ kind, outputs, repeat }, flat) {
+  if (kind === "draw") {
+    for (const [name, example] of EXAMPLES) {
+      if (definition(flat, name)?.type !== "vec4") throw unsigned(flat, `a draw needs a function ${example}`);
+    }
+  }
+  if (kind === "kernel") {
+    checkKernel(outputs, flat);
+    checkPrevious(outputs, repeat === 1, flat);
+  }
+}
+
+/** @param {Kernel["outputs"]} outputs @param {Flat} flat */
+function checkKernel(outputs, flat) {
+  const single = outputs.length === 1;
+  const types = outputs.map(({ format }) => (
+    format.startsWith("rgba") ? "vec4" : format.startsWith("rg") ? "vec2" : "float"));
+  const outs = outputs.map(({ name }, k) => `out ${types[k]} ${name}`);
+  const signature = single ? `${types[0]} kernel(ivec2 texel)`
+    : `void kernel(ivec2 texel, ${outs.join(", ")})`;
+  const found = definition(flat, "kernel");
+  if (!found) throw unsigned(flat, `there is no function ${signature}`);
+  const given = found.parts.map(argument);
+  const wanted = ["in ivec2", ...(single ? [] : types.map((type) => `out ${type}`))];
+  const fits = given.map(({ way, type }) => `${way} ${type}`).join() === wanted.join();
+  if (found.type !== (single ? types[0] : "void") || !fits) {
+    throw unsigned(flat, `kernel must be ${signature}`, found.line);
+  }
+  if (!single && given.slice(1).some(({ name }, k) => name !== outputs[k].name)) {
+    throw unsigned(flat, `kernel must be ${signature}: its outputs in the order of the pragma`, found.line);
+  }
+}
+
+/** @param {Kernel["outputs"]} outputs @param {boolean} once @param {Flat} flat */
+function checkPrevious(outputs, once, flat) {
+  const longs = outputs.map(({ name }) => `previous_${name}`);
+  const names = outputs.length === 1 ? ["previous"] : longs;
+  flat.lines.forEach(({ code }, index) => {
+    for (const [, called] of code.matchAll(/\b(previous(?:_\w+)?)\s*\(/g)) {
+      if (names.includes(called) && once) {
+        const message = `${called} is the iteration before, but the kernel has one only; give it a repeat`;
+        throw unsigned(flat, message, index);
+      }
+      if (!names.includes(called) && ["previous", ...longs].includes(called)) {
+        throw unsigned(flat, `the iteration before is read by ${names.join(" and ")}, not ${called}`, index);
+      }
+    }
+  });
+}
+
+/** The first definition of a function: its type, its arguments, and on which of the lines it begins.
+ *  @param {Flat} flat @param {string} name */
+function definition({ lines }, name) {
+  const code = lines.map((line) => line.code).join("\n");
+  const match = new RegExp(`\\b(\\w+)\\s+${name}\\s*\\(([^)]*)\\)\\s*\\{`).exec(code);
+  return match && {
+    type: match[1], parts: match[2].split(","), line: code.slice(0, match.index).split("\n").length - 1,
+  };
+}
+
+/** @param {string} text */
+function argument(text) {
+  const words = text.split(/\s+/).filter((word) => word && !QUALIFIERS.includes(word));
+  const way = ["in", "out", "inout"].includes(words[0]) ? words.shift() : "in";
+  const [type = "", name = "", ...more] = words;
+  return { way, type: more.length ? text.trim() : type, name };
+}
+
+/** An error at one of the lines, or at the header.
+ *  @param {Flat} flat @param {string} message @param {number} [index] */
+function unsigned({ lines }, message, index = Math.max(lines.findIndex(({ raw }) => PRAGMA.test(raw)), 0)) {
+  const { file, line } = lines[index];
+  return Object.assign(new Error(message), { file, line });
+}

@@ -1,0 +1,101 @@
+"""What desktop GLSL allows and GLSL ES does not is written out, line for line."""
+
+from __future__ import annotations
+
+import pytest
+
+from .node import Node
+
+CONVERSIONS = {
+    "float a = 1;": "float a = 1.0;",
+    "float a = -1 + 2 * n;": "float a = float(-1 + 2 * n);",
+    "vec3 v = 2 * w.xyz;": "vec3 v = 2.0 * w.xyz;",
+    "float a = pow(x, 2) + max(x, 0) + max(1, 2);": "float a = pow(x, 2.0) + max(x, 0.0) + float(max(1, 2));",
+    "int i = max(n, 0);": "int i = max(n, 0);",
+    "bool b = x > 1 && n > 1;": "bool b = x > 1.0 && n > 1;",
+    "float a = b ? 1 : 0.5;": "float a = b ? 1.0 : 0.5;",
+    "float a = n / 2;": "float a = float(n / 2);",
+    "float a = x + n / 2;": "float a = x + float(n / 2);",
+    "vec2 v = x.xx;": "vec2 v = vec2(x);",
+    "x *= 2;": "x *= 2.0;",
+    "w.x = 1;": "w.x = 1.0;",
+    "float a[2] = { 1, x };": "float a[2] = float[]( 1.0, x );",
+    "vec2 v = vec2(1, n);": "vec2 v = vec2(1, n);",
+    "vec2 v = ivec2(1, n) + w.xy;": "vec2 v = vec2(ivec2(1, n)) + w.xy;",
+    "float a = taken(1, n);": "float a = taken(1.0, n);",
+    "uint u = n + 1u;": "uint u = uint(n) + 1u;",
+    "float a = SIDES * x;": "float a = float(SIDES) * x;",
+    "float a = known(1) * 2;": "float a = known(1) * 2;",
+    "for (float f = 0; f < 3; f++) x += f * 2;": "for (float f = 0.0; f < 3.0; f++) x += f * 2.0;",
+    "w = m * w * 2;": "w = m * w * 2.0;",
+    "float a = (1 + n) * x;": "float a = float((1 + n)) * x;",
+    "float a = (n + 1u) * x;": "float a = float((uint(n) + 1u)) * x;",
+    "vec4 t = texture(s, w.xy, 1);": "vec4 t = texture(s, w.xy, 1.0);",
+    "ivec2 t = textureSize(s, 0);": "ivec2 t = textureSize(s, 0);",
+    "some.level = 1;": "some.level = 1.0;",
+    "int k = all[1] > 2 ? 1 : 0;": "int k = all[1] > 2.0 ? 1 : 0;",
+}
+FUNCTION = """#define SIDES 6
+#define known(a) (a)
+struct Some {{ float level; int many; }};
+uniform sampler2D s;
+float taken(float a, int b) {{ return a; }}
+float whole() {{
+    return 1;
+}}
+void main() {{
+    float x = 0.5; int n = 3; vec4 w = vec4(1.0); mat4 m = mat4(1.0); bool b = true; Some some; float all[3];
+    {}
+}}
+"""
+
+
+@pytest.mark.parametrize("written", CONVERSIONS)
+def test_a_conversion_is_written_out(node: Node, written: str):
+    found = node.call("conversions.js", "withConversions", FUNCTION.format(written))
+    lines = found.split("\n")
+    assert lines[10].strip() == CONVERSIONS[written]
+    assert lines[6].strip() == "return 1.0;"
+    expected = FUNCTION.format(CONVERSIONS[written]).replace("return 1;", "return 1.0;")
+    assert found == expected, "all else stays"
+
+
+def test_what_is_not_understood_stays(node: Node):
+    text = "#define BODY(t) t twice(t a)\nBODY(float) { return a 2; }\nvoid main() {\n    float a = ) 1;\n}\n"
+    assert node.call("conversions.js", "withConversions", text) == text
+
+
+FORMS = {
+    "in Block { vec2 uv; float far[2]; } from;\nvoid main() { vec2 a = from.uv * from.far[0]; }": (
+        " in vec2 Block_uv; in float Block_far[2]; \nvoid main() { vec2 a = Block_uv * Block_far[0]; }"
+    ),
+    "out Block {\n    vec2 uv;\n};\nvoid main() { uv = vec2(1.0); }": (
+        "\n    out vec2 Block_uv;\n\nvoid main() { Block_uv = vec2(1.0); }"
+    ),
+    "float tanh(float x) { return x; }\nfloat y() { return tanh(1.0); }": (
+        "float k_own_tanh(float x) { return x; }\nfloat y() { return k_own_tanh(1.0); }"
+    ),
+    "uniform float t;\nfloat a = t * 2.0, b = 3.0;\nvoid main() {\n}": (
+        "uniform float t;\nfloat a , b = 3.0;\nvoid main() { a = t * 2.0;\n}"
+    ),
+    "const float k = 2.0;\nfloat a = k * sin(1.0);\nvoid main() {}": (
+        "const float k = 2.0;\nfloat a = k * sin(1.0);\nvoid main() {}"
+    ),
+    "void f(float x) { const float a = x; const int n = 3; float b[n]; }": (
+        "void f(float x) {  float a = x; const int n = 3; float b[n]; }"
+    ),
+}
+
+
+@pytest.mark.parametrize("written", FORMS)
+def test_a_form_of_desktops_has_another(node: Node, written: str):
+    found = node.call("desktop_glsl.js", "withoutDesktopForms", written)
+    assert found.split() == FORMS[written].split()
+    assert found.count("\n") == written.count("\n")
+
+
+def test_a_texture_of_one_dimension_is_a_row(node: Node):
+    text = "uniform sampler1D tones;\nvec4 a = texture(tones, 0.5) + texelFetch(tones, 3, 0);\n"
+    found = node.call("desktop_glsl.js", "withoutDesktopForms", text)
+    assert "sampler1D" not in found and found.count("\n") == 2
+    assert "k_line(tones, 0.5) + k_lineFetch(tones, 3, 0)" in found
