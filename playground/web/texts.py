@@ -22,12 +22,19 @@ class Texts:
         self.files: dict[str, str] = {}
         self.includes: dict[str, dict[str, str]] = {}
         self._names: dict[str, str] = {}  # absolute path, or what else a text is known by → name
+        self._added: dict[tuple[int, str, str], tuple[SourceText, str]] = {}  # by identity, which it keeps
 
     def add(self, source: SourceText, folder: str, label: str) -> str:
         """Add all files of a kernel's text; return the name of the outermost.
 
         ``folder`` is the sketch's; ``label`` names the text where it is not that of its file.
         """
+        key = (id(source), folder, label)
+        if key not in self._added:
+            self._added[key] = source, self._add(source, folder, label)
+        return self._added[key][1]
+
+    def _add(self, source: SourceText, folder: str, label: str) -> str:
         files = _files_of(source)
         if not _is_as_written(source, files, folder):
             return self._rewritten(source, folder, label)

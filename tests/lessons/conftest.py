@@ -14,6 +14,8 @@ from playground.lessons.read import read_file
 from playground.lessons.scenes import Sketches
 from playground.lessons.translate import translated, write_hashes
 
+from ..web.conftest import node as node
+
 FRONT = """+++
 number  = 4
 title   = "A small lesson"

@@ -17,6 +17,7 @@ from playground.lessons.book import images as pictures
 from playground.lessons.book.build import prepare, write_book
 from playground.lessons.book.html import formula, line, plain, prose
 from playground.lessons.book.images import is_diagram, larger
+from playground.lessons.book.live_files import LiveBook
 from playground.lessons.figure_renders import draw, pictures_of
 from playground.lessons.figures import thesis_figures
 from playground.lessons.glossary import terms
@@ -77,8 +78,9 @@ def test_its_files(book):
         p.relative_to(book).as_posix() for p in book.rglob("*") if p.is_file() and p.suffix != ".webp"
     )
     assert names == [
-        *("book.css", "book.js", "book.json", "en/glossary.html", "en/index.html"),
-        *("en/small.html", "fr/glossary.html", "fr/index.html", "fr/small.html", "index.html"),
+        *("book.css", "book.js", "book.json", "data/small.js", "en/glossary.html", "en/index.html"),
+        *("en/small.html", "fr/glossary.html", "fr/index.html", "fr/small.html", "glsl.js", "index.html"),
+        *("live.css", "live.js"),
     ]
 
 
@@ -179,12 +181,18 @@ def test_answers_are_folded_away_and_all_is_there_without_a_script(book):
     assert "total / count" in page.text and "total / 8.0" in page.text
 
 
-def test_a_figure_with_sliders_says_where_they_are(book):
+def test_a_figure_with_sliders_that_no_page_can_run_says_where_they_are(
+    tmp_path, lesson, french, engine, monkeypatch
+):
+    monkeypatch.setattr(build, "live_book", lambda lessons: LiveBook({"small": frozenset()}, {}))
+    book = tmp_path / "book"
+    write_book(prepare(book, {"en": [lesson], "fr": [french]}, gallery=False), engine)
     for language, option in (("en", ""), ("fr", " --lang fr")):
         page = Page(book / language / "small.html")
         words = interface_labels(language)
         said = f"{words['in_window']}{words['colon']}playground lesson open small{option}"
         assert page.text.count(said) == 1  # of its figures one has sliders
+    assert not (book / "live.js").exists()
 
 
 def test_a_page_has_few_landmarks(book):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import base64
+import gzip
 import io
 import json
 import shutil
@@ -17,6 +18,7 @@ import pytest
 from PIL import Image
 
 from playground.errors import SketchError
+from playground.lessons.book.live_files import widget_page
 from playground.lessons.bugs import BugRegion
 from playground.lessons.figure_renders import broken, draw
 from playground.lessons.glossary import terms
@@ -29,10 +31,11 @@ from playground.lessons.notebook.controls import controls_of, scene_at
 from playground.lessons.notebook.lesson import NotebookLesson
 from playground.lessons.read import read_lesson
 
+from ..web.node import RUNTIME
 from .conftest import SKETCHES
 
 NODE = shutil.which("node")
-WIDGET = Path(notebook_lesson.__file__).with_name("widget.js")
+WIDGET = RUNTIME / "notebook_picture.js"
 
 pytestmark = pytest.mark.filterwarnings("ignore::DeprecationWarning")
 
@@ -92,6 +95,30 @@ def test_a_value_out_of_range_is_reported_and_the_picture_stays(opened):
     assert "height.smoothing" in widget.mistake and widget.picture == before
     widget.values = {"height.smoothing": 0.4}
     assert widget.mistake == ""
+
+
+def test_a_live_figure_is_not_drawn_here_as_well(opened):
+    """Its browser draws; the values are there all the same, and can be set."""
+    widget = opened.show("land")
+    before = widget.picture
+    widget.live = True
+    widget.values = {"height.smoothing": 0.05}
+    assert widget.picture == before and widget.values == {"height.smoothing": 0.05}
+
+
+def test_a_widget_holds_its_figure(opened, lesson):
+    """All of it, so that it runs without a kernel; what no page can run is drawn by the kernel."""
+    for name, labels in (
+        ("land", []),
+        ("turns", 6),
+        ("smooth", ["0.1", "0.5", "0.9"]),
+        ("two", ["even", "uneven"]),
+    ):
+        widget = opened.show(name)
+        held = json.loads(gzip.decompress(base64.b64decode(widget.page)))
+        assert set(held) == {"block", "sketches", "library"} and held["library"]["kernels"]
+        assert widget.labels == labels or len(widget.labels) == labels
+    assert widget_page(lesson.named["count"]) == ""
 
 
 def test_a_series_is_dragged_frame_by_frame(opened, lesson, engine):

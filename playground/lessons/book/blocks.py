@@ -6,7 +6,7 @@ comparison, answers to be unfolded. The script turns them into sliders and swipe
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,6 +30,7 @@ class Setting:
     numbers: Mapping[str, Number]
     source: Callable[[Picture], str]  # address of a picture
     anchor: Anchor
+    live: Collection[str] = ()  # names of the blocks that a page can run
 
     def line(self, markdown: str) -> Markup:
         """Return a text within a line, with the numbers in it."""
@@ -52,14 +53,24 @@ class Setting:
             decoding="async",
         )
 
+    def still(self, *inside: Markup | None) -> Markup:
+        """Return what a live block replaces where a reader starts it."""
+        return tag("div", *inside, class_="still")
+
+    def started(self, block: model.Named) -> dict[str, str | None]:
+        """Return the attribute of an element whose pictures can be started."""
+        return {"data_block": block.name if block.name in self.live else None}
+
     def folded(self, key: str, *inside: Markup | None) -> Markup:
         """Return what is unfolded by its label."""
         return tag("details", tag("summary", self.label(key)), tag("div", *inside))
 
-    def titled(self, block: model.Named, title: str, *inside: Markup | None) -> Markup:
+    def titled(
+        self, block: model.Named, title: str, *inside: Markup | None, **attributes: str | None
+    ) -> Markup:
         """Return the section of a block, under a heading."""
-        heading = tag("h3", title, id=f"{block.name}-title")
-        return tag("section", heading, *inside, id=block.name, class_=type(block).__name__.lower())
+        heading, kind = tag("h3", title, id=f"{block.name}-title"), type(block).__name__.lower()
+        return tag("section", heading, *inside, id=block.name, class_=kind, **attributes)
 
     def _filled(self, markdown: str) -> str:
         return filled(markdown, self.numbers, comma=self.lesson.language == "fr")
@@ -85,11 +96,12 @@ def _prose(block: model.Prose, setting: Setting) -> Markup:
 def _figure(block: model.Figure, setting: Setting, first: bool) -> Markup:
     (picture,) = pictures_in(block)
     dragged = None
-    if block.sliders:  # a page cannot have them
+    if block.sliders and block.name not in setting.live:
         label, command = setting.label, tag("code", open_command(setting.lesson))
         dragged = tag("small", label("in_window"), label("colon"), command, class_="in-window")
     caption = tag("figcaption", setting.line(block.caption), dragged)
-    return tag("figure", setting.image(picture, lazy=not first), caption, id=block.name)
+    image = setting.still(setting.image(picture, lazy=not first))
+    return tag("figure", image, caption, id=block.name, **setting.started(block))
 
 
 def _series(block: model.Steps | model.Slider, setting: Setting, labels: list[str], name: str) -> Markup:
@@ -103,11 +115,14 @@ def _series(block: model.Steps | model.Slider, setting: Setting, labels: list[st
     return tag(
         "figure",
         tag("p", plain(block.alt), class_="visually-hidden"),
-        tag("ol", *frames, class_="frames", data_name=name, tabindex=0, aria_label=plain(block.caption)),
+        setting.still(
+            tag("ol", *frames, class_="frames", data_name=name, tabindex=0, aria_label=plain(block.caption))
+        ),
         tag("figcaption", setting.line(block.caption)),
         id=block.name,
         class_="series",
         data_kind="step" if isinstance(block, model.Steps) else "slider",
+        **setting.started(block),
     )
 
 
@@ -131,10 +146,11 @@ def _compare(block: model.Compare, setting: Setting) -> Markup:
     return tag(
         "figure",
         tag("p", plain(block.alt), class_="visually-hidden"),
-        tag("ul", *shown, class_="variants", data_swipe=setting.label("swipe")),
+        setting.still(tag("ul", *shown, class_="variants", data_swipe=setting.label("swipe"))),
         tag("figcaption", setting.line(block.caption)),
         id=block.name,
         class_="compare",
+        **setting.started(block),
     )
 
 
@@ -164,13 +180,15 @@ def _break(block: model.Break, setting: Setting) -> Markup:
         block,
         label("bug"),
         setting.prose(block.ask),
-        tag(
-            "figure",
-            setting.image(broken),
-            tag("figcaption", tag("b", label("broken")), Markup(" "), caption),
+        setting.still(
+            tag(
+                "figure",
+                setting.image(broken),
+                tag("figcaption", tag("b", label("broken")), Markup(" "), caption),
+            ),
+            tag("p", label("broken_code"), Markup(" "), file),
+            code_block(lines.broken, label("broken_code")),
         ),
-        tag("p", label("broken_code"), Markup(" "), file),
-        code_block(lines.broken, label("broken_code")),
         setting.folded("hint", setting.prose(block.hint)),
         setting.folded(
             "fix",
@@ -179,6 +197,7 @@ def _break(block: model.Break, setting: Setting) -> Markup:
             code_block(lines.correct, label("fixed_code")),
             fixed,
         ),
+        **setting.started(block),
     )
 
 
@@ -205,12 +224,15 @@ def _question(block: model.Question, setting: Setting) -> Markup:
 
 def _exercise(block: model.Exercise, setting: Setting) -> Markup:
     pictures = [tag("figure", setting.image(found)) for found in pictures_in(block)]
+    room = setting.still() if block.name in setting.live else None  # only what can be started has one
     return setting.titled(
         block,
         f"{setting.label('exercise')} {setting.lesson.number_of(block)}",
         setting.prose(block.ask),
+        room,
         setting.folded("hint", setting.prose(block.hint)) if block.hint else None,
         setting.folded("solution", setting.prose(block.solution), *pictures),
+        **setting.started(block),
     )
 
 

@@ -90,6 +90,37 @@
     overlay(true);
   }
 
+  // A live figure: its scripts come when one is started, and then serve all figures of the page.
+  let runtime = null;
+  const added = (element) => new Promise((resolve, reject) => {
+    Object.assign(element, { onload: resolve, onerror: reject });
+    document.head.append(element);
+  });
+  const loadRuntime = () => Promise.all([
+    added(make("link", { rel: "stylesheet", href: "../live.css" })),
+    added(make("script", { src: "../live.js" })),
+  ]);
+  for (const root of document.querySelectorAll("[data-block]")) {
+    const still = root.querySelector(".still");
+    const button = make("button", { type: "button", className: "start", textContent: `▶ ${words.live}`, title: words.liveGoal });
+    button.addEventListener("click", async () => {
+      button.disabled = true;
+      button.setAttribute("aria-busy", "true");
+      try {
+        runtime = runtime || loadRuntime();
+        await runtime;
+        await playground.start(root, "..", words.lesson);
+      } catch (error) {
+        runtime = null;
+        throw error;
+      } finally {
+        button.disabled = false;
+        button.removeAttribute("aria-busy");
+      }
+    });
+    still.prepend(button);
+  }
+
   for (const field of document.querySelectorAll("fieldset")) {
     field.addEventListener("change", (event) => {
       const right = event.target.dataset.right === "yes";

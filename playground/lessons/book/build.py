@@ -4,6 +4,7 @@ index.html          chooses a language
 en/, fr/            a page for each lesson, the contents, the glossary, the thesis's figures
 pictures/           all pictures, for all languages
 book.css, book.js
+live.js, data/ …     what runs where a reader starts a figure: see live_files.py
 book.json           the files that were written, so that the next build removes what is no more
 """
 
@@ -22,6 +23,7 @@ from playground.json_text import read_json
 from playground.lessons.book.blocks import Setting
 from playground.lessons.book.gallery import gallery_html
 from playground.lessons.book.images import Album, of_picture
+from playground.lessons.book.live_files import LiveBook, live_book
 from playground.lessons.book.page import (
     FIGURES,
     GLOSSARY,
@@ -87,6 +89,7 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
     _begin(build.folder)
     build.album.draw(engine, build.names, advance)
     numbers = {lesson.name: numbers_of(engine, lesson) for lesson in next(iter(build.lessons.values()))}
+    live = live_book(next(iter(build.lessons.values())))
     info = context_info(engine.ctx)
     written = [f"{PICTURES}/{name}" for name in build.names]
     for language, lessons in build.lessons.items():
@@ -98,7 +101,7 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
             renderer=info.renderer,
             gallery=bool(build.figures),
         )
-        for name, text in _pages(build, book, numbers):
+        for name, text in _pages(build, book, numbers, live):
             _write(build.folder / language / name, text)
             written.append(f"{language}/{name}")
     titles = {language: interface_labels(language)["book"] for language in build.lessons}
@@ -106,15 +109,21 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
     for name in ("book.css", "book.js"):
         _write(build.folder / name, (_HERE / name).read_text(encoding="utf-8"))
         written.append(name)
+    for name, text in live.files.items():
+        _write(build.folder / name, text)
+        written.append(name)
     _forget(build.folder, [*written, "index.html"])
     return build.folder / "index.html"
 
 
-def _pages(build: Build, book: Book, numbers: dict[str, dict[str, Number]]) -> Iterator[tuple[str, str]]:
+def _pages(
+    build: Build, book: Book, numbers: dict[str, dict[str, Number]], live: LiveBook
+) -> Iterator[tuple[str, str]]:
     covers = {}
     for lesson in book.lessons:
         source = of_picture(build.files[lesson.name], f"../{PICTURES}")
-        setting = Setting(lesson, book.label, numbers[lesson.name], source, book.anchor)
+        runs = live.blocks[lesson.name]
+        setting = Setting(lesson, book.label, numbers[lesson.name], source, book.anchor, runs)
         cover = pictures_of(lesson)[0]
         covers[lesson.name] = setting.image(cover, alt="")
         yield f"{lesson.name}.html", lesson_page(book, lesson, setting)

@@ -16,7 +16,7 @@ from playground.images.files import replacing
 from playground.lessons.figure_renders import Picture, draw, pictures_of
 from playground.lessons.model import Lesson, Scene
 
-QUALITY = 84
+QUALITY = 79
 """Of WebP: noise in a texture costs most, and errors in it are least visible."""
 
 EFFORT = 50

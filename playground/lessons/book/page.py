@@ -18,6 +18,12 @@ from playground.markup import Markup, joined, tag
 FIGURES = "figures"
 """The name of the gallery's page."""
 
+POLICY = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+    "base-uri 'none'; form-action 'none'"
+)
+"""What a page may load: files of the book. Of pages opened from disk, browsers take those for 'self'."""
+
 GLOSSARY = "glossary"
 """The name of the page of terms."""
 
@@ -74,7 +80,8 @@ def lesson_page(book: Book, lesson: Lesson, setting: Setting) -> str:
         tag("p", label("stale"), class_="stale") if lesson.stale else None,
     )
     ending = (_play(book, lesson), _references(book, lesson, setting.anchor), _pager(book, lesson))
-    return _page(book, lesson.title, lesson.name, joined(head, *body, *ending))
+    runs = lesson.name if setting.live else None
+    return _page(book, lesson.title, lesson.name, joined(head, *body, *ending), runs=runs)
 
 
 def contents_page(book: Book, covers: Mapping[str, Markup]) -> str:
@@ -157,6 +164,7 @@ def _document(language: str, head: Markup, body: Markup) -> str:
 def _head(title: str, folder: str = "../") -> Markup:
     return joined(
         Markup('<meta charset="utf-8">'),
+        tag("meta", http_equiv="Content-Security-Policy", content=POLICY),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
         tag("meta", name="color-scheme", content="light dark"),
         tag("title", title),
@@ -165,7 +173,9 @@ def _head(title: str, folder: str = "../") -> Markup:
     )
 
 
-def _page(book: Book, title: str, name: str, body: Markup, *, wide: bool = False) -> str:
+def _page(
+    book: Book, title: str, name: str, body: Markup, *, wide: bool = False, runs: str | None = None
+) -> str:
     label = book.label
     others = [
         tag("a", LANGUAGES[code], href=f"../{code}/{name}.html", lang=code, hreflang=code)
@@ -182,13 +192,15 @@ def _page(book: Book, title: str, name: str, body: Markup, *, wide: bool = False
         class_="top",
         aria_label=label("contents"),
     )
-    scripted = ("backward", "forward", "run", "stop", "side", "over", "copy", "copied", "theme")
+    scripted = ["backward", "forward", "run", "stop", "side", "over", "copy", "copied", "theme"]
+    scripted += ["live", "live_goal"]
     page = tag(
         "body",
         tag("a", label("skip"), href="#main", class_="skip"),
         top,
         tag("main", body, id="main", class_="wide" if wide else None),
         tag("footer", tag("p", label("made_by", version=__version__, renderer=book.renderer))),
+        data_lesson=runs,
         **{f"data_{key}": label[key] for key in scripted},
     )
     whole_title = f"{title} — {label('book')}" if name != "index" else title

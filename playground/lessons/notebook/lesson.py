@@ -15,6 +15,7 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundWarning, SketchError, nearest
 from playground.lessons import model
+from playground.lessons.book.live_files import widget_page
 from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import broken, draw
 from playground.lessons.library import SOURCE, interface_labels
@@ -131,4 +132,7 @@ class NotebookLesson:
             from playground.lessons.notebook.widget import PictureWidget
         except ModuleNotFoundError:
             return self._frame(scene_at(block, {control.key: control.value for control in controls}))
-        return PictureWidget(png, controls, block.alt)
+        labels = controls[0].choices if not isinstance(block, model.Figure) else ()
+        page = widget_page(block)
+        language = self.lesson.language
+        return PictureWidget(png, controls, block.alt, page=page, labels=labels, language=language)

@@ -1,11 +1,10 @@
-"""A picture with sliders, in a notebook: dragged there, drawn here."""
+"""A figure with sliders in a notebook: live in its browser, else by pictures that the kernel draws."""
 
 from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict
-from pathlib import Path
 from typing import Any
 
 import anywidget
@@ -13,20 +12,24 @@ import traitlets
 
 from playground.errors import PlaygroundError
 from playground.lessons.notebook.controls import Control
-
-_HERE = Path(__file__).resolve().parent
+from playground.web.bundle import read_bundle
 
 
 class PictureWidget(anywidget.AnyWidget):
-    """A PNG, and controls whose every change asks for another.
+    """A figure, and controls whose values are read and set by key.
 
-    ``draw`` takes the controls' values by key, and returns a PNG. A mistake that it raises
-    is shown under the picture, which stays.
+    ``page`` is what the browser's runtime needs (gzip in base64), "" where no page can run the figure.
+    ``draw`` takes the controls' values by key, and returns a PNG: the picture of a saved notebook, and
+    that of a browser without WebGL2. A mistake that it raises is shown under the picture, which stays.
     """
 
-    _esm = (_HERE / "widget.js").read_text(encoding="utf-8")
-    _css = (_HERE / "widget.css").read_text(encoding="utf-8")
+    _esm = read_bundle("notebook.js")
+    _css = read_bundle("notebook.css")
 
+    page = traitlets.Unicode("").tag(sync=True)
+    language = traitlets.Unicode("en").tag(sync=True)
+    labels = traitlets.List(traitlets.Unicode()).tag(sync=True)  # of a series, one for each scene
+    live = traitlets.Bool(False).tag(sync=True)  # the browser draws: no picture is waited for
     picture = traitlets.Bytes(b"").tag(sync=True)
     alt = traitlets.Unicode("").tag(sync=True)
     controls = traitlets.List(traitlets.Dict()).tag(sync=True)
@@ -34,7 +37,14 @@ class PictureWidget(anywidget.AnyWidget):
     mistake = traitlets.Unicode("").tag(sync=True)
 
     def __init__(
-        self, draw: Callable[[Mapping[str, float]], bytes], controls: Sequence[Control], alt: str = ""
+        self,
+        draw: Callable[[Mapping[str, float]], bytes],
+        controls: Sequence[Control],
+        alt: str = "",
+        *,
+        page: str = "",
+        labels: Sequence[str] = (),
+        language: str = "en",
     ) -> None:
         self._draw = draw
         values = {control.key: control.value for control in controls}
@@ -43,10 +53,15 @@ class PictureWidget(anywidget.AnyWidget):
             alt=alt,
             controls=[asdict(control) for control in controls],
             values=values,
+            page=page,
+            labels=list(labels),
+            language=language,
         )
         self.observe(self._changed, names="values")
 
     def _changed(self, _: object) -> None:
+        if self.live:
+            return
         try:
             self.picture = self._draw(self.values)
             self.mistake = ""

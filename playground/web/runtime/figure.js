@@ -185,8 +185,8 @@ export function createFigure(host, engine, page, options = {}) {
     resting = setTimeout(() => {
       if (playing) return;
       moving = false;
-      if (quality.scale < 1) ask();
       quality.rest();
+      if (!session.map && canvas.width !== pixelsOf(box(), devicePixelRatio || 1, budget)[0]) ask();
       tellBusy();
     }, REST);
   }

@@ -1,0 +1,96 @@
+"""Write what a book's pages run: scripts that a page adds when a reader starts a figure.
+
+live.js, live.css   the runtime, once for all pages
+glsl.js             shaders, kernels and what else all lessons share
+data/LESSON.js      the sketches and blocks of a lesson, and bytes that are few
+data/KEY.js         other bytes: what sources give, images
+
+A page opened from disk may add scripts and fetch nothing. So data are scripts of one line, and each
+holds gzip in base64.
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from playground.lessons.book.live_blocks import block_data, lesson_data
+from playground.lessons.book.live_scenes import Library, Scenes
+from playground.lessons.model import Lesson, Named
+from playground.web.bundle import read_bundle
+
+BUNDLES = {"live.js": "book.js", "live.css": "book.css"}
+"""File of a book → bundle of the runtime."""
+
+
+FEW = 4096
+"""Letters of bytes that a lesson's own script holds, so that a book has no hundred small files."""
+
+
+@dataclass(frozen=True)
+class LiveBook:
+    """What can be run of a book."""
+
+    blocks: dict[str, frozenset[str]]  # lesson → names of its live blocks
+    files: dict[str, str]  # by path in the book's folder
+
+
+def live_book(lessons: Sequence[Lesson]) -> LiveBook:
+    """Return what can be run of some lessons; raise ``PlaygroundError`` where the runtime is not built."""
+    library = Library()
+    data = {lesson.name: lesson_data(lesson, library) for lesson in lessons}
+    blocks = {name: frozenset(found["blocks"]) for name, found in data.items()}
+    if not any(blocks.values()):
+        return LiveBook(blocks, {})
+    files = {name: read_bundle(bundle) for name, bundle in BUNDLES.items()}
+    files |= dict(_scripts(data, library))
+    return LiveBook(blocks, files)
+
+
+def widget_page(block: Named) -> str:
+    """Return all that a notebook's widget needs to run one block, packed; "" for one that cannot be live."""
+    library = Library()
+    scenes = Scenes(library)
+    found = block_data(block, scenes)
+    if found is None:
+        return ""
+    shared = {**library.data(), "blobs": library.shared.blobs.texts}
+    return packed({"block": found, "sketches": scenes.sketches, "library": shared})
+
+
+def _scripts(data: dict[str, dict[str, Any]], library: Library) -> Iterator[tuple[str, str]]:
+    yield "glsl.js", script("glsl", packed(library.data()))
+    texts = library.shared.blobs.texts
+    few = {key for key, text in texts.items() if len(text) <= FEW}
+    for lesson, found in data.items():
+        blobs = {key: texts[key] for key in sorted(few & blobs_in(found, library))}
+        yield f"data/{lesson}.js", script(f"data/{lesson}", packed({**found, "blobs": blobs}))
+    for key in texts.keys() - few:
+        yield f"data/{key}.js", script(f"data/{key}", texts[key])
+
+
+def blobs_in(data: Any, library: Library) -> set[str]:
+    """Return the keys of the bytes that a lesson's data name, by themselves or by an image."""
+    if isinstance(data, dict):
+        return set().union(*(blobs_in(of, library) for of in data.values()))
+    if isinstance(data, list):
+        return set().union(*(blobs_in(of, library) for of in data))
+    if not isinstance(data, str):
+        return set()
+    image = library.shared.images.data.get(data)
+    return {image["blob"]} if image else {data} & library.shared.blobs.texts.keys()
+
+
+def packed(data: Any) -> str:
+    """Return data as JSON, gzip in base64; the same data give the same text."""
+    text = json.dumps(data, separators=(",", ":"), ensure_ascii=False)
+    return base64.b64encode(gzip.compress(text.encode(), compresslevel=9, mtime=0)).decode("ascii")
+
+
+def script(name: str, text: str) -> str:
+    """Return a script that holds a text without a quotation mark or a backslash, for book_data.js."""
+    return f'(globalThis.bookData??={{}})["{name}"]="{text}";\n'

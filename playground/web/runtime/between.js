@@ -1,0 +1,26 @@
+// between.js -- a slider's listed values, and those between them.
+
+import { clamp, isWhole, unitOf, written } from "./numbers.js";
+import { write } from "./value_text.js";
+
+/** @typedef {import("./schema.js").Shown} Shown */
+/** @typedef {import("./schema.js").Value} Value */
+
+/** The value at a place among listed ones, from 0 to their count less one; linear between neighbours.
+ *  @param {Pick<Shown, "type">} row @param {Value[]} values @param {number} place @returns {Value} */
+export function valueAt(row, values, place) {
+  const held = clamp(place, 0, values.length - 1), low = Math.floor(held), share = held - low;
+  const from = values[low], to = values[Math.min(low + 1, values.length - 1)];
+  if (share === 0) return from;
+  const mixed = (/** @type {any} */ a, /** @type {any} */ b) => (isWhole(row.type) ? Math.round(a + (b - a) * share) : a + (b - a) * share);
+  return Array.isArray(from) && Array.isArray(to) ? from.map((part, at) => mixed(part, to[at])) : mixed(from, to);
+}
+
+/** A value as a reader sees it: with its unit, in the places that suit the parameter.
+ *  @param {Shown} row @param {Value} value @param {boolean} comma */
+export function spelled(row, value, comma) {
+  if (row.widget === "colour" || typeof value === "boolean") return write(row, value);
+  const numbers = (Array.isArray(value) ? value : [value]).map((number, part) => written(row, Number(number), part));
+  const text = numbers.join("; ") + unitOf(row);
+  return comma ? text.replaceAll(".", ",") : text;
+}

@@ -1,0 +1,58 @@
+// book.js -- the entry of a book's pages: starts a figure where a reader asks for it.
+
+import { openBook, settled } from "./book_data.js";
+import { liveFigure } from "./book_figure.js";
+import { liveCompare, liveSlider, liveSteps } from "./book_series.js";
+import { liveBreak, liveExercise } from "./book_tasks.js";
+import { bookWords } from "./book_words.js";
+import { make } from "./dom.js";
+import { createEngine } from "./engine.js";
+import { fill } from "./words.js";
+
+/** @typedef {import("./book_figure.js").Room} Room */
+
+/** @type {Object<string, (room: Room) => Promise<unknown>>} */
+const KINDS = { figure: liveFigure, steps: liveSteps, slider: liveSlider, compare: liveCompare, break: liveBreak, exercise: liveExercise };
+
+const BYTES = 192 * 2 ** 20; // of textures for all figures of a page: those seen last keep theirs
+
+/** @type {ReturnType<typeof openBook> | null} */
+let book = null;
+/** @type {Promise<import("./engine.js").Engine> | null} one context for all figures of the page */
+let opened = null;
+
+/** @param {import("./book_data.js").Library} library */
+async function engineFor(library) {
+  const engine = createEngine(document.createElement("canvas"), library, { bytes: BYTES });
+  engine.canvas.addEventListener("webglcontextrestored", () => engine.restore());
+  return engine;
+}
+
+/** Start a block of a lesson in the place of its still pictures.
+ *  @param {HTMLElement} root  with `data-block`, the block's name @param {string} folder @param {string} lesson */
+export async function start(root, folder, lesson) {
+  const language = document.documentElement.lang, words = bookWords(language);
+  const still = /** @type {HTMLElement} */ (root.querySelector(".still"));
+  const host = make("div", { className: "live" });
+  root.querySelector(".live-failed")?.remove();
+  try {
+    book ??= openBook(folder);
+    const [library, data] = await Promise.all([book.library(), book.lesson(lesson)]);
+    Object.assign(library.blobs, data.blobs);
+    const block = data.blocks[root.dataset.block ?? ""];
+    const sketch = (/** @type {import("./book_data.js").Setting} */ setting) => settled(data.sketches[setting.sketch], setting, library.kernels);
+    const sketches = block.scenes.map(sketch), begin = block.begin ? sketch(block.begin) : null;
+    await book.need(library, [...sketches, ...(begin ? [begin] : [])]);
+    const engine = await (opened ??= engineFor(library));
+    still.after(host);
+    root.classList.add("is-live");
+    await KINDS[block.kind]({ host, still, block, sketches, begin, engine, words, comma: /^fr/.test(language) });
+  } catch (error) {
+    opened &&= opened.catch(() => (opened = null, Promise.reject(error)));
+    host.remove();
+    root.classList.remove("is-live");
+    const { code = "", message = String(error) } = /** @type {any} */ (error ?? {});
+    const text = code === "no-webgl2" ? words.noWebGL : fill(message.endsWith(".js") ? words.missing : words.lacks, { reason: message });
+    still.after(make("p", { className: "live-failed", role: "status" }, text));
+  }
+}

@@ -1,0 +1,113 @@
+// book_figure.js -- a live picture in the text of a book, what can be dragged of it, its time.
+
+import { makeRow } from "./controls.js";
+import { button, make } from "./dom.js";
+import { createFigure } from "./figure.js";
+import { labelOf } from "./labels.js";
+import { createSession } from "./session.js";
+import { createTimeline, hasTime } from "./timeline.js";
+
+/** @typedef {import("./schema.js").Sketch} Sketch */
+/** @typedef {import("./session.js").Session} Session */
+/** @typedef {import("./book_data.js").LiveBlock} LiveBlock */
+/** What a live block is made with.
+ *  @typedef {object} Room
+ *  @property {HTMLElement} host                 empty, in the place of the still pictures
+ *  @property {HTMLElement} still                the pictures of the page that it replaces
+ *  @property {LiveBlock} block
+ *  @property {Sketch[]} sketches                of its scenes
+ *  @property {Sketch | null} begin              of an exercise
+ *  @property {import("./figure.js").Engine & {shared: import("./schema.js").Shared}} engine
+ *  @property {Object<string, string>} words
+ *  @property {boolean} comma                    whether numbers have one */
+
+const STEP = 1 / 36; // of the picture's height that an arrow turns: 5 degrees
+/** @type {Object<string, [number, number]>} */
+const ARROWS = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, -STEP], ArrowDown: [0, STEP] };
+
+/** Make a live picture in an element; the still picture stands there until it is drawn.
+ *  @param {Room} room @param {HTMLElement} host @param {Session} session
+ *  @param {{poster?: HTMLImageElement | null, opened?: (player: any) => void, drawn?: () => void}} [options] */
+export function makePicture({ engine, words }, host, session, { poster = null, opened, drawn } = {}) {
+  const box = make("div", { className: "picture" }), [width, height] = session.sketch.frame;
+  box.style.aspectRatio = `${width} / ${height}`;
+  host.append(box);
+  const still = poster && /** @type {HTMLImageElement} */ (poster.cloneNode());
+  still?.removeAttribute("loading");
+  const figure = createFigure(box, engine, { sketches: session.sketches }, { session, words, poster: still, inText: true, opened, drawn });
+  figure.canvas.addEventListener("keydown", (event) => {
+    const arrow = ARROWS[event.key], zoom = { "+": 1, "=": 1, "-": -1 }[event.key];
+    if (event.ctrlKey || event.altKey || event.metaKey || !(arrow || zoom || event.key === "r")) return;
+    event.preventDefault();
+    if (zoom) figure.zoom(zoom);
+    else if (!arrow) figure.resetView();
+    else if (event.shiftKey) figure.move(-arrow[0], -arrow[1]);
+    else figure.turn(...arrow);
+  });
+  return figure;
+}
+
+/** Make rows for some parameters of a session, those there are.
+ *  @param {Session} session @param {string[]} paths @param {Object<string, string>} words */
+export function makeRows(session, paths, words) {
+  const box = make("div", { className: "rows" });
+  /** @type {[string, ReturnType<typeof makeRow>][]} */
+  const rows = [];
+  for (const path of paths) {
+    const one = session.row(path);
+    if (!one) continue;
+    const row = makeRow(one, labelOf(one.label), {
+      words,
+      changed: (value) => session.set(path, value),
+      reset: () => session.reset(path),
+      press: (down) => session.press(path, down),
+    });
+    rows.push([path, row]);
+    box.append(row.element);
+  }
+  const show = () => rows.forEach(([path, row]) => row.show(session.value(path), session.changed(path)));
+  session.follow(show);
+  show();
+  return box;
+}
+
+/** A slider with buttons to both sides and what it says; `steps` of the buttons.
+ *  @param {{label: string, min: number, max: number, step: number | "any", value: number, words: Object<string, string>,
+ *           said: (value: number) => string, changed: (value: number) => void}} options */
+export function makeSlider({ label, min, max, step, value, words, said, changed }) {
+  const range = make("input", { type: "range", min: String(min), max: String(max), step: String(step), value: String(value), "aria-label": label });
+  const output = make("output");
+  const show = () => {
+    const now = +range.value, text = said(now);
+    output.textContent = text;
+    range.setAttribute("aria-valuetext", text);
+    range.style.setProperty("--share", String((now - min) / (max - min || 1)));
+    back.setAttribute("aria-disabled", String(now <= min));
+    on.setAttribute("aria-disabled", String(now >= max));
+  };
+  const go = (/** @type {number} */ to) => {
+    range.value = String(Math.min(Math.max(to, min), max));
+    show();
+    changed(+range.value);
+  };
+  // Between two listed values, a button goes to the next of them.
+  const back = button("‹", () => go(Math.ceil(+range.value) - 1), { title: words.backward, "aria-label": words.backward });
+  const on = button("›", () => go(Math.floor(+range.value) + 1), { title: words.forward, "aria-label": words.forward });
+  range.oninput = () => { show(); changed(+range.value); };
+  show();
+  return { element: make("div", { className: "controls" }, back, range, on, output), go };
+}
+
+/** What sets everything back, the camera too. @param {Session} session @param {Object<string, string>} words
+ *  @param {() => void} [more] */
+export const makeReset = (session, words, more = () => {}) =>
+  button(words.reset, () => { session.resetAll(); session.setCamera(null); more(); }, { className: "reset-all" });
+
+/** A figure with its sliders. @param {Room} room */
+export function liveFigure(room) {
+  const { host, block, sketches, still, words } = room, session = createSession(sketches);
+  const figure = makePicture(room, host, session, { poster: still.querySelector("img") });
+  if (hasTime(session.sketch)) host.append(createTimeline(figure, words).element);
+  host.append(makeRows(session, block.rows ?? [], words), makeReset(session, words));
+  return figure.start().then(() => figure);
+}

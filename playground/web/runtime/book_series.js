@@ -1,0 +1,131 @@
+// book_series.js -- live series of a book: iterations stopped early, a parameter swept, variants compared.
+
+import { spelled, valueAt } from "./between.js";
+import { makePicture, makeReset, makeSlider } from "./book_figure.js";
+import { button, make } from "./dom.js";
+import { createSession } from "./session.js";
+import { fill } from "./words.js";
+
+/** @typedef {import("./book_figure.js").Room} Room */
+/** @typedef {import("./schema.js").Sketch} Sketch */
+/** @typedef {import("./session.js").Session} Session */
+
+const STAYS = 700; // [ms] of an iteration that is played
+
+/** The pictures of a series as the page has them. @param {HTMLElement} still */
+const framesOf = (still) => [...still.querySelectorAll("li")];
+
+/** Which of the pictures is shown. @param {Element[]} frames */
+const shownOf = (frames) => Math.max(frames.findIndex((frame) => frame.classList.contains("now")), 0);
+
+/** A repeat, at any of its iterations. @param {Room} room */
+export function liveSteps(room) {
+  const { host, still, block, sketches, words } = room, session = createSession(sketches);
+  const { passes = [], iterations = [] } = block, frames = framesOf(still), first = shownOf(frames);
+  const all = Math.max(...iterations), caption = make("div", { className: "step-caption" });
+  const figure = makePicture(room, host, session, { poster: frames[first].querySelector("img") });
+
+  /** What the page says of an iteration: of the last one before it that it shows. @param {number} now */
+  function explain(now) {
+    const at = iterations.reduce((found, count, index) => (count <= now ? index : found), 0);
+    const text = frames[at].querySelector("p span");
+    caption.replaceChildren(...(text ? [text.cloneNode(true)] : []));
+  }
+  const slider = makeSlider({
+    label: words.iterations, min: Math.min(...iterations), max: all, step: 1, value: iterations[first], words,
+    said: (now) => fill(words.iteration, { now, all }),
+    changed(now) {
+      for (const path of passes) session.stop(path, now);
+      explain(now);
+    },
+  });
+  let timer = 0, now = 0;
+  const run = button(words.play, () => (timer ? halt() : play()));
+  function halt() {
+    clearInterval(timer);
+    timer = 0;
+    run.textContent = words.play;
+  }
+  function play() {
+    const range = slider.element.querySelector("input");
+    now = range && +range.value < all ? +range.value : Math.min(...iterations) - 1;
+    run.textContent = words.pause;
+    const step = () => {
+      slider.go(++now);
+      if (now >= all) halt();
+    };
+    step();
+    timer = window.setInterval(step, STAYS);
+  }
+  slider.element.addEventListener("pointerdown", (event) => event.target !== run && halt());
+  slider.element.append(run);
+  for (const path of passes) session.stop(path, iterations[first]);
+  explain(iterations[first]);
+  host.append(slider.element, caption);
+  return figure.start();
+}
+
+/** A parameter, at its listed values and between them. @param {Room} room */
+export function liveSlider(room) {
+  const { host, still, block, sketches, words, comma } = room, frames = framesOf(still), first = shownOf(frames);
+  const labels = frames.map((frame) => frame.querySelector("b")?.textContent ?? "");
+  const { row: path, values } = block, name = still.querySelector("ol")?.dataset.name ?? "";
+  const session = createSession(path ? [sketches[first]] : sketches, path ? 0 : first);
+  const row = path && session.row(path);
+  const figure = makePicture(room, host, session, { poster: frames[first].querySelector("img") });
+  const slider = makeSlider({
+    label: name, min: 0, max: labels.length - 1, step: row ? "any" : 1, value: first, words,
+    said: (at) => (Number.isInteger(at) || !row || !values ? labels[Math.round(at)] : spelled(row, valueAt(row, values, at), comma)),
+    changed(at) {
+      if (row && values) session.set(row.path, valueAt(row, values, at));
+      else session.choose(at);
+    },
+  });
+  host.append(slider.element, makeReset(session, words, () => slider.go(first)));
+  return figure.start();
+}
+
+/** @param {Sketch} one @param {Sketch} other */
+const seenAlike = (one, other) => JSON.stringify([one.camera, one.terrain.extent]) === JSON.stringify([other.camera, other.terrain.extent]);
+
+/** Move the cameras of sessions together. @param {Session[]} sessions */
+function shareCamera(sessions) {
+  let moving = false;
+  for (const one of sessions) {
+    one.follow((news) => {
+      if (news !== "camera" || moving) return;
+      moving = true;
+      for (const other of sessions) if (other !== one) other.setCamera(one.camera);
+      moving = false;
+    });
+  }
+}
+
+/** Variants, seen by one camera; two of them one over the other, to be swiped. @param {Room} room */
+export function liveCompare(room) {
+  const { host, still, sketches, words } = room, frames = framesOf(still);
+  const sessions = sketches.map((sketch) => createSession([sketch]));
+  const alike = sketches.every((sketch) => seenAlike(sketch, sketches[0]));
+  if (alike) shareCamera(sessions);
+  const same = sketches.every(({ frame }) => frame[0] * sketches[0].frame[1] === frame[1] * sketches[0].frame[0]);
+  const swiped = sketches.length === 2 && same;
+  const box = make("div", { className: swiped ? "sides swiped" : "sides" });
+  host.append(box);
+  const figures = sessions.map((session, at) => {
+    const side = make("div", { className: "side" });
+    box.append(side);
+    const figure = makePicture(room, side, session, { poster: frames[at].querySelector("img") });
+    const label = frames[at].querySelector("b");
+    if (label) side.append(make("p", { className: "side-label" }, label.cloneNode(true)));
+    return figure;
+  });
+  if (swiped) {
+    const at = (/** @type {number} */ share) => box.style.setProperty("--at", `${share}%`);
+    const range = make("input", { type: "range", min: "0", max: "100", value: "50", "aria-label": words.swipe });
+    range.oninput = () => at(+range.value);
+    at(50);
+    host.append(make("div", { className: "controls" }, range));
+  }
+  host.append(makeReset(sessions[0], words, () => sessions.forEach((session) => session.setCamera(null))));
+  return Promise.all(figures.map((figure) => figure.start()));
+}

@@ -1,0 +1,306 @@
+"""The book's live figures in a real browser, opened from the disk, without a network."""
+
+from __future__ import annotations
+
+import base64
+import io
+from collections.abc import Iterator
+from functools import partial
+from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
+from threading import Thread
+from typing import ClassVar
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from playground.engine.engine import Engine
+from playground.lessons.book.build import prepare, write_book
+from playground.lessons.bugs import bug_region
+from playground.lessons.document import read_document
+from playground.lessons.figure_renders import broken, draw
+from playground.lessons.library import interface_labels
+from playground.lessons.read import read_file
+from playground.lessons.scenes import with_value
+from playground.lessons.translate import translated, write_hashes
+
+from ..report.browser import MISSING, Browser
+from .conftest import BODY, FRENCH, FRONT, SKETCHES
+
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
+
+LLVMPIPE = ("--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist")
+RIGHT, END = "\ue014", "\ue010"
+PAGE = "en/small.html"
+TRY = (
+    'solution = "So."\nsketch   = "diamond_square_steps"',
+    'solution = "So."\nset = { "height.smoothing" = 0.7 }\nsketch = "diamond_square_steps"',
+)
+
+
+@pytest.fixture(scope="module")
+def lessons(tmp_path_factory):
+    """Give the small lesson in two languages, with an exercise that has something to set."""
+    folder = tmp_path_factory.mktemp("lessons")
+    english, french = folder / "small.md", folder / "petit.md"
+    assert TRY[0] in BODY
+    english.write_text(FRONT + BODY.replace(*TRY), encoding="utf-8")
+    french.write_text(FRENCH, encoding="utf-8")
+    first = read_document(english)
+    write_hashes(first, read_document(french))
+    found = read_file(english, SKETCHES)
+    return {"en": [found], "fr": [translated(found, first, read_document(french), "fr")]}
+
+
+@pytest.fixture
+def lesson(lessons):
+    return lessons["en"][0]
+
+
+@pytest.fixture(scope="module")
+def book(tmp_path_factory, lessons, shared_context):
+    folder = tmp_path_factory.mktemp("live") / "book"
+    with Engine(shared_context) as engine:
+        write_book(prepare(folder, lessons, gallery=False), engine)
+    return folder
+
+
+@pytest.fixture
+def page(book, tmp_path) -> Iterator[Browser]:
+    with Browser(tmp_path / "profile", flags=LLVMPIPE) as browser:
+        browser.open((book / PAGE).as_uri())
+        browser.wait("document.querySelectorAll('.start').length === 6")
+        yield browser
+        assert browser.log() == []
+
+
+def start(page, name):
+    page.click(f"#{name} .start")
+    page.wait(f"document.querySelector('#{name} .live canvas:not([hidden])')")
+
+
+def picture(page, name, number=0):
+    """Return the pixels of a live picture at rest: as many as its place has, and two readings agree."""
+    canvas = f"document.querySelectorAll('#{name} .live canvas')[{number}]"
+    script = (
+        f"return {canvas}.width === {canvas}.clientWidth ? {canvas}.toDataURL() : Math.random().toString()"
+    )
+    before, now = "", None
+    for _ in range(60):
+        if now == before:
+            break
+        before = now
+        page.run("return new Promise((done) => setTimeout(() => requestAnimationFrame(done), 400))")
+        now = page.run(script)
+    return np.asarray(Image.open(io.BytesIO(base64.b64decode(now.partition(",")[2]))).convert("RGB"))
+
+
+def drawn(engine, scene, pixels):
+    """Return what the engine draws in the size of a live picture."""
+    height, width = pixels.shape[:2]
+    made = engine.render(scene.sketch, size=(width, height), time=scene.time, steps=dict(scene.steps))
+    return made.array[..., :3]
+
+
+class Recorder(SimpleHTTPRequestHandler):
+    """Serves a folder, and notes what is asked for."""
+
+    asked: ClassVar[list[str]] = []
+
+    def do_GET(self):
+        self.asked.append(self.path)
+        super().do_GET()
+
+    def log_message(self, *_):
+        pass
+
+
+def test_nothing_runs_until_it_is_asked_for_and_then_nothing_but_the_book(book, tmp_path):
+    """From a server that notes every request: a disk keeps no list."""
+    Recorder.asked.clear()
+    server = ThreadingHTTPServer(("127.0.0.1", 0), partial(Recorder, directory=str(book)))
+    Thread(target=server.serve_forever, daemon=True).start()
+    with server, Browser(tmp_path / "profile", flags=LLVMPIPE) as browser:
+        browser.open(f"http://127.0.0.1:{server.server_address[1]}/{PAGE}")
+        browser.wait("document.querySelectorAll('.start').length === 6")
+        scripts = [path for path in Recorder.asked if path.endswith(".js")]
+        assert scripts == ["/book.js"]
+        assert browser.run("return [typeof playground, document.querySelectorAll('canvas').length]") == [
+            "undefined",
+            0,
+        ]
+        for name in ("land", "two", "fault"):
+            start(browser, name)
+        scripts = sorted(path for path in Recorder.asked if path.endswith(".js"))
+        assert scripts == ["/book.js", "/data/small.js", "/glsl.js", "/live.js"]  # each once
+        assert [line for line in browser.log() if "favicon.ico" not in line] == []
+        for path in Recorder.asked:
+            assert (book / path.lstrip("/")).is_file() or path == "/favicon.ico", path
+        server.shutdown()
+
+
+def test_a_live_picture_is_the_engine_s_and_follows_its_slider(page, lesson, engine):
+    scene = lesson.named["land"].scene
+    start(page, "land")
+    first = picture(page, "land")
+    np.testing.assert_array_equal(first, drawn(engine, scene, first))
+    page.run("document.querySelector('#land .live input[type=range]').focus()")
+    page.press(*[RIGHT] * 5)
+    value = float(page.run("return document.querySelector('#land .live input[type=range]').value"))
+    moved = picture(page, "land")
+    assert value > 0.5 and (moved != first).any()
+    changed = with_value(scene, "height.smoothing", value)  # it goes from 0 to 1
+    np.testing.assert_array_equal(moved, drawn(engine, changed, moved))
+    page.click("#land .reset-all")
+    np.testing.assert_array_equal(picture(page, "land"), first)
+
+
+def test_any_iteration_can_be_shown(page, lesson, engine):
+    start(page, "turns")
+    page.run("document.querySelector('#turns .live input').focus()")
+    for scene in lesson.named["turns"].scenes[1:4]:
+        page.press(RIGHT)
+        shown = picture(page, "turns")
+        np.testing.assert_array_equal(shown, drawn(engine, scene, shown))
+    assert "3 of 5" in page.run("return document.querySelector('#turns .live output').textContent")
+
+
+def test_a_swept_parameter_has_values_between_those_listed(page, lesson, engine):
+    start(page, "smooth")
+    block = lesson.named["smooth"]
+    page.run(
+        "const range = document.querySelector('#smooth .live input'); range.value = 0.5;"
+        "range.dispatchEvent(new Event('input'))"
+    )
+    shown = picture(page, "smooth")
+    between = drawn(engine, with_value(block.scenes[0], "height.smoothing", 0.3), shown)
+    np.testing.assert_allclose(shown.astype(int), between, atol=2)
+    page.click("#smooth .live button:nth-of-type(2)")
+    assert page.run("return document.querySelector('#smooth .live output').textContent") == "0.5"
+    shown = picture(page, "smooth")
+    np.testing.assert_array_equal(shown, drawn(engine, block.scenes[1], shown))
+
+
+def test_variants_are_swiped_and_share_a_camera(page, lesson, engine):
+    start(page, "two")
+    for number, scene in enumerate(lesson.named["two"].scenes):
+        shown = picture(page, "two", number)
+        np.testing.assert_array_equal(shown, drawn(engine, scene, shown))
+    page.run("document.querySelector('#two .live input[type=range]').focus()")
+    page.press(END)
+    assert page.run("return document.querySelector('#two .swiped').style.getPropertyValue('--at')") == "100%"
+    assert page.run("return document.querySelectorAll('#two .side-label')[1].textContent") == "uneven"
+
+
+def typed(page, text):
+    page.run(
+        "const area = document.querySelector('#fault textarea'); area.value = arguments[0];"
+        "area.dispatchEvent(new Event('input'))",
+        text,
+    )
+
+
+def test_a_broken_shader_is_repaired(page, lesson, engine):
+    block, words = lesson.named["fault"], interface_labels("en")
+    region = bug_region(block)
+    verdict = "document.querySelector('#fault .verdict').textContent"
+    start(page, "fault")
+    page.wait("document.querySelector('#fault .editor-status').textContent === ''")
+    shown = picture(page, "fault")
+    np.testing.assert_array_equal(shown, drawn(engine, broken(block), shown))
+    assert page.run("return document.querySelector('#fault textarea').value") == region.broken
+    typed(page, region.broken.replace("8.0", "7.0"))
+    page.wait(f"{verdict} === arguments[0]", words["not_yet"])
+    typed(page, region.broken.replace("total /", "totl /"))
+    page.wait("document.querySelector('#fault .editor-status.wrong')")
+    complaint = page.run("return document.querySelector('#fault .editor-problems').textContent")
+    line = 1 + region.broken[: region.broken.index("total /")].count("\n")
+    assert f"Line {line}" in complaint and "totl" in complaint
+    typed(page, region.broken.replace("total / 8.0", "total * (1.0 / count)"))  # not the words of the file
+    page.wait(f"{verdict} === arguments[0]", words["fixed"])
+    shown = picture(page, "fault")
+    np.testing.assert_allclose(shown.astype(int), drawn(engine, block.scene, shown), atol=2)
+
+
+def test_an_exercise_says_when_the_picture_is_that_of_the_solution(page, lesson, engine):
+    start(page, "second")
+    shown = picture(page, "second")
+    plain = drawn(engine, lesson.named["smooth"].scenes[1], shown)  # 0.5 is the sketch's own
+    np.testing.assert_array_equal(shown, plain)
+    set_to = (
+        "const field = document.querySelector('#second [data-path=\"height.smoothing\"] .number');"
+        "field.value = arguments[0]; field.dispatchEvent(new Event('change'))"
+    )
+    verdict = "document.querySelector('#second .verdict').className"
+    page.run(set_to, "0.6")
+    page.wait(f"{verdict} === 'verdict wrong'")
+    page.run(set_to, "0.7")
+    page.wait(f"{verdict} === 'verdict right'")
+    shown = picture(page, "second")
+    np.testing.assert_array_equal(shown, drawn(engine, lesson.named["second"].scene, shown))
+
+
+def test_french_and_paper_and_a_phone(page, book):
+    page.open((book / "fr/small.html").as_uri())
+    page.emulate("setDeviceMetricsOverride", width=390, height=844, deviceScaleFactor=1, mobile=True)
+    assert "Animer" in page.run("return document.querySelector('.start').textContent")
+    for name in ("turns", "fault", "land"):
+        start(page, name)
+    assert "Itération 0 sur 5" in page.run("return document.querySelector('#turns output').textContent") or (
+        "sur 5" in page.run("return document.querySelector('#turns .live output').textContent")
+    )
+    assert page.run("return [innerWidth, document.documentElement.scrollWidth]") == [390, 390]
+    hidden = "[...document.querySelectorAll(arguments[0])].map((each) => each.offsetHeight === 0)"
+    assert all(page.run(f"return {hidden}", ".is-live > .still"))
+    page.emulate("setEmulatedMedia", media="print")
+    assert all(page.run(f"return {hidden}", ".live, .start"))
+    assert not any(page.run(f"return {hidden}", ".still img"))
+    page.emulate("setEmulatedMedia", media="")
+
+
+def test_without_scripts_everything_can_be_read(book, tmp_path):
+    with Browser(tmp_path / "profile", flags=LLVMPIPE) as browser:
+        browser.emulate("setScriptExecutionDisabled", value=True)
+        browser.open((book / PAGE).as_uri())
+        assert browser.run("return document.querySelectorAll('.start, .live').length") == 0
+        counts = (
+            "[...document.querySelectorAll('.still img')].filter((image) => image.offsetHeight > 40).length"
+        )
+        assert browser.run(f"return {counts}") == 1 + 6 + 3 + 2 + 1
+        assert "total / 8.0" in browser.run("return document.querySelector('#fault .still pre').innerText")
+
+
+def test_a_page_runs_nothing_but_the_book_s_scripts(book, tmp_path):
+    with Browser(tmp_path / "profile", flags=LLVMPIPE) as browser:
+        browser.open((book / PAGE).as_uri())
+        script = "const one = document.createElement('script'); one.textContent = 'globalThis.ran = 1';"
+        assert browser.run(f"{script} document.head.append(one); return globalThis.ran ?? 0") == 0
+        assert any("Content Security Policy" in line for line in browser.log())
+
+
+def test_without_webgl_the_picture_stays_with_a_sentence(book, tmp_path):
+    flags = ("--disable-gpu", "--disable-3d-apis")
+    with Browser(tmp_path / "profile", flags=flags) as browser:
+        browser.open((book / PAGE).as_uri())
+        browser.click("#land .start")
+        browser.wait("document.querySelector('#land .live-failed')")
+        assert "WebGL2" in browser.run("return document.querySelector('#land .live-failed').textContent")
+        assert browser.run("return document.querySelector('#land .still img').offsetHeight") > 40
+        assert browser.run("return document.querySelectorAll('.live').length") == 0
+
+
+def test_one_context_serves_all_figures_of_a_page(page):
+    page.run(
+        "globalThis.contexts = 0; const made = HTMLCanvasElement.prototype.getContext;"
+        "HTMLCanvasElement.prototype.getContext = function (kind, ...more) {"
+        " if (kind === 'webgl2') contexts++; return made.call(this, kind, ...more); }"
+    )
+    for name in ("land", "turns", "smooth", "two", "fault", "second"):
+        start(page, name)
+    assert page.run("return contexts") == 1
+
+
+def test_what_is_drawn_is_drawn(engine, lesson):
+    """The pictures that the others compare differ from each other."""
+    frames = [draw(engine, scene).array for scene in lesson.named["two"].scenes]
+    assert (frames[0] != frames[1]).any()
