@@ -186,7 +186,7 @@ export function createFigure(host, engine, page, options = {}) {
       if (playing) return;
       moving = false;
       quality.rest();
-      if (!session.map && canvas.width !== pixelsOf(box(), devicePixelRatio || 1, budget)[0]) ask();
+      ask(); // whole, also where a smaller picture is still being made
       tellBusy();
     }, REST);
   }
