@@ -3,6 +3,7 @@
 import { fieldFor } from "./camera_moves.js";
 import { make } from "./dom.js";
 import { createFigureMap } from "./figure_map.js";
+import { followPointer, readsPointer } from "./pointer.js";
 import { REST, createQuality, pixelsOf } from "./quality.js";
 import { createSession } from "./session.js";
 import { steerWith } from "./steering.js";
@@ -46,7 +47,8 @@ const SAID = 600; // [ms] until it is said that a picture is being made
  *  @param {HTMLElement} host @param {Engine} engine @param {{sketches: Sketch[]}} page
  *  @param {Options} [options] */
 export function createFigure(host, engine, page, options = {}) {
-  const { words = ENGLISH, poster = null, budget = 2.1e6, inText = false } = options;
+  const { words = ENGLISH, poster = null, inText = false } = options;
+  let { budget = 2.1e6 } = options;
   const session = options.session ?? createSession(page.sketches, options.sketch ?? 0);
   const canvas = make("canvas", { tabIndex: 0, role: "application", hidden: true });
   const message = make("p", { className: "message", role: "status" });
@@ -73,6 +75,8 @@ export function createFigure(host, engine, page, options = {}) {
   const map = createFigureMap(room);
   const steering = steerWith(canvas, session, map, { box, eye: () => player?.plan?.eye, inText });
 
+  const pointer = followPointer(canvas, () => { if (!session.map && readsPointer(session.sketch)) ask(true); });
+
   /** Say how far the picture is, or what is wrong with it. */
   function tell(/** @type {string} */ text, /** @type {unknown} */ error = null) {
     const reason = error instanceof Error ? error.message : String(error);
@@ -95,7 +99,8 @@ export function createFigure(host, engine, page, options = {}) {
   function takeState(/** @type {Player} */ to) {
     const scale = moving && !session.map ? quality.scale : 1;
     const size = map.size() ?? pixelsOf(box(), devicePixelRatio || 1, budget, scale);
-    Object.assign(to.state, session.state(), { frame: size, camera: framed(size) });
+    const live = pointer.live(size, playing);
+    Object.assign(to.state, session.state(), { frame: size, camera: framed(size), live });
     return size;
   }
 
@@ -156,7 +161,8 @@ export function createFigure(host, engine, page, options = {}) {
     name();
     tell("");
     if (moving) quality.took(took + late);
-    if (session.drawn()) ask();
+    const newer = pointer.drawn() && readsPointer(session.sketch);
+    if (session.drawn() || newer) ask();
     waiting.splice(0).forEach((resolve) => resolve());
     options.drawn?.();
   }
@@ -255,6 +261,8 @@ export function createFigure(host, engine, page, options = {}) {
     session, stage, canvas, ask, play, ...steering,
     /** Show a notice. @param {string} text */
     say(text) { notice.textContent = text; },
+    /** Draw no more pixels than these from now on. @param {number} pixels */
+    shrink(pixels) { budget = pixels; },
     showMap: map.show,
     fitMap: map.fit,
     get player() { return player; },

@@ -1,11 +1,13 @@
 // pace.js -- how long a picture will take, told by smaller ones, before a browser stops it.
 
 /** @typedef {{size: [number, number]}} Sized */
-/** What is asked of a player: its state, over what its sketch says, and its pictures.
- *  @typedef {{state: {frame?: [number, number], terrain?: Sized}, render: () => unknown,
- *             sketch: {frame: [number, number], terrain: Sized}}} Paced */
+/** What is asked of a player: its state, over what its sketch says, and its pictures, made in pieces that
+ *  no browser stops.
+ *  @typedef {{state: {frame?: [number, number]}, renderSoon: () => Promise<unknown>,
+ *             sketch: {frame: [number, number]}}} Paced */
 
-const SHARES = [1 / 16, 1 / 8, 1 / 4]; // of a side; the first makes the driver compile what it puts off
+// Of a side. The first does what is done once: the terrain, and what the driver puts off compiling.
+const SHARES = [1 / 16, 1 / 8, 1 / 4];
 const LIMIT = 4; // [s] a picture; drivers of Windows end a draw after 2, browsers a frame after 10
 
 /** Wait until everything drawn so far is done, without holding the page up.
@@ -25,35 +27,29 @@ export function finished(gl) {
   });
 }
 
-/** Estimate the time of a picture from three that are smaller; the state is as before then.
+/** Estimate the time of a picture from three that are smaller; the state is as before then. What a picture
+ *  needs whatever its size is kept from the first of them, and no part of the time.
  *
- *  What does not grow with the picture is found from two of them: t(share) = a + b share².
+ *  What does not grow with the picture is found from the other two: t(share) = a + b share².
  *  @param {Paced} player
  *  @param {() => Promise<void>} done   waits for what was drawn
  *  @param {{limit?: number, now?: () => number}} [options]   limit in seconds: no larger one is drawn then
  *  @returns {Promise<number>} seconds */
 export async function estimate(player, done, { limit = LIMIT, now = () => performance.now() } = {}) {
-  const { state, sketch } = player, { frame, terrain } = state;
-  const whole = frame ?? sketch.frame, ground = terrain ?? sketch.terrain;
+  const { state, sketch } = player, { frame } = state, whole = frame ?? sketch.frame;
   /** @type {number[]} */
   const took = [];
   try {
     for (const share of SHARES) {
       const start = now();
       state.frame = scaled(whole, share);
-      state.terrain = { ...ground, size: smallerTerrain(ground.size, share) };
-      try {
-        player.render();
-      } catch {
-        state.terrain = ground; // a kernel that takes some sizes only
-        player.render();
-      }
+      await player.renderSoon();
       await done();
       took.push((now() - start) / 1000);
-      if (took[took.length - 1] > limit) return took[took.length - 1] / share ** 2;
+      if (share !== SHARES[0] && took[took.length - 1] > limit) return took[took.length - 1] / share ** 2;
     }
   } finally {
-    Object.assign(state, { frame, terrain });
+    Object.assign(state, { frame });
   }
   const [, less, more] = took, [, a, b] = SHARES;
   const slope = Math.max((more - less) / (b ** 2 - a ** 2), 0);
@@ -72,13 +68,3 @@ export function smallerFrame(seconds, frame, limit = LIMIT) {
 /** @param {[number, number]} frame @param {number} share @returns {[number, number]} */
 const scaled = ([width, height], share) =>
   [Math.max(Math.round(width * share), 1), Math.max(Math.round(height * share), 1)];
-
-/** A smaller terrain, of as many whole spacings: 2^n + 1 texels stay such a number.
- *  @param {[number, number]} size @param {number} share @returns {[number, number]} */
-function smallerTerrain(size, share) {
-  const [x, y] = size.map((side) => {
-    const spacings = (side - 1) * share;
-    return Number.isInteger(spacings) ? spacings + 1 : Math.max(Math.round(side * share), 2);
-  });
-  return [x, y];
-}

@@ -13,7 +13,9 @@ import { createRecovery, finished } from "./recovery.js";
 
 /** What is asked of a figure: see figure.js.
  *  @typedef {{session: Session, ask: () => void, player: any, showPoster: (still: boolean) => void,
- *             redraw: () => Promise<unknown>}} CodeFigure */
+ *             redraw: () => Promise<unknown>, shrink: (pixels: number) => void}} CodeFigure */
+
+const LIMIT = 10; // [s] a picture may take without a question: it is made in pieces, which no browser stops
 
 /** @typedef {ReturnType<typeof createCode>} Code */
 
@@ -26,6 +28,7 @@ export function createCode(engine, host, { words: given, figure }) {
   const guards = new Map();
   /** @type {Editor | null} */
   let editor = null;
+  let asked = false;
 
   /** @param {Player} player */
   function guardOf({ sketch, shared }) {
@@ -52,6 +55,19 @@ export function createCode(engine, host, { words: given, figure }) {
     figure().ask();
   }
 
+  /** Ask, once in a page, whether fewer pixels will do. @param {Player} player */
+  async function paced(player) {
+    if (asked) return;
+    const { gl } = engine.parts.context;
+    const asks = createRecovery(host, { words, poster: () => {}, limit: LIMIT });
+    try {
+      const smaller = await asks.pace(player, () => finished(gl), () => { asked = true; });
+      if (smaller) figure().shrink(smaller[0] * smaller[1]);
+    } catch {
+      // What takes some sizes only, or cannot be drawn, says so with its own picture.
+    }
+  }
+
   /** @param {Player} player @param {Object<string, string>} texts @param {boolean} broken */
   async function saved(player, texts, broken) {
     const { sketch, shared } = player, { session } = figure(), pack = await packOf(sketch, shared);
@@ -71,9 +87,13 @@ export function createCode(engine, host, { words: given, figure }) {
   }
 
   return {
-    /** Go on with texts that worked before a reload; before a player's first picture.
+    /** Before a player's first picture: go on with texts that worked before a reload, and ask where a picture
+     *  will take too long.
      *  @param {Player} player */
-    prepare: (player) => recoveryOf(player).resume(player),
+    async prepare(player) {
+      await recoveryOf(player).resume(player);
+      await paced(player);
+    },
 
     /** Fill the tab of the code. @param {HTMLElement} tab @param {Player} player */
     open(tab, player) {

@@ -11,6 +11,7 @@ import { estimate, finished, smallerFrame } from "./pace.js";
  *  @property {{frame?: [number, number], terrain?: any}} state
  *  @property {{frame: [number, number], terrain: any}} sketch
  *  @property {() => unknown} render
+ *  @property {() => Promise<unknown>} renderSoon
  *  @property {Object<string, string>} texts
  *  @property {(file: string, text: string) => Promise<{errors: unknown[], programs: number}>} edit */
 
@@ -102,12 +103,14 @@ export function createRecovery(host, { words: given, poster, guard = () => undef
 
   /** Ask, where a picture of this size would take too long, whether a smaller one will do.
    *  @param {Recoverable} player @param {() => Promise<void>} done  waits for what was drawn
+   *  @param {() => void} [asking]  is called where it is asked
    *  @returns {Promise<[number, number] | null>} the size to draw at; null: as it is */
-  async function pace(player, done) {
+  async function pace(player, done, asking = () => {}) {
     const frame = player.state.frame ?? player.sketch.frame;
     const seconds = await estimate(player, done, { limit });
     const smaller = smallerFrame(seconds, frame, limit);
     if (!smaller) return null;
+    asking();
     const size = frame.join(" \u00d7 "), time = seconds < 10 ? seconds.toFixed(1) : Math.round(seconds);
     return new Promise((resolve) => {
       const choose = (/** @type {[number, number] | null} */ wanted) => { clear(); resolve(wanted); };

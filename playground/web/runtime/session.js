@@ -76,6 +76,8 @@ export function createSession(sketches, first = 0) {
   let leaves = new Map();
   /** @type {Map<string, boolean>} leaf → whether it is still held */
   const pressed = new Map();
+  /** @type {Set<string>} leaves that the last state has pressed */
+  let seen = new Set();
   /** @type {Set<(news: News) => void>} */
   const listeners = new Set();
   /** @type {Camera | null} */
@@ -230,9 +232,10 @@ export function createSession(sketches, first = 0) {
         if (down || pressed.has(leaf)) pressed.set(leaf, down);
       tell("values");
     },
-    /** A frame was drawn: what was let go of is seen no longer; returns whether that asks for another. */
+    /** A frame was drawn: what it saw and was let go of is pressed no longer; returns whether that asks for
+     *  another. What was pressed while it was being made waits for the next. */
     drawn() {
-      const gone = [...pressed].filter(([, down]) => !down);
+      const gone = [...pressed].filter(([leaf, down]) => !down && seen.has(leaf));
       gone.forEach(([leaf]) => pressed.delete(leaf));
       return gone.length > 0;
     },
@@ -257,7 +260,8 @@ export function createSession(sketches, first = 0) {
     /** What a player's state is to be, but for its frame. */
     state() {
       const values = Object.fromEntries(leaves);
-      for (const leaf of pressed.keys()) values[leaf] = true;
+      seen = new Set(pressed.keys());
+      for (const leaf of seen) values[leaf] = true;
       const { size, extent, relief, base_elevation } = sketch().terrain;
       /** @type {Object<string, any>} */
       const terrain = { size, extent, relief, base_elevation };
