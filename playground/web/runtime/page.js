@@ -20,7 +20,9 @@ async function start() {
     engine = createEngine(canvas, page.shared);
   } catch (error) {
     main.classList.add("still");
-    return createRecovery(main, { poster: () => {} }).lacks(error);
+    const above = make("div", { className: "recoveries" }); // a picture may be taller than the window
+    main.prepend(above);
+    return createRecovery(above, { poster: () => {} }).lacks(error);
   }
   const repeats = (/** @type {any} */ player) => (player.plan ? repeatsOf(player.plan) : new Map());
   const notices = make("div", { className: "recoveries" });
