@@ -7,6 +7,11 @@ import gzip
 import hashlib
 
 
+def packed(data: bytes) -> str:
+    """Return bytes as packed.js unpacks them: gzip in base64; the same bytes give the same text."""
+    return base64.b64encode(gzip.compress(data, compresslevel=9, mtime=0)).decode("ascii")
+
+
 class Blobs:
     """What a page holds besides its JSON."""
 
@@ -17,8 +22,7 @@ class Blobs:
         """Return the key of some bytes; the same bytes are held once, and give the same text."""
         key = hashlib.blake2b(data, digest_size=8).hexdigest()
         if key not in self.texts:
-            packed = gzip.compress(data, compresslevel=9, mtime=0)
-            self.texts[key] = base64.b64encode(packed).decode("ascii")
+            self.texts[key] = packed(data)
         return key
 
     @property

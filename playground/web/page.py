@@ -10,7 +10,6 @@ run the rest.
 from __future__ import annotations
 
 import base64
-import gzip
 import hashlib
 import json
 from collections.abc import Mapping
@@ -21,6 +20,7 @@ from typing import Any
 
 from playground._version import __version__
 from playground.markup import Markup, tag
+from playground.web.blobs import packed
 
 _ICON = "data:,"  # or a browser would ask for favicon.ico
 _POSTER_STYLE = "img{max-width:100%;height:auto}"
@@ -73,11 +73,11 @@ def page_html(
         tag("noscript", tag("p", _SCRIPTS_OFF)),
         tag("p", _TOO_OLD, id="playground-old", hidden=True),
         "\n",
-        tag("script", Markup(_json(packed(page))), type="application/json", id="playground-page"),
+        tag("script", Markup(_json(page_file(page))), type="application/json", id="playground-page"),
         "\n",
-        tag("script", _packed(style), type="application/gzip", id="playground-style"),
+        tag("script", packed(style.encode()), type="application/gzip", id="playground-style"),
         "\n",
-        tag("script", _packed(script), type="application/gzip", id="playground-runtime"),
+        tag("script", packed(script.encode()), type="application/gzip", id="playground-runtime"),
         "\n",
         tag("script", Markup(_loader())),
     )
@@ -85,11 +85,11 @@ def page_html(
     return f"<!doctype html>\n{html}\n"
 
 
-def packed(page: Mapping[str, Any]) -> dict[str, Any]:
+def page_file(page: Mapping[str, Any]) -> dict[str, Any]:
     """Return a page's data with all but its bytes packed: see ``PageFile`` in schema.js."""
     shared = {name: value for name, value in page["shared"].items() if name != "blobs"}
     text = json.dumps({**page, "shared": shared}, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return {"format": page["format"], "packed": _packed(text), "blobs": page["shared"]["blobs"]}
+    return {"format": page["format"], "packed": packed(text.encode()), "blobs": page["shared"]["blobs"]}
 
 
 def policy_of(script: str, style: str) -> str:
@@ -107,11 +107,6 @@ def policy_of(script: str, style: str) -> str:
 @cache
 def _loader() -> str:
     return (Path(__file__).parent / "loader.js").read_text(encoding="utf-8")
-
-
-def _packed(text: str) -> str:
-    """Return a text as gzip in base64."""
-    return base64.b64encode(gzip.compress(text.encode(), compresslevel=9, mtime=0)).decode("ascii")
 
 
 def _json(value: Mapping[str, Any]) -> str:

@@ -13,7 +13,7 @@ from playground.lessons import model
 from playground.lessons.book.blocks import Setting
 from playground.lessons.book.build import prepare, write_book
 from playground.lessons.book.live_blocks import beginning, lesson_data
-from playground.lessons.book.live_files import FEW, live_book, packed
+from playground.lessons.book.live_files import FEW, live_book, packed_json
 from playground.lessons.book.live_scenes import Library, Scenes
 from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import pictures_in
@@ -174,7 +174,7 @@ def test_the_scripts_hold_the_data(book, lesson):
     name, found = held(book / "data/small.js")
     found = json.loads(found)
     assert name == "data/small" and found.pop("blobs") == {} and found == data
-    assert packed(data) == packed(json.loads(json.dumps(data)))
+    assert packed_json(data) == packed_json(json.loads(json.dumps(data)))
 
 
 def test_nothing_says_where_it_was_made(book):

@@ -3,7 +3,8 @@
 import { createEditor } from "../../playground/web/runtime/editor.js";
 import { createEngine } from "../../playground/web/runtime/engine.js";
 import { packOf, versionFiles } from "../../playground/web/runtime/my_version.js";
-import { createRecovery, finished } from "../../playground/web/runtime/recovery.js";
+import { createRecovery } from "../../playground/web/runtime/recovery.js";
+import { finished } from "../../playground/web/runtime/waiting.js";
 import { zip } from "../../playground/web/runtime/zip.js";
 
 /** Open a page's first sketch with an editor below its picture. */

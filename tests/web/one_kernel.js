@@ -2,7 +2,7 @@
 
 import { complaints } from "../../playground/web/runtime/complaints.js";
 import { libraryOf } from "../../playground/web/runtime/name_suggestions.js";
-import { finished } from "../../playground/web/runtime/pace.js";
+import { finished } from "../../playground/web/runtime/waiting.js";
 
 export { createEditor } from "../../playground/web/runtime/editor.js";
 export { createGuard, keyOf } from "../../playground/web/runtime/last_good.js";

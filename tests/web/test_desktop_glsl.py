@@ -50,6 +50,14 @@ void main() {{
 """
 
 
+@pytest.mark.parametrize("name", ["constructor", "toString", "hasOwnProperty"])
+def test_a_call_by_a_name_that_javascript_gives_every_object_is_not_known(node: Node, name: str):
+    macro = f"#define {name}2(a) {name}(a)\n"
+    text = f"{macro}void main() {{ int a = {name}(1) * 2; float b = 2 * 1.0; }}\n"
+    found = node.call("conversions.js", "withConversions", text)
+    assert found == text.replace("2 * 1.0", "2.0 * 1.0")
+
+
 @pytest.mark.parametrize("written", CONVERSIONS)
 def test_a_conversion_is_written_out(node: Node, written: str):
     found = node.call("conversions.js", "withConversions", FUNCTION.format(written))

@@ -193,6 +193,24 @@ def test_a_text_that_no_file_of_the_sketch_reads_is_said_to_be_aside(node: Node,
     assert opened(path, tmp_path).name == "flood"
 
 
+def test_data_that_are_too_large_for_a_page_are_listed_in_the_zip(node: Node):
+    script = """async (page, leftOut, load) => {
+        const { packOf, versionFiles } = await load("my_version.js"), { shared, sketches: [sketch] } = page;
+        const pack = { ...await packOf(sketch, shared), leftOut };
+        const made = { texts: {}, values: new Map(), rows: new Map(), camera: null, time: 0 };
+        const given = { ...made, steps: new Map(), frame: [9, 9] };
+        const { files } = await versionFiles(pack, sketch, shared, given);
+        return files.get(`${pack.folder}/settings.txt`) ?? "";
+    }"""
+    page = page_of("diamond_square")
+    assert node.run(script, page, []) == ""
+    assert node.run(script, page, ["films/long.mp4", "b.tif"]).split("\n")[1:] == [
+        "films/long.mp4",
+        "b.tif",
+        "",
+    ]
+
+
 @pytest.mark.parametrize(
     ("name", "file", "old", "new"),
     [

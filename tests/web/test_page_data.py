@@ -18,7 +18,7 @@ from playground.sketch import expressions
 from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
-from playground.web.page import packed
+from playground.web.page import page_file
 from playground.web.page_data import page_data
 from playground.web.plan import KINDS
 
@@ -62,7 +62,7 @@ def test_it_is_json_and_says_nothing_of_this_machine(name: str):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_its_plan_and_its_texts_are_small(name: str):
-    assert len(packed(written(name))["packed"]) < 96 * 1024
+    assert len(page_file(written(name))["packed"]) < 96 * 1024
 
 
 @pytest.mark.parametrize("name", NAMES)

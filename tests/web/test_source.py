@@ -44,6 +44,13 @@ def test_every_program_of_the_library(node: Node):
         assert flat["names"] == kernel.source.names, kernel.name
 
 
+@pytest.mark.parametrize("name", ["constructor", "toString", "__proto__"])
+def test_a_name_that_javascript_gives_every_object_is_no_file(node: Node, name: str):
+    shared = {"files": {"./a.glsl": f'\n#include "{name}"\n'}, "includes": {"./a.glsl": {}}}
+    (found,) = node.run(MANY, [shared, ["./a.glsl"], {}])
+    assert found == {"error": f"no file '{name}' to include", "file": "./a.glsl", "line": 2}
+
+
 PARTS = [
     *("a", "b1", "x = 1;", ";", "(", ")", ",", "{", "}", " ", "  ", "\t", "\n", "\n", "\n"),
     *("/*", "*/", "//", "/", "*", '"', "\\", "\\\n", "\\\n", "'", "#", "##"),

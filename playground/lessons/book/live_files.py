@@ -11,8 +11,6 @@ holds gzip in base64.
 
 from __future__ import annotations
 
-import base64
-import gzip
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -21,11 +19,11 @@ from typing import Any
 from playground.lessons.book.live_blocks import block_data, lesson_data
 from playground.lessons.book.live_scenes import Library, Scenes
 from playground.lessons.model import Lesson, Named
+from playground.web.blobs import packed
 from playground.web.bundle import read_bundle
 
 BUNDLES = {"live.js": "book.js", "live.css": "book.css"}
 """File of a book → bundle of the runtime."""
-
 
 FEW = 4096
 """Letters of bytes that a lesson's own script holds, so that a book has no hundred small files."""
@@ -59,16 +57,16 @@ def widget_page(block: Named) -> str:
     if found is None:
         return ""
     shared = {**library.data(), "blobs": library.shared.blobs.texts}
-    return packed({"block": found, "sketches": scenes.sketches, "library": shared})
+    return packed_json({"block": found, "sketches": scenes.sketches, "library": shared})
 
 
 def _scripts(data: dict[str, dict[str, Any]], library: Library) -> Iterator[tuple[str, str]]:
-    yield "glsl.js", script("glsl", packed(library.data()))
+    yield "glsl.js", script("glsl", packed_json(library.data()))
     texts = library.shared.blobs.texts
     few = {key for key, text in texts.items() if len(text) <= FEW}
     for lesson, found in data.items():
         blobs = {key: texts[key] for key in sorted(few & blobs_in(found, library))}
-        yield f"data/{lesson}.js", script(f"data/{lesson}", packed({**found, "blobs": blobs}))
+        yield f"data/{lesson}.js", script(f"data/{lesson}", packed_json({**found, "blobs": blobs}))
     for key in texts.keys() - few:
         yield f"data/{key}.js", script(f"data/{key}", texts[key])
 
@@ -85,10 +83,9 @@ def blobs_in(data: Any, library: Library) -> set[str]:
     return {image["blob"]} if image else {data} & library.shared.blobs.texts.keys()
 
 
-def packed(data: Any) -> str:
-    """Return data as JSON, gzip in base64; the same data give the same text."""
-    text = json.dumps(data, separators=(",", ":"), ensure_ascii=False)
-    return base64.b64encode(gzip.compress(text.encode(), compresslevel=9, mtime=0)).decode("ascii")
+def packed_json(data: Any) -> str:
+    """Return data as packed JSON; the same data give the same text."""
+    return packed(json.dumps(data, separators=(",", ":"), ensure_ascii=False).encode())
 
 
 def script(name: str, text: str) -> str:

@@ -12,15 +12,20 @@ export function valueAt(row, values, place) {
   const held = clamp(place, 0, values.length - 1), low = Math.floor(held), share = held - low;
   const from = values[low], to = values[Math.min(low + 1, values.length - 1)];
   if (share === 0) return from;
-  const mixed = (/** @type {any} */ a, /** @type {any} */ b) => (isWhole(row.type) ? Math.round(a + (b - a) * share) : a + (b - a) * share);
-  return Array.isArray(from) && Array.isArray(to) ? from.map((part, at) => mixed(part, to[at])) : mixed(from, to);
+  const mixed = (/** @type {any} */ a, /** @type {any} */ b) => {
+    const between = a + (b - a) * share;
+    return isWhole(row.type) ? Math.round(between) : between;
+  };
+  if (!Array.isArray(from) || !Array.isArray(to)) return mixed(from, to);
+  return from.map((part, at) => mixed(part, to[at]));
 }
 
 /** A value as a reader sees it: with its unit, in the places that suit the parameter.
  *  @param {Shown} row @param {Value} value @param {boolean} comma */
 export function spelled(row, value, comma) {
   if (row.widget === "colour" || typeof value === "boolean") return write(row, value);
-  const numbers = (Array.isArray(value) ? value : [value]).map((number, part) => written(row, Number(number), part));
+  const all = Array.isArray(value) ? value : [value];
+  const numbers = all.map((number, part) => written(row, Number(number), part));
   const text = numbers.join("; ") + unitOf(row);
   return comma ? text.replaceAll(".", ",") : text;
 }

@@ -12,7 +12,10 @@ import { fill } from "./words.js";
 /** @typedef {import("./book_figure.js").Room} Room */
 
 /** @type {Object<string, (room: Room) => Promise<unknown>>} */
-const KINDS = { figure: liveFigure, steps: liveSteps, slider: liveSlider, compare: liveCompare, break: liveBreak, exercise: liveExercise };
+const KINDS = {
+  figure: liveFigure, steps: liveSteps, slider: liveSlider, compare: liveCompare, break: liveBreak,
+  exercise: liveExercise,
+};
 
 const BYTES = 192 * 2 ** 20; // of textures for all figures of a page: those seen last keep theirs
 
@@ -29,7 +32,8 @@ async function engineFor(library) {
 }
 
 /** Start a block of a lesson in the place of its still pictures.
- *  @param {HTMLElement} root  with `data-block`, the block's name @param {string} folder @param {string} lesson */
+ *  @param {HTMLElement} root   with `data-block`, the block's name
+ *  @param {string} folder @param {string} lesson */
 export async function start(root, folder, lesson) {
   const language = document.documentElement.lang, words = bookWords(language);
   const still = /** @type {HTMLElement} */ (root.querySelector(".still"));
@@ -40,19 +44,22 @@ export async function start(root, folder, lesson) {
     const [library, data] = await Promise.all([book.library(), book.lesson(lesson)]);
     Object.assign(library.blobs, data.blobs);
     const block = data.blocks[root.dataset.block ?? ""];
-    const sketch = (/** @type {import("./book_data.js").Setting} */ setting) => settled(data.sketches[setting.sketch], setting, library.kernels);
+    /** @param {import("./book_data.js").Setting} setting */
+    const sketch = (setting) => settled(data.sketches[setting.sketch], setting, library.kernels);
     const sketches = block.scenes.map(sketch), begin = block.begin ? sketch(block.begin) : null;
     await book.need(library, [...sketches, ...(begin ? [begin] : [])]);
     const engine = await (opened ??= engineFor(library));
     still.after(host);
     root.classList.add("is-live");
-    await KINDS[block.kind]({ host, still, block, sketches, begin, engine, words, comma: /^fr/.test(language) });
+    const comma = /^fr/.test(language);
+    await KINDS[block.kind]({ host, still, block, sketches, begin, engine, words, comma });
   } catch (error) {
     opened &&= opened.catch(() => (opened = null, Promise.reject(error)));
     host.remove();
     root.classList.remove("is-live");
     const { code = "", message = String(error) } = /** @type {any} */ (error ?? {});
-    const text = code === "no-webgl2" ? words.noWebGL : fill(message.endsWith(".js") ? words.missing : words.lacks, { reason: message });
+    const sentence = message.endsWith(".js") ? words.missing : words.lacks;
+    const text = code === "no-webgl2" ? words.noWebGL : fill(sentence, { reason: message });
     still.after(make("p", { className: "live-failed", role: "status" }, text));
   }
 }

@@ -3,7 +3,7 @@
 // A page that is opened from disk may fetch nothing, but it may add scripts. Each of the book's says
 //     (globalThis.bookData ??= {})["NAME"] = "gzip in base64";
 
-import { unpacked } from "./images.js";
+import { unpackedJson } from "./packed.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./schema.js").Kernel} Kernel */
@@ -40,7 +40,8 @@ import { unpacked } from "./images.js";
  *  @property {Setting} [begin]         of an exercise */
 
 /** @typedef {Omit<Sketch, "kernels"> & {kernels: number[]}} Stored  its kernels are numbers in the book */
-/** @typedef {{sketches: Stored[], blocks: Object<string, LiveBlock>, blobs: Object<string, string>}} LessonData */
+/** @typedef {{sketches: Stored[], blocks: Object<string, LiveBlock>,
+ *             blobs: Object<string, string>}} LessonData */
 /** @typedef {Shared & {kernels: Kernel[]}} Library */
 
 /** A scene as a sketch of its own.
@@ -58,13 +59,13 @@ export function settled(base, setting, kernels) {
 
 /** The keys of the bytes that a sketch needs: what its sources give, and its images.
  *  @param {Sketch} sketch @param {Pick<Shared, "images">} shared @returns {string[]} */
-export function blobsOf(sketch, shared) {
-  const texels = sketch.nodes.flatMap((node) => ("data" in node && node.data ? node.data.map(({ blob }) => blob) : []));
+function blobsOf(sketch, shared) {
+  const made = sketch.nodes.flatMap((node) => ("data" in node && node.data ? node.data : []));
   const images = Object.values(sketch.values).flatMap((value) => {
     const image = typeof value === "string" && Object.hasOwn(shared.images, value) && shared.images[value];
     return image ? [image.blob] : [];
   });
-  return [...new Set([...texels, ...images])];
+  return [...new Set([...made.map(({ blob }) => blob), ...images])];
 }
 
 /** Read the scripts of a book; each is loaded once. @param {string} folder  of the book, from the page */
@@ -100,7 +101,7 @@ export function openBook(folder) {
 
   /** @param {string} name */
   async function json(name) {
-    if (!parsed.has(name)) parsed.set(name, text(name).then(unpacked).then((bytes) => JSON.parse(new TextDecoder().decode(bytes))));
+    if (!parsed.has(name)) parsed.set(name, text(name).then(unpackedJson));
     const found = /** @type {Promise<any>} */ (parsed.get(name));
     found.catch(() => parsed.delete(name));
     return found;
@@ -115,7 +116,8 @@ export function openBook(folder) {
     },
     /** @param {string} name @returns {Promise<LessonData>} */
     lesson: (name) => json(`data/${name}`),
-    /** Load the bytes that sketches need into what they share, but for those that are there. @param {Library} library @param {Sketch[]} sketches */
+    /** Load the bytes that sketches need into what they share, but for those that are there.
+     *  @param {Library} library @param {Sketch[]} sketches */
     async need(library, sketches) {
       const keys = new Set(sketches.flatMap((sketch) => blobsOf(sketch, library)));
       await Promise.all([...keys].map(async (key) => { library.blobs[key] ??= await text(`data/${key}`); }));

@@ -27,14 +27,16 @@ const ARROWS = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, -STE
 
 /** Make a live picture in an element; the still picture stands there until it is drawn.
  *  @param {Room} room @param {HTMLElement} host @param {Session} session
- *  @param {{poster?: HTMLImageElement | null, opened?: (player: any) => void, drawn?: () => void}} [options] */
+ *  @param {{poster?: HTMLImageElement | null, opened?: (player: any) => void,
+ *           drawn?: () => void}} [options] */
 export function makePicture({ engine, words }, host, session, { poster = null, opened, drawn } = {}) {
   const box = make("div", { className: "picture" }), [width, height] = session.sketch.frame;
   box.style.aspectRatio = `${width} / ${height}`;
   host.append(box);
   const still = poster && /** @type {HTMLImageElement} */ (poster.cloneNode());
   still?.removeAttribute("loading");
-  const figure = createFigure(box, engine, { sketches: session.sketches }, { session, words, poster: still, inText: true, opened, drawn });
+  const how = { session, words, poster: still, inText: true, opened, drawn };
+  const figure = createFigure(box, engine, { sketches: session.sketches }, how);
   figure.canvas.addEventListener("keydown", (event) => {
     const arrow = ARROWS[event.key], zoom = { "+": 1, "=": 1, "-": -1 }[event.key];
     if (event.ctrlKey || event.altKey || event.metaKey || !(arrow || zoom || event.key === "r")) return;
@@ -72,10 +74,13 @@ export function makeRows(session, paths, words) {
 }
 
 /** A slider with buttons to both sides and what it says; `steps` of the buttons.
- *  @param {{label: string, min: number, max: number, step: number | "any", value: number, words: Object<string, string>,
+ *  @param {{label: string, min: number, max: number, step: number | "any", value: number,
+ *           words: Object<string, string>,
  *           said: (value: number) => string, changed: (value: number) => void}} options */
 export function makeSlider({ label, min, max, step, value, words, said, changed }) {
-  const range = make("input", { type: "range", min: String(min), max: String(max), step: String(step), value: String(value), "aria-label": label });
+  const [least, most, each, first] = [min, max, step, value].map(String);
+  const range = make("input",
+    { type: "range", min: least, max: most, step: each, value: first, "aria-label": label });
   const output = make("output");
   const show = () => {
     const now = +range.value, text = said(now);
@@ -91,8 +96,10 @@ export function makeSlider({ label, min, max, step, value, words, said, changed 
     changed(+range.value);
   };
   // Between two listed values, a button goes to the next of them.
-  const back = button("‹", () => go(Math.ceil(+range.value) - 1), { title: words.backward, "aria-label": words.backward });
-  const on = button("›", () => go(Math.floor(+range.value) + 1), { title: words.forward, "aria-label": words.forward });
+  /** @param {string} text @param {string} title @param {() => void} act */
+  const arrow = (text, title, act) => button(text, act, { title, "aria-label": title });
+  const back = arrow("‹", words.backward, () => go(Math.ceil(+range.value) - 1));
+  const on = arrow("›", words.forward, () => go(Math.floor(+range.value) + 1));
   range.oninput = () => { show(); changed(+range.value); };
   show();
   return { element: make("div", { className: "controls" }, back, range, on, output), go };
@@ -101,7 +108,11 @@ export function makeSlider({ label, min, max, step, value, words, said, changed 
 /** What sets everything back, the camera too. @param {Session} session @param {Object<string, string>} words
  *  @param {() => void} [more] */
 export const makeReset = (session, words, more = () => {}) =>
-  button(words.reset, () => { session.resetAll(); session.setCamera(null); more(); }, { className: "reset-all" });
+  button(words.reset, () => {
+    session.resetAll();
+    session.setCamera(null);
+    more();
+  }, { className: "reset-all" });
 
 /** A figure with its sliders. @param {Room} room */
 export function liveFigure(room) {

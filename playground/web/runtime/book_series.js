@@ -67,7 +67,8 @@ export function liveSteps(room) {
 
 /** A parameter, at its listed values and between them. @param {Room} room */
 export function liveSlider(room) {
-  const { host, still, block, sketches, words, comma } = room, frames = framesOf(still), first = shownOf(frames);
+  const { host, still, block, sketches, words, comma } = room;
+  const frames = framesOf(still), first = shownOf(frames);
   const labels = frames.map((frame) => frame.querySelector("b")?.textContent ?? "");
   const { row: path, values } = block, name = still.querySelector("ol")?.dataset.name ?? "";
   const session = createSession(path ? [sketches[first]] : sketches, path ? 0 : first);
@@ -75,7 +76,8 @@ export function liveSlider(room) {
   const figure = makePicture(room, host, session, { poster: frames[first].querySelector("img") });
   const slider = makeSlider({
     label: name, min: 0, max: labels.length - 1, step: row ? "any" : 1, value: first, words,
-    said: (at) => (Number.isInteger(at) || !row || !values ? labels[Math.round(at)] : spelled(row, valueAt(row, values, at), comma)),
+    said: (at) => (Number.isInteger(at) || !row || !values
+      ? labels[Math.round(at)] : spelled(row, valueAt(row, values, at), comma)),
     changed(at) {
       if (row && values) session.set(row.path, valueAt(row, values, at));
       else session.choose(at);
@@ -86,7 +88,10 @@ export function liveSlider(room) {
 }
 
 /** @param {Sketch} one @param {Sketch} other */
-const seenAlike = (one, other) => JSON.stringify([one.camera, one.terrain.extent]) === JSON.stringify([other.camera, other.terrain.extent]);
+const seenAlike = (one, other) => {
+  const [first, second] = [one, other].map(({ camera, terrain }) => JSON.stringify([camera, terrain.extent]));
+  return first === second;
+};
 
 /** Move the cameras of sessions together. @param {Session[]} sessions */
 function shareCamera(sessions) {
@@ -107,7 +112,8 @@ export function liveCompare(room) {
   const sessions = sketches.map((sketch) => createSession([sketch]));
   const alike = sketches.every((sketch) => seenAlike(sketch, sketches[0]));
   if (alike) shareCamera(sessions);
-  const same = sketches.every(({ frame }) => frame[0] * sketches[0].frame[1] === frame[1] * sketches[0].frame[0]);
+  const [wide, high] = sketches[0].frame;
+  const same = sketches.every(({ frame }) => frame[0] * high === frame[1] * wide);
   const swiped = sketches.length === 2 && same;
   const box = make("div", { className: swiped ? "sides swiped" : "sides" });
   host.append(box);
@@ -121,7 +127,8 @@ export function liveCompare(room) {
   });
   if (swiped) {
     const at = (/** @type {number} */ share) => box.style.setProperty("--at", `${share}%`);
-    const range = make("input", { type: "range", min: "0", max: "100", value: "50", "aria-label": words.swipe });
+    const range = make("input",
+      { type: "range", min: "0", max: "100", value: "50", "aria-label": words.swipe });
     range.oninput = () => at(+range.value);
     at(50);
     host.append(make("div", { className: "controls" }, range));

@@ -1,4 +1,4 @@
-// book_tasks.js -- what a reader does in a book: repair a broken shader, set an exercise's parameters; both are checked.
+// book_tasks.js -- what a reader does in a book, checked: repairs a broken shader, solves an exercise.
 
 import { makePicture, makeReset, makeRows } from "./book_figure.js";
 import { createCheck } from "./picture_check.js";
@@ -41,14 +41,17 @@ export async function liveBreak(room) {
   let timer = 0, number = 0;
   /** @type {Promise<unknown>} */
   let work = Promise.resolve();
-  const figure = makePicture(room, host, session, { poster: still.querySelector("img"), opened: (made) => { player = made; } });
+  const opened = (/** @type {any} */ made) => { player = made; };
+  const figure = makePicture(room, host, session, { poster: still.querySelector("img"), opened });
   const editor = make("div", { className: "editor" });
   host.append(editor);
   const field = createCodeField(editor, { label: words.lines, hint: words.keys, onInput: typed });
-  const status = make("p", { className: "editor-status", role: "status" }), problems = make("ol", { className: "editor-problems" });
+  const status = make("p", { className: "editor-status", role: "status" });
+  const problems = make("ol", { className: "editor-problems" });
   const verdict = makeVerdict(host);
   editor.append(status, problems);
-  host.append(make("div", { className: "buttons" }, button(words.restore, () => field.replace(broken)), makeReset(session, words)));
+  const restore = button(words.restore, () => field.replace(broken));
+  host.append(make("div", { className: "buttons" }, restore, makeReset(session, words)));
   field.open(broken, words.lines, broken);
   editor.style.setProperty("--lines", String(broken.split("\n").length));
   const check = await createCheck(engine, sketches[0], session.state());
@@ -81,7 +84,8 @@ export async function liveBreak(room) {
 
   /** @param {{file: string, line: number, message: string}[]} errors */
   function tell(errors) {
-    const above = block.first ?? 0, known = [...new Map(errors.map((one) => [`${one.line} ${one.message}`, one])).values()];
+    const above = block.first ?? 0;
+    const known = [...new Map(errors.map((one) => [`${one.line} ${one.message}`, one])).values()];
     const here = known.filter((one) => one.file === file && one.line > above);
     status.textContent = known.length ? words.wrong : "";
     status.classList.toggle("wrong", known.length > 0);
@@ -98,11 +102,13 @@ export async function liveBreak(room) {
 /** An exercise: from its beginning to the solution's picture; without a beginning, that picture.
  *  @param {Room} room */
 export async function liveExercise(room) {
-  const { host, still, block, sketches, begin, engine, words } = room, session = createSession([begin ?? sketches[0]]);
+  const { host, still, block, sketches, begin, engine, words } = room;
+  const session = createSession([begin ?? sketches[0]]);
   const figure = makePicture(room, host, session, { poster: still.querySelector("img") });
   host.append(makeRows(session, block.rows ?? [], words));
   if (begin) {
-    const verdict = makeVerdict(host), check = await createCheck(engine, sketches[0], createSession(sketches).state());
+    const verdict = makeVerdict(host);
+    const check = await createCheck(engine, sketches[0], createSession(sketches).state());
     let timer = 0;
     session.follow((news) => {
       if (news !== "values") return;

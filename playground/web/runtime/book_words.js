@@ -49,6 +49,5 @@ const FRENCH = {
 };
 
 /** The words of a page's figures. @param {string} language */
-export const bookWords = (language) => ({ ...wordsOf(language), ...(/^fr\b/i.test(language) ? FRENCH : ENGLISH) });
-
-export const TABLES = { ENGLISH, FRENCH };
+export const bookWords = (language) =>
+  ({ ...wordsOf(language), ...(/^fr\b/i.test(language) ? FRENCH : ENGLISH) });

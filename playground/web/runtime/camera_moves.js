@@ -7,7 +7,7 @@ import { clamp } from "./numbers.js";
 /** @typedef {import("./camera.js").Eye} Eye */
 
 /** [degrees] that a drag over the picture's whole height turns the terrain. */
-export const HALF_TURN = 180;
+const HALF_TURN = 180;
 /** How much nearer one notch of the wheel brings the eye. */
 export const NOTCH = 0.88;
 const WIDEST = 100; // [degrees] that a view is opened to at most

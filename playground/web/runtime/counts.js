@@ -14,7 +14,7 @@ import { numberOf } from "./values.js";
 export function ownNames(kernel, size, values, time, more = {}) {
   const types = new Map(kernel.parameters.map((uniform) => [uniform.name, uniform.type]));
   return (/** @type {string} */ name) => {
-    if (name in more) return more[name];
+    if (Object.hasOwn(more, name)) return more[name];
     if (types.has(name)) return numberOf(/** @type {string} */ (types.get(name)), values[name]);
     if (name === "size.x" || name === "size.y") return BigInt(size[name === "size.x" ? 0 : 1]);
     return name === "time" ? time : name === "frames" ? BigInt(framesAt(time)) : undefined;

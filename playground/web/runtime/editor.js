@@ -2,9 +2,10 @@
 
 import { createCodeField } from "./code_field.js";
 import { button, make } from "./dom.js";
-import { EDITOR_WORDS, worded } from "./editor_words.js";
+import { EDITOR_WORDS } from "./editor_words.js";
 import { notices } from "./notices.js";
 import { fileGroups } from "./sketch_files.js";
+import { fill } from "./words.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./schema.js").Shared} Shared */
@@ -70,7 +71,7 @@ export function createEditor(host, player, options = {}) {
   function shownName(name) {
     const plain = name.replace(/^\.\//, "");
     const key = problems.get(name)?.length ? "broken" : isEdited(name) ? "edited" : "";
-    return key ? worded(words[key], { name: plain }) : plain;
+    return key ? fill(words[key], { name: plain }) : plain;
   }
 
   /** Show a file. @param {string} name */
@@ -79,7 +80,7 @@ export function createEditor(host, player, options = {}) {
     file = name;
     select.value = name;
     field.area.disabled = !name;
-    field.open(textOf(name), worded(words.field, { name: name.replace(/^\.\//, "") }), original(name));
+    field.open(textOf(name), fill(words.field, { name: name.replace(/^\.\//, "") }), original(name));
     tell();
   }
 
@@ -126,7 +127,7 @@ export function createEditor(host, player, options = {}) {
     tell();
     if (!all().length && isEdited(file)) {
       const time = Math.round(performance.now() - start);
-      status.textContent = programs ? worded(words.compiled, { time }) : words.unused;
+      status.textContent = programs ? fill(words.compiled, { time }) : words.unused;
     }
   }
 
@@ -150,13 +151,13 @@ export function createEditor(host, player, options = {}) {
     field.mark(new Map(here.map((one) => [one.line, one.message])));
     list.replaceChildren(...now.map((one) => {
       const plain = one.file.replace(/^\.\//, "");
-      const text = worded(one.line ? words.place : words.placeless, { ...one, file: plain });
+      const text = fill(one.line ? words.place : words.placeless, { ...one, file: plain });
       return make("li", {}, button(text, () => go(one)));
     }));
     const told = drafts.has(file) ? notices(original(file), textOf(file)) : [];
     said.replaceChildren(...told.map(({ key, names }) =>
-      make("li", {}, worded(words[key], { names: names.map((name) => `\u2018${name}\u2019`).join(", ") }))));
-    status.textContent = count > 1 ? worded(words.problems, { count }) : count ? words.problem
+      make("li", {}, fill(words[key], { names: names.map((name) => `\u2018${name}\u2019`).join(", ") }))));
+    status.textContent = count > 1 ? fill(words.problems, { count }) : count ? words.problem
       : isEdited(file) ? "" : words.unedited;
     status.classList.toggle("wrong", count > 0);
     resetOne.disabled = !isEdited(file);

@@ -57,8 +57,3 @@ export const EDITOR_WORDS = {
   tryAgain: "Open the text that was tried",
   forget: "Forget it",
 };
-
-/** Fill a sentence's places, as {name}.
- *  @param {string} sentence @param {Object<string, string | number>} [given] */
-export const worded = (sentence, given = {}) =>
-  sentence.replace(/\{(\w+)\}/g, (_, name) => String(given[name] ?? ""));

@@ -1,14 +1,12 @@
-// execution.js -- runs the passes of one plan in order: known results are taken, stale ones computed,
-// loops iterate.
+// execution.js -- runs the passes of one plan in order: takes known results, computes stale ones, iterates.
 //
 // What an iteration of a loop computes belongs to the loop until its next iteration is done; all else
-// belongs to
-// the cache. A pass inside a loop that does not change with it runs once.
+// belongs to the cache. A pass inside a loop that does not change with it runs once.
 
 import { failure } from "./context.js";
 import { isSize } from "./binder.js";
 import { texelsOf } from "./formats.js";
-import { isLoop, stepsOf } from "./plan_nodes.js";
+import { isLoop, readWithLevels, stepsOf } from "./plan_nodes.js";
 import { continuedOf } from "./staleness.js";
 
 /** @typedef {import("./planner.js").Plan} Plan */
@@ -41,32 +39,6 @@ import { continuedOf } from "./staleness.js";
 
 /** A generator of pieces of work. @template T
  *  @typedef {Generator<any, T, boolean | undefined>} Working */
-
-/** Return which outputs are read with levels, as "path:output". @param {PlanNode[]} nodes */
-export const readWithLevels = (nodes) => {
-  /** @type {Set<string>} */
-  const found = new Set();
-  /** @type {Map<string, [Source | null, Source]>} */
-  const fed = new Map();
-  /** @param {Source | null} source */
-  const add = (source) => {
-    if (!source) return;
-    if ("path" in source) found.add(`${source.path}:${source.output}`);
-    else fed.get(`${source.loop} ${source.name}`)?.forEach(add);
-  };
-  /** @param {PlanNode} node */
-  const look = (node) => {
-    if (isLoop(node)) {
-      for (const [name, first, ref] of node.feedback) fed.set(`${node.path} ${name}`, [first, ref]);
-      node.body.forEach(look);
-      return;
-    }
-    const tall = node.kernel.inputs.filter(({ sampling }) => sampling.mipmap).map(({ name }) => name);
-    if (tall.length) for (const [name, source] of node.inputs) if (tall.includes(name)) add(source);
-  };
-  nodes.forEach(look);
-  return found;
-};
 
 /** @param {Plan} plan @param {PlanNode[]} nodes what to run of it @param {Around} around */
 export const createExecution = (plan, nodes, around) => {

@@ -17,7 +17,7 @@ const TWICE = 300; // [ms] between two taps
 const NEAR = 25; // [CSS pixels]
 
 /** @param {WheelEvent} event @returns {number} notches forward */
-export function notchesOf(event) {
+function notchesOf(event) {
   const lines =
     event.deltaMode === 1
       ? event.deltaY / LINES

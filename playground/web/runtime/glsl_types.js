@@ -76,7 +76,7 @@ export function takesFloats(name, types) {
  *  @param {string} name @param {Type[]} types of its arguments @returns {Type} */
 export function givenBy(name, types) {
   if (WITH_FLOATS.test(name)) return "vec4";
-  if (name in ALWAYS) return ALWAYS[name];
+  if (Object.hasOwn(ALWAYS, name)) return ALWAYS[name];
   const size = Math.max(...types.map(sizeOf), 0);
   if (COMPARING.has(name)) return typeOf("bool", size);
   if (name === "textureSize") return "";

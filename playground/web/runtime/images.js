@@ -1,15 +1,10 @@
 // images.js -- what a page carries as bytes: blobs, and image files as textures.
 
 import { failure } from "./context.js";
+import { unpacked } from "./packed.js";
 
 /** @typedef {ReturnType<typeof createImages>} Images */
 /** @typedef {import("./textures.js").Texture} Texture */
-
-/** Return the bytes of a blob: gzip in base64. @param {string} text @returns {Promise<ArrayBuffer>} */
-export const unpacked = async (text) => {
-  const bytes = Uint8Array.from(atob(text), (letter) => letter.charCodeAt(0));
-  return new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).arrayBuffer();
-};
 
 /** @param {import("./textures.js").Textures} textures @param {import("./schema.js").Shared} shared */
 export const createImages = (textures, shared) => {

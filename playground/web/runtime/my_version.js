@@ -1,9 +1,10 @@
 // my_version.js -- the zip of "download my version": a sketch with all that was changed in a page.
 
 import { copiesOf, isReached } from "./library_copies.js";
+import { unpacked, unpackedJson } from "./packed.js";
 import { fill, shotText } from "./toml_fill.js";
 import { shellWord, write } from "./value_text.js";
-import { through, zip } from "./zip.js";
+import { zip } from "./zip.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./schema.js").Shared} Shared */
@@ -30,7 +31,7 @@ const SETTINGS = "settings.txt";
  *  @param {Sketch} sketch @param {Shared} shared @returns {Promise<Pack | null>} */
 export async function packOf(sketch, shared) {
   if (!sketch.pack) return null;
-  return JSON.parse(new TextDecoder().decode(await unpacked(shared.blobs[sketch.pack])));
+  return unpackedJson(shared.blobs[sketch.pack]);
 }
 
 /** Return the files of the zip, by name.
@@ -56,7 +57,8 @@ export async function versionFiles(pack, sketch, shared, made) {
     return fill(pieces, { ...nothing, use: use(place(file)) }).text;
   };
   for (const [name, [kind, key]] of Object.entries(pack.files)) {
-    files.set(name, ofPage(kind) ? written(key) : kind === "blob" ? await unpacked(shared.blobs[key]) : key);
+    const bytes = kind === "blob" ? new Uint8Array(await unpacked(shared.blobs[key])) : null;
+    files.set(name, bytes ?? (ofPage(kind) ? written(key) : key));
   }
   for (const file of copies) files.set(place(file), written(file));
   for (const file of lost) {
@@ -68,7 +70,7 @@ export async function versionFiles(pack, sketch, shared, made) {
     files.set(main, text + shotOf(pack, sketch, made));
     aside = left;
   }
-  if (aside.length || lost.length || (!pack.toml && isAtAnotherTime(made))) {
+  if (aside.length || lost.length || pack.leftOut.length || (!pack.toml && isAtAnotherTime(made))) {
     files.set(SETTINGS, settings(pack, made, aside, lost));
   }
   const manifest = {
@@ -135,10 +137,10 @@ function settings(pack, made, aside, lost) {
   words.push(...steps.map(([path, count]) => `--steps ${shellWord(`${path}=${count}`)}`));
   const lines = words.length ? [`playground render ${pack.main} ${words.join(" ")}`] : [];
   lines.push(...lost.map((file) => `${file}: its text is in the folder page, where no pass reads it`));
-  return `What was changed in the page, and has no place in ${pack.main}:\n\n${lines.join("\n")}\n`;
-}
-
-/** @param {string} base64  of gzip @returns {Promise<Uint8Array>} */
-function unpacked(base64) {
-  return through(Uint8Array.from(atob(base64), (one) => one.charCodeAt(0)), new DecompressionStream("gzip"));
+  const parts = [];
+  if (lines.length) parts.push(`What was changed in the page, and has no place in ${pack.main}:\n`, ...lines);
+  if (pack.leftOut.length) {
+    parts.push("Files that are too large for a page, which the sketch needs here as well:", ...pack.leftOut);
+  }
+  return `${parts.join("\n")}\n`;
 }

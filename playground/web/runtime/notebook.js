@@ -9,12 +9,13 @@ import { liveCompare, liveSlider, liveSteps } from "./book_series.js";
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
-import { unpacked } from "./images.js";
+import { unpackedJson } from "./packed.js";
 import { renderPicture } from "./notebook_picture.js";
 
 /** @typedef {import("./session.js").Session} Session */
 /** @typedef {{get: (name: string) => any, set: (name: string, value: any) => void, save_changes: () => void,
- *             on: (name: string, act: () => void) => void, off: (name: string, act: () => void) => void}} Model */
+ *             on: (name: string, act: () => void) => void,
+ *             off: (name: string, act: () => void) => void}} Model */
 
 const BYTES = 192 * 2 ** 20; // of textures of one figure
 
@@ -50,7 +51,7 @@ function take(session, values) {
     const [path, part] = key.split(":"), row = session.row(path);
     if (!row) continue;
     if (part === undefined) found.set(path, row.type === "bool" ? Boolean(value) : value);
-    else found.set(path, (found.get(path) ?? session.value(path)).map((/** @type {number} */ old, /** @type {number} */ at) => (at === +part ? value : old)));
+    else found.set(path, Object.assign([...(found.get(path) ?? session.value(path))], { [+part]: value }));
   }
   session.setAll(found, "kernel");
 }
@@ -58,7 +59,8 @@ function take(session, values) {
 /** @param {Object<string, number>} one @param {Object<string, number>} other */
 const same = (one, other) => Object.keys(one).every((key) => one[key] === other[key]);
 
-/** Keep the values of the controls and those of the model alike. @param {Model} model @param {HTMLElement} host
+/** Keep the values of the controls and those of the model alike.
+ *  @param {Model} model @param {HTMLElement} host
  *  @param {any} figure  of a figure with sliders @param {number[]} stops  of the controls of a series */
 function bind(model, host, figure, stops) {
   const send = (/** @type {Object<string, number>} */ values) => {
@@ -70,8 +72,13 @@ function bind(model, host, figure, stops) {
   const range = host.querySelector(".controls input[type=range]");
   let receive = () => {};
   if (figure) {
-    figure.session.follow((/** @type {string} */ news) => news === "values" && send(valuesOf(figure.session, model)));
-    receive = () => { if (!same(valuesOf(figure.session, model), model.get("values"))) take(figure.session, model.get("values")); };
+    figure.session.follow((/** @type {string} */ news) => {
+      if (news === "values") send(valuesOf(figure.session, model));
+    });
+    receive = () => {
+      const wanted = model.get("values");
+      if (!same(valuesOf(figure.session, model), wanted)) take(figure.session, wanted);
+    };
   } else if (range && stops.length) {
     const frame = () => Math.max(stops.filter((stop) => stop <= +range.value).length - 1, 0);
     range.addEventListener("input", () => send({ frame: frame() }));
@@ -89,15 +96,18 @@ function bind(model, host, figure, stops) {
 /** Show a live figure. @param {{model: Model, el: HTMLElement}} cell @param {string} url of the picture */
 async function renderLive({ model, el }, url) {
   const language = model.get("language"), words = bookWords(language);
-  const { block, sketches: bases, library } = JSON.parse(new TextDecoder().decode(await unpacked(model.get("page"))));
-  const sketches = block.scenes.map((/** @type {import("./book_data.js").Setting} */ setting) => settled(bases[setting.sketch], setting, library.kernels));
+  const { block, sketches: bases, library } = await unpackedJson(model.get("page"));
+  /** @param {import("./book_data.js").Setting} setting */
+  const sketch = (setting) => settled(bases[setting.sketch], setting, library.kernels);
+  const sketches = block.scenes.map(sketch);
   const engine = createEngine(document.createElement("canvas"), library, { bytes: BYTES });
   engine.canvas.addEventListener("webglcontextrestored", () => engine.restore());
   const host = make("div", { className: "live terrain-figure" }), still = stillOf(model, url);
   el.append(host);
   const comma = /^fr/.test(language);
   const made = await KINDS[block.kind]({ host, still, block, sketches, begin: null, engine, words, comma });
-  const stops = block.kind === "steps" ? block.iterations : block.kind === "slider" ? sketches.map((/** @type {any} */ _, /** @type {number} */ at) => at) : [];
+  const stops = block.kind === "steps" ? block.iterations
+    : block.kind === "slider" ? [...sketches.keys()] : [];
   const unbind = bind(model, host, block.kind === "figure" ? made : null, stops);
   return () => {
     unbind();

@@ -34,7 +34,8 @@ export function renderPicture({ model, el }) {
     url = URL.createObjectURL(new Blob([model.get("picture")], { type: "image/png" }));
     image.src = url;
   };
-  const same = (/** @type {Values} */ one, /** @type {Values} */ other) => Object.keys(one).every((key) => one[key] === other[key]);
+  /** @param {Values} one @param {Values} other */
+  const same = (one, other) => Object.keys(one).every((key) => one[key] === other[key]);
   function send(/** @type {Values} */ values) {
     if (waiting) { next = values; return; }
     if (same(values, model.get("values"))) return; // it would not be sent, and so not be answered
@@ -53,11 +54,13 @@ export function renderPicture({ model, el }) {
 
   for (const control of model.get("controls")) {
     const output = make("output"), input = inputOf(control, model.get("values")[control.key]);
-    const read = () => (control.kind === "checkbox" ? Number(/** @type {any} */ (input).checked) : Number(input.value));
+    const isOn = () => /** @type {any} */ (input).checked;
+    const read = () => Number(control.kind === "checkbox" ? isOn() : input.value);
     const showValue = () => {
       if (control.kind !== "range") return;
       const number = read();
-      output.textContent = control.choices.length ? control.choices[number] : `${+number.toPrecision(6)} ${control.unit}`;
+      const text = `${+number.toPrecision(6)} ${control.unit}`;
+      output.textContent = control.choices.length ? control.choices[number] : text;
     };
     input.addEventListener("input", () => { showValue(); send({ ...current(), [control.key]: read() }); });
     showValue();

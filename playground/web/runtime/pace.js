@@ -10,23 +10,6 @@
 const SHARES = [1 / 16, 1 / 8, 1 / 4];
 const LIMIT = 4; // [s] a picture; drivers of Windows end a draw after 2, browsers a frame after 10
 
-/** Wait until everything drawn so far is done, without holding the page up.
- *  @param {WebGL2RenderingContext} gl
- *  @returns {Promise<void>} */
-export function finished(gl) {
-  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-  gl.flush();
-  return new Promise((resolve) => {
-    const look = () => {
-      if (!fence || gl.isContextLost() || gl.clientWaitSync(fence, 0, 0) !== gl.TIMEOUT_EXPIRED) {
-        gl.deleteSync(fence);
-        resolve();
-      } else setTimeout(look, 4);
-    };
-    look();
-  });
-}
-
 /** Estimate the time of a picture from three that are smaller; the state is as before then. What a picture
  *  needs whatever its size is kept from the first of them, and no part of the time.
  *

@@ -1,10 +1,12 @@
 // page_code.js -- the code of a sketch's page: the editor, what keeps its texts, the version to download.
 
 import { createEditor } from "./editor.js";
-import { EDITOR_WORDS, worded } from "./editor_words.js";
+import { EDITOR_WORDS } from "./editor_words.js";
 import { createGuard, keyOf } from "./last_good.js";
 import { download, packOf, versionFiles } from "./my_version.js";
-import { createRecovery, finished } from "./recovery.js";
+import { createRecovery } from "./recovery.js";
+import { finished } from "./waiting.js";
+import { fill } from "./words.js";
 
 /** @typedef {import("./engine.js").Engine} Engine */
 /** @typedef {import("./player.js").Player} Player */
@@ -79,10 +81,10 @@ export function createCode(engine, host, { words: given, figure }) {
       const { files, aside } = await versionFiles(pack, sketch, shared, made);
       const name = `${pack.folder}-my-version.zip`;
       await download(files, name);
-      const told = worded(broken ? words.withErrors : words.downloaded, { name });
+      const told = fill(broken ? words.withErrors : words.downloaded, { name });
       return aside.length ? `${told}. ${words.valuesAside}` : told;
     } catch (error) {
-      return worded(words.notSaved, { reason: error instanceof Error ? error.message : String(error) });
+      return fill(words.notSaved, { reason: error instanceof Error ? error.message : String(error) });
     }
   }
 

@@ -1,6 +1,6 @@
 // page_file.js -- reads what an HTML file holds of a page: JSON, all but its bytes packed.
 
-import { unpacked } from "./images.js";
+import { unpackedJson } from "./packed.js";
 
 /** @typedef {import("./schema.js").Page} Page */
 /** @typedef {import("./schema.js").PageFile} PageFile */
@@ -11,7 +11,7 @@ export async function readPage(text) {
   const file = JSON.parse(text);
   if (!("packed" in file)) return file;
   /** @type {Page} */
-  const page = JSON.parse(new TextDecoder().decode(await unpacked(file.packed)));
+  const page = await unpackedJson(file.packed);
   page.shared.blobs = file.blobs;
   return page;
 }

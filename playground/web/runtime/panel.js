@@ -13,7 +13,6 @@ import { fill } from "./words.js";
 
 /** @typedef {object} PanelOptions
  *  @property {Object<string, string>} words
- *  @property {Object<string, string>} [labels]       a sketch's label → in the page's language
  *  @property {() => string} link                     the page's address with the values
  *  @property {(text: string) => void} copied         puts a text on the clipboard
  *  @property {(text: string) => void} say
@@ -24,9 +23,8 @@ const FOUND = 150; // rows that a search shows
 const FEW = 12; // inner rows that are all shown at once
 
 /** Make the panel of a session. @param {Session} session @param {PanelOptions} options */
-export function createPanel(session, { words, labels = {}, link, copied, say, fitMap, repeats }) {
-  const named = (/** @type {string} */ text) => (Object.hasOwn(labels, text) ? labels[text] : text);
-  const rows = createRows(session, words, named);
+export function createPanel(session, { words, link, copied, say, fitMap, repeats }) {
+  const rows = createRows(session, words);
 
   // ── the head ───────────────────────────────────────────────────────────────
 
@@ -67,7 +65,7 @@ export function createPanel(session, { words, labels = {}, link, copied, say, fi
     preset.value = "";
     if (!chosen) return;
     session.setAll(Object.entries(chosen.values));
-    say(fill(words.presetChosen, { name: named(chosen.name) }));
+    say(fill(words.presetChosen, { name: chosen.name }));
   };
 
   const list = make("div", { className: "list" }), found = make("div", { className: "list" });
@@ -85,7 +83,7 @@ export function createPanel(session, { words, labels = {}, link, copied, say, fi
     const inside = () =>
       [...grouped(inner, ({ path }) => path.slice(0, path.lastIndexOf(".")))].map(([path, some]) =>
         fold(path.slice(path.indexOf(".") + 1), few, () => rows.groups(some), "inner"));
-    return fold(named(labelOf(pass)), open, () => [
+    return fold(labelOf(pass), open, () => [
       choice ? technique(choice) : null,
       ...rows.groups(outer),
       inner.length ? fold(fill(words.inside, { count: inner.length }), false, inside, "inner") : null,
@@ -115,11 +113,11 @@ export function createPanel(session, { words, labels = {}, link, copied, say, fi
     const { sketch } = session, main = mainRows(sketch.shown), titles = mainLabels(main);
     rows.forget();
     preset.hidden = !sketch.presets.length;
-    const offered = sketch.presets.map(({ name }) => make("option", { value: name }, named(name)));
+    const offered = sketch.presets.map(({ name }) => make("option", { value: name }, name));
     preset.replaceChildren(make("option", { value: "" }, words.preset), ...offered);
     const passes = grouped(sketch.shown, (row) => row.pass);
     for (const { pass } of sketch.choices) if (!passes.has(pass)) passes.set(pass, []);
-    const mine = () => main.map((row) => rows.labelled(row, named(titles.get(row.path) ?? row.label)));
+    const mine = () => main.map((row) => rows.labelled(row, titles.get(row.path) ?? row.label));
     const stopped = Object.keys(sketch.steps).length > 0;
     const isLoop = (/** @type {object} */ node) => "loop" in node;
     const repeated = sketch.kernels.some(({ repeat }) => repeat !== 1) || sketch.nodes.some(isLoop);
@@ -142,11 +140,11 @@ export function createPanel(session, { words, labels = {}, link, copied, say, fi
     const wanted = search.value.toLowerCase().split(/\s+/).filter(Boolean);
     list.hidden = wanted.length > 0;
     rows.forget(found);
-    const label = (/** @type {Shown} */ row) => (row.pass ? named(row.label) : words[row.label]);
+    const label = (/** @type {Shown} */ row) => (row.pass ? row.label : words[row.label]);
     const hits = session.rows().filter((row) => isLike(row, label(row), wanted));
     const passes = wanted.length ? [...grouped(hits.slice(0, FOUND), (row) => row.pass)] : [];
     found.replaceChildren(...passes.flatMap(([pass, items]) => [
-      make("h2", {}, pass ? named(labelOf(pass)) : words.terrain), ...items.map(rows.rowOf),
+      make("h2", {}, pass ? labelOf(pass) : words.terrain), ...items.map(rows.rowOf),
     ]));
     if (wanted.length && !hits.length) found.append(make("p", { className: "none" }, words.noneFound));
   }

@@ -9,9 +9,8 @@ import { grouped } from "./labels.js";
 /** @typedef {import("./session.js").Session} Session */
 /** @typedef {ReturnType<typeof createRows>} Rows */
 
-/** Make the rows of a session. `named` gives a sketch's label in the page's language.
- *  @param {Session} session @param {Object<string, string>} words @param {(text: string) => string} named */
-export function createRows(session, words, named) {
+/** Make the rows of a session. @param {Session} session @param {Object<string, string>} words */
+export function createRows(session, words) {
   /** @type {[Element, () => void][]} what is shown, and what makes it as the session is */
   let shown = [];
 
@@ -23,12 +22,12 @@ export function createRows(session, words, named) {
 
   /** A parameter, or what the terrain has. */
   function rowOf(/** @type {Shown} */ one) {
-    const label = one.pass ? named(one.label) : words[one.label];
+    const label = one.pass ? one.label : words[one.label];
     return labelled(one, label);
   }
 
   function labelled(/** @type {Shown} */ one, /** @type {string} */ label) {
-    const row = makeRow({ ...one, label, parts: one.parts.map(named) }, label, {
+    const row = makeRow({ ...one, label }, label, {
       words,
       changed: (value) => session.set(one.path, value),
       reset: () => session.reset(one.path),
@@ -43,7 +42,7 @@ export function createRows(session, words, named) {
       const { map } = session;
       if (map) session.setMap({ ...map, values: { ...map.values, [one.targets[0]]: value } });
     };
-    const row = makeRow({ ...one, label: named(one.label) }, named(one.label), {
+    const row = makeRow(one, one.label, {
       words, changed: set, reset: () => set(one.value), press: () => {},
     });
     return keep(row.element, () => row.show(session.map?.values[one.targets[0]] ?? one.value));
@@ -54,7 +53,7 @@ export function createRows(session, words, named) {
     const sorted = grouped(items, (row) => row.group), first = sorted.get("") ?? [];
     sorted.delete("");
     const headed = [...sorted].flatMap(([group, inside]) => [
-      make("h3", {}, named(group)), ...inside.map(rowOf),
+      make("h3", {}, group), ...inside.map(rowOf),
     ]);
     return [...first.map(rowOf), ...headed];
   }

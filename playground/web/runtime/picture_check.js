@@ -29,13 +29,14 @@ export function difference(one, other) {
 
 /** Pixels of the pictures that are compared: of the sketch's shape. @param {[number, number]} frame
  *  @returns {[number, number]} */
-export function sizeToCompare([width, height]) {
+function sizeToCompare([width, height]) {
   const scale = Math.min(1, SIDE / Math.max(width, height));
   return [Math.max(Math.round(width * scale), 16), Math.max(Math.round(height * scale), 16)];
 }
 
 /** Compare pictures with that of a sketch as it is; `state` is a session's.
- *  @param {{open: (sketch: Sketch) => any}} engine @param {Sketch} sketch @param {Object<string, any>} state */
+ *  @param {{open: (sketch: Sketch) => any}} engine @param {Sketch} sketch
+ *  @param {Object<string, any>} state */
 export async function createCheck(engine, sketch, state) {
   const player = engine.open(sketch), frame = sizeToCompare(sketch.frame);
   const draw = (/** @type {Object<string, any>} */ wanted) => {
@@ -53,7 +54,8 @@ export async function createCheck(engine, sketch, state) {
       await player.load();
       return difference(draw(wanted), right) <= SHARE;
     },
-    /** Whether a text in place of a file's does; false for one with errors. @param {string} file @param {string} text */
+    /** Whether a text in place of a file's does; false for one with errors.
+     *  @param {string} file @param {string} text */
     async holdsWith(file, text) {
       const { errors } = await player.edit(file, text);
       return !errors.length && difference(draw(state), right) <= SHARE;

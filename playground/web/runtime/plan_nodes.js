@@ -54,3 +54,29 @@ export function needed(nodes, ref) {
     return true;
   }).reverse();
 }
+
+/** Return which outputs are read with levels, as "path:output". @param {PlanNode[]} nodes */
+export const readWithLevels = (nodes) => {
+  /** @type {Set<string>} */
+  const found = new Set();
+  /** @type {Map<string, [Source | null, Source]>} */
+  const fed = new Map();
+  /** @param {Source | null} source */
+  const add = (source) => {
+    if (!source) return;
+    if ("path" in source) found.add(`${source.path}:${source.output}`);
+    else fed.get(`${source.loop} ${source.name}`)?.forEach(add);
+  };
+  /** @param {PlanNode} node */
+  const look = (node) => {
+    if (isLoop(node)) {
+      for (const [name, first, ref] of node.feedback) fed.set(`${node.path} ${name}`, [first, ref]);
+      node.body.forEach(look);
+      return;
+    }
+    const tall = node.kernel.inputs.filter(({ sampling }) => sampling.mipmap).map(({ name }) => name);
+    if (tall.length) for (const [name, source] of node.inputs) if (tall.includes(name)) add(source);
+  };
+  nodes.forEach(look);
+  return found;
+};

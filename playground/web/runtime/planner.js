@@ -99,7 +99,7 @@ function namedBy(sketch) {
   const add = (expressions, own = {}) => {
     for (const [kind, name] of expressions.flatMap(namesIn)) {
       if (kind === "value" || kind === "picture") paths.add(name);
-      else if (kind === "name" && name in own) paths.add(own[name]);
+      else if (kind === "name" && Object.hasOwn(own, name)) paths.add(own[name]);
       else if (name === "time" || name === "frames") byTime = true;
     }
   };

@@ -91,7 +91,7 @@ export const createPlayer = (engine, sketch, onClose) => {
         const { extent } = terrain;
         if (name === "spacing") found[name] = extent.map((side, i) => side / Math.max(size[i] - 1, 1));
         else if (name === "time" && frame !== null) found[name] = frame / 60;
-        else if (name in all) found[name] = all[name];
+        else if (Object.hasOwn(all, name)) found[name] = all[name];
       }
       return found;
     };

@@ -1,8 +1,9 @@
 // recovery.js -- what a page does where a picture fails: a sentence, the poster, and the way on.
 
 import { button, make } from "./dom.js";
-import { EDITOR_WORDS, worded } from "./editor_words.js";
-import { estimate, finished, smallerFrame } from "./pace.js";
+import { EDITOR_WORDS } from "./editor_words.js";
+import { estimate, smallerFrame } from "./pace.js";
+import { fill } from "./words.js";
 
 /** @typedef {import("./last_good.js").Guard} Guard */
 
@@ -53,7 +54,7 @@ export function createRecovery(host, { words: given, poster, guard = () => undef
   function lacks(error) {
     const { code = "", sentence = "", message = "" } = /** @type {Object<string, string>} */ (error ?? {});
     const known = { "no-webgl2": words.noWebGL, "no-float-targets": words.noFloat }[code];
-    say(known ?? worded(words.lacks, { reason: sentence || message || String(error) }));
+    say(known ?? fill(words.lacks, { reason: sentence || message || String(error) }));
     poster(true);
   }
 
@@ -71,7 +72,7 @@ export function createRecovery(host, { words: given, poster, guard = () => undef
       lastLoss = now;
       blamed = guard()?.left ?? blamed;
       poster(true);
-      if (losses > MOST_LOSSES) return say(worded(words.gone, { count: losses }));
+      if (losses > MOST_LOSSES) return say(fill(words.gone, { count: losses }));
       event.preventDefault(); // or it never comes back
       say(words.lost);
       clearTimeout(late);
@@ -84,7 +85,7 @@ export function createRecovery(host, { words: given, poster, guard = () => undef
         if (blamed && now) takeBack(now, blamed.file, guard()?.good ?? {});
         await restore();
         poster(false);
-        if (blamed) say(worded(words.lostByEdit, { name: plain(blamed.file) }));
+        if (blamed) say(fill(words.lostByEdit, { name: plain(blamed.file) }));
         else clear();
         blamed = null;
         guard()?.forget();
@@ -114,8 +115,8 @@ export function createRecovery(host, { words: given, poster, guard = () => undef
     const size = frame.join(" \u00d7 "), time = seconds < 10 ? seconds.toFixed(1) : Math.round(seconds);
     return new Promise((resolve) => {
       const choose = (/** @type {[number, number] | null} */ wanted) => { clear(); resolve(wanted); };
-      const less = worded(words.smaller, { size: smaller.join(" \u00d7 ") });
-      say(worded(words.slow, { size, time }), [
+      const less = fill(words.smaller, { size: smaller.join(" \u00d7 ") });
+      say(fill(words.slow, { size, time }), [
         button(less, () => choose(smaller)), button(words.anyway, () => choose(null)),
       ]);
     });
@@ -129,7 +130,7 @@ export function createRecovery(host, { words: given, poster, guard = () => undef
     if (!left || !kept) return;
     const { file, text } = left;
     kept.forget();
-    say(worded(words.hung, { name: plain(file) }), [
+    say(fill(words.hung, { name: plain(file) }), [
       ...(reopen ? [button(words.tryAgain, () => { clear(); reopen(text, file); })] : []),
       button(words.forget, clear),
     ]);
@@ -147,5 +148,3 @@ function takeBack(player, file, good) {
 
 /** @param {string} file */
 const plain = (file) => file.replace(/^\.\//, "");
-
-export { finished };

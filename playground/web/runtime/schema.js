@@ -178,9 +178,9 @@
  *  sketch: index in `Page.sketches`. */
 
 /** A part of a TOML text, or what may stand in its place: see playground/web/toml_template.py.
- *  @typedef {string | {path: string, was: string} | {camera: string, was: string} | {terrain: string, was: string}
- *            | {use: string, of: string} | {into: string, open: string, join: string, close: string, was: string}
- *            | {aside: string}} Piece */
+ *  @typedef {string | {path: string, was: string} | {camera: string, was: string}
+ *            | {terrain: string, was: string} | {use: string, of: string} | {aside: string}
+ *            | {into: string, open: string, join: string, close: string, was: string}} Piece */
 
 /** What "download my version" writes: JSON among the page's bytes, see playground/web/packed.py.
  *  @typedef {object} Pack
@@ -191,8 +191,9 @@
  *  @property {string} version       of the playground
  *  @property {string[]} shipped     files of the library that it needs
  *  @property {string[]} libraries   named by the user, which are not in it
- *  @property {Object<string, ["file" | "pieces" | "text" | "blob", string]>} files   name in the folder → a key
- *                                   of `Shared.files`, of `techniques`, the text itself, a key of `Shared.blobs`
+ *  @property {Object<string, ["file" | "pieces" | "text" | "blob", string]>} files   name in the folder
+ *                                   → a key of `Shared.files`, of `techniques`, the text itself, a key of
+ *                                   `Shared.blobs`
  *  @property {string[]} leftOut     files of data that are too large for a page
  *  @property {Piece[] | null} toml  the sketch's own; null: it has none
  *  @property {Object<string, Piece[]>} techniques   TOML of several passes, by the page's name of the file
@@ -211,9 +212,7 @@
  *  @property {Object<string, string>} blobs        gzip in base64, by key */
 
 /** A page: what one HTML file holds, or what a book's scripts put together.
- *  @typedef {{format: 1, sketches: Sketch[], shared: Shared, pack?: Object<string, string>,
- *             poster?: string, labels?: Object<string, string>}} Page
- *  pack: names in the zip of "download my version" → text, or "blob:KEY" for bytes. */
+ *  @typedef {{format: 1, sketches: Sketch[], shared: Shared}} Page */
 
 /** What an HTML file holds in its element #playground-page: a page, or (see page_file.js) one whose JSON,
  *  but for `shared.blobs`, is packed: gzip in base64.

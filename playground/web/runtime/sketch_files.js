@@ -7,7 +7,7 @@
 /** Every file that a file includes, itself first, each once.
  *  @param {Pick<Shared, "includes">} shared @param {string} file
  *  @returns {string[]} */
-export function includedBy(shared, file) {
+function includedBy(shared, file) {
   const found = new Set([file]);
   for (const one of found) for (const next of Object.values(shared.includes[one] ?? {})) found.add(next);
   return [...found];

@@ -111,7 +111,7 @@ export function createPage(main, page, engine, options) {
   const address = followAddress(session, () => !figure.playing && hasTime(session.sketch),
     (names) => say(fill(words.refused, { names: names.slice(0, 5).join(", ") })));
   const panel = createPanel(session, {
-    words, labels: page.labels, say, link: address.link, fitMap: figure.fitMap,
+    words, say, link: address.link, fitMap: figure.fitMap,
     copied: async (text) => say((await copy(text)) ? words.copied : words.notCopied),
     repeats: () => (figure.player ? repeats(figure.player) : new Map()),
   });

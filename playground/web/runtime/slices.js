@@ -1,38 +1,14 @@
 // slices.js -- long work in slices: between them the browser draws and listens; what each kernel takes is
 // measured.
 
+import { finished } from "./waiting.js";
+
 /** @typedef {import("./kernel_texts.js").KernelText} KernelText */
 /** @typedef {{text: KernelText, texels: number}} Piece */
 /** @typedef {ReturnType<typeof createClock>} Clock */
 
 const PROBE = 64 * 1024; // texels that are drawn first of what was never measured
 const LONGEST = 500; // [ms] that one call may take where nothing waits: watchdogs act after 2000
-
-/** Wait until other events had their turn. @param {number} [milliseconds] */
-const pause = (milliseconds) => new Promise((resume) => {
-  if (milliseconds) {
-    setTimeout(resume, milliseconds);
-    return;
-  }
-  const { port1, port2 } = new MessageChannel();
-  port1.onmessage = () => {
-    port1.close();
-    resume(undefined);
-  };
-  port2.postMessage(0);
-});
-
-/** Wait for what the graphics card was told, without blocking. @param {WebGL2RenderingContext} gl */
-const finished = async (gl) => {
-  const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
-  gl.flush();
-  if (!fence) return;
-  for (let polls = 0; !gl.isContextLost(); polls++) {
-    await pause(polls > 4 ? 2 : 0);
-    if (gl.clientWaitSync(fence, 0, 0) !== gl.TIMEOUT_EXPIRED) break;
-  }
-  gl.deleteSync(fence);
-};
 
 /** What kernels took, by their texts: milliseconds a texel. */
 export const createClock = () => {

@@ -35,12 +35,13 @@ export function flatten(shared, file, texts = {}, { once = false } = {}) {
   const lines = [];
   const read = new Set([file]);
   let includes = 0;
-  const textOf = (/** @type {string} */ name) => texts[name] ?? shared.files[name];
+  /** @param {string} name @returns {string | undefined} */
+  const textOf = (name) => [texts, shared.files].find((all) => Object.hasOwn(all, name))?.[name];
 
   /** @param {string} at @param {string[]} stack */
   const add = (at, stack) => {
     let inBlock = false;
-    const physical = normalised(textOf(at)).split("\n");
+    const physical = normalised(textOf(at) ?? "").split("\n");
     for (let index = 0; index < physical.length;) {
       const [joined, count] = joinedLine(physical, index);
       let code;
@@ -100,8 +101,8 @@ function errorAt(file, line, message) {
  *  @param {Pick<Shared, "includes">} shared @param {string} includer @param {string} name
  *  @returns {string[]} */
 function placesOf(shared, includer, name) {
-  const known = shared.includes[includer]?.[name];
-  if (known !== undefined) return [known];
+  const known = shared.includes[includer];
+  if (known && Object.hasOwn(known, name)) return [known[name]];
   const folder = includer.slice(0, includer.lastIndexOf("/") + 1);
   const own = includer.startsWith("./");
   return [folder + name, ...(own ? [`./${name}`] : []), name].map(plainPath);

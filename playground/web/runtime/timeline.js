@@ -13,11 +13,11 @@ const FPS = 30; // frames of a film, as capture/film.py
 const EPSILON = 1e-6;
 
 /** Times of a sketch's keyframes, each once, in order. @param {Sketch} sketch */
-export const marksOf = (sketch) =>
+const marksOf = (sketch) =>
   [...new Set(sketch.tracks.flatMap((track) => track.times))].sort((a, b) => a - b);
 
 /** The last time on the bar, which begins at 0. @param {Sketch} sketch @param {number} time */
-export function spanOf(sketch, time) {
+function spanOf(sketch, time) {
   const last = sketch.duration || USUAL;
   return time <= last ? last : Math.ceil(time / USUAL) * USUAL;
 }

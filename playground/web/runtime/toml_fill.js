@@ -84,7 +84,7 @@ export function shotText(name, { size, time, steps, camera, values, rows }) {
 
 /** A value exactly: a colour in hexadecimal only where that says every digit of it.
  *  @param {Shown} row @param {Value} value @returns {string} */
-export function valueText(row, value) {
+function valueText(row, value) {
   const text = toml(row, value);
   if (row.widget !== "colour" || !text.startsWith('"#') || !Array.isArray(value)) return text;
   const there = fromHex(text.slice(1, -1), row.raw) ?? [];

@@ -28,7 +28,7 @@ const NEUTRAL = {
 
 /** How strong low, middle and high tones are at a time [s], each from 0 to 1: media/bands.py.
  *  @param {number} time */
-export function bandsAt(time) {
+function bandsAt(time) {
   const since = (time * TEMPO) % 1;
   const [middle, high] = [3, 1.3].map((seconds) => 0.5 + 0.4 * Math.sin((2 * Math.PI * time) / seconds));
   return [Math.exp(-4 * (since < 0 ? since + 1 : since)), middle, high];

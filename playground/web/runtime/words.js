@@ -6,7 +6,6 @@
 export const ENGLISH = {
   // the picture
   picture: "{title}: the picture. Drag to orbit, wheel to zoom; press ? for the keys",
-  plainPicture: "{title}: the picture. Press ? for the keys",
   loading: "Making the picture",
   working: "Computing",
   compiling: "Compiling {done} of {all} programs",
@@ -110,7 +109,6 @@ export const ENGLISH = {
 /** @type {Words} */
 export const FRENCH = {
   picture: "{title} : l'image. Glisser pour tourner, molette pour zoomer ; ? montre les touches",
-  plainPicture: "{title} : l'image. La touche ? montre les touches",
   loading: "L'image se prépare",
   working: "Calcul en cours",
   compiling: "Compilation de {done} programmes sur {all}",

@@ -96,18 +96,12 @@ function joined(parts, size) {
 /** @param {Uint8Array} bytes @returns {Promise<Uint8Array | null>} null: this browser cannot */
 async function deflated(bytes) {
   try {
-    return await through(bytes, new CompressionStream("deflate-raw"));
+    const given = new Blob([/** @type {Uint8Array<ArrayBuffer>} */ (bytes)]).stream();
+    const made = new Response(given.pipeThrough(new CompressionStream("deflate-raw")));
+    return new Uint8Array(await made.arrayBuffer());
   } catch {
     return null;
   }
-}
-
-/** Bytes through a stream that changes them.
- *  @param {Uint8Array} bytes @param {CompressionStream | DecompressionStream} stream
- *  @returns {Promise<Uint8Array<ArrayBuffer>>} */
-export async function through(bytes, stream) {
-  const body = new Blob([/** @type {Uint8Array<ArrayBuffer>} */ (bytes)]).stream().pipeThrough(stream);
-  return new Uint8Array(await new Response(body).arrayBuffer());
 }
 
 /** In the order of code points, as Python sorts names.
