@@ -60,10 +60,11 @@ def judged(text: str) -> Iterator[int]:
     yield from (at for at, character in enumerate(text) if not character.isspace() and at not in apart)
 
 
-def test_every_shipped_text_is_coloured_as_by_pygments(node: Node):
+@pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.slow)])
+def test_every_shipped_text_is_coloured_as_by_pygments(node: Node, step: int):
     assert len(FILES) > 200
     seen: dict[str, int] = {}
-    for path in FILES:
+    for path in FILES[::step]:
         text = path.read_text(encoding="utf-8").rstrip("\n")
         theirs, ours = by_pygments(text), by_page(node, text)
         assert len(theirs) == len(ours)
@@ -71,7 +72,7 @@ def test_every_shipped_text_is_coloured_as_by_pygments(node: Node):
             line = text.count("\n", 0, at) + 1
             assert ours[at] == theirs[at], f"{path}:{line}: {text[max(at - 20, 0) : at + 20]!r}"
             seen[ours[at]] = seen.get(ours[at], 0) + 1
-    assert all(seen.get(kind, 0) > 1000 for kind in ("", "comment", "keyword", "number", "directive"))
+    assert all(seen.get(kind, 0) > 1000 // step for kind in ("", "comment", "keyword", "number", "directive"))
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,6 @@ from playground.errors import PlaygroundError
 from playground.gpu.wrap import FRAGMENT, wrap
 from playground.paths import GLSL
 from playground.sketch import expressions
-from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.web.page import page_file
@@ -24,8 +23,8 @@ from playground.web.plan import KINDS
 
 from .. import dialect_texts, isf_texts
 from .node import Node
+from .shipped import SHIPPED
 
-NAMES = shipped_sketches()
 STAGES = """async (shared, kernels, load) => {
     const { flatten } = await load("source.js"), { stageText } = await load("wrap.js");
     return kernels.map(({ kernel, stage, file }) => stageText(stage, flatten(shared, file)));
@@ -51,7 +50,7 @@ def plan_of(sketch: Sketch) -> Plan:
     return Planner().plan(sketch, frame_size=(320, 180), variants=KINDS)
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SHIPPED)
 def test_it_is_json_and_says_nothing_of_this_machine(name: str):
     page = written(name)
     text = json.dumps(page, allow_nan=False)
@@ -60,12 +59,12 @@ def test_it_is_json_and_says_nothing_of_this_machine(name: str):
         assert str(folder) not in text
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SHIPPED)
 def test_its_plan_and_its_texts_are_small(name: str):
     assert len(page_file(written(name))["packed"]) < 96 * 1024
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SHIPPED)
 def test_a_page_makes_the_engines_own_stages(node: Node, name: str):
     check_stages(node, written(name), planned(name))
 
@@ -161,7 +160,7 @@ class Numbers:
         return name
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SHIPPED)
 def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str):
     [sketch] = written(name)["sketches"]
     plan = planned(name)
@@ -183,7 +182,7 @@ def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str):
     assert sketch["picture"] == {"path": plan.picture.path, "output": plan.picture.output}
 
 
-@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize("name", SHIPPED)
 def test_values_are_those_that_the_engine_gives(name: str):
     """Before keyframes and what follows: those the page works out by itself."""
     [sketch] = written(name)["sketches"]

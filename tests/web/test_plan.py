@@ -16,7 +16,7 @@ from playground.engine.cache_keys import KeyMaker, Keys
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node, needed
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
-from playground.sketch.catalogue import load, shipped_sketches
+from playground.sketch.catalogue import load
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Camera, Kernel, Sketch
 from playground.web import texts
@@ -27,6 +27,7 @@ from playground.web.shared import SharedData
 from ..sketch_texts import map_of, passes
 from .node import Node
 from .random_settings import Settings, random_settings
+from .shipped import SHIPPED
 
 SETTINGS = 3
 ASK = """async (sketch, shared, states, load) => {
@@ -125,7 +126,7 @@ def _as_json(value: Any) -> Any:
     return list(value) if isinstance(value, tuple) else value
 
 
-@pytest.mark.parametrize("name", shipped_sketches())
+@pytest.mark.parametrize("name", SHIPPED)
 def test_every_shipped_sketch_is_planned_as_the_engine_plans_it(node: Node, shared: SharedData, name: str):
     sketch = load(name)
     data, images = exported(sketch, shared)
@@ -229,7 +230,7 @@ def stale_as_in_the_engine(node: Node, shared: SharedData, sketch: Sketch, wante
     return expected[0]
 
 
-@pytest.mark.parametrize("name", shipped_sketches())
+@pytest.mark.parametrize("name", SHIPPED)
 def test_what_is_stale_in_a_page_is_what_is_stale_in_the_engine(node: Node, shared: SharedData, name: str):
     sketch = load(name)
     data, _ = exported(sketch, shared)
