@@ -111,9 +111,11 @@ export async function liveBreak(room) {
   }
 
   /** After the context is lost: a picture that was being drawn then never comes. */
-  const lost = () => new Promise((resolve) => {
-    engine.canvas.addEventListener("webglcontextlost", resolve, { once: true });
-  });
+  function lost() {
+    return new Promise((resolve) => {
+      engine.canvas.addEventListener("webglcontextlost", resolve, { once: true });
+    });
+  }
 
   /** @param {{file: string, line: number, message: string}[]} errors */
   function tell(errors) {
