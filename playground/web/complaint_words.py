@@ -18,10 +18,55 @@ FILE = Path(__file__).parent / "runtime" / "complaint_words.js"
 
 # What comes into a text by copying it from a page or a document: blanks, quotes, dashes, signs.
 _COPIED = (
-    "\u00a0\u00ad\u2002\u2003\u2007\u2009\u200a\u200b\u202f\u2060\u3000\ufeff"
-    "\u2018\u2019\u201a\u201c\u201d\u201e\u00ab\u00bb\u2032\u2033\u00b4"
-    "\u2010\u2011\u2012\u2013\u2014\u2015\u2212\u00d7\u00f7\u00b7\u2022\u2026\u2215\u2217"
-    "\u037e\uff08\uff09\uff0c\uff1b\u00b0\u00b2\u00b3\u2264\u2265\u2260\u00b1"
+    0xA0,
+    0xAD,
+    0x2002,
+    0x2003,
+    0x2007,
+    0x2009,
+    0x200A,
+    0x200B,
+    0x202F,
+    0x2060,
+    0x3000,
+    0xFEFF,
+    0x2018,
+    0x2019,
+    0x201A,
+    0x201C,
+    0x201D,
+    0x201E,
+    0xAB,
+    0xBB,
+    0x2032,
+    0x2033,
+    0xB4,
+    0x2010,
+    0x2011,
+    0x2012,
+    0x2013,
+    0x2014,
+    0x2015,
+    0x2212,
+    0xD7,
+    0xF7,
+    0xB7,
+    0x2022,
+    0x2026,
+    0x2215,
+    0x2217,
+    0x37E,
+    0xFF08,
+    0xFF09,
+    0xFF0C,
+    0xFF1B,
+    0xB0,
+    0xB2,
+    0xB3,
+    0x2264,
+    0x2265,
+    0x2260,
+    0xB1,
 )
 
 # Logs that browsers give: ANGLE's compiler, the same on Direct3D, Mesa's linker, and others'.
@@ -69,7 +114,7 @@ def words() -> dict[str, object]:
         "fetches": FETCHES,
         "foreign": program.FOREIGN,
         "nameless": program.NAMELESS,
-        "characters": {c: unicodedata.name(c, program.NAMELESS) for c in _COPIED},
+        "characters": {c: unicodedata.name(c, program.NAMELESS) for c in map(chr, _COPIED)},
         "pastEnd": program.PAST_END,
     }
 

@@ -51,21 +51,23 @@ def test_a_series_is_turned_over_by_keys_and_buttons(page):
     page.press(END)
     last = page.run(f"return {SHOWN}")
     page.press(HOME, RIGHT)
-    page.click("#turns button:nth-of-type(1)")
+    page.click("#turns .controls button:nth-of-type(1)")
     assert page.run(f"return {SHOWN}") == "small-turns-0.webp"
-    page.click("#turns button:nth-of-type(3)")  # plays to its end, and stops there
+    page.click("#turns .controls button:nth-of-type(3)")  # plays to its end, and stops there
     page.wait(f"{SHOWN} === arguments[0]", last)
     words = page.run("return document.body.dataset.run")
-    page.wait("document.querySelector('#turns button:nth-of-type(3)').textContent === arguments[0]", words)
+    page.wait(
+        "document.querySelector('#turns .controls button:nth-of-type(3)').textContent === arguments[0]", words
+    )
     assert count(page, "#turns li.now") == 1
 
 
 def test_a_button_at_the_end_of_a_series_keeps_the_keys(page):
-    page.run("document.querySelector('#smooth button').focus()")
+    page.run("document.querySelector('#smooth .controls button').focus()")
     page.press(ENTER, ENTER)
     place = "document.querySelector('#smooth input').value"
     assert page.run(f"return {place}") == "0"
-    assert page.run("return document.activeElement === document.querySelector('#smooth button')")
+    assert page.run("return document.activeElement === document.querySelector('#smooth .controls button')")
     assert page.run("return document.activeElement.getAttribute('aria-disabled')") == "true"
 
 
@@ -78,7 +80,7 @@ def test_a_comparison_is_swiped_by_mouse_and_keys_and_shown_side_by_side(page):
     page.run("document.querySelector('#two input').focus()")
     page.press(RIGHT)
     assert page.run(f"return {AT}") == "26"
-    page.click("#two button")
+    page.click("#two .controls button")
     left, right = page.run(
         "return [...document.querySelectorAll('#two img')].map((i) => i.getBoundingClientRect().toJSON())"
     )

@@ -304,3 +304,69 @@ def test_what_is_drawn_is_drawn(engine, lesson):
     """The pictures that the others compare differ from each other."""
     frames = [draw(engine, scene).array for scene in lesson.named["two"].scenes]
     assert (frames[0] != frames[1]).any()
+
+
+CONTEXT = (
+    "const made = HTMLCanvasElement.prototype.getContext;"
+    "HTMLCanvasElement.prototype.getContext = function (kind, ...more) {"
+    " const found = made.call(this, kind, ...more);"
+    " if (kind === 'webgl2') globalThis.losing = found.getExtension('WEBGL_lose_context'); return found; }"
+)
+
+
+def test_a_lost_context_is_told_and_its_pictures_come_back(page, lesson, engine):
+    page.run(CONTEXT)
+    for name in ("land", "fault"):
+        start(page, name)
+    page.wait("document.querySelector('#fault .editor-status').textContent === ''")
+    typed(page, bug_region(lesson.named["fault"]).broken.replace("8.0", "7.0"))
+    verdict = "document.querySelector('#fault .verdict').textContent"
+    page.wait(f"{verdict} === arguments[0]", interface_labels("en")["not_yet"])
+    before = [picture(page, name) for name in ("land", "fault")]
+    page.run("losing.loseContext()")
+    page.wait("document.querySelectorAll('.live .recovery').length === 2")
+    assert "graphics device was lost" in page.run("return document.querySelector('.recovery').textContent")
+    assert all(
+        page.run("return [...document.querySelectorAll('.live .stage img')].map((each) => !each.hidden)")
+    )
+    page.run("losing.restoreContext()")
+    page.wait("document.querySelectorAll('.live .recovery').length === 0")
+    page.wait("document.querySelectorAll('.live canvas:not([hidden])').length === 2")
+    for name, pixels in zip(("land", "fault"), before, strict=True):
+        page.run("document.getElementById(arguments[0]).scrollIntoView()", name)
+        np.testing.assert_array_equal(picture(page, name), pixels)
+    page.log()  # Chromium notes a context that is lost
+
+
+def test_lines_that_lose_the_context_are_taken_back_and_those_that_hang_are_not_drawn_again(page, lesson):
+    page.run(CONTEXT)
+    start(page, "fault")
+    page.wait("document.querySelector('#fault .editor-status').textContent === ''")
+    before = picture(page, "fault")
+    broken_lines = bug_region(lesson.named["fault"]).broken
+    page.run(
+        "const kind = WebGL2RenderingContext.prototype; globalThis.fence = kind.fenceSync;"
+        "kind.fenceSync = () => { losing.loseContext(); return null; };"
+    )
+    typed(page, broken_lines.replace("8.0", "7.0"))
+    page.wait("document.querySelector('#fault .recovery')")
+    page.run("WebGL2RenderingContext.prototype.fenceSync = fence; losing.restoreContext()")
+    said = "document.querySelector('#fault .recovery')?.textContent"
+    page.wait(f"{said}.includes('does not end')")
+    np.testing.assert_array_equal(picture(page, "fault"), before)
+    area = "document.querySelector('#fault textarea').value"
+    assert "7.0" in page.run(f"return {area}")
+    # A page that is closed while lines are tried: they are offered when it is opened again.
+    page.run(
+        "WebGL2RenderingContext.prototype.clientWaitSync = function () { return this.TIMEOUT_EXPIRED; };"
+    )
+    typed(page, broken_lines.replace("8.0", "6.0"))
+    page.wait("Object.values(sessionStorage).some((text) => text.includes('6.0') && text.includes('tried'))")
+    page.run("location.reload()")
+    page.wait("document.querySelectorAll('.start').length === 6")
+    start(page, "fault")
+    page.wait(f"{said}?.includes('loop without end')")
+    assert page.run(f"return {area}") == broken_lines
+    page.click("#fault .recovery button")
+    assert "6.0" in page.run(f"return {area}")
+    page.log()

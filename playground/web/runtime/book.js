@@ -4,6 +4,7 @@ import { openBook, settled } from "./book_data.js";
 import { liveFigure } from "./book_figure.js";
 import { liveCompare, liveSlider, liveSteps } from "./book_series.js";
 import { liveBreak, liveExercise } from "./book_tasks.js";
+import { createBookRecovery } from "./book_recovery.js";
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
@@ -21,14 +22,14 @@ const BYTES = 192 * 2 ** 20; // of textures for all figures of a page: those see
 
 /** @type {ReturnType<typeof openBook> | null} */
 let book = null;
-/** @type {Promise<import("./engine.js").Engine> | null} one context for all figures of the page */
+/** @typedef {{engine: import("./engine.js").Engine, losses: import("./book_recovery.js").BookRecovery}} Opened */
+/** One context for all figures of the page. @type {Promise<Opened> | null} */
 let opened = null;
 
 /** @param {import("./book_data.js").Library} library */
 async function engineFor(library) {
   const engine = createEngine(document.createElement("canvas"), library, { bytes: BYTES });
-  engine.canvas.addEventListener("webglcontextrestored", () => engine.restore());
-  return engine;
+  return { engine, losses: createBookRecovery(engine, document.documentElement.lang) };
 }
 
 /** Start a block of a lesson in the place of its still pictures.
@@ -39,6 +40,7 @@ export async function start(root, folder, lesson) {
   const still = /** @type {HTMLElement} */ (root.querySelector(".still"));
   const host = make("div", { className: "live" });
   root.querySelector(".live-failed")?.remove();
+  let end = () => {};
   try {
     book ??= openBook(folder);
     const [library, data] = await Promise.all([book.library(), book.lesson(lesson)]);
@@ -48,13 +50,15 @@ export async function start(root, folder, lesson) {
     const sketch = (setting) => settled(data.sketches[setting.sketch], setting, library.kernels);
     const sketches = block.scenes.map(sketch), begin = block.begin ? sketch(block.begin) : null;
     await book.need(library, [...sketches, ...(begin ? [begin] : [])]);
-    const engine = await (opened ??= engineFor(library));
+    const { engine, losses } = await (opened ??= engineFor(library));
     still.after(host);
     root.classList.add("is-live");
-    const comma = /^fr/.test(language);
-    await KINDS[block.kind]({ host, still, block, sketches, begin, engine, words, comma });
+    const comma = /^fr/.test(language), watched = losses.watch(host);
+    ({ end } = watched);
+    await KINDS[block.kind]({ host, still, block, sketches, begin, engine, watched, words, comma });
   } catch (error) {
     opened &&= opened.catch(() => (opened = null, Promise.reject(error)));
+    end();
     host.remove();
     root.classList.remove("is-live");
     const { code = "", message = String(error) } = /** @type {any} */ (error ?? {});

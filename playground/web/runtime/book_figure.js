@@ -17,7 +17,8 @@ import { createTimeline, hasTime } from "./timeline.js";
  *  @property {LiveBlock} block
  *  @property {Sketch[]} sketches                of its scenes
  *  @property {Sketch | null} begin              of an exercise
- *  @property {import("./figure.js").Engine & {shared: import("./schema.js").Shared}} engine
+ *  @property {import("./engine.js").Engine} engine
+ *  @property {import("./book_recovery.js").Watched} watched   speaks for its figures when the context is lost
  *  @property {Object<string, string>} words
  *  @property {boolean} comma                    whether numbers have one */
 
@@ -28,15 +29,17 @@ const ARROWS = { ArrowLeft: [-STEP, 0], ArrowRight: [STEP, 0], ArrowUp: [0, -STE
 /** Make a live picture in an element; the still picture stands there until it is drawn.
  *  @param {Room} room @param {HTMLElement} host @param {Session} session
  *  @param {{poster?: HTMLImageElement | null, opened?: (player: any) => void,
- *           drawn?: () => void}} [options] */
-export function makePicture({ engine, words }, host, session, { poster = null, opened, drawn } = {}) {
+ *           prepare?: (player: any) => unknown, drawn?: () => void}} [options] */
+export function makePicture(room, host, session, options = {}) {
+  const { engine, words, watched } = room, { poster = null, opened, prepare, drawn } = options;
   const box = make("div", { className: "picture" }), [width, height] = session.sketch.frame;
   box.style.aspectRatio = `${width} / ${height}`;
   host.append(box);
   const still = poster && /** @type {HTMLImageElement} */ (poster.cloneNode());
   still?.removeAttribute("loading");
-  const how = { session, words, poster: still, inText: true, opened, drawn };
+  const how = { session, words, poster: still, inText: true, opened, prepare, drawn };
   const figure = createFigure(box, engine, { sketches: session.sketches }, how);
+  watched.add(figure);
   figure.canvas.addEventListener("keydown", (event) => {
     const arrow = ARROWS[event.key], zoom = { "+": 1, "=": 1, "-": -1 }[event.key];
     if (event.ctrlKey || event.altKey || event.metaKey || !(arrow || zoom || event.key === "r")) return;

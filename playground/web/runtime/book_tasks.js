@@ -4,7 +4,9 @@ import { makePicture, makeReset, makeRows } from "./book_figure.js";
 import { createCheck } from "./picture_check.js";
 import { createCodeField } from "./code_field.js";
 import { button, make } from "./dom.js";
+import { createGuard, keyOf } from "./last_good.js";
 import { createSession } from "./session.js";
+import { finished } from "./waiting.js";
 import { fill } from "./words.js";
 
 /** @typedef {import("./book_figure.js").Room} Room */
@@ -21,6 +23,14 @@ export function withLines(text, { first = 0, rest = 0, indent = 0 }, shown) {
   return [...lines.slice(0, first), ...news, ...lines.slice(lines.length - rest)].join("\n");
 }
 
+/** The lines that are shown of a file. @param {string} text of the file
+ *  @param {Pick<LiveBlock, "first" | "rest" | "indent">} block */
+export function linesIn(text, { first = 0, rest = 0, indent = 0 }) {
+  const lines = text.split("\n"), blanks = " ".repeat(indent);
+  return lines.slice(first, lines.length - rest)
+    .map((line) => (line.startsWith(blanks) ? line.slice(indent) : line)).join("\n");
+}
+
 /** What says how it stands: a sentence that is good news, bad news, or none.
  *  @param {HTMLElement} host */
 function makeVerdict(host) {
@@ -34,15 +44,21 @@ function makeVerdict(host) {
 
 /** A bug, with its lines in an editor. @param {Room} room */
 export async function liveBreak(room) {
-  const { host, still, block, sketches, engine, words } = room, session = createSession(sketches);
+  const { host, still, block, sketches, engine, watched, words } = room, session = createSession(sketches);
   const file = block.file ?? "", correct = engine.shared.files[file], broken = block.broken ?? "";
   /** @type {any} */
   let player = null;
   let timer = 0, number = 0;
   /** @type {Promise<unknown>} */
   let work = Promise.resolve();
-  const opened = (/** @type {any} */ made) => { player = made; };
-  const figure = makePicture(room, host, session, { poster: still.querySelector("img"), opened });
+  const guard = createGuard(keyOf(`${sketches[0].name} ${file} ${block.first}`, { [file]: correct, broken }));
+  const reopen = (/** @type {string} */ text) => field.replace(linesIn(text, block));
+  watched.edit({ guard, reopen });
+  const figure = makePicture(room, host, session, {
+    poster: still.querySelector("img"),
+    opened: (/** @type {any} */ made) => { player = made; },
+    prepare: (/** @type {any} */ made) => watched.recovery.resume(made),
+  });
   const editor = make("div", { className: "editor" });
   host.append(editor);
   const field = createCodeField(editor, { label: words.lines, hint: words.keys, onInput: typed });
@@ -52,7 +68,8 @@ export async function liveBreak(room) {
   editor.append(status, problems);
   const restore = button(words.restore, () => field.replace(broken));
   host.append(make("div", { className: "buttons" }, restore, makeReset(session, words)));
-  field.open(broken, words.lines, broken);
+  const kept = guard.good[file];
+  field.open(kept === undefined ? broken : linesIn(kept, block), words.lines, broken);
   editor.style.setProperty("--lines", String(broken.split("\n").length));
   const check = await createCheck(engine, sketches[0], session.state());
   await figure.start();
@@ -67,11 +84,18 @@ export async function liveBreak(room) {
     const mine = ++number, shown = field.text, text = withLines(correct, block, shown);
     status.textContent = words.compiling;
     let errors;
+    guard.trying(file, text, player.texts);
     try {
       ({ errors } = await player.edit(file, text));
+      if (!errors.length) await Promise.race([drawn(), lost()]);
     } catch (error) {
       errors = [{ file, line: 0, message: error instanceof Error ? error.message : String(error) }];
     }
+    if (engine.isLost()) { // by this text, maybe: it is told when the context is back
+      status.textContent = "";
+      return;
+    }
+    guard.worked(player.texts);
     if (mine !== number || field.text !== shown) return; // typed over meanwhile: that is tried instead
     tell(errors);
     if (errors.length) return;
@@ -80,6 +104,19 @@ export async function liveBreak(room) {
     if (mine !== number) return;
     if (good) verdict(words.fixed, "right");
     else verdict(shown === broken ? "" : words.notYet, "wrong");
+  }
+
+  /** After a whole picture, wherever the page is scrolled. */
+  async function drawn() {
+    await player.renderSoon();
+    await finished(engine.parts.context.gl);
+  }
+
+  /** After the context is lost: a picture that was being drawn then never comes. */
+  function lost() {
+    return new Promise((resolve) => {
+      engine.canvas.addEventListener("webglcontextlost", resolve, { once: true });
+    });
   }
 
   /** @param {{file: string, line: number, message: string}[]} errors */

@@ -46,6 +46,18 @@ const FRENCH = {
   noWebGL: "Ce navigateur n’offre pas WebGL2 : l’image reste fixe.",
   lacks: "Cet appareil ne peut pas faire tourner la figure, l’image reste fixe : {reason}",
   missing: "Un fichier du livre manque : {reason}",
+  noFloat: "Cet appareil ne peut pas dessiner dans des textures à virgule flottante : l’image reste fixe.",
+  lost: "Le processeur graphique s’est interrompu ; l’image sera refaite dès qu’il sera revenu.",
+  lostByEdit: "Le processeur graphique a abandonné pendant l’essai de {name} : le dernier texte qui "
+    + "marchait est repris. Votre texte est dans le champ ; cherchez une boucle sans fin.",
+  gone: "Le processeur graphique s’est interrompu {count} fois : l’image reste fixe. "
+    + "Rechargez la page pour réessayer.",
+  notBack: "Le processeur graphique s’est interrompu et n’est pas revenu : rechargez la page. Les textes qui "
+    + "marchaient sont gardés.",
+  hung: "Le texte de {name} était à l’essai quand la page a été fermée : il contient peut-être une "
+    + "boucle sans fin. Le dernier texte qui marchait est repris.",
+  tryAgain: "Ouvrir le texte à l’essai",
+  forget: "L’oublier",
 };
 
 /** The words of a page's figures. @param {string} language */

@@ -75,7 +75,9 @@ export function createFigure(host, engine, page, options = {}) {
   const map = createFigureMap(room);
   const steering = steerWith(canvas, session, map, { box, eye: () => player?.plan?.eye, inText });
 
-  const pointer = followPointer(canvas, () => { if (!session.map && readsPointer(session.sketch)) ask(true); });
+  const pointer = followPointer(canvas, () => {
+    if (!session.map && readsPointer(session.sketch)) ask(true);
+  });
 
   /** Say how far the picture is, or what is wrong with it. */
   function tell(/** @type {string} */ text, /** @type {unknown} */ error = null) {

@@ -6,6 +6,7 @@
 import { settled } from "./book_data.js";
 import { liveFigure } from "./book_figure.js";
 import { liveCompare, liveSlider, liveSteps } from "./book_series.js";
+import { createBookRecovery } from "./book_recovery.js";
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
@@ -101,16 +102,17 @@ async function renderLive({ model, el }, url) {
   const sketch = (setting) => settled(bases[setting.sketch], setting, library.kernels);
   const sketches = block.scenes.map(sketch);
   const engine = createEngine(document.createElement("canvas"), library, { bytes: BYTES });
-  engine.canvas.addEventListener("webglcontextrestored", () => engine.restore());
   const host = make("div", { className: "live terrain-figure" }), still = stillOf(model, url);
   el.append(host);
-  const comma = /^fr/.test(language);
-  const made = await KINDS[block.kind]({ host, still, block, sketches, begin: null, engine, words, comma });
+  const comma = /^fr/.test(language), watched = createBookRecovery(engine, language).watch(host);
+  const room = { host, still, block, sketches, begin: null, engine, watched, words, comma };
+  const made = await KINDS[block.kind](room);
   const stops = block.kind === "steps" ? block.iterations
     : block.kind === "slider" ? [...sketches.keys()] : [];
   const unbind = bind(model, host, block.kind === "figure" ? made : null, stops);
   return () => {
     unbind();
+    watched.end();
     engine.close();
   };
 }
