@@ -50,7 +50,7 @@ NOT_RUN = {
     r"playground (render --video|check --json|reduce|pack|shots mutants)": "names it; with more it is run",
     r"playground lesson translated": "names the command; tests/lessons have a translation to give it",
     r"playground variants renew": "writes this checkout's record; that of a folder is written",
-    r"playground (live|render) diamond_square-my-version\.zip.*": "a browser saves it: web/test_my_version.py",
+    r"playground (live|render) diamond_square-my-version\.zip.*": "saved by a browser: web/test_my_version",
     r"pytest|pip": "names the program",
 }
 

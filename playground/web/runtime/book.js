@@ -22,7 +22,8 @@ const BYTES = 192 * 2 ** 20; // of textures for all figures of a page: those see
 
 /** @type {ReturnType<typeof openBook> | null} */
 let book = null;
-/** @typedef {{engine: import("./engine.js").Engine, losses: import("./book_recovery.js").BookRecovery}} Opened */
+/** @typedef {{engine: import("./engine.js").Engine,
+ *             losses: import("./book_recovery.js").BookRecovery}} Opened */
 /** One context for all figures of the page. @type {Promise<Opened> | null} */
 let opened = null;
 
