@@ -136,7 +136,7 @@ def write(script: Path, target: Path, data: dict[str, Any]) -> Path:
         f"""<!doctype html><html lang="en"><head><meta charset="utf-8">
 <meta http-equiv="Content-Security-Policy" content="{policy}">
 <meta name="viewport" content="width=device-width, initial-scale=1"><title>{title}</title>
-<link rel="icon" href="data:,"><style>{(WEB / "runtime" / "page.css").read_text("utf-8")}</style></head>
+<link rel="icon" href="data:,"><style>{(WEB / "bundle" / "page.css").read_text("utf-8")}</style></head>
 <body><main id="playground"><img id="playground-poster" alt="{title}" src="data:image/png;base64,{poster}">
 </main><script type="application/json" id="playground-page">{json_text}</script>
 <script>{script.read_text("utf-8")}</script></body></html>""",

@@ -122,10 +122,10 @@ def test_a_uniform_that_is_added_has_its_initial_value(page: Browser):
     file = "generation/diamond_square/raw.glsl"
     before = picture(page)
     put(page, file, "float kernel(", "uniform float added = 0.5;\nfloat kernel(")
-    put(page, file, "* total", "* total * added")
+    put(page, file, "total / count", "total * added / count")
     half = picture(page)
     assert (half != before).any()
-    put(page, file, "* total * added", "* total * 0.5")
+    put(page, file, "total * added / count", "total * 0.5 / count")
     assert (picture(page) == half).all()
     assert "‘added’" in page.run("return document.querySelector('.editor-notices').textContent")
 

@@ -85,11 +85,13 @@ export async function liveBreak(room) {
     status.textContent = words.compiling;
     let errors;
     guard.trying(file, text, player.texts);
+    const listening = new AbortController();
     try {
-      ({ errors } = await player.edit(file, text));
-      if (!errors.length) await Promise.race([drawn(), lost()]);
+      errors = await Promise.race([drawn(text), lost(listening.signal)]);
     } catch (error) {
       errors = [{ file, line: 0, message: error instanceof Error ? error.message : String(error) }];
+    } finally {
+      listening.abort();
     }
     if (engine.isLost()) { // by this text, maybe: it is told when the context is back
       status.textContent = "";
@@ -106,16 +108,21 @@ export async function liveBreak(room) {
     else verdict(shown === broken ? "" : words.notYet, "wrong");
   }
 
-  /** After a whole picture, wherever the page is scrolled. */
-  async function drawn() {
+  /** Compile a text and make its whole picture, wherever the page is scrolled; return what is wrong with it.
+   *  @param {string} text @returns {Promise<{file: string, line: number, message: string}[]>} */
+  async function drawn(text) {
+    const { errors } = await player.edit(file, text);
+    if (errors.length) return errors;
     await player.renderSoon();
     await finished(engine.parts.context.gl);
+    return [];
   }
 
-  /** After the context is lost: a picture that was being drawn then never comes. */
-  function lost() {
+  /** After the context is lost: what was being compiled or drawn then never ends.
+   *  @param {AbortSignal} signal @returns {Promise<never[]>} */
+  function lost(signal) {
     return new Promise((resolve) => {
-      engine.canvas.addEventListener("webglcontextlost", resolve, { once: true });
+      engine.canvas.addEventListener("webglcontextlost", () => resolve([]), { once: true, signal });
     });
   }
 
