@@ -88,8 +88,10 @@ export async function liveBreak(room) {
     const listening = new AbortController();
     try {
       errors = await Promise.race([drawn(text), lost(listening.signal)]);
+      if (!engine.isLost()) guard.worked(player.texts);
     } catch (error) {
       errors = [{ file, line: 0, message: error instanceof Error ? error.message : String(error) }];
+      if (!engine.isLost()) guard.forget();
     } finally {
       listening.abort();
     }
@@ -97,7 +99,6 @@ export async function liveBreak(room) {
       status.textContent = "";
       return;
     }
-    guard.worked(player.texts);
     if (mine !== number || field.text !== shown) return; // typed over meanwhile: that is tried instead
     tell(errors);
     if (errors.length) return;
