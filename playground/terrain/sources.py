@@ -88,6 +88,7 @@ class SourceKind:
     make: Make
     files: tuple[str, ...]  # parameters that name files
     parameters: tuple[str, ...]  # what the kernel's file must declare
+    makes: str  # in words, with an article
     notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
     picture: Callable[[Mapping[str, Value], tuple[int, int]], Path | None] = lambda values, size: None
     # the image whose channels, where it has this size, are the texels of the one output as they are
@@ -215,6 +216,7 @@ SOURCES: dict[str, SourceKind] = {
         _make_elevation,
         ("elevation",),
         ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
+        "the elevation file's terrain",
         notes=_notes_of_elevation,
     ),
     "delaunay": SourceKind(
@@ -222,15 +224,22 @@ SOURCES: dict[str, SourceKind] = {
         _make_triangulation,
         (),
         ("points", "seed", "weights", "method", "flips", "heights", "roughness", "corners", "proportion"),
+        "the triangulation",
     ),
     "mask_file": SourceKind(
-        lambda _: Terrain(), _make_mask, ("image",), ("image", "texels"), picture=_mask_picture
+        lambda _: Terrain(),
+        _make_mask,
+        ("image",),
+        ("image", "texels"),
+        "the mask",
+        picture=_mask_picture,
     ),
     "video_file": SourceKind(
         lambda _: Terrain(),
         make_video,
         ("video",),
         ("video", "start", "speed", "loop"),
+        "the film",
         moment=moment_of_video,
         recording=Recording(
             frames_of_video, length_of_video, {"start": "start", "speed": "speed", "loop": "loop"}
@@ -242,18 +251,26 @@ SOURCES: dict[str, SourceKind] = {
         make_sound,
         ("sound",),
         ("sound", "start", "loop", "content"),
+        "the sound",
         moment=moment_of_sound,
         recording=Recording(frames_of_sound, length_of_sound, {"start": "start", "loop": "loop"}),
         size=size_of_sound,
     ),
     "keyboard": SourceKind(
-        lambda _: Terrain(), live.make_keys, (), (), moment=live.moment_of_keys, size=live.size_of_keys
+        lambda _: Terrain(),
+        live.make_keys,
+        (),
+        (),
+        "the keyboard",
+        moment=live.moment_of_keys,
+        size=live.size_of_keys,
     ),
     "microphone": SourceKind(
         lambda _: Terrain(),
         live.make_microphone,
         (),
         ("content",),
+        "the microphone",
         moment=live.moment_of_microphone,
         size=live.size_of_microphone,
         lack=live.lack_of_microphone,
@@ -263,6 +280,7 @@ SOURCES: dict[str, SourceKind] = {
         live.make_camera,
         (),
         ("device", "mirror"),
+        "the camera",
         moment=live.moment_of_camera,
         size=live.size_of_camera,
         lack=live.lack_of_camera,

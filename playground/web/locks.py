@@ -111,13 +111,4 @@ class Locks:
 
 def made_by(leaf: Leaf) -> str:
     """Return what a source makes, in words."""
-    return {
-        "elevation_file": "the elevation file's terrain",
-        "delaunay": "the triangulation",
-        "mask_file": "the mask",
-        "video_file": "the film",
-        "sound_file": "the sound",
-        "keyboard": "the keyboard",
-        "microphone": "the microphone",
-        "camera": "the camera",
-    }.get(leaf.kernel.registry, leaf.kernel.registry)
+    return source_kind(leaf.kernel.registry).makes

@@ -99,7 +99,7 @@ export function createPage(main, page, engine, options) {
   const toggleHelp = () => (help.open ? help.close() : help.showModal());
   const togglePanel = () => main.classList.toggle("alone");
   const fullTool = iconButton("full", words.full, full);
-  const tools = make("div", { className: "tools", role: "toolbar", "aria-label": words.map },
+  const tools = make("div", { className: "tools", role: "toolbar", "aria-label": words.tools },
     textures, iconButton("view", `${words.resetView} (R)`, figure.resetView),
     iconButton("save", `${words.save} (S)`, save), fullTool, iconButton("theme", words.theme, switchTheme),
     iconButton("keys", `${words.keys} (?)`, toggleHelp),

@@ -24,6 +24,7 @@ export const ENGLISH = {
   theme: "Light or dark",
   close: "Close",
   panel: "Show or hide the panel",
+  tools: "Tools",
   // the panel
   parameters: "Parameters",
   code: "Code",
@@ -126,6 +127,7 @@ export const FRENCH = {
   theme: "Clair ou sombre",
   close: "Fermer",
   panel: "Montrer ou cacher le panneau",
+  tools: "Outils",
   parameters: "Paramètres",
   code: "Code",
   search: "Chercher",
