@@ -65,6 +65,11 @@ class Browser:
             raise
         self._base += f"/{answer['sessionId']}"
 
+    @property
+    def process(self) -> int:
+        """The id of the driver's process, which began all of the browser's."""
+        return self._driver.pid
+
     def open(self, url: str) -> None:
         """Load a page."""
         self._ask("POST", "/url", {"url": url})
