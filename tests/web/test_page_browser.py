@@ -409,6 +409,21 @@ def test_a_map_is_moved_enlarged_and_read(page: Page):
     assert page.state(".map") is None
 
 
+def test_the_picture_stays_while_a_maps_programs_are_compiled(page: Page):
+    page.open()
+    page.run("probe.compiling = 150")
+    before = page.run("return document.querySelector('canvas').toDataURL()")
+    page.run("const menu = document.querySelector('.textures'); menu.value = '0'; menu.onchange()")
+    page.browser.wait("/\\d+ of 3/.test(document.querySelector('.notes').textContent)")
+    page.browser.drag("canvas", (-60, 0), (60, 20))  # nothing is there yet to be moved
+    assert page.run("return document.querySelector('canvas').toDataURL()") == before
+    page.at_rest()
+    load = page.run("return probe.loads.find(({ map }) => map)")
+    assert load["before"] == load["after"], "nothing is drawn that would wait for a compiler"
+    assert page.state(".map.path") == "height"
+    assert page.run("return document.querySelector('canvas').toDataURL()") != before
+
+
 def test_the_address_holds_the_state_and_brings_it_back(page: Page):
     page.run("probe.page.session.set('height.level', 0.75); probe.page.session.set('light.sun', [10, 20])")
     page.drag((300, 400), (360, 400))
