@@ -320,7 +320,8 @@ export const createPlayer = (engine, sketch, onClose) => {
   const loadData = async (plan) => {
     const { images } = engine.parts, waiting = [];
     for (const { kernel, leaf, values } of stepsOf(plan.nodes)) {
-      for (const { blob, frames = [blob] } of leaf?.data || []) waiting.push(...frames.map(images.loadBlob));
+      for (const { blob, frames = [blob], laps } of leaf?.data || [])
+        waiting.push(...[...frames, ...laps?.frames ?? []].map(images.loadBlob));
       for (const { name, widget, sampling } of kernel.parameters) {
         if (widget !== "file" || kernel.kind === "source") continue;
         waiting.push(images.load(String(values[name]), sampling || PLAIN));
