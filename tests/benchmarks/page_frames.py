@@ -39,7 +39,11 @@ TURN = 3.0  # [degrees] from frame to frame
 
 _TURNED = """
 const player = figures[arguments[0]], { gl } = engine.parts.context, [frames, turn, start] = arguments[1];
-const { camera } = player.sketch, one = new Uint8Array(4);
+const { camera } = player.sketch;
+const finish = () => {
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+};
 const turned = (frame) => {
   player.state.camera = { ...camera, azimuth: camera.azimuth + start + frame * turn };
   player.render();
@@ -48,7 +52,7 @@ const turned = (frame) => {
 _DRAWN = f"""{_TURNED}
 for (let frame = 0; frame < frames; frame++) {{
   turned(frame);
-  gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, one);
+  finish();
 }}
 """
 _SHOWN = f"""{_TURNED}
@@ -65,7 +69,7 @@ return (async () => {{
     player.drawTo(window.shown);
   }}
   window.shown.getImageData(0, 0, 1, 1);
-  gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, one);
+  finish();
 }})()
 """
 

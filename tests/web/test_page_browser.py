@@ -464,6 +464,39 @@ def test_hostile_texts_stay_texts(wide: Browser, script: Path, tmp_path: Path):
     no_complaint(page)
 
 
+MADE = "The triangulation was made when the page was exported."
+WHY = """const visible = (one) => one.checkVisibility();
+const reads = (one) => one.matches("h2, h3, summary") ? "# " + one.textContent
+    : one.matches(".row") ? one.querySelector(".name").textContent : one.textContent;
+const all = "h2, h3, summary, .row, .why-locked, .row .note";
+const list = [...document.querySelectorAll(".panel .list")].find(visible);
+return [...list.querySelectorAll(all)].filter(visible).map(reads)"""
+
+
+def test_why_rows_are_locked_is_said_once_in_each_group(wide: Browser, script: Path, tmp_path: Path):
+    def row(name: str, group: str = "", locked: str = "") -> dict[str, Any]:
+        return fake_page.row(name, "float", "slider", 0.5, ranges=[[0, 1]], group=group, locked=locked)
+
+    shown = [row("mesh.a", locked=MADE), row("mesh.b", "Points", MADE), row("mesh.c", "Points", MADE)]
+    shown += [row("land.d"), row("land.e", locked="Alone."), row("land.f", locked=MADE)]
+    shown += [row("land.g", locked=MADE), row("land.h", "Points", MADE), row("land.i", "Points", MADE)]
+    for number in (0, 2):
+        shown[number]["main"] = 1 + number
+    data = fake_page.page(shown=shown, choices=[])
+    page = Page(wide, fake_page.write(script, tmp_path / "page.html", data).as_uri())
+    page.open()
+    page.run(OPEN_ALL)
+    main, mesh = ["# Main parameters", MADE, "A", "C"], ["# Mesh", MADE, "A", "# Points", "B", "C"]
+    land = ["# Land", "D", "E", "Alone.", MADE, "F", "G", "# Points", MADE, "H", "I"]
+    assert page.run(WHY)[: len(main + mesh + land)] == main + mesh + land
+    told = "[...document.querySelectorAll('.panel .locked [type=range]')].map((one) => one.ariaDescription)"
+    assert page.run(f"return {told}") == [MADE] * 5 + ["Alone."] + [MADE] * 4
+    page.run("const field = document.querySelector('[type=search]'); field.value = 'mesh'; field.oninput()")
+    assert page.run(WHY) == ["# Mesh", MADE, "A", "B", "C"]
+    page.keep("locked")
+    no_complaint(page)
+
+
 # ── a phone ──────────────────────────────────────────────────────────────────
 
 
