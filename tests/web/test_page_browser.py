@@ -14,6 +14,7 @@ import pytest
 
 from ..report.browser import MISSING, Browser
 from . import fake_page
+from .firefox import Firefox
 from .node import MISSING as NO_NODE
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING or NO_NODE), reason=MISSING or NO_NODE)]
@@ -41,7 +42,7 @@ FILM = {
 class Page:
     """One page in the browser."""
 
-    def __init__(self, browser: Browser, url: str) -> None:
+    def __init__(self, browser: Browser | Firefox, url: str) -> None:
         self.browser, self.url = browser, url
 
     def open(self, fragment: str = "") -> None:
@@ -74,7 +75,7 @@ class Page:
         self.act({"type": "key", "id": "keys", "actions": actions})
 
     def act(self, *sources: dict[str, Any]) -> None:
-        self.browser._ask("POST", "/actions", {"actions": list(sources)})
+        self.browser.act(*sources)
         self.at_rest()
 
     def drag(self, *path: tuple[int, int], button: int = 0, finger: bool = False, held: str = "") -> None:
