@@ -30,8 +30,8 @@ class Painted(Protocol):
         """A name that no other has, in no process."""
 
     @property
-    def pixels(self) -> NDArray[np.uint8]:
-        """(ny, nx, 4), row 0 south."""
+    def pixels(self) -> NDArray[np.uint8] | NDArray[np.float32]:
+        """(ny, nx, channels) or (ny, nx), row 0 south: bytes that mean 0..1, or numbers as they are."""
 
     @property
     def version(self) -> int:
@@ -67,7 +67,7 @@ class PaintedTextures:
         self.uploaded = 0  # texels so far
 
     def texture_of(self, painted: Painted, form: str) -> moderngl.Texture:
-        """Return the texture of an image in a format of four channels, its changes written to it."""
+        """Return the texture of an image in a format of as many channels, its changes written to it."""
         key, pixels = (painted.token, form), painted.pixels
         known = self._textures.pop(key, None)
         if known is None:
@@ -93,6 +93,15 @@ class PaintedTextures:
         self._textures.clear()
 
 
-def _in_format(pixels: NDArray[np.uint8], form: str) -> NDArray[np.uint8] | NDArray[np.float32]:
-    """Return pixels as a texture's format takes them: bytes for bytes, else 0..1."""
-    return pixels if split_format(form)[1] == "f1" else np.asarray(pixels / np.float32(255), np.float32)
+def channels_of(painted: Painted) -> int:
+    """Return how many numbers a texel of an image has."""
+    return int(np.prod(painted.pixels.shape[2:], dtype=int))
+
+
+def _in_format(
+    pixels: NDArray[np.uint8] | NDArray[np.float32], form: str
+) -> NDArray[np.uint8] | NDArray[np.float32]:
+    """Return pixels as a texture's format takes them: bytes for bytes, else numbers."""
+    if pixels.dtype != np.uint8 or split_format(form)[1] == "f1":
+        return pixels
+    return np.asarray(pixels / np.float32(255), np.float32)

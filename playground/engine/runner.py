@@ -14,7 +14,7 @@ from playground.engine.compute_variant import ComputeVariants
 from playground.engine.draws import Draws
 from playground.engine.error_place import placed
 from playground.engine.kernels import Job, Kernels, usual_of
-from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextures
+from playground.engine.painted_images import Painted, PaintedFiles, PaintedTextures, channels_of
 from playground.engine.plan import LoopIteration, Plan, Step
 from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
@@ -205,9 +205,9 @@ class Runner:
         path = kind.picture(step.values, step.size)
         painted = self.painted.of(path) if path is not None else None
         outputs = step.kernel.outputs
-        if painted is None or len(outputs) != 1 or split_format(outputs[0].format)[0] != 4:
+        if painted is None or len(outputs) != 1 or painted.pixels.shape[1::-1] != step.size:
             return None
-        return painted if painted.pixels.shape[1::-1] == step.size else None
+        return painted if split_format(outputs[0].format)[0] == channels_of(painted) else None
 
     def _usual(self, step: Step, frame: int | None) -> dict[str, tuple[float, ...]]:
         width, height = step.whole_size

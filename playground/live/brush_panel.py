@@ -1,4 +1,4 @@
-"""The brush in the panel: which layer it paints, how wide, how strongly; strokes undone."""
+"""The brush in the panel: what it paints on, its layer or tool, how wide, how strongly; strokes undone."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from imgui_bundle import imgui
 from playground.live.draw import buttons, choose
 from playground.live.panel_rows import row
 from playground.live.sliders import slide
-from playground.workbench.brush import ERASER
+from playground.workbench.brush import ERASER, TOOLS, Brush
 from playground.workbench.painting import NARROWEST, WIDEST, Painting
 
 _LAYERS = {0: "the first", 1: "the second", 2: "the third", 3: "the fourth", ERASER: "none: erase"}
@@ -27,15 +27,16 @@ def draw_paintbox(painting: Painting) -> None:
         painting.toggle()
     if not opened or not painting.on:
         return
-    brush = painting.brush
-    with row("Layer", "The layer that the brush puts on; erased, the rules show again", fixed=True):
-        layer = choose("##layer", _LAYERS[brush.layer], _LAYERS, brush.layer, name=_LAYERS.__getitem__)
-        if layer is not None:
-            brush = replace(brush, layer=layer)
+    if len(painting.targets) > 1:
+        with row("On", "What the brush paints on", fixed=True):
+            target = choose("##target", painting.target, painting.targets, painting.target, name=str)
+            if target is not None:
+                painting.choose(target)
+    brush = _with_tool(painting) if painting.sculpts else _with_layer(painting.brush)
     widths = NARROWEST * painting.side, WIDEST * painting.side
     for name, note, ends, form in (
         ("radius", "The brush's, on the ground", widths, "%.0f m"),
-        ("strength", "How much of what was there one pass over a place covers", (0.01, 1.0), "%.2f"),
+        ("strength", _strength(painting), (0.01, 1.0), "%.2f"),
         ("softness", "The share of the radius over which the brush fades", (0.0, 1.0), "%.2f"),
     ):
         with row(name.capitalize(), note, fixed=True):
@@ -54,3 +55,38 @@ def draw_paintbox(painting: Painting) -> None:
     if canvas is not None:
         imgui.text_disabled(canvas.path.name)
         imgui.set_item_tooltip(str(canvas.path))
+
+
+def _with_layer(brush: Brush) -> Brush:
+    """Draw the choice of a layer; return the brush as it is chosen."""
+    with row("Layer", "The layer that the brush puts on; erased, the rules show again", fixed=True):
+        layer = choose("##layer", _LAYERS[brush.layer], _LAYERS, brush.layer, name=_LAYERS.__getitem__)
+    return brush if layer is None else replace(brush, layer=layer)
+
+
+def _with_tool(painting: Painting) -> Brush:
+    """Draw the choice of a tool, and what flatten goes to; return the brush as it is chosen."""
+    brush = painting.brush
+    with row("Tool", f"What the brush does while the button is down (1 to {len(TOOLS)})", fixed=True):
+        tool = choose("##tool", brush.tool, TOOLS, brush.tool, name=str)
+    if tool is not None:
+        brush = replace(brush, tool=tool)
+    if brush.tool != "flatten":
+        return brush
+    note = "Flatten to the height where each stroke begins, or to the level below"
+    with row("Stated level", note, fixed=True):
+        clicked, stated = imgui.checkbox("##stated", brush.level is not None)
+    if clicked:
+        brush = replace(brush, level=sum(painting.levels) / 2 if stated else None)
+    if brush.level is not None:
+        with row("Level", "What flatten goes to: above height 0", fixed=True):
+            level = slide("##level", brush.level, painting.levels, "%.5g")
+        brush = brush if level is None else replace(brush, level=level)
+    return brush
+
+
+def _strength(painting: Painting) -> str:
+    """Return what the brush's strength means for what it paints on."""
+    if not painting.sculpts:
+        return "How much of what was there one step of a stroke covers"
+    return f"Of the tool, while the button is down; raise and lower: {painting.rate:.3g} a second"

@@ -17,6 +17,7 @@ GESTURES = (
     ("Shift+drag, right drag", "move along the ground"),
     ("Ctrl+drag", "move the sun"),
     ("wheel", "nearer, farther"),
+    ("Ctrl, Shift, Ctrl+Shift+wheel", "the brush: wider, stronger, softer"),
     ("double click, Ctrl+click", "type a value; pi/4 will do"),
     ("right click", "a parameter's menu"),
     ("drop a file", "open a sketch, or choose what reads an image, a video or a sound"),

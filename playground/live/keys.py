@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 
 from imgui_bundle import imgui
 
 from playground.live.escape_layers import close_one
 from playground.live.text_field import ctrl_held, keeps_keys, left_a_field, letters
 from playground.workbench.bench import Bench
+from playground.workbench.brush import TOOLS, Tool
 from playground.workbench.interface import resize
 
 
@@ -30,9 +32,20 @@ class Key:
 
 _K = imgui.Key
 _INSPECT = "every pass's number at a pixel; Shift: of those inside, too"
+_TOOLS = f"the brush's tool: {', '.join(TOOLS)}"
 _HELP = "show or hide these keys"
 _VISITS = "the sketch that was open before, and forward again"
+_NARROW, _STRONG, _SOFT = (
+    "a narrower, wider brush",
+    "a weaker, stronger brush",
+    "a harder, softer brush",
+)
 _SIZE_KEYS = "text and panels larger, smaller, at their first size"
+
+
+def _take(bench: Bench, tool: Tool) -> None:
+    bench.painting.take_tool(tool)
+
 
 KEYS: tuple[Key, ...] = (
     Key(_K.space, "Space", "play or pause", lambda b: b.session.clock.toggle()),
@@ -46,6 +59,16 @@ KEYS: tuple[Key, ...] = (
     Key(_K.a, "A", "keep this as A and compare; or no longer", lambda b: b.inspection.compare.toggle()),
     Key(_K.g, "G", "the passes as a graph, or no longer", lambda b: b.inspection.graph.toggle()),
     Key(_K.b, "B", "take the brush, or put it down", lambda b: b.painting.toggle()),
+    Key(_K.none, "[", _NARROW, lambda b: b.painting.resize(-1), letter="["),
+    Key(_K.none, "]", _NARROW, lambda b: b.painting.resize(1), letter="]"),
+    Key(_K.none, "{", _STRONG, lambda b: b.painting.strengthen(-1), letter="{"),
+    Key(_K.none, "}", _STRONG, lambda b: b.painting.strengthen(1), letter="}"),
+    Key(_K.none, "(", _SOFT, lambda b: b.painting.soften(-1), letter="("),
+    Key(_K.none, ")", _SOFT, lambda b: b.painting.soften(1), letter=")"),
+    *(
+        Key(_K.none, str(n), _TOOLS, partial(_take, tool=tool), letter=str(n))
+        for n, tool in enumerate(TOOLS, 1)
+    ),
     Key(_K.s, "S", "save a PNG", lambda b: b.captures.save_picture(), brief="save"),
     Key(_K.c, "C", "capture: large pictures, films, sheets", lambda b: b.captures.toggle()),
     Key(_K.tab, "Tab", "hide the panel", lambda b: b.interface.toggle_panel(), brief="hide"),

@@ -36,6 +36,7 @@ class PictureMouse:
         if io.want_capture_mouse or session.plan is None or session.sketch is None:
             return
         left, right = _dragged(0), _dragged(1)
+        wheel = 0.0 if self._size_brush() else io.mouse_wheel
         if io.key_ctrl:
             if left and (io.mouse_delta.x or io.mouse_delta.y):
                 session.drafts.move_suns(io.mouse_delta.x / area[3], -io.mouse_delta.y / area[3])
@@ -46,7 +47,7 @@ class PictureMouse:
             height=area[3],
             across=io.mouse_delta.x,
             down=io.mouse_delta.y,
-            wheel=io.mouse_wheel,
+            wheel=wheel,
             orbiting=left and not io.key_shift,
             panning=right or (left and io.key_shift),
         )
@@ -90,10 +91,24 @@ class PictureMouse:
         if imgui.is_mouse_clicked(0):
             self.strokes = True
             painting.press(place)
-        elif self.strokes and (io.mouse_delta.x or io.mouse_delta.y):
+        elif self.strokes and (painting.sculpts or io.mouse_delta.x or io.mouse_delta.y):
             painting.move(place)
         self._show_brush(place, area)
         return self.strokes
+
+    def _size_brush(self) -> bool:
+        """Change the brush by the wheel, with Ctrl or Shift; return whether the wheel is the brush's."""
+        painting, io = self.painting, imgui.get_io()
+        by = io.mouse_wheel or io.mouse_wheel_h  # with Shift, some systems turn it
+        if not painting.on or not (io.key_ctrl or io.key_shift):
+            return False
+        if by and io.key_ctrl and io.key_shift:
+            painting.soften(by)
+        elif by and io.key_ctrl:
+            painting.resize(by)
+        elif by:
+            painting.strengthen(by)
+        return True
 
     def _show_brush(self, place: tuple[float, float], area: Area) -> None:
         """Draw the circle that the brush covers, as it lies on the terrain."""

@@ -30,6 +30,7 @@ from playground.terrain.elevation import Edge, Elevation, read_elevation
 from playground.terrain.gaps import Voids, fill_no_data
 from playground.terrain.grid import Packing
 from playground.terrain.masks import read_mask
+from playground.terrain.numbers import read_numbers
 from playground.terrain.over_time import (
     LEAD,
     frames_of_sound,
@@ -209,6 +210,12 @@ def _mask_picture(values: Mapping[str, Value], size: tuple[int, int]) -> Path | 
     return Path(str(values["image"])) if values["texels"] in ((0, 0), size) else None
 
 
+def _make_numbers(
+    values: Mapping[str, Value], size: tuple[int, int], moment: None = None
+) -> dict[str, NDArray[np.float32]]:
+    return {"painted": read_numbers(Path(str(values["image"])), size)}
+
+
 def _number(values: Mapping[str, Value], name: str) -> float:
     value = values[name]
     assert isinstance(value, int | float)  # the kernel's file says so
@@ -238,6 +245,14 @@ SOURCES: dict[str, SourceKind] = {
         ("image", "texels"),
         "the mask",
         picture=_mask_picture,
+    ),
+    "numbers_file": SourceKind(
+        lambda _: Terrain(),
+        _make_numbers,
+        ("image",),
+        ("image",),
+        "the painted numbers",
+        picture=lambda values, size: Path(str(values["image"])),
     ),
     "video_file": SourceKind(
         lambda _: Terrain(),

@@ -14,7 +14,11 @@
     commands.py, sketch_file.py, keyframe_edits.py   presets, resets, saving, keyframes
     open_files.py, editors.py, text_file.py   files open in an editor
     captures.py         PNGs, large pictures, films
-    brush.py, painted_mask.py, painting.py   strokes on a mask, its file, the brush over the picture
+    painting.py         the brush over the picture
+      brush.py          where a stroke reaches
+      canvas.py         an image that is painted on, its file and its strokes undone
+      painted_mask.py   four weights a texel
+      sculpture.py, sculpting.py, sculpted_ground.py   metres on a ground, and the tools
     interface.py        which panels are shown, and how large
     memory.py, autosave.py   the file that remembers one sketch, written as one goes
     inspect/            numbers, costs, comparisons, the pass graph, time

@@ -1,7 +1,8 @@
-"""The brush over the picture: strokes on a mask of the sketch, stored in a file of their own.
+"""The brush over the picture: strokes on an image of the sketch, stored in a file of their own.
 
-A mask is a file parameter that its kernel lets be painted on. The file that the sketch names is
-never written to: painting begins a new one in the current folder and puts it in its place.
+A canvas is a file parameter that its kernel lets be painted on: a mask of four weights, or one number a
+texel. The file that the sketch names is never written to: painting begins a new one in the current
+folder and puts it in its place.
 """
 
 from __future__ import annotations
@@ -19,17 +20,24 @@ from playground.engine.files import find_file
 from playground.engine.plan import Step
 from playground.engine.view_inputs import view_height
 from playground.errors import DataError, PlaygroundError
-from playground.sketch.assign import Shown, resolve, shown_parameters, value_of, values_of
+from playground.gpu.textures import split_format
+from playground.sketch.assign import resolve, shown_parameters, value_of, values_of
 from playground.sketch.model import Sketch
 from playground.terrain.camera import Eye
 from playground.terrain.pick import ground_under, seen_from
 from playground.terrain.sources import source_kind
-from playground.workbench.brush import Brush
-from playground.workbench.painted_mask import MOST_BY_FILE, MOST_TEXELS, Canvas
+from playground.workbench.brush import Brush, Tool
+from playground.workbench.canvas import MOST_TEXELS, Canvas
+from playground.workbench.painted_mask import MOST_BY_FILE, Mask
+from playground.workbench.sculpted_ground import ground_of, ground_ref
+from playground.workbench.sculpture import Sculpture, rate_of
 from playground.workbench.session import Session
 
 NARROWEST, USUAL, WIDEST = 0.002, 0.025, 0.25
 """A brush's radius, in shares of the terrain's longer side."""
+
+CLICK, LONGEST = 0.05, 0.1
+"""[s] How long a stroke works on the place where it begins, and at most from one frame to the next."""
 
 SAVES_EVERY = 0.1
 """[s] Where the picture can follow a stroke by its file only; any file is written when the stroke ends."""
@@ -45,10 +53,12 @@ class Painting:
         self._now = now
         self._taken = False  # painting is on
         self._canvases: dict[str, Canvas] = {}  # by the parameter's path
-        self._found: tuple[Sketch | None, Shown | None] = (None, None)
+        self._found: tuple[Sketch | None, tuple[str, ...]] = (None, ())
+        self._chosen = ""
         self._heights: tuple[object, NDArray[np.float32] | None] = (None, None)  # and of which picture
         self._last: tuple[float, float] | None = None  # where the stroke is
         self._saved_at = 0.0
+        self._moved_at = 0.0
 
     @property
     def on(self) -> bool:
@@ -56,12 +66,44 @@ class Painting:
         return self._taken and bool(self.target)
 
     @property
-    def target(self) -> str:
-        """The path of the parameter that is painted on; "" where the sketch has none."""
+    def targets(self) -> tuple[str, ...]:
+        """The paths of the parameters that can be painted on, those first that a technique shows."""
         sketch = self.session.sketch
         if self._found[0] is not sketch:
             self._found = sketch, _painted(sketch)
-        return self._found[1].path if self._found[1] else ""
+        return self._found[1]
+
+    @property
+    def target(self) -> str:
+        """The path of the parameter that is painted on; "" where the sketch has none."""
+        return self._chosen if self._chosen in self.targets else next(iter(self.targets), "")
+
+    @property
+    def sculpts(self) -> bool:
+        """Whether what is painted on has one number a texel: it takes tools in place of layers."""
+        step = self._step_of(self.target)
+        return step is not None and _kind_of(step) is Sculpture
+
+    @property
+    def levels(self) -> tuple[float, float]:
+        """The least and the most that flatten may be told to go to."""
+        relief = self.session.plan.terrain.relief if self.session.plan else None
+        return (-(relief or 0.0), 2 * relief) if relief and self._adds_metres else (-4.0, 4.0)
+
+    @property
+    def rate(self) -> float:
+        """How fast raise goes [m/s], or numbers a second."""
+        return self.brush.strength * rate_of(self.brush, metres=self._adds_metres)
+
+    @property
+    def _adds_metres(self) -> bool:
+        step, plan = self._step_of(self.target), self.session.plan
+        return step is not None and plan is not None and ground_ref(plan, step.path) is not None
+
+    def choose(self, target: str) -> None:
+        """Paint on another parameter, by its path."""
+        self.release()
+        self._chosen = target
 
     @property
     def files(self) -> frozenset[Path]:
@@ -86,11 +128,29 @@ class Painting:
         """Take the brush, or put it down."""
         if not self.target:
             self.session.notes.append(
-                'this sketch has no mask to paint on: none of its files has the word "paint"'
+                'this sketch has nothing to paint on: none of its files has the word "paint"'
             )
         self._taken = bool(self.target) and not self._taken
         if not NARROWEST * self.side <= self.brush.radius <= WIDEST * self.side:
             self.brush = replace(self.brush, radius=USUAL * self.side)
+
+    def resize(self, by: float) -> None:
+        """Make the brush wider, by steps of a tenth."""
+        radius = self.brush.radius * 1.1**by
+        self.brush = replace(self.brush, radius=min(max(radius, NARROWEST * self.side), WIDEST * self.side))
+
+    def strengthen(self, by: float) -> None:
+        """Make the brush stronger, by steps of a twentieth of the strongest."""
+        self.brush = replace(self.brush, strength=min(max(self.brush.strength + by / 20, 0.01), 1.0))
+
+    def soften(self, by: float) -> None:
+        """Make the brush fade over more of its radius, by steps of a twentieth."""
+        self.brush = replace(self.brush, softness=min(max(self.brush.softness + by / 20, 0.0), 1.0))
+
+    def take_tool(self, tool: Tool) -> None:
+        """Sculpt with another tool, while the brush is on what can be sculpted."""
+        if self.on and self.sculpts:
+            self.brush = replace(self.brush, tool=tool)
 
     def ground(self, place: tuple[float, float]) -> tuple[float, float] | None:
         """Return where on the terrain a place of the picture lies, both in shares; None in the sky."""
@@ -119,23 +179,28 @@ class Painting:
         canvas = self._begun() if self._last is not None else None
         if canvas is not None:
             self._hand_over(canvas)
+            step = self._step_of(self.target)
+            if isinstance(canvas, Sculpture) and step is not None:
+                canvas.lie_on(ground_of(self.session, step.path))
             canvas.begin()
             self._saved_at = -SAVES_EVERY
+            self._moved_at = self._now() - CLICK
             self.move(place)
 
     def move(self, place: tuple[float, float]) -> None:
-        """Go on with the stroke."""
+        """Go on with the stroke, for as long as it is since the last time."""
         plan, canvas = self.session.plan, self.canvas
         if plan is None or plan.terrain.extent is None or canvas is None:
             return
-        now = self.ground(place)
+        now, at = self.ground(place), self._now()
+        seconds, self._moved_at = min(at - self._moved_at, LONGEST), at
         if now is not None:
-            canvas.paint(self._last or now, now, plan.terrain.extent, self.brush)
+            canvas.paint(self._last or now, now, plan.terrain.extent, self.brush, seconds)
             if canvas.path in self.session.engine.painted:
                 self.session.redraw()
-            elif self._now() - self._saved_at >= SAVES_EVERY:
+            elif at - self._saved_at >= SAVES_EVERY:
                 self._saved(canvas.save)
-                self._saved_at = self._now()
+                self._saved_at = at
         self._last = now
 
     def release(self) -> None:
@@ -184,8 +249,7 @@ class Painting:
         """Have the picture show a canvas from memory, where it can."""
         step, painted = self._step_of(self.target), self.session.engine.painted
         painted.pop(canvas.path, None)
-        ny, nx = canvas.mask.shape[:2]
-        if step is not None and self._shows(step, canvas.path, (nx, ny)):
+        if step is not None and self._shows(step, canvas.path, canvas.size):
             painted[canvas.path] = canvas
 
     def _step_of(self, path: str) -> Step | None:
@@ -209,7 +273,7 @@ class Painting:
             file = str(value_of(sketch, path, values_of(sketch)))
             of = find_file(file, sketch.folder, leaf.parameter.file, path) if file else None
             most = MOST_TEXELS if self._shows(step, self.folder, step.size) else MOST_BY_FILE
-            canvas = Canvas.begun(self.folder, name, of, step.size, most)
+            canvas: Canvas = _kind_of(step).begun(self.folder, name, of, step.size, most)
         except PlaygroundError as error:
             self.session.notes.append(str(error))
             return None
@@ -235,9 +299,16 @@ class Painting:
         return self._heights[1]
 
 
-def _painted(sketch: Sketch | None) -> Shown | None:
-    """Return the first parameter that may be painted on, those that a technique shows before those inside."""
+def _painted(sketch: Sketch | None) -> tuple[str, ...]:
+    """Return the parameters that may be painted on, those that a technique shows before those inside."""
     if sketch is None:
-        return None
+        return ()
     found = [shown for shown in shown_parameters(sketch) if shown.parameter.painted]
-    return min(found, key=lambda shown: not shown.exported, default=None)
+    return tuple(shown.path for shown in sorted(found, key=lambda shown: not shown.exported))
+
+
+def _kind_of(step: Step) -> type[Mask] | type[Sculpture]:
+    """Return what is painted: a number a texel where a source gives one, else a mask."""
+    outputs = step.kernel.outputs
+    one = step.kernel.kind == "source" and len(outputs) == 1 and split_format(outputs[0].format)[0] == 1
+    return Sculpture if one else Mask

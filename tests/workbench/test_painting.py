@@ -14,7 +14,8 @@ from playground.images.files import read_image, read_png, write_png
 from playground.sketch.load import load
 from playground.terrain.masks import read_mask
 from playground.workbench.brush import ERASER, Brush, covered, stroke
-from playground.workbench.painted_mask import MOST_TEXELS, Canvas
+from playground.workbench.canvas import MOST_TEXELS
+from playground.workbench.painted_mask import Mask
 from playground.workbench.painting import Painting
 from playground.workbench.session import Session
 
@@ -79,22 +80,22 @@ SIZE = (128, 64)  # texels of the pass that reads it
 
 
 def test_a_new_mask_has_the_pass_s_size_and_a_new_name(tmp_path: Path):
-    first = Canvas.begun(tmp_path, "hills-image", None, SIZE)
-    second = Canvas.begun(tmp_path, "hills-image", None, SIZE)
+    first = Mask.begun(tmp_path, "hills-image", None, SIZE)
+    second = Mask.begun(tmp_path, "hills-image", None, SIZE)
     assert first.path.name == "hills-image.png" and second.path.name == "hills-image-2.png"
     assert read_image(first.path).size == SIZE
 
 
 def test_a_canvas_has_the_terrain_s_size_and_a_very_large_one_is_held_to_a_bound(tmp_path: Path):
-    canvas = Canvas.begun(tmp_path, "usual", None, (1025, 513))
+    canvas = Mask.begun(tmp_path, "usual", None, (1025, 513))
     assert read_image(canvas.path).size == canvas.mask.shape[1::-1] == (1025, 513)
-    canvas = Canvas.begun(tmp_path, "large", None, (4097, 2049), most=1024)
+    canvas = Mask.begun(tmp_path, "large", None, (4097, 2049), most=1024)
     assert read_image(canvas.path).size == (1024, 512)
     assert MOST_TEXELS == 2**12 + 1
 
 
 def test_strokes_are_saved_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
-    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
+    canvas = Mask.begun(tmp_path, "mask", None, SIZE)
     pictures = [read_image(canvas.path).pixels]
     for x in (0.2, 0.8):
         canvas.begin()
@@ -122,7 +123,7 @@ def test_strokes_are_saved_in_the_file_north_up_and_taken_back_one_by_one(tmp_pa
 
 
 def test_after_another_stroke_what_was_taken_back_is_not_painted_again(tmp_path: Path):
-    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
+    canvas = Mask.begun(tmp_path, "mask", None, SIZE)
     canvas.begin()
     canvas.paint((0.2, 0.5), (0.2, 0.5), EXTENT, HARD)
     canvas.undo()
@@ -134,7 +135,7 @@ def test_after_another_stroke_what_was_taken_back_is_not_painted_again(tmp_path:
 
 
 def test_clearing_can_be_undone(tmp_path: Path):
-    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
+    canvas = Mask.begun(tmp_path, "mask", None, SIZE)
     canvas.begin()
     canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, HARD)
     canvas.save()
@@ -148,7 +149,7 @@ def test_clearing_can_be_undone(tmp_path: Path):
 def test_a_mask_that_is_there_is_copied_and_stays_as_it_was(tmp_path: Path):
     pixels = np.random.default_rng(1).integers(0, 256, (SIZE[1], SIZE[0], 4), np.uint8)
     write_png(tmp_path / "old.png", pixels)
-    canvas = Canvas.begun(tmp_path, "new", tmp_path / "old.png", SIZE)
+    canvas = Mask.begun(tmp_path, "new", tmp_path / "old.png", SIZE)
     np.testing.assert_array_equal(read_image(canvas.path).pixels, pixels)
     canvas.clear()
     np.testing.assert_array_equal(read_image(tmp_path / "old.png").pixels, pixels)
@@ -158,14 +159,14 @@ def test_a_mask_of_another_size_takes_the_pass_s(tmp_path: Path):
     pixels = np.zeros((2, 2, 4), np.uint8)
     pixels[0] = [0, 200, 0, 0]  # the north
     write_png(tmp_path / "coarse.png", pixels)
-    canvas = Canvas.begun(tmp_path, "fine", tmp_path / "coarse.png", SIZE)
+    canvas = Mask.begun(tmp_path, "fine", tmp_path / "coarse.png", SIZE)
     found = read_image(canvas.path).pixels
     assert found.shape == (SIZE[1], SIZE[0], 4)
     assert found[0, 0, 1] == 200 and found[-1, -1, 1] == 0 and 90 < found[SIZE[1] // 2, 7, 1] < 110
 
 
 def test_a_canvas_that_is_full_of_the_fourth_layer_is_read_back_as_that(tmp_path: Path):
-    canvas = Canvas.begun(tmp_path, "full", None, SIZE)
+    canvas = Mask.begun(tmp_path, "full", None, SIZE)
     everything = Brush(layer=3, radius=5000.0, strength=1.0, softness=0.0)
     canvas.begin()
     canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, everything)
@@ -175,7 +176,7 @@ def test_a_canvas_that_is_full_of_the_fourth_layer_is_read_back_as_that(tmp_path
 
 def test_a_folder_that_is_missing_has_a_sentence(tmp_path: Path):
     with pytest.raises(DataError, match="missing"):
-        Canvas.begun(tmp_path / "missing", "mask", None, SIZE)
+        Mask.begun(tmp_path / "missing", "mask", None, SIZE)
 
 
 SKETCH = (
@@ -441,7 +442,7 @@ def test_a_canvas_that_no_source_reads_texel_for_texel_is_followed_by_its_file(
 
 
 def test_changes_since_a_version_are_a_rectangle_around_them(tmp_path: Path) -> None:
-    canvas = Canvas.begun(tmp_path, "mask", None, SIZE)
+    canvas = Mask.begun(tmp_path, "mask", None, SIZE)
     small = Brush(layer=0, radius=20.0, strength=1.0, softness=0.0)
     assert canvas.changed_since(canvas.version) == (slice(0, 0), slice(0, 0))
     rng = np.random.default_rng(3)
@@ -482,7 +483,7 @@ def test_a_sketch_without_a_mask_says_so(tmp_path: Path, any_engine: Engine) -> 
         session.frame((80, 60))
         painting = Painting(session, tmp_path)
         painting.toggle()
-        assert not painting.on and any("no mask to paint on" in note for note in session.notes)
+        assert not painting.on and any("nothing to paint on" in note for note in session.notes)
     finally:
         session.release()
 
