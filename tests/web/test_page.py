@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import gzip
 import hashlib
 import json
 import re
@@ -19,6 +18,7 @@ from playground.web.page_data import page_data
 
 from ..report import browser as browsers
 from .node import Node
+from .unpressed import parts_of
 
 EVIL = "</script></title><img src=x onerror=\"document.body.dataset.broken='1'\"><!--<script>"
 POSTER = Poster(
@@ -78,29 +78,25 @@ class Elements(HTMLParser):
         raise AssertionError(f"a comment: {data}")
 
 
-def unpacked(text: str) -> str:
-    return gzip.decompress(base64.b64decode(text)).decode()
-
-
 def test_what_people_wrote_is_text(evil: dict[str, Any]):
     page = Elements(page_of(evil))
     expected = "html head meta meta meta meta meta meta title link style body"
-    expected += " main img noscript p p script script script script"
+    expected += " main img noscript p p script script script"
     assert [tag for tag, _ in page.found] == expected.split()
     assert page.texts["title"] == EVIL
     [image] = [given for tag, given in page.found if tag == "img"]
     assert image["alt"] == EVIL and set(image) == {"id", "src", "alt", "width", "height"}
-    file = json.loads(page.texts["playground-page"])
-    assert json.loads(unpacked(file["packed"]))["sketches"][0]["title"] == EVIL
-    assert file["blobs"] == evil["shared"]["blobs"]
+    _, data, _ = parts_of(page.texts["playground-pressed"])
+    assert json.loads(data)["sketches"][0]["title"] == EVIL
+    assert json.loads(page.texts["playground-blobs"]) == evil["shared"]["blobs"]
 
 
 def test_nothing_in_the_data_can_end_its_element(evil: dict[str, Any]):
-    evil["shared"]["blobs"][EVIL] = EVIL  # the one part that is not packed
+    evil["shared"]["blobs"][EVIL] = EVIL  # the one part that is not pressed
     html = page_of(evil)
-    start = html.index('id="playground-page">') + len('id="playground-page">')
+    start = html.index('id="playground-blobs">') + len('id="playground-blobs">')
     text = html[start : html.index("</script>", start)]
-    assert "<" not in text and json.loads(text)["blobs"][EVIL] == EVIL
+    assert "<" not in text and json.loads(text)[EVIL] == EVIL
 
 
 def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]):
@@ -112,8 +108,8 @@ def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]
     def digest(text: str) -> str:
         return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
-    assert unpacked(page.texts["playground-runtime"]) == SCRIPT
-    assert unpacked(page.texts["playground-style"]) == STYLE
+    style, _, script = parts_of(page.texts["playground-pressed"])
+    assert (style, script) == (STYLE, SCRIPT)
     assert rules == {
         "default-src": "'none'",
         "script-src": f"{digest(page.texts['script'])} {digest(SCRIPT)}",
@@ -126,10 +122,10 @@ def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]
 
 
 def test_it_is_read_as_it_was_written(node: Node, evil: dict[str, Any]):
-    page = Elements(page_of(evil))
-    found = node.call("page_file.js", "readPage", page.texts["playground-page"])
+    texts = Elements(page_of(evil)).texts
+    _, data, _ = node.call("pressed.js", "unpressed", texts["playground-pressed"]).split("\0")
+    found = node.call("page_file.js", "readPage", data, texts["playground-blobs"])
     assert found == json.loads(json.dumps(evil))
-    assert node.call("page_file.js", "readPage", json.dumps(evil)) == found, "one that is not packed, too"
 
 
 def test_the_same_sketch_gives_the_same_bytes():

@@ -9,11 +9,13 @@ import { createRecovery } from "./recovery.js";
 import { createPage } from "./sketch_page.js";
 import { wordsOf } from "./words.js";
 
-async function start() {
+const textOf = (/** @type {string} */ id) => document.getElementById(id)?.textContent ?? "";
+
+function start() {
   const main = /** @type {HTMLElement} */ (document.getElementById("playground"));
   const poster = /** @type {HTMLImageElement | null} */ (document.getElementById("playground-poster"));
   const words = wordsOf(document.documentElement.lang);
-  const page = await readPage(document.getElementById("playground-page")?.textContent ?? "");
+  const page = readPage(textOf("playground-page"), textOf("playground-blobs"));
   const canvas = document.createElement("canvas");
   let engine;
   try {

@@ -1,0 +1,30 @@
+"""Read what is pressed into a page as its definition says, by arithmetic on whole numbers and Python's LZMA."""
+
+from __future__ import annotations
+
+import lzma
+
+ESCAPED = "\0\a\b\t\n\v\f\r\x1a\x1b&<\x7f"
+
+
+def undense(text: str) -> bytes:
+    """Return the bytes that letters of 7 bits stand for, those of two bytes for two."""
+    number, count = 0, 0
+    for letter in map(ord, text):
+        pair = (ord(ESCAPED[(letter >> 7) - 2]), letter & 127) if letter > 127 else (letter,)
+        for seven in pair:
+            number, count = number << 7 | seven, count + 7
+    return (number >> count % 8).to_bytes(count // 8, "big")
+
+
+def unpressed(text: str) -> str:
+    """Return the text that a pressed one holds."""
+    data = undense(text)
+    filters = [{"id": lzma.FILTER_LZMA1, "dict_size": 2**24, "lc": 3, "lp": 0, "pb": 0}]
+    found = lzma.LZMADecompressor(lzma.FORMAT_RAW, filters=filters).decompress(data[4:])
+    return found[: int.from_bytes(data[:4], "little")].decode()
+
+
+def parts_of(pressed: str) -> list[str]:
+    """Return a page's style, its data as JSON and its script."""
+    return unpressed(pressed).split("\0")
