@@ -47,6 +47,7 @@ def page_html(
     """
     loader = read_bundle("loader.js")
     data, blobs = page_texts(page)
+    whole = pressed("\0".join((style, data, script)))
     sketch = page["sketches"][0]
     title = sketch["title"] or sketch["name"]
     width, height = poster.size
@@ -76,7 +77,7 @@ def page_html(
         "\n",
         tag(
             "script",
-            Markup(pressed("\0".join((style, data, script)))),
+            Markup(whole),
             type="text/plain",
             id="playground-pressed",
         ),

@@ -1,4 +1,4 @@
-"""Read what is pressed into a page as its definition says, by arithmetic on whole numbers and Python's LZMA."""
+"""Read what is pressed into a page, by arithmetic on whole numbers and with Python's own LZMA."""
 
 from __future__ import annotations
 
