@@ -14,6 +14,7 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
+from playground.web.addons import page_script
 from playground.web.bundle import read_bundle
 from playground.web.page import Poster, page_html
 from playground.web.page_data import page_data
@@ -57,13 +58,13 @@ def prepare_page(
     ``frame`` is the picture's size in pixels at first; None for the usual one.
     """
     size, stops = frame or DEFAULT_PICTURE, dict(steps or {})
-    script, style = read_bundle("page.js"), read_bundle("page.css")
+    style = read_bundle("page.css")
     data = page_data([sketch], frame=size, time=time, steps=stops, techniques=techniques, packed=True)
     bytes_of_data = sum(map(len, data["shared"]["blobs"].values()))
     if bytes_of_data > LARGEST:
         largest = f"at most {LARGEST // 2**20} MiB; a smaller terrain, image or film would do"
         raise DataError(f"its data would be {bytes_of_data / 2**20:.0f} MiB of a page, {largest}", file=path)
-    return WebPage(data, script, style, stops, time, size)
+    return WebPage(data, page_script(data), style, stops, time, size)
 
 
 def page_bytes(engine: Engine, sketch: Sketch, page: WebPage) -> tuple[bytes, str]:

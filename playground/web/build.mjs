@@ -18,7 +18,9 @@ const HERE = dirname(fileURLToPath(import.meta.url));
  *  module (esm) is refused.
  *  @type {Object<string, "iife" | "esm" | "css">} */
 const ENTRIES = {
-  "loader.js": "iife", "page.js": "iife", "page.css": "css", "book.js": "iife", "book.css": "css",
+  "loader.js": "iife", "page.js": "iife", "page.css": "css",
+  "with_french.js": "iife", "with_keyframes.js": "iife", "with_plain.js": "iife",
+  "book.js": "iife", "book.css": "css",
   "notebook.js": "esm", "notebook.css": "css",
 };
 

@@ -1,5 +1,6 @@
 // my_version_entry.js -- the page's engine with the editor on it, for tests: a sketch is edited and saved.
 
+import "../../playground/web/runtime/with_all.js";
 import { createEditor } from "../../playground/web/runtime/editor.js";
 import { createEngine } from "../../playground/web/runtime/engine.js";
 import { versionFiles } from "../../playground/web/runtime/my_version.js";

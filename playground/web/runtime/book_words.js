@@ -1,5 +1,6 @@
 // book_words.js -- what live figures of a book say besides the words of every page, in each language.
 
+import "./with_french.js";
 import { wordsOf } from "./words.js";
 
 /** @type {Object<string, string>} */

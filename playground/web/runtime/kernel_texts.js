@@ -1,5 +1,6 @@
 // kernel_texts.js -- what a kernel's text says: names it reads, what it is known by, the texts of its stages.
 
+import { needed } from "./addons.js";
 import { hash } from "./hash.js";
 import { usedBy } from "./staleness.js";
 import { checkSignature } from "./signature.js";
@@ -7,8 +8,6 @@ import { flatten } from "./source.js";
 import { stageText } from "./wrap.js";
 import { toES } from "./es.js";
 import { declaredUniforms } from "./uniforms.js";
-import { withConversions } from "./conversions.js";
-import { withoutDesktopForms } from "./desktop_glsl.js";
 import { filteredByHand } from "./linear_by_hand.js";
 
 /** @typedef {import("./schema.js").Kernel} Kernel */
@@ -60,7 +59,7 @@ export const readKernel = (shared, kernel, texts) => {
 export const stagesOf = ({ kernel, flat, vertex, desktop }, byHand, atEnd) => {
   const stages = [kernel.vertex, kernel.fragment].map((stage, i) => {
     const { text, first } = stageText(stage, i ? flat : vertex);
-    const written = desktop ? withConversions(withoutDesktopForms(text)) : text;
+    const written = desktop ? needed("fromDesktop")(text) : text;
     const filtered = byHand.size ? filteredByHand(written, byHand) : { text: written, functions: "" };
     const found = i && atEnd ? filtered.text.replace(/\}\s*$/, `${atEnd} }\n`) : filtered.text;
     const how = { extensions: kernel.extensions, declarations: filtered.functions };

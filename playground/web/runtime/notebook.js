@@ -3,6 +3,7 @@
 // Traits: `page` holds all that the figure needs (gzip in base64), `values` what its controls have, by
 // key, both ways; `live` says to the kernel that nobody waits for its pictures.
 
+import "./with_all.js";
 import { settled } from "./book_data.js";
 import { liveFigure } from "./book_figure.js";
 import { liveCompare, liveSlider, liveSteps } from "./book_series.js";

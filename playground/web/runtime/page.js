@@ -1,5 +1,6 @@
 // page.js -- the entry of a page about one sketch: reads its data, and brings engine and interface together.
 
+import "./with_editing.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
 import { readPage } from "./page_file.js";

@@ -2,7 +2,8 @@
 
 /** @typedef {import("./schema.js").Page} Page */
 
-/** Return a page. @param {string} text  JSON of it without `shared.blobs` @param {string} blobs  JSON of those
+/** Return a page.
+ *  @param {string} text  JSON of it without `shared.blobs` @param {string} blobs  JSON of those
  *  @returns {Page} */
 export function readPage(text, blobs) {
   const page = JSON.parse(text);

@@ -1,4 +1,6 @@
-// words.js -- every word of the interface, in one table a language.
+// words.js -- every word of the interface in English; other languages have a table of their own.
+
+import { addOns } from "./addons.js";
 
 /** @typedef {Object<string, string>} Words */
 
@@ -107,110 +109,9 @@ export const ENGLISH = {
   rows: "In the panel: double click on a row resets it; drag on a name without a slider changes its number.",
 };
 
-/** @type {Words} */
-export const FRENCH = {
-  picture: "{title} : l'image. Glisser pour tourner, molette pour zoomer ; ? montre les touches",
-  loading: "L'image se prépare",
-  working: "Calcul en cours",
-  compiling: "Compilation de {done} programmes sur {all}",
-  failed: "L'image ne peut pas être faite : {reason}",
-  kept: "Ce réglage ne peut pas être montré, la dernière image reste : {reason}",
-  frameTook: "{size}, {time} ms",
-  still: "Cette image est fixe : {reason}",
-  save: "Enregistrer l'image",
-  saved: "{name} enregistré",
-  notSaved: "Cette page ne contient pas ce qu'il faut pour une version",
-  full: "Plein écran",
-  leaveFull: "Quitter le plein écran",
-  resetView: "Rétablir la vue",
-  keys: "Touches",
-  theme: "Clair ou sombre",
-  close: "Fermer",
-  panel: "Montrer ou cacher le panneau",
-  tools: "Outils",
-  parameters: "Paramètres",
-  code: "Code",
-  search: "Chercher",
-  noneFound: "Aucun paramètre ne correspond",
-  main: "Paramètres principaux",
-  terrain: "Terrain",
-  inside: "À l'intérieur : {count} autres",
-  technique: "Technique",
-  preset: "Préréglage",
-  presetChosen: "Préréglage {name}",
-  reset: "Rétablir",
-  resetAll: "Tout rétablir",
-  undo: "Annuler",
-  redo: "Refaire",
-  undone: "Annulé",
-  redone: "Refait",
-  copyAs: "Copier",
-  copyLink: "Lien vers ces valeurs",
-  copyToml: "Valeurs en TOML",
-  copySet: "Valeurs en --set",
-  copied: "Copié",
-  notCopied: "Le navigateur ne permet pas de copier",
-  nothingDiffers: "Rien ne diffère de l'esquisse",
-  refused: "Le lien nomme ce que cette page n'a pas : {names}",
-  notes: "À propos de cette page",
-  changedValues: "Valeurs qui diffèrent de l'esquisse",
-  azimuth: "azimut",
-  elevation: "hauteur",
-  hex: "comme #rrggbb",
-  size: "Texels",
-  extent: "Étendue",
-  relief: "Relief",
-  base_elevation: "Altitude de base",
-  iterations: "Itérations",
-  iterationsOf: "Itérations de {name}",
-  allOf: "toutes, {count}",
-  interpolated: "Interpolé",
-  time: "Temps",
-  seconds: "{time} s",
-  play: "Lire",
-  pause: "Pause",
-  speed: "Vitesse",
-  keyframe: "image clé",
-  map: "Vue",
-  mapShown: "Carte",
-  ownPicture: "L'image",
-  mapLabel: "{label} vu d'en haut, le nord en haut. Glisser pour déplacer, molette pour agrandir",
-  under: "Texel {x}, {y}",
-  metresEast: "{x} m à l'est, {y} m au nord",
-  height: "{height} m de haut, {above} m au-dessus de la mer",
-  heightOnly: "{height} m de haut",
-  pointAt: "Pointer la carte pour lire ses valeurs",
-  fitValues: "Ajuster aux valeurs",
-  keyOrbit: "tourner",
-  keyPan: "se déplacer sur le terrain",
-  keyZoom: "plus près, plus loin",
-  keyResetView: "rétablir la vue",
-  keyPlay: "lire ou mettre en pause",
-  keyFrame: "une image de temps en arrière, en avant",
-  keyStart: "temps à 0",
-  keyMap: "la carte suivante, ou l'image",
-  keySave: "enregistrer un PNG",
-  keyPanel: "montrer ou cacher le panneau",
-  keySearch: "chercher un paramètre",
-  keyFull: "remplir l'écran, ou ne plus le faire",
-  keyUndo: "annuler, refaire",
-  keyHelp: "montrer ou cacher ces touches",
-  keyClose: "fermer ce qui est ouvert",
-  arrows: "Flèches",
-  shiftArrows: "Maj+flèches",
-  space: "Espace",
-  mouse:
-    "À la souris : glisser pour tourner, glisser du bouton droit ou avec Maj pour se déplacer, " +
-    "molette pour zoomer, double clic pour rétablir.",
-  touch: "Au doigt : un doigt tourne, deux doigts déplacent et zooment, un double appui rétablit.",
-  rows:
-    "Dans le panneau : un double clic sur une ligne la rétablit ; " +
-    "glisser sur un nom sans curseur change son nombre.",
-};
-
-/** The words of a language, by its tag; English where there are none.
+/** The words of a language, by its tag; English where the page has none.
  *  @param {string} [language] */
-export const wordsOf = (language = "en") => (/^fr\b/i.test(language) ? FRENCH : ENGLISH);
+export const wordsOf = (language = "en") => ((/^fr\b/i.test(language) && addOns.french) || ENGLISH);
 
 /** Put values in the places of a text: fill("{time} s", {time: 2}).
  *  @param {string} text @param {Object<string, string | number>} values */
