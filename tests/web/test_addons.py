@@ -30,9 +30,10 @@ def test_a_page_of_several_sketches_carries_what_any_of_them_needs():
     assert read_bundle("with_keyframes.js") in addons.page_script(page)
 
 
-@pytest.mark.parametrize(
-    ("language", "is_french"), [("fr", True), ("fr-CA", True), ("en", False), ("", False)]
-)
+LANGUAGES = {"fr": True, "fr-CA": True, "en": False, "": False}
+
+
+@pytest.mark.parametrize(("language", "is_french"), LANGUAGES.items())
 def test_a_page_speaks_its_language(language: str, is_french: bool):
     script = addons.page_script(page_data([load("diamond_square")]), language)
     assert ("La souris" in script or "À la souris" in script) == is_french

@@ -38,7 +38,8 @@ export function valuesAt(sketch, given, time) {
 export function cameraAt(sketch, given, time) {
   if (given) return given;
   const tracks = sketch.tracks.filter((track) => track.of === "camera");
-  const found = Object.fromEntries(tracks.map((track) => [track.name, needed("keyframes").valueAt(track, time)]));
+  const at = (/** @type {import("./schema.js").Track} */ track) => needed("keyframes").valueAt(track, time);
+  const found = Object.fromEntries(tracks.map((track) => [track.name, at(track)]));
   return { ...sketch.camera, ...found };
 }
 
