@@ -10,6 +10,7 @@ import pytest
 from playground.web.pressed import dense, pressed
 
 from .node import Node
+from .unpressed import unpressed
 
 RANDOM = random.Random(7)
 KINDS = {
@@ -53,6 +54,8 @@ TEXTS = {
     "the same": "abc" * 20_000,
     "letters far apart": "".join(chr(RANDOM.randrange(32, 0x3000)) for _ in range(9000)),
     "words": " ".join(RANDOM.choices("vec3 float height = texture ( ) ; for\n // of".split(), k=30_000)),
+    "its mark of another order": "\ufeffa\0b",
+    "every letter and sign": "".join(map(chr, range(0x250))) * 2 + " height texture height",
     "far repeats": (far := "".join(RANDOM.choices("abcdefgh", k=150_000))) + "!" + far,
 }
 
@@ -60,6 +63,11 @@ TEXTS = {
 @pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
 def test_texts_come_back_as_they_were(text: str, node: Node):
     assert node.call("pressed.js", "unpressed", pressed(text)) == text
+
+
+@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
+def test_it_is_read_by_its_definition(text: str):
+    assert unpressed(pressed(text)) == text
 
 
 def test_bytes_without_any_order_come_back(node: Node):

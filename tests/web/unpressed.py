@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import lzma
+import re
 
 ESCAPED = "\0\a\b\t\n\v\f\r\x1a\x1b&<\x7f"
 
@@ -22,7 +23,10 @@ def unpressed(text: str) -> str:
     data = undense(text)
     filters = [{"id": lzma.FILTER_LZMA1, "dict_size": 2**24, "lc": 3, "lp": 0, "pb": 0}]
     found = lzma.LZMADecompressor(lzma.FORMAT_RAW, filters=filters).decompress(data[4:])
-    return found[: int.from_bytes(data[:4], "little")].decode()
+    listed, _, coded = found[: int.from_bytes(data[:4], "little")].partition(b"\0")
+    for code, word in re.findall(rb"([^A-Za-z])([A-Za-z]+)", listed):
+        coded = coded.replace(code, word)
+    return coded.decode()
 
 
 def parts_of(pressed: str) -> list[str]:
