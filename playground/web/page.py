@@ -19,7 +19,7 @@ from typing import Any
 from playground._version import __version__
 from playground.markup import Markup, tag
 from playground.web.bundle import read_bundle
-from playground.web.pressed import pressed
+from playground.web.pressed import dense, pressed
 
 _ICON = "data:,"  # or a browser would ask for favicon.ico
 _POSTER_STYLE = "img{max-width:100%;height:auto}"
@@ -82,7 +82,7 @@ def page_html(
             id="playground-pressed",
         ),
         "\n",
-        tag("script", Markup(_json(blobs)), type="application/json", id="playground-blobs"),
+        *(tag("script", Markup(text), type="text/plain", data_blob=key) for key, text in blobs.items()),
         "\n",
         tag("script", Markup(loader)),
     )
@@ -90,11 +90,11 @@ def page_html(
     return f"<!doctype html>\n{html}\n"
 
 
-def page_texts(page: Mapping[str, Any]) -> tuple[str, Mapping[str, str]]:
+def page_texts(page: Mapping[str, Any]) -> tuple[str, dict[str, str]]:
     """Return a page's data as JSON, and the bytes that it holds beside by key: see page_file.js."""
     shared = {name: value for name, value in page["shared"].items() if name != "blobs"}
     text = json.dumps({**page, "shared": shared}, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return text, page["shared"]["blobs"]
+    return text, {key: f"~{dense(base64.b64decode(blob))}" for key, blob in page["shared"]["blobs"].items()}
 
 
 def policy_of(loader: str, script: str, style: str) -> str:
@@ -107,12 +107,6 @@ def policy_of(loader: str, script: str, style: str) -> str:
         f"default-src 'none'; script-src {scripts}; style-src {styles};"
         " img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
-
-
-def _json(value: Mapping[str, Any]) -> str:
-    """Return JSON in which nothing ends a script element, or begins a comment in one."""
-    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
 def _hash(text: str) -> str:

@@ -2,7 +2,7 @@
 
 Base64 makes four letters of three bytes; here eight letters make seven. All ASCII stands for 7 bits of its
 own but for ``ESCAPED``, which a browser, an editor or a terminal would change or act on. Such 7 bits and the
-7 that follow become one letter of two bytes of UTF-8. pressed.js reads what this writes.
+7 that follow become one letter of two bytes of UTF-8. dense.js and pressed.js read what this writes.
 """
 
 from __future__ import annotations
@@ -15,8 +15,15 @@ from string import ascii_letters
 import numpy as np
 
 ESCAPED = "\0\a\b\t\n\v\f\r\x1a\x1b&<\x7f"
-"""At most 14, or the letters that stand for pairs would take three bytes."""
+"""At most 13, or the letters that stand for pairs would take three bytes."""
 
+_FIRST = 2  # of the 128 letters for each: U+0080 … are controls
+_ESCAPE = re.compile(b"[" + re.escape(ESCAPED.encode()) + b"].?", re.DOTALL)
+_PAIRS = {
+    bytes([ord(one), next_]): chr(place << 7 | next_).encode()
+    for place, one in enumerate(ESCAPED, _FIRST)
+    for next_ in range(128)
+} | {one.encode(): chr(15 << 7 | ord(one)).encode() for one in ESCAPED}  # at the end, alone
 _LETTERS = ascii_letters.encode()
 _WORD = re.compile(rb"[A-Za-z]{3,}")
 _FILTERS = [
@@ -53,9 +60,8 @@ def _with_words(data: bytes) -> bytes:
 
 
 def dense(data: bytes) -> str:
-    """Return bytes as text, 7 bits a letter; what reads it may find a zero more at their end."""
+    """Return bytes as text, 7 bits a letter; zeros follow the last bit."""
     bits = np.unpackbits(np.frombuffer(data, np.uint8))
-    padded = np.pad(bits, (0, -len(bits) % 7)).reshape(-1, 7)
-    sevens = iter((padded @ (64 >> np.arange(7))).tolist())
-    places = {ord(letter): place for place, letter in enumerate(ESCAPED, 2)}  # U+0080 … are controls
-    return "".join(chr(places[one] << 7 | next(sevens, 0) if one in places else one) for one in sevens)
+    sevens = np.pad(bits, (0, -len(bits) % 7)).reshape(-1, 7)
+    codes = np.packbits(np.pad(sevens, ((0, 0), (1, 0))), axis=1).tobytes()
+    return _ESCAPE.sub(lambda match: _PAIRS[match[0]], codes).decode()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import gzip
 import hashlib
 import json
 import re
@@ -13,12 +14,13 @@ from typing import Any
 import pytest
 
 from playground.sketch.load import load
+from playground.web.blobs import packed
 from playground.web.page import Poster, page_html
 from playground.web.page_data import page_data
 
 from ..report import browser as browsers
 from .node import Node
-from .unpressed import parts_of
+from .unpressed import parts_of, undense
 
 EVIL = "</script></title><img src=x onerror=\"document.body.dataset.broken='1'\"><!--<script>"
 POSTER = Poster(
@@ -66,7 +68,7 @@ class Elements(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.found.append((tag, dict(attrs)))
-        self.inside = dict(attrs).get("id") or tag
+        self.inside = dict(attrs).get("id") or dict(attrs).get("data-blob") or tag
 
     def handle_endtag(self, tag: str) -> None:
         self.inside = ""
@@ -81,22 +83,21 @@ class Elements(HTMLParser):
 def test_what_people_wrote_is_text(evil: dict[str, Any]):
     page = Elements(page_of(evil))
     expected = "html head meta meta meta meta meta meta title link style body"
-    expected += " main img noscript p p script script script"
+    expected += " main img noscript p p script script"
     assert [tag for tag, _ in page.found] == expected.split()
     assert page.texts["title"] == EVIL
     [image] = [given for tag, given in page.found if tag == "img"]
     assert image["alt"] == EVIL and set(image) == {"id", "src", "alt", "width", "height"}
     _, data, _ = parts_of(page.texts["playground-pressed"])
     assert json.loads(data)["sketches"][0]["title"] == EVIL
-    assert json.loads(page.texts["playground-blobs"]) == evil["shared"]["blobs"]
 
 
 def test_nothing_in_the_data_can_end_its_element(evil: dict[str, Any]):
-    evil["shared"]["blobs"][EVIL] = EVIL  # the one part that is not pressed
-    html = page_of(evil)
-    start = html.index('id="playground-blobs">') + len('id="playground-blobs">')
-    text = html[start : html.index("</script>", start)]
-    assert "<" not in text and json.loads(text)[EVIL] == EVIL
+    evil["shared"]["blobs"][EVIL] = packed(data := 99 * bytes(range(256)) + EVIL.encode())
+    page = Elements(page_of(evil))
+    assert [given["data-blob"] for _, given in page.found if "data-blob" in given] == [EVIL]
+    text = page.texts[EVIL]
+    assert text[0] == "~" and "<" not in text and gzip.decompress(undense(text[1:])) == data
 
 
 def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]):
@@ -122,9 +123,23 @@ def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]
 
 
 def test_it_is_read_as_it_was_written(node: Node, evil: dict[str, Any]):
+    evil["shared"]["blobs"][EVIL] = packed(b"elevation")
     texts = Elements(page_of(evil)).texts
-    _, data, _ = node.call("pressed.js", "unpressed", texts["playground-pressed"]).split("\0")
-    found = node.call("page_file.js", "readPage", data, texts["playground-blobs"])
+    script = """async (texts, keys, load) => {
+        const { unpressed } = await load("pressed.js"), { unpacked } = await load("packed.js");
+        const { readPage } = await load("page_file.js");
+        const data = unpressed(texts["playground-pressed"]).split("\\0")[1];
+        const elements = keys.map((key) => ({ dataset: { blob: key }, textContent: texts[key] }));
+        const page = readPage({
+            getElementById: () => ({ textContent: data }), querySelectorAll: () => elements,
+        });
+        const { blobs } = page.shared;
+        for (const key of keys) blobs[key] = new Uint8Array(await unpacked(blobs[key]));
+        return page;
+    }"""
+    found = node.run(script, texts, [EVIL])
+    assert found["shared"].pop("blobs")[EVIL].tobytes() == b"elevation"
+    del evil["shared"]["blobs"]
     assert found == json.loads(json.dumps(evil))
 
 

@@ -12,7 +12,8 @@ def undense(text: str) -> bytes:
     """Return the bytes that letters of 7 bits stand for, those of two bytes for two."""
     number, count = 0, 0
     for letter in map(ord, text):
-        pair = (ord(ESCAPED[(letter >> 7) - 2]), letter & 127) if letter > 127 else (letter,)
+        group, low = divmod(letter, 128)
+        pair = (ord(ESCAPED[group - 2]), low) if 2 <= group < 15 else (low,)
         for seven in pair:
             number, count = number << 7 | seven, count + 7
     return (number >> count % 8).to_bytes(count // 8, "big")

@@ -10,13 +10,11 @@ import { createRecovery } from "./recovery.js";
 import { createPage } from "./sketch_page.js";
 import { wordsOf } from "./words.js";
 
-const textOf = (/** @type {string} */ id) => document.getElementById(id)?.textContent ?? "";
-
 function start() {
   const main = /** @type {HTMLElement} */ (document.getElementById("playground"));
   const poster = /** @type {HTMLImageElement | null} */ (document.getElementById("playground-poster"));
   const words = wordsOf(document.documentElement.lang);
-  const page = readPage(textOf("playground-page"), textOf("playground-blobs"));
+  const page = readPage(document);
   const canvas = document.createElement("canvas");
   let engine;
   try {

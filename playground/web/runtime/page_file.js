@@ -1,12 +1,12 @@
 // page_file.js -- reads what an HTML file holds of a page: JSON, and its bytes beside.
 
-/** @typedef {import("./schema.js").Page} Page */
-
-/** Return a page.
- *  @param {string} text  JSON of it without `shared.blobs` @param {string} blobs  JSON of those
- *  @returns {Page} */
-export function readPage(text, blobs) {
-  const page = JSON.parse(text);
-  page.shared.blobs = JSON.parse(blobs);
+/** Return the page whose JSON, but for `shared.blobs`, is the text of the element #playground-page, and
+ *  whose bytes are those of elements with `data-blob`, their keys.
+ *  @param {Document} document @returns {import("./schema.js").Page} */
+export function readPage(document) {
+  const page = JSON.parse(document.getElementById("playground-page")?.textContent ?? "");
+  const elements = /** @type {HTMLElement[]} */ ([...document.querySelectorAll("[data-blob]")]);
+  const blobs = elements.map(({ dataset, textContent }) => [dataset.blob, textContent]);
+  page.shared.blobs = Object.fromEntries(blobs);
   return page;
 }

@@ -1,27 +1,7 @@
-// pressed.js -- unpacks what a page holds as text of 7 bits a letter: playground/web/pressed.py.
+// pressed.js -- unpacks the text that a page is made of: playground/web/pressed.py.
 
+import { undense } from "./dense.js";
 import { unlzma } from "./lzma.js";
-
-// Codes of ASCII that stand for no bits of their own: controls, "&", "<", and delete.
-const ESCAPED = [0, 7, 8, 9, 10, 11, 12, 13, 26, 27, 38, 60, 127];
-
-/** The bytes of such a text: 7 bits of a letter below 128, 14 of any other.
- *  @param {string} text @returns {Uint8Array} */
-export function undense(text) {
-  const found = new Uint8Array(text.length * 2);
-  let bits = 0, held = 0, at = 0;
-  const take = (/** @type {number} */ seven) => {
-    held = ((held << 7) | seven) & 0x7fff;
-    bits += 7;
-    if (bits >= 8) found[at++] = held >> (bits -= 8);
-  };
-  for (let place = 0; place < text.length; place++) {
-    const letter = text.charCodeAt(place);
-    if (letter > 127) take(ESCAPED[(letter >> 7) - 2]);
-    take(letter & 127);
-  }
-  return found.subarray(0, at);
-}
 
 /** The bytes that others stand for: after a list of bytes, each with the letters of its word, and a zero.
  *  @param {Uint8Array} bytes @returns {Uint8Array} */

@@ -209,7 +209,7 @@
  *  @property {Object<string, {size: [number, number], kind: "rgba8" | "srgb8" | "rgba16f", blob: string,
  *             file?: string}>} images              image files by key; blob: raw texels, row 0 south, or
  *                                                  (file) the file itself, to be decoded by the browser
- *  @property {Object<string, string>} blobs        gzip in base64, by key */
+ *  @property {Object<string, string>} blobs        by key, see packed.js */
 
 /** A page: what one HTML file holds (see page_file.js), or what a book's scripts put together.
  *  @typedef {{format: 1, sketches: Sketch[], shared: Shared}} Page */
