@@ -7,16 +7,18 @@ const FIRST = 2; // of the groups of 128 letters that stand for one of those and
 /** The bytes of such a text. @param {string} text @returns {Uint8Array<ArrayBuffer>} */
 export function undense(text) {
   const found = new Uint8Array(text.length * 2);
-  let bits = 0, held = 0, at = 0;
-  const take = (/** @type {number} */ seven) => {
-    held = ((held << 7) | seven) & 0x7fff;
-    bits += 7;
-    if (bits >= 8) found[at++] = held >> (bits -= 8);
-  };
+  let at = 0, held = 0, bits = 0; // of what is held, the lowest are still to be written
   for (let place = 0; place < text.length; place++) {
-    const letter = text.charCodeAt(place), before = ESCAPED[(letter >> 7) - FIRST];
-    if (before !== undefined) take(before);
-    take(letter & 127);
+    const letter = text.charCodeAt(place), low = letter & 127;
+    const before = letter > 127 ? ESCAPED[(letter >> 7) - FIRST] : undefined;
+    if (before === undefined) {
+      held = (held << 7) | low;
+      bits += 7;
+    } else {
+      held = (held << 14) | (before << 7) | low;
+      bits += 14;
+    }
+    while (bits >= 8) found[at++] = held >> (bits -= 8);
   }
   return found.slice(0, at);
 }
