@@ -21,6 +21,7 @@ from playground.markup import Markup, tag
 from playground.web.bundle import read_bundle
 from playground.web.pressed import dense, pressed
 
+_MARK = "\ufeff"  # that this is UTF-8, whatever a server says
 _ICON = "data:,"  # or a browser would ask for favicon.ico
 _POSTER_STYLE = "img{max-width:100%;height:auto}"
 _SCRIPTS_OFF = (
@@ -87,7 +88,7 @@ def page_html(
         tag("script", Markup(loader)),
     )
     html = tag("html", tag("head", *head), "\n", tag("body", *body), lang=language)
-    return f"<!doctype html>\n{html}\n"
+    return f"{_MARK}<!doctype html>\n{html}\n"
 
 
 def page_texts(page: Mapping[str, Any]) -> tuple[str, dict[str, str]]:

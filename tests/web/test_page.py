@@ -8,7 +8,9 @@ import hashlib
 import json
 import re
 from html.parser import HTMLParser
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import pytest
@@ -168,3 +170,29 @@ def test_a_browser_runs_the_runtime_and_nothing_that_was_put_in(tmp_path: Path, 
         )
         assert browser.run("return document.body.dataset.broken ?? ''") == ""
         assert any("Content Security Policy" in line for line in browser.log())
+
+
+@pytest.mark.skipif(bool(browsers.MISSING), reason=browsers.MISSING)
+def test_a_server_that_names_another_encoding_does_no_harm(tmp_path: Path, evil: dict[str, Any]):
+    body = page_of(evil).encode()
+
+    class Latin(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(200)
+            self.send_header("Content-Type", "text/html; charset=iso-8859-1")
+            self.end_headers()
+            self.wfile.write(body)
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    with (
+        ThreadingHTTPServer(("127.0.0.1", 0), Latin) as server,
+        browsers.Browser(tmp_path / "profile") as browser,
+    ):
+        Thread(target=server.serve_forever, daemon=True).start()
+        browser.open(f"http://127.0.0.1:{server.server_port}/")
+        browser.wait("document.readyState === 'complete'")
+        ran = browser.run("return document.documentElement.dataset.ran ?? ''")
+        server.shutdown()
+    assert ran == "yes"

@@ -3,7 +3,6 @@
 import { needed } from "./addons.js";
 import { hash } from "./hash.js";
 import { usedBy } from "./staleness.js";
-import { checkSignature } from "./signature.js";
 import { flatten } from "./source.js";
 import { stageText } from "./wrap.js";
 import { toES } from "./es.js";
@@ -25,15 +24,13 @@ import { filteredByHand } from "./linear_by_hand.js";
  *  @property {Map<string, Map<string, import("./linear_by_hand.js").Wrap>>} hands   those ways
  *  @property {[string, any][]} own    uniforms with a value in the text that its header does not know */
 
-/** Read a kernel; throws where a file is missing, or its function has another form than its header asks for,
- *  with `file` and `line`.
+/** Read a kernel; throws where a file is missing, with `file` and `line`.
  *  @param {Shared} shared @param {Kernel} kernel @param {Object<string, string>} texts edited files
  *  @returns {KernelText} */
 export const readKernel = (shared, kernel, texts) => {
   const source = kernel.kind === "source";
   const flat = source ? { lines: [], names: new Set() }
     : flatten(shared, kernel.file, texts, { once: !!kernel.dialect });
-  checkSignature(kernel, flat);
   const once = { once: !!kernel.dialect }, own = kernel.vertex?.file;
   const vertex = own ? flatten(shared, own, texts, once) : flat;
   const lines = own ? [...flat.lines, ...vertex.lines] : flat.lines;
