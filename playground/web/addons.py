@@ -19,11 +19,8 @@ _NEEDED_BY: dict[str, Callable[[Data], bool]] = {
 }
 """Bundle → whether a sketch needs it: see ``Sketch`` in schema.js."""
 
-_OF_LANGUAGE = {"fr": "with_french.js"}
 
-
-def page_script(page: Data, language: str = "en") -> str:
+def page_script(page: Data) -> str:
     """Return the runtime's script for a page; raise ``PlaygroundError`` where a bundle is not built."""
     names = [name for name, is_needed in _NEEDED_BY.items() if any(map(is_needed, page["sketches"]))]
-    names += [name for tag, name in _OF_LANGUAGE.items() if language.partition("-")[0].lower() == tag]
     return "".join(read_bundle(name) for name in (*names, "page.js"))

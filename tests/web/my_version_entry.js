@@ -2,6 +2,7 @@
 
 import "../../playground/web/runtime/with_all.js";
 import { createEditor } from "../../playground/web/runtime/editor.js";
+import { EDITOR_WORDS } from "../../playground/web/runtime/editor_words.js";
 import { createEngine } from "../../playground/web/runtime/engine.js";
 import { versionFiles } from "../../playground/web/runtime/my_version.js";
 import { createRecovery } from "../../playground/web/runtime/recovery.js";
@@ -15,8 +16,8 @@ export async function open(page) {
     await player.load();
     player.render();
     const done = () => finished(engine.parts.context.gl);
-    const recovery = createRecovery(document.body, { poster: () => {}, limit: 1e-9 });
-    const editor = createEditor(document.body, player, { shown: async () => { player.render(); await done(); } });
+    const recovery = createRecovery(document.body, { words: EDITOR_WORDS.en, poster: () => {}, limit: 1e-9 });
+    const editor = createEditor(document.body, player, { words: EDITOR_WORDS.en, shown: async () => { player.render(); await done(); } });
     const rows = new Map(sketch.shown.map((row) => [row.path, row]));
     const version = async (values, camera) => {
         const made = {

@@ -30,18 +30,8 @@ def test_a_page_of_several_sketches_carries_what_any_of_them_needs():
     assert read_bundle("with_keyframes.js") in addons.page_script(page)
 
 
-LANGUAGES = {"fr": True, "fr-CA": True, "en": False, "": False}
-
-
-@pytest.mark.parametrize(("language", "is_french"), LANGUAGES.items())
-def test_a_page_speaks_its_language(language: str, is_french: bool):
-    script = addons.page_script(page_data([load("diamond_square")]), language)
-    assert ("La souris" in script or "À la souris" in script) == is_french
-
-
 def test_every_add_on_is_carried_by_some_page():
-    known = {*addons._NEEDED_BY, *addons._OF_LANGUAGE.values()}
-    assert known == {path.name for path in BUNDLES.glob("with_*.js")}
+    assert addons._NEEDED_BY.keys() == {path.name for path in BUNDLES.glob("with_*.js")}
 
 
 def test_without_an_add_on_a_sentence_says_which(node: Node):

@@ -8,8 +8,7 @@
  *  @property {(text: string) => string} [fromDesktop]       for texts that are not the library's: a stage's
  *                                                           text without what only desktop GLSL allows
  *  @property {typeof import("./plain.js") & typeof import("./usual.js")} [plain]   for other tools' shaders
- *  @property {typeof import("./keyframes.js")} [keyframes]
- *  @property {import("./words.js").Words} [french] */
+ *  @property {typeof import("./keyframes.js")} [keyframes] */
 
 /** @type {AddOns} */
 export const addOns = (/** @type {any} */ (globalThis).playgroundAddOns ??= {});

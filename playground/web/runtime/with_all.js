@@ -1,4 +1,4 @@
-// with_all.js -- every add-on but languages, for bundles that cannot know what their sketches will need.
+// with_all.js -- every add-on, for bundles that cannot know what their sketches will need.
 
 import "./with_editing.js";
 import "./with_keyframes.js";
