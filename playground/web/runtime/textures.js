@@ -125,7 +125,8 @@ export const createTextures = (context, limit) => {
   /** @param {[number, number]} size @param {Map<string, Texture>} textures @param {Partial<Result>} [more]
    *  @returns {Result} */
   const result = (size, textures, more) => ({
-    size, textures, target: null, iterations: 0, settled: 0, number: ++taken, surface: null, mipmapped: new Set(),
+    size, textures, target: null, iterations: 0, settled: 0, number: ++taken, surface: null,
+    mipmapped: new Set(),
     copies: new Map(), read: new Map(), of: null, gone: false, ...more,
   });
 
