@@ -32,7 +32,7 @@ from playground.capture.extensions import (
     USUAL_GRID,
 )
 from playground.capture.gltf import encode_glb
-from playground.capture.mesh import grid_of, sampled, terrain_mesh
+from playground.capture.mesh import sampled, terrain_mesh
 from playground.capture.obj import encode_mtl, encode_obj
 from playground.capture.shader_export.es_check import check_es
 from playground.capture.shader_export.export import ShaderFiles, shader_files
@@ -45,6 +45,7 @@ from playground.errors import DataError, SketchError
 from playground.images.files import encode_samples
 from playground.images.image_formats import naming
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
+from playground.terrain.grid import fitted
 
 _NO_TEXTURE = "no texture: the view shows no colour; name one with --texture"
 
@@ -260,7 +261,7 @@ def _spacing(job: ExportJob, size: tuple[int, int]) -> tuple[float, float]:
 def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     heights = _read(engine, job, job.height, HEIGHT)
     wanted = job.form.grid or min(USUAL_GRID, MESHES[job.ending])
-    size = grid_of((heights.shape[1], heights.shape[0]), wanted)
+    size = fitted((heights.shape[1], heights.shape[0]), wanted)
     baked, texels, warning = _texture(engine, job)
     extent = job.plan.terrain.extent
     assert extent is not None  # a plan's terrain is known

@@ -26,6 +26,12 @@ TECHNIQUES = (".toml", ".glsl", ".frag", ".fs")
 TEXTS = (*SHADERS, ".toml")
 """Endings of the text files that a sketch may be made of."""
 
+ELEVATIONS = (
+    *(".png", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt"),
+    *(".asc", ".bil", ".flt", ".nc"),
+)
+"""Endings of elevation files, which may be opened alone, too; in small letters or large ones."""
+
 FAST = (".comp", ".fast.toml")
 """Endings of fast variants, in the folder of the technique of their name; the fastest first."""
 

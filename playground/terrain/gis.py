@@ -1,0 +1,139 @@
+"""Read rasters by GDAL, where the extra ``gis`` is installed (rasterio): what the readers here cannot.
+
+Only the drivers that are named are used: others may read further files or the network.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from playground.errors import DataError
+from playground.images.files import reason
+from playground.terrain.grid import Found, check_grid
+from playground.terrain.place import Crs, Place, turned
+from playground.terrain.rows import Band, Rows, StreamRows
+
+if TYPE_CHECKING:
+    import rasterio.io
+
+ADVICE = "the extra gis reads it: python -m pip install 'terrain-shader-playground[gis]'"
+
+_NETCDF = "netCDF"
+_USUAL = ("elevation", "z", "height", "altitude", "topo", "dem", "band1", "band_data")
+_WGS_84 = (
+    'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],'
+    'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]]'
+)
+_BAND = 2**22  # [texels]
+_METRES = {"m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "ft": 0.3048, "km": 1000.0}
+
+
+def has_rasters() -> bool:
+    """Return whether rasterio is installed."""
+    return find_spec("rasterio") is not None
+
+
+def _open(path: Path | str, driver: str, overview: int | None = None) -> rasterio.io.DatasetReader:
+    import rasterio
+
+    options = {} if overview is None else {"OVERVIEW_LEVEL": overview}
+    return rasterio.open(path, driver=driver, **options)
+
+
+def raster_rows(path: Path | str, driver: str, overview: int | None = None) -> Rows:
+    """Return the rows of a raster's first band, or of one of its overviews."""
+    with _explained(path), _open(path, driver, overview) as raster:
+        shape, dtype = raster.shape, np.dtype(raster.dtypes[0])
+        high = raster.block_shapes[0][0]
+    return StreamRows(shape, dtype, partial(_bands, path, driver, overview, high))
+
+
+def _bands(path: Path | str, driver: str, overview: int | None, high: int) -> Iterator[Band]:
+    from rasterio.windows import Window
+
+    with _explained(path), _open(path, driver, overview) as raster:
+        rows, cols = raster.shape
+        count = max(_BAND // (cols * high), 1) * high
+        for start in range(0, rows, count):
+            window = Window(0, start, cols, min(count, rows - start))
+            yield start, raster.read(1, window=window)
+
+
+@contextmanager
+def _explained(path: Path | str) -> Iterator[None]:
+    """Raise what rasterio raises as a ``DataError``."""
+    from rasterio.errors import RasterioError
+
+    try:
+        yield
+    except RasterioError as error:
+        message = f"cannot be read by GDAL: {reason(Exception(str(error.__cause__ or error)))}"
+        raise DataError(message, file=path) from error
+
+
+def read_netcdf(path: Path) -> Found:
+    """Read the heights of a NetCDF file by GDAL; raise ``DataError`` naming the extra where it is missing."""
+    if not has_rasters():
+        raise DataError(f"NetCDF is read by GDAL; {ADVICE}", file=path)
+    name = _grid_in(path)
+    with _explained(path), _open(name, _NETCDF) as raster:
+        check_grid(raster.shape, np.dtype(raster.dtypes[0]), path)
+        notes = (f"the first of its {raster.count} bands was read",) if raster.count > 1 else ()
+        place, more = _place(raster, path)
+        scale, offset, no_data = raster.scales[0], raster.offsets[0], raster.nodata
+        unit = _METRES.get((raster.units[0] or "").lower().strip())
+    rows = raster_rows(name, _NETCDF)
+    notes = (*more, *notes)
+    spacing = None
+    if place is not None:
+        spacing, more = place.spacing
+        notes = (*more, *notes)
+    if unit is None:
+        notes = (*notes, "it does not say in which unit its heights are; metres are assumed")
+    return Found(
+        rows,
+        spacing,
+        in_metres=True,
+        no_data=no_data,
+        scale=scale * (unit or 1.0),
+        offset=offset * (unit or 1.0),
+        place=place,
+        south_first=None if place is None else False,
+        notes=notes,
+    )
+
+
+def _grid_in(path: Path) -> str:
+    """Return what GDAL calls the variable that holds heights: the one of a usual name, or the only grid."""
+    with _explained(path), _open(path, _NETCDF) as raster:
+        if raster.count:
+            return str(path)
+        names: dict[str, str] = {name.rpartition(":")[2].lower(): name for name in raster.subdatasets}
+    usual = [names[name] for name in _USUAL if name in names]
+    if usual or len(names) == 1:
+        return [*usual, *names.values()][0]
+    listed = ", ".join(names) or "nothing"
+    raise DataError(f"holds {listed}; expected one grid, or one called {' or '.join(_USUAL[:2])}", file=path)
+
+
+def _place(raster: rasterio.io.DatasetReader, path: Path) -> tuple[Place | None, tuple[str, ...]]:
+    """Return where the nodes lie, None where it is not said, and notes; GDAL gives the northern row first."""
+    at = raster.transform
+    if at.is_identity:
+        return None, ("it does not say where its texels lie",)
+    if at.b or at.d or at.a < 0.0 or at.e > 0.0:
+        raise turned(path, at.a, at.d)
+    wkt: str = raster.crs.to_wkt() if raster.crs else ""
+    notes: tuple[str, ...] = ()
+    units = [str(text) for name, text in raster.tags().items() if name.endswith("#units")]
+    if not wkt and any(text.startswith("degree") for text in units):
+        wkt, notes = _WGS_84, ("its degrees are of no named system; WGS 84 is assumed",)
+    size = raster.width, raster.height
+    return Place(at.c + 0.5 * at.a, at.f + 0.5 * at.e, (at.a, -at.e), size, Crs(wkt=wkt)), notes
