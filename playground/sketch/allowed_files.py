@@ -204,6 +204,11 @@ def exists(path: Path) -> bool:
         return False
 
 
+def is_elevation(path: Path) -> bool:
+    """Return whether a file is one of elevations by its name."""
+    return path.suffix.lower() in ELEVATIONS
+
+
 def is_variant(path: Path) -> bool:
     """Return whether a file is a fast variant by its name; a ``.comp`` with its own ``#version`` is none."""
     return path.name.endswith(FAST)
