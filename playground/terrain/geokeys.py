@@ -100,16 +100,8 @@ def _epsg(known: Mapping[int, Key], key: int) -> int:
     return found if found < OWN else 0
 
 
-def keys_of_wkt(facts: CrsFacts, wkt: str) -> Keys:
-    """Return keys for a system that is known by its text alone: its code, or ESRI's form of the text."""
+def keys_of_code(facts: CrsFacts) -> Keys:
+    """Return keys for a system that has a code."""
     projected = facts.kind == "projected"
     where = PROJECTED if projected else GEOGRAPHIC
-    if facts.epsg:
-        return ((MODEL, 1 if projected else 2), (RASTER, IS_AREA), (where, facts.epsg))
-    # GDAL reads a whole text from this citation, in files of ESRI's and so in these.
-    return (
-        (MODEL, 1 if projected else 2),
-        (RASTER, IS_AREA),
-        (where, OWN),
-        (PROJECTED_CITATION if projected else CITATION, f"ESRI PE String = {' '.join(wkt.split())}"),
-    )
+    return ((MODEL, 1 if projected else 2), (RASTER, IS_AREA), (where, facts.epsg))

@@ -5,9 +5,10 @@ Only the drivers that are named are used: others may read further files or the n
 
 from __future__ import annotations
 
+import io
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import partial
+from functools import lru_cache, partial
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -16,6 +17,7 @@ import numpy as np
 
 from playground.errors import DataError
 from playground.images.files import reason
+from playground.terrain.geokeys import DIRECTORY, DOUBLES, WORDS, Keys, keys_of_code, read_keys
 from playground.terrain.grid import Found, check_grid
 from playground.terrain.place import Crs, Place, turned
 from playground.terrain.rows import Band, Rows, StreamRows
@@ -137,3 +139,34 @@ def _place(raster: rasterio.io.DatasetReader, path: Path) -> tuple[Place | None,
         wkt, notes = _WGS_84, ("its degrees are of no named system; WGS 84 is assumed",)
     size = raster.width, raster.height
     return Place(at.c + 0.5 * at.a, at.f + 0.5 * at.e, (at.a, -at.e), size, Crs(wkt=wkt)), notes
+
+
+def geokeys_of(crs: Crs) -> Keys:
+    """Return GeoTIFF's keys for a reference system; none where nothing here knows them."""
+    if crs.keys or not crs.facts.kind:
+        return crs.keys
+    if crs.facts.epsg:
+        return keys_of_code(crs.facts)
+    return _keys_of_wkt(crs.wkt) if has_rasters() else ()
+
+
+@lru_cache(maxsize=8)
+def _keys_of_wkt(wkt: str) -> Keys:
+    """Return the keys that GDAL writes for a text."""
+    import rasterio
+    import tifffile
+    from rasterio.crs import CRS
+    from rasterio.errors import CRSError
+    from rasterio.transform import from_origin
+
+    try:
+        crs = CRS.from_wkt(wkt)
+    except CRSError:
+        return ()
+    facts = {"driver": "GTiff", "width": 1, "height": 1, "count": 1, "dtype": "uint8"}
+    with rasterio.MemoryFile() as memory:
+        with memory.open(**facts, crs=crs, transform=from_origin(0.0, 1.0, 1.0, 1.0)) as raster:
+            raster.write(np.zeros((1, 1, 1), np.uint8))
+        with tifffile.TiffFile(io.BytesIO(memory.read())) as tif:
+            tags = tif.pages.first.tags
+            return read_keys(*(tags.valueof(number) for number in (DIRECTORY, DOUBLES, WORDS)))

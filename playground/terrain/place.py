@@ -13,7 +13,7 @@ from pathlib import Path
 
 from playground.errors import DataError
 from playground.terrain.geodesy import spacing_from_degrees
-from playground.terrain.geokeys import Keys, keys_of_wkt, read_facts
+from playground.terrain.geokeys import Keys, read_facts
 from playground.terrain.wkt import CrsFacts, read_wkt
 
 _WEB_MERCATOR = 3857
@@ -33,11 +33,9 @@ class Crs:
         return read_facts(self.keys) if self.keys else read_wkt(self.wkt)
 
     @property
-    def geokeys(self) -> Keys:
-        """Return GeoTIFF's keys for it; none where nothing is known of it."""
-        if self.keys or not self.facts.kind:
-            return self.keys
-        return keys_of_wkt(self.facts, self.wkt)
+    def name(self) -> str:
+        """Return its code, as "EPSG:32633"; "" for one without."""
+        return f"EPSG:{self.facts.epsg}" if self.facts.epsg else ""
 
 
 @dataclass(frozen=True)

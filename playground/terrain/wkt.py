@@ -13,6 +13,17 @@ from dataclasses import dataclass, field
 _TOKEN = re.compile(r'"((?:[^"]|"")*)"|([A-Za-z_][A-Za-z_0-9]*)\s*(?=[\[(])|([^\s,\[\]()"]+)|([\[(])|([\])])')
 _PROJECTED = ("PROJCS", "PROJCRS", "PROJECTEDCRS")
 _GEOGRAPHIC = ("GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS")
+_ZONES = {
+    ("WGS_1984", "N"): 32600,
+    ("WGS_1984", "S"): 32700,
+    ("NAD_1983", "N"): 26900,
+    ("ETRS_1989", "N"): 25800,
+}
+_NAMES = {
+    "GCS_WGS_1984": 4326,
+    "GCS_North_American_1983": 4269,
+    "WGS_1984_Web_Mercator_Auxiliary_Sphere": 3857,
+}
 _UNITS = ("UNIT", "LENGTHUNIT", "ANGLEUNIT")
 
 
@@ -69,11 +80,17 @@ def read_wkt(text: str) -> CrsFacts:
 
 
 def _epsg(crs: _Node) -> int:
+    """Return the code that is named, or that of a system which ESRI names without one."""
     for node in crs.nodes():
         texts = node.texts()
         if node.word in ("AUTHORITY", "ID") and len(texts) >= 2 and texts[0].upper() == "EPSG":
             return int(texts[1]) if texts[1].isdecimal() else 0
-    return 0
+    name = crs.texts()[0] if crs.texts() else ""
+    zone = re.fullmatch(r"(\w+)_UTM_Zone_([1-9]|[1-5]\d|60)([NS])", name)
+    if zone:
+        base = _ZONES.get((zone[1], zone[3]), 0)
+        return base + int(zone[2]) if base else 0
+    return _NAMES.get(name, 0)
 
 
 def _number(text: str) -> float:
