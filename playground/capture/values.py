@@ -296,7 +296,8 @@ def _vertical(layer: Layer, keys: dict[int, Key]) -> dict[int, Key | None]:
         return {VERTICAL_UNIT: None} if layer.place is None else {}
     if code(keys, VERTICAL_UNIT, METRE) == METRE:
         return {}
-    return {VERTICAL_UNIT: METRE} | {key: None for key in range(VERTICAL, VERTICAL_UNIT)}
+    # Without a vertical system they are metres; a unit by itself would be taken for a system of its own.
+    return dict.fromkeys(range(VERTICAL, VERTICAL_UNIT + 1))
 
 
 def _tiff(samples: NDArray[Any], layer: Layer, span: tuple[float, float] | None = None) -> bytes:

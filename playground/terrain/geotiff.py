@@ -84,6 +84,8 @@ def read_tiff(path: Path, packing: Packing) -> Found:
         place, south_first = _place(page, (rows_cols[1], rows_cols[0]), path)
         packed = _packing(page, path)
         overviews, notes = _further(tif, page, path, no_data)
+    if isinstance(rows, gis.GdalRows):
+        overviews = gis.overview_rows(path, "GTiff")
     spacing, in_metres = None, False
     if place is not None:
         spacing, more = place.spacing
@@ -235,7 +237,7 @@ def _place(page: tifffile.TiffPage, size: tuple[int, int], path: Path) -> tuple[
     crs = Crs(read_keys(*(tags.valueof(number) for number in (DIRECTORY, DOUBLES, WORDS))))
     middle = 0.0 if code(dict(crs.keys), RASTER) == IS_POINT else 0.5  # of a texel, from its place
     if scale is not None and len(scale) >= 2:
-        dx, dy = abs(float(scale[0])), -abs(float(scale[1]))
+        dx, dy = float(scale[0]), -abs(float(scale[1]))  # as GDAL takes their signs
         column, row, west, north = 0.0, 0.0, math.nan, math.nan
         if tie is not None and len(tie) >= 6:
             column, row, west, north = (float(tie[k]) for k in (0, 1, 3, 4))

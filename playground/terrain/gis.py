@@ -8,10 +8,11 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import lru_cache, partial
+from dataclasses import dataclass
+from functools import lru_cache
 from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from playground.images.files import reason
 from playground.terrain.geokeys import DIRECTORY, DOUBLES, WORDS, Keys, keys_of_code, read_keys
 from playground.terrain.grid import Found, check_grid
 from playground.terrain.place import Crs, Place, turned
-from playground.terrain.rows import Band, Rows, StreamRows
+from playground.terrain.rows import Band
 
 if TYPE_CHECKING:
     import rasterio.io
@@ -49,23 +50,41 @@ def _open(path: Path | str, driver: str, overview: int | None = None) -> rasteri
     return rasterio.open(path, driver=driver, **options)
 
 
-def raster_rows(path: Path | str, driver: str, overview: int | None = None) -> Rows:
-    """Return the rows of a raster's first band, or of one of its overviews."""
+@dataclass(frozen=True, eq=False)
+class GdalRows:
+    """The rows of a raster's first band, or of one of its overviews."""
+
+    path: Path | str  # or GDAL's name of a part of a file
+    driver: str
+    shape: tuple[int, int]
+    dtype: np.dtype[Any]
+    high: int  # rows of a block
+    overview: int | None = None
+
+    def bands(self) -> Iterator[Band]:
+        """Yield all rows, at least a row of blocks at a time."""
+        from rasterio.windows import Window
+
+        with _explained(self.path), _open(self.path, self.driver, self.overview) as raster:
+            rows, cols = self.shape
+            count = max(_BAND // (cols * self.high), 1) * self.high
+            for start in range(0, rows, count):
+                window = Window(0, start, cols, min(count, rows - start))
+                yield start, raster.read(1, window=window)
+
+
+def raster_rows(path: Path | str, driver: str, overview: int | None = None) -> GdalRows:
+    """Return the rows of a raster's first band, or of one of its overviews, by its number from 0."""
     with _explained(path), _open(path, driver, overview) as raster:
-        shape, dtype = raster.shape, np.dtype(raster.dtypes[0])
-        high = raster.block_shapes[0][0]
-    return StreamRows(shape, dtype, partial(_bands, path, driver, overview, high))
+        dtype, high = np.dtype(raster.dtypes[0]), raster.block_shapes[0][0]
+        return GdalRows(path, driver, raster.shape, dtype, high, overview)
 
 
-def _bands(path: Path | str, driver: str, overview: int | None, high: int) -> Iterator[Band]:
-    from rasterio.windows import Window
-
-    with _explained(path), _open(path, driver, overview) as raster:
-        rows, cols = raster.shape
-        count = max(_BAND // (cols * high), 1) * high
-        for start in range(0, rows, count):
-            window = Window(0, start, cols, min(count, rows - start))
-            yield start, raster.read(1, window=window)
+def overview_rows(path: Path, driver: str) -> tuple[GdalRows, ...]:
+    """Return the overviews of a raster's first band, finest first."""
+    with _explained(path), _open(path, driver) as raster:
+        count = len(raster.overviews(1))
+    return tuple(raster_rows(path, driver, number) for number in range(count))
 
 
 @contextmanager
@@ -157,7 +176,7 @@ def _keys_of_wkt(wkt: str) -> Keys:
     import tifffile
     from rasterio.crs import CRS
     from rasterio.errors import CRSError
-    from rasterio.transform import from_origin
+    from rasterio.transform import Affine
 
     try:
         crs = CRS.from_wkt(wkt)
@@ -165,7 +184,7 @@ def _keys_of_wkt(wkt: str) -> Keys:
         return ()
     facts = {"driver": "GTiff", "width": 1, "height": 1, "count": 1, "dtype": "uint8"}
     with rasterio.MemoryFile() as memory:
-        with memory.open(**facts, crs=crs, transform=from_origin(0.0, 1.0, 1.0, 1.0)) as raster:
+        with memory.open(**facts, crs=crs, transform=Affine(1.0, 0.0, 0.0, 0.0, -1.0, 1.0)) as raster:
             raster.write(np.zeros((1, 1, 1), np.uint8))
         with tifffile.TiffFile(io.BytesIO(memory.read())) as tif:
             tags = tif.pages.first.tags
