@@ -32,6 +32,9 @@ ELEVATIONS = (
 )
 """Endings of elevation files, which may be opened alone, too; in small letters or large ones."""
 
+VECTORS = (".geojson", ".json", ".gpkg", ".shp", ".fgb", ".kml", ".gpx")
+"""Endings of files of points, lines and polygons."""
+
 FAST = (".comp", ".fast.toml")
 """Endings of fast variants, in the folder of the technique of their name; the fastest first."""
 

@@ -17,7 +17,9 @@ from numpy.typing import NDArray
 from playground.errors import DataError
 from playground.images.bounds import refuse_bomb
 from playground.terrain.geodesy import spacing_from_degrees
+from playground.terrain.geokeys import GEOGRAPHIC, IS_POINT, MODEL, RASTER
 from playground.terrain.grid import Found, check_grid, in_memory
+from playground.terrain.place import Crs, Place
 from playground.terrain.rows import FileRows
 
 
@@ -157,4 +159,21 @@ def read_npz(path: Path) -> Found:
         return in_memory(values, (dx, dy), in_metres=True)
     assert y0 is not None and y1 is not None
     spacing, notes = spacing_from_degrees(dx, dy, (y0 + y1) / 2)
-    return in_memory(values, spacing, in_metres=True, notes=notes)
+    place = None
+    if x0 is not None and x1 is not None:
+        place = _place((x0, x1), (y0, y1), (dx, dy), (values.shape[1], values.shape[0]))
+    return in_memory(values, spacing, in_metres=True, place=place, notes=notes)
+
+
+def _place(
+    x: tuple[float, float], y: tuple[float, float], step: tuple[float, float], size: tuple[int, int]
+) -> Place | None:
+    """Return where the nodes lie, on WGS 84; None where the bounds are neither areas' nor nodes'."""
+    inside = []
+    for ends, of, count in zip((x, y), step, size, strict=True):
+        more = abs(ends[1] - ends[0]) / of - (count - 1)  # 1 for areas, 0 for nodes
+        if min(abs(more), abs(more - 1.0)) > 0.01:
+            return None
+        inside.append(0.5 * of * round(more))
+    crs = Crs(((MODEL, 2), (RASTER, IS_POINT), (GEOGRAPHIC, 4326)))
+    return Place(min(x) + inside[0], max(y) - inside[1], step, size, crs)

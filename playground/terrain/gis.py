@@ -15,10 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.images.files import reason
-from playground.terrain.geokeys import DIRECTORY, DOUBLES, WORDS, Keys, keys_of_code, read_keys
+from playground.terrain.geokeys import DIRECTORY, DOUBLES, WORDS, Keys, keys_of_code, read_keys, write_keys
 from playground.terrain.grid import Found, check_grid
 from playground.terrain.place import Crs, Place, turned
 from playground.terrain.rows import Band
@@ -189,3 +190,50 @@ def _keys_of_wkt(wkt: str) -> Keys:
         with tifffile.TiffFile(io.BytesIO(memory.read())) as tif:
             tags = tif.pages.first.tags
             return read_keys(*(tags.valueof(number) for number in (DIRECTORY, DOUBLES, WORDS)))
+
+
+def name_for_gdal(crs: Crs) -> str:
+    """Return a reference system as GDAL takes it: a code or a text; "" where nothing here knows one."""
+    if crs.name or crs.wkt or not crs.keys or not has_rasters():
+        return crs.name or crs.wkt
+    return _wkt_of_keys(crs.keys)
+
+
+@lru_cache(maxsize=8)
+def _wkt_of_keys(keys: Keys) -> str:
+    """Return the text that GDAL makes of GeoTIFF's keys."""
+    import rasterio
+    import tifffile
+
+    directory, reals, text = write_keys(keys)
+    tags: list[tuple[int, str, int, Any, bool]] = [
+        (33550, "d", 3, (1.0, 1.0, 0.0), True),
+        (33922, "d", 6, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0), True),
+        (DIRECTORY, "H", len(directory), directory, True),
+    ]
+    tags += [(DOUBLES, "d", len(reals), reals, True)] if reals else []
+    tags += [(WORDS, "s", 0, text, True)] if text else []
+    stream = io.BytesIO()
+    tifffile.imwrite(stream, np.zeros((1, 1), np.uint8), extratags=tags, metadata=None)
+    with rasterio.MemoryFile(stream.getvalue()) as memory, memory.open(driver="GTiff") as raster:
+        found: str = raster.crs.to_wkt() if raster.crs else ""
+        return found
+
+
+def transformed(points: NDArray[np.float64], from_crs: str, to_crs: str) -> NDArray[np.float64]:
+    """Return points (n, 2) in another reference system; what has no place there is not finite.
+
+    Both are a code or a text. Raises ``DataError`` where GDAL knows one of them not.
+    """
+    from rasterio.crs import CRS
+    from rasterio.errors import CRSError, RasterioError
+    from rasterio.warp import transform
+
+    try:
+        systems = [CRS.from_user_input(crs) for crs in (from_crs, to_crs)]
+        x, y = transform(*systems, points[:, 0].tolist(), points[:, 1].tolist())
+    except CRSError as error:
+        raise DataError(f"GDAL does not know a reference system: {reason(Exception(str(error)))}") from None
+    except RasterioError as error:
+        raise DataError(f"cannot be brought into another system: {reason(Exception(str(error)))}") from None
+    return np.stack([np.array(x, np.float64), np.array(y, np.float64)], 1)

@@ -22,6 +22,7 @@ from playground.media.now import Now
 from playground.sketch.model import Value
 from playground.terrain import elevation_source as elevation
 from playground.terrain import live_sources as live
+from playground.terrain import vector_source as vector
 from playground.terrain.delaunay import Rules, tables, triangulate
 from playground.terrain.known import Terrain
 from playground.terrain.masks import read_mask
@@ -152,6 +153,14 @@ SOURCES: dict[str, SourceKind] = {
         ("image", "texels"),
         "the mask",
         picture=_mask_picture,
+    ),
+    "vector_file": SourceKind(
+        lambda _: Terrain(),
+        vector.make,
+        ("vectors", "elevation"),
+        ("vectors", "elevation", "width", "polygons"),
+        "the mask of what the file draws",
+        notes=vector.notes,
     ),
     "video_file": SourceKind(
         lambda _: Terrain(),
