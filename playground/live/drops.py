@@ -14,7 +14,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.errors import PlaygroundError
 from playground.live.theme import Theme
 from playground.live.widgets import IMAGES
-from playground.sketch.allowed_files import SHADERS, is_elevation
+from playground.sketch.allowed_files import SHADERS, VECTORS, is_elevation
 from playground.sketch.dialects import is_export
 from playground.sketch.dialects.shadertoy_folder import image_of
 from playground.sketch.find import find
@@ -26,7 +26,8 @@ from playground.workbench.parameter_list import Item, Listing
 
 _TITLE = "dropped"
 _OWN = "Into a sketch of its own"
-_FILES = (*IMAGES, *(ending for endings in MEDIA.values() for ending in endings))
+_FILES = (*IMAGES, *VECTORS, *(ending for endings in MEDIA.values() for ending in endings))
+_VECTORS = "vectors"  # what a source of vector data calls its file
 
 
 def opened_from(sketch: Path) -> tuple[Path, str]:
@@ -100,7 +101,8 @@ class Drops:
 
         def takes(item: Item) -> bool:
             registry = kernels[item.leaf.rpartition(".")[0]].registry
-            return file.suffix.lower() in MEDIA.get(registry, IMAGES)
+            usual = VECTORS if item.parameter.name == _VECTORS else IMAGES
+            return file.suffix.lower() in MEDIA.get(registry, usual)
 
         found = [item for item in items if item.parameter.widget.kind == "file" and takes(item)]
         feeders = {taker.channel.feeder for taker in self.channels(file) if taker.channel.alone}

@@ -13,7 +13,7 @@
 
 uniform sampler2D vectors;    //! file("sketches/data/jacksboro_grid.geojson") label("Vector data")
                               //! GeoJSON, or GPKG, SHP, FGB, KML or GPX: points, lines, polygons
-uniform sampler2D elevation;  //! file("sketches/data/jacksboro_fault_dem.npz") label("Terrain's file")
-                              //! The elevation file of the terrain: it says where that lies
+uniform sampler2D elevation;  //! file("sketches/data/jacksboro_fault_dem.npz") label("Elevations")
+                              //! The terrain's elevation file, which says where it lies
 uniform float width = 60.0;   //! log_slider(0.1, 10000) unit("m") Of lines, and across points
 uniform int polygons = 0;     //! menu("filled", "outlined") Whether polygons are areas or lines

@@ -4,7 +4,7 @@
 //   needs    maths/drape.glsl, maths/land.glsl; a colour and a mask, each of any size
 //   units    mask 0..1
 //   source   Porter and Duff 1984, "Compositing Digital Images", "over" with an opaque ground
-//   tested   tests/glsl/test_vectors.py: all, none and half of it
+//   tested   tests/glsl/test_vectors.py: none, half and all of it, and means of a finer mask
 #include "maths/drape.glsl"
 #include "maths/land.glsl"
 #pragma kernel(output = "colour:rgba16f")
