@@ -55,8 +55,14 @@ def describe(values: Mapping[str, Value]) -> Terrain:
 def make(
     values: Mapping[str, Value], size: tuple[int, int], moment: None = None
 ) -> dict[str, NDArray[np.float32]]:
-    """Return the heights at a size: 0 at the file's lowest, 1 at its highest."""
-    elevation = _at(_asked(values), size)
+    """Return the heights at a size: 0 at the file's lowest, 1 at its highest.
+
+    Of a large file, those at less than half of the size that it has by itself are made of these: previews
+    need not go through it again.
+    """
+    asked = _asked(values)
+    own = _size(_opened(asked), values)
+    elevation = _at(asked, own if all(2 * a <= b for a, b in zip(size, own, strict=True)) else size)
     low, span = elevation.lowest, elevation.highest - elevation.lowest
     with _memory_explained(Path(str(values["elevation"]))):
         heights = (
