@@ -154,6 +154,37 @@ def test_a_raw_file_s_json_says_where_it_lies(tmp_path, any_engine):
     assert (east - west, north - south) == pytest.approx((30 / 1200, 18 / 900), rel=1e-12)
 
 
+def test_a_line_laid_on_terrain_is_exported_where_gdal_finds_its_degrees(tmp_path, any_engine):
+    """From a file of elevations and one of lines to a GeoTIFF: opened, drawn, written, opened again."""
+    from rasterio.warp import transform
+
+    utm = Affine(20.0, 0.0, 376_000.0, 0.0, -30.0, 5_229_500.0)
+    south, east = np.mgrid[:81, :91]
+    hills = (600 + 50 * np.sin(south / 9) * np.cos(east / 11)).astype(np.float32)
+    path = dem(tmp_path / "dem.tif", "EPSG:32633", utm, heights=hills)
+    line = {"type": "LineString", "coordinates": [[13.362, 47.19], [13.385, 47.214]]}
+    (tmp_path / "line.geojson").write_text(json.dumps(line))
+    (tmp_path / "sketch.toml").write_text(
+        f'format = 1\n[[pass]]\nname = "height"\nuse = "generation/heightmap"\n'
+        f'set = {{ elevation = "{path.name}" }}\n'
+        f'[[pass]]\nname = "line"\nuse = "texturing/vectors/drawn"\n'
+        f'set = {{ vectors = "line.geojson", elevation = "{path.name}", width = 60.0 }}\n'
+        f'[view]\nuse = "view/terrain"\n'
+    )
+    made = export(tmp_path / "sketch.toml", tmp_path / "line.tif", texture="line", engine=any_engine)
+    with rasterio.open(made.path) as after, rasterio.open(path) as before:
+        assert after.crs == before.crs and after.transform == before.transform
+        rows, cols = np.nonzero(after.read(1) > 0.9)
+        x, y = after.transform @ (cols + 0.5, rows + 0.5)
+        longitude, latitude = map(np.array, transform(after.crs, "EPSG:4326", x, y))
+    assert len(rows) > 80
+    share = (latitude - 47.19) / 0.024
+    off = (longitude - (13.362 + 0.023 * share)) * np.cos(np.radians(47.2)) * 111_320
+    # Texels that are covered nearly whole lie within the line's half width of its middle, and none outside.
+    assert np.abs(off).max() < 60.0 and abs(off.mean()) < 5.0
+    assert share.min() > -0.02 and share.max() < 1.02
+
+
 def test_what_has_no_number_is_no_data_to_gdal(tmp_path, any_engine):
     (tmp_path / "holes.glsl").write_text(
         '#pragma kernel(output = "height:r32f")\n'

@@ -153,6 +153,7 @@ def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
         "elevation_file",
         "delaunay",
         "mask_file",
+        "vector_file",
         "video_file",
         "sound_file",
         "keyboard",
