@@ -1,4 +1,4 @@
-// erosion/hydraulic/clock.glsl -- how long a step is, so that grids of any size show the same terrain.
+// erosion/hydraulic/clock.glsl -- how long a step is, for the same terrain at any size.
 //
 //   gives    step_hours
 //   needs    nothing: a pure function
@@ -6,8 +6,8 @@
 //   source   derived here from the wave's speed in Mei, Decaudin and Hu 2007
 //   tested   tests/glsl/test_hydraulic.py, by terrains of several sizes
 //
-// A wave goes the same share of a texel in a step, whatever the texel's size. So that it goes as far
-// in an hour, a step is as long as a texel is wide: an hour where 257 texels are the longer side.
+// A wave goes the same share of a texel in a step, whatever the texel's size. So that it goes as
+// far in an hour, a step is as long as a texel is wide: an hour where the longer side has 257.
 // Rates an hour times this are rates a step.
 #ifndef EROSION_HYDRAULIC_CLOCK
 #define EROSION_HYDRAULIC_CLOCK

@@ -1,4 +1,4 @@
-// erosion/hydraulic/move.glsl -- water and its load go through the pipes, and wear or build the bed.
+// erosion/hydraulic/move.glsl -- water takes its load along; the bed is worn and built.
 //
 //   gives    state: red the bed, green the water on it, blue what the water carries, alpha the
 //            mean flow
@@ -31,7 +31,7 @@ uniform float creep = 1.0;         //! slider(0, 100) step(0.1) unit("m²/h")
                                    //! How fast the soil creeps downhill, which rounds the ground
 
 const float LEAST_SLOPE = 0.01;  // that water carries by, so that plains are not dead
-const float SLUMP = 0.25;        // share of what is too steep that slides in an hour, of a step so long
+const float SLUMP = 0.25;        // share of what is too steep that slides in a step of an hour
 const float MOST_CREEP = 0.1;    // share of a difference, well below the 1/4 that oscillates
 const float MEMORY = 50.0;       // [h] over which the flow is averaged
 const float FILM = 1e-9;         // [m] of water, below which it counts as dry
