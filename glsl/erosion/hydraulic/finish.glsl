@@ -18,7 +18,7 @@ uniform sampler2D before;  //! input
 
 uniform float damp = 20.0;     //! log_slider(0.1, 10000) unit("m²/h")
                                //! The flow that leaves the ground half wet
-uniform int hours = 600;       //! log_slider(1, 100000) unit("h") How long it rains and flows
+uniform int hours = 600;       //! log_slider(1, 5000) unit("h") How long it rains and flows
 uniform bool watched = false;  //! Whether the hours go by with time, to be watched
 uniform int pace = 1;          //! slider(1, 60) unit("h") Hours a frame where they are watched
 

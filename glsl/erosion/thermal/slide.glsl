@@ -20,7 +20,7 @@
 uniform sampler2D repose_map;  //! input("white")
 uniform sampler2D hardness;    //! input("white")
 
-uniform int steps = 60;        //! slider(0, 10000) Steps on each grid
+uniform int steps = 60;        //! slider(0, 2000) Steps on each grid
 uniform float repose = 35.0;   //! angle(1, 89) Angle of repose, times the input `repose`
 uniform float rate = 1.0;      //! slider(0, 1) step(0.01)
                                //! The share of what is too steep that slides in a step
