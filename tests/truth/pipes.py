@@ -97,8 +97,8 @@ class Pipes:
         dropped = min(-np.expm1(-self.settling * self.hours), 0.5) * (self.load - can)
         change = np.where(can > self.load, taken, -dropped)
         self.load = self.load + change
-        self.water = self.water * np.exp(-self.evaporation * self.hours) + self.rain * self.hours
-        self.mean_flow = flow + (self.mean_flow - flow) * np.exp(-self.hours / 50)
+        self.water = self.water / (1 + self.evaporation * self.hours) + self.rain * self.hours
+        self.mean_flow = flow + (self.mean_flow - flow) * 50 / (50 + self.hours)
         return self.bed - change
 
     def _slump(self) -> Array:
@@ -113,7 +113,7 @@ class Pipes:
             away = np.hypot(dx * self.spacing[0], dy * self.spacing[1])
             moves = np.maximum(np.abs(rise) - talus * away, 0) / 8 * min(0.25 / self.hours, 1)
             if dy * dx == 0:
-                moves = np.maximum(moves, min(self.creep * self.hours / away**2, 0.1) * np.abs(rise))
+                moves += min(self.creep * self.hours / away**2, 0.1) * np.abs(rise)
             moves *= np.sign(rise)
             moved[low] += moves
             moved[high] -= moves

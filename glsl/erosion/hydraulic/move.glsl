@@ -52,10 +52,14 @@ vec4 flux_at(ivec2 texel) {
     return clamp(texel, ivec2(0), size - 1) == texel ? found : vec4(0.0);
 }
 
-// What comes from neighbours so much higher: a share of what is over the most that lies still, or,
-// if that is more, a share of all of it.
-vec4 comes(vec4 rise, vec4 most, float slides, vec4 creeps) {
-    return sign(rise) * max(creeps * abs(rise), slides * (abs(rise) - most));
+// What is over the most that lies still, of neighbours so much higher or lower.
+vec4 over(vec4 rise, vec4 most) {
+    return rise - clamp(rise, -most, most);
+}
+
+// 1 - exp(-x), to 0.2 % up to x = 1.2.
+float share_in(float x) {
+    return x / (1.0 + x * (0.5 + x / 12.0));
 }
 
 vec4 kernel(ivec2 texel) {
@@ -90,7 +94,7 @@ vec4 kernel(ivec2 texel) {
     // single texels become wells. What the bed really loses, after rounding, is what the load
     // gains: rounded apart, a thousand small steps would make rock out of nothing.
     vec2 given = texelFetch(site, texel, 0).rg;
-    float settled = min(1.0 - exp(-settling * hours), 0.5);
+    float settled = min(share_in(settling * hours), 0.5);
     float change = (can > load ? given.g : settled) * (can - load);
     float lowest = min(min(west.x, east.x), min(south.x, north.x));
     float bed = max(here.x - change, min(here.x, 0.5 * (here.x + lowest)));
@@ -105,11 +109,11 @@ vec4 kernel(ivec2 texel) {
                 - here.x;
     float slides = 0.125 * min(SLUMP / hours, 1.0);
     vec2 creeps = min(creep * hours / (spacing * spacing), MOST_CREEP);
-    vec4 straight = comes(beside, talus * spacing.xxyy, slides, creeps.xxyy);
-    vec4 aslant = comes(across, vec4(talus * length(spacing)), slides, vec4(0.0));
+    vec4 straight = slides * over(beside, talus * spacing.xxyy) + creeps.xxyy * beside;
+    vec4 aslant = slides * over(across, vec4(talus * length(spacing)));
     bed += ((straight.x + straight.y) + (straight.z + straight.w))
          + ((aslant.x + aslant.y) + (aslant.z + aslant.w));
 
-    water = water * exp(-evaporation * hours) + given.r;
-    return vec4(bed, water, load, mix(here.w, flow, 1.0 - exp(-hours / MEMORY)));
+    water = water / (1.0 + evaporation * hours) + given.r;
+    return vec4(bed, water, load, mix(here.w, flow, hours / (hours + MEMORY)));
 }
