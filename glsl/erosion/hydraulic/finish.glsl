@@ -20,7 +20,7 @@ uniform float damp = 20.0;     //! log_slider(0.1, 10000) unit("m²/h")
                                //! The flow that leaves the ground half wet
 uniform int hours = 600;       //! log_slider(1, 5000) unit("h") How long it rains and flows
 uniform bool watched = false;  //! Whether the hours go by with time, to be watched
-uniform int pace = 1;          //! slider(1, 60) unit("h") Hours a frame where they are watched
+uniform int pace = 8;          //! slider(1, 60) unit("h") Hours a frame where they are watched
 
 void kernel(ivec2 texel, out float height, out float water, out float wear, out float deposit,
             out float flow, out float wetness) {
