@@ -1,0 +1,32 @@
+// water/fill/flood.glsl -- depressions filled to where they spill, by lowering a flood.
+//
+//   gives    level, of the water's surface, or of the ground where it is dry
+//   needs    water/least_fall.glsl, water/texels.glsl
+//   units    heights without unit
+//   source   Planchon and Darboux 2002, "A fast, simple and versatile algorithm to fill the
+//            depressions of digital elevation models", Catena 46: from above, with a little fall
+//   tested   tests/glsl/test_fill.py, against a priority flood
+//
+// In each step the flood falls to the ground, or to what the lowest neighbour lets out. It comes
+// from above: after any number of steps each texel but an edge's has a neighbour below its level,
+// so all water drains, and further steps only lower the flood where a shorter way out is known.
+#include "water/least_fall.glsl"
+#include "water/texels.glsl"
+#pragma kernel(output = "level:r32f", repeat = "steps")
+
+uniform sampler2D height;  //! input
+uniform int steps = 1024;  //! slider(1, 16384) Texels over which a way out is sought
+
+float kernel(ivec2 texel) {
+    float ground = texelFetch(height, texel, 0).r;
+    if (on_edge(texel, size)) return ground;
+    float fall = least_fall(spacing, relief);
+    vec3 falls = fall * vec3(spacing, length(spacing));
+    float lowest = 1e30;
+    for (int k = 0; k < NEIGHBOURS; k++) {
+        ivec2 step_to = neighbour_of(k);
+        float less = step_to.y == 0 ? falls.x : step_to.x == 0 ? falls.y : falls.z;
+        lowest = min(lowest, previous(texel + step_to) + less);
+    }
+    return max(ground, lowest);
+}
