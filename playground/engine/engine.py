@@ -29,7 +29,7 @@ from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
 from playground.engine.picture_hash import PictureHasher
 from playground.engine.plain_forms import PlainForms, warn
-from playground.engine.plan import LoopIteration, Plan, Step, Window, needed
+from playground.engine.plan import LoopIteration, Plan, Step, Window, most_iterations, needed
 from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.planner import Planner, repeated_in
 from playground.engine.results import Pool, Result, Wired
@@ -283,9 +283,9 @@ class Engine(Recorded):
         """
         found = opened(sketch)
         repeated = repeated_in(found, path)
-        node = self.plan_for(found, size, time, {repeated: 0}).node(repeated)
-        assert node is not None  # no fast variant replaces a pass that is stopped
-        for done in range(node.whole + 1):
+        # No fast variant replaces a pass that is stopped.
+        whole = most_iterations(self.plan_for(found, size, time, {repeated: 0}).nodes)[repeated]
+        for done in range(whole + 1):
             yield done, self.read(found, repeated, size=size, time=time, steps={repeated: done})
 
     def drawn(self) -> str:

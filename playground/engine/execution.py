@@ -166,20 +166,17 @@ class Execution:
         it that counts frames.
         """
         self.run(loop.body)
-        fed, steps = dict(around), {step.path: step for step in walk(loop.body)}
+        fed, steps = dict(around), {step.path: step for step in walk(loop.body_of(0))}
         for name, first, ref in loop.feedback:
             own = Fed(loop.path, name)
             fed[own] = self._wired(first, around)
             outer = self._fed_from.get(first) if isinstance(first, Fed) else None
             self._fed_from[own] = outer or (steps[ref.path], ref.output)
-        changing = []
-        for node in loop.body:
-            if loop.path in self.keys.changes[id(node)]:
-                changing.append(node)
-            else:
+        for node in loop.body_of(0):
+            if loop.path not in self.keys.changes[id(node)]:
                 self._run_inside(node, around, LoopIteration(frame=frame), owned)
         if loop.repeat == 0 and not state.results:
-            state.results = self._initial(loop, changing, fed)
+            state.results = self._initial(loop, self._changing(loop, 0), fed)
         self.results |= state.results
         first_run = state.iterations
         for iteration in range(state.iterations, loop.repeat):
@@ -189,7 +186,7 @@ class Execution:
             at = LoopIteration(iteration, loop.whole, iteration if loop.counts_frames else frame)
             computed: dict[str, Result] = {}
             try:
-                for node in changing:
+                for node in self._changing(loop, iteration):
                     self._run_inside(node, fed, at, computed)
             except BaseException:
                 Cached(computed).release_to(self.runner.pool)
@@ -210,6 +207,10 @@ class Execution:
                 and not self.keys.changes[id(loop)]
             ):
                 self.deadline.check(iteration + 1 - first_run, iteration + 1, loop.repeat)
+
+    def _changing(self, loop: LoopStep, iteration: int) -> list[PlanNode]:
+        """Return what an iteration of a loop computes anew."""
+        return [node for node in loop.body_of(iteration) if loop.path in self.keys.changes[id(node)]]
 
     def _run_inside(
         self,
