@@ -1,7 +1,7 @@
 // erosion/stream_power/finer.glsl -- the same terrain and the same rivers on a grid twice as fine.
 //
 //   gives    height, receiver: where each texel drains to, along the rivers that there are
-//   needs    noise/hash.glsl, water/texels.glsl
+//   needs    maths/land.glsl, noise/hash.glsl, terrain/heightfield.glsl, water/texels.glsl
 //   units    heights without unit; roughness in metres per metre
 //   source   made here; a middle displaced sideways is Fournier, Fussell and Carpenter 1982,
 //            "Computer rendering of stochastic models", section 4
@@ -12,11 +12,14 @@
 // an axis bend through the middle of the square beside it, so that no river stays straight. All
 // other new texels are raised a little, at random, and drain to the lowest coarse texel around.
 // Where two stretches meet in a middle both go on to the lower end: levels fall along every
-// stretch, so that no way goes in a circle. A grid of the same size stays as it is.
+// stretch, so that no way goes in a circle. Edges have the heights that they began with. A grid of the same size stays as it is.
+#include "maths/land.glsl"
 #include "noise/hash.glsl"
+#include "terrain/heightfield.glsl"
 #include "water/texels.glsl"
 #pragma kernel(output = "height:r32f, receiver:r32f")
 
+uniform sampler2D start;            //! input
 uniform sampler2D coarse;           //! input
 uniform sampler2D coarse_receiver;  //! input
 uniform sampler2D coarse_level;     //! input
@@ -55,12 +58,16 @@ void kernel(ivec2 texel, out float height, out float receiver) {
         receiver = texelFetch(coarse_receiver, texel, 0).r;
         return;
     }
+    if (on_edge(texel, size)) {
+        height = height_at(start, place_on(textureSize(start, 0), texel, size));
+        return;
+    }
     if (odd == ivec2(0)) {
         height = texelFetch(coarse, south_west, 0).r;
         // Of an even size the last column or row is new, and what was an edge drains to it.
         ivec2 to = middle_of(south_west);
         if (to == texel) to += ivec2(equal(south_west, last));
-        if (!on_edge(texel, size)) receiver = number_of(to, size);
+        receiver = number_of(to, size);
         return;
     }
     float sum = 0.0;
@@ -87,9 +94,8 @@ void kernel(ivec2 texel, out float height, out float receiver) {
             end = to;
         }
     }
-    bool edge = on_edge(texel, size);
     float raised = roughness * min(spacing.x, spacing.y) / max(relief, 1e-3);
     float lift = raised * random(texel, seed + SALT + uint(size.x) + 1u);
-    height = river < 1e29 ? river : edge ? sum : sum + lift;
-    if (!edge) receiver = number_of(2 * (river < 1e29 ? end : beside), size);
+    height = river < 1e29 ? river : sum + lift;
+    receiver = number_of(2 * (river < 1e29 ? end : beside), size);
 }

@@ -17,7 +17,7 @@
 uniform sampler2D link;          //! input
 uniform int slides = 4;          //! slider(1, 64) Steps of the hillsides in one of the rivers
 uniform float steepest = 40.0;   //! slider(1, 89) step(1) unit("°") Beyond it hillsides slide
-uniform float creep = 0.1;     //! slider(0, 10) step(0.001) unit("m2/yr") How fast soil moves
+uniform float creep = 0.02;    //! slider(0, 10) step(0.001) unit("m2/yr") How fast soil moves
 
 float height_before(ivec2 texel) {
     return iteration == 0 ? texelFetch(link, texel, 0).r : previous(texel);

@@ -28,7 +28,7 @@ uniform float erodibility = 5.0;  //! log_slider(0.01, 1000) Metres that a river
                                   //! years, at slope 1 and 1 m2
 uniform float area_power = 0.5;   //! slider(0.2, 0.8) step(0.01) m: how much more a larger river
                                   //! wears
-uniform float head = 10000.0;   //! slider(0, 1000000) step(1000) unit("m2") Where a river begins
+uniform float head = 30000.0;   //! slider(0, 1000000) step(1000) unit("m2") Where a river begins
 
 const float MOST = 1e9;  // wear in a step, in lengths of the way: beyond it nothing changes
 
