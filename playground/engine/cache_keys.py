@@ -106,7 +106,7 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
         header += [kernel.helpers, kernel.vertex_prelude, kernel.vertex_helpers]
         header.append(kernel.vertex_source.canonical if kernel.vertex_source else "")
     used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}
-    used |= set(_IDENTIFIER.findall(" ".join(counts)))
+    used |= set(_IDENTIFIER.findall(" ".join((*counts, kernel.stride))))
     used |= kernel.source.names & {"iterations"}
     used |= {p.name for p in kernel.parameters if kernel.reads(f"{TOWARDS}{p.name}")}
     if kernel.dialect:  # what its tool declares is not in its text

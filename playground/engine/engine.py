@@ -381,7 +381,7 @@ class Engine(Recorded):
         self.runner.look_at(plan)
         self.runner.programs.frame += 1
         record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
-        execution = Execution(record.keys, self.cache, self.runner, self._compute, plan.steps)
+        execution = Execution(record.keys, self.cache, self.runner, self._compute)
         execution.deadline = Deadline(self.patience, self.ctx.finish)
         with self.borrowed():
             if self.disk_caching is not None:

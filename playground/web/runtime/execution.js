@@ -125,13 +125,29 @@ export const createExecution = (plan, nodes, around) => {
   const computed = function* (step) {
     const key = /** @type {string} */ (keys.raw.get(step.path));
     const unfinished = /** @type {string} */ (keys.unfinished.get(step.path));
-    const goesOn = step.path in plan.stopped || step.kernel.followsTime;
-    const start = goesOn ? cache.takeEarlier(step.path, unfinished, step.repeat) : null;
+    const goesOn = step.kernel.kind === "kernel" && step.kernel.repeat !== 1;
+    const start = goesOn ? earlier(step, unfinished) : null;
     /** @type {Map<string, Wired | null>} */
     const inputs = new Map();
     for (const [name, source] of step.inputs) inputs.set(name, wiredTo(source, new Map()));
     const made = keep(key, step, yield* compute(step, inputs, null, start));
     if (goesOn) cache.noteProgress(step.path, unfinished, key, step.repeat);
+    return made;
+  };
+
+  /** Return the same step after fewer iterations: what is known, or a copy where a pass or a run reads that.
+   *  @param {Step} step @param {string} unfinished */
+  const earlier = (step, unfinished) => {
+    const key = cache.earlier(step.path, unfinished, step.repeat);
+    if (!key) return null;
+    if (!cache.isPinned(key) && ![...keys.raw.values()].includes(key)) return cache.take(key);
+    const [found] = /** @type {Cached} */ (cache.peek(key)).results.values();
+    const made = textures.take(step.size, step.kernel.outputs, isTall(step));
+    for (const [name, texture] of made.textures) {
+      const from = found.textures.get(name);
+      if (from) kernels.copy(textures.targetOf(texture), texture.size, from);
+    }
+    made.iterations = found.iterations;
     return made;
   };
 
