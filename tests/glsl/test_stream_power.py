@@ -1,5 +1,7 @@
 """Rivers against uplift: the slope-area law, drainage like a real terrain's, the same terrain at any size."""
 
+import shutil
+
 import numpy as np
 import pytest
 
@@ -47,7 +49,7 @@ def worn(ctx, kept, make_sketch):
 
     def wear(size, passes=PASSES, extent=EXTENT, turn=0, dome=0.0, **values):
         sketch = make_sketch(passes, size=size, extent=extent, relief=RELIEF, low=LOW, two=TWO)
-        chosen = {f"rivers.{k}": v for k, v in values.items()}
+        chosen = {f"rivers.{k}": v for k, v in {"keep": 1.0, **values}.items()}
         sketch = sketch.with_values({"low.turn": turn, "low.dome": dome, **chosen})
         names = ("rivers:height", "rivers:receiver", "rivers:area", "low")
         height, receiver, area, low = (kept.read(sketch, name).copy() for name in names)
@@ -144,11 +146,15 @@ coarse_level = "rivers:height"
             goal = divmod(int(way[y, x]), 33)
             here = divmod(int(ways[2 * y, 2 * x]), size)
             bent += (here[0] != y + goal[0]) or (here[1] != x + goal[1])
-            there = divmod(int(ways[here]), size)
+            there = here
+            for _ in range(3):
+                if there[0] % 2 or there[1] % 2:
+                    there = divmod(int(ways[there]), size)
             total += 1
             kept += there == (2 * goal[0], 2 * goal[1])
             assert coarse[there[0] // 2, there[1] // 2] < coarse[y, x], "down, from one to the next"
-        assert kept > 0.9 * total and bent > 0.2 * total
+        # The others meet another stretch halfway, and go on to its lower end.
+        assert kept > 0.8 * total and bent > 0.5 * total
 
 
 def test_twice_as_hard_is_half_as_erodible_and_uplift_is_a_factor(worn):
@@ -211,7 +217,7 @@ REAL = """
 [[pass]]
 name = "height"
 use = "generation/heightmap"
-set = { elevation = "DATA" }
+set = { elevation = "real.npz" }
 [[pass]]
 name = "fill"
 use = "water/fill"
@@ -227,10 +233,10 @@ use = "water/accumulation"
 
 
 @pytest.mark.slow
-def test_it_drains_as_a_real_terrain(worn, kept, make_sketch):
+def test_it_drains_as_a_real_terrain(worn, kept, make_sketch, tmp_path):
     """The share of texels that drain more than a falls as a^-tau: 0.46 in the Cumberland Mountains."""
-    data = SKETCHES / "data" / "jacksboro_fault_dem.npz"
-    real = make_sketch(REAL.replace("DATA", data.as_posix()), size=[403, 344], extent=[402.0, 343.0])
+    shutil.copy(SKETCHES / "data" / "jacksboro_fault_dem.npz", tmp_path / "real.npz")
+    real = make_sketch(REAL, size=[403, 344], extent=[402.0, 343.0])
     found = exceedance_power(kept.read(real, "area"), 1.0)
     assert found == pytest.approx(0.46, abs=0.02)
     *_, area, _ = worn(513)

@@ -1,18 +1,21 @@
 // erosion/stream_power/finer.glsl -- the same terrain and the same rivers on a grid twice as fine.
 //
 //   gives    height, receiver: where each texel drains to, along the rivers that there are
-//   needs    maths/land.glsl, noise/hash.glsl, terrain/heightfield.glsl, water/texels.glsl
+//   needs    erosion/stream_power/parameters/keep.glsl, maths/land.glsl, noise/hash.glsl,
+//            terrain/heightfield.glsl, water/texels.glsl
 //   units    heights without unit; roughness in metres per metre
 //   source   made here; a middle displaced sideways is Fournier, Fussell and Carpenter 1982,
 //            "Computer rendering of stochastic models", section 4
 //   tested   tests/glsl/test_stream_power.py: every way goes through the same coarse texels
 //
 // Texel k of the coarse grid is texel 2 k of the fine one. A river's stretch from one coarse texel
-// to the next goes through the fine texel in the middle, at the mean height; some of those along
-// an axis bend through the middle of the square beside it, so that no river stays straight. All
-// other new texels are raised a little, at random, and drain to the lowest coarse texel around.
-// Where two stretches meet in a middle both go on to the lower end: levels fall along every
-// stretch, so that no way goes in a circle. Edges have the heights that they began with. A grid of the same size stays as it is.
+// to the next goes through the fine texel in the middle, at the mean height. Some stretches bend,
+// so that no river stays straight: along an axis through the middle of a square beside, along a
+// diagonal round one of the sides, by two fine texels. All other new texels are raised a little,
+// at random, and drain to the lowest coarse texel around. Where stretches meet, all go on to the
+// lowest end: levels fall along every stretch, so that no way goes in a circle. Edges have the
+// heights that they began with. A grid of the same size stays as it is.
+#include "erosion/stream_power/parameters/keep.glsl"
 #include "maths/land.glsl"
 #include "noise/hash.glsl"
 #include "terrain/heightfield.glsl"
@@ -24,8 +27,7 @@ uniform sampler2D coarse;           //! input
 uniform sampler2D coarse_receiver;  //! input
 uniform sampler2D coarse_level;     //! input
 uniform float roughness = 0.05;     //! slider(0, 1) step(0.01) How far new texels are raised
-uniform float winding = 0.5;        //! slider(0, 1) step(0.01) Share of the straight stretches
-                                    //! that bend
+uniform float winding = 0.6;        //! slider(0, 1) step(0.01) Share of the stretches that bend
 uniform uint seed = 1u;             //! slider(0, 9999) Which ones
 
 const uint SALT = 0xd18f9355u;  // CRC-32 of "erosion/stream_power/finer"
@@ -38,20 +40,37 @@ ivec2 end_of(ivec2 from) {
     return from + clamp(to - from, ivec2(-1), ivec2(1));
 }
 
-// The fine texel in the middle of a coarse texel's stretch.
-ivec2 middle_of(ivec2 from) {
-    ivec2 along = end_of(from) - from;
+// A stretch: the coarse texel at its end, and the one or two fine texels on its way there.
+struct Stretch {
+    ivec2 end;
+    ivec2 first;
+    ivec2 second;
+};
+
+Stretch stretch_of(ivec2 from) {
+    ivec2 end = end_of(from);
+    ivec2 along = end - from;
+    ivec2 middle = 2 * from + along;
+    Stretch straight = Stretch(end, middle, middle);
     vec2 drawn = random_pair(from, seed + SALT + uint(size.x));
-    bool bends = along.x * along.y == 0 && along != ivec2(0) && drawn.x < winding;
-    ivec2 aside = bends ? along.yx * (drawn.y < 0.5 ? -1 : 1) : ivec2(0);
-    return 2 * from + along + aside;
+    if (along == ivec2(0) || drawn.x >= winding) return straight;
+    bool side = drawn.y < 0.5;
+    if (along.x * along.y == 0) {
+        middle += along.yx * (side ? -1 : 1);
+        return Stretch(end, middle, middle);
+    }
+    ivec2 begin = side ? ivec2(along.x, 0) : ivec2(0, along.y);
+    Stretch bent = Stretch(end, 2 * from + begin, 2 * from + begin + along);
+    return on_edge(bent.second, size) ? straight : bent;
 }
+
+// The second texel of a diagonal's bend is 1 + sqrt(2) of its 2 + sqrt(2) along.
+const float SECOND = 0.70710678;
 
 void kernel(ivec2 texel, out float height, out float receiver) {
     ivec2 last = grid() - 1;
     ivec2 south_west = min(texel / 2, last);
     ivec2 odd = min(texel - 2 * south_west, 1);
-    ivec2 far = min(south_west + odd, last);
     receiver = number_of(texel, size);
     if (grid() == size) {
         height = texelFetch(coarse, texel, 0).r;
@@ -59,43 +78,56 @@ void kernel(ivec2 texel, out float height, out float receiver) {
         return;
     }
     if (on_edge(texel, size)) {
-        height = height_at(start, place_on(textureSize(start, 0), texel, size));
+        height = keep * height_at(start, place_on(textureSize(start, 0), texel, size));
         return;
     }
     if (odd == ivec2(0)) {
         height = texelFetch(coarse, south_west, 0).r;
         // Of an even size the last column or row is new, and what was an edge drains to it.
-        ivec2 to = middle_of(south_west);
+        ivec2 to = stretch_of(south_west).first;
         if (to == texel) to += ivec2(equal(south_west, last));
         receiver = number_of(to, size);
         return;
     }
     float sum = 0.0;
+    float corners = 0.0;
     float river = 1e30;
     float lowest = 1e30;
     float lowest_end = 1e30;
-    ivec2 beside = south_west;
-    ivec2 end = south_west;
-    for (int k = 0; k < 4; k++) {
-        ivec2 corner = ivec2((k & 1) == 0 ? south_west.x : far.x, k < 2 ? south_west.y : far.y);
-        float ground = texelFetch(coarse, corner, 0).r;
-        float level = texelFetch(coarse_level, corner, 0).r;
-        sum += 0.25 * ground;
-        if (level < lowest) {
-            lowest = level;
-            beside = corner;
-        }
-        ivec2 to = end_of(corner);
-        if (to == corner || middle_of(corner) != texel) continue;
-        river = min(river, 0.5 * (ground + texelFetch(coarse, to, 0).r));
-        level = texelFetch(coarse_level, to, 0).r;
-        if (level < lowest_end) {
-            lowest_end = level;
-            end = to;
+    ivec2 beside = texel;
+    ivec2 next = texel;
+    // Stretches that may come through here begin at the coarse texels around.
+    ivec2 low = max(south_west - 1 + odd, 0);
+    ivec2 high = min(south_west + 1, last);
+    for (int y = low.y; y <= high.y; y++) {
+        for (int x = low.x; x <= high.x; x++) {
+            ivec2 from = ivec2(x, y);
+            float ground = texelFetch(coarse, from, 0).r;
+            if (all(lessThanEqual(abs(texel - 2 * from), ivec2(1)))) {
+                sum += ground;
+                corners += 1.0;
+                float level = texelFetch(coarse_level, from, 0).r;
+                if (level < lowest) {
+                    lowest = level;
+                    beside = 2 * from;
+                }
+            }
+            Stretch stretch = stretch_of(from);
+            bool second = texel == stretch.second;
+            if (stretch.end == from || !(second || texel == stretch.first)) continue;
+            bool alone = stretch.first == stretch.second;
+            float part = alone ? 0.5 : second ? SECOND : 1.0 - SECOND;
+            river = min(river, mix(ground, texelFetch(coarse, stretch.end, 0).r, part));
+            float level = texelFetch(coarse_level, stretch.end, 0).r;
+            if (level < lowest_end) {
+                lowest_end = level;
+                next = second ? 2 * stretch.end : stretch.second;
+            }
         }
     }
     float raised = roughness * min(spacing.x, spacing.y) / max(relief, 1e-3);
     float lift = raised * random(texel, seed + SALT + uint(size.x) + 1u);
-    height = river < 1e29 ? river : sum + lift;
-    receiver = number_of(2 * (river < 1e29 ? end : beside), size);
+    bool on_river = river < 1e29;
+    height = on_river ? river : sum / corners + lift;
+    receiver = number_of(on_river ? next : beside, size);
 }

@@ -10,6 +10,6 @@
 uniform float age = 4.0;      //! log_slider(0.01, 100) unit("Myr") How long it has been rising
 uniform int steps = 40;       //! slider(1, 400) Steps in which that is done, on the coarsest level
 uniform int finer_steps = 8;  //! slider(1, 100) Further steps on each finer level, each as long
-uniform int coarsest = 32;    //! slider(8, 4096) Spacings of the coarsest level along the shorter
+uniform int coarsest = 16;    //! slider(8, 4096) Spacings of the coarsest level along the shorter
                               //! side, or up to twice as many
 #endif
