@@ -13,7 +13,7 @@ uniform sampler2D colour;   //! input
 uniform sampler2D river;    //! input("zero")
 uniform sampler2D lake;     //! input("zero")
 uniform sampler2D wetness;  //! input("zero")
-uniform vec3 shallow = vec3(0.09, 0.17, 0.17);  //! colour Of rivers, and of lakes by the shore
+uniform vec3 shallow = vec3(0.06, 0.13, 0.14);  //! colour Of rivers, and of lakes by the shore
 uniform vec3 deep = vec3(0.012, 0.045, 0.07);   //! colour Of deep lakes
 uniform float clarity = 6.0;     //! slider(0.1, 50) step(0.1) unit("m") Depth at which a lake has
                                  //! two thirds of its deep colour
