@@ -31,8 +31,10 @@ from playground.terrain.gaps import Voids, fill_no_data
 from playground.terrain.grid import Packing
 from playground.terrain.masks import read_mask
 from playground.terrain.over_time import (
+    LEAD,
     frames_of_sound,
     frames_of_video,
+    laps_of_sound,
     length_of_sound,
     length_of_video,
     make_sound,
@@ -78,6 +80,9 @@ class Recording:
     frames: Callable[[Mapping[str, Value], tuple[int, int]], Frames]  # from the file's beginning
     length: Callable[[Mapping[str, Value]], float]  # [s]
     clock: Mapping[str, str]  # start, speed, loop → the parameters that say them
+    laps: Callable[[Mapping[str, Value], tuple[int, int]], Frames] | None = None
+    # where it repeats and hears what came before: from its end, as long as the silence before it is heard
+    lead: float = 0.0  # [s] from the beginning until each lap is as the one before
 
 
 @dataclass(frozen=True, slots=True)
@@ -253,7 +258,9 @@ SOURCES: dict[str, SourceKind] = {
         ("sound", "start", "loop", "content"),
         "the sound",
         moment=moment_of_sound,
-        recording=Recording(frames_of_sound, length_of_sound, {"start": "start", "loop": "loop"}),
+        recording=Recording(
+            frames_of_sound, length_of_sound, {"start": "start", "loop": "loop"}, laps_of_sound, LEAD
+        ),
         size=size_of_sound,
     ),
     "keyboard": SourceKind(

@@ -39,18 +39,18 @@ class Locks:
         return self._own.get(path, False)
 
     def of_parameter(self, path: str, targets: tuple[str, ...]) -> str:
-        """Return why a parameter cannot be changed; "": it can."""
+        """Return why a parameter cannot be changed, a sentence; "": it can."""
         for target in targets:
             leaf, _, name = target.rpartition(".")
             if leaf in self.sources and not self._plays_by(leaf, name):
-                return f"{made_by(self.sources[leaf])} was made when the page was exported"
+                return _sentence(f"{made_by(self.sources[leaf])} was made when the page was exported")
             if target in self._needed_by:
                 made = made_by(self.sources[self._needed_by[target]])
-                return f"{made} was made in this size when the page was exported"
+                return _sentence(f"{made} was made in this size when the page was exported")
             kernel = next((one.kernel for one in self.flat.leaves if one.path == leaf), None)
             parameter = kernel.parameter(name) if kernel else None
             if parameter is not None and parameter.widget.kind == "file":
-                return "the image was chosen when the page was exported"
+                return "The image was chosen when the page was exported."
         return self._replaced_around(path)
 
     def of_terrain(self) -> str:
@@ -58,7 +58,7 @@ class Locks:
         if TERRAIN not in self._needed_by:
             return ""
         made = made_by(self.sources[self._needed_by[TERRAIN]])
-        return f"{made} was made in this size when the page was exported"
+        return _sentence(f"{made} was made in this size when the page was exported")
 
     def notes(self) -> list[str]:
         """Return a sentence on each source that a page has in the size of the picture at export."""
@@ -80,7 +80,7 @@ class Locks:
             rest = path.removeprefix(f"{around}.")
             technique = self.flat.specs[around].technique
             if rest != path and isinstance(technique, Graph) and not is_exported(technique, rest):
-                return f"a faster form of {around} runs in this page, which does not have it"
+                return f"A faster form of {around} runs in this page, which does not have it."
         return ""
 
     def _has_own_size(self, leaf: Leaf) -> bool:
@@ -121,6 +121,10 @@ class Locks:
                 raise self.flat.user(source).error(message)
             elif kind == named_numbers.COUNTER and where:
                 self._note_names(where, self.flat.specs[where].repeat, source, known, repeat=True)
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}."
 
 
 def made_by(leaf: Leaf) -> str:

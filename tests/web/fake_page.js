@@ -3,8 +3,9 @@
 import { createPage } from "../../playground/web/runtime/sketch_page.js";
 import { ENGLISH } from "../../playground/web/runtime/words.js";
 
-/** What a test looks at, and what it asks for: [ms] a million pixels take, an error to throw. */
-const probe = { slow: 0, error: "", frames: [], states: [], opened: [], page: null };
+/** What a test looks at, and what it asks for: [ms] a million pixels take, and a third of the programs, an
+ *  error to throw. */
+const probe = { slow: 0, compiling: 10, error: "", frames: [], states: [], loads: [], opened: [], page: null };
 globalThis.probe = probe;
 
 const REPEATS = 24;
@@ -25,10 +26,12 @@ function open(sketch) {
       };
     },
     async load(progress) {
+      const load = { map: state.map ?? null, before: probe.states.length };
       for (let done = 0; done <= 3; done++) {
         progress?.(done, 3);
-        await new Promise((next) => setTimeout(next, 10));
+        await new Promise((next) => setTimeout(next, probe.compiling));
       }
+      probe.loads.push({ ...load, after: probe.states.length });
     },
     render() {
       if (probe.error) throw new Error(probe.error);

@@ -111,7 +111,7 @@ def rows(name: str) -> dict[str, dict[str, Any]]:
 
 def test_terrain_of_a_file_has_its_size_and_one_that_is_computed_has_any():
     made, computed = (page_data([load(name)])["sketches"][0] for name in ("jacksboro", "fbm"))
-    assert made["terrain"]["locked"].startswith("the elevation file's terrain was made in this size")
+    assert made["terrain"]["locked"].startswith("The elevation file's terrain was made in this size")
     assert computed["terrain"]["locked"] == ""
     assert any("elevation" in note for note in made["notes"])
 
@@ -164,13 +164,13 @@ def test_what_would_need_another_plan_is_locked_and_nothing_else_is(name: str, i
         locked |= {shown.path} if needs_another else set()
     if name == "inner":
         assert locked == {"height.base.start"}
-        assert found["height.base.start"]["locked"].startswith("a faster form of height runs in this page")
+        assert found["height.base.start"]["locked"].startswith("A faster form of height runs in this page")
 
 
 def test_a_fixed_image_is_not_locked_away_from_its_sentence():
     found = rows("drape")
     [why] = {row["locked"] for row in found.values() if row["widget"] == "file" and "image" in row["locked"]}
-    assert why == "the image was chosen when the page was exported"
+    assert why == "The image was chosen when the page was exported."
 
 
 # ── in a browser ─────────────────────────────────────────────────────────────

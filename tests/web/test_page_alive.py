@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import os
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +27,7 @@ from ..report.browser import MESA, Browser
 pytestmark = pytest.mark.slow
 
 EYE = (210.0, 30.0, 9000.0, 2000.0, 1800.0, 100.0, 35.0)
+SETTLED = 0.4  # [s] of page_address.js
 LINK = "camera=" + ",".join(f"{number:g}" for number in EYE)
 INFO = "document.querySelector('.info').textContent"
 
@@ -149,4 +151,15 @@ def test_orbiting_draws_and_the_picture_is_whole_again_at_rest(
     assert after.shape == before.shape and not np.array_equal(after, before)
     asked = browser.run("return performance.getEntriesByType('resource').map((one) => one.name)")
     assert [name for name in asked if not name.startswith(("data:", "blob:"))] == []
+    assert browser.log() == []
+
+
+def test_a_drag_writes_a_camera_into_the_address_only_where_one_sees(browser: Browser, exported: Any):
+    for name, sees in (("hex_tiled", True), ("white_noise_image", False)):
+        _, url = exported(name)
+        opened(browser, url)
+        browser.drag("canvas", (-60, 0), (60, 20))
+        at_rest(browser)
+        time.sleep(2 * SETTLED)
+        assert browser.run("return location.hash.includes('camera=')") is sees
     assert browser.log() == []
