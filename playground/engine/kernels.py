@@ -16,6 +16,7 @@ from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
+from playground.engine.settling import Settling
 from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
@@ -89,11 +90,15 @@ class Kernels:
         self.programs = programs
         self.binder = binder
         self.pool = pool
+        self.settling = Settling(ctx, programs, binder, pool, software=software)
 
     def run(self, job: Job, driver: str) -> Result:
         """Run a kernel by a driver; the result is the caller's."""
         step = job.step
         program = self.program(job, driver)
+        if job.start is not None and job.start.settled:
+            job.start.iterations = step.repeat
+            return job.start
         state = self._initial(job)
         if step.repeat == 0:
             return self._untouched(step, state)
@@ -155,7 +160,7 @@ class Kernels:
         found = self.pool.take(result.size, result.outputs)
         for output in result.outputs:
             self.copy_texture(found.textures[output.name], result.textures[output.name])
-        found.iterations = result.iterations
+        found.iterations, found.settled = result.iterations, result.settled
         return found
 
     def empty(self, step: Step) -> Result:
@@ -229,6 +234,7 @@ class Kernels:
         # Where there is something to begin with, texels off the lattice count as well.
         lattice = bool(kernel.stride) and driver == FRAGMENT and not state
         shift = 0
+        watch = self.settling.watch(iteration, unit + len(kernel.outputs)) if kernel.until else None
         while iteration < step.repeat:
             count = min(at_once, step.repeat - iteration)
             result = self.pool.take(step.size, kernel.outputs)
@@ -247,10 +253,14 @@ class Kernels:
                 self.ctx.viewport = (0, 0, width, height)
                 self._fill(program)
                 self.ctx.viewport = (0, 0, *step.size)
+            iteration += count
             if before is not None:
+                if watch and watch.has_settled(iteration, result, before):
+                    result.settled = iteration
                 self.pool.give(before)
             before, state = result, result.textures
-            iteration += count
+            if result.settled:
+                break
         assert before is not None
         if shift:  # each texel of the lattice goes to its place, with zeros between
             close, before = before, self.drawn_own("spread.frag", before, k_shift=shift)

@@ -44,6 +44,7 @@ class Result:
     outputs: tuple[Output, ...]
     textures: dict[str, moderngl.Texture]  # by output
     iterations: int = 0  # done, of a pass that repeats
+    settled: int = 0  # the steps that ran, of one that was stopped since they changed nothing more
     number: int = 0  # of all that its pool has handed out: textures are used again, it is not
     surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
