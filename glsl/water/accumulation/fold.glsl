@@ -14,7 +14,8 @@
 // places suffice (compress): so a chain without branches is half as long after each step.
 // Whole numbers below 2^24 are summed exactly, in any order.
 #include "water/texels.glsl"
-#pragma kernel(output = "node:rgba32f", repeat = "2 * bits(size.x * size.y)")
+#pragma kernel(output = "node:rgba32f", repeat = "4 * bits(size.x * size.y)", \
+                until = "unchanged")
 
 const vec4 NOTHING = vec4(0.0, -1.0, -1.0, 0.0);
 

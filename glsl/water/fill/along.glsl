@@ -9,7 +9,8 @@
 //
 // After n steps ways of 2^n texels are known, and none is longer than the terrain has texels.
 #include "water/texels.glsl"
-#pragma kernel(output = "chain:rgba32f", repeat = "bits(size.x * size.y)")
+#pragma kernel(output = "chain:rgba32f", repeat = "bits(size.x * size.y)", \
+                until = "unchanged")
 
 vec4 kernel(ivec2 texel) {
     vec4 here = previous(texel);

@@ -12,10 +12,10 @@
 // so all water drains, and further steps only lower the flood where a shorter way out is known.
 #include "water/least_fall.glsl"
 #include "water/texels.glsl"
-#pragma kernel(output = "level:r32f", repeat = "steps")
+#pragma kernel(output = "level:r32f", repeat = "steps", until = "unchanged")
 
 uniform sampler2D height;  //! input
-uniform int steps = 1024;  //! slider(1, 16384) Texels over which a way out is sought
+uniform int steps = 16384;  //! slider(1, 65536) Texels over which a way out is sought, at most
 
 float kernel(ivec2 texel) {
     float ground = texelFetch(height, texel, 0).r;

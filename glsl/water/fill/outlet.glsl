@@ -8,7 +8,8 @@
 //
 // After n steps ways of 2^n texels are known, and none is longer than the terrain has texels.
 #include "water/texels.glsl"
-#pragma kernel(output = "outlet:r32f", repeat = "bits(size.x * size.y)")
+#pragma kernel(output = "outlet:r32f", repeat = "bits(size.x * size.y)", \
+                until = "unchanged")
 
 float kernel(ivec2 texel) {
     return previous(texel_of(previous(texel), size));
