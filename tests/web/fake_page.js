@@ -1,7 +1,7 @@
 // fake_page.js -- a page over a player that draws without WebGL what its state says, for tests.
 
 import { createPage } from "../../playground/web/runtime/sketch_page.js";
-import { ENGLISH } from "../../playground/web/runtime/words.js";
+import { PAGE_WORDS } from "../../playground/web/runtime/page_words.js";
 
 /** What a test looks at, and what it asks for: [ms] a million pixels take, and a third of the programs, an
  *  error to throw. */
@@ -90,7 +90,7 @@ function open(sketch) {
 addEventListener("DOMContentLoaded", () => {
   const data = JSON.parse(document.getElementById("playground-page").textContent);
   probe.page = createPage(document.getElementById("playground"), data, { open }, {
-    words: ENGLISH,
+    words: PAGE_WORDS.en,
     poster: document.getElementById("playground-poster"),
     repeats: (player) => player.repeats,
     openCode: (host) => host.append(Object.assign(document.createElement("textarea"), { value: "void main" })),

@@ -163,3 +163,26 @@ def test_a_drag_writes_a_camera_into_the_address_only_where_one_sees(browser: Br
         time.sleep(2 * SETTLED)
         assert browser.run("return location.hash.includes('camera=')") is sees
     assert browser.log() == []
+
+
+def test_a_french_page_has_a_french_editor(browser: Browser, exported: Any):
+    """What a compiler complains of stays English, as it is in the terminal."""
+    _, url = exported("lighting_hill")
+    path = Path(url.removeprefix("file://"))
+    french = path.with_name("colline.html")
+    french.write_text(path.read_text("utf-8").replace(' lang="en"', ' lang="fr"', 1), "utf-8")
+    opened(browser, french.as_uri())
+    browser.run(
+        "[...document.querySelectorAll('[role=tab]')].find((tab) => /Code/.test(tab.textContent)).click()"
+    )
+    browser.wait("document.querySelector('.editor')")
+    shown = browser.run("return document.querySelector('.editor').innerText")
+    assert "Fichier" in shown and "Rétablir ce fichier" in shown and "Échap puis Tab" in shown
+    assert "Comme dans l’esquisse" in shown
+    browser.run(
+        "const area = document.querySelector('.code-text'); area.value += ' int a = ;';"
+        "area.dispatchEvent(new Event('input'))"
+    )
+    status = "document.querySelector('.editor-status').textContent"
+    browser.wait(f"/^1 erreur|^. erreurs/.test({status})")
+    assert browser.run(f"return {status}").endswith("l’image est la dernière qui marchait")

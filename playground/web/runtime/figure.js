@@ -9,7 +9,7 @@ import { REST, createQuality, pixelsOf } from "./quality.js";
 import { createSession } from "./session.js";
 import { steerWith } from "./steering.js";
 import { cameraAt } from "./values.js";
-import { ENGLISH, fill } from "./words.js";
+import { fill } from "./words.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./session.js").Session} Session */
@@ -31,7 +31,7 @@ import { ENGLISH, fill } from "./words.js";
 /** @typedef {object} Options
  *  @property {Session} [session]       one that others share; else a new one
  *  @property {number} [sketch]         which of the page's, at first
- *  @property {Object<string, string>} [words]
+ *  @property {Object<string, string>} words       of a page
  *  @property {HTMLImageElement | null} [poster]
  *  @property {number} [budget]         pixels of the picture at most
  *  @property {boolean} [inText]        a finger that goes up or down, and the wheel, scroll the page
@@ -47,9 +47,9 @@ const SAID = 600; // [ms] until it is said that a picture is being made
 
 /** Make a figure in an element, whose size it fills. `start` opens the player.
  *  @param {HTMLElement} host @param {Engine} engine @param {{sketches: Sketch[]}} page
- *  @param {Options} [options] */
-export function createFigure(host, engine, page, options = {}) {
-  const { words = ENGLISH, poster = null, inText = false } = options;
+ *  @param {Options} options */
+export function createFigure(host, engine, page, options) {
+  const { words, poster = null, inText = false } = options;
   let { budget = 2.1e6 } = options;
   const session = options.session ?? createSession(page.sketches, options.sketch ?? 0);
   const canvas = make("canvas", { tabIndex: 0, role: "application", hidden: true });
