@@ -7,7 +7,7 @@
 import { failure } from "./context.js";
 import { whole } from "./expressions.js";
 import { roundedOutputs } from "./formats.js";
-import { complaintsOf } from "./edits.js";
+import { addOns } from "./addons.js";
 import { createChosen } from "./chosen.js";
 import { stagesOf } from "./kernel_texts.js";
 import { isSize, PLAIN } from "./binder.js";
@@ -169,7 +169,10 @@ export const createKernels = (context, textures, programs, binder, shared, often
 
   /** @param {import("./kernel_texts.js").KernelText} text @param {Program} program */
   const refused = (text, program) => {
-    const complaints = complaintsOf(text, program, shared, {}), [{ file, line, message }] = complaints;
+    const { kernel } = text, log = [...program.logs, program.link].join("\n").trim();
+    const complaints = addOns.edits?.complaintsOf(text, program, shared, {})
+      ?? [{ file: kernel.file, line: 0, message: log, kernel: kernel.name }];
+    const [{ file, line, message }] = complaints;
     return failure("shader", `${file}:${line}: ${message}`, { complaints });
   };
 
