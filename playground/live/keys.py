@@ -28,6 +28,7 @@ class Key:
     sign: str = ""  # "+" or "-", with Ctrl: on the keypad, and wherever else the keyboard has it
     brief: str = ""  # in the panel's last line; empty: not there
     letter: str = ""  # what it types, for one that is elsewhere on every keyboard
+    brush: bool = False  # only while the brush is taken
 
 
 _K = imgui.Key
@@ -59,14 +60,14 @@ KEYS: tuple[Key, ...] = (
     Key(_K.a, "A", "keep this as A and compare; or no longer", lambda b: b.inspection.compare.toggle()),
     Key(_K.g, "G", "the passes as a graph, or no longer", lambda b: b.inspection.graph.toggle()),
     Key(_K.b, "B", "take the brush, or put it down", lambda b: b.painting.toggle()),
-    Key(_K.none, "[", _NARROW, lambda b: b.painting.resize(-1), letter="["),
-    Key(_K.none, "]", _NARROW, lambda b: b.painting.resize(1), letter="]"),
-    Key(_K.none, "{", _STRONG, lambda b: b.painting.strengthen(-1), letter="{"),
-    Key(_K.none, "}", _STRONG, lambda b: b.painting.strengthen(1), letter="}"),
-    Key(_K.none, "(", _SOFT, lambda b: b.painting.soften(-1), letter="("),
-    Key(_K.none, ")", _SOFT, lambda b: b.painting.soften(1), letter=")"),
+    Key(_K.none, "[", _NARROW, lambda b: b.painting.resize(-1), letter="[", brush=True),
+    Key(_K.none, "]", _NARROW, lambda b: b.painting.resize(1), letter="]", brush=True),
+    Key(_K.none, "{", _STRONG, lambda b: b.painting.strengthen(-1), letter="{", brush=True),
+    Key(_K.none, "}", _STRONG, lambda b: b.painting.strengthen(1), letter="}", brush=True),
+    Key(_K.none, "<", _SOFT, lambda b: b.painting.soften(-1), letter="<", brush=True),
+    Key(_K.none, ">", _SOFT, lambda b: b.painting.soften(1), letter=">", brush=True),
     *(
-        Key(_K.none, str(n), _TOOLS, partial(_take, tool=tool), letter=str(n))
+        Key(_K.none, str(n), _TOOLS, partial(_take, tool=tool), letter=str(n), brush=True)
         for n, tool in enumerate(TOOLS, 1)
     ),
     Key(_K.s, "S", "save a PNG", lambda b: b.captures.save_picture(), brief="save"),
@@ -170,5 +171,5 @@ def act_on_keys(bench: Bench) -> None:
         else:
             fits = key.ctrl == ctrl and (key.shift == shift or not ctrl)
             pressed = fits and imgui.is_key_pressed(key.key, repeat=key.ctrl and key.key not in _ONCE)
-        if pressed:
+        if pressed and (bench.painting.on or not key.brush):
             key.act(bench)

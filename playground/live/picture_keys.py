@@ -42,8 +42,18 @@ CODES: dict[imgui.Key, int] = dict(_codes())
 """Key → its code in JavaScript, which is its column in the keyboard's texture."""
 
 _MODIFIERS = (16, 17, 18, 91, 92)
-_TYPED = {",": _K.comma, ".": _K.period, "/": _K.slash, "?": _K.slash}
-_SHORTCUTS = {key.key for key in KEYS if not key.ctrl} | {_TYPED[key.letter] for key in KEYS if key.letter}
+_TYPED = {",": _K.comma, ".": _K.period, "/": _K.slash, "?": _K.slash, "<": _K.comma, ">": _K.period}
+_TYPED |= {"[": _K.left_bracket, "{": _K.left_bracket, "]": _K.right_bracket, "}": _K.right_bracket}
+_TYPED |= {str(digit): getattr(_K, f"_{digit}") for digit in range(10)}
+
+
+def _keys_of(*, brush: bool) -> set[imgui.Key]:
+    """Return the keys of the shortcuts without Ctrl, of the brush or of all else."""
+    found = [key for key in KEYS if not key.ctrl and key.brush == brush]
+    return {_TYPED[key.letter] if key.letter else key.key for key in found}
+
+
+_SHORTCUTS, _OF_BRUSH = _keys_of(brush=False), _keys_of(brush=True)
 
 
 class PictureKeys:
@@ -80,4 +90,5 @@ class PictureKeys:
         self.has_keyboard = takes
 
     def _is_own(self, key: imgui.Key) -> bool:
-        return self.has_keyboard or key not in _SHORTCUTS
+        taken = key in _SHORTCUTS or (self.bench.painting.on and key in _OF_BRUSH)
+        return self.has_keyboard or not taken

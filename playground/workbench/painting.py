@@ -36,7 +36,7 @@ from playground.workbench.session import Session
 NARROWEST, USUAL, WIDEST = 0.002, 0.025, 0.25
 """A brush's radius, in shares of the terrain's longer side."""
 
-CLICK, LONGEST = 0.05, 0.1
+CLICK, LONGEST = 0.05, 0.25
 """[s] How long a stroke works on the place where it begins, and at most from one frame to the next."""
 
 SAVES_EVERY = 0.1
