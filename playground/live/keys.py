@@ -36,11 +36,7 @@ _INSPECT = "every pass's number at a pixel; Shift: of those inside, too"
 _TOOLS = f"the brush's tool: {', '.join(TOOLS)}"
 _HELP = "show or hide these keys"
 _VISITS = "the sketch that was open before, and forward again"
-_NARROW, _STRONG, _SOFT = (
-    "a narrower, wider brush",
-    "a weaker, stronger brush",
-    "a harder, softer brush",
-)
+_BRUSH = "the brush: narrower, wider, weaker, stronger, harder, softer"
 _SIZE_KEYS = "text and panels larger, smaller, at their first size"
 
 
@@ -60,12 +56,12 @@ KEYS: tuple[Key, ...] = (
     Key(_K.a, "A", "keep this as A and compare; or no longer", lambda b: b.inspection.compare.toggle()),
     Key(_K.g, "G", "the passes as a graph, or no longer", lambda b: b.inspection.graph.toggle()),
     Key(_K.b, "B", "take the brush, or put it down", lambda b: b.painting.toggle()),
-    Key(_K.none, "[", _NARROW, lambda b: b.painting.resize(-1), letter="[", brush=True),
-    Key(_K.none, "]", _NARROW, lambda b: b.painting.resize(1), letter="]", brush=True),
-    Key(_K.none, "{", _STRONG, lambda b: b.painting.strengthen(-1), letter="{", brush=True),
-    Key(_K.none, "}", _STRONG, lambda b: b.painting.strengthen(1), letter="}", brush=True),
-    Key(_K.none, "<", _SOFT, lambda b: b.painting.soften(-1), letter="<", brush=True),
-    Key(_K.none, ">", _SOFT, lambda b: b.painting.soften(1), letter=">", brush=True),
+    Key(_K.none, "[", _BRUSH, lambda b: b.painting.resize(-1), letter="[", brush=True),
+    Key(_K.none, "]", _BRUSH, lambda b: b.painting.resize(1), letter="]", brush=True),
+    Key(_K.none, "{", _BRUSH, lambda b: b.painting.strengthen(-1), letter="{", brush=True),
+    Key(_K.none, "}", _BRUSH, lambda b: b.painting.strengthen(1), letter="}", brush=True),
+    Key(_K.none, "<", _BRUSH, lambda b: b.painting.soften(-1), letter="<", brush=True),
+    Key(_K.none, ">", _BRUSH, lambda b: b.painting.soften(1), letter=">", brush=True),
     *(
         Key(_K.none, str(n), _TOOLS, partial(_take, tool=tool), letter=str(n), brush=True)
         for n, tool in enumerate(TOOLS, 1)
