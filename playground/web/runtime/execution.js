@@ -148,6 +148,7 @@ export const createExecution = (plan, nodes, around) => {
       if (from) kernels.copy(textures.targetOf(texture), texture.size, from);
     }
     made.iterations = found.iterations;
+    made.settled = found.settled;
     return made;
   };
 

@@ -59,6 +59,7 @@
  *  @property {Object<string, string>} initial      input → output that begins with it
  *  @property {Expression} [stride]
  *  @property {Expression} [atOnce]
+ *  @property {"unchanged"} [until]                 no more steps are run once one has changed no texel
  *  @property {"" | "squares" | "triangles"} [between]
  *  @property {string} [accepts]                    as the header has it
  *  @property {Accepted} [accepted]                 the same, to be evaluated
@@ -212,7 +213,7 @@
  *  @property {Object<string, Object<string, string>>} includes   file → what it writes → file
  *  @property {Object<string, [string, string]>} given   name → GLSL type and meaning (reserved_names.GIVEN)
  *  @property {Object<string, string>} own          the engine's own shaders: copy.frag, spread.frag,
- *                                                  fill_between.frag
+ *                                                  fill_between.frag, changed.frag
  *  @property {Object<string, {size: [number, number], kind: "rgba8" | "srgb8" | "rgba16f", blob: string,
  *             file?: string}>} images              image files by key; blob: raw texels, row 0 south, or
  *                                                  (file) the file itself, to be decoded by the browser
