@@ -126,7 +126,7 @@ def test_rivers_of_a_coarse_grid_are_those_of_the_fine_one(engine, make_sketch):
         + """
 [[pass]]
 name = "finer"
-use = "erosion/stream_power/finer"
+use = "water/levels/finer"
 set = { winding = 1.0 }
 [pass.inputs]
 start = "low"
