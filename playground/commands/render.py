@@ -61,6 +61,7 @@ HELP = help_text(
     "playground render my-land/my_land.glsl --profile",
     "playground render shader.frag --time 2.5 -o - > frame.png",
     "playground render - < shader.frag",
+    "playground render dem.tif --set height.longest=4097 -o picture.png",
     "playground render jacksboro --size 20000x12000 -o poster.png",
     "playground render sun_flight --video flight.mp4 --size 1920x1080",
     "playground render jacksboro --shot evening --video still.webm --seconds 2 --fps 25",

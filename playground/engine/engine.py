@@ -250,6 +250,10 @@ class Engine(Recorded):
         plan = self.plan_for(sketch, size, time, steps, ref, interpolated=interpolated)
         return self._texture(plan, plan.flat.ref(ref, plan.sketch.name))
 
+    def texture_of(self, plan: Plan, ref: Ref) -> moderngl.Texture:
+        """Run what a texture of a plan needs, and return it; it lives until the next frame."""
+        return self._texture(plan, ref)
+
     def read(
         self,
         sketch: Sketch | str | Path,

@@ -89,6 +89,7 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
                 notes = (*notes, f"{_readers(plan, step)}: {lack}")
             for note in notes:
                 file = spec.file or shown(step.kernel.path)
+                note = note.removeprefix(f"{Path(file).name}: ")  # of a file that was opened itself
                 found.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
     return tuple(found.values())
 

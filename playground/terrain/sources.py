@@ -9,26 +9,22 @@ that changes.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.errors import DataError, SketchError, nearest
-from playground.images.content_hash import content_key
+from playground.errors import SketchError, nearest
 from playground.media.live_inputs import LiveInputs
 from playground.media.now import Now
-from playground.paths import shown
 from playground.sketch.model import Value
+from playground.terrain import elevation_source as elevation
 from playground.terrain import live_sources as live
+from playground.terrain import vector_source as vector
 from playground.terrain.delaunay import Rules, tables, triangulate
-from playground.terrain.elevation import Edge, Elevation, read_elevation
-from playground.terrain.gaps import Voids, fill_no_data
-from playground.terrain.grid import Packing
+from playground.terrain.known import Terrain
 from playground.terrain.masks import read_mask
 from playground.terrain.over_time import (
     LEAD,
@@ -44,17 +40,6 @@ from playground.terrain.over_time import (
     size_of_sound,
     size_of_video,
 )
-from playground.terrain.resample import resample
-
-
-@dataclass(frozen=True, slots=True)
-class Terrain:
-    """What a source knows of its terrain; None where it does not."""
-
-    size: tuple[int, int] | None = None  # texels, x and y
-    extent: tuple[float, float] | None = None  # [m]
-    relief: float | None = None  # [m] from height 0 to height 1
-    base_elevation: float | None = None  # [m] above sea level at height 0
 
 
 class Make(Protocol):
@@ -89,11 +74,12 @@ class Recording:
 class SourceKind:
     """One entry of the registry."""
 
-    describe: Callable[[Mapping[str, Value]], Terrain]
+    describe: Callable[[Mapping[str, Value]], Terrain]  # its size: the one it has, where a sketch says none
     make: Make
     files: tuple[str, ...]  # parameters that name files
     parameters: tuple[str, ...]  # what the kernel's file must declare
     makes: str  # in words, with an article
+    optional: tuple[str, ...] = ()  # what it may declare besides
     notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
     picture: Callable[[Mapping[str, Value], tuple[int, int]], Path | None] = lambda values, size: None
     # the image whose channels, where it has this size, are the texels of the one output as they are
@@ -111,73 +97,6 @@ def source_kind(name: str) -> SourceKind:
     if name not in SOURCES:
         raise SketchError(f"there is no source '{name}'{nearest(name, SOURCES)}")
     return SOURCES[name]
-
-
-@lru_cache(maxsize=4)
-def _read(
-    path: str,
-    content: str,  # changes whenever the file does
-    raw_size: tuple[int, int] | None,
-    packing: Packing,
-    voids: Voids,
-    first_row: Edge,
-) -> Elevation:
-    elevation = read_elevation(Path(path), raw_size=raw_size, packing=packing, first_row=first_row)
-    return fill_no_data(elevation, voids)
-
-
-@contextmanager
-def _memory_explained(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except MemoryError:
-        raise DataError("there is not enough memory to read it", file=shown(path)) from None
-
-
-def _elevation(values: Mapping[str, Value]) -> Elevation:
-    path = Path(str(values["elevation"]))
-    raw = values["raw_size"]
-    size = (int(raw[0]), int(raw[1])) if isinstance(raw, tuple) and raw[0] and raw[1] else None
-    packing: Packing = "rgb" if values["packing"] == 1 else "grey"
-    voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
-    first_row: Edge = "south" if values["first_row"] == 1 else "north"
-    with _memory_explained(path):
-        return _read(str(path), content_key(path), size, packing, voids, first_row)
-
-
-def _describe_elevation(values: Mapping[str, Value]) -> Terrain:
-    elevation = _elevation(values)
-    low, high = elevation.lowest, elevation.highest
-    metres = values["metres"]  # of the file's lowest and highest codes; equal: nothing is known
-    relief = base = None
-    if isinstance(metres, tuple) and metres[0] != metres[1]:
-        codes = elevation.code_range or (low, high)
-        scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
-        base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
-    elif elevation.in_metres:
-        base, relief = low, high - low
-    return Terrain(elevation.size, elevation.extent, relief, base)
-
-
-def _make_elevation(
-    values: Mapping[str, Value], size: tuple[int, int], moment: None = None
-) -> dict[str, NDArray[np.float32]]:
-    elevation = _elevation(values)
-    low, span = elevation.lowest, elevation.highest - elevation.lowest
-    with _memory_explained(Path(str(values["elevation"]))):
-        heights = (
-            (elevation.heights - np.float32(low)) / np.float32(span)
-            if span > 0
-            else np.zeros_like(elevation.heights)
-        )
-        if size != elevation.size:
-            heights = resample(heights, size, within=(0.0, 1.0))
-    return {"height": heights}
-
-
-def _notes_of_elevation(values: Mapping[str, Value]) -> tuple[str, ...]:
-    elevation = _elevation(values)
-    return tuple(f"{elevation.name}: {note}" for note in elevation.notes)
 
 
 def _make_triangulation(
@@ -217,12 +136,13 @@ def _number(values: Mapping[str, Value], name: str) -> float:
 
 SOURCES: dict[str, SourceKind] = {
     "elevation_file": SourceKind(
-        _describe_elevation,
-        _make_elevation,
+        elevation.describe,
+        elevation.make,
         ("elevation",),
         ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
         "the elevation file's terrain",
-        notes=_notes_of_elevation,
+        optional=("longest",),
+        notes=elevation.notes,
     ),
     "delaunay": SourceKind(
         lambda _: Terrain(),
@@ -238,6 +158,14 @@ SOURCES: dict[str, SourceKind] = {
         ("image", "texels"),
         "the mask",
         picture=_mask_picture,
+    ),
+    "vector_file": SourceKind(
+        lambda _: Terrain(),
+        vector.make,
+        ("vectors", "elevation"),
+        ("vectors", "elevation", "width", "polygons"),
+        "the mask of what the file draws",
+        notes=vector.notes,
     ),
     "video_file": SourceKind(
         lambda _: Terrain(),

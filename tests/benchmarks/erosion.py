@@ -1,156 +1,161 @@
-"""Time water and erosion by rivers against other programs, in one run.
+"""Measure what erosion costs a step, how fast it can be watched, and how alike sizes are.
 
-    pip install ".[bench]" fastscapelib pyflwdir xarray-spatial scikit-image richdem
-    python tests/benchmarks/erosion.py --processor [--size 1025] [--rounds 3] [NAME…]
+    python tests/benchmarks/erosion.py [--sizes 257 513 1025] [--hours 100] [--rounds 7]
 
-Each of those that is not installed is left out. They use one processor and take processor time by
-itself; ours is given over processors, so that on two of them twice our figure is what it takes in all.
-Terrain: gradient noise of eight octaves, 20.48 km wide and 1800 m high; a quarter of it lies under lakes.
-The filled terrain, for what needs one, is this project's own. Seeds change from run to run.
+Where the processor draws, the times of all its cores are summed (C) and the ratios are of those:
+they depend less on what else the machine does. Rows are measured alternately and the median is
+taken. `--hours 600` is the whole of the default rain, for the table of sizes: 2,400 steps at 1025.
 """
 
 from __future__ import annotations
 
-import importlib
-from collections.abc import Callable, Iterator
-from typing import Any
+import argparse
+import os
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
 
 import numpy as np
-from side_by_side import SEEDS, Bench, Comparison, Run, run_all
+from rich.console import Console
+from rich.table import Table
+from scipy.ndimage import gaussian_filter
 
+import playground
+from playground.engine.engine import Engine
+from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
-EXTENT, RELIEF = 20480.0, 1800.0
-TERRAIN = f"""size = {{size}}
-extent = {EXTENT}
-relief = {RELIEF}
+STEPS = 8
+"""Steps between two readings of the clock."""
+
+SKETCH = """format = 1
+size = 257
+extent = 10240.0
+relief = 1800.0
 [[pass]]
-name = "height"
+name = "raw"
 use = "generation/gradient_noise"
-set = {{{{ frequency = 3, octaves = 8 }}}}
-"""
-FLOW = """
-[[pass]]
-name = "fill"
-use = "water/fill"
-[[pass]]
-name = "ways"
-use = "water/directions"
-inputs = { height = "fill:level" }
-[[pass]]
-name = "area"
-use = "water/accumulation"
-inputs = { receiver = "ways" }
-"""
-CARVE = """
+set = { frequency = 3, octaves = 5, seed = 5 }
 [[pass]]
 name = "worn"
-use = "erosion/stream_power"
+use = "erosion/hydraulic"
+inputs = { height = "raw" }
+[[pass]]
+name = "fallen"
+use = "erosion/thermal"
+inputs = { height = "raw" }
+set = { coarse = false }
+[[pass]]
+name = "light"
+use = "lighting/l_dot_n"
+inputs = { height = "worn" }
+[view]
+use = "view/terrain"
+inputs = { height = "worn" }
+samples = 1
 """
-YEARS, RISE, WEAR = 1e5, 5e-4, 5e-6  # of a step; [m/yr]; [1/yr]
 
 
-def peer(name: str) -> Any:
-    """Return a module, or None where it is not installed."""
-    try:
-        return importlib.import_module(name)
-    except ImportError:
-        return None
+def main() -> None:
+    """Run every measurement and print the tables."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--sizes", type=int, nargs="+", default=[257, 513, 1025], help="texels a side")
+    parser.add_argument("--hours", type=int, default=100, help="of rain, for the table of sizes")
+    parser.add_argument("--rounds", type=int, default=7, help="times each row is measured")
+    options = parser.parse_args()
+    console = Console(width=None if sys.stdout.isatty() else 110)
+    with tempfile.TemporaryDirectory() as folder, playground.headless() as engine:
+        path = Path(folder) / "sketch.toml"
+        path.write_text(SKETCH)
+        sketch = load(path)
+        where = f"{engine.info.renderer}, {os.cpu_count()} processors"
+        console.print(steps_table(engine, sketch, options.rounds, where))
+        console.print(watched_table(engine, sketch))
+        console.print(sizes_table(engine, sketch, options.sizes, options.hours))
 
 
-class Erosion(Bench):
-    """The shared bench, with terrains before and after their depressions are filled."""
-
-    def ours(self, sketch: Sketch, what: str, changed: str, before: str = "") -> dict[str, Run]:
-        """Return runs that draw a pass after a change to ``changed``; ``before`` is drawn beforehand."""
-
-        def run_of(form: str) -> Run:
-            engine = self.engines["fragment" if form == "fragment" else "auto"]
-
-            def run() -> None:
-                engine.texture(sketch.with_values({changed: next(SEEDS) % 9999}), what)
+def steps_table(engine: Engine, sketch: Sketch, rounds: int, where: str) -> Table:
+    """Return what a step of each technique costs at 257 and at 1025 texels a side."""
+    found: dict[tuple[str, int], list[tuple[float, float]]] = {}
+    for number in range(rounds + 1):
+        for size in (257, 1025):
+            # The pipes go on from the steps before; what falls begins with another terrain each time.
+            pipes = sketch.with_values({"size": size, "worn.hours": 5000})
+            falls = sketch.with_values({"size": size, "raw.seed": number, "fallen.steps": STEPS})
+            engine.texture(falls, "raw")
+            for what, sized, ref, stopped in (
+                ("pipes", pipes, "worn.water:state", {"worn.water": 2 + STEPS * number}),
+                ("thermal", falls, "fallen.level:ground", {}),
+            ):
                 engine.ctx.finish()
-
-            if before:
-                engine.texture(sketch, before)
-            return run
-
-        return {form: run_of(form) for form in ("auto", "fragment")}
-
-    def metres(self, size: int, filled: bool = False) -> np.ndarray:
-        """Return the terrain in metres, float64, south row first."""
-        sketch = self.sketch(TERRAIN.format(size=size) + FLOW)
-        name = "fill:level" if filled else "height"
-        return RELIEF * self.engines["auto"].read(sketch, name).astype(np.float64)
-
-
-def fill(bench: Erosion, size: int) -> Iterator[Comparison]:
-    """Depressions filled."""
-    z = bench.metres(size)
-    theirs: dict[str, Run] = {}
-    if richdem := peer("richdem"):
-        theirs["richdem"] = lambda: richdem.FillDepressions(richdem.rdarray(z, no_data=-9999))
-    if morphology := peer("skimage.morphology"):
-        seed = np.full_like(z, z.max())
-        for edge in (np.s_[0], np.s_[-1], np.s_[:, 0], np.s_[:, -1]):
-            seed[edge] = z[edge]
-        theirs["scikit-image"] = lambda: morphology.reconstruction(seed, z, method="erosion")
-    if dem := peer("pyflwdir.dem"):
-        theirs["pyflwdir"] = lambda: dem.fill_depressions(z)
-    sketch = bench.sketch(TERRAIN.format(size=size) + FLOW)
-    yield Comparison("fill", bench.ours(sketch, "fill:level", "height.seed"), theirs, alone=frozenset(theirs))
+                wall, cores = time.perf_counter(), time.process_time()
+                engine.texture(sized, ref, steps=stopped)
+                engine.ctx.finish()
+                spent = time.perf_counter() - wall, time.process_time() - cores
+                if number:
+                    each = (1000 * spent[0] / STEPS, 1000 * spent[1] / STEPS)
+                    found.setdefault((what, size), []).append(each)
+    table = Table(title=f"A step on {where}")
+    for heading in ("technique", "texels", "wall", "C", "least C", "to reach"):
+        table.add_column(heading)
+    limits = {("pipes", 1025): "60 ms C"}
+    for (what, size), times in found.items():
+        wall, cores = (statistics.median(column) for column in zip(*times, strict=True))
+        least = min(time for _, time in times)
+        columns = f"{size}²", f"{wall:.2f} ms", f"{cores:.2f} ms", f"{least:.2f} ms"
+        table.add_row(what, *columns, limits.get((what, size), ""))
+    return table
 
 
-def flow(bench: Erosion, size: int) -> Iterator[Comparison]:
-    """Directions and drained areas of a filled terrain."""
-    z = bench.metres(size, filled=True)
-    theirs: dict[str, Run] = {}
-    if richdem := peer("richdem"):
-        theirs["richdem"] = lambda: richdem.FlowAccumulation(richdem.rdarray(z, no_data=-9999), method="D8")
-    if pyflwdir := peer("pyflwdir"):
-        theirs["pyflwdir"] = lambda: pyflwdir.from_dem(z).upstream_area("cell")
-    if (xrspatial := peer("xrspatial")) and (xarray := peer("xarray")):
-        if hasattr(xrspatial, "flow_accumulation"):
-            raster = xarray.DataArray(z)
-            theirs["xarray-spatial"] = lambda: xrspatial.flow_accumulation(xrspatial.flow_direction(raster))
-    sketch = bench.sketch(TERRAIN.format(size=size) + FLOW)
-    ours = bench.ours(sketch, "area", "ways.seed", before="fill:level")
-    yield Comparison("flow", ours, theirs, "≤ 250 ms C at 1025²", alone=frozenset(theirs))
+def watched_table(engine: Engine, sketch: Sketch, frames: int = 20) -> Table:
+    """Return how many steps a second run beside the picture while the rain is watched."""
+    table = Table(title="Watched at 257²: 1280 x 720, each frame a picture")
+    headings = "hours a frame", "frames a second", "steps a second", "C of a frame", "steps by C", "to reach"
+    for heading in headings:
+        table.add_column(heading)
+    for pace in (1, 8, 30):
+        watched = sketch.with_values({"worn.watched": True, "worn.pace": pace, "worn.hours": 5000})
+        engine.draw(watched, size=(1280, 720), time=0.0)
+        engine.ctx.finish()
+        wall, cores = time.perf_counter(), time.process_time()
+        for frame in range(1, frames + 1):
+            engine.draw(watched, size=(1280, 720), time=frame / 60)
+            engine.ctx.finish()
+        wall, cores = time.perf_counter() - wall, time.process_time() - cores
+        steps, each = pace * frames / wall, cores / frames
+        # What the machine's cores could do if they did nothing else.
+        free = pace * (os.cpu_count() or 1) / each
+        columns = f"{frames / wall:.1f}", f"{steps:.0f}", f"{1000 * each:.0f} ms", f"{free:.0f}"
+        table.add_row(f"{pace}", *columns, "100 steps a second")
+    return table
 
 
-def carve(bench: Erosion, size: int) -> Iterator[Comparison]:
-    """A whole terrain, from its coarsest level to its finest; theirs is fifty steps at full size."""
-    theirs: dict[str, Run] = {}
-    if fastscapelib := peer("fastscapelib"):
-        z = bench.metres(size)
-        theirs["fastscapelib, 1 step"] = lambda: fastscape(fastscapelib, z, 1)
-        theirs["fastscapelib, 50 steps"] = lambda: fastscape(fastscapelib, z, 50)
-    sketch = bench.sketch(TERRAIN.format(size=size) + CARVE)
-    ours = bench.ours(sketch, "worn:height", "worn.seed", before="height")
-    once = frozenset({"fastscapelib, 50 steps"})
-    yield Comparison("carve", ours, theirs, "≤ 20 s C at 1025²", once=once, alone=frozenset(theirs))
-
-
-def fastscape(module: Any, z: np.ndarray, steps: int) -> np.ndarray:
-    """Wear a terrain by fastscapelib: single flow, sinks resolved by a minimum spanning tree."""
-    sides = [EXTENT, EXTENT]
-    grid = module.RasterGrid.from_length(list(z.shape), sides, module.NodeStatus.FIXED_VALUE)
-    graph = module.FlowGraph(grid, [module.SingleFlowRouter(), module.MSTSinkResolver()])
-    eroder = module.SPLEroder(graph, k_coef=WEAR, area_exp=0.5, slope_exp=1, tolerance=1e-5)
-    lift = np.full(z.shape, RISE * YEARS)
-    lift[[0, -1]] = lift[:, [0, -1]] = 0.0
-    for _ in range(steps):
-        raised = z + lift
-        graph.update_routes(raised)
-        z = raised - eroder.erode(raised, graph.accumulate(1.0), YEARS)
-    return z
-
-
-COMPARISONS: dict[str, Callable[[Erosion, int], Iterator[Comparison]]] = {
-    found.__name__: found for found in (fill, flow, carve)
-}
-"""What is timed, by the name it goes by on the command line."""
+def sizes_table(engine: Engine, sketch: Sketch, sizes: list[int], hours: int) -> Table:
+    """Return how far what was worn differs from the finest grid's, both without what the coarsest lacks."""
+    table = Table(title=f"The same terrain after {hours} h: what was worn, next to the finest grid's")
+    for heading in ("texels", "rms difference", "of what was worn", "mean wear", "C"):
+        table.add_column(heading)
+    coarsest, changes, wear, cores = min(sizes), {}, {}, {}
+    for size in sizes:
+        sized, begun = sketch.with_values({"size": size, "worn.hours": hours}), time.process_time()
+        change = engine.read(sized, "worn").astype(np.float64) - engine.read(sized, "raw")
+        cores[size] = time.process_time() - begun
+        per = (size - 1) // (coarsest - 1)
+        changes[size] = 1800 * gaussian_filter(change, 2 * per, mode="nearest")[::per, ::per]
+        wear[size] = float(engine.read(sized, "worn:wear").mean())
+        engine.forget_unused()
+    finest = changes[max(sizes)]
+    scale = float(np.sqrt((finest**2).mean()))
+    for size in sizes:
+        off = float(np.sqrt(((changes[size] - finest) ** 2).mean()))
+        columns = f"{off:.2f} m", f"{off / scale:.1%}", f"{wear[size]:.2f} m", f"{cores[size]:.1f} s"
+        table.add_row(f"{size}²", *columns)
+    return table
 
 
 if __name__ == "__main__":
-    run_all(__doc__ or "", Erosion, COMPARISONS)
+    main()

@@ -31,7 +31,7 @@ def values(tmp_path):
 
 def test_the_kernel_declares_what_the_source_reads():
     parameters = read_technique("generation/heightmap", GLSL, GLSL).parameters
-    assert set(KIND.parameters) == {p.name for p in parameters}
+    assert {*KIND.parameters, *KIND.optional} == {p.name for p in parameters}
     menus = {p.name: p.widget.choices for p in parameters if p.widget.kind == "menu"}
     assert menus == {
         "packing": ("grey", "rgb"),
@@ -153,6 +153,7 @@ def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
         "elevation_file",
         "delaunay",
         "mask_file",
+        "vector_file",
         "video_file",
         "sound_file",
         "keyboard",
