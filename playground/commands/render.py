@@ -298,8 +298,8 @@ def _print_profile(engine: Engine) -> None:
     for path, milliseconds in engine.times.items():
         step = plan.step(path) if plan is not None else None
         if step is not None:
-            iterations = engine.runs[path] * step.repeat
-            table.add_row(path, f"{step.size[0]} x {step.size[1]}", str(iterations), f"{milliseconds:.2f}")
+            iterations = str(engine.record.iterations[path])
+            table.add_row(path, f"{step.size[0]} x {step.size[1]}", iterations, f"{milliseconds:.2f}")
     table.add_section()
     table.add_row("together", "", "", f"{sum(engine.times.values()):.2f}")
     console = console_for(sys.stderr)
