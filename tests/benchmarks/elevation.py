@@ -12,6 +12,7 @@ import os
 import subprocess
 import sys
 import time
+from multiprocessing import Process
 from pathlib import Path
 
 import numpy as np
@@ -44,11 +45,14 @@ def terrain(side: int) -> np.ndarray:
     return heights
 
 
-def write(folder: Path, side: int) -> list[Path]:
-    """Write the files that are not there yet; return all of them."""
-    paths = [folder / f"{name}.tif" for name in FORMS] + [folder / "array.npy"]
-    if all(path.exists() for path in paths):
-        return paths
+def paths_in(folder: Path) -> list[Path]:
+    """Return the files that are measured."""
+    return [folder / f"{name}.tif" for name in FORMS] + [folder / "array.npy"]
+
+
+def write(folder: Path, side: int) -> None:
+    """Write the files."""
+    paths = paths_in(folder)
     heights = terrain(side)
     facts = {"driver": "GTiff", "width": side, "height": side, "count": 1, "dtype": "float32"}
     place = {"crs": "EPSG:32633", "transform": Affine(10.0, 0.0, 4e5, 0.0, -10.0, 53e5), "nodata": -9999.0}
@@ -61,7 +65,6 @@ def write(folder: Path, side: int) -> list[Path]:
                 window = rasterio.windows.Window(0, 0, side // 7, side)
                 file.write(np.full((side, side // 7), -9999.0, np.float32), 1, window=window)
     np.save(paths[-1], heights)
-    return paths
 
 
 def measured(sketch: str, picture: Path, *more: str) -> str:
@@ -85,7 +88,12 @@ def main() -> None:
     given.folder.mkdir(parents=True, exist_ok=True)
     picture = given.folder / "picture.png"
     print(f"{'no file':16} {measured('fbm', picture, '--set', 'size=1025')}")
-    for path in write(given.folder, given.side):
+    if not all(path.exists() for path in paths_in(given.folder)):
+        # In a process of its own: a program that is started begins with the most memory of who starts it.
+        writer = Process(target=write, args=(given.folder, given.side))
+        writer.start()
+        writer.join()
+    for path in paths_in(given.folder):
         print(f"{path.stem:16} {measured(str(path), picture)}")
 
 
