@@ -48,7 +48,7 @@ from playground.sketch.named_numbers import (
 )
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
-from playground.terrain.sources import Terrain
+from playground.terrain.source_kinds import Terrain
 
 MAX_REPEAT = 1_000_000
 Names = Mapping[str, Number] | Callable[[str], Number]

@@ -10,7 +10,8 @@ from playground.engine.plan_request import DEFAULT_EXTENT, DEFAULT_RELIEF, DEFAU
 from playground.errors import DataError, PlaygroundError
 from playground.sketch.flat import Flat, Leaf
 from playground.sketch.model import Sketch, Value
-from playground.terrain.sources import Terrain, source_kind
+from playground.terrain.source_kinds import Terrain
+from playground.terrain.sources import source_kind
 
 Values = Mapping[str, Mapping[str, Value]]
 """The values of each leaf, by its path."""
@@ -85,3 +86,8 @@ def _check_source(leaf: Leaf) -> None:
     missing = [name for name in kind.parameters if leaf.kernel.parameter(name) is None]
     if missing:
         raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}")
+    declared = [one.name for one in leaf.kernel.inputs]
+    if set(declared) != set(kind.inputs):
+        wanted = f"the inputs {', '.join(kind.inputs)}" if kind.inputs else "no inputs"
+        found = f"; the file declares {', '.join(declared) or 'none'}"
+        raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs {wanted}{found}")
