@@ -111,12 +111,15 @@ class Cache:
         """Remember how far a pass that may go on has come."""
         self._latest[path] = (unfinished, key, iterations)
 
-    def take_earlier(self, path: str, unfinished: str, iterations: int) -> Result | None:
-        """Hand over the same pass after fewer iterations to the caller, if this frame does not use it."""
+    def earlier(self, path: str, unfinished: str, iterations: int) -> str:
+        """Return the key of the same pass after fewer iterations; "" where nothing is cached of it."""
         known, key, before = self._latest.get(path, ("", "", 0))
-        if known != unfinished or before >= iterations or key in self._in_use or key not in self._cached:
-            return None
+        return key if known == unfinished and before < iterations and key in self._cached else ""
+
+    def take(self, key: str) -> Result:
+        """Hand over the result of a pass to the caller, and forget it."""
         result = self._cached.pop(key).result
+        self._in_use.discard(key)
         self._weigh(key)
         return result
 

@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from playground.engine.plan import LoopStep, Plan, PlanNode, Step, sources_of, walk
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_version, sources_of, walk
 from playground.images.content_hash import content_hash
 from playground.sketch.expressions import counts_frames
 from playground.sketch.flat import Fed, Source
@@ -59,7 +59,7 @@ class KeyMaker:
         self._text = text
         self._content = content
         self._texts: dict[int, tuple[Kernel, _Text]] = {}
-        self._last: dict[str, _StepKeys] = {}  # of the last plan, by the step's path
+        self._last: dict[int, _StepKeys] = {}  # of the last plan, by the step's identity
 
     def keys_of(
         self, plan: Plan, driver: Callable[[Step], str], given: Callable[[Step], Mapping[str, Any]]
@@ -106,7 +106,7 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
         header += [kernel.helpers, kernel.vertex_prelude, kernel.vertex_helpers]
         header.append(kernel.vertex_source.canonical if kernel.vertex_source else "")
     used = {n for n, times in Counter(_IDENTIFIER.findall(kernel.source.code)).items() if times > 1}
-    used |= set(_IDENTIFIER.findall(" ".join(counts)))
+    used |= set(_IDENTIFIER.findall(" ".join((*counts, kernel.stride))))
     used |= kernel.source.names & {"iterations"}
     used |= {p.name for p in kernel.parameters if kernel.reads(f"{TOWARDS}{p.name}")}
     if kernel.dialect:  # what its tool declares is not in its text
@@ -160,11 +160,12 @@ class _KeyComputation:
         driver: Callable[[Step], str],
         given: Callable[[Step], Mapping[str, Any]],
         continued: frozenset[str],
-        before: Mapping[str, _StepKeys],
+        before: Mapping[int, _StepKeys],
     ) -> None:
         self.keys = Keys()
         self.before = before
-        self.found: dict[str, _StepKeys] = {}
+        self.found: dict[int, _StepKeys] = {}
+        self.sized: dict[tuple[str, bool], frozenset[str]] = {}  # see ``_note_sized``
         self.varies: dict[str, frozenset[str]] = {}  # loops that a step changes with, for its next reader
         self.text_of = text_of
         self.content = content
@@ -188,13 +189,13 @@ class _KeyComputation:
             clocked = _clocked(node, given)
             given = {name: value for name, value in given.items() if name not in clocked}
         reads = _Reads(self.driver(node), files, sources, given, path in self.continued, clocked)
-        known, written = self.before.get(path), repr(reads)
+        known, written = self.before.get(id(node)), repr(reads)
         if known is None or known.step is not node or known.reads != written:
             known = self._keys_of(node, reads, written)
-        self.found[path] = known
+        self.found[id(node)] = known
         self.keys.unfinished[path], self.keys.raw[path] = known.unfinished, known.raw
         self.keys.steps[path] = known.shown
-        varies = frozenset[str]()
+        varies = self.sized.get((path, False), frozenset[str]())
         for _, source in node.inputs:
             varies |= self._varies(source, varying) if source else varies
         if loops.innermost and kernel.repeat == "1" and kernel.reads("iteration"):
@@ -234,7 +235,8 @@ class _KeyComputation:
     ) -> None:
         inside = sorted({step.path for step in walk(loop.body)})
         own = _loops_in(loop)
-        outer: frozenset[str] = frozenset()
+        sized = self.sized.get((loop.path, True), frozenset())
+        outer = sized
         for source in sources_of(loop):
             within = source.loop in own if isinstance(source, Fed) else source.path in inside
             if not within:
@@ -244,9 +246,16 @@ class _KeyComputation:
             names[Fed(loop.path, name)] = f"fed back: {loop.path} {name}"
             changes[Fed(loop.path, name)] = outer | {loop.path}
         around = _Loops(loop.path, loop.path if loop.counts_frames else loops.frames)
-        for node in loop.body:
-            self.add(node, around, names, changes)
-        parts: list[Any] = [loop.path, *(self.keys.steps[path] for path in inside)]
+        self._note_sized(loop)
+        found: dict[int, list[str]] = {}  # the keys of the steps inside, by the identity of the body
+        for body in (*loop.bodies, loop.body):
+            if id(body) not in found or body is loop.body:
+                for node in body:
+                    self.add(node, around, names, changes)
+                found[id(body)] = [self.keys.steps[path] for path in inside]
+        parts: list[Any] = [loop.path, *found[id(loop.body)]]
+        if len(loop.bodies) > 1:
+            parts = [loop.path, *(found[id(body)] for body in loop.bodies)]
         parts += [(name, self._source(first, fed), str(ref)) for name, first, ref in loop.feedback]
         if any("iterations" in self.text_of(step.kernel).used for step in walk(loop.body)):
             parts.append(loop.whole)
@@ -255,7 +264,23 @@ class _KeyComputation:
         for path in inside:
             if loop.path in self.varies[path]:  # what reads it from here on sees the last iteration
                 self.keys.steps[path] = _digest([key, path, loop.repeat])
-                self.varies[path] -= {loop.path}
+                self.varies[path] = (self.varies[path] - {loop.path}) | sized
+
+    def _note_sized(self, loop: LoopStep) -> None:
+        """Note what a loop's iterations have in sizes or counts of their own: by path, and whether a loop."""
+        if len(loop.bodies) == 1:
+            return
+        versions: dict[tuple[str, bool], set[tuple[int, ...]]] = {}
+        for body in {id(body): body for body in loop.bodies}.values():
+            now: dict[tuple[str, bool], tuple[int, ...]] = {}
+            for node in every_version(body):
+                key = node.path, isinstance(node, LoopStep)
+                now[key] = (*now.get(key, ()), id(node))
+            for key, nodes in now.items():
+                versions.setdefault(key, set()).add(nodes)
+        for key, several in versions.items():
+            if len(several) > 1:
+                self.sized[key] = self.sized.get(key, frozenset()) | {loop.path}
 
     def _varies(self, source: Source | None, varying: Mapping[Fed, frozenset[str]]) -> frozenset[str]:
         if source is None:

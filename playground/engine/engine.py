@@ -29,7 +29,7 @@ from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
 from playground.engine.picture_hash import PictureHasher
 from playground.engine.plain_forms import PlainForms, warn
-from playground.engine.plan import LoopIteration, Plan, Step, Window, needed
+from playground.engine.plan import LoopIteration, Plan, Step, Window, most_iterations, needed
 from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.planner import Planner, repeated_in
 from playground.engine.results import Pool, Result, Wired
@@ -284,9 +284,9 @@ class Engine(Recorded):
         """
         found = opened(sketch)
         repeated = repeated_in(found, path)
-        node = self.plan_for(found, size, time, {repeated: 0}).node(repeated)
-        assert node is not None  # no fast variant replaces a pass that is stopped
-        for done in range(node.whole + 1):
+        # No fast variant replaces a pass that is stopped.
+        whole = most_iterations(self.plan_for(found, size, time, {repeated: 0}).nodes)[repeated]
+        for done in range(whole + 1):
             yield done, self.read(found, repeated, size=size, time=time, steps={repeated: done})
 
     def drawn(self) -> str:
@@ -382,7 +382,7 @@ class Engine(Recorded):
         self.runner.look_at(plan)
         self.runner.programs.frame += 1
         record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
-        execution = Execution(record.keys, self.cache, self.runner, self._compute, plan.steps)
+        execution = Execution(record.keys, self.cache, self.runner, self._compute)
         execution.deadline = Deadline(self.patience, self.ctx.finish)
         self.runner.works.waits = self.patience is None
         self.runner.works.keep(record.keys.raw)

@@ -28,14 +28,11 @@ Timed = Callable[[str, str], AbstractContextManager[None]]
 class Execution:
     """One frame's run over a plan."""
 
-    def __init__(
-        self, keys: Keys, cache: Cache, runner: Runner, compute: Compute, stopped: Mapping[str, int]
-    ) -> None:
+    def __init__(self, keys: Keys, cache: Cache, runner: Runner, compute: Compute) -> None:
         self.keys = keys
         self.cache = cache
         self.runner = runner
         self.compute = compute
-        self.stopped = stopped  # repeats that are stopped early, by path
         self.timed: Timed | None = None
         self.deadline: Deadline | None = None  # of loops that follow the time
         self.results: dict[str, Result] = {}  # by the step's path; valid until the next frame
@@ -89,8 +86,8 @@ class Execution:
     def _computed(self, step: Step) -> Result:
         """Run a step, from where its earlier iterations are cached, and cache its result."""
         key, unfinished = self.keys.raw[step.path], self.keys.unfinished[step.path]
-        goes_on = step.path in self.stopped or follows_time(step.kernel.repeat)
-        earlier = self.cache.take_earlier(step.path, unfinished, step.repeat) if goes_on else None
+        goes_on = step.kernel.kind == "kernel" and step.kernel.repeat != "1"
+        earlier = self._earlier(step, unfinished) if goes_on else None
         inputs = {name: self._wired(source, {}) for name, source in step.inputs}
         with self.timed(step.path, key) if self.timed else nullcontext():
             found = self.compute(step, inputs, None, earlier)
@@ -98,6 +95,17 @@ class Execution:
         if goes_on:
             self.cache.note_progress(step.path, unfinished, key, step.repeat)
         return found
+
+    def _earlier(self, step: Step, unfinished: str) -> Result | None:
+        """Return the same step after fewer iterations: what is cached, or a copy where a pass reads that."""
+        key = self.cache.earlier(step.path, unfinished, step.repeat)
+        if not key:
+            return None
+        if key not in self.keys.raw.values():
+            return self.cache.take(key)
+        cached = self.cache.get(key)
+        assert cached is not None
+        return self.runner.kernels.copied(cached.result)
 
     def _wired(self, source: Source | None, fed: Mapping[Fed, Wired]) -> Wired:
         if source is None:
@@ -166,20 +174,17 @@ class Execution:
         it that counts frames.
         """
         self.run(loop.body)
-        fed, steps = dict(around), {step.path: step for step in walk(loop.body)}
+        fed, steps = dict(around), {step.path: step for step in walk(loop.body_of(0))}
         for name, first, ref in loop.feedback:
             own = Fed(loop.path, name)
             fed[own] = self._wired(first, around)
             outer = self._fed_from.get(first) if isinstance(first, Fed) else None
             self._fed_from[own] = outer or (steps[ref.path], ref.output)
-        changing = []
-        for node in loop.body:
-            if loop.path in self.keys.changes[id(node)]:
-                changing.append(node)
-            else:
+        for node in loop.body_of(0):
+            if loop.path not in self.keys.changes[id(node)]:
                 self._run_inside(node, around, LoopIteration(frame=frame), owned)
         if loop.repeat == 0 and not state.results:
-            state.results = self._initial(loop, changing, fed)
+            state.results = self._initial(loop, self._changing(loop, 0), fed)
         self.results |= state.results
         first_run = state.iterations
         for iteration in range(state.iterations, loop.repeat):
@@ -189,7 +194,7 @@ class Execution:
             at = LoopIteration(iteration, loop.whole, iteration if loop.counts_frames else frame)
             computed: dict[str, Result] = {}
             try:
-                for node in changing:
+                for node in self._changing(loop, iteration):
                     self._run_inside(node, fed, at, computed)
             except BaseException:
                 Cached(computed).release_to(self.runner.pool)
@@ -210,6 +215,10 @@ class Execution:
                 and not self.keys.changes[id(loop)]
             ):
                 self.deadline.check(iteration + 1 - first_run, iteration + 1, loop.repeat)
+
+    def _changing(self, loop: LoopStep, iteration: int) -> list[PlanNode]:
+        """Return what an iteration of a loop computes anew."""
+        return [node for node in loop.body_of(iteration) if loop.path in self.keys.changes[id(node)]]
 
     def _run_inside(
         self,

@@ -151,6 +151,14 @@ class Kernels:
         """Fill a framebuffer with a texture, nearest texel for nearest."""
         self.draw_own("copy.frag", target, texture, k_size=size)
 
+    def copied(self, result: Result) -> Result:
+        """Return a result's copy, the caller's."""
+        found = self.pool.take(result.size, result.outputs)
+        for output in result.outputs:
+            self.copy_texture(found.textures[output.name], result.textures[output.name])
+        found.iterations = result.iterations
+        return found
+
     def empty(self, step: Step) -> Result:
         """Return the textures of a step, all zeros."""
         result = self.pool.take(step.size, step.kernel.outputs)

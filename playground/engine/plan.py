@@ -60,9 +60,18 @@ class LoopStep:
     path: str
     repeat: int  # iterations to run
     whole: int  # iterations in all
-    body: tuple[Step | LoopStep, ...]
+    bodies: tuple[tuple[Step | LoopStep, ...], ...]  # of each iteration; one where all are the same
     feedback: tuple[tuple[str, Source | None, Ref], ...]
     spec: PassSpec
+
+    @property
+    def body(self) -> tuple[Step | LoopStep, ...]:
+        """What the last iteration runs."""
+        return self.body_of(max(self.repeat - 1, 0))
+
+    def body_of(self, iteration: int) -> tuple[Step | LoopStep, ...]:
+        """Return what an iteration runs: nodes of the same paths in each, of other sizes and counts."""
+        return self.bodies[iteration if len(self.bodies) > 1 else 0]
 
     @property
     def counts_frames(self) -> bool:
@@ -113,7 +122,7 @@ class Plan:
 
 
 def walk(nodes: tuple[PlanNode, ...]) -> list[Step]:
-    """Return every step of some nodes, those inside loops included."""
+    """Return every step of some nodes, those of loops' last iterations included."""
     found: list[Step] = []
     for node in nodes:
         if isinstance(node, LoopStep):
@@ -124,12 +133,40 @@ def walk(nodes: tuple[PlanNode, ...]) -> list[Step]:
 
 
 def every_node(nodes: tuple[PlanNode, ...]) -> list[PlanNode]:
-    """Return every step and loop of some nodes, a loop before what is inside it."""
+    """Return every step and loop of some nodes, a loop before what its last iteration runs."""
     found: list[PlanNode] = []
     for node in nodes:
         found.append(node)
         if isinstance(node, LoopStep):
             found += every_node(node.body)
+    return found
+
+
+def every_version(nodes: tuple[PlanNode, ...]) -> list[PlanNode]:
+    """Return every step and loop of some nodes, of a loop those of each iteration that has its own."""
+    found: list[PlanNode] = []
+    for node in nodes:
+        found.append(node)
+        if isinstance(node, LoopStep):
+            for body in {id(body): body for body in node.bodies}.values():
+                found += every_version(body)
+    return found
+
+
+def most_iterations(nodes: tuple[PlanNode, ...]) -> dict[str, int]:
+    """Return the iterations in all of every repeated kernel and loop, by path; what draws is left out.
+
+    Of one whose number follows the iteration of a loop around it, the largest.
+    """
+    every = every_version(nodes)
+    loops = {node.path for node in every if isinstance(node, LoopStep)}
+    found: dict[str, int] = {}
+    for node in every:
+        if isinstance(node, Step):
+            # Of a loop of one kernel, the loop is what counts, not the kernel in it.
+            if node.kernel.kind != "kernel" or node.kernel.repeat == "1" or node.path in loops:
+                continue
+        found[node.path] = max(node.whole, found.get(node.path, 0))
     return found
 
 

@@ -26,6 +26,10 @@ class PlanRequest:
     varies: bool  # keyframes set parameters, and so perhaps counts of steps
     terrain: Terrain  # what the sketch says of it
 
+    def steps_of(self, path: str, whole: int) -> int:
+        """Return how many of a repeat's iterations run."""
+        return min(dict(self.stopped).get(path, whole), whole)
+
 
 def checked_pixels(size: object, largest: int) -> tuple[int, int]:
     """Return width and height of a picture; raise ``ParameterError`` unless 1..``largest`` a side."""

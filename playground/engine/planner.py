@@ -8,17 +8,17 @@ size or a count names a changed value or the time, or where the terrain's file i
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import zip_longest
 from pathlib import Path
+from typing import Any
 
 from playground.engine.accepted_sizes import sizes_of_variant
 from playground.engine.between import between_of
-from playground.engine.error_place import placed
 from playground.engine.input_shapes import check_shapes
-from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node
+from playground.engine.pass_sizes import MAX_REPEAT, PassSizes, counted
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, most_iterations
 from playground.engine.plan_request import (
     PlanRequest,
     checked_pixels,
@@ -26,33 +26,19 @@ from playground.engine.plan_request import (
     checked_steps,
 )
 from playground.engine.source_facts import described, given_values, own_sizes
-from playground.errors import DataError, ParameterError, SketchError, nearest
+from playground.errors import ParameterError, SketchError, nearest
 from playground.images.picture_size import picture_size
 from playground.paths import shown
 from playground.sketch import expressions
-from playground.sketch.assign import resolve
-from playground.sketch.expressions import ExpressionError, Number
+from playground.sketch.expressions import Number
 from playground.sketch.flat import Flat, Leaf, Loop, Node, repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.identity import Identity
-from playground.sketch.model import LARGEST_SIDE, Graph, Kernel, PassSpec, Sketch, Technique, Value
-from playground.sketch.named_numbers import (
-    CLOCK,
-    COMPUTE,
-    FRAME,
-    PICTURE,
-    SIZE,
-    TERRAIN,
-    base_of,
-    named,
-)
+from playground.sketch.model import LARGEST_SIDE, Graph, Sketch, Technique, Value
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
 from playground.terrain.source_kinds import Terrain
 
-MAX_REPEAT = 1_000_000
-Names = Mapping[str, Number] | Callable[[str], Number]
-"""The numbers of the names in an expression."""
 _MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
 
 
@@ -151,11 +137,7 @@ def repeated_in(sketch: Sketch, path: str) -> str:
 
 def repeats_of(sketch: Sketch, *, frame_size: tuple[int, int] = (1, 1), time: float = 0.0) -> dict[str, int]:
     """Return the iterations in all of every repeated kernel and loop, by path; what draws is left out."""
-    found: dict[str, int] = {}
-    for node in every_node(Planner().plan(sketch, frame_size=frame_size, time=time).nodes):
-        if isinstance(node, LoopStep) or (node.kernel.kind == "kernel" and node.kernel.repeat != "1"):
-            found.setdefault(node.path, node.whole)
-    return found
+    return most_iterations(Planner().plan(sketch, frame_size=frame_size, time=time).nodes)
 
 
 class _Planning:
@@ -178,15 +160,12 @@ class _Planning:
         self.flat = flat
         self.request = request
         self.time = time
-        self.stopped = dict(request.stopped)
         self.known = known if known and known.plan.flat.shape is flat.shape else None
-        self.lacking: dict[str, None] = {}  # techniques that lack compute shaders, by path
-        copied = after.flat.shape.copied if after else {}
-        self.named: set[str] = {copied.get(path, path) for path in after.named} if after else set()
-        self.by_time: bool = after is not None and after.by_time
-        self.pictures: dict[Path, tuple[int, int]] = {}
-        self._sizes: dict[str, tuple[int, int]] = {}
-        self._open: list[str] = []
+        self._most: dict[
+            str, int
+        ] = {}  # iterations in all of each repeat, by path; the most where they differ
+        self._made: dict[tuple[object, ...], PlanNode] = {}  # each once, whatever iterations have it
+        self._bodies: dict[tuple[int, ...], tuple[PlanNode, ...]] = {}
         self._values: dict[str, Mapping[str, Value]] = {}
         before = self.known.values if self.known else {}
         same = self.known.plan.flat.leaves if self.known else ()
@@ -197,7 +176,13 @@ class _Planning:
                 values = values if values == now else now
             self._values[leaf.path] = values
         self.terrain = described(sketch, flat, self._values)
-        self.own = dict(own_sizes(sketch, flat, self._values))
+        assert self.terrain.size is not None
+        own = dict(own_sizes(sketch, flat, self._values))
+        self.sizes = PassSizes(sketch, flat, request, time, self.terrain.size, self._values, own)
+        if after is not None:
+            copied = after.flat.shape.copied
+            self.sizes.named = {copied.get(path, path) for path in after.sizes.named}
+            self.sizes.by_time = after.sizes.by_time
 
     def renewed(self) -> _LastPlan | None:
         """Return the known plan with the values of now; None where it has to be made whole."""
@@ -205,7 +190,7 @@ class _Planning:
         if (
             known is None
             or known.plan.terrain != self.terrain
-            or known.own != self.own
+            or known.own != self.sizes.own
             or (known.by_time and known.plan.time != self.time)
         ):
             return None
@@ -215,17 +200,28 @@ class _Planning:
         if any(picture_size(file) != size for file, size in known.pictures.items()):
             return None
         eye = plan.eye if plan.sketch.camera == self.sketch.camera else self._eye()
-        nodes = tuple([self._renewed(node) for node in plan.nodes])
+        nodes = self._all_renewed(plan.nodes, {})
         plan = replace(plan, sketch=self.sketch, nodes=nodes, flat=self.flat, eye=eye, time=self.time)
         return replace(known, plan=plan, values=self._values)
 
-    def _renewed(self, node: PlanNode) -> PlanNode:
-        if isinstance(node, LoopStep):
-            body = tuple([self._renewed(inside) for inside in node.body])
-            same = all([now is before for now, before in zip(body, node.body, strict=True)])
-            return node if same else replace(node, body=body)
-        values = self._values[node.path]
-        return node if node.values is values else replace(node, values=values)
+    def _all_renewed(self, nodes: tuple[PlanNode, ...], done: dict[int, Any]) -> tuple[PlanNode, ...]:
+        """Return nodes with the values of now; ``done``: what was returned for nodes and for several."""
+        if id(nodes) not in done:
+            found = tuple([self._renewed(node, done) for node in nodes])
+            same = all([now is before for now, before in zip(found, nodes, strict=True)])
+            done[id(nodes)] = nodes if same else found
+        return done[id(nodes)]  # type: ignore[no-any-return]
+
+    def _renewed(self, node: PlanNode, done: dict[int, Any]) -> PlanNode:
+        if id(node) not in done:
+            done[id(node)] = node
+            if isinstance(node, LoopStep):
+                bodies = tuple([self._all_renewed(body, done) for body in node.bodies])
+                if any([now is not before for now, before in zip(bodies, node.bodies, strict=True)]):
+                    done[id(node)] = replace(node, bodies=bodies)
+            elif node.values is not self._values[node.path]:
+                done[id(node)] = replace(node, values=self._values[node.path])
+        return done[id(node)]  # type: ignore[no-any-return]
 
     def whole(self, refused: Mapping[str, str]) -> _LastPlan:
         """Make the plan from nothing; ``refused``: the sentences that ``refusals`` gave, by technique."""
@@ -234,10 +230,11 @@ class _Planning:
             if leaf.spec.size is None:
                 self._refuse(leaf, self._size_of_leaf(leaf))
         nodes = tuple(self._node(node) for node in self.flat.nodes)
+        self._check_stops()
         lacking = tuple(
             f"{path or 'the sketch'} does without compute shaders, which are not here: "
             f"see {shown(self.flat.graphs[path].path)}"
-            for path in self.lacking
+            for path in self.sizes.lacking
         )
         plan = Plan(
             sketch=self.sketch,
@@ -247,12 +244,13 @@ class _Planning:
             eye=self._eye(),
             frame_size=self.request.frame_size,
             time=self.time,
-            steps=self.stopped,
+            steps=dict(self.request.stopped),
             interpolated=self.request.fills,
             lacking=(*lacking, *refused.values()),
         )
-        named = frozenset(self.named & self.flat.values.keys())
-        return _LastPlan(plan, self._values, named, self.by_time, self.pictures, refused, self.own)
+        sizes = self.sizes
+        named = frozenset(sizes.named & self.flat.values.keys())
+        return _LastPlan(plan, self._values, named, sizes.by_time, sizes.pictures, refused, sizes.own)
 
     def refusals(self, before: Collection[str]) -> dict[str, str]:
         """Return a sentence for each technique whose fast variant does not take its size, by its path.
@@ -263,12 +261,13 @@ class _Planning:
         for leaf in self.flat.leaves:
             path, accepts = sizes_of_variant(leaf, self.flat)
             if accepts and path not in found and path not in before:
-                size = self._size_of_leaf(leaf)
-                if not expressions.is_accepted(accepts, size):
-                    found[path] = (
-                        f"{path}: {Path(leaf.kernel.path).name} takes {accepts} texels a side, "
-                        f"not {size[0]} x {size[1]}; the plain form runs"
-                    )
+                for size in self.sizes.sizes_of(self._sized(leaf)):
+                    if not expressions.is_accepted(accepts, size):
+                        found[path] = (
+                            f"{path}: {Path(leaf.kernel.path).name} takes {accepts} texels a side, "
+                            f"not {size[0]} x {size[1]}; the plain form runs"
+                        )
+                        break
         return found
 
     def _eye(self) -> Eye:
@@ -278,29 +277,27 @@ class _Planning:
 
     def _node(self, node: Node) -> PlanNode:
         if isinstance(node, Loop):
-            prefix = node.path.rpartition(".")[0]
-            names = partial(self._number, prefix, node.spec)
-            whole = self._count(node.repeat, node.spec.name, node.spec, names)
-            count = self._stopped(node.path, whole, node.repeat)
-            body = tuple(self._node(inside) for inside in node.body)
-            return LoopStep(
-                path=node.path, repeat=count, whole=whole, body=body, feedback=node.feedback, spec=node.spec
-            )
+            whole = self.sizes.count_of(node.path)
+            run = self._stopped(node.path, whole, node.repeat)
+            made = [self._body(node.body) for _ in self.sizes.iterations(node.path)]
+            bodies = tuple(made if any(body is not made[0] for body in made) else made[:1])
+            loop = LoopStep(node.path, run, whole, bodies, node.feedback, node.spec)
+            return self._made.setdefault((node.path, run, whole, *map(id, bodies)), loop)
         kernel = node.kernel
         size = self._size_of_leaf(node)
         values = self._values[node.path]
         self._refuse(node, size)
-        check_shapes(node, self.flat, self.size_of)
-        numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], **self._clocks()}
+        check_shapes(node, self.flat, self.sizes.size_of_source)
+        numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], **self.sizes.clocks()}
         numbers |= {k: v for k, v in values.items() if isinstance(v, int | float)}
         if kernel.repeat != "1" or kernel.stride:
             self._note_names(node)
-        whole = 1 if kernel.repeat == "1" else self._count(kernel.repeat, node.path, kernel, numbers)
+        whole = 1 if kernel.repeat == "1" else counted(kernel.repeat, node.path, kernel, numbers)
         # Of a kernel that repeats in a loop of the same path, the loop is what stops.
         repeat = whole if node.spec.repeat else self._stopped(node.path, whole, kernel.repeat)
         fills = self.request.fills and kernel.between
         between = between_of(node, repeat, whole, numbers) if fills else None
-        return Step(
+        step = Step(
             path=node.path,
             kernel=kernel,
             values=values,
@@ -311,36 +308,33 @@ class _Planning:
             spec=node.spec,
             between=between,
         )
+        return self._made.setdefault((node.path, size, repeat, whole, between), step)
 
-    def _clocks(self) -> dict[str, Number]:
-        return {"time": self.time, "frames": expressions.frames_at(self.time)}
+    def _body(self, nodes: tuple[Node, ...]) -> tuple[PlanNode, ...]:
+        """Return what an iteration of a loop runs: the very same where another runs the same."""
+        found = tuple([self._node(node) for node in nodes])
+        return self._bodies.setdefault(tuple(map(id, found)), found)
 
     def _note_names(self, leaf: Leaf) -> None:
         """Note what a kernel's own counts name."""
         names = frozenset[str]()
         for text in (leaf.kernel.repeat, leaf.kernel.stride):
             names |= expressions.names_in(text) if text else names
-        self.by_time |= not names.isdisjoint(expressions.CLOCKS)
-        self.named |= {path for name, path in self.flat.shape.paths[leaf.path] if name in names}
+        self.sizes.by_time |= not names.isdisjoint(expressions.CLOCKS)
+        self.sizes.named |= {path for name, path in self.flat.shape.paths[leaf.path] if name in names}
 
     def _stopped(self, path: str, whole: int, repeat: str) -> int:
-        """Return how many of a repeat's steps run; raise ``ParameterError`` for more than there are."""
-        steps = self.stopped.get(path, whole)
-        if steps > whole and not self.request.varies and not expressions.follows_time(repeat):
-            raise ParameterError(f"steps: '{path}' stops after {steps} steps, but it has {whole} in all")
-        return min(steps, whole)
+        """Return how many of a repeat's iterations run."""
+        varies = self.request.varies or expressions.follows_time(repeat)
+        self._most[path] = MAX_REPEAT if varies else max(whole, self._most.get(path, 0))
+        return self.request.steps_of(path, whole)
 
-    def _count(self, text: str, name: str, owner: PassSpec | Kernel, names: Names) -> int:
-        """Return how many iterations; ``owner`` is what says so, and where a mistake is."""
-        try:
-            count = expressions.evaluate(text, names)
-        except ExpressionError as error:
-            raise owner.error(f"pass '{name}': repeat {error}") from None
-        if not 0 <= count <= MAX_REPEAT:
-            raise owner.error(
-                f"pass '{name}': repeat '{text}' gives {count}; 0 to {MAX_REPEAT} were expected"
-            )
-        return count
+    def _check_stops(self) -> None:
+        """Raise ``ParameterError`` for a repeat that stops after more iterations than it has."""
+        for path, steps in self.request.stopped:
+            whole = self._most.get(path, steps)
+            if steps > whole:
+                raise ParameterError(f"steps: '{path}' stops after {steps} steps, but it has {whole} in all")
 
     def _refuse(self, leaf: Leaf, size: tuple[int, int]) -> None:
         """Raise ``SketchError`` for a size that a kernel does not take, with the nearest that it takes."""
@@ -354,7 +348,10 @@ class _Planning:
         )
 
     def _size_of_leaf(self, leaf: Leaf) -> tuple[int, int]:
-        """Return a leaf's size; a compute variant's is that of the pass whose output it gives."""
+        return self.sizes.size_of(self._sized(leaf))
+
+    def _sized(self, leaf: Leaf) -> str:
+        """Return the path whose size a leaf has; a compute variant's is the pass's whose output it gives."""
         path = leaf.path
         technique: Technique = self.flat.graphs.get(path, leaf.kernel)
         while isinstance(technique, Graph):
@@ -363,75 +360,4 @@ class _Planning:
             if found is None:
                 break
             technique = found
-        return self.size_of(path)
-
-    def size_of(self, path: str) -> tuple[int, int]:
-        """Return the size in texels of a pass at any level."""
-        if path in self._sizes:
-            return self._sizes[path]
-        spec = self.flat.specs[path]
-        prefix = path.rpartition(".")[0]
-        if path in self._open:
-            raise spec.error(f"the sizes of {' and '.join(self._open)} depend on each other")
-        self._open.append(path)
-        size = self._size_around(base_of(path))
-        if path in self.own:
-            size = self.own[path]
-            self._check_sides(spec, size)
-        elif spec.size is not None:
-            try:
-                names = partial(self._number, prefix, spec)
-                size = (expressions.evaluate(spec.size[0], names), expressions.evaluate(spec.size[1], names))
-            except ExpressionError as error:
-                raise spec.error(f"pass '{spec.name}': size {error}") from None
-            self._check_sides(spec, size)
-        self._open.pop()
-        self._sizes[path] = size
-        return size
-
-    def _check_sides(self, spec: PassSpec, size: tuple[int, int]) -> None:
-        if not all(1 <= side <= LARGEST_SIDE for side in size):
-            raise spec.error(
-                f"pass '{spec.name}': size {size[0]} x {size[1]}; 1 to {LARGEST_SIDE} a side were expected"
-            )
-
-    def _size_around(self, base: str) -> tuple[int, int]:
-        """Return the size of a pass, or of a base: see ``named_numbers``."""
-        if base not in (TERRAIN, FRAME):
-            return self.size_of(base)
-        assert self.terrain.size is not None
-        return self.request.frame_size if base == FRAME else self.terrain.size
-
-    def _number(self, prefix: str, spec: PassSpec, name: str) -> Number:
-        """Return the number of a name in an expression of a pass: a size, or a parameter around it.
-
-        Raises ``KeyError`` for any other name.
-        """
-        kind, path, axis = named(self.flat, prefix, spec, name)
-        if kind == CLOCK:
-            self.by_time = True
-            return self._clocks()[path]
-        if kind == SIZE:
-            return self._size_around(path)[axis]
-        if kind == PICTURE:
-            return self._picture_size(path)[axis]
-        if kind == COMPUTE:
-            if not self.request.compute:
-                self.lacking[prefix] = None
-            return int(self.request.compute)
-        self.named.add(path)
-        value = resolve(self.flat.graphs[prefix], name)[0].parameter.widget.given(self.flat.values[path])
-        if not isinstance(value, int | float):
-            raise KeyError(name)
-        return value
-
-    def _picture_size(self, path: str) -> tuple[int, int]:
-        """Return the size of the picture that the parameter of a path reads."""
-        self.named.add(path)
-        leaf, _, parameter = path.rpartition(".")
-        file = Path(str(self._values[leaf][parameter]))
-        try:
-            self.pictures[file] = picture_size(file)
-        except DataError as error:
-            raise placed(error, self.sketch, self.flat.user(leaf)) from error
-        return self.pictures[file]
+        return path

@@ -113,7 +113,9 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
 def _texels(node: Step | LoopStep) -> int:
     if isinstance(node, Step):
         return node.size[0] * node.size[1] * node.repeat if node.kernel.kind == "kernel" else 0
-    return node.repeat * sum(_texels(inner) for inner in node.body)
+    if len(node.bodies) == 1:
+        return node.repeat * sum(_texels(inner) for inner in node.body)
+    return sum(_texels(inner) for number in range(node.repeat) for inner in node.body_of(number))
 
 
 def _seconds(engine: Engine, measure: Measure, scene: Scene, at: dict[str, Any]) -> float:

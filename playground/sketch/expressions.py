@@ -27,6 +27,8 @@ _LONGEST = 500
 FRAME_RATE = 60  # frames of a sketch's state in a second
 CLOCKS = ("time", "frames")
 """Names that follow the time: seconds, and the frames that are to run: see ``frames_at``."""
+ITERATION, ITERATIONS = COUNTERS = "iteration", "iterations"
+"""Names that are a loop's: its step, from 0, and its steps in all."""
 _DEEPEST = 100
 TWO_FRAMES = "is the number of frames at a time; give the parameter of that name another one"
 

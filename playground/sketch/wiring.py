@@ -11,7 +11,8 @@ from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Export, Graph, Kernel, Output, PassSpec, Technique
 from playground.sketch.widgets import SCALARS
 
-_GIVEN = (*expressions.CLOCKS, "compute", "size.x", "size.y")  # what every expression may name
+_GIVEN = (*expressions.CLOCKS, *expressions.COUNTERS, "compute", "size.x", "size.y")
+"""What every expression may name."""
 
 
 def output_names(technique: Technique) -> tuple[str, ...]:

@@ -15,7 +15,7 @@ from playground.sketch.expressions import names_in
 from playground.sketch.flat import Fed, Leaf, Loop, Ref, Source
 from playground.sketch.flatten import is_exported
 from playground.sketch.model import Graph
-from playground.sketch.named_numbers import FRAME, TERRAIN, base_of, named
+from playground.sketch.named_numbers import FRAME, TERRAIN, base_of, counting, named
 from playground.sketch.variant_check import INSIDE
 from playground.terrain.sources import source_kind
 
@@ -140,12 +140,26 @@ class Locks:
         if spec.size is None:
             self._note(base_of(path), source, known)
             return
-        for word in sorted(name for text in spec.size for name in names_in(text)):
-            kind, where, _ = named(self.flat, path.rpartition(".")[0], spec, word)
+        for text in spec.size:
+            self._note_names(path, text, source, known)
+
+    def _note_names(
+        self, path: str, text: str, source: str, known: set[str], *, repeat: bool = False
+    ) -> None:
+        """Note what an expression of the pass at a path depends on: its size, or its ``repeat``."""
+        for word in sorted(names_in(text)):
+            kind, where, _, _ = named(self.flat, path, word, repeat=repeat)
             if kind == named_numbers.SIZE:
                 self._note(where, source, known)
             elif kind == named_numbers.VALUE:
                 self._needed_by.setdefault(self.flat.shape.copied.get(where, where), source)
+            elif where in counting(self.flat) and kind in (named_numbers.COUNTER, named_numbers.FED):
+                message = (
+                    f"pass '{source}' has a size for each iteration of '{where}', and a page has one of it"
+                )
+                raise self.flat.user(source).error(message)
+            elif kind == named_numbers.COUNTER and where:
+                self._note_names(where, self.flat.specs[where].repeat, source, known, repeat=True)
 
 
 def made_by(leaf: Leaf) -> str:

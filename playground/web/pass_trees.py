@@ -7,21 +7,29 @@ that a page needs to know nothing of how techniques are nested.
 from __future__ import annotations
 
 from playground.sketch import named_numbers
+from playground.sketch.expressions import ITERATIONS
 from playground.sketch.flat import Flat
-from playground.sketch.model import PassSpec
+from playground.sketch.named_numbers import FED
 from playground.web.expression_trees import Tree, tree
 
 
-def pass_tree(text: str, flat: Flat, path: str, spec: PassSpec) -> Tree:
-    """Return the tree of a size or a repeat of the pass at a path of a flat sketch."""
-    prefix = path.rpartition(".")[0]
+def pass_tree(text: str, flat: Flat, path: str, *, repeat: bool = False) -> Tree:
+    """Return the tree of the size, or the ``repeat``, of the pass at a path of a flat sketch."""
+    spec = flat.specs[path]
 
     def name(word: str) -> Tree:
-        kind, where, axis = named_numbers.named(flat, prefix, spec, word)
+        kind, where, axis, what = named_numbers.named(flat, path, word, repeat=repeat)
         if kind == named_numbers.CLOCK:
-            return where
+            return what
         if kind == named_numbers.COMPUTE:  # there is none in a page
             return 0
+        if kind == named_numbers.COUNTER:  # what is in no loop is in iteration 0 of 1
+            return [what, where] if where else int(what == ITERATIONS)
+        if kind == FED:
+            if where in named_numbers.counting(flat):
+                return [FED, where, what, axis]
+            output = dict(flat.specs[where].feedback)[what]
+            return ["size", flat.outputs[where][output].path, axis]
         if kind == named_numbers.SIZE:
             return ["size", where, axis]
         where = flat.shape.copied.get(where, where)

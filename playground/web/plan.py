@@ -26,7 +26,7 @@ from playground.sketch.expressions import counts_frames, follows_time
 from playground.sketch.flat import Fed, Leaf, Loop, Node, Source
 from playground.sketch.map_sketch import map_kernel, refs_of
 from playground.sketch.model import DEFAULT_PICTURE, Sketch, Value
-from playground.sketch.named_numbers import base_of
+from playground.sketch.named_numbers import base_of, counting
 from playground.sketch.source import read_text
 from playground.sketch.traits import is_animated
 from playground.terrain.sources import source_kind
@@ -149,7 +149,6 @@ class _Writing:
             return {
                 "path": node.path,
                 "loop": True,
-                "repeat": pass_tree(node.repeat, self.flat, node.path, node.spec),
                 "countsFrames": counts_frames(node.repeat),
                 "followsTime": follows_time(node.repeat),
                 "body": [self._node(inside) for inside in node.body],
@@ -183,7 +182,7 @@ class _Writing:
         return drawn(self.sketch, step, frame=plan.frame_size, time=plan.time, steps=plan.steps)
 
     def _passes(self) -> dict[str, dict[str, Any]]:
-        """Return the size of every pass at every level."""
+        """Return the size of every pass at every level, and of a loop its repeat."""
         found = {}
         for path, spec in self.flat.specs.items():
             base = base_of(path)
@@ -191,7 +190,10 @@ class _Writing:
             if path in self.leaves and self.locks.own_size(path):
                 one["own"] = list(self.steps[path].size)
             elif spec.size is not None:
-                one["size"] = [pass_tree(text, self.flat, path, spec) for text in spec.size]
+                one["size"] = [pass_tree(text, self.flat, path) for text in spec.size]
+            if spec.repeat:
+                one["repeat"] = pass_tree(spec.repeat, self.flat, path, repeat=True)
+                one["counting"] = path in counting(self.flat)
             found[path] = one
         return found
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
 
 import numpy as np
@@ -329,3 +330,99 @@ def test_keyframes_may_change_how_many_steps_there_are_to_stop_at(any_engine):
     for seconds, runs in ((0.0, 8), (1.0, 4)):
         plan = any_engine.plan_for(moving, (16, 9), seconds, {"height.sum": 8})
         assert max(step.repeat for step in plan.walk() if step.path.startswith("height.sum")) == runs
+
+
+# ── going on when the count grows ────────────────────────────────────────────
+
+ADD = """#pragma kernel(output = "a:r32f, b:rg16f", repeat = "count")
+uniform int count = 3;     //! slider(0, 50)
+uniform float rate = 0.5;  //! slider(0, 1)
+void kernel(ivec2 texel, out float a, out vec2 b) {
+    a = previous_a(texel) * rate + float(iteration) + previous_a(texel + ivec2(1, 0));
+    b = previous_b(texel) + vec2(1.0, a * 0.001);
+}
+"""
+
+
+SUM = """#pragma kernel(output = "sum:r32f")
+uniform sampler2D a; //! input
+uniform sampler2D b; //! input
+float kernel(ivec2 texel) { return texelFetch(a, texel, 0).r + texelFetch(b, texel, 0).r; }
+"""
+
+
+def test_more_iterations_go_on_from_those_that_are_cached(ctx, engine, folder):
+    sketch = folder.one(ADD)
+    taken = []
+    for count in (3, 10, 11, 4, 20):
+        found = engine.read(sketch.with_values({"a.count": count}), "a:a").copy()
+        taken.append(engine.texels // 17**2)
+        with Engine(ctx, driver=engine.driver) as fresh:
+            np.testing.assert_array_equal(found, fresh.read(sketch.with_values({"a.count": count}), "a:a"))
+    assert taken == [3, 7, 1, 4, 16]
+
+
+def test_what_names_iterations_begins_again(engine, folder):
+    sketch = folder.one(COUNT)
+    for count in (3, 5):
+        found = engine.read(sketch.with_values({"a.count": count}), "a")
+        assert found[2, 3] == counted(count) and engine.texels == 17 * 17 * count
+
+
+def test_another_value_begins_again(engine, folder):
+    sketch = folder.one(ADD)
+    engine.read(sketch, "a:a")
+    engine.read(sketch.with_values({"a.count": 5, "a.rate": 0.25}), "a:a")
+    assert engine.texels == 17 * 17 * 5
+
+
+@pytest.mark.parametrize("text", ["VISITS", "AT_ONCE"])
+def test_visits_and_iterations_at_once_go_on_as_well(ctx, engine, folder, text):
+    kernel = {"VISITS": VISITS.replace('repeat = "3"', 'repeat = "count"'), "AT_ONCE": AT_ONCE}[text]
+    kernel = kernel.replace("float(iterations)", "1.0")
+    if text == "VISITS":
+        kernel = kernel.replace("ivec2 visit(", "uniform int count = 3; //! slider(0, 50)\nivec2 visit(")
+    sketch, ref = folder.one(kernel), "a:a"
+    engine.read(sketch.with_values({"a.count": 2}), ref)
+    found = engine.read(sketch.with_values({"a.count": 5}), ref).copy()
+    assert engine.texels == 17 * 17 * 3
+    with Engine(ctx, driver=engine.driver) as fresh:
+        np.testing.assert_array_equal(found, fresh.read(sketch.with_values({"a.count": 5}), ref))
+
+
+def test_a_stride_that_names_iterations_begins_again(ctx, folder):
+    text = LATTICE.replace('repeat = "log2(size.x - 1) + 1"', 'repeat = "count"')
+    text = text.replace("STRIDE", ' stride = "2 ** (iterations - 1 - iteration)",')
+    text = text.replace("int stride()", "uniform int count = 3; //! slider(1, 5)\nint stride()")
+    text = text.replace("(size.x - 1) >> iteration", "16 >> iteration")
+    with Engine(ctx, driver="fragment") as engine:
+        sketch = folder.one(text).with_values({"a.count": 2})
+        with contextlib.suppress(PlaygroundError):
+            engine.read(sketch, "a")
+        engine.read(sketch.with_values({"a.count": 5}), "a")
+        assert engine.texels == 17 * 17 * 5
+
+
+def test_the_earlier_result_is_taken_over_and_copied_only_where_another_pass_reads_it(engine, folder):
+    folder.write("one.glsl", ADD)
+    folder.write("sum.glsl", SUM)
+    both = folder.sketch(passes(a="./one", b="./one", sum=("./sum", 'inputs = { a = "a:a", b = "b:a" }')))
+    engine.read(both, "sum")
+    assert engine.ran == ["a", "sum"], "both are the same"
+    before = engine.read(both, "b:a").copy()
+    found = engine.read(both.with_values({"a.count": 8}), "sum").copy()
+    assert engine.ran == ["a", "sum"] and engine.texels == 17 * 17 * (5 + 1)
+    np.testing.assert_array_equal(engine.read(both, "b:a"), before)
+    assert engine.ran == []
+    alone = engine.read(both.with_values({"a.count": 8}), "a:a") + before
+    np.testing.assert_array_equal(found, alone)
+
+
+def test_going_on_step_by_step_makes_no_more_textures(engine, folder):
+    sketch = folder.one(ADD)
+    for count in (3, 4, 5):
+        engine.texture(sketch.with_values({"a.count": count}), "a:a")
+    made = engine.pool.made
+    for count in range(6, 40):
+        engine.texture(sketch.with_values({"a.count": count}), "a:a")
+    assert engine.pool.made == made

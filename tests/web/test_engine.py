@@ -151,6 +151,26 @@ def test_a_loop_feeds_back(pages: Pages, drawn: Engine, sketch: Made):
         assert picture.ran == drawn.ran
 
 
+def test_levels_of_a_loop_have_their_own_sizes_and_counts(pages: Pages, drawn: Engine, sketch: Made):
+    flow = FLOW.replace("water, texel, 0", "water, texel * textureSize(water, 0) / size, 0")
+    more = 'inputs = { rough = "rough" }\nrepeat = "iterations - iteration"\nfeedback = { water = "flow" }\n'
+    whole = sketch(
+        passes(seed="./seed")
+        + '[[pass]]\nname = "rain"\nuse = "./flows"\ninputs = { water = "seed" }\nrepeat = 4\n'
+        + 'size = "(size.x - 1) // 2 ** (iterations - 1 - iteration) + 1"\nfeedback = { water = "water" }\n'
+        + map_of("rain"),
+        flow=flow,
+        flows=FLOWS.replace('inputs = { rough = "rough" }\n', more),
+    )
+    begun(pages, whole)
+    drawn.cache.clear()
+    for changes, steps in (({}, {}), ({"seed.level": 0.25}, {}), ({}, {"rain": 2}), ({}, {"rain.flow": 3})):
+        frame = drawn.render(whole.with_values(changes), size=SIZE, steps=steps)
+        picture = pages.picture(whole.name, values=changes, steps=steps)
+        assert picture.levels_off(frame.array) == 0
+        assert picture.ran == drawn.ran
+
+
 def test_a_loop_that_counts_frames_goes_on_and_back(pages: Pages, drawn: Engine, sketch: Made):
     loop = '[[pass]]\nname = "grow"\nuse = "./grows"\nrepeat = "frames"\nfeedback = { own = "state" }\n'
     whole = sketch(loop + map_of("grow"))

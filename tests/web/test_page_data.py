@@ -148,6 +148,8 @@ class Numbers:
             name = f"n{len(names)}"
             names[name] = self.size(of[0])[of[1]] if kind == "size" else self.sketch["values"][of[0]]
             return name
+        if kind in ("iteration", "iterations"):  # of what a plan gives, the last
+            return str(max(self.plan.node(of[0]).whole, 1) - (kind == "iteration"))
         parts = [f"({self.text(part, names)})" for part in of]
         if kind == "if":
             return f"{parts[1]} if {parts[0]} else {parts[2]}"
@@ -170,7 +172,7 @@ def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str):
     def look(nodes: list[dict[str, Any]]) -> None:
         for one in nodes:
             if "body" in one:
-                loops[one["path"]] = one["repeat"]
+                loops[one["path"]] = sketch["passes"][one["path"]]["repeat"]
                 look(one["body"])
 
     look(sketch["nodes"])

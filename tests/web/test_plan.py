@@ -350,3 +350,92 @@ def test_a_map_takes_the_place_of_the_view(node: Node, shared: SharedData, name:
     expected = [node.path for node in needed(plan.nodes, plan.picture)]
     assert picture["path"] == nodes[-1][0] == "#map" and nodes[-1][1] == [64, 36]
     assert [path for path, _ in nodes[:-1]] == expected[:-1]
+
+
+GROWN = """#pragma kernel(output = "ground:r32f")
+uniform sampler2D ground_before; //! input("black")
+uniform int side = 3;            //! slider(1, 9)
+uniform float rise = 1.0;        //! slider(0, 9)
+float kernel(ivec2 texel) { return texelFetch(ground_before, texel, 0).r + rise * float(size.x); }
+"""
+LEVEL = """
+[[pass]]
+name = "once"
+use = "./count"
+size = 7
+[[pass]]
+name = "each"
+use = "./count"
+[[pass]]
+name = "grow"
+use = "./grown"
+size = "ground_before.size.x + iteration"
+inputs = { ground_before = "each" }
+[[pass]]
+name = "smooth"
+use = "./grown"
+repeat = "5 if iteration == 0 else iterations - iteration"
+inputs = { ground_before = "grow" }
+feedback = { ground_before = "ground" }
+size = "grow.size.x + iterations + iteration"
+[parameters]
+rise = ["smooth.rise", "grow.rise"]
+side = "smooth.side"
+[inputs]
+ground_before = "grow.ground_before"
+[outputs]
+ground = "smooth:ground"
+"""
+LEVELS = """format = 1
+size = 33
+[[pass]]
+name = "start"
+use = "./count"
+size = 3
+[[pass]]
+name = "a"
+use = "./level"
+repeat = "REPEAT"
+size = "(size.x - 1) // 2 ** (iterations - 1 - iteration) + a.side"
+inputs = { ground_before = "start" }
+feedback = { ground_before = "ground" }
+[[pass]]
+name = "after"
+use = "./grown"
+size = "a.size.x + 1"
+inputs = { ground_before = "a" }
+"""
+
+
+@pytest.mark.parametrize("repeat", ["4", "frames", "2 + a.side // 4"])
+def test_levels_are_planned_and_stale_as_in_the_engine(
+    node: Node, shared: SharedData, tmp_path: Path, repeat: str
+):
+    (tmp_path / "count.glsl").write_text(COUNT)
+    (tmp_path / "grown.glsl").write_text(GROWN)
+    (tmp_path / "level.toml").write_text(LEVEL.replace('inputs = { ground_before = "each" }\n', ""))
+    (tmp_path / "levels.toml").write_text(LEVELS.replace("REPEAT", repeat) + map_of("after"))
+    sketch = replace(load(tmp_path / "levels.toml"), name=f"levels {repeat}")
+    data, images = exported(sketch, shared)
+    several = [
+        Settings(),
+        Settings(time=0.05),
+        Settings(values={"a.side": 5}),
+        Settings(values={"a.rise": 0.25}),
+        Settings(steps={"a": 1}),
+        Settings(steps={"a": 2}, time=0.05),
+        Settings(steps={"a.smooth": 2}),
+        Settings(steps={"a": 9}),
+        Settings(terrain={"size": (17, 17)}),
+        Settings(terrain={"size": (4, 4)}),
+    ]
+    answers = node.run(ASK, data, images, [settings.state(data) for settings in several])
+    for settings, found in zip(several, answers, strict=True):
+        expected = python(sketch, settings)
+        if isinstance(expected, str):
+            assert found == expected
+            continue
+        nodes = [one for each in expected.nodes for one in flat(each)]
+        assert [one[:-1] for one in found["nodes"]] == [one[:-1] for one in nodes], settings
+    keys = stale_as_in_the_engine(node, shared, sketch, [s for s in several if not s.terrain])
+    assert any("a" in changes for changes in keys.changes.values())

@@ -51,7 +51,7 @@ export const createCache = (limit, textures) => {
   };
 
   return {
-    states, pinned, drop, trim,
+    states, pinned, isPinned, drop, trim,
     get bytes() { return bytes(); },
     get size() { return known.size; },
 
@@ -82,14 +82,18 @@ export const createCache = (limit, textures) => {
     /** @param {string} path @param {string} unfinished @param {string} key @param {number} iterations */
     noteProgress: (path, unfinished, key, iterations) => latest.set(path, [unfinished, key, iterations]),
 
-    /** Hand over the same pass after fewer iterations, if no run uses it.
+    /** The key of the same pass after fewer iterations; "" where nothing is known of it.
      *  @param {string} path @param {string} unfinished @param {number} iterations */
-    takeEarlier: (path, unfinished, iterations) => {
+    earlier: (path, unfinished, iterations) => {
       const [before, key, done] = latest.get(path) || ["", "", 0];
-      const cached = known.get(key);
-      if (before !== unfinished || done >= iterations || isPinned(key) || !cached) return null;
+      return before === unfinished && done < iterations && known.has(key) ? key : "";
+    },
+
+    /** Hand over the result of a pass, which is known no longer. @param {string} key */
+    take: (key) => {
+      const [result] = /** @type {Cached} */ (known.get(key)).results.values();
       known.delete(key);
-      return [...cached.results.values()][0];
+      return result;
     },
 
     clear: () => {

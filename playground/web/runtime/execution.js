@@ -6,7 +6,7 @@
 import { failure } from "./context.js";
 import { isSize } from "./binder.js";
 import { texelsOf } from "./formats.js";
-import { isLoop, readWithLevels, stepsOf } from "./plan_nodes.js";
+import { bodyOf, isLoop, readWithLevels, stepsOf } from "./plan_nodes.js";
 import { continuedOf } from "./staleness.js";
 
 /** @typedef {import("./planner.js").Plan} Plan */
@@ -125,13 +125,29 @@ export const createExecution = (plan, nodes, around) => {
   const computed = function* (step) {
     const key = /** @type {string} */ (keys.raw.get(step.path));
     const unfinished = /** @type {string} */ (keys.unfinished.get(step.path));
-    const goesOn = step.path in plan.stopped || step.kernel.followsTime;
-    const start = goesOn ? cache.takeEarlier(step.path, unfinished, step.repeat) : null;
+    const goesOn = step.kernel.kind === "kernel" && step.kernel.repeat !== 1;
+    const start = goesOn ? earlier(step, unfinished) : null;
     /** @type {Map<string, Wired | null>} */
     const inputs = new Map();
     for (const [name, source] of step.inputs) inputs.set(name, wiredTo(source, new Map()));
     const made = keep(key, step, yield* compute(step, inputs, null, start));
     if (goesOn) cache.noteProgress(step.path, unfinished, key, step.repeat);
+    return made;
+  };
+
+  /** Return the same step after fewer iterations: what is known, or a copy where a pass or a run reads that.
+   *  @param {Step} step @param {string} unfinished */
+  const earlier = (step, unfinished) => {
+    const key = cache.earlier(step.path, unfinished, step.repeat);
+    if (!key) return null;
+    if (!cache.isPinned(key) && ![...keys.raw.values()].includes(key)) return cache.take(key);
+    const [found] = /** @type {Cached} */ (cache.peek(key)).results.values();
+    const made = textures.take(step.size, step.kernel.outputs, isTall(step));
+    for (const [name, texture] of made.textures) {
+      const from = found.textures.get(name);
+      if (from) kernels.copy(textures.targetOf(texture), texture.size, from);
+    }
+    made.iterations = found.iterations;
     return made;
   };
 
@@ -251,19 +267,21 @@ export const createExecution = (plan, nodes, around) => {
    *  @param {number | null} frame @returns {Working<void>} */
   const runLoop = function* (loop, state, outer, owned, frame) {
     yield* run(loop.body);
-    const fed = new Map(outer), inside = new Map(stepsOf(loop.body).map((step) => [step.path, step]));
+    const fed = new Map(outer);
+    const inside = new Map(stepsOf(bodyOf(loop, 0)).map((step) => [step.path, step]));
     for (const [name, first, ref] of loop.feedback) {
       const own = `${loop.path} ${name}`;
       fed.set(own, wiredTo(first, outer));
       const from = first && "loop" in first ? fedFrom.get(`${first.loop} ${first.name}`) : undefined;
       fedFrom.set(own, from || [/** @type {Step} */ (inside.get(ref.path)), ref.output]);
     }
-    const changing = [];
-    for (const node of loop.body) {
-      if (changesOf(node).has(loop.path)) changing.push(node);
-      else yield* runInside(node, outer, { number: 0, whole: 0, frame }, owned);
+    const changingOf = (/** @type {number} */ iteration) =>
+      bodyOf(loop, iteration).filter((node) => changesOf(node).has(loop.path));
+    for (const node of bodyOf(loop, 0)) {
+      if (changesOf(node).has(loop.path)) continue;
+      yield* runInside(node, outer, { number: 0, whole: 0, frame }, owned);
     }
-    if (!loop.repeat && !state.results.size) state.results = initial(loop, changing, fed);
+    if (!loop.repeat && !state.results.size) state.results = initial(loop, changingOf(0), fed);
     state.results.forEach((result, path) => results.set(path, result));
     for (let iteration = state.iterations; iteration < loop.repeat; iteration++) {
       if (iteration) {
@@ -273,7 +291,7 @@ export const createExecution = (plan, nodes, around) => {
       /** @type {Map<string, Result>} */
       let made = new Map();
       try {
-        for (const node of changing) yield* runInside(node, fed, at, made);
+        for (const node of changingOf(iteration)) yield* runInside(node, fed, at, made);
         if (changesOf(loop).size) release(state.results);
         else setAside(loop, /** @type {string} */ (keys.loops.get(loop.path)), state);
         state.results = made;

@@ -11,6 +11,8 @@ import { arithmetic, bitLength, compared, float, floor, general, power } from ".
  *  @property {(base: string, axis: number) => number | bigint} [size]     texels of a pass
  *  @property {(path: string) => number | bigint} [value]         what a uniform gets
  *  @property {(path: string, axis: number) => number | bigint} [picture]  texels of an image file
+ *  @property {(kind: string, loop: string) => number} [counter]  "iteration" or "iterations" of a loop
+ *  @property {(loop: string, name: string, axis: number) => number} [fed]  texels of what a loop feeds back
  *  @property {(name: string) => number | bigint | undefined} [name]       "iteration", "time", …  */
 
 /** A mistake that a sentence can explain. `where`: its place, as "file:line", "" where it has none; undefined
@@ -18,6 +20,7 @@ import { arithmetic, bitLength, compared, float, floor, general, power } from ".
  *  @typedef {Error & {where: string | undefined}} PlanError */
 
 const LIMIT = 2n ** 62n, LARGEST_BASE = 2n ** 31n;
+const COUNTERS = ["iteration", "iterations"];
 
 /** @param {string} message @param {string} [where] @returns {PlanError} */
 export const planError = (message, where) =>
@@ -95,6 +98,8 @@ function valueOf(expression, names, text) {
   if (kind === "size") return checked(BigInt(/** @type {any} */ (names).size(first, second)), text);
   if (kind === "picture") return checked(BigInt(/** @type {any} */ (names).picture(first, second)), text);
   if (kind === "value") return checked(/** @type {any} */ (names).value(first), text);
+  if (COUNTERS.includes(kind)) return checked(BigInt(/** @type {any} */ (names).counter(kind, first)), text);
+  if (kind === "fed") return checked(BigInt(/** @type {any} */ (names).fed(first, second, third)), text);
   if (kind === "if") {
     return valueOf(compared(valueOf(first, names, text), 0n) ? second : third, names, text);
   }
@@ -129,7 +134,7 @@ export const whole = (expression, names) => Number(integer(expression, names));
  *  @param {Expression} expression @param {Names} names */
 export const number = (expression, names) => float(valueOf(expression, names, textOf(expression)));
 
-/** What an expression asks its names for: kinds with their arguments, each once.
+/** What an expression asks its names for: kinds with their arguments, each once; nothing of loops.
  *  @param {Expression} expression @returns {string[][]} ["name", "time"], ["size", base] … */
 export function namesIn(expression) {
   /** @type {Map<string, string[]>} */
@@ -138,6 +143,7 @@ export function namesIn(expression) {
   const visit = (inner) => {
     const asked = typeof inner === "string" ? ["name", inner]
       : Array.isArray(inner) && ["size", "value", "picture"].includes(inner[0]) ? [inner[0], inner[1]] : null;
+    if (Array.isArray(inner) && (COUNTERS.includes(inner[0]) || inner[0] === "fed")) return;
     if (asked) found.set(asked.join(" "), asked);
     else if (Array.isArray(inner)) inner.slice(inner[0] === "text" ? 2 : 1).forEach(visit);
   };

@@ -33,14 +33,15 @@ export function shapedSize(shape, [width, height]) {
 }
 
 /** Refuse what is wired to a cube map, a volume or an array and cannot be one.
- *  @param {Sketch} sketch @param {Leaf} leaf @param {(path: string) => [number, number]} sizeOf */
+ *  @param {Sketch} sketch @param {Leaf} leaf
+ *  @param {(source: import("./schema.js").Source) => [number, number]} sizeOf */
 export function checkShapes(sketch, leaf, sizeOf) {
   const shapes = new Map(sketch.kernels[leaf.kernel].inputs.map((input) => [input.name, input.shape]));
   for (const [name, source] of leaf.inputs) {
     const shape = shapes.get(name);
     if (!source || !shape) continue;
     const { path } = isRef(source) ? source : fedBy(sketch.nodes, source);
-    const size = sizeOf(path), wrong = misfit(shape, size);
+    const size = sizeOf(source), wrong = misfit(shape, size);
     if (wrong) {
       const message = `${name} reads '${path}', ${size[0]} x ${size[1]} texels; ${wrong}`;
       throw planError(`pass '${leaf.path}': ${message}`, sketch.passes[leaf.path.split(".")[0]].where);

@@ -20,9 +20,10 @@
  *  @property {number} whole                             iterations in all
  *  @property {Between | null} between */
 
-/** A loop made concrete.
+/** A loop made concrete. bodies: of each iteration, one where all are the same; body: of the last.
  *  @typedef {{path: string, loop: true, repeat: number, whole: number, countsFrames: boolean,
- *             followsTime: boolean, body: PlanNode[], feedback: [string, Source | null, Ref][]}} LoopStep */
+ *             followsTime: boolean, bodies: PlanNode[][], body: PlanNode[],
+ *             feedback: [string, Source | null, Ref][]}} LoopStep */
 
 /** @typedef {Step | LoopStep} PlanNode */
 
@@ -32,7 +33,17 @@ export const isLoop = (node) => "loop" in node;
 /** @param {Source | null} source @returns {source is Ref} */
 export const isRef = (source) => source !== null && "path" in source;
 
-/** Every step, those inside loops included.
+/** What an iteration of a loop runs: nodes of the same paths in each, of other sizes and counts.
+ *  @param {LoopStep} loop @param {number} iteration */
+export const bodyOf = ({ bodies }, iteration) => bodies[bodies.length > 1 ? iteration : 0];
+
+/** Every step and loop, of a loop those of each iteration that has its own.
+ *  @param {PlanNode[]} nodes @returns {PlanNode[]} */
+export const everyVersion = (nodes) => nodes.flatMap((node) => {
+  return isLoop(node) ? [node, ...[...new Set(node.bodies)].flatMap(everyVersion)] : [node];
+});
+
+/** Every step, those of loops' last iterations included.
  *  @param {PlanNode[]} nodes @returns {Step[]} */
 export const stepsOf = (nodes) => nodes.flatMap((node) => (isLoop(node) ? stepsOf(node.body) : [node]));
 

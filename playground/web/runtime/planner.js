@@ -6,11 +6,11 @@
 import { isAccepted, nearestAccepted } from "./accepts.js";
 import { look } from "./camera.js";
 import { betweenOf, ownNames } from "./counts.js";
-import { integer, isPlanError, namesIn, planError, textOf } from "./expressions.js";
+import { namesIn, planError } from "./expressions.js";
 import { checkShapes } from "./input_shapes.js";
-import { stepsOf } from "./plan_nodes.js";
+import { everyVersion, isLoop, stepsOf } from "./plan_nodes.js";
 import { checkedFrame, checkedSteps, checkedTime, terrainOf } from "./requests.js";
-import { measure, nameOf } from "./sizes.js";
+import { MAX_REPEAT, counted, measure } from "./sizes.js";
 import { cameraAt, givenTo, isSame, leavesOf, valuesAt } from "./values.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
@@ -23,6 +23,7 @@ import { cameraAt, givenTo, isSame, leavesOf, valuesAt } from "./values.js";
 /** @typedef {import("./schema.js").Leaf} Leaf */
 /** @typedef {import("./schema.js").Expression} Expression */
 /** @typedef {import("./plan_nodes.js").Step} Step */
+/** @typedef {import("./plan_nodes.js").LoopStep} LoopStep */
 /** @typedef {import("./plan_nodes.js").PlanNode} PlanNode */
 /** @typedef {import("./plan_nodes.js").Ref} Ref */
 
@@ -39,7 +40,6 @@ import { cameraAt, givenTo, isSame, leavesOf, valuesAt } from "./values.js";
 
 /** @typedef {{plan: Plan, values: Object<string, Value>, place: string}} Last */
 
-const MAX_REPEAT = 1_000_000;
 const MAP = "#map"; // the path of the step that shows a texture from above
 
 /** @type {WeakMap<Sketch, Last>} */
@@ -68,18 +68,19 @@ export function makePlan(sketch, shared, state = {}) {
   return plan;
 }
 
-/** The iterations in all of every repeated kernel and loop, by path.
+/** The iterations in all of every repeated kernel and loop, by path: the most of one inside a loop.
  *  @param {Plan} plan @returns {Map<string, number>} */
 export function repeatsOf(plan) {
   /** @type {Map<string, number>} */
-  const found = new Map();
-  /** @param {PlanNode} node */
-  const add = (node) => {
-    const repeats = "loop" in node || (node.kernel.kind === "kernel" && node.kernel.repeat !== 1);
-    if (repeats && !found.has(node.path)) found.set(node.path, node.whole);
-    if ("loop" in node) node.body.forEach(add);
-  };
-  plan.nodes.forEach(add);
+  const found = new Map(), every = everyVersion(plan.nodes);
+  const loops = new Set(every.filter(isLoop).map((node) => node.path));
+  for (const node of every) {
+    // Of a loop of one kernel, the loop is what counts, not the kernel in it.
+    const own = !isLoop(node) && node.kernel.kind === "kernel" && node.kernel.repeat !== 1;
+    if (isLoop(node) || (own && !loops.has(node.path))) {
+      found.set(node.path, Math.max(node.whole, found.get(node.path) ?? 0));
+    }
+  }
   return found;
 }
 
@@ -103,11 +104,10 @@ function namedBy(sketch) {
       else if (name === "time" || name === "frames") byTime = true;
     }
   };
-  for (const pass of Object.values(sketch.passes)) add(pass.size ?? []);
+  for (const { size, repeat } of Object.values(sketch.passes)) add([...(size ?? []), repeat ?? 1]);
   /** @param {import("./schema.js").Node} node */
   const visit = (node) => {
     if ("loop" in node) {
-      add([node.repeat]);
       node.body.forEach(visit);
     } else {
       const { repeat, stride } = sketch.kernels[node.kernel];
@@ -124,22 +124,36 @@ function namedBy(sketch) {
  *  @param {Last} last @param {Object<string, Value>} values */
 function renewed(last, values) {
   const changed = new Set(Object.keys(values).filter((path) => !isSame(values[path], last.values[path])));
+  /** What was returned for nodes and for several: iterations share them. @type {Map<any, any>} */
+  const done = new Map();
+  /** @template T @param {T} given @param {() => T} make @returns {T} */
+  const once = (given, make) => {
+    if (!done.has(given)) done.set(given, make());
+    return done.get(given);
+  };
   /** @param {PlanNode} node @returns {PlanNode} */
-  const one = (node) => {
-    if ("loop" in node) {
-      const body = all(node.body);
-      return body === node.body ? node : { ...node, body };
+  const one = (node) => once(node, () => {
+    if (isLoop(node)) {
+      const bodies = node.bodies.map(all);
+      return bodies.every((body, index) => body === node.bodies[index]) ? node : withBodies(node, bodies);
     }
     const { leaf, kernel } = node;
     if (!leaf || !Object.values(leaf.values).some((path) => changed.has(path))) return node;
     return { ...node, values: uniformValues(kernel, leaf, values) };
-  };
-  /** @param {PlanNode[]} nodes */
-  const all = (nodes) => {
+  });
+  /** @param {PlanNode[]} nodes @returns {PlanNode[]} */
+  const all = (nodes) => once(nodes, () => {
     const found = nodes.map(one);
     return found.every((node, index) => node === nodes[index]) ? nodes : found;
-  };
+  });
   return changed.size ? all(last.plan.nodes) : last.plan.nodes;
+}
+
+/** A loop with other bodies.
+ *  @param {Omit<LoopStep, "bodies" | "body">} loop @param {PlanNode[][]} made @returns {LoopStep} */
+function withBodies(loop, made) {
+  const bodies = made.every((body) => body === made[0]) ? made.slice(0, 1) : made;
+  return { ...loop, bodies, body: bodies[bodies.length > 1 ? Math.max(loop.repeat - 1, 0) : 0] };
 }
 
 /** What a leaf's uniforms get, by parameter.
@@ -155,7 +169,7 @@ const uniformValues = (kernel, leaf, values) => Object.fromEntries(kernel.parame
  *           map: State["map"]}} now */
 function planned(now) {
   const { sketch, values, time, map } = now;
-  const { sizeOf, names } = measure(sketch, now.shared, { ...now, terrain: now.terrain.size });
+  const measured = measure(sketch, now.shared, { ...now, terrain: now.terrain.size }), { sizeOf } = measured;
   const varies = sketch.tracks.some((track) => track.of === "value");
   const ofView = (/** @type {string} */ path) => path === "view" || path.startsWith("view.");
   const nodes = map && !ofView(map.path) ? sketch.nodes.filter((node) => !ofView(node.path)) : sketch.nodes;
@@ -174,53 +188,64 @@ function planned(now) {
     throw planError(`pass '${leaf.path}' (${name}) ${message}`, sketch.passes[leaf.path].where);
   }
 
-  /** How many iterations; `name` is of what says so, and `where` a mistake is.
-   *  @param {Expression} repeat @param {string} name @param {string} where
-   *  @param {import("./expressions.js").Names} known */
-  function counted(repeat, name, where, known) {
-    try {
-      const count = integer(repeat, known);
-      if (count >= 0n && count <= MAX_REPEAT) return Number(count);
-      const message = `repeat '${textOf(repeat)}' gives ${count}; 0 to ${MAX_REPEAT} were expected`;
-      throw planError(`pass '${name}': ${message}`, where);
-    } catch (error) {
-      if (!isPlanError(error) || error.where !== undefined) throw error;
-      throw planError(`pass '${name}': repeat ${error.message}`, where);
-    }
-  }
+  /** Iterations in all of each repeat, by path; the most where they differ.
+   *  @type {Map<string, number>} */
+  const most = new Map();
 
   /** How many of a repeat's iterations run.
    *  @param {string} path @param {number} count in all @param {boolean} followsTime */
   function stoppedAt(path, count, followsTime) {
-    const steps = now.stopped[path] ?? count;
-    if (steps > count && !varies && !followsTime) {
-      throw planError(`steps: '${path}' stops after ${steps} steps, but it has ${count} in all`, "");
-    }
-    return Math.min(steps, count);
+    most.set(path, varies || followsTime ? MAX_REPEAT : Math.max(count, most.get(path) ?? 0));
+    return measured.stepsOf(path, count);
   }
+
+  /** Each step, loop and body once, whatever iterations have it. @type {Map<string, any>} */
+  const made = new Map();
+  /** @type {Map<object, number>} */
+  const numbers = new Map();
+  /** @template {object} T @param {any[]} key @param {T} one @returns {T} */
+  function shared(key, one) {
+    const text = JSON.stringify(key), found = made.get(text) ?? one;
+    made.set(text, found);
+    if (!numbers.has(found)) numbers.set(found, numbers.size);
+    return found;
+  }
+  const numberOf = (/** @type {object} */ one) => numbers.get(one);
 
   /** @param {import("./schema.js").Node} node @param {string} around @returns {PlanNode} */
   function concrete(node, around) {
     if ("loop" in node) {
-      const { path, followsTime, countsFrames, feedback } = node;
-      const all = counted(node.repeat, nameOf(path), sketch.passes[path].where, names);
+      const { path, followsTime, countsFrames, feedback } = node, all = measured.countOf(path);
       const repeat = stoppedAt(path, all, followsTime);
-      const body = node.body.map((inside) => concrete(inside, path));
-      return { path, loop: true, repeat, whole: all, countsFrames, followsTime, body, feedback };
+      /** @type {PlanNode[][]} */
+      const bodies = [];
+      measured.iterations(path, () => {
+        const body = node.body.map((inside) => concrete(inside, path));
+        bodies.push(shared(body.map(numberOf), body));
+      });
+      const loop = { path, loop: /** @type {true} */ (true), repeat, whole: all, countsFrames, followsTime };
+      return shared([path, repeat, all, bodies.map(numberOf)], withBodies({ ...loop, feedback }, bodies));
     }
     const { path, inputs } = node, kernel = sketch.kernels[node.kernel];
     const size = sizeOf(path), given = uniformValues(kernel, node, values);
     refuse(node, size);
-    checkShapes(sketch, node, sizeOf);
+    checkShapes(sketch, node, measured.sizeOfSource);
     const own = ownNames(kernel, size, given, time);
     const all = kernel.repeat === 1 ? 1 : counted(kernel.repeat, path, kernel.file, { name: own });
     // Of a kernel that repeats in a loop of the same path, the loop is what stops.
     const repeat = path === around ? all : stoppedAt(path, all, kernel.followsTime);
     const between = now.fills ? betweenOf(kernel, node, repeat, all, own) : null;
-    return { path, kernel, leaf: node, values: given, inputs, size, repeat, whole: all, between };
+    const step = { path, kernel, leaf: node, values: given, inputs, size, repeat, whole: all, between };
+    return shared([path, size, repeat, all, between], step);
   }
 
   const found = nodes.map((node) => concrete(node, ""));
+  for (const [path, steps] of Object.entries(now.stopped)) {
+    const count = most.get(path) ?? steps;
+    if (steps > count) {
+      throw planError(`steps: '${path}' stops after ${steps} steps, but it has ${count} in all`, "");
+    }
+  }
   return map ? [...found, mapStep(sketch, map, sizeOf(ofView(map.path) ? "view" : "#frame"))] : found;
 }
 

@@ -229,7 +229,10 @@ export const createPlayer = (engine, sketch, onClose) => {
         if (isLoop(node)) {
           const known = cache.peek(keys.loops.get(node.path) || ""), from = known ? known.iterations : 0;
           const left = from <= node.repeat ? node.repeat - from : node.repeat;
-          node.body.forEach((inside) => add(inside, times * left));
+          if (node.bodies.length === 1) node.body.forEach((inside) => add(inside, times * left));
+          else node.bodies.slice(node.repeat - left, node.repeat).forEach((body) => {
+            body.forEach((inside) => add(inside, times));
+          });
           return;
         }
         if (cache.peek(keys.steps.get(node.path) || "") || node.kernel.kind === "source" || !times) return;

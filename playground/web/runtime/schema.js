@@ -10,6 +10,8 @@
  *  ["size", base, axis]      texels of a pass, by its path; of base "#terrain" or "#frame" those
  *  ["value", path]           what a uniform gets, by the path of the leaf's parameter
  *  ["picture", path, axis]   texels of the image file that a parameter names
+ *  ["iteration", loop]       the step of the loop at a path, from 0; ["iterations", loop]: its steps in all
+ *  ["fed", loop, name, axis] texels of what a loop feeds back under a name
  *  ["float", 2]              a number that is a float although it has no fraction: 1 / 2.0 is not exact
  *  ["text", words, a]        a, with the words that messages call it by: as its author wrote it
  *  @typedef {number | string | Array<any>} Expression */
@@ -91,14 +93,16 @@
  *  paths in `Sketch.values`; without `speed` it is 1.
  *  @typedef {{start: string, speed?: string, loop: string}} Clock */
 
-/** @typedef {{path: string, loop: true, repeat: Expression, countsFrames: boolean, followsTime: boolean,
+/** @typedef {{path: string, loop: true, countsFrames: boolean, followsTime: boolean,
  *             body: Node[], feedback: [string, Source | null, {path: string, output: string}][]}} Loop */
 
 /** @typedef {Leaf | Loop} Node */
 
-/** Every pass at every level, by path: its size, and what it has unless it says one.
- *  @typedef {{base: string, size?: [Expression, Expression], own?: [number, number], where: string}} Pass
- *  base: "#terrain", "#frame" or the path of the technique around it; own: of data; where: for errors. */
+/** Every pass at every level, by path: its size, and what it has unless it says one; its repeat.
+ *  @typedef {{base: string, size?: [Expression, Expression], own?: [number, number], where: string,
+ *             repeat?: Expression, counting?: boolean}} Pass
+ *  base: "#terrain", "#frame" or the path of the technique around it; own: of data; where: for errors;
+ *  counting: a size or a count inside names its iteration, so that each has sizes and counts of its own. */
 
 /** One row of the panel.
  *  @typedef {object} Shown

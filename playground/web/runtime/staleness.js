@@ -6,7 +6,7 @@
 // and all else that belongs to a frame are in no key where a loop counts frames: they are its iterations'.
 
 import { hash } from "./hash.js";
-import { isLoop, isRef, sourcesOf, stepsOf } from "./plan_nodes.js";
+import { everyVersion, isLoop, isRef, sourcesOf, stepsOf } from "./plan_nodes.js";
 
 /** @typedef {import("./schema.js").Kernel} Kernel */
 /** @typedef {import("./schema.js").Source} Source */
@@ -70,6 +70,8 @@ export function keysOf(plan, known) {
   /** Loops that a step changes with, for its next reader.
    *  @type {Map<string, Set<string>>} */
   const varies = new Map();
+  /** The loops of whose iterations each has another version of a node. @type {Map<PlanNode, Set<string>>} */
+  const sized = new Map();
 
   /** @param {Source | null} source @param {Map<string, string>} fed @returns {string} */
   const keyOf = (source, fed) => {
@@ -117,7 +119,8 @@ export function keysOf(plan, known) {
     keys.unfinished.set(path, found.unfinished);
     keys.raw.set(path, found.raw);
     keys.steps.set(path, found.shown);
-    const changes = new Set(step.inputs.flatMap(([, source]) => [...variesOf(source, varying)]));
+    const fromInputs = step.inputs.flatMap(([, source]) => [...variesOf(source, varying)]);
+    const changes = new Set([...fromInputs, ...(sized.get(step) ?? [])]);
     if (around.innermost && kernel.repeat === 1 && used.has("iteration")) changes.add(around.innermost);
     if (around.frames && clocked.size && !counts) changes.add(around.frames);
     varies.set(path, changes);
@@ -129,19 +132,26 @@ export function keysOf(plan, known) {
   function addLoop(loop, around, fed, varying) {
     const { path } = loop, steps = stepsOf(loop.body);
     const inside = [...new Set(steps.map((step) => step.path))].sort(), own = loopsIn(loop);
-    const outer = new Set(sourcesOf(loop).flatMap((source) => {
+    const ownSizes = sized.get(loop) ?? new Set();
+    const outer = new Set([...ownSizes, ...sourcesOf(loop).flatMap((source) => {
       const within = isRef(source) ? inside.includes(source.path) : own.has(source.loop);
       return within ? [] : [...variesOf(source, varying)];
-    }));
+    })]);
     const names = new Map(fed), changes = new Map(varying);
     for (const [name] of loop.feedback) {
       names.set(`${path} ${name}`, `fed back: ${path} ${name}`);
       changes.set(`${path} ${name}`, new Set([...outer, path]));
     }
     const within = { innermost: path, frames: loop.countsFrames ? path : around.frames };
-    for (const node of loop.body) add(node, within, names, changes);
+    noteSized(loop);
+    /** The keys of the steps inside, of each body; those of the last iteration's stay. */
+    const found = new Map();
+    for (const body of new Set([...loop.bodies.filter((one) => one !== loop.body), loop.body])) {
+      for (const node of body) add(node, within, names, changes);
+      found.set(body, inside.map((each) => keys.steps.get(each)));
+    }
     /** @type {any[]} */
-    const parts = [path, inside.map((each) => keys.steps.get(each))];
+    const parts = [path, loop.bodies.map((body) => found.get(body))];
     parts.push(loop.feedback.map(([name, first, ref]) => [name, keyOf(first, fed), ref.path, ref.output]));
     if (steps.some((step) => known.used(step.kernel).has("iterations"))) parts.push(loop.whole);
     const key = hash(JSON.stringify(parts));
@@ -152,7 +162,35 @@ export function keysOf(plan, known) {
       if (!changing.has(path)) continue;
       // What reads it from here on sees the last iteration.
       keys.steps.set(each, hash(JSON.stringify([key, each, loop.repeat])));
-      varies.set(each, new Set([...changing].filter((one) => one !== path)));
+      varies.set(each, new Set([...[...changing].filter((one) => one !== path), ...ownSizes]));
+    }
+  }
+
+  /** Note what a loop's iterations have in sizes or counts of their own. @param {LoopStep} loop */
+  function noteSized(loop) {
+    if (loop.bodies.length === 1) return;
+    /** @type {Map<string, {nodes: Set<PlanNode>, orders: Set<string>}>} by path, and whether a loop */
+    const versions = new Map();
+    /** @type {Map<PlanNode, number>} */
+    const numbers = new Map();
+    for (const body of new Set(loop.bodies)) {
+      /** @type {Map<string, PlanNode[]>} */
+      const now = new Map();
+      for (const node of everyVersion(body)) {
+        const key = `${isLoop(node)} ${node.path}`;
+        now.set(key, [...(now.get(key) ?? []), node]);
+        if (!numbers.has(node)) numbers.set(node, numbers.size);
+      }
+      for (const [key, nodes] of now) {
+        const known = versions.get(key) ?? { nodes: new Set(), orders: new Set() };
+        nodes.forEach((node) => known.nodes.add(node));
+        known.orders.add(nodes.map((node) => numbers.get(node)).join(" "));
+        versions.set(key, known);
+      }
+    }
+    for (const { nodes, orders } of versions.values()) {
+      if (orders.size === 1) continue;
+      for (const node of nodes) sized.set(node, new Set([...(sized.get(node) ?? []), loop.path]));
     }
   }
 
