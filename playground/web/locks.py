@@ -68,6 +68,19 @@ class Locks:
         made = made_by(self.sources[self._needed_by[TERRAIN]])
         return f"{made} was made in this size when the page was exported"
 
+    def of_metres(self) -> dict[str, str]:
+        """Return why the terrain's ``extent`` and ``relief`` cannot be changed, of those that cannot."""
+        leaves = {leaf.path: leaf for leaf in self.flat.leaves}
+        found: dict[str, str] = {}
+        for path, source in {**{path: path for path in self.sources}, **self._read_by}.items():
+            kernel = leaves[path].kernel
+            for name, names in (("extent", ("extent", "spacing")), ("relief", ("relief",))):
+                if any(map(kernel.reads, names)):
+                    found[name] = (
+                        f"{made_by(self.sources[source])} was made by this when the page was exported"
+                    )
+        return found
+
     def notes(self) -> list[str]:
         """Return a sentence on each source that a page has in the size of the picture at export."""
         if FRAME not in self._needed_by:

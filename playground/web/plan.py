@@ -100,6 +100,7 @@ class _Writing:
                 "relief": terrain.relief,
                 "base_elevation": terrain.base_elevation,
                 "locked": self.locks.of_terrain(),
+                "lockedMetres": self.locks.of_metres(),
                 "extentFollows": extent_follows_size(sketch, self.flat, self.given),
             },
             "camera": asdict(sketch.camera),

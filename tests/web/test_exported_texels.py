@@ -133,6 +133,8 @@ def test_what_a_source_was_made_of_is_locked_with_it():
     [node] = [node for node in data["nodes"] if node["path"] == "pieces"]
     assert node["inputs"] == []
     assert data["terrain"]["locked"] == "the terrain was made in this size when the page was exported"
+    why = "the terrain was made by this when the page was exported"
+    assert data["terrain"]["lockedMetres"] == {"extent": why, "relief": why}
 
 
 def test_kernels_that_a_source_reads_are_locked(tmp_path: Path):
