@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
+from playground.engine.sandbox import SandboxReport
 from playground.live.overlay import behind_text
 from playground.process.messages import Cancelled
 from playground.terrain import sources
@@ -17,6 +18,7 @@ from playground.terrain.source_kinds import SourceKind, Terrain
 from playground.workbench.session import Session
 
 from ..sketch_texts import map_of, passes
+from .test_session import FakeSandbox
 
 SOURCE = """#pragma source("slow", output = "height:r32f")
 uniform sampler2D given;   //! input("black")
@@ -103,3 +105,23 @@ def test_a_value_set_back_shows_at_once_and_stops_the_work(session, gate, cancel
     assert session.catch_up.behind is None
     np.testing.assert_array_equal(drawn(session), before)
     assert cancelled.wait(5.0)
+
+
+def test_a_first_picture_that_reads_a_file_is_drawn_once_the_source_has_ended(
+    session, any_engine, gate, tmp_path
+):
+    """What the sandbox has read is not new any more, though nothing was drawn with it yet."""
+    np.save(tmp_path / "hills.npy", np.eye(9, dtype=np.float32))
+    file = ("generation/heightmap", 'set = { elevation = "hills.npy" }')
+    text = passes(hills=file, height=("./slow", 'inputs = { given = "hills" }')) + map_of("height", "red")
+    (tmp_path / "other.toml").write_text("format = 1\nsize = 9\n" + text, encoding="utf-8")
+    gate.clear()
+    made = Session(any_engine, tmp_path / "other.toml", sandbox=FakeSandbox())
+    made.drafts._checks.sandbox.answer = SandboxReport(True)
+    for _ in range(5):
+        made.frame(SIZE)
+    assert made.catch_up.source == "height" and made.draws == 0
+    gate.set()
+    drawn(made)
+    assert made.draws == 1 and made.plan is not None
+    made.release()
