@@ -36,6 +36,7 @@ from playground.images.files import encode_png
 from playground.json_text import read_json
 from playground.remote.access import refusal
 from playground.remote.calls import Busy, Calls
+from playground.web.bundle import read_bundle
 from playground.workbench.control.controls import LARGEST_PICTURE, Behind, Controls
 
 LARGEST_REQUEST = 2**16
@@ -51,8 +52,7 @@ PATIENCE = 20.0
 _PAUSE = 0.1  # [s] between two looks at a window that computes frames
 """[s] for the window to answer a request by HTTP."""
 
-_PAGE = {"": ("remote.html", "text/html"), "remote.js": ("remote.js", "text/javascript")}
-_PAGE |= {"remote.css": ("remote.css", "text/css")}
+_BUNDLES = {"remote.js": "text/javascript", "remote.css": "text/css"}
 _WANTED = 'expected a JSON object, as {"playing": false}'
 _SILENT = logging.getLogger("playground.remote")  # who asks gets the sentence; the terminal does not
 _SILENT.setLevel(logging.CRITICAL + 1)
@@ -170,8 +170,10 @@ class Server:
         return await asyncio.wait_for(asyncio.wrap_future(self._calls.ask(function)), PATIENCE)
 
     async def _page(self, request: web.Request) -> web.Response:
-        name, kind = _PAGE[request.match_info["file"]]
-        text = files("playground.remote").joinpath("page", name).read_text("utf-8")
+        name = request.match_info["file"]
+        kind = _BUNDLES.get(name, "text/html")
+        page = files("playground.remote").joinpath("page", "remote.html")
+        text = read_bundle(name) if name else page.read_text("utf-8")
         return web.Response(text=text, content_type=kind, charset="utf-8")
 
     async def _state(self, _: web.Request) -> web.Response:

@@ -91,14 +91,28 @@ def make_sound(
 def frames_of_sound(
     values: Mapping[str, Value], size: tuple[int, int]
 ) -> Iterator[tuple[float, Mapping[str, NDArray[np.uint8]]]]:
-    """Yield what is shown of a sound at each sixtieth of a second from its beginning to its end."""
+    """Yield what is shown of a sound, played once, at each sixtieth of a second until it is silent again."""
+    once = {**values, "loop": False}
     number, last = 0, None
     while last is None or number <= last:
         end = floor(number / FRAME_RATE * RATE + 1e-6)
         length = _sound(values).length(end)
         last = last if length is None else ceil((length + analysis.SPAN) / RATE * FRAME_RATE)
-        yield number / FRAME_RATE, make_sound(values, size, end)
+        yield number / FRAME_RATE, make_sound(once, size, end)
         number += 1
+
+
+LEAD = analysis.SPAN / RATE
+"""[s] of a sound in which the silence before it is heard still: from then on each lap is as the next."""
+
+
+def laps_of_sound(
+    values: Mapping[str, Value], size: tuple[int, int]
+) -> Iterator[tuple[float, Mapping[str, NDArray[np.uint8]]]]:
+    """Yield what is shown of a sound that repeats, as ``frames_of_sound``, from its end on for ``LEAD``."""
+    again, length = {**values, "loop": True}, length_of_sound(values)
+    for number in range(floor(length * FRAME_RATE + 1e-6), ceil((length + LEAD) * FRAME_RATE) + 1):
+        yield number / FRAME_RATE, make_sound(again, size, floor(number / FRAME_RATE * RATE + 1e-6))
 
 
 def length_of_sound(values: Mapping[str, Value]) -> float:

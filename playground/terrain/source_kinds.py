@@ -73,6 +73,9 @@ class Recording:
     frames: Callable[[Mapping[str, Value], tuple[int, int]], Frames]  # from the file's beginning
     length: Callable[[Mapping[str, Value]], float]  # [s]
     clock: Mapping[str, str]  # start, speed, loop → the parameters that say them
+    laps: Callable[[Mapping[str, Value], tuple[int, int]], Frames] | None = None
+    # where it repeats and hears what came before: from its end, as long as the silence before it is heard
+    lead: float = 0.0  # [s] from the beginning until each lap is as the one before
 
 
 @dataclass(frozen=True, slots=True)

@@ -26,8 +26,10 @@ from playground.terrain.gaps import Voids, fill_no_data
 from playground.terrain.grid import Packing
 from playground.terrain.masks import read_mask
 from playground.terrain.over_time import (
+    LEAD,
     frames_of_sound,
     frames_of_video,
+    laps_of_sound,
     length_of_sound,
     length_of_video,
     make_sound,
@@ -212,7 +214,9 @@ SOURCES: dict[str, SourceKind] = {
         ("sound", "start", "loop", "content"),
         "the sound",
         moment=moment_of_sound,
-        recording=Recording(frames_of_sound, length_of_sound, {"start": "start", "loop": "loop"}),
+        recording=Recording(
+            frames_of_sound, length_of_sound, {"start": "start", "loop": "loop"}, laps_of_sound, LEAD
+        ),
         size=size_of_sound,
     ),
     "keyboard": SourceKind(

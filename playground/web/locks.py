@@ -44,21 +44,21 @@ class Locks:
         return self._own.get(path, False)
 
     def of_parameter(self, path: str, targets: tuple[str, ...]) -> str:
-        """Return why a parameter cannot be changed; "": it can."""
+        """Return why a parameter cannot be changed, a sentence; "": it can."""
         for target in targets:
             leaf, _, name = target.rpartition(".")
             if leaf in self.sources and not self._plays_by(leaf, name):
-                return f"{made_by(self.sources[leaf])} was made when the page was exported"
+                return _sentence(f"{made_by(self.sources[leaf])} was made when the page was exported")
             if leaf in self._read_by:
                 made = made_by(self.sources[self._read_by[leaf]])
-                return f"{made} was made of this when the page was exported"
+                return _sentence(f"{made} was made of this when the page was exported")
             if target in self._needed_by:
                 made = made_by(self.sources[self._needed_by[target]])
-                return f"{made} was made in this size when the page was exported"
+                return _sentence(f"{made} was made in this size when the page was exported")
             kernel = next((one.kernel for one in self.flat.leaves if one.path == leaf), None)
             parameter = kernel.parameter(name) if kernel else None
             if parameter is not None and parameter.widget.kind == "file":
-                return "the image was chosen when the page was exported"
+                return "The image was chosen when the page was exported."
         return self._replaced_around(path)
 
     def of_terrain(self) -> str:
@@ -66,7 +66,7 @@ class Locks:
         if TERRAIN not in self._needed_by:
             return ""
         made = made_by(self.sources[self._needed_by[TERRAIN]])
-        return f"{made} was made in this size when the page was exported"
+        return _sentence(f"{made} was made in this size when the page was exported")
 
     def of_metres(self) -> dict[str, str]:
         """Return why the terrain's ``extent`` and ``relief`` cannot be changed, of those that cannot."""
@@ -76,9 +76,8 @@ class Locks:
             kernel = leaves[path].kernel
             for name, names in (("extent", ("extent", "spacing")), ("relief", ("relief",))):
                 if any(map(kernel.reads, names)):
-                    found[name] = (
-                        f"{made_by(self.sources[source])} was made by this when the page was exported"
-                    )
+                    made = made_by(self.sources[source])
+                    found[name] = _sentence(f"{made} was made by this when the page was exported")
         return found
 
     def notes(self) -> list[str]:
@@ -132,7 +131,7 @@ class Locks:
             rest = path.removeprefix(f"{around}.")
             technique = self.flat.specs[around].technique
             if rest != path and isinstance(technique, Graph) and not is_exported(technique, rest):
-                return f"a faster form of {around} runs in this page, which does not have it"
+                return f"A faster form of {around} runs in this page, which does not have it."
         return ""
 
     def _has_own_size(self, leaf: Leaf) -> bool:
@@ -173,6 +172,10 @@ class Locks:
                 raise self.flat.user(source).error(message)
             elif kind == named_numbers.COUNTER and where:
                 self._note_names(where, self.flat.specs[where].repeat, source, known, repeat=True)
+
+
+def _sentence(text: str) -> str:
+    return f"{text[:1].upper()}{text[1:]}."
 
 
 def made_by(leaf: Leaf) -> str:

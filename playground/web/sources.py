@@ -1,8 +1,8 @@
 """Write down what the processor makes: the texels of sources, of a film or a sound frame by frame.
 
 A file that is played is written from its beginning as far as that fits into ``MOST_BYTES`` of a page
-and ``LONGEST`` seconds; what comes later stays as the last frame is, and a sound that repeats begins in
-silence each time. What a window feeds has nothing to show in a page.
+and ``LONGEST`` seconds; what comes later stays as the last frame is. Of a sound that repeats, a page has
+also what is heard of its end in the next lap. What a window feeds has nothing to show in a page.
 """
 
 from __future__ import annotations
@@ -69,7 +69,21 @@ def _recorded(recording: Recording, step: Step, what: str, blobs: Blobs) -> Sour
             one["frames"].append(other["blob"])
     else:
         note = f"{step.path}: {what} is exported as it is, {length:.3g} s"
+    if recording.laps is not None:
+        _add_laps(found, recording, step, blobs)
     return SourceData(found, note)
+
+
+def _add_laps(found: list[dict[str, Any]], recording: Recording, step: Step, blobs: Blobs) -> None:
+    """Add to each texture what shows from the end of a file on that repeats."""
+    assert recording.laps is not None
+    times: list[float] = []
+    for one in found:
+        one["laps"] = {"lead": recording.lead, "times": times, "frames": []}
+    for time, arrays in recording.laps(step.values, step.size):
+        times.append(time)
+        for one, other in zip(found, _textures(step, arrays, blobs), strict=True):
+            one["laps"]["frames"].append(other["blob"])
 
 
 def _textures(step: Step, arrays: Mapping[str, NDArray[Any]], blobs: Blobs) -> list[dict[str, Any]]:

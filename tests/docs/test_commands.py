@@ -295,7 +295,16 @@ def test_every_option_that_is_named_exists():
 
     plugin = (ROOT / "playground" / "shots" / "plugin.py").read_text("utf-8")
     known = options(get_command(cli.app)) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
-    known |= {"--help", "--reuse-window", "--at", "--strict", "--dist", "--check"}  # of other programs
+    known |= {
+        "--help",
+        "--reuse-window",
+        "--at",
+        "--strict",
+        "--dist",
+        "--check",
+        "--to",
+        "--execute",
+    }  # of others
     named = {o for page in PAGES for o in re.findall(r"(?<![\w-])--[a-z][a-z-]+", page.read_text("utf-8"))}
     assert named and not named - known - {"--no-install-recommends"}
 
@@ -319,12 +328,13 @@ SMALL = {
     "python tests/benchmarks/lighting.py": ["--size", "65", "--rounds", "1"],
 }
 IN_HILLS = [c for c in OTHERS if re.fullmatch(r"(python -m )?pytest hills.*", c)]
+EXPORT = "jupyter nbconvert --to terrain_html diamond_square.ipynb"
 OF_PLAY = [c for c in OTHERS if c.startswith("./play test ")]
 UPDATE = "pytest hills --shots-update"
 
 
 def test_every_other_program_is_known():
-    assert set(OTHERS) == {*SMALL, *IN_HILLS, *OF_PLAY}
+    assert set(OTHERS) == {*SMALL, *IN_HILLS, *OF_PLAY, EXPORT}
     assert {"pytest hills", UPDATE} <= set(IN_HILLS)
 
 

@@ -65,6 +65,11 @@ class Browser:
             raise
         self._base += f"/{answer['sessionId']}"
 
+    @property
+    def process(self) -> int:
+        """The id of the driver's process, which began all of the browser's."""
+        return self._driver.pid
+
     def open(self, url: str) -> None:
         """Load a page."""
         self._ask("POST", "/url", {"url": url})
@@ -90,7 +95,11 @@ class Browser:
     def press(self, *keys: str) -> None:
         """Press keys one after the other, wherever the focus is."""
         actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
-        self._ask("POST", "/actions", {"actions": [{"type": "key", "id": "keys", "actions": actions}]})
+        self.act({"type": "key", "id": "keys", "actions": actions})
+
+    def act(self, *sources: dict[str, Any]) -> None:
+        """Let devices act as a hand would: sources of WebDriver's actions."""
+        self._ask("POST", "/actions", {"actions": list(sources)})
 
     def drag(self, selector: str, start: tuple[int, int], end: tuple[int, int]) -> None:
         """Drag from one place to another, in pixels from an element's middle."""
@@ -99,7 +108,7 @@ class Browser:
         actions: list[dict[str, object]] = [{**move, "x": start[0], "y": start[1]}]
         actions += [{"type": "pointerDown", "button": 0}, {**move, "x": end[0], "y": end[1]}]
         actions += [{"type": "pointerUp", "button": 0}]
-        self._ask("POST", "/actions", {"actions": [{"type": "pointer", "id": "hand", "actions": actions}]})
+        self.act({"type": "pointer", "id": "hand", "actions": actions})
 
     def emulate(self, what: str, **settings: object) -> None:
         """Behave as another device or medium: a command of DevTools' domain Emulation."""

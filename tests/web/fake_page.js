@@ -1,10 +1,11 @@
 // fake_page.js -- a page over a player that draws without WebGL what its state says, for tests.
 
 import { createPage } from "../../playground/web/runtime/sketch_page.js";
-import { ENGLISH } from "../../playground/web/runtime/words.js";
+import { PAGE_WORDS } from "../../playground/web/runtime/page_words.js";
 
-/** What a test looks at, and what it asks for: [ms] a million pixels take, an error to throw. */
-const probe = { slow: 0, error: "", frames: [], states: [], opened: [], page: null };
+/** What a test looks at, and what it asks for: [ms] a million pixels take, and a third of the programs, an
+ *  error to throw. */
+const probe = { slow: 0, compiling: 10, error: "", frames: [], states: [], loads: [], opened: [], page: null };
 globalThis.probe = probe;
 
 const REPEATS = 24;
@@ -25,10 +26,12 @@ function open(sketch) {
       };
     },
     async load(progress) {
+      const load = { map: state.map ?? null, before: probe.states.length };
       for (let done = 0; done <= 3; done++) {
         progress?.(done, 3);
-        await new Promise((next) => setTimeout(next, 10));
+        await new Promise((next) => setTimeout(next, probe.compiling));
       }
+      probe.loads.push({ ...load, after: probe.states.length });
     },
     render() {
       if (probe.error) throw new Error(probe.error);
@@ -87,7 +90,7 @@ function open(sketch) {
 addEventListener("DOMContentLoaded", () => {
   const data = JSON.parse(document.getElementById("playground-page").textContent);
   probe.page = createPage(document.getElementById("playground"), data, { open }, {
-    words: ENGLISH,
+    words: PAGE_WORDS.en,
     poster: document.getElementById("playground-poster"),
     repeats: (player) => player.repeats,
     openCode: (host) => host.append(Object.assign(document.createElement("textarea"), { value: "void main" })),

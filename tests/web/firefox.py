@@ -6,12 +6,14 @@ Without a screen it has no WebGL, so it gets an X server of its own, where Mesa 
 from __future__ import annotations
 
 import asyncio
+import base64
 import importlib.util
 import json
 import os
 import re
 import shutil
 import subprocess
+import time
 from itertools import count
 from pathlib import Path
 from types import TracebackType
@@ -38,6 +40,10 @@ _PREFERENCES = {
     "services.settings.server": "data:,#none",
     "toolkit.telemetry.enabled": False,
 }
+_MIDDLE = """const found = document.querySelector(arguments[0]);
+found.scrollIntoView({ block: "center", behavior: "instant" });
+const box = found.getBoundingClientRect();
+return [box.x + box.width / 2, box.y + box.height / 2]"""
 _LISTENING = re.compile(r"WebDriver BiDi listening on (ws://\S+)")
 
 
@@ -67,6 +73,7 @@ class Firefox:
         )
         self._loop = asyncio.new_event_loop()
         self._numbers = count(1)
+        self._errors: list[str] = []
         try:
             self._loop.run_until_complete(self._connect(self._address()))
         except BaseException:
@@ -92,6 +99,52 @@ class Firefox:
         assert answer["type"] == "success", answer["exceptionDetails"]["text"]
         value = answer["result"].get("value")
         return None if value is None else json.loads(value)
+
+    def wait(self, condition: str, *arguments: object) -> Any:
+        """Return what an expression gives as soon as that is true."""
+        end = time.monotonic() + GENEROUS
+        while not (found := self.run(f"return {condition}", *arguments)):
+            assert time.monotonic() < end, f"never: {condition}; log: {self.log()}"
+            time.sleep(0.05)
+        return found
+
+    def click(self, selector: str) -> None:
+        """Click on the middle of an element, or on what covers it."""
+        self._point(selector, (0, 0))
+
+    def drag(self, selector: str, start: tuple[int, int], end: tuple[int, int]) -> None:
+        """Drag from one place to another, in pixels from an element's middle."""
+        self._point(selector, start, end)
+
+    def press(self, *keys: str) -> None:
+        """Press keys one after the other, wherever the focus is."""
+        actions = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
+        self.act({"type": "key", "id": "keys", "actions": actions})
+
+    def log(self) -> list[str]:
+        """Return the errors on the console since the last call."""
+        self.run("return 0")  # what was said before its answer has come by then
+        found, self._errors = self._errors, []
+        return found
+
+    def _point(self, selector: str, *places: tuple[int, int]) -> None:
+        x, y = self.run(_MIDDLE, selector)
+        first, *rest = [{"type": "pointerMove", "x": round(x + a), "y": round(y + b)} for a, b in places]
+        press, let_go = {"type": "pointerDown", "button": 0}, {"type": "pointerUp", "button": 0}
+        self.act({"type": "pointer", "id": "hand", "actions": [first, press, *rest, let_go]})
+
+    def act(self, *sources: dict[str, Any]) -> None:
+        """Let devices act as a hand would: sources of WebDriver's actions."""
+        self._ask("input.performActions", context=self._context, actions=list(sources))
+
+    def size(self, width: int, height: int) -> None:
+        """Give the page another size, in CSS pixels."""
+        viewport = {"width": width, "height": height}
+        self._ask("browsingContext.setViewport", context=self._context, viewport=viewport)
+
+    def picture(self) -> bytes:
+        """Return a PNG of what the window shows of the page."""
+        return base64.b64decode(self._ask("browsingContext.captureScreenshot", context=self._context)["data"])
 
     def __enter__(self) -> Firefox:
         return self
@@ -120,6 +173,7 @@ class Firefox:
         await self._answer("session.new", {"capabilities": {}})
         tree = await self._answer("browsingContext.getTree", {})
         self._context = tree["contexts"][0]["context"]
+        await self._answer("session.subscribe", {"events": ["log.entryAdded"]})
 
     def _ask(self, method: str, **parameters: object) -> Any:
         return self._loop.run_until_complete(self._answer(method, parameters))
@@ -130,6 +184,8 @@ class Firefox:
         async with asyncio.timeout(GENEROUS):
             while True:
                 told = await self._socket.receive_json()
+                if told.get("method") == "log.entryAdded" and told["params"]["level"] == "error":
+                    self._errors.append(str(told["params"]["text"]))
                 if told.get("id") == number:
                     assert told["type"] == "success", told
                     return told["result"]

@@ -1,6 +1,7 @@
 // my_version_entry.js -- the page's engine with the editor on it, for tests: a sketch is edited and saved.
 
 import { createEditor } from "../../playground/web/runtime/editor.js";
+import { EDITOR_WORDS } from "../../playground/web/runtime/editor_words.js";
 import { createEngine } from "../../playground/web/runtime/engine.js";
 import { packOf, versionFiles } from "../../playground/web/runtime/my_version.js";
 import { createRecovery } from "../../playground/web/runtime/recovery.js";
@@ -14,8 +15,8 @@ export async function open(page) {
     await player.load();
     player.render();
     const done = () => finished(engine.parts.context.gl);
-    const recovery = createRecovery(document.body, { poster: () => {}, limit: 1e-9 });
-    const editor = createEditor(document.body, player, { shown: async () => { player.render(); await done(); } });
+    const recovery = createRecovery(document.body, { words: EDITOR_WORDS.en, poster: () => {}, limit: 1e-9 });
+    const editor = createEditor(document.body, player, { words: EDITOR_WORDS.en, shown: async () => { player.render(); await done(); } });
     const rows = new Map(sketch.shown.map((row) => [row.path, row]));
     const version = async (values, camera) => {
         const made = {

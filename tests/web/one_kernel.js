@@ -4,6 +4,7 @@ import { complaints } from "../../playground/web/runtime/complaints.js";
 import { libraryOf } from "../../playground/web/runtime/name_suggestions.js";
 import { finished } from "../../playground/web/runtime/waiting.js";
 
+export { EDITOR_WORDS } from "../../playground/web/runtime/editor_words.js";
 export { createEditor } from "../../playground/web/runtime/editor.js";
 export { createGuard, keyOf } from "../../playground/web/runtime/last_good.js";
 export { createRecovery } from "../../playground/web/runtime/recovery.js";

@@ -326,6 +326,26 @@ def test_any_texture_is_shown_from_above(pages: Pages, drawn: Engine, sketch: Ma
     assert pages.picture(whole.name, map=None).levels_off(before.pixels) == 0
 
 
+def test_what_a_load_has_compiled_is_drawn_without_waiting_for_the_compiler(pages: Pages, sketch: Made):
+    """The map of a texture, its levels, and what shows a picture on a canvas."""
+    begun(pages, sketch(CHAIN))
+    script = """const { gl, parallel } = engine.parts.context, waited = [];
+    const ask = gl.getProgramParameter.bind(gl);
+    gl.getProgramParameter = (program, what) => {
+      const waits = what === gl.LINK_STATUS && !ask(program, parallel.COMPLETION_STATUS_KHR);
+      if (waits) waited.push(program);
+      return ask(program, what);
+    };
+    const player = figures.toy;
+    player.render();
+    player.state.map = { path: "seed", output: "height", values: {} };
+    await player.load();
+    player.render();
+    player.drawTo(document.createElement("canvas").getContext("2d"));
+    return [!!parallel, waited.length]"""
+    assert pages.run(f"return (async () => {{ {script} }})()") == [True, 0]
+
+
 def test_a_device_without_16_bits_rounds_to_them(pages: Pages, sketch: Made):
     """Numbers beyond 0 to 1 stop there, as they do in the format itself."""
     sixteen = SEED.replace("r32f", "r16").replace("0.5;", "1.7;")

@@ -75,6 +75,47 @@ def test_a_page_draws_a_sketch_as_the_engine_does(
     every.run("figures[arguments[0]].close()", name)
 
 
+@pytest.fixture(scope="module")
+def unfiltered(pages: Pages, drawn: Engine, written: dict[str, Any]) -> Pages:
+    """Give the page on a device that filters no textures of floats, as many phones."""
+    pages.begin(written, without=["OES_texture_float_linear"])
+    return pages
+
+
+@pytest.mark.parametrize("name", shipped_sketches())
+def test_a_device_that_filters_no_floats_draws_a_sketch_within_3_levels(
+    name: str, unfiltered: Pages, drawn: Engine, written: dict[str, Any]
+):
+    data = next(one for one in written["sketches"] if one["name"] == name)
+    unfiltered.open(data)
+    frame = drawn.render(small(name), size=SIZE)
+    bound = 3 if reads_filtered_floats(data) else 0
+    assert unfiltered.picture(name).levels_off(frame.array) <= bound
+    unfiltered.run("figures[arguments[0]].close()", name)
+
+
+def test_most_sketches_read_floats_with_a_filter(written: dict[str, Any]):
+    """As many as were counted when the page was planned, or the test before shows little."""
+    assert sum(map(reads_filtered_floats, written["sketches"])) >= 58
+
+
+def reads_filtered_floats(data: dict[str, Any]) -> bool:
+    """Whether a sketch reads a texture of 32-bit floats, as a pass makes it, with a linear filter."""
+    steps = [step for node in data["nodes"] for step in (node["body"] if "body" in node else [node])]
+    kernels = {step["path"]: data["kernels"][step["kernel"]] for step in steps}
+    fed = {(node["path"], name): last for node in data["nodes"] for name, _, last in node.get("feedback", ())}
+    for step in steps:
+        wired = dict(step["inputs"])
+        for each in kernels[step["path"]]["inputs"]:
+            of = wired.get(each["name"]) or {}
+            of = fed.get((of.get("loop"), of.get("name")), of)
+            if each["sampling"]["filter"] == "linear" and of.get("path") in kernels:
+                outputs = {one["name"]: one["format"] for one in kernels[of["path"]]["outputs"]}
+                if outputs[of["output"]].endswith("32f"):
+                    return True
+    return False
+
+
 def settings_of(sketch: Sketch, data: dict[str, Any]) -> Iterator[Settings]:
     """Yield settings at random, the same in every run, in sizes that are drawn at once."""
     chance = random.Random(sketch.name)

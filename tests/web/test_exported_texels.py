@@ -111,7 +111,7 @@ def rows(name: str) -> dict[str, dict[str, Any]]:
 
 def test_terrain_of_a_file_has_its_size_and_one_that_is_computed_has_any():
     made, computed = (page_data([load(name)])["sketches"][0] for name in ("jacksboro", "fbm"))
-    assert made["terrain"]["locked"].startswith("the elevation file's terrain was made in this size")
+    assert made["terrain"]["locked"].startswith("The elevation file's terrain was made in this size")
     assert computed["terrain"]["locked"] == ""
     assert any("elevation" in note for note in made["notes"])
 
@@ -127,13 +127,13 @@ def test_what_a_source_was_made_of_is_locked_with_it():
     """A page does not draw the passes that only the source read, and says why they cannot be changed."""
     [data] = page_data([load("from_example")])["sketches"]
     found = {row["path"]: row["locked"] for row in data["shown"]}
-    assert found["pieces.follow"] == "the terrain was made when the page was exported"
-    assert found["ridges.texels"].endswith("was made when the page was exported")
+    assert found["pieces.follow"] == "The terrain was made when the page was exported."
+    assert found["ridges.texels"].endswith("was made when the page was exported.")
     assert not found["light.sun"] and not found["view.exposure"]
     [node] = [node for node in data["nodes"] if node["path"] == "pieces"]
     assert node["inputs"] == []
-    assert data["terrain"]["locked"] == "the terrain was made in this size when the page was exported"
-    why = "the terrain was made by this when the page was exported"
+    assert data["terrain"]["locked"] == "The terrain was made in this size when the page was exported."
+    why = "The terrain was made by this when the page was exported."
     assert data["terrain"]["lockedMetres"] == {"extent": why, "relief": why}
 
 
@@ -154,9 +154,9 @@ def test_kernels_that_a_source_reads_are_locked(tmp_path: Path):
     (tmp_path / "sketch.toml").write_text(text + map_of("noise"))
     [data] = page_data([load(tmp_path)])["sketches"]
     found = {row["path"]: row["locked"] for row in data["shown"]}
-    made = "the table of ranks was made of this when the page was exported"
+    made = "The table of ranks was made of this when the page was exported."
     assert (found["first.rise"], found["looped.gain"], found["other.rise"]) == (made, made, "")
-    assert found["noise.widest"] == "the table of ranks was made when the page was exported"
+    assert found["noise.widest"] == "The table of ranks was made when the page was exported."
     assert found["noise.seed"] == ""
 
 
@@ -201,13 +201,13 @@ def test_what_would_need_another_plan_is_locked_and_nothing_else_is(name: str, i
         locked |= {shown.path} if needs_another else set()
     if name == "inner":
         assert locked == {"height.base.start"}
-        assert found["height.base.start"]["locked"].startswith("a faster form of height runs in this page")
+        assert found["height.base.start"]["locked"].startswith("A faster form of height runs in this page")
 
 
 def test_a_fixed_image_is_not_locked_away_from_its_sentence():
     found = rows("drape")
     [why] = {row["locked"] for row in found.values() if row["widget"] == "file" and "image" in row["locked"]}
-    assert why == "the image was chosen when the page was exported"
+    assert why == "The image was chosen when the page was exported."
 
 
 # ── in a browser ─────────────────────────────────────────────────────────────

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import io
 import os
+import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +27,7 @@ from ..report.browser import MESA, Browser
 pytestmark = pytest.mark.slow
 
 EYE = (210.0, 30.0, 9000.0, 2000.0, 1800.0, 100.0, 35.0)
+SETTLED = 0.4  # [s] of page_address.js
 LINK = "camera=" + ",".join(f"{number:g}" for number in EYE)
 INFO = "document.querySelector('.info').textContent"
 
@@ -150,3 +152,37 @@ def test_orbiting_draws_and_the_picture_is_whole_again_at_rest(
     asked = browser.run("return performance.getEntriesByType('resource').map((one) => one.name)")
     assert [name for name in asked if not name.startswith(("data:", "blob:"))] == []
     assert browser.log() == []
+
+
+def test_a_drag_writes_a_camera_into_the_address_only_where_one_sees(browser: Browser, exported: Any):
+    for name, sees in (("hex_tiled", True), ("white_noise_image", False)):
+        _, url = exported(name)
+        opened(browser, url)
+        browser.drag("canvas", (-60, 0), (60, 20))
+        at_rest(browser)
+        time.sleep(2 * SETTLED)
+        assert browser.run("return location.hash.includes('camera=')") is sees
+    assert browser.log() == []
+
+
+def test_a_french_page_has_a_french_editor(browser: Browser, exported: Any):
+    """What a compiler complains of stays English, as it is in the terminal."""
+    _, url = exported("lighting_hill")
+    path = Path(url.removeprefix("file://"))
+    french = path.with_name("colline.html")
+    french.write_text(path.read_text("utf-8").replace(' lang="en"', ' lang="fr"', 1), "utf-8")
+    opened(browser, french.as_uri())
+    browser.run(
+        "[...document.querySelectorAll('[role=tab]')].find((tab) => /Code/.test(tab.textContent)).click()"
+    )
+    browser.wait("document.querySelector('.editor')")
+    shown = browser.run("return document.querySelector('.editor').innerText")
+    assert "Fichier" in shown and "Rétablir ce fichier" in shown and "Échap puis Tab" in shown
+    assert "Comme dans l’esquisse" in shown
+    browser.run(
+        "const area = document.querySelector('.code-text'); area.value += ' int a = ;';"
+        "area.dispatchEvent(new Event('input'))"
+    )
+    status = "document.querySelector('.editor-status').textContent"
+    browser.wait(f"/^1 erreur|^. erreurs/.test({status})")
+    assert browser.run(f"return {status}").endswith("l’image est la dernière qui marchait")

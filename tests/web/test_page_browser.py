@@ -14,6 +14,7 @@ import pytest
 
 from ..report.browser import MISSING, Browser
 from . import fake_page
+from .firefox import Firefox
 from .node import MISSING as NO_NODE
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING or NO_NODE), reason=MISSING or NO_NODE)]
@@ -41,7 +42,7 @@ FILM = {
 class Page:
     """One page in the browser."""
 
-    def __init__(self, browser: Browser, url: str) -> None:
+    def __init__(self, browser: Browser | Firefox, url: str) -> None:
         self.browser, self.url = browser, url
 
     def open(self, fragment: str = "") -> None:
@@ -74,7 +75,7 @@ class Page:
         self.act({"type": "key", "id": "keys", "actions": actions})
 
     def act(self, *sources: dict[str, Any]) -> None:
-        self.browser._ask("POST", "/actions", {"actions": list(sources)})
+        self.browser.act(*sources)
         self.at_rest()
 
     def drag(self, *path: tuple[int, int], button: int = 0, finger: bool = False, held: str = "") -> None:
@@ -409,6 +410,21 @@ def test_a_map_is_moved_enlarged_and_read(page: Page):
     assert page.state(".map") is None
 
 
+def test_the_picture_stays_while_a_maps_programs_are_compiled(page: Page):
+    page.open()
+    page.run("probe.compiling = 150")
+    before = page.run("return document.querySelector('canvas').toDataURL()")
+    page.run("const menu = document.querySelector('.textures'); menu.value = '0'; menu.onchange()")
+    page.browser.wait("/\\d+ of 3/.test(document.querySelector('.notes').textContent)")
+    page.browser.drag("canvas", (-60, 0), (60, 20))  # nothing is there yet to be moved
+    assert page.run("return document.querySelector('canvas').toDataURL()") == before
+    page.at_rest()
+    load = page.run("return probe.loads.find(({ map }) => map)")
+    assert load["before"] == load["after"], "nothing is drawn that would wait for a compiler"
+    assert page.state(".map.path") == "height"
+    assert page.run("return document.querySelector('canvas').toDataURL()") != before
+
+
 def test_the_address_holds_the_state_and_brings_it_back(page: Page):
     page.run("probe.page.session.set('height.level', 0.75); probe.page.session.set('light.sun', [10, 20])")
     page.drag((300, 400), (360, 400))
@@ -446,6 +462,39 @@ def test_hostile_texts_stay_texts(wide: Browser, script: Path, tmp_path: Path):
     page.run("const s = document.querySelector('.textures'); s.value = '0'; s.onchange()")
     page.keys("/", "i")
     assert page.run("return [document.querySelectorAll('img[src=x]').length, document.title]") == [0, bad]
+    no_complaint(page)
+
+
+MADE = "The triangulation was made when the page was exported."
+WHY = """const visible = (one) => one.checkVisibility();
+const reads = (one) => one.matches("h2, h3, summary") ? "# " + one.textContent
+    : one.matches(".row") ? one.querySelector(".name").textContent : one.textContent;
+const all = "h2, h3, summary, .row, .why-locked, .row .note";
+const list = [...document.querySelectorAll(".panel .list")].find(visible);
+return [...list.querySelectorAll(all)].filter(visible).map(reads)"""
+
+
+def test_why_rows_are_locked_is_said_once_in_each_group(wide: Browser, script: Path, tmp_path: Path):
+    def row(name: str, group: str = "", locked: str = "") -> dict[str, Any]:
+        return fake_page.row(name, "float", "slider", 0.5, ranges=[[0, 1]], group=group, locked=locked)
+
+    shown = [row("mesh.a", locked=MADE), row("mesh.b", "Points", MADE), row("mesh.c", "Points", MADE)]
+    shown += [row("land.d"), row("land.e", locked="Alone."), row("land.f", locked=MADE)]
+    shown += [row("land.g", locked=MADE), row("land.h", "Points", MADE), row("land.i", "Points", MADE)]
+    for number in (0, 2):
+        shown[number]["main"] = 1 + number
+    data = fake_page.page(shown=shown, choices=[])
+    page = Page(wide, fake_page.write(script, tmp_path / "page.html", data).as_uri())
+    page.open()
+    page.run(OPEN_ALL)
+    main, mesh = ["# Main parameters", MADE, "A", "C"], ["# Mesh", MADE, "A", "# Points", "B", "C"]
+    land = ["# Land", "D", "E", "Alone.", MADE, "F", "G", "# Points", MADE, "H", "I"]
+    assert page.run(WHY)[: len(main + mesh + land)] == main + mesh + land
+    told = "[...document.querySelectorAll('.panel .locked [type=range]')].map((one) => one.ariaDescription)"
+    assert page.run(f"return {told}") == [MADE] * 5 + ["Alone."] + [MADE] * 4
+    page.run("const field = document.querySelector('[type=search]'); field.value = 'mesh'; field.oninput()")
+    assert page.run(WHY) == ["# Mesh", MADE, "A", "B", "C"]
+    page.keep("locked")
     no_complaint(page)
 
 

@@ -149,3 +149,21 @@ def test_a_kernel_of_ones_own_may_be_as_loose_as_desktops_are(pages: Pages, draw
     (tmp_path / "terrain.glsl").write_text(LOOSE, "utf-8")
     (tmp_path / "loose.toml").write_text(f"format = 1\nsize = 33\n{map_of_height()}", "utf-8")
     agree(pages, drawn, load(tmp_path / "loose.toml"), 0.0)
+
+
+EYES = "#version 330\nuniform vec2 eye; out vec4 colour;\nvoid main() { colour = vec4(eye, 0.5, 1.0); }\n"
+
+
+def test_only_a_picture_that_the_camera_changes_is_steered(pages: Pages, tmp_path: Path):
+    """A kernel that names what the engine gives of a camera; a plain shader may call anything `eye`."""
+    (tmp_path / "eyes.frag").write_text(EYES, "utf-8")
+    land = load("white_noise").with_values({"size": "33"})
+    pages.begin(data := page_data([land, load("life"), load(tmp_path / "eyes.frag")], frame=SIZE))
+    found = []
+    for one in data["sketches"]:
+        pages.open(one)
+        pages.picture(one["name"])
+        found.append(pages.run("return figures[arguments[0]].looks", one["name"]))
+    assert found == [True, False, False]
+    pages.picture(land.name, map={"path": "height", "output": "height", "values": {}})
+    assert not pages.run("return figures[arguments[0]].looks", land.name)

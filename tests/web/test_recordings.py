@@ -52,13 +52,16 @@ def leaf(page: dict[str, Any]) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize("loop", [True, False])
-@pytest.mark.parametrize("kind", ["video", "sound"])
-def test_every_moment_shows_the_engines_texels(node: Node, tmp_path: Path, kind: str, loop: bool):
+@pytest.mark.parametrize(("kind", "samples"), [("video", 0), ("sound", 44_100), ("sound", 11_025)])
+def test_every_moment_shows_the_engines_texels(
+    node: Node, tmp_path: Path, kind: str, samples: int, loop: bool
+):
+    """A sound that repeats hears its end in the next lap; a short one, several laps before."""
     if kind == "video":
         uneven_film(tmp_path / "f.mkv", [0, 40, 50, 120, 500, 510, 900])
         sketch = made(tmp_path, kind, "f.mkv", loop)
     else:
-        sound(tmp_path / "f.wav", np.sin(np.arange(44_100)[None] / 30) * 0.4)
+        sound(tmp_path / "f.wav", np.sin(np.arange(samples)[None] / 30) * 0.4)
         sketch = made(tmp_path, kind, "f.wav", loop)
     page = page_data([sketch])
     [texture] = leaf(page)["data"]
@@ -69,13 +72,12 @@ def test_every_moment_shows_the_engines_texels(node: Node, tmp_path: Path, kind:
     values = {p.name: p.default for p in technique.parameters}
     values |= {kind: str(tmp_path / f"f.{'mkv' if kind == 'video' else 'wav'}"), "loop": loop}
     assert registered.moment
-    for _ in range(40):
-        playing: dict[str, Any] = {"start": chance.randint(-30, 60) / 60, "loop": loop}
+    for turn in range(60):  # a page may set it to repeat, or no longer
+        repeats = loop if turn % 3 else not loop
+        playing: dict[str, Any] = {"start": chance.randint(-30, 60) / 60, "loop": repeats}
         if kind == "video":
             playing["speed"] = chance.choice([1.0, -1.0, 2.0, 0.5])
-        time = chance.randint(0, 100) / 60
-        if kind == "sound" and loop and playing["start"] + time >= 1.0:
-            continue  # the engine's still has the end in its ear, a page's begins in silence again
+        time = chance.randint(0, 300) / 60
         found = node.call("recordings.js", "blobAt", texture, playing, time)
         moment = registered.moment(values | playing, Now(time, LiveInputs()))
         [texels] = registered.make(values | playing, tuple(texture["size"]), moment).values()
@@ -96,4 +98,4 @@ def test_what_says_which_second_shows_may_be_changed_and_the_rest_not(tmp_path: 
     page = page_data([made(tmp_path, "video", "f.mkv", False)])
     locked = {row["path"]: row["locked"] for row in page["sketches"][0]["shown"]}
     assert {path for path, why in locked.items() if why} == {"a.video"}
-    assert locked["a.video"] == "the film was made when the page was exported"
+    assert locked["a.video"] == "The film was made when the page was exported."

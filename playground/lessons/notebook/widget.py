@@ -12,6 +12,7 @@ import traitlets
 
 from playground.errors import PlaygroundError
 from playground.lessons.notebook.controls import Control
+from playground.lessons.notebook.saved import STATE, saved_figure, shipped_runtime
 from playground.web.bundle import read_bundle
 
 
@@ -71,9 +72,13 @@ class PictureWidget(anywidget.AnyWidget):
             self.send({"drawn": True})  # what the browser waits for before it asks for another
 
     def _repr_mimebundle_(self, **kwargs: Any) -> Any:
-        """Show the picture where no widgets can be: in a saved notebook, on a page."""
+        """Show the figure, or its picture, where no widgets can be: in a saved notebook, on a page."""
         found = super()._repr_mimebundle_(**kwargs)
         if found is None:
             return None
         data, metadata = found if isinstance(found, tuple) else (found, {})
-        return {**data, "image/png": b64encode(self.picture).decode()}, metadata
+        shown = {**data, "image/png": b64encode(self.picture).decode()}
+        if self.page:
+            state = {name: getattr(self, name) for name in STATE}
+            shown["text/html"] = str(saved_figure(state, self.picture, shipped_runtime()))
+        return shown, metadata

@@ -61,7 +61,7 @@ export async function liveBreak(room) {
   });
   const editor = make("div", { className: "editor" });
   host.append(editor);
-  const field = createCodeField(editor, { label: words.lines, hint: words.keys, onInput: typed });
+  const field = createCodeField(editor, { label: words.lines, hint: words.lineKeys, onInput: typed });
   const status = make("p", { className: "editor-status", role: "status" });
   const problems = make("ol", { className: "editor-problems" });
   const verdict = makeVerdict(host);
@@ -82,7 +82,7 @@ export async function liveBreak(room) {
 
   async function tried() {
     const mine = ++number, shown = field.text, text = withLines(correct, block, shown);
-    status.textContent = words.compiling;
+    status.textContent = words.compilingText;
     let errors;
     guard.trying(file, text, player.texts);
     const listening = new AbortController();
@@ -137,7 +137,7 @@ export async function liveBreak(room) {
     field.mark(new Map(here.map((one) => [one.line - above, one.message])));
     problems.replaceChildren(...known.map((one) => {
       const line = one.line - above, inside = here.includes(one);
-      const text = inside ? fill(words.place, { line, message: one.message }) : one.message;
+      const text = inside ? fill(words.linePlace, { line, message: one.message }) : one.message;
       return make("li", {}, button(text, () => inside && field.go(line, 0)));
     }));
     if (known.length) verdict("");

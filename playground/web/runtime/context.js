@@ -12,6 +12,7 @@
  *  @property {boolean} floatBlend      whether draws on 32-bit floats may blend
  *  @property {EXT_texture_norm16 | null} norm16   null: formats of 16 bits are 32-bit floats
  *  @property {KHR_parallel_shader_compile | null} parallel
+ *  @property {boolean} software        whether a program draws, not a graphics card
  *  @property {[number, number]} anisotropy   of textures with mipmaps: the parameter's name, and how much
  *  @property {{size: number, units: number, spare: number, outputs: number}} limits   texels, texture units
  *  @property {number} objects          objects made so far
@@ -26,8 +27,7 @@ const ANISOTROPY = 8; // of textures with mipmaps
 export const failure = (code, sentence, more = {}) =>
   Object.assign(new Error(sentence), { code, sentence }, more);
 
-/** Whether a renderer is a program: there, anisotropy costs a hundred times as much.
- *  @param {WebGL2RenderingContext} gl */
+/** Whether a renderer is a program. @param {WebGL2RenderingContext} gl */
 const isSoftware = (gl) => {
   const named = gl.getExtension("WEBGL_debug_renderer_info");
   const name = gl.getParameter(named ? named.UNMASKED_RENDERER_WEBGL : gl.RENDERER);
@@ -49,7 +49,7 @@ export const openContext = (canvas, { without = [] } = {}) => {
     throw failure("no-float-targets", "This device cannot draw into textures of floating-point numbers.");
   /** @type {Object<string, number>} */
   const live = {};
-  const any = /** @type {any} */ (gl);
+  const any = /** @type {any} */ (gl), software = isSoftware(gl);
   const anisotropic = extension("EXT_texture_filter_anisotropic");
   /** @type {Context} */
   const context = {
@@ -58,7 +58,9 @@ export const openContext = (canvas, { without = [] } = {}) => {
     floatBlend: !!extension("EXT_float_blend"),
     norm16: extension("EXT_texture_norm16"),
     parallel: extension("KHR_parallel_shader_compile"),
-    anisotropy: isSoftware(gl) || !anisotropic ? [0, 1] : [
+    software,
+    // In software it costs a hundred times as much.
+    anisotropy: software || !anisotropic ? [0, 1] : [
       anisotropic.TEXTURE_MAX_ANISOTROPY_EXT,
       Math.min(ANISOTROPY, gl.getParameter(anisotropic.MAX_TEXTURE_MAX_ANISOTROPY_EXT)),
     ],

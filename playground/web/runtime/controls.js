@@ -121,9 +121,10 @@ const KINDS = {
   },
 };
 
-/** Make a row. `show` puts a value into it and marks it as changed, or not.
- *  @param {Shown} one @param {string} label @param {Acts} acts */
-export function makeRow(one, label, acts) {
+/** Make a row. `show` puts a value into it and marks it as changed, or not; `said`: why it is locked stands
+ *  somewhere else.
+ *  @param {Shown} one @param {string} label @param {Acts} acts @param {boolean} [said] */
+export function makeRow(one, label, acts, said = false) {
   const control = (Object.hasOwn(KINDS, one.widget) ? KINDS[one.widget] : numbers)(one, acts);
   const about = [one.description, one.locked].filter(Boolean).join(" ");
   const name = make("span", { className: "name" }, label);
@@ -131,7 +132,7 @@ export function makeRow(one, label, acts) {
   if (unitOf(one).length >= LONG) name.append(make("small", {}, ` ${one.unit}`));
   const back = button("×", acts.reset, { className: "reset", title: acts.words.reset });
   back.setAttribute("aria-label", `${acts.words.reset}: ${label}`);
-  const note = make("p", { className: "note", hidden: !one.locked }, one.locked || one.description);
+  const note = make("p", { className: "note", hidden: !one.locked || said }, one.locked || one.description);
   const row = make("div", { className: `row is-${one.widget}`, role: "group", "aria-label": label });
   row.append(name, control.element, back, note);
   row.dataset.path = one.path;

@@ -2,7 +2,6 @@
 
 import { createCodeField } from "./code_field.js";
 import { button, make } from "./dom.js";
-import { EDITOR_WORDS } from "./editor_words.js";
 import { notices } from "./notices.js";
 import { fileGroups } from "./sketch_files.js";
 import { fill } from "./words.js";
@@ -19,7 +18,7 @@ import { fill } from "./words.js";
  *  @property {(file: string, text: string) => Promise<{errors: Complaint[], programs: number}>} edit */
 
 /** @typedef {object} EditorOptions
- *  @property {Object<string, string>} [words]        over EDITOR_WORDS
+ *  @property {Object<string, string>} words          of the editor
  *  @property {import("./recovery.js").Guard} [guard] keeps what worked over a reload
  *  @property {() => Promise<void>} [shown]           draws the picture, and waits until it is there
  *  @property {(texts: Object<string, string>, broken: boolean) => Promise<string>} [download]
@@ -30,9 +29,9 @@ import { fill } from "./words.js";
 const PAUSE = 150; // [ms] without a key, then what was typed is compiled
 
 /** Make the editor of a player's texts in a host.
- *  @param {HTMLElement} host @param {Editable} player @param {EditorOptions} [options] */
-export function createEditor(host, player, options = {}) {
-  const words = { ...EDITOR_WORDS, ...options.words };
+ *  @param {HTMLElement} host @param {Editable} player @param {EditorOptions} options */
+export function createEditor(host, player, options) {
+  const { words } = options;
   /** What was typed and differs from the sketch's text, working or not.
    *  @type {Map<string, string>} */
   const drafts = new Map(Object.entries(player.texts));
@@ -52,8 +51,8 @@ export function createEditor(host, player, options = {}) {
   if (options.download) bar.append(button(words.download, download, { className: "editor-download" }));
   const root = make("section", { className: "editor" }, bar);
   host.append(root);
-  const field = createCodeField(root, { label: "", hint: words.keys, onInput: typed });
-  root.append(status, list, said, make("p", { className: "editor-keys" }, words.keys));
+  const field = createCodeField(root, { label: "", hint: words.fieldKeys, onInput: typed });
+  root.append(status, list, said, make("p", { className: "editor-keys" }, words.fieldKeys));
 
   const original = (/** @type {string} */ name) => player.shared.files[name] ?? "";
   const textOf = (/** @type {string} */ name) => drafts.get(name) ?? original(name);
@@ -109,7 +108,7 @@ export function createEditor(host, player, options = {}) {
   /** @param {string} name @param {string} text */
   async function tried(name, text) {
     if (closed || textOf(name) !== text) return; // typed over meanwhile: that is tried instead
-    status.textContent = words.compiling;
+    status.textContent = words.compilingText;
     options.guard?.trying(name, text, player.texts);
     const start = performance.now();
     let programs = 0;
@@ -151,7 +150,7 @@ export function createEditor(host, player, options = {}) {
     field.mark(new Map(here.map((one) => [one.line, one.message])));
     list.replaceChildren(...now.map((one) => {
       const plain = one.file.replace(/^\.\//, "");
-      const text = fill(one.line ? words.place : words.placeless, { ...one, file: plain });
+      const text = fill(one.line ? words.filePlace : words.placeless, { ...one, file: plain });
       return make("li", {}, button(text, () => go(one)));
     }));
     const told = drafts.has(file) ? notices(original(file), textOf(file)) : [];

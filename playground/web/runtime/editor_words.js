@@ -1,59 +1,115 @@
-// editor_words.js -- every word of the editor and of what is said when a picture fails.
+// editor_words.js -- what the editor says, and what is said when a picture fails.
 
-/** @typedef {Object<string, string>} Words */
-
-/** @type {Words} */
+/** @type {import("./words.js").Table} */
 export const EDITOR_WORDS = {
-  // the editor
-  file: "File",
-  ownFiles: "Of this sketch",
-  kernelFiles: "Passes",
-  libraryFiles: "Included files",
-  edited: "{name} (edited)",
-  broken: "{name} (with an error)",
-  field: "Text of {name}",
-  keys: "Tab inserts spaces; press Esc, then Tab, to leave the field. Ctrl+/ makes lines comments.",
-  resetFile: "Reset this file",
-  download: "Download my version",
-  unedited: "As in the sketch. What you type is compiled at once.",
-  compiling: "Compiling",
-  compiled: "Compiled and drawn in {time} ms",
-  unused: "Compiled: no pass of the picture uses it",
-  problem: "1 error: the picture is the last that worked",
-  problems: "{count} errors: the picture is the last that worked",
-  place: "{file}:{line}: {message}",
-  placeless: "{file}: {message}",
-  // what an edit does not do in a page
-  header: "What a #pragma says is read by Python: changed, it has no effect in this page, but it has in the "
-    + "version that you download.",
-  annotation: "What a //! says is read by Python: changed, it has no effect in this page, but it has in the "
-    + "version that you download.",
-  initial: "{names}: the control holds the value; the new initial value is in the version that you download.",
-  added: "{names}: has its initial value and no control in this page; the downloaded version has one.",
-  removed: "{names}: the control has no effect any more.",
-  // the downloaded version
-  downloaded: "{name} is saved: playground live {name} opens it",
-  withErrors: "{name} is saved with the errors in it: playground live {name} shows them",
-  notSaved: "The version cannot be written: {reason}",
-  noPack: "This page does not hold what a version needs",
-  valuesAside: "A shader's file holds no settings. What was set in the page is in settings.txt.",
-  // when there is no picture
-  noWebGL: "This browser offers no WebGL2, so the picture stands still. Update the browser, or allow "
-    + "hardware acceleration in its settings.",
-  noFloat: "This device cannot draw into floating-point textures, which the sketch needs, so the picture "
-    + "stands still.",
-  lacks: "This device cannot run the sketch, so the picture stands still: {reason}",
-  lost: "The graphics device was lost; the picture is made again as soon as it is back.",
-  lostByEdit: "The graphics device gave up while {name} was tried: the last text that worked is back. Your "
-    + "text is in the editor; look for a loop that does not end.",
-  gone: "The graphics device was lost {count} times, so the picture stands still now. Reload the page to try "
-    + "again.",
-  notBack: "The graphics device was lost and has not come back: reload the page. Texts that worked are kept.",
-  slow: "At {size} this takes about {time} s a picture, and the browser may stop it.",
-  smaller: "Draw it at {size}",
-  anyway: "Draw it all the same",
-  hung: "The text of {name} was being tried when this page was closed: it may loop without end. The last "
-    + "text that worked is shown.",
-  tryAgain: "Open the text that was tried",
-  forget: "Forget it",
+  en: {
+    // the editor
+    file: "File",
+    ownFiles: "Of this sketch",
+    kernelFiles: "Passes",
+    libraryFiles: "Included files",
+    edited: "{name} (edited)",
+    broken: "{name} (with an error)",
+    field: "Text of {name}",
+    fieldKeys: "Tab inserts spaces; press Esc, then Tab, to leave the field. Ctrl+/ makes lines comments.",
+    resetFile: "Reset this file",
+    download: "Download my version",
+    unedited: "As in the sketch. What you type is compiled at once.",
+    compilingText: "Compiling",
+    compiled: "Compiled and drawn in {time} ms",
+    unused: "Compiled: no pass of the picture uses it",
+    problem: "1 error: the picture is the last that worked",
+    problems: "{count} errors: the picture is the last that worked",
+    filePlace: "{file}:{line}: {message}",
+    placeless: "{file}: {message}",
+    // what an edit does not do in a page
+    header: "What a #pragma says is read by Python: changed, it has no effect in this page, but it has in "
+      + "the version that you download.",
+    annotation: "What a //! says is read by Python: changed, it has no effect in this page, but it has in "
+      + "the version that you download.",
+    initial: "{names}: the control holds the value; the new initial value is in the version that you "
+      + "download.",
+    added: "{names}: has its initial value and no control in this page; the downloaded version has one.",
+    removed: "{names}: the control has no effect any more.",
+    // the downloaded version
+    downloaded: "{name} is saved: playground live {name} opens it",
+    withErrors: "{name} is saved with the errors in it: playground live {name} shows them",
+    versionFailed: "The version cannot be written: {reason}",
+    noPack: "This page does not hold what a version needs",
+    valuesAside: "A shader's file holds no settings. What was set in the page is in settings.txt.",
+    // when there is no picture
+    noWebGL: "This browser offers no WebGL2, so the picture stands still. Update the browser, or allow "
+      + "hardware acceleration in its settings.",
+    noFloat: "This device cannot draw into floating-point textures, which the picture needs, so the picture "
+      + "stands still.",
+    lacks: "This device cannot make the picture, so it stands still: {reason}",
+    lost: "The graphics device was lost; the picture is made again as soon as it is back.",
+    lostByEdit: "The graphics device gave up while {name} was tried: the last text that worked is back. "
+      + "Your text is in the editor; look for a loop that does not end.",
+    gone: "The graphics device was lost {count} times, so the picture stands still now. Reload the page to "
+      + "try again.",
+    notBack: "The graphics device was lost and has not come back: reload the page. Texts that worked are "
+      + "kept.",
+    slow: "At {size} this takes about {time} s a picture, and the browser may stop it.",
+    smaller: "Draw it at {size}",
+    anyway: "Draw it all the same",
+    hung: "The text of {name} was being tried when this page was closed: it may loop without end. The last "
+      + "text that worked is shown.",
+    tryAgain: "Open the text that was tried",
+    forget: "Forget it",
+  },
+  fr: {
+    file: "Fichier",
+    ownFiles: "De cette esquisse",
+    kernelFiles: "Passes",
+    libraryFiles: "Fichiers inclus",
+    edited: "{name} (modifié)",
+    broken: "{name} (avec une erreur)",
+    field: "Texte de {name}",
+    fieldKeys: "Tab insère des espaces ; Échap puis Tab quitte le champ. Ctrl+/ met des lignes en "
+      + "commentaire.",
+    resetFile: "Rétablir ce fichier",
+    download: "Télécharger ma version",
+    unedited: "Comme dans l’esquisse. Ce que vous tapez est compilé aussitôt.",
+    compilingText: "Compilation",
+    compiled: "Compilé et dessiné en {time} ms",
+    unused: "Compilé : aucune passe de l’image ne s’en sert",
+    problem: "1 erreur : l’image est la dernière qui marchait",
+    problems: "{count} erreurs : l’image est la dernière qui marchait",
+    filePlace: "{file}:{line} : {message}",
+    placeless: "{file} : {message}",
+    header: "Ce que dit un #pragma est lu par Python : changé, il reste sans effet dans cette page, mais il "
+      + "en a dans la version que vous téléchargez.",
+    annotation: "Ce que dit un //! est lu par Python : changé, il reste sans effet dans cette page, mais il "
+      + "en a dans la version que vous téléchargez.",
+    initial: "{names} : la valeur est celle du réglage ; la nouvelle valeur initiale est dans la version "
+      + "que vous téléchargez.",
+    added: "{names} : a sa valeur initiale et pas de réglage dans cette page ; la version téléchargée en a "
+      + "un.",
+    removed: "{names} : le réglage n’a plus d’effet.",
+    noPack: "Cette page ne contient pas ce qu’il faut pour une version.",
+    downloaded: "{name} est enregistré : playground live {name} l’ouvre",
+    withErrors: "{name} est enregistré avec ses erreurs : playground live {name} les montre",
+    versionFailed: "La version ne peut pas être écrite : {reason}",
+    valuesAside: "Un fichier de shader ne contient pas de réglages. Ceux de la page sont dans settings.txt.",
+    noWebGL: "Ce navigateur n’offre pas WebGL2 : l’image reste fixe. Mettez-le à jour, ou permettez "
+      + "l’accélération matérielle dans ses réglages.",
+    noFloat: "Cet appareil ne peut pas dessiner dans des textures à virgule flottante, qu’il faut pour "
+      + "l’image : l’image reste fixe.",
+    lacks: "Cet appareil ne peut pas faire l’image, qui reste fixe : {reason}",
+    lost: "Le processeur graphique s’est interrompu ; l’image sera refaite dès qu’il sera revenu.",
+    lostByEdit: "Le processeur graphique a abandonné pendant l’essai de {name} : le dernier texte qui "
+      + "marchait est repris. Votre texte est dans l’éditeur ; cherchez une boucle sans fin.",
+    gone: "Le processeur graphique s’est interrompu {count} fois : l’image reste fixe. Rechargez la page "
+      + "pour réessayer.",
+    notBack: "Le processeur graphique s’est interrompu et n’est pas revenu : rechargez la page. Les textes "
+      + "qui marchaient sont gardés.",
+    slow: "En {size}, une image demande environ {time} s, et le navigateur peut l’interrompre.",
+    smaller: "Dessiner en {size}",
+    anyway: "Dessiner quand même",
+    hung: "Le texte de {name} était à l’essai quand la page a été fermée : il contient peut-être une boucle "
+      + "sans fin. Le dernier texte qui marchait est repris.",
+    tryAgain: "Ouvrir le texte à l’essai",
+    forget: "L’oublier",
+  },
 };

@@ -14,8 +14,9 @@ import { createTextures } from "./textures.js";
 
 /** @typedef {import("./player.js").Player} Player */
 
-/** `bytes` bounds what is kept of textures, `without` lists extensions of WebGL to do without.
- *  @typedef {{bytes?: number, without?: string[]}} Options */
+/** `bytes` bounds what is kept of textures, `without` lists extensions of WebGL to do without; after `often`
+ *  draws with the same choices these are written into a program (chosen.js).
+ *  @typedef {{bytes?: number, without?: string[], often?: number}} Options */
 
 /** What lives in the context, and is made anew when it was lost.
  *  @typedef {object} Parts
@@ -58,7 +59,7 @@ export const createEngine = (canvas, shared, options = {}) => {
     const context = openContext(canvas, options), textures = createTextures(context, bytes / POOL_SHARE);
     const programs = createPrograms(context), images = createImages(textures, shared);
     const binder = createBinder(context, textures, images);
-    const kernels = createKernels(context, textures, programs, binder, shared);
+    const kernels = createKernels(context, textures, programs, binder, shared, options.often);
     const draws = createDraws(context, textures, programs, binder, kernels);
     const plain = createPlain(context, textures, images, binder, kernels);
     const cache = createCache(bytes, textures);

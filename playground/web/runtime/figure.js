@@ -3,12 +3,13 @@
 import { fieldFor } from "./camera_moves.js";
 import { make } from "./dom.js";
 import { createFigureMap } from "./figure_map.js";
+import { holdPlayer } from "./figure_player.js";
 import { followPointer, readsPointer } from "./pointer.js";
 import { REST, createQuality, pixelsOf } from "./quality.js";
 import { createSession } from "./session.js";
 import { steerWith } from "./steering.js";
 import { cameraAt } from "./values.js";
-import { ENGLISH, fill } from "./words.js";
+import { fill } from "./words.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./session.js").Session} Session */
@@ -18,6 +19,7 @@ import { ENGLISH, fill } from "./words.js";
  *  @typedef {object} Player
  *  @property {any} state
  *  @property {any} plan
+ *  @property {boolean} [looks]  whether its picture depends on the camera; true where it does not say
  *  @property {(onProgress?: (done: number, all: number) => void) => Promise<unknown>} load
  *  @property {() => unknown} render
  *  @property {() => Promise<unknown>} [renderSoon]  in pieces; null where a later one has overtaken it
@@ -29,7 +31,7 @@ import { ENGLISH, fill } from "./words.js";
 /** @typedef {object} Options
  *  @property {Session} [session]       one that others share; else a new one
  *  @property {number} [sketch]         which of the page's, at first
- *  @property {Object<string, string>} [words]
+ *  @property {Object<string, string>} words       of a page
  *  @property {HTMLImageElement | null} [poster]
  *  @property {number} [budget]         pixels of the picture at most
  *  @property {boolean} [inText]        a finger that goes up or down, and the wheel, scroll the page
@@ -45,9 +47,9 @@ const SAID = 600; // [ms] until it is said that a picture is being made
 
 /** Make a figure in an element, whose size it fills. `start` opens the player.
  *  @param {HTMLElement} host @param {Engine} engine @param {{sketches: Sketch[]}} page
- *  @param {Options} [options] */
-export function createFigure(host, engine, page, options = {}) {
-  const { words = ENGLISH, poster = null, inText = false } = options;
+ *  @param {Options} options */
+export function createFigure(host, engine, page, options) {
+  const { words, poster = null, inText = false } = options;
   let { budget = 2.1e6 } = options;
   const session = options.session ?? createSession(page.sketches, options.sketch ?? 0);
   const canvas = make("canvas", { tabIndex: 0, role: "application", hidden: true });
@@ -59,9 +61,7 @@ export function createFigure(host, engine, page, options = {}) {
   host.append(stage);
   const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
   const quality = createQuality();
-  /** @type {Player | null} */
-  let player = null;
-  let asked = 0, askedAt = 0, opening = 0, resting = 0, last = 0, took = 0, speed = 1;
+  let asked = 0, askedAt = 0, resting = 0, last = 0, took = 0, speed = 1;
   let inSight = true, closed = false, playing = false, moving = false, long = true, again = false;
   let overtaken = false; // values have changed since a picture was begun in pieces
   /** @type {(() => void)[]} who waits for the next picture */
@@ -71,9 +71,10 @@ export function createFigure(host, engine, page, options = {}) {
 
   /** @returns {[number, number]} CSS pixels */
   const box = () => [Math.max(stage.clientWidth, 1), Math.max(stage.clientHeight, 1)];
-  const room = { session, words, canvas, context, readout, box, budget: budget * 2, player: () => player };
+  const room = { session, words, canvas, context, readout, box, budget: budget * 2, player: () => held.now };
   const map = createFigureMap(room);
-  const steering = steerWith(canvas, session, map, { box, eye: () => player?.plan?.eye, inText });
+  const eye = () => (held.now?.looks ?? true ? held.now?.plan?.eye : undefined);
+  const steering = steerWith(canvas, session, map, { box, eye, inText });
 
   const pointer = followPointer(canvas, () => {
     if (!session.map && readsPointer(session.sketch)) ask(true);
@@ -88,7 +89,9 @@ export function createFigure(host, engine, page, options = {}) {
   }
 
   /** Whether another picture is to come: who listens, or tests, waits for the last. */
-  const tellBusy = () => stage.setAttribute("aria-busy", String(asked !== 0 || begun !== null || moving));
+  function tellBusy() {
+    stage.setAttribute("aria-busy", String(asked !== 0 || begun !== null || moving || held.waits));
+  }
 
   // ── what is drawn ──────────────────────────────────────────────────────────
 
@@ -108,11 +111,12 @@ export function createFigure(host, engine, page, options = {}) {
 
   function draw() {
     asked = 0;
-    if (!player || closed || document.hidden || !inSight) return;
+    const from = held.now;
+    if (!from || held.waits || closed || document.hidden || !inSight) return;
     const start = performance.now();
     again = begun !== null && !(overtaken && start - begun > PATIENT);
     if (again) return;
-    const late = Math.max(start - askedAt - FRAME, 0), from = player, inPieces = long && from.renderSoon;
+    const late = Math.max(start - askedAt - FRAME, 0), inPieces = long && from.renderSoon;
     if (playing) advance(start);
     try {
       const size = takeState(from);
@@ -131,13 +135,14 @@ export function createFigure(host, engine, page, options = {}) {
   /** What a value changes may take long: the page stays at hand meanwhile.
    *  @param {Player} from @param {[number, number]} size @param {number} start */
   async function drawInPieces(from, size, start) {
+    const mapped = Boolean(session.map);
     begun = start;
     overtaken = false;
     const slow = setTimeout(() => { if (!playing) tell(words.working); }, SAID);
     try {
       const done = await from.renderSoon?.();
       clearTimeout(slow);
-      if (!done || from !== player || closed) return;
+      if (!done || from !== held.now || closed || mapped !== Boolean(session.map)) return;
       show(from, size, start, 0);
       long = overtaken || took > LONG;
     } catch (error) {
@@ -199,27 +204,14 @@ export function createFigure(host, engine, page, options = {}) {
     }, REST);
   }
 
-  async function open() {
-    const mine = ++opening;
-    tell(words.loading);
-    try {
-      const made = engine.open(session.sketch);
-      takeState(made);
-      await made.load((done, all) => {
-        if (mine === opening) tell(fill(words.compiling, { done, all }));
-      });
-      if (mine === opening) await options.prepare?.(made);
-      if (mine !== opening || closed) return made.close();
-      player?.close();
-      player = made;
+  const held = holdPlayer({
+    engine, session, words, tell, takeState, prepare: options.prepare,
+    opened: (made) => {
       quality.forget();
       options.opened?.(made);
       ask();
-    } catch (error) {
-      if (mine === opening) tell(words.failed, error);
-    }
-    return undefined;
-  }
+    },
+  });
 
   // ── time ───────────────────────────────────────────────────────────────────
 
@@ -247,8 +239,12 @@ export function createFigure(host, engine, page, options = {}) {
 
   const unfollow = session.follow((news) => {
     if (news !== "camera" && news !== "time") long = overtaken = true;
-    if (news === "sketch") open();
-    else ask(news !== "map");
+    if (news === "sketch") held.open();
+    else if (news !== "map") ask(true);
+    else {
+      held.more().then(() => ask());
+      tellBusy();
+    }
   });
   const sizes = new ResizeObserver(() => ask());
   const sights = new IntersectionObserver(([entry]) => {
@@ -267,14 +263,14 @@ export function createFigure(host, engine, page, options = {}) {
     shrink(pixels) { budget = pixels; },
     showMap: map.show,
     fitMap: map.fit,
-    get player() { return player; },
+    get player() { return held.now; },
     get playing() { return playing; },
     get speed() { return speed; },
     set speed(/** @type {number} */ wanted) { speed = wanted; },
     /** [ms] that the last frame took. */
     get took() { return took; },
     /** Open the player, and draw. */
-    start: open,
+    start: held.open,
     /** Draw anew; done when the picture is there. @returns {Promise<void>} */
     redraw() {
       long = true;
@@ -295,7 +291,7 @@ export function createFigure(host, engine, page, options = {}) {
       sizes.disconnect();
       sights.disconnect();
       document.removeEventListener("visibilitychange", wake);
-      player?.close();
+      held.close();
       stage.remove();
     },
   };

@@ -30,7 +30,7 @@ export function createFigureMap({ session, words, canvas, context, readout, box,
   let texels = null;
   /** @type {[number, number] | null} */
   let pointer = null;
-  let view = WHOLE, fits = false;
+  let view = WHOLE, fits = false, filled = false; // whether the sheet is the map's
 
   function texture() {
     const { map, sketch } = session;
@@ -43,6 +43,7 @@ export function createFigureMap({ session, words, canvas, context, readout, box,
   const density = () => canvas.width / box()[0];
 
   function paint() {
+    if (!filled) return;
     const size = pixelsOf(box(), devicePixelRatio || 1, budget);
     if (canvas.width !== size[0] || canvas.height !== size[1]) [canvas.width, canvas.height] = size;
     paintMap(context, sheet, sheetSize(), view);
@@ -94,7 +95,7 @@ export function createFigureMap({ session, words, canvas, context, readout, box,
     get label() { return texture()?.label ?? ""; },
     /** Show a texture, or none. @param {{path: string, output: string} | null} wanted */
     show(wanted) {
-      [fits, view, texels] = [false, WHOLE, null];
+      [fits, filled, view, texels] = [false, false, WHOLE, null];
       const values = { ...session.sketch.map.values };
       session.setMap(wanted && { path: wanted.path, output: wanted.output, values });
       point();
@@ -112,6 +113,7 @@ export function createFigureMap({ session, words, canvas, context, readout, box,
       if (!fits) return void fit();
       [sheet.width, sheet.height] = size;
       from.drawTo(sheetContext);
+      filled = true;
       paint();
     },
     /** In shares of the room's height. @param {number} across @param {number} down */

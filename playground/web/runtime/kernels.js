@@ -8,6 +8,7 @@ import { failure } from "./context.js";
 import { whole } from "./expressions.js";
 import { roundedOutputs } from "./formats.js";
 import { complaintsOf } from "./edits.js";
+import { createChosen } from "./chosen.js";
 import { stagesOf } from "./kernel_texts.js";
 import { isSize, PLAIN } from "./binder.js";
 import { setUniform } from "./programs.js";
@@ -49,19 +50,26 @@ const ROWS = 64; // a band's rows are a multiple of these: no tile or quad of pi
 
 /** @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures
  *  @param {import("./programs.js").Programs} programs @param {import("./binder.js").Binder} binder
- *  @param {import("./schema.js").Shared} shared */
-export const createKernels = (context, textures, programs, binder, shared) => {
-  const { gl } = context;
+ *  @param {import("./schema.js").Shared} shared
+ *  @param {number} [often]  draws with the same choices until they are written in: chosen.js */
+export const createKernels = (context, textures, programs, binder, shared, often) => {
+  const { gl } = context, chosen = createChosen(context, programs, often);
   /** @type {Map<string, Program>} */
   const owns = new Map();
 
-  /** Return a fragment shader of the engine's own. @param {string} name */
-  const own = (name) => {
+  /** Begin to compile a fragment shader of the engine's own. @param {string} name */
+  const askOwn = (name) => {
     let found = owns.get(name);
     if (!found || found.state === "gone") {
       found = programs.ask([toES(TRIANGLE), toES(shared.own[name] || SHOW)]);
       owns.set(name, found);
     }
+    return found;
+  };
+
+  /** Return a fragment shader of the engine's own. @param {string} name */
+  const own = (name) => {
+    const found = askOwn(name);
     if (!programs.finish(found)) throw failure("shader", `${name}: ${found.logs.join("")}${found.link}`);
     return found;
   };
@@ -143,7 +151,8 @@ export const createKernels = (context, textures, programs, binder, shared) => {
   };
 
   /** Return the program of a step as its inputs are wired. @param {Job} job */
-  const programOf = ({ step, text, inputs }) => {
+  const programOf = (job) => {
+    const { step, text, inputs } = job;
     const byHand = new Map();
     if (!context.floatLinear) for (const { name, sampling } of step.kernel.inputs) {
       const wired = inputs.get(name);
@@ -152,7 +161,7 @@ export const createKernels = (context, textures, programs, binder, shared) => {
     }
     const program = ask(text, byHand);
     if (!programs.finish(program)) throw refused(text, program);
-    return program;
+    return chosen.of(job, program);
   };
 
   /** @param {import("./kernel_texts.js").KernelText} text @param {Program} program */
@@ -314,5 +323,5 @@ export const createKernels = (context, textures, programs, binder, shared) => {
     drawOwn("show", source.size, source, { k_channels: textures.formats(source.format).channels });
   };
 
-  return { run, show, refused, ask, programOf, readsOf, copy, drawnOwn, empty, count, namesOf, own };
+  return { run, show, refused, ask, programOf, readsOf, copy, drawnOwn, empty, count, namesOf, askOwn };
 };

@@ -7,12 +7,14 @@ import { repeatsOf } from "./planner.js";
 import { createCode } from "./page_code.js";
 import { createRecovery } from "./recovery.js";
 import { createPage } from "./sketch_page.js";
+import { EDITOR_WORDS } from "./editor_words.js";
+import { PAGE_WORDS } from "./page_words.js";
 import { wordsOf } from "./words.js";
 
 async function start() {
   const main = /** @type {HTMLElement} */ (document.getElementById("playground"));
   const poster = /** @type {HTMLImageElement | null} */ (document.getElementById("playground-poster"));
-  const words = wordsOf(document.documentElement.lang);
+  const words = wordsOf(document.documentElement.lang, PAGE_WORDS, EDITOR_WORDS);
   const page = await readPage(document.getElementById("playground-page")?.textContent ?? "");
   const canvas = document.createElement("canvas");
   let engine;
@@ -22,13 +24,13 @@ async function start() {
     main.classList.add("still");
     const above = make("div", { className: "recoveries" }); // a picture may be taller than the window
     main.prepend(above);
-    return createRecovery(above, { poster: () => {} }).lacks(error);
+    return createRecovery(above, { words, poster: () => {} }).lacks(error);
   }
   const repeats = (/** @type {any} */ player) => (player.plan ? repeatsOf(player.plan) : new Map());
   const notices = make("div", { className: "recoveries" });
   /** @type {() => import("./page_code.js").CodeFigure} */
   const shown = () => made.figure;
-  const code = createCode(engine, notices, { figure: shown });
+  const code = createCode(engine, notices, { words, figure: shown });
   const made = createPage(main, page, engine, {
     words, poster, repeats, prepare: (player) => code.prepare(/** @type {any} */ (player)),
     openCode: (tab, player) => void code.open(tab, /** @type {any} */ (player)),

@@ -1,7 +1,6 @@
 // page_code.js -- the code of a sketch's page: the editor, what keeps its texts, the version to download.
 
 import { createEditor } from "./editor.js";
-import { EDITOR_WORDS } from "./editor_words.js";
 import { createGuard, keyOf } from "./last_good.js";
 import { download, packOf, versionFiles } from "./my_version.js";
 import { createRecovery } from "./recovery.js";
@@ -23,9 +22,8 @@ const LIMIT = 10; // [s] a picture may take without a question: it is made in pi
 
 /** Make the code of a page whose pictures an engine draws; sentences on what fails appear in a host.
  *  @param {Engine} engine @param {HTMLElement} host
- *  @param {{words?: Object<string, string>, figure: () => CodeFigure}} options */
-export function createCode(engine, host, { words: given, figure }) {
-  const words = { ...EDITOR_WORDS, ...given };
+ *  @param {{words: Object<string, string>, figure: () => CodeFigure}} options */
+export function createCode(engine, host, { words, figure }) {
   /** @type {Map<string, import("./last_good.js").Guard>} by sketch */
   const guards = new Map();
   /** @type {Editor | null} */
@@ -84,7 +82,7 @@ export function createCode(engine, host, { words: given, figure }) {
       const told = fill(broken ? words.withErrors : words.downloaded, { name });
       return aside.length ? `${told}. ${words.valuesAside}` : told;
     } catch (error) {
-      return fill(words.notSaved, { reason: error instanceof Error ? error.message : String(error) });
+      return fill(words.versionFailed, { reason: error instanceof Error ? error.message : String(error) });
     }
   }
 

@@ -117,7 +117,7 @@ export function createPanel(session, { words, link, copied, say, fitMap, repeats
     preset.replaceChildren(make("option", { value: "" }, words.preset), ...offered);
     const passes = grouped(sketch.shown, (row) => row.pass);
     for (const { pass } of sketch.choices) if (!passes.has(pass)) passes.set(pass, []);
-    const mine = () => main.map((row) => rows.labelled(row, titles.get(row.path) ?? row.label));
+    const mine = () => rows.rowsOf(main, { titles });
     const stopped = Object.keys(sketch.steps).length > 0;
     const isLoop = (/** @type {object} */ node) => "loop" in node;
     const repeated = sketch.kernels.some(({ repeat }) => repeat !== 1) || sketch.nodes.some(isLoop);
@@ -127,7 +127,7 @@ export function createPanel(session, { words, link, copied, say, fitMap, repeats
       mapSection(),
       main.length ? fold(words.main, true, mine) : null,
       ...[...passes].map(([pass, items]) => section(pass, items, !main.length)),
-      fold(words.terrain, false, () => terrain.map(rows.rowOf)),
+      fold(words.terrain, false, () => rows.rowsOf(terrain)),
       repeated ? fold(words.iterations, stopped, () => iterationRows(session, words, rows, repeats)) : null,
       notes.length ? fold(words.notes, false, () => notes) : null,
     ];
@@ -144,7 +144,7 @@ export function createPanel(session, { words, link, copied, say, fitMap, repeats
     const hits = session.rows().filter((row) => isLike(row, label(row), wanted));
     const passes = wanted.length ? [...grouped(hits.slice(0, FOUND), (row) => row.pass)] : [];
     found.replaceChildren(...passes.flatMap(([pass, items]) => [
-      make("h2", {}, pass ? labelOf(pass) : words.terrain), ...items.map(rows.rowOf),
+      make("h2", {}, pass ? labelOf(pass) : words.terrain), ...rows.rowsOf(items),
     ]));
     if (wanted.length && !hits.length) found.append(make("p", { className: "none" }, words.noneFound));
   }

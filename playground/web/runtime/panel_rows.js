@@ -20,19 +20,16 @@ export function createRows(session, words) {
     return element;
   }
 
-  /** A parameter, or what the terrain has. */
-  function rowOf(/** @type {Shown} */ one) {
-    const label = one.pass ? one.label : words[one.label];
-    return labelled(one, label);
-  }
-
-  function labelled(/** @type {Shown} */ one, /** @type {string} */ label) {
+  /** A parameter, or what the terrain has.
+   *  @param {Shown} one @param {boolean} [said] @param {string} [title] */
+  function rowOf(one, said = false, title = "") {
+    const label = title || (one.pass ? one.label : words[one.label]);
     const row = makeRow({ ...one, label }, label, {
       words,
       changed: (value) => session.set(one.path, value),
       reset: () => session.reset(one.path),
       press: (down) => session.press(one.path, down),
-    });
+    }, said);
     return keep(row.element, () => row.show(session.value(one.path), session.changed(one.path)));
   }
 
@@ -48,18 +45,36 @@ export function createRows(session, words) {
     return keep(row.element, () => row.show(session.map?.values[one.targets[0]] ?? one.value));
   }
 
+  /** Rows one after another; why several of them are locked stands once, before the first of these.
+   *  @param {Shown[]} items @param {{said?: string, titles?: Map<string, string>}} [how]  `said`: what was
+   *  said of all before; `titles`: other labels, by path */
+  function rowsOf(items, { said = "", titles } = {}) {
+    const known = new Set([said]);
+    return items.flatMap((one) => {
+      const { locked } = one, title = titles?.get(one.path);
+      const several = items.some((other) => other !== one && other.locked === locked);
+      if (!locked || !(several || locked === said)) return [rowOf(one, false, title)];
+      const row = rowOf(one, true, title);
+      if (known.has(locked)) return [row];
+      known.add(locked);
+      return [whyLocked(locked), row];
+    });
+  }
+
   /** Rows by their groups, those without one first. @param {Shown[]} items */
   function groups(items) {
     const sorted = grouped(items, (row) => row.group), first = sorted.get("") ?? [];
     sorted.delete("");
+    const locked = items.length > 1 ? items[0].locked : "";
+    const said = items.every((one) => one.locked === locked) ? locked : ""; // of the whole section
     const headed = [...sorted].flatMap(([group, inside]) => [
-      make("h3", {}, group), ...inside.map(rowOf),
+      make("h3", {}, group), ...rowsOf(inside, { said }),
     ]);
-    return [...first.map(rowOf), ...headed];
+    return [...(said ? [whyLocked(said)] : []), ...rowsOf(first, { said }), ...headed];
   }
 
   return {
-    keep, rowOf, labelled, groups,
+    keep, rowsOf, groups,
     /** @param {() => void} fit */
     mapRows: (fit) => [...session.sketch.map.shown.map(mapRow), button(words.fitValues, fit)],
     refresh: () => shown.forEach(([, show]) => show()),
@@ -67,6 +82,8 @@ export function createRows(session, words) {
     forget(within) { shown = within ? shown.filter(([element]) => !within.contains(element)) : []; },
   };
 }
+
+const whyLocked = (/** @type {string} */ reason) => make("p", { className: "note why-locked" }, reason);
 
 /** A fold whose inside is made when it is first opened.
  *  @param {string} title @param {boolean} open @param {() => (Node | null)[]} inside

@@ -25,6 +25,7 @@ import { PLAIN } from "./binder.js";
  *  @property {import("./schema.js").Shared} shared
  *  @property {import("./planner.js").State} state   may be changed at any time
  *  @property {Plan | null} plan                     of the last picture
+ *  @property {boolean} looks                        whether that picture depends on the camera
  *  @property {number} raisedBy                      [m] by which its eye was raised out of the terrain
  *  @property {Object<string, string>} texts         edited files
  *  @property {(onProgress?: (done: number, total: number) => void) => Promise<void>} load
@@ -41,6 +42,8 @@ import { PLAIN } from "./binder.js";
  *  @property {() => void} close */
 
 const SLICE = 12; // [ms]
+const OWN = ["show", "copy.frag"]; // the engine's programs that any picture may need
+const SEEN = new Set(["eye", "clip_from_world", "world_from_clip"]); // given names that the camera changes
 
 /** @param {import("./engine.js").Engine} engine @param {import("./schema.js").Sketch} sketch
  *  @param {() => void} onClose @returns {Player} */
@@ -186,6 +189,12 @@ export const createPlayer = (engine, sketch, onClose) => {
   const player = {
     sketch, shared, state: {}, plan: null, texts: {}, render,
     get raisedBy() { return eyeHeight.raisedBy; },
+    get looks() {
+      const { plan } = player;
+      return !!plan && stepsOf(needed(plan.nodes, plan.picture)).some(({ kernel }) =>
+        (kernel.kind === "kernel" || kernel.kind === "draw")
+        && textOf(kernel).given.some((name) => SEEN.has(name)));
+    },
 
     load: async (onProgress = () => {}) => {
       const { parts } = engine, plan = makePlan(sketch, shared, player.state);
@@ -196,7 +205,8 @@ export const createPlayer = (engine, sketch, onClose) => {
         const program = parts.kernels.ask(textOf(step.kernel), byHandOf(plan, step));
         programs.push({ kernel: step.kernel, program });
       }
-      await engine.parts.programs.wait(programs.map(({ program }) => program), onProgress);
+      const own = OWN.map(parts.kernels.askOwn), all = [...programs.map(({ program }) => program), ...own];
+      await parts.programs.wait(all, onProgress);
       for (const { kernel, program } of programs) {
         if (program.state === "failed") throw parts.kernels.refused(textOf(kernel), program);
       }
@@ -289,7 +299,11 @@ export const createPlayer = (engine, sketch, onClose) => {
       return found;
     },
 
-    programs: () => [...read.values()].flatMap((each) => [...each.programs.values()]),
+    programs: () => {
+      const all = [...read.values()].flatMap((each) => [...each.programs.values()]);
+      const chosen = all.flatMap((each) => [...each.chosen.values()]);
+      return [...all, ...chosen.flatMap(({ program }) => program ?? [])];
+    },
 
     forget: () => {
       stop();
@@ -309,7 +323,8 @@ export const createPlayer = (engine, sketch, onClose) => {
   const loadData = async (plan) => {
     const { images } = engine.parts, waiting = [];
     for (const { kernel, leaf, values } of stepsOf(plan.nodes)) {
-      for (const { blob, frames = [blob] } of leaf?.data || []) waiting.push(...frames.map(images.loadBlob));
+      for (const { blob, frames = [blob], laps } of leaf?.data || [])
+        waiting.push(...[...frames, ...laps?.frames ?? []].map(images.loadBlob));
       for (const { name, widget, sampling } of kernel.parameters) {
         if (widget !== "file" || kernel.kind === "source") continue;
         waiting.push(images.load(String(values[name]), sampling || PLAIN));

@@ -11,7 +11,9 @@
  *  @property {"asked" | "ready" | "failed" | "gone"} state
  *  @property {[string, string]} logs           of its stages, where it failed
  *  @property {string} link                     the log of linking
- *  @property {number} used                     when it was used last */
+ *  @property {number} used                     when it was used last
+ *  @property {Map<string, {times: number, program: Program | null}>} chosen   by what is chosen: how often it
+ *      was drawn so, and the program with that written in, once it is asked for */
 
 /** @typedef {ReturnType<typeof createPrograms>} Programs */
 
@@ -43,7 +45,7 @@ export const createPrograms = (context) => {
     /** @type {Program} */
     const made = {
       program, shaders, texts, uniforms: new Map(), arrays: new Map(), state: "asked", logs: ["", ""],
-      link: "", used: ++clock,
+      link: "", used: ++clock, chosen: new Map(),
     };
     known.set(key, made);
     return made;

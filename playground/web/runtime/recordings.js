@@ -11,11 +11,15 @@ const MARGIN = 1e-6;
 /** Return the blob that a texture of a source has at a time in seconds; of what does not play, its own.
  *  @param {DataTexture} texture @param {Playing | null} playing @param {number} time @returns {string} */
 export function blobAt(texture, playing, time) {
-  const { times, frames, length = 0 } = texture;
-  if (!times || !frames || !playing) return texture.blob;
-  let second = playing.start + (playing.speed ?? 1) * time + MARGIN;
+  const { length = 0, laps } = texture;
+  if (!texture.times || !texture.frames || !playing) return texture.blob;
+  let { times, frames } = texture, second = playing.start + (playing.speed ?? 1) * time + MARGIN;
   const before = second < 0 && playing.speed === undefined; // of a sound, which begins in silence
-  if (playing.loop && length > 0 && !before) second -= Math.floor(second / length) * length;
+  if (playing.loop && length > 0 && !before) {
+    const lead = laps ? laps.lead : 0, once = laps ? lead + length : 0; // after that nothing is new
+    if (second < 0 || second >= once) second -= Math.floor((second - lead) / length) * length;
+    if (laps && second >= length) ({ times, frames } = laps);
+  }
   let low = 0, high = times.length; // as Python's bisect_right
   while (low < high) {
     const middle = (low + high) >> 1;

@@ -1,7 +1,6 @@
 // recovery.js -- what a page does where a picture fails: a sentence, the poster, and the way on.
 
 import { button, make } from "./dom.js";
-import { EDITOR_WORDS } from "./editor_words.js";
 import { estimate, smallerFrame } from "./pace.js";
 import { fill } from "./words.js";
 
@@ -17,7 +16,7 @@ import { fill } from "./words.js";
  *  @property {(file: string, text: string) => Promise<{errors: unknown[], programs: number}>} edit */
 
 /** @typedef {object} RecoveryOptions
- *  @property {Object<string, string>} [words]     over EDITOR_WORDS
+ *  @property {Object<string, string>} words       of the editor
  *  @property {(still: boolean) => void} poster    shows the poster in place of the picture, or no more
  *  @property {() => Guard | undefined} [guard]    of the player that is shown
  *  @property {(text: string, file: string) => void} [reopen]  puts a text into the editor
@@ -31,8 +30,7 @@ const SOON = 60_000; // [ms] losses that follow so closely are counted together
 
 /** Make what speaks for a picture that fails; sentences appear in the host.
  *  @param {HTMLElement} host @param {RecoveryOptions} options */
-export function createRecovery(host, { words: given, poster, guard = () => undefined, reopen, limit }) {
-  const words = { ...EDITOR_WORDS, ...given };
+export function createRecovery(host, { words, poster, guard = () => undefined, reopen, limit }) {
   let losses = 0, lastLoss = -Infinity;
   /** @type {HTMLElement | null} */
   let box = null;

@@ -86,8 +86,11 @@
 
 /** What the processor made, exported as texels. Of what plays a file, `frames` are blobs, of which each
  *  shows from its second in `times` on, the first before that, and `length` are the file's seconds.
+ *  Where it repeats and hears what came before, `laps` go on after the file's end: from the second `lead` on,
+ *  each shows what the one a length later does.
  *  @typedef {{output: string, format: string, size: [number, number], blob: string,
- *             times?: number[], frames?: string[], length?: number}} DataTexture */
+ *             times?: number[], frames?: string[], length?: number, laps?: Laps}} DataTexture */
+/** @typedef {{lead: number, times: number[], frames: string[]}} Laps */
 
 /** At a time shows the second `start + speed * time` of the file, modulo its length where `loop` is true:
  *  paths in `Sketch.values`; without `speed` it is 1.

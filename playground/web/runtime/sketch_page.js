@@ -11,7 +11,7 @@ import { createPanel } from "./panel.js";
 import { createSession } from "./session.js";
 import { createTabs } from "./tabs.js";
 import { createTimeline, hasTime, stepped } from "./timeline.js";
-import { ENGLISH, fill } from "./words.js";
+import { fill } from "./words.js";
 
 /** @typedef {import("./schema.js").Page} Page */
 /** @typedef {import("./figure.js").Engine} Engine */
@@ -19,7 +19,7 @@ import { ENGLISH, fill } from "./words.js";
 /** @typedef {import("./figure.js").Player} Player */
 
 /** @typedef {object} PageOptions
- *  @property {Object<string, string>} [words]
+ *  @property {Object<string, string>} words
  *  @property {HTMLImageElement | null} [poster]
  *  @property {(player: Player) => unknown} [prepare]            what a player needs before its first picture
  *  @property {(player: Player) => Map<string, number>} repeats  iterations in all, by path
@@ -32,7 +32,7 @@ const OFTEN = 250; // [ms] between two reports of a picture that moves
 /** Fill a page's main element. @param {HTMLElement} main @param {Page} page @param {Engine} engine
  *  @param {PageOptions} options */
 export function createPage(main, page, engine, options) {
-  const { words = ENGLISH, poster = null, prepare, repeats, openCode } = options;
+  const { words, poster = null, prepare, repeats, openCode } = options;
   const session = createSession(page.sketches);
   const still = matchMedia("(prefers-reduced-motion: reduce)");
   const view = make("section", { className: "view", "aria-label": words.ownPicture });

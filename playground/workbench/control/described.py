@@ -72,4 +72,5 @@ def _described(item: Item, values: Values) -> dict[str, Any]:
         "takes": expected(parameter),
         "changed": item.path in values.changed,
         "locked": item.path in values.locked,
+        "raw": parameter.widget.raw,
     }

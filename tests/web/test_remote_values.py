@@ -1,0 +1,34 @@
+"""Values of a window's parameters between its JSON and the rows of its remote's page."""
+
+from __future__ import annotations
+
+import pytest
+
+from playground.sketch.colour import parse_hex
+
+from .node import Node
+
+MENU = {"widget": "menu", "choices": ["round", "sharp", "flat"]}
+
+
+def test_a_menu_has_a_name_in_json_and_a_number_in_its_row(node: Node):
+    for number, name in enumerate(MENU["choices"]):
+        assert node.call("remote_values.js", "shownValue", MENU, name) == number
+        assert node.call("remote_values.js", "toldValue", MENU, number) == name
+
+
+@pytest.mark.parametrize("raw", [False, True])
+@pytest.mark.parametrize("text", ["#ff8000", "#000000", "#12345678"])
+def test_a_colour_is_linear_light_in_its_row_as_in_python(node: Node, text: str, raw: bool):
+    one = {"widget": "colour", "choices": [], "raw": raw}
+    found = node.call("remote_values.js", "shownValue", one, text)
+    assert found == pytest.approx(parse_hex(text, raw=raw), abs=1e-12)
+    assert node.call("remote_values.js", "shownValue", one, [0.25, 0.5, 2.0]) == [0.25, 0.5, 2.0]
+    assert node.call("remote_values.js", "toldValue", one, [0.25, 0.5, 2.0]) == [0.25, 0.5, 2.0]
+
+
+def test_other_values_are_the_same_in_both(node: Node):
+    for widget, value in (("slider", 0.25), ("direction", [135.0, 25.0]), ("checkbox", True), ("file", "a")):
+        one = {"widget": widget, "choices": []}
+        assert node.call("remote_values.js", "shownValue", one, value) == value
+        assert node.call("remote_values.js", "toldValue", one, value) == value

@@ -1,0 +1,58 @@
+"""What a page says: in each language the same, and nothing that nobody says."""
+
+from __future__ import annotations
+
+import re
+from itertools import combinations
+
+import pytest
+
+from .node import RUNTIME, Node
+
+TABLES = {
+    "page_words.js": "PAGE_WORDS",
+    "editor_words.js": "EDITOR_WORDS",
+    "book_words.js": "BOOK_WORDS",
+}
+FILES = {
+    path: path.read_text("utf-8") for path in RUNTIME.glob("*.js") if not path.name.endswith("_words.js")
+}
+
+
+@pytest.fixture(scope="module")
+def tables(node: Node) -> dict[str, dict[str, dict[str, str]]]:
+    given = "async (name, table, load) => (await load(name))[table]"
+    return {name: node.run(given, name, table) for name, table in TABLES.items()}
+
+
+@pytest.mark.parametrize("name", TABLES)
+def test_both_languages_have_the_same_words(name: str, tables):
+    """And the same places for values in them."""
+    places = {
+        language: {key: sorted(re.findall(r"\{\w+\}", text)) for key, text in words.items()}
+        for language, words in tables[name].items()
+    }
+    assert places["en"] == places["fr"]
+    assert not [key for key, text in tables[name]["fr"].items() if "'" in text or not text.strip()]
+
+
+def test_no_two_parts_share_a_name(tables):
+    for one, other in combinations(tables.values(), 2):
+        assert not one["en"].keys() & other["en"].keys()
+
+
+def test_every_word_is_used_and_every_use_has_one(tables):
+    known = {key for table in tables.values() for key in table["en"]}
+    text = "\n".join(FILES.values())
+    used = set(re.findall(r"\bwords\.([a-zA-Z]\w*)\b(?!\()", text)) - {"js", "length"}  # a file; a list
+    assert not used - known
+    other = {key for key in known - used if not re.search(rf"\b{key}\b", text)}
+    assert not other
+
+
+def test_the_words_of_a_language_are_those_of_its_tables(node: Node, tables):
+    """Another language than these two has English ones."""
+    given = [tables["page_words.js"], tables["editor_words.js"]]
+    for tag, language in (("fr", "fr"), ("fr-CA", "fr"), ("en", "en"), ("de", "en"), ("fro", "en")):
+        expected = {**given[0][language], **given[1][language]}
+        assert node.call("words.js", "wordsOf", tag, *given) == expected
