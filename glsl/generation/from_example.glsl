@@ -26,9 +26,9 @@ uniform float texel = 0.0;           //! unit("m") label("Example's texel") Of a
                                      //! say it; 0: as the file says, or as large as the terrain's
 uniform float rise = 0.0;            //! unit("m") label("Example's rise") From its lowest height
                                      //! to its highest; 0: as the file says, or the relief
-uniform float piece = 3840.0;        //! log_slider(100, 100000) unit("m") Side of the pieces: the
-                                     //! smaller, the closer they follow the guide and the less
-                                     //! they look like the example
+uniform float piece = 3840.0;        //! log_slider(100, 100000) unit("m") Side of the pieces, 12
+                                     //! to 192 texels: the smaller, the closer they follow the
+                                     //! guide and the less they look like the example
 uniform int candidates = 2000;       //! log_slider(50, 10000) Pieces to choose from
 uniform float follow = 0.5;          //! slider(0, 1) step(0.01) How closely the guide is followed
 uniform uint seed = 1u;              //! slider(0, 9999) Which terrain
