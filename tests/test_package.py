@@ -54,7 +54,7 @@ def test_the_wheel_carries_every_file_of_the_library(wheel: Path):
     assert shaders and inside >= {f"playground/gpu/shaders/{path.name}" for path in shaders}
     web = {name for name in inside if name.startswith("playground/web/") and not name.endswith(".py")}
     bundles = {f"playground/web/bundle/{path.name}" for path in (ROOT / "playground/web/bundle").glob("*")}
-    assert bundles and web == {*bundles, "playground/web/loader.js"}
+    assert bundles and web == bundles
     assert not [name for name in inside if name.startswith(("tests/", "screenshots/"))]
 
 

@@ -12,7 +12,10 @@
 #pragma source("elevation_file", output = "height:r32f")
 
 uniform sampler2D elevation;         //! file("sketches/data/jacksboro_fault_dem.npz") PNG, TIFF,
-                                     //! NPY, NPZ, R16, RAW or HGT
+                                     //! NPY, NPZ, R16, RAW, HGT, ASC, BIL, FLT or NC
+uniform int longest = 0;             //! slider(0, 16384) label("Texels at most") Texels of the
+                                     //! terrain's longer side, where the sketch has no size; 0:
+                                     //! as many as the file has, and 4097 of a very large one
 uniform ivec2 raw_size = ivec2(0);   //! label("Size of raw files") parts("width", "height") Width
                                      //! and height of an R16 or RAW file; 0: it is square
 uniform int packing = 0;             //! menu("grey", "rgb") Greys, or heights packed in three

@@ -27,6 +27,8 @@ uniform int sky = 0;  //! menu("colours", "daylight") group("Sky")
 
 vec4 vertex(vec3 corner, out vec3 position) {
     position = vec3(corner.xy * extent, sea_level - base_elevation);
+    // Below all of the terrain it would float in the air: no triangle is left of it.
+    if (sea_level < base_elevation) return vec4(0.0, 0.0, 0.0, 1.0);
     return clip_from_world * vec4(position, 1.0);
 }
 

@@ -32,7 +32,7 @@ from playground.capture.extensions import (
     USUAL_GRID,
 )
 from playground.capture.gltf import encode_glb
-from playground.capture.mesh import grid_of, sampled, terrain_mesh
+from playground.capture.mesh import sampled, terrain_mesh
 from playground.capture.obj import encode_mtl, encode_obj
 from playground.capture.shader_export.es_check import check_es
 from playground.capture.shader_export.export import ShaderFiles, shader_files
@@ -45,6 +45,9 @@ from playground.errors import DataError, SketchError
 from playground.images.files import encode_samples
 from playground.images.image_formats import naming
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
+from playground.terrain.gis import ADVICE, geokeys_of
+from playground.terrain.grid import fitted
+from playground.terrain.place import Place
 
 _NO_TEXTURE = "no texture: the view shows no colour; name one with --texture"
 
@@ -242,13 +245,21 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
         if job.ending in PICTURES:
             made = encode_picture(values, job.ending)
         else:
-            made = encode(Layer(values, job.kind, spacing, job.form.bits, job.form.span), job.ending)
+            layer = Layer(values, job.kind, spacing, job.form.bits, job.form.span, _place(job))
+            made = encode(layer, job.ending)
     files = {job.path: made.data}
     sidecars = tuple(sidecar_paths(job.path)) if made.sidecar else ()
     files |= dict.fromkeys(sidecars, made.sidecar)
     write_together(files)
     parts = [f"{cols} x {rows}", *made.details, f"{spacing[0]:.5g} x {spacing[1]:.5g} m a texel"]
-    return Exported(job.path, "; ".join(parts), sidecars, tuple(filter(None, [made.warning])))
+    notes = [made.warning]
+    place = _place(job)
+    if place is not None and place.crs.facts.kind and job.ending in (".tif", ".tiff"):
+        if geokeys_of(place.crs):
+            parts.append(f"in its place, in {place.crs.name or 'the reference system of its file'}")
+        else:
+            notes.append(f"its reference system is left out: it has no EPSG code, and {ADVICE}")
+    return Exported(job.path, "; ".join(parts), sidecars, tuple(filter(None, notes)))
 
 
 def _spacing(job: ExportJob, size: tuple[int, int]) -> tuple[float, float]:
@@ -257,10 +268,15 @@ def _spacing(job: ExportJob, size: tuple[int, int]) -> tuple[float, float]:
     return extent[0] / max(size[0] - 1, 1), extent[1] / max(size[1] - 1, 1)
 
 
+def _place(job: ExportJob) -> Place | None:
+    """Return where a texture lies on the Earth; None for the picture, and where nothing says it."""
+    return None if job.texture.partition(":")[0].partition(".")[0] == "view" else job.plan.terrain.place
+
+
 def _write_mesh(engine: Engine, job: ExportJob) -> Exported:
     heights = _read(engine, job, job.height, HEIGHT)
     wanted = job.form.grid or min(USUAL_GRID, MESHES[job.ending])
-    size = grid_of((heights.shape[1], heights.shape[0]), wanted)
+    size = fitted((heights.shape[1], heights.shape[0]), wanted)
     baked, texels, warning = _texture(engine, job)
     extent = job.plan.terrain.extent
     assert extent is not None  # a plan's terrain is known

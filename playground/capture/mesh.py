@@ -25,15 +25,6 @@ class TerrainMesh:
     triangles: NDArray[np.uint32]  # (m, 3)
 
 
-def grid_of(size: tuple[int, int], longest: int) -> tuple[int, int]:
-    """Return the vertices east and north for terrain of a size in texels, ``longest`` on its longer side."""
-    most = max(size)
-    if longest >= most:
-        return size
-    ratio = (longest - 1) / (most - 1)
-    return max(2, round((size[0] - 1) * ratio) + 1), max(2, round((size[1] - 1) * ratio) + 1)
-
-
 def sampled(values: NDArray[np.float32], size: tuple[int, int]) -> NDArray[np.float32]:
     """Return values on a grid of another size (nx, ny), corners on corners, between four texels.
 

@@ -2,7 +2,8 @@
 
 What whole numbers mean is written where the format has a place for it (PNG's texts,
 GDAL's scale and offset in TIFF) and in a JSON next to the file where it has none (raw). TIFF carries
-GeoTIFF's tags: texels are points, the terrain's south-west corner is (0, 0), metres.
+GeoTIFF's tags: where the terrain lies on the Earth, in the reference system of the file that it came from;
+else texels are points, the terrain's south-west corner is (0, 0), metres.
 
 Sources: OGC GeoTIFF 1.1 (OGC 19-008r4, 2019) for tags and keys; GDAL's raster driver
 documentation for tag 42112.
@@ -25,6 +26,28 @@ from playground.errors import DataError
 from playground.images.files import encode_samples
 from playground.images.image_formats import JPEG_QUALITY, encode_as
 from playground.sketch.colour import linear_to_srgb
+from playground.terrain.geokeys import (
+    CITATION,
+    DIRECTORY,
+    DOUBLES,
+    IS_AREA,
+    IS_POINT,
+    LENGTH,
+    METRE,
+    MODEL,
+    OWN,
+    PROJECTED,
+    RASTER,
+    VERTICAL,
+    VERTICAL_UNIT,
+    WORDS,
+    Key,
+    code,
+    with_keys,
+    write_keys,
+)
+from playground.terrain.gis import geokeys_of
+from playground.terrain.place import Crs, Place
 
 SOFTWARE = f"terrain shader playground {__version__}"
 
@@ -38,6 +61,7 @@ class Layer:
     spacing: tuple[float, float]  # [m] a texel, east and north
     bits: int
     span: tuple[float, float] | None = None  # what 0 and the largest whole number mean
+    place: Place | None = None  # where it lies on the Earth
 
     @property
     def unit(self) -> str:
@@ -217,36 +241,71 @@ def _description(layer: Layer, numbers: str, span: tuple[float, float] | None = 
     }
     if span is not None:
         description |= {"offset": span[0], "scale": scale_of(span, layer.bits)}
+    if layer.place is not None:
+        description |= {
+            "crs": layer.place.crs.name or layer.place.crs.wkt,
+            "bounds": list(layer.place.bounds),
+        }
     return (json.dumps(description, indent=2) + "\n").encode()
 
 
-_PIXEL_SCALE, _TIE_POINT, _GEO_KEYS, _GEO_WORDS = 33550, 33922, 34735, 34737
-_GDAL_METADATA = 42112
+_PIXEL_SCALE, _TIE_POINT = 33550, 33922
+_GDAL_METADATA, _NO_DATA = 42112, 42113
 _ASCII, _SHORT, _DOUBLE = 2, 3, 12
+
+_OWN_CRS = Crs(
+    (
+        (MODEL, 1),
+        (RASTER, IS_POINT),
+        (CITATION, "metres from the south-west corner of the terrain"),
+        (PROJECTED, OWN),
+        (LENGTH, METRE),
+        (VERTICAL_UNIT, METRE),
+    )
+)
+
+
+def _place_tags(layer: Layer) -> list[tuple[int, int, int, Any, bool]]:
+    """Return GeoTIFF's tags of where a layer lies: its outermost texels are on the terrain's edges."""
+    rows, cols = layer.values.shape[:2]
+    (dx, dy), size = layer.spacing, (cols, rows)
+    place = layer.place or Place(0.0, (rows - 1) * dy, (dx, dy), size, _OWN_CRS)
+    dx, dy = place.step_at(size)
+    known = geokeys_of(place.crs)
+    keys = dict(known)
+    west, north = place.west, place.north
+    if code(keys, RASTER, IS_AREA) == IS_AREA:  # the tie point is the corner of the texel's area
+        west, north = west - 0.5 * dx, north + 0.5 * dy
+    directory, reals, text = write_keys(with_keys(known, _vertical(layer, keys)))
+    tags: list[tuple[int, int, int, Any, bool]] = [
+        (_PIXEL_SCALE, _DOUBLE, 3, (dx, dy, 0.0), True),
+        (_TIE_POINT, _DOUBLE, 6, (0.0, 0.0, 0.0, west, north, 0.0), True),
+    ]
+    if keys:
+        tags.append((DIRECTORY, _SHORT, len(directory), directory, True))
+    if reals:
+        tags.append((DOUBLES, _DOUBLE, len(reals), reals, True))
+    if text:
+        tags.append((WORDS, _ASCII, 0, text, True))
+    return tags
+
+
+def _vertical(layer: Layer, keys: dict[int, Key]) -> dict[int, Key | None]:
+    """Return which keys to change: heights are written in metres, in whatever unit they came."""
+    if layer.kind != HEIGHT:
+        return {VERTICAL_UNIT: None} if layer.place is None else {}
+    if code(keys, VERTICAL_UNIT, METRE) == METRE:
+        return {}
+    # Without a vertical system they are metres; a unit by itself would be taken for a system of its own.
+    return dict.fromkeys(range(VERTICAL, VERTICAL_UNIT + 1))
 
 
 def _tiff(samples: NDArray[Any], layer: Layer, span: tuple[float, float] | None = None) -> bytes:
     import tifffile
 
-    (dx, dy), rows = layer.spacing, samples.shape[0]
-    citation = "metres from the south-west corner of the terrain|"
-    # Key, where its value is (0: here), how many, value.
-    keys = [
-        (1024, 0, 1, 1),  # GTModelType: projected
-        (1025, 0, 1, 2),  # GTRasterType: pixel is point
-        (1026, _GEO_WORDS, len(citation), 0),  # GTCitation
-        (3072, 0, 1, 32767),  # ProjectedCRS: of its own
-        (3076, 0, 1, 9001),  # ProjLinearUnits: metre
-    ]
-    if layer.kind == HEIGHT:
-        keys.append((4099, 0, 1, 9001))  # VerticalUnits: metre
-    directory = [1, 1, 1, len(keys), *(number for key in keys for number in key)]
-    tags: list[tuple[int, int, int, Any, bool]] = [
-        (_PIXEL_SCALE, _DOUBLE, 3, (dx, dy, 0.0), True),
-        (_TIE_POINT, _DOUBLE, 6, (0.0, 0.0, 0.0, 0.0, (rows - 1) * dy, 0.0), True),
-        (_GEO_KEYS, _SHORT, len(directory), tuple(directory), True),
-        (_GEO_WORDS, _ASCII, 0, citation, True),
-    ]
+    tags = _place_tags(layer)
+    if samples.dtype.kind == "f" and np.isnan(samples).any():
+        tags.append((_NO_DATA, _ASCII, 0, "nan", True))
     if span is not None:
         items = (("OFFSET", "offset", span[0]), ("SCALE", "scale", scale_of(span, layer.bits)))
         metadata = "".join(

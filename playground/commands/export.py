@@ -36,7 +36,7 @@ HELP = help_text(
     "Without --texture, .png, .tif, .r16, .raw, .r32, .exr and .npy hold the heights: metres above sea"
     " level as floats, or 16-bit numbers from the lowest to the highest, and a note says which heights those"
     " are. With it, they hold that texture; .png, .webp and .jpg encode colours as sRGB. The first row is"
-    " the north's.\n\n"
+    " the north's. A .tif lies where the elevation file of the terrain does, in its reference system.\n\n"
     ".glb (glTF) and .obj hold the terrain as a mesh with its texture, in metres: x east, y up, z south,"
     " the terrain's middle at x = z = 0, sea level at y = 0.\n\n"
     ".fs (ISF), .frag (a Shadertoy text of one pass), .json (a Shadertoy export: up to four buffers, an Image"
@@ -46,6 +46,7 @@ HELP = help_text(
     " be turned, set and edited. With --technique the page has menus of techniques.",
     "playground export jacksboro",
     "playground export jacksboro --to terrain.png --to terrain.tif",
+    "playground export dem.tif --set height.longest=16384 --to in-its-place.tif",
     "playground export diamond_square --set size=1025 --to terrain.r16",
     "playground export jacksboro --texture colour --to ground.webp",
     "playground export jacksboro --to terrain.glb --light --grid 257",

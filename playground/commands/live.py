@@ -32,7 +32,8 @@ REMOTE_PORT = 8765
 
 HELP = help_text(
     "Open a sketch in a window.\n\nEvery save of its files shows at once, and a panel sets its parameters."
-    " Your edits, the camera and the time are restored the next time. As SKETCH, - opens a"
+    " Your edits, the camera and the time are restored the next time. An elevation file opens in a sketch"
+    " that is made around it. As SKETCH, - opens a"
     " shader's text from standard input, or from the clipboard where that is the terminal: it is kept as a"
     " new file in this folder.",
     "playground live",
@@ -42,6 +43,7 @@ HELP = help_text(
     "playground live --lesson diamond_square --lang fr",
     "playground live my-land --no-cache",
     "playground live shader.frag",
+    "playground live dem.tif",
     "playground live - < shader.frag",
     "playground live jacksboro --remote",
     "playground live jacksboro --osc 9000 --osc-to 127.0.0.1:9001",

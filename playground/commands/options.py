@@ -85,8 +85,8 @@ Sketch = Annotated[
     str,
     positional(
         "SKETCH",
-        "A shipped sketch's name, or the path of a sketch, of its folder, of a packed one (.zip), or of"
-        " a shader. Without it, the default sketch.",
+        "A shipped sketch's name, or the path of a sketch, of its folder, of a packed one (.zip), of"
+        " a shader or an elevation file. Without it, the default sketch.",
         complete_sketch,
     ),
 ]

@@ -61,6 +61,7 @@ HELP = help_text(
     "playground render my-land/my_land.glsl --profile",
     "playground render shader.frag --time 2.5 -o - > frame.png",
     "playground render - < shader.frag",
+    "playground render dem.tif --set height.longest=4097 -o picture.png",
     "playground render jacksboro --size 20000x12000 -o poster.png",
     "playground render sun_flight --video flight.mp4 --size 1920x1080",
     "playground render jacksboro --shot evening --video still.webm --seconds 2 --fps 25",
@@ -298,8 +299,8 @@ def _print_profile(engine: Engine) -> None:
     for path, milliseconds in engine.times.items():
         step = plan.step(path) if plan is not None else None
         if step is not None:
-            iterations = engine.runs[path] * step.repeat
-            table.add_row(path, f"{step.size[0]} x {step.size[1]}", str(iterations), f"{milliseconds:.2f}")
+            iterations = str(engine.record.iterations[path])
+            table.add_row(path, f"{step.size[0]} x {step.size[1]}", iterations, f"{milliseconds:.2f}")
     table.add_section()
     table.add_row("together", "", "", f"{sum(engine.times.values()):.2f}")
     console = console_for(sys.stderr)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -40,6 +41,20 @@ _ANISOTROPY = 8.0  # of textures with mipmaps; on a software renderer it costs a
 _CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
 
 
+_OPEN, _WIRED, _MATCHING = range(3)  # of an input: nothing is wired, something, something of the step's size
+
+
+@dataclass(frozen=True, slots=True)
+class _Bound:
+    """What a program's uniforms and samplers are set for."""
+
+    step: Step
+    given: Mapping[str, Any]
+    wires: tuple[int, ...]
+    units: tuple[tuple[Input, int], ...]  # of textures, by input
+    unit: int  # the next free one
+
+
 class Binder:
     """Binds textures and sets uniforms on one context."""
 
@@ -51,6 +66,7 @@ class Binder:
         self._shaped: dict[tuple[str, str], Shaped] = {}  # constants, by name and shape
         self._files: OrderedDict[tuple[str, bool, bool, bool], moderngl.Texture] = OrderedDict()
         self._units = 0  # texture units used in this frame
+        self._on_units: dict[int, Sampling] = {}  # whose samplers are on them
 
     def release(self) -> None:
         """Release every texture and sampler."""
@@ -70,11 +86,28 @@ class Binder:
         if self._units:
             self.ctx.clear_samplers(0, self._units)
             self._units = 0
+            self._on_units.clear()
 
     def bind(
-        self, program: Program, step: Step, given: Mapping[str, Any], inputs: Mapping[str, Wired]
+        self,
+        program: Program,
+        step: Step,
+        given: Mapping[str, Any],
+        inputs: Mapping[str, Wired],
+        wires: tuple[int, ...] | None = None,
     ) -> int:
-        """Set what is the same for all iterations of a step; return the next free texture unit."""
+        """Set what is the same for all iterations of a step; return the next free texture unit.
+
+        ``wires``: as ``wires_of`` returns them. Where the program was last bound for the very same, uniforms
+        keep their values, and only the textures of the inputs are bound.
+        """
+        wires = wires_of(step, inputs) if wires is None else wires
+        bound = program.bound
+        if isinstance(bound, _Bound) and bound.step is step and bound.given is given and bound.wires == wires:
+            for declared, unit in bound.units:
+                self.unit(unit, self.wired(declared, inputs), declared.sampling)
+            return bound.unit
+        program.bound = None
         kernel, uniforms, unit = step.kernel, {**given, "size": step.whole_size}, 0
         if step.window is not None:
             uniforms[WINDOW] = step.window.origin
@@ -88,16 +121,20 @@ class Binder:
                     uniforms[f"{TOWARDS}{parameter.name}"] = unit_vector(value)  # type: ignore[arg-type]
             elif parameter.name in program.uniforms:
                 unit = self.file(program, parameter, value, unit)
+        has_files = unit > 0
         if UNWIRED in program.uniforms:
             uniforms[UNWIRED] = has_unwired(kernel, inputs)
-        for declared in kernel.inputs:
-            texture = inputs.get(declared.name, NOT_WIRED).texture
-            uniforms[f"{WIRED}{declared.name}"] = texture is not None
-            uniforms[f"{MATCHES}{declared.name}"] = texture is not None and texture.size == step.size
+        units: list[tuple[Input, int]] = []
+        for declared, wire in zip(kernel.inputs, wires, strict=True):
+            uniforms[f"{WIRED}{declared.name}"] = wire != _OPEN
+            uniforms[f"{MATCHES}{declared.name}"] = wire == _MATCHING
             if declared.name in program.uniforms:
+                units.append((declared, unit))
                 texture = self.wired(declared, inputs)
                 unit = self.texture(program, declared.name, unit, texture, declared.sampling)
         program.set_all(uniforms)
+        if not has_files:
+            program.bound = _Bound(step, given, wires, tuple(units), unit)
         return unit
 
     def wired(self, declared: Input, inputs: Mapping[str, Wired]) -> moderngl.Texture:
@@ -148,11 +185,14 @@ class Binder:
     def unit(self, unit: int, texture: Readable, sampling: Sampling) -> int:
         """Bind one texture to a unit; return the next free one."""
         texture.use(unit)
-        sampler = self._samplers.get(sampling)
-        if sampler is None:
-            sampler = self._samplers[sampling] = self._new_sampler(sampling)
-        sampler.use(unit)
-        self._units = max(self._units, unit + 1)
+        if self._on_units.get(unit) is not sampling:
+            sampler = self._samplers.get(sampling)
+            if sampler is None:
+                sampler = self._samplers[sampling] = self._new_sampler(sampling)
+                self._on_units.clear()  # making one may have taken another off its unit
+            sampler.use(unit)
+            self._on_units[unit] = sampling
+            self._units = max(self._units, unit + 1)
         return unit + 1
 
     def file(self, program: Program, parameter: Parameter, value: Value, unit: int) -> int:
@@ -231,6 +271,15 @@ class Binder:
             texture = self.ctx.texture(size, 4, half.tobytes(), alignment=1, dtype="f2")
         drain(self.ctx)
         return texture
+
+
+def wires_of(step: Step, inputs: Mapping[str, Wired]) -> tuple[int, ...]:
+    """Return how each input of a step is wired: by nothing, by a texture, by one of the step's size."""
+    found = []
+    for declared in step.kernel.inputs:
+        texture = inputs.get(declared.name, NOT_WIRED).texture
+        found.append(_OPEN if texture is None else _MATCHING if texture.size == step.size else _WIRED)
+    return tuple(found)
 
 
 def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:

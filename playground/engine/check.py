@@ -27,7 +27,7 @@ from playground.engine.standalone import free_name, standalone_sketch, with_pict
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
-from playground.sketch.allowed_files import TEXTS, is_variant, root_of
+from playground.sketch.allowed_files import TEXTS, is_elevation, is_variant, root_of
 from playground.sketch.assign import values_of
 from playground.sketch.dialects import EXPORT, is_export
 from playground.sketch.dialects.shadertoy_folder import is_image, is_of_folder
@@ -102,8 +102,8 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
                 for file in _inside(sketch.parent):
                     found.setdefault(file.resolve(), sketch.parent.resolve())
                 continue
-            if path.suffix not in TEXTS and not is_export(path):
-                wanted = ", ".join((*TEXTS, ENDING))
+            if path.suffix not in TEXTS and not is_export(path) and not is_elevation(path):
+                wanted = ", ".join((*TEXTS, ENDING, "an elevation file"))
                 raise DataError(f"cannot be checked; expected a folder or {wanted}", file=shown(path))
             found.setdefault(path.resolve(), root_of(path.resolve()))
         elif path.exists():
@@ -156,6 +156,8 @@ class _Check:
         check: Callable[[], None] = self.shader
         if technique_beside(self.path) is not None:
             check = self.variant
+        elif is_elevation(self.path):
+            check = self.sketch
         elif self.path.suffix == ".toml":
             check = self.technique if is_technique(self.path) else self.sketch
         try:

@@ -251,6 +251,10 @@ class Engine(Recorded):
         plan = self.plan_for(sketch, size, time, steps, ref, interpolated=interpolated)
         return self._texture(plan, plan.flat.ref(ref, plan.sketch.name))
 
+    def texture_of(self, plan: Plan, ref: Ref) -> moderngl.Texture:
+        """Run what a texture of a plan needs, and return it; it lives until the next frame."""
+        return self._texture(plan, ref)
+
     def read(
         self,
         sketch: Sketch | str | Path,
@@ -416,7 +420,7 @@ class Engine(Recorded):
         start: Result | None,
     ) -> Result:
         """Run a step, and record that and how it ran."""
-        record, runner, first = self.record, self.runner, start.iterations if start else 0
+        record, runner, first = self.record, self.runner, (start.settled or start.iterations) if start else 0
         continued = record.plan is not None and step.path in record.plan.continued
         objects, drawn = self.pool.made + runner.programs.compiled, runner.draws.drawn
         timed = self._timer_of().measure(record.times, step.path) if self.profiling else nullcontext()
@@ -437,7 +441,9 @@ class Engine(Recorded):
                 raise OpenGLFault(f"pass '{step.path}': OpenGL reports {error}")
         self.runs[step.path] += 1
         record.ran.append(step.path)
-        record.texels += step.size[0] * step.size[1] * max(step.repeat - first, 1)
+        steps = max((result.settled or step.repeat) - first, 0)
+        record.iterations[step.path] += steps
+        record.texels += step.size[0] * step.size[1] * max(steps, 1)
         record.triangles += runner.draws.drawn - drawn
         return result
 

@@ -13,12 +13,13 @@ from playground.sketch.model import PassSpec, Shot, Sketch
 def placed(error: DataError, sketch: Sketch, spec: PassSpec) -> DataError:
     """Return an error of a data file at the pass that names it, the file in the sentence.
 
-    Where an override set the file, the sketch's text is right, and the error stays as it is.
+    Where an override set the file, or it was opened itself, the sketch's text is right, and the error
+    stays as it is.
     """
     overridden = any(
         path.partition(".")[0] == spec.name and isinstance(value, str) for path, value in sketch.overrides
     )
-    if overridden or not spec.file:
+    if overridden or not spec.file or all(d.file == spec.file for d in error.diagnostics):
         return error
     found = "; ".join(f"{d.place}: {d.message}" if d.place else d.message for d in error.diagnostics)
     return DataError(found, file=spec.file, line=spec.line)

@@ -38,6 +38,7 @@ class Execution:
         self.results: dict[str, Result] = {}  # by the step's path; valid until the next frame
         self._done: set[int] = set()  # identities of nodes that change with no loop, and have run
         self._fed_from: dict[Fed, tuple[Step, str]] = {}  # the output that a loop feeds back
+        self._changing_in: dict[int, list[PlanNode]] = {}  # by the identity of a loop's body
         self._zeros: dict[Fed, Result] = {}  # what is fed back before a loop's first iteration
 
     def run(self, nodes: Iterable[PlanNode]) -> None:
@@ -218,7 +219,11 @@ class Execution:
 
     def _changing(self, loop: LoopStep, iteration: int) -> list[PlanNode]:
         """Return what an iteration of a loop computes anew."""
-        return [node for node in loop.body_of(iteration) if loop.path in self.keys.changes[id(node)]]
+        body = loop.body_of(iteration)
+        if id(body) not in self._changing_in:
+            found = [node for node in body if loop.path in self.keys.changes[id(node)]]
+            self._changing_in[id(body)] = found
+        return self._changing_in[id(body)]
 
     def _run_inside(
         self,

@@ -7,9 +7,10 @@ from pathlib import Path
 from playground.errors import DataError, nearest
 from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL, shown
+from playground.sketch.allowed_files import ELEVATIONS, VECTORS
 
-_IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
-_DATA = {*_IMAGES, *VIDEO_FILES, *SOUND_FILES}
+_IMAGES = (".jpg", ".jpeg", ".webp")
+_DATA = {*_IMAGES, *ELEVATIONS, *VECTORS, *VIDEO_FILES, *SOUND_FILES}
 
 
 def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field, replace
@@ -21,6 +22,7 @@ class FrameRecord:
     keys: Keys = field(default_factory=Keys)
     results: Mapping[str, Result] = field(default_factory=dict)  # by path; valid until the next frame
     ran: list[str] = field(default_factory=list)  # paths of the passes that ran, in order
+    iterations: Counter[str] = field(default_factory=Counter)  # of each pass that ran, by path
     texels: int = 0  # computed
     times: dict[str, float] = field(default_factory=dict)  # [ms] of each pass that ran, while profiling
     triangles: int = 0  # drawn; of what is cached, none
@@ -30,6 +32,7 @@ class FrameRecord:
         return replace(
             self,
             ran=[*before.ran, *(path for path in self.ran if path not in before.ran)],
+            iterations=before.iterations + self.iterations,
             texels=before.texels + self.texels,
             times={p: before.times.get(p, 0.0) + self.times.get(p, 0.0) for p in before.times | self.times},
             triangles=before.triangles + self.triangles,
@@ -37,7 +40,14 @@ class FrameRecord:
 
     def counted_as(self, other: FrameRecord) -> FrameRecord:
         """Return the record with the counts of another frame."""
-        return replace(self, ran=other.ran, texels=other.texels, times=other.times, triangles=other.triangles)
+        return replace(
+            self,
+            ran=other.ran,
+            iterations=other.iterations,
+            texels=other.texels,
+            times=other.times,
+            triangles=other.triangles,
+        )
 
 
 class Recorded:

@@ -11,11 +11,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from playground.engine.binder import Binder, has_unwired
+from playground.engine.binder import Binder, has_unwired, wires_of
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
+from playground.engine.settling import Settling
 from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
@@ -49,7 +50,7 @@ _SHAPES = {0x8B5D: "line", 0x8B5F: "volume", 0x8B60: "cube", 0x8DC1: "layers"}
 _COLOR_LOGIC_OP = 0x0BF2
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Job:
     """One step about to run, with all it reads."""
 
@@ -90,18 +91,36 @@ class Kernels:
         self.programs = programs
         self.binder = binder
         self.pool = pool
+        self.settling = Settling(ctx, programs, binder, pool, software=software)
+        # Programs of this frame's steps, by the step's identity; the step is held with it.
+        self._known: dict[tuple[int, str, tuple[int, ...]], tuple[Step, Program]] = {}
+        self._frame = 0
 
     def run(self, job: Job, driver: str) -> Result:
         """Run a kernel by a driver; the result is the caller's."""
         step = job.step
-        program = self.program(job, driver)
+        wires = wires_of(step, job.inputs)
+        program = self._known_program(job, driver, wires)
+        if job.start is not None and job.start.settled:
+            job.start.iterations = step.repeat
+            return job.start
         state = self._initial(job)
         if step.repeat == 0:
             return self._untouched(step, state)
-        unit = self.binder.bind(program, step, job.given, job.inputs)
+        unit = self.binder.bind(program, step, job.given, job.inputs, wires)
         if driver == COMPUTE and step.kernel.visits:
             return self._in_place(job, program, state)
         return self._alternately(job, program, driver, state, unit)
+
+    def _known_program(self, job: Job, driver: str, wires: tuple[int, ...]) -> Program:
+        """Return the program of a step: the one that it had before in this frame, wired so."""
+        if self._frame != self.programs.frame:
+            self._frame = self.programs.frame
+            self._known.clear()
+        key = id(job.step), driver, wires
+        if key not in self._known:
+            self._known[key] = job.step, self.program(job, driver)
+        return self._known[key][1]
 
     def program(self, job: Job, driver: str, *more: tuple[str, int]) -> Program:
         """Return the program of a step.
@@ -156,7 +175,7 @@ class Kernels:
         found = self.pool.take(result.size, result.outputs)
         for output in result.outputs:
             self.copy_texture(found.textures[output.name], result.textures[output.name])
-        found.iterations = result.iterations
+        found.iterations, found.settled = result.iterations, result.settled
         return found
 
     def empty(self, step: Step) -> Result:
@@ -201,7 +220,7 @@ class Kernels:
                 continue
             # A channel that nothing feeds. Two kinds of samplers may not share a unit, used or not.
             count = int(getattr(uniform, "array_length", 1))
-            uniform.value = unit if count == 1 else [*range(unit, unit + count)]
+            program.write(name, unit if count == 1 else [*range(unit, unit + count)])
             elements = [inputs.get(f"{name}{ELEMENT}{number}") for number in range(count)]
             for element in elements if count > 1 else [None]:
                 readable = self.binder.shaped_constant("black", _SHAPES.get(kind, ""))
@@ -230,6 +249,7 @@ class Kernels:
         # Where there is something to begin with, texels off the lattice count as well.
         lattice = bool(kernel.stride) and driver == FRAGMENT and not state
         shift = 0
+        watch = self.settling.watch(iteration, unit + len(kernel.outputs)) if kernel.until else None
         while iteration < step.repeat:
             count = min(at_once, step.repeat - iteration)
             result = self.pool.take(step.size, kernel.outputs)
@@ -244,14 +264,20 @@ class Kernels:
                 program.set("k_shift", shift)
                 framebuffer = result.framebuffer(self.ctx)
                 framebuffer.use()
-                width, height = [((side - 1) >> shift) + 1 for side in step.size]
-                self.ctx.viewport = (0, 0, width, height)
+                if shift:
+                    width, height = [((side - 1) >> shift) + 1 for side in step.size]
+                    self.ctx.viewport = (0, 0, width, height)
                 self._fill(program)
-                self.ctx.viewport = (0, 0, *step.size)
+                if shift:
+                    self.ctx.viewport = (0, 0, *step.size)
+            iteration += count
             if before is not None:
+                if watch and watch.has_settled(iteration, result, before):
+                    result.settled = iteration
                 self.pool.give(before)
             before, state = result, result.textures
-            iteration += count
+            if result.settled:
+                break
         assert before is not None
         if shift:  # each texel of the lattice goes to its place, with zeros between
             close, before = before, self.drawn_own("spread.frag", before, k_shift=shift)
@@ -390,7 +416,7 @@ def _set_fitting(program: Program, name: str, values: tuple[float, ...]) -> None
         own = values[3 * index : 3 * index + 3] if length > 1 and len(values) > 1 else values
         found = [int(v) if whole else float(v) for v in (*own, *(0.0,) * count)[:count]]
         elements.append(found[0] if count == 1 else tuple(found))
-    uniform.value = elements[0] if length == 1 else elements
+    program.write(name, elements[0] if length == 1 else elements)
 
 
 _WHOLE = frozenset({0x1404, 0x1405, *range(0x8B53, 0x8B5A), *range(0x8DC6, 0x8DC9)})

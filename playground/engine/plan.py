@@ -12,7 +12,7 @@ from playground.sketch.expressions import counts_frames
 from playground.sketch.flat import Flat, Ref, Source
 from playground.sketch.model import Kernel, PassSpec, Sketch, Value
 from playground.terrain.camera import Eye
-from playground.terrain.source_kinds import Terrain
+from playground.terrain.known import Terrain
 
 
 class LoopIteration(NamedTuple):

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
-from playground.engine.plan import Plan, Step
+from playground.engine.plan import Plan, Step, most_iterations
 from playground.errors import DataError, Diagnostic
 from playground.media.live_inputs import LiveInputs
 from playground.paths import GLSL, shown
@@ -38,12 +38,26 @@ class PlanWarnings:
             found += kernel_warnings(plan.sketch.graph, unheeded)
         for warning in found:
             self.once(warning, warning.message)
+        for path, warning in _stops_past_the_end(plan):
+            self.once(warning, f"steps of {path}")  # in a film each frame would have another number
 
     def once(self, warning: Diagnostic, about: str) -> None:
         """Report a warning, unless one of its file about the same was reported."""
         if self.report is not None and (about, warning.file) not in self._reported:
             self._reported.add((about, warning.file))
             self.report(warning)
+
+
+def _stops_past_the_end(plan: Plan) -> list[tuple[str, Diagnostic]]:
+    """Return the repeats that stop after more steps than they have now, which change with the time."""
+    most = most_iterations(plan.nodes) if plan.steps else {}
+    found = []
+    for path, steps in plan.steps.items():
+        if steps > most.get(path, steps):
+            message = f"steps: '{path}' stops after {steps} steps, but at {plan.time:g} s it has {most[path]}"
+            file = shown(plan.sketch.file)
+            found.append((path, Diagnostic(message, file, severity="warning")))
+    return found
 
 
 def kernel_warnings(
@@ -75,6 +89,7 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
                 notes = (*notes, f"{_readers(plan, step)}: {lack}")
             for note in notes:
                 file = spec.file or shown(step.kernel.path)
+                note = note.removeprefix(f"{Path(file).name}: ")  # of a file that was opened itself
                 found.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
     return tuple(found.values())
 

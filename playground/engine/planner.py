@@ -37,7 +37,7 @@ from playground.sketch.identity import Identity
 from playground.sketch.model import LARGEST_SIDE, Graph, Sketch, Technique, Value
 from playground.sketch.wiring import inner, output_names, target_of
 from playground.terrain.camera import Eye, look
-from playground.terrain.source_kinds import Terrain
+from playground.terrain.known import Terrain
 
 _MOST_PLANS = 8  # of so many graphs, picture sizes and stops the last plan is remembered
 

@@ -34,22 +34,30 @@ class Program:
         self.ctx = ctx
         self.compiled = compiled
         self.uniforms: dict[str, Any] = {name: compiled[name] for name in compiled}
+        self.bound: object = None  # what its uniforms were last bound for: see ``Binder.bind``
+        self._last: dict[str, Any] = {}  # the values that uniforms have
         self.arrays: dict[object, moderngl.VertexArray] = {}  # by mesh; None: the whole picture
         self.frame = 0  # when it was last used
         self._corners: moderngl.Buffer | None = None
 
     def set(self, name: str, value: Any) -> None:
-        """Set a uniform, unless the driver dropped it."""
+        """Set a uniform, unless the driver dropped it, or it has that very value, which is immutable."""
         uniform = self.uniforms.get(name)
-        if uniform is not None:
-            uniform.value = value
+        if uniform is not None and self._last.get(name, self) is not value:
+            uniform.value = self._last[name] = value
 
     def set_all(self, values: Mapping[str, Any]) -> None:
-        """Set uniforms by name; those that the driver dropped are left out."""
+        """Set uniforms by name, as ``set`` does."""
+        uniforms, last = self.uniforms, self._last
         for name, value in values.items():
-            uniform = self.uniforms.get(name)
-            if uniform is not None:
-                uniform.value = value
+            uniform = uniforms.get(name)
+            if uniform is not None and last.get(name, self) is not value:
+                uniform.value = last[name] = value
+
+    def write(self, name: str, value: Any) -> None:
+        """Set a uniform that there is to numbers in a list or a tuple of their own."""
+        self._last.pop(name, None)
+        self.uniforms[name].value = value
 
     def fill(self, vertices: int = 3) -> None:
         """Draw one triangle over the whole of the bound framebuffer, or two of 6 vertices in all."""

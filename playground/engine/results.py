@@ -44,19 +44,23 @@ class Result:
     outputs: tuple[Output, ...]
     textures: dict[str, moderngl.Texture]  # by output
     iterations: int = 0  # done, of a pass that repeats
+    settled: int = 0  # the steps that ran, of one that was stopped since they changed nothing more
     number: int = 0  # of all that its pool has handed out: textures are used again, it is not
     surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
     shaped: dict[tuple[str, str], Shaped] = field(default_factory=dict)  # copies, by output and shape
+    own_bytes: int = 0  # of its textures without mipmaps; 0: not counted yet
     _framebuffer: moderngl.Framebuffer | None = None
 
     @property
     def bytes(self) -> int:
         """Bytes held, mipmaps and samples included."""
-        total = 0
-        for output in self.outputs:
-            each = bytes_of(self.size, output.format)
-            total += each + (each // 3 if output.name in self.mipmapped else 0)
+        if not self.own_bytes:
+            self.own_bytes = sum([bytes_of(self.size, output.format) for output in self.outputs])
+        if not self.mipmapped and not self.shaped and self.surface is None:
+            return self.own_bytes
+        total = self.own_bytes
+        total += sum([bytes_of(self.size, o.format) // 3 for o in self.outputs if o.name in self.mipmapped])
         total += sum([copy.bytes for copy in self.shaped.values()])
         if (surface := self.surface) is not None:
             width, height = surface.size
@@ -129,7 +133,9 @@ class Pool:
                 del self._spare[number]
                 self._bytes -= spare.bytes
                 textures = dict(zip((o.name for o in wanted), spare.textures.values(), strict=True))
-                return Result(size, wanted, textures, number=self._taken, _framebuffer=spare._framebuffer)
+                found = Result(size, wanted, textures, number=self._taken, own_bytes=spare.own_bytes)
+                found._framebuffer = spare._framebuffer
+                return found
         self.made += 1
         made: dict[str, moderngl.Texture] = {}
         try:

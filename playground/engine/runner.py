@@ -6,7 +6,7 @@ Programs, meshes and file textures stay here; results are the caller's.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -37,6 +37,9 @@ from playground.terrain.sources import source_kind
 
 if TYPE_CHECKING:
     import moderngl
+
+
+_NOTHING = nullcontext()
 
 
 class Runner:
@@ -72,8 +75,11 @@ class Runner:
             "plain_fragment": self._plain,
             "plain_compute": self._plain,
         }
+        self._of_draws = ctx.BLEND | ctx.DEPTH_TEST | ctx.CULL_FACE
         self._plan: Plan | None = None
         self._given: dict[str, Any] = {}
+        # What a step was given since, and with which buttons pressed, by its identity.
+        self._known_given: dict[int, tuple[Step, frozenset[str], dict[str, Any]]] = {}
 
     @property
     def compile_times(self) -> dict[str, float]:
@@ -84,6 +90,7 @@ class Runner:
         """Take terrain, time and camera from a plan."""
         self._plan = plan
         eye = plan.eye
+        self._known_given.clear()
         self._given = {
             "time": plan.time,
             "extent": plan.terrain.extent,
@@ -165,13 +172,26 @@ class Runner:
         assert self._plan is not None, "look_at() comes first"
         if self.before_step is not None:
             self.before_step(step)
+        self.ctx.disable(self._of_draws)
+        if step.kernel.kind == "kernel":
+            job = Job(step, self._given_now(step, iteration), inputs, iteration, start)
+            with self._placed(step) if step.kernel.file_parameters else _NOTHING:
+                return self.kernels.run(job, driver)
         frame = iteration.frame if iteration is not None else None
         given, samples = self.given_for(step, frame), self._samples_for(step.kernel)
         job = Job(step, given, inputs, iteration, start, samples, keeps_surface, key)
-        self.ctx.disable(self.ctx.BLEND | self.ctx.DEPTH_TEST | self.ctx.CULL_FACE)
-        other = self._other_kinds.get(step.kernel.kind)
         with self._placed(step):
-            return other(job) if other else self.kernels.run(job, driver)
+            return self._other_kinds[step.kernel.kind](job)
+
+    def _given_now(self, step: Step, iteration: LoopIteration | None) -> dict[str, Any]:
+        """Return what the engine gives a kernel in this frame: the very same in every iteration, if it is."""
+        if iteration is not None and iteration.frame is not None:
+            return self.given_for(step, iteration.frame)
+        known, pressed, given = self._known_given.get(id(step), (None, None, {}))
+        if known is not step or pressed is not self.pressed:
+            given = self.given_for(step)
+            self._known_given[id(step)] = step, self.pressed, given
+        return given
 
     @contextmanager
     def _placed(self, step: Step) -> Iterator[None]:

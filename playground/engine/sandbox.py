@@ -5,7 +5,7 @@ takes too long or too much memory. Parent and worker share the driver's shader c
 the worker compiled compiles at once for the parent.
 
 The limit on time is for each pass, in all its steps: whichever exceeds it is named. A sketch of
-many slow passes is tried to its end.
+many slow passes is tried to its end, and one with large data files has the time to read them besides.
 
 A worker that died is replaced at once, and one that takes suspiciously long has a spare,
 warm by the time that it is needed. A newer request does not wait for a
@@ -15,14 +15,18 @@ worker that hangs: that is killed, and the spare takes its place.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from playground.errors import PlaygroundError, SandboxCrash, SandboxTimeout
+from playground.engine.files import find_file
+from playground.errors import DataError, PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.process.crash_report import CrashReport
 from playground.process.messages import Answer, summary_of
 from playground.process.worker import Closing, Launch, Replaceable, Worker, WorkerDied
+from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
+from playground.sketch.traits import traits_of
 
 LIMIT_SECONDS = 10.0
 LIMIT_BYTES = 4 * 2**30
@@ -30,6 +34,9 @@ _START = 60.0  # [s] that a worker may take to start Python and open a context
 _SUSPICIOUS = 0.3  # [s] after which a spare is started for a worker that has not answered
 _IMPATIENT = 0.5  # [s] after which a worker is killed for something newer
 _HANDLER = "playground.engine.sandbox_handler"
+_SLOW_READ = 2**24  # [bytes/s] of a large data file: a quarter of what deflate takes
+_LARGE = 2**26  # [bytes] above which a data file is given that time besides
+_LONGEST_READ = 120.0  # [s]
 
 
 @dataclass(frozen=True)
@@ -81,6 +88,21 @@ class Activity:
         return f"pass '{self.path}'" if self.path else "this file"
 
 
+def reading_seconds(request: Request) -> float:
+    """Return how long a request may take to read its large data files, besides all else [s]."""
+    if not isinstance(request, TrySketch):
+        return 0.0
+    files = traits_of(request.sketch).files
+    values = values_of(request.sketch) if files else {}
+    size = 0
+    for path, parameter in files:
+        with suppress(DataError, OSError):  # what is missing is the plan's to report
+            file = find_file(str(values[path]), request.sketch.folder, parameter.file, path)
+            own = file.stat().st_size
+            size += own if own > _LARGE else 0
+    return min(size / _SLOW_READ, _LONGEST_READ)
+
+
 class Sandbox(Closing):
     """A warm worker process that tries sketches.
 
@@ -103,12 +125,13 @@ class Sandbox(Closing):
                 handler=_HANDLER,
                 options=(software, device),
                 memory_bytes=memory_bytes,
-                limit_seconds=limit_seconds,
+                limit_seconds=limit_seconds + _LONGEST_READ,
                 on_answer=lambda: self.on_answer(),
             )
         )
         self._current: Request | None = None  # what the worker is at, while that is the newest
         self._waiting: Request | None = None  # the newest, while the worker is still at an older one
+        self._reading = 0.0  # [s] that its large data files may take besides
         self._repeated = False  # what it is at was submitted to one before, which died of something else
 
     @property
@@ -149,6 +172,7 @@ class Sandbox(Closing):
 
     def _send(self, request: Request, *, repeated: bool = False) -> None:
         self._waiting, self._current, self._repeated = None, request, repeated
+        self._reading = reading_seconds(request)
         self._workers.start().submit(request)
 
     def _report(self, timeout: float) -> SandboxReport | None:
@@ -168,7 +192,7 @@ class Sandbox(Closing):
 
     def _check_time(self, worker: Worker) -> SandboxReport | None:
         """Start a spare for a worker that takes long, and kill the worker where it takes too long."""
-        starting, spent, limit = worker.starting_seconds, worker.seconds, self.limit_seconds
+        starting, spent, limit = worker.starting_seconds, worker.seconds, self.limit_seconds + self._reading
         if starting > _START:
             self._workers.end(kill=True)
             message = f"the sandbox's process was not ready after {_START:g} s, so nothing could be tried"

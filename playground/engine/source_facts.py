@@ -10,7 +10,7 @@ from playground.engine.plan_request import DEFAULT_EXTENT, DEFAULT_RELIEF, DEFAU
 from playground.errors import DataError, PlaygroundError
 from playground.sketch.flat import Flat, Leaf
 from playground.sketch.model import Sketch, Value
-from playground.terrain.source_kinds import Terrain
+from playground.terrain.known import Terrain
 from playground.terrain.sources import source_kind
 
 Values = Mapping[str, Mapping[str, Value]]
@@ -48,7 +48,8 @@ def described(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
         extent = (DEFAULT_EXTENT, DEFAULT_EXTENT * ratio)
     relief = sketch.relief if sketch.relief is not None else known.relief
     base = sketch.base_elevation if sketch.base_elevation is not None else known.base_elevation
-    return Terrain(size, extent, DEFAULT_RELIEF if relief is None else relief, base or 0.0)
+    relief = DEFAULT_RELIEF if relief is None else relief
+    return Terrain(size, extent, relief, base or 0.0, known.place)
 
 
 def own_sizes(sketch: Sketch, flat: Flat, values: Values) -> Iterator[tuple[str, tuple[int, int]]]:

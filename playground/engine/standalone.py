@@ -5,6 +5,7 @@ Nothing else is in it, so that a mistake elsewhere cannot pass for one of the te
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
@@ -40,10 +41,20 @@ def standalone_sketch(
     wanted = technique.needs_inputs if isinstance(technique, Kernel) else [e.name for e in technique.inputs]
     line = technique.pragma.number if isinstance(technique, Kernel) and technique.pragma else 0
     passes = [PassSpec(name, "a placeholder", _TERRAIN, values=((SEED, seed),)) for name in wanted]
-    passes.append(PassSpec(subject, subject, technique, file=shown(technique.path), line=line))
-    passes.append(PassSpec("view", "a copy", _COPY, inputs=(("shown", subject),)))
-    graph = Graph(subject, technique.path, tuple(passes))
-    return with_pictures(Sketch(Path(technique.path).stem, technique.path, str(folder), graph), picture)
+    return with_pictures(shown_alone(technique, subject, passes, folder, line), picture)
+
+
+def shown_alone(
+    technique: Technique, subject: str, passes: Iterable[PassSpec], folder: Path, line: int = 0
+) -> Sketch:
+    """Return a sketch of some passes and one, named ``subject``, of a technique, which it shows.
+
+    ``folder`` is where its files are, ``line`` that of the technique's file that errors name.
+    """
+    own = PassSpec(subject, subject, technique, file=shown(technique.path), line=line)
+    view = PassSpec("view", "a copy", _COPY, inputs=(("shown", subject),))
+    graph = Graph(subject, technique.path, (*passes, own, view))
+    return Sketch(Path(technique.path).stem, technique.path, str(folder), graph)
 
 
 def with_pictures(sketch: Sketch, picture: Path) -> Sketch:
@@ -73,7 +84,8 @@ def _unnamed_files(sketch: Sketch) -> list[str]:
     ]
 
 
-def _text(code: str) -> SourceText:
+def text_of(code: str) -> SourceText:
+    """Return code that is in no file as a kernel's text."""
     lines = code.strip().split("\n")
     return SourceText("", tuple(Line(line, line, "", "", number) for number, line in enumerate(lines, 1)))
 
@@ -81,14 +93,14 @@ def _text(code: str) -> SourceText:
 _TERRAIN = Kernel(
     name="a placeholder",
     kind="kernel",
-    source=_text(own_shader("placeholder_terrain.glsl")),
+    source=text_of(own_shader("placeholder_terrain.glsl")),
     outputs=(Output("value", "rgba32f"),),
     parameters=(Parameter(SEED, "uint", 0),),
 )
 _COPY = Kernel(
     name="a copy",
     kind="kernel",
-    source=_text(own_shader("placeholder_view.glsl")),
+    source=text_of(own_shader("placeholder_view.glsl")),
     outputs=(Output("frame", "rgba16f"),),
     inputs=(Input("shown"),),
 )

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from playground.engine.engine import Engine
-from playground.engine.plan import LoopStep, Plan, Step, every_node, needed
+from playground.engine.plan import LoopStep, Plan, Step, every_version, needed
 from playground.engine.planner import Planner
 from playground.errors import SketchError
 from playground.lessons.measures import MEASURES, Grid, OfTexture
@@ -106,7 +106,7 @@ def _value(engine: Engine, measure: Measure, scene: Scene) -> float:
     )
     nodes = needed(plan.nodes, plan.flat.ref(measure.of, scene.sketch.name))
     if measure.what == "iterations":
-        return float(max((node.repeat for node in every_node(tuple(nodes))), default=0))
+        return float(max((node.repeat for node in every_version(tuple(nodes))), default=0))
     return float(sum(_texels(node) for node in nodes))
 
 

@@ -1,4 +1,7 @@
-"""Files dropped on the window: a sketch opens, an image, video or sound goes to what takes one."""
+"""Files dropped on the window: a sketch opens, an image, video or sound goes to what takes one.
+
+An elevation file may do either: it opens, where no parameter of the sketch takes one.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +14,7 @@ from imgui_bundle import ImVec2, imgui
 from playground.errors import PlaygroundError
 from playground.live.theme import Theme
 from playground.live.widgets import IMAGES
-from playground.sketch.allowed_files import SHADERS
+from playground.sketch.allowed_files import SHADERS, VECTORS, is_elevation
 from playground.sketch.dialects import is_export
 from playground.sketch.dialects.shadertoy_folder import image_of
 from playground.sketch.find import find
@@ -22,7 +25,9 @@ from playground.workbench.commands import Commands
 from playground.workbench.parameter_list import Item, Listing
 
 _TITLE = "dropped"
-_FILES = (*IMAGES, *(ending for endings in MEDIA.values() for ending in endings))
+_OWN = "Into a sketch of its own"
+_FILES = (*IMAGES, *VECTORS, *(ending for endings in MEDIA.values() for ending in endings))
+_VECTORS = "vectors"  # what a source of vector data calls its file
 
 
 def opened_from(sketch: Path) -> tuple[Path, str]:
@@ -41,6 +46,11 @@ def _is_sketch(path: Path) -> bool:
     with suppress(PlaygroundError):
         return path.suffix == ".toml" or path.suffix in SHADERS or is_export(path)
     return False
+
+
+def _is_terrain(path: Path) -> bool:
+    """Return whether a file holds elevations, as a PNG seldom does."""
+    return is_elevation(path) and path.suffix.lower() != ".png"
 
 
 @dataclass
@@ -68,6 +78,9 @@ class Drops:
             if path not in files:
                 say(f"{path.name} is neither a sketch, a shader nor an image, a video or a sound")
         placed = [path for path in files if self.parameters(path) or self.channels(path)]
+        if files and not placed and _is_terrain(files[0]):
+            self.commands.open(files[0])
+            return
         if files and not placed:
             say(f"no parameter of this sketch takes a file like {files[0].name}, so it has no place in it")
         elif placed:
@@ -88,7 +101,8 @@ class Drops:
 
         def takes(item: Item) -> bool:
             registry = kernels[item.leaf.rpartition(".")[0]].registry
-            return file.suffix.lower() in MEDIA.get(registry, IMAGES)
+            usual = VECTORS if item.parameter.name == _VECTORS else IMAGES
+            return file.suffix.lower() in MEDIA.get(registry, usual)
 
         found = [item for item in items if item.parameter.widget.kind == "file" and takes(item)]
         feeders = {taker.channel.feeder for taker in self.channels(file) if taker.channel.alone}
@@ -117,6 +131,10 @@ class Drops:
         self._asks = bool(self.waiting)
         return file
 
+    def open(self) -> None:
+        """Open the elevation file that waits, in a sketch of its own."""
+        self.commands.open(self._next())
+
     def put(self, path: str) -> None:
         """Put the file that waits into a parameter."""
         file = self._next()
@@ -137,7 +155,9 @@ class Drops:
         with look.font(look.bold):
             imgui.text_unformatted(f"Put {self.waiting[0].name} where?")
         draft = self.commands.session.shown
-        for taker in self.channels(self.waiting[0]):
+        if _is_terrain(self.waiting[0]) and imgui.selectable(_OWN, False)[0]:
+            self.open()
+        for taker in self.channels(self.waiting[0]) if self.waiting else ():
             if imgui.selectable(f"{taker.channel.path}##channel {taker.channel.path}", False)[0]:
                 self.feed(taker)
                 break

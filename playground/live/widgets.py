@@ -18,6 +18,7 @@ from playground.live.draw import choose
 from playground.live.panel_rows import fitting_choice
 from playground.live.sliders import draw_numbers, part_names
 from playground.paths import shown
+from playground.sketch.allowed_files import ELEVATIONS
 from playground.sketch.colour import linear_to_srgb, srgb_to_linear
 from playground.sketch.model import Parameter, Value
 from playground.sketch.values import expected, is_whole, length_of, tidied, write
@@ -26,7 +27,7 @@ from playground.workbench.number_format import unit_of
 
 _CLAMP = imgui.SliderFlags_.always_clamp.value
 _PAD = 84.0
-IMAGES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
+IMAGES = (".jpg", ".jpeg", ".webp", *ELEVATIONS)
 
 
 @dataclass(frozen=True)

@@ -118,6 +118,8 @@ class _Inliner:
         step = node
         initial: dict[str, Source | None] = {}
         if isinstance(node, LoopStep):
+            if len(node.bodies) > 1:
+                raise SketchError(f"pass '{node.path}' has a size for each step, which cannot be inlined")
             inside = node.body[0]
             if len(node.body) != 1 or isinstance(inside, LoopStep):
                 raise SketchError(

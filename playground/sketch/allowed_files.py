@@ -26,6 +26,15 @@ TECHNIQUES = (".toml", ".glsl", ".frag", ".fs")
 TEXTS = (*SHADERS, ".toml")
 """Endings of the text files that a sketch may be made of."""
 
+ELEVATIONS = (
+    *(".png", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt"),
+    *(".asc", ".bil", ".flt", ".nc"),
+)
+"""Endings of elevation files, which may be opened alone, too; in small letters or large ones."""
+
+VECTORS = (".geojson", ".json", ".gpkg", ".shp", ".fgb", ".kml", ".gpx")
+"""Endings of files of points, lines and polygons."""
+
 FAST = (".comp", ".fast.toml")
 """Endings of fast variants, in the folder of the technique of their name; the fastest first."""
 
@@ -196,6 +205,11 @@ def exists(path: Path) -> bool:
         return path.exists()
     except (OSError, ValueError):
         return False
+
+
+def is_elevation(path: Path) -> bool:
+    """Return whether a file is one of elevations by its name."""
+    return path.suffix.lower() in ELEVATIONS
 
 
 def is_variant(path: Path) -> bool:

@@ -6,7 +6,17 @@ from pathlib import Path
 
 from playground.errors import SketchError, nearest
 from playground.paths import GLSL, SKETCHES
-from playground.sketch.allowed_files import SHADERS, TECHNIQUES, TEXTS, exists, is_file, is_inside, is_variant
+from playground.sketch.allowed_files import (
+    ELEVATIONS,
+    SHADERS,
+    TECHNIQUES,
+    TEXTS,
+    exists,
+    is_elevation,
+    is_file,
+    is_inside,
+    is_variant,
+)
 from playground.sketch.dialects import EXPORT, is_export
 from playground.sketch.dialects.shadertoy_folder import image_of
 from playground.sketch.unpack import is_pack, unpacked
@@ -30,13 +40,14 @@ def find(name: str | Path) -> Path:
     if is_file(path):
         if is_pack(path):
             return unpacked(path)
-        if path.suffix not in TEXTS:
+        if path.suffix not in TEXTS and not is_elevation(path):
             if is_export(path):
                 return path
             if path.suffix == EXPORT:
                 message = "a sketch is a .toml, and a .json a Shadertoy export; this holds no renderpass"
                 raise SketchError(message, file=path)
-            raise SketchError(f"a sketch is a .toml, a shader ends in {', '.join(SHADERS)}", file=path)
+            message = f"a sketch is a .toml, a shader ends in {', '.join(SHADERS)}"
+            raise SketchError(f"{message}, an elevation file in {', '.join(ELEVATIONS)}", file=path)
         return path
     text = str(name)
     places = [SKETCHES / f"{text}.toml"] if "/" not in text and "\\" not in text else []

@@ -28,12 +28,13 @@ _MAIN = re.compile(r"\bvoid\s+main\s*\(")
 _OWN_NAME = re.compile(rf"^\S+(?:{'|'.join(map(re.escape, SHADERS))})\s*(?:--|—|–|:)\s*")
 _LONGEST_TITLE = 72
 _BETWEEN = ("squares", "triangles")
+_STEPS = ("visits", "stride", "between", "at_once", "until")
 _IMAGE = re.compile(
     r"layout\s*\(([^)]*)\)\s*(?:(?:writeonly|readonly|restrict|coherent|volatile)\s+)*"
     r"uniform\s+(?:\w+\s+)*image2D\s+(\w+)"
 )
 _KEYS = {
-    "kernel": ("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once"),
+    "kernel": ("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once", "until"),
     "source": ("name", "output", "reads"),
     "draw": ("where", "mesh", "count", "output", "blend", "depth", "samples", "repeat"),
     "compute": (
@@ -108,9 +109,7 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
     if kind == "draw":
         return _draw(kernel, options, line)
     _refuse_driver_bound(source)
-    texts = {
-        key: options[key] for key in ("accepts", "visits", "stride", "between", "at_once") if key in options
-    }
+    texts = {key: options[key] for key in (*_STEPS, "accepts") if key in options}
     kernel = replace(kernel, repeat=repeat, **texts)  # type: ignore[arg-type]
     _check_steps(kernel, numbers, line)
     _check_accepts(kernel.accepts, line)
@@ -149,6 +148,8 @@ def _check_steps(kernel: Kernel, numbers: Collection[str], line: Line) -> None:
             raise line.error(f"between = '{kernel.between}'{nearest(kernel.between, _BETWEEN)}")
         if not kernel.stride:
             raise line.error("between says how the texels of a stride are joined; give the kernel a stride")
+    if kernel.until:
+        _check_until(kernel, line)
     if kernel.at_once == "1":
         return
     _check("at_once", kernel.at_once, (*_SIZE, *numbers), line)
@@ -160,6 +161,24 @@ def _check_steps(kernel: Kernel, numbers: Collection[str], line: Line) -> None:
         raise line.error(
             "at_once: the kernel must do the steps from iteration up to until, but never names until"
         )
+
+
+def _check_until(kernel: Kernel, line: Line) -> None:
+    """Check that what a kernel does of a state is the same at every step: then an unchanged one stays."""
+    if kernel.until != "unchanged":
+        raise line.error(f"until = '{kernel.until}'{nearest(kernel.until, ('unchanged',))}")
+    if kernel.repeat == "1":
+        raise line.error(
+            "until says when a repeat may end, but the kernel has one step only; give it a repeat"
+        )
+    if kernel.visits or kernel.at_once != "1":
+        name = "visits" if kernel.visits else "at_once"
+        raise line.error(f"until and {name}: a kernel has one or the other")
+    for name in ("iteration", "iterations", "until", "time"):
+        if kernel.reads(name):
+            raise line.error(
+                f"until: the text names '{name}', so after a step that changes nothing another may"
+            )
 
 
 def title_of(source: SourceText) -> str:

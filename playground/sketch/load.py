@@ -14,6 +14,7 @@ from playground.paths import DEFAULT_SKETCH, GLSL, SKETCHES, shown
 from playground.sketch.allowed_files import (
     SHADERS,
     is_absolute,
+    is_elevation,
     is_file,
     is_variant,
     looking_once,
@@ -21,6 +22,7 @@ from playground.sketch.allowed_files import (
 )
 from playground.sketch.assign import effective_values, shown_parameters
 from playground.sketch.dialects import EXPORT, check_name
+from playground.sketch.elevation_sketch import elevation_sketch
 from playground.sketch.find import find
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value
@@ -41,7 +43,8 @@ from playground.sketch.wiring import output_names
 def load(name: str | Path = "", *, dialect: str = "") -> Sketch:
     """Load a sketch by the name of a shipped one, or by path; with no name, the shipped default.
 
-    A path is a TOML, a folder that holds ``sketch.toml``, or a shader. A technique alone, a
+    A path is a TOML, a folder that holds ``sketch.toml``, a shader, or an elevation file, around which a
+    sketch is made. A technique alone, a
     kernel or a TOML of several passes, takes the place of the pass with its outputs in the
     default sketch; a plain shader is the whole picture, and so is another tool's shader, whose
     ``dialect`` goes by its text unless it is named.
@@ -66,6 +69,8 @@ def load_with(techniques: Techniques, name: str | Path = "", text: str | None = 
             return _shader_alone(path, techniques)
         if techniques.dialect:
             raise SketchError("--dialect is for a shader file", file=path)
+        if is_elevation(path):
+            return elevation_sketch(path, techniques)
         file = TomlFile(path, path.parent, text)
         if is_variant(path):
             raise lonely_variant(path)

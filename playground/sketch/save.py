@@ -19,7 +19,7 @@ from pathlib import Path
 from playground.errors import DataError, PlaygroundError, SketchError
 from playground.partial import partial_file
 from playground.paths import GLSL
-from playground.sketch.allowed_files import leads_outside
+from playground.sketch.allowed_files import is_elevation, leads_outside
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.load import load, load_with
 from playground.sketch.model import Camera, PassSpec, Sketch, Value
@@ -240,6 +240,10 @@ def _read(path: Path) -> str:
         raise DataError(f"cannot be read: {error}", file=path) from None
 
 
+def _kind(path: Path) -> str:
+    return "an elevation file" if is_elevation(path) else "a shader"
+
+
 def write_over(
     path: Path, file: Sketch, change: Callable[[str], str], is_right: Callable[[Sketch], bool]
 ) -> None:
@@ -252,7 +256,7 @@ def write_over(
     """
     path = path.resolve()  # a link stays a link: what it leads to is written
     if path.suffix != ".toml":
-        raise ReadOnlySketch("a shader opened alone has no sketch file to save into", file=path)
+        raise ReadOnlySketch(f"{_kind(path)} opened alone has no sketch file to save into", file=path)
     if path.is_relative_to(GLSL.resolve()):
         raise ReadOnlySketch("this sketch belongs to the playground itself", file=path)
     if not os.access(path, os.W_OK) or not os.access(path.parent, os.W_OK):

@@ -81,6 +81,7 @@ class Kernel:
     stride: str = ""  # after a step, only texels at multiples of it are known
     between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
     at_once: str = "1"  # steps that one run may take
+    until: str = ""  # "unchanged": no more steps are run once one has changed no texel
     registry: str = ""  # of a source or a draw: the name of the source or mesh
     depends: tuple[str, ...] = ()  # of a source: what its texels depend on besides its parameters, as time
     blend: str = "none"

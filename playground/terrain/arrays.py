@@ -17,7 +17,10 @@ from numpy.typing import NDArray
 from playground.errors import DataError
 from playground.images.bounds import refuse_bomb
 from playground.terrain.geodesy import spacing_from_degrees
-from playground.terrain.grid import Found, check_grid
+from playground.terrain.geokeys import GEOGRAPHIC, IS_POINT, MODEL, RASTER
+from playground.terrain.grid import Found, check_grid, in_memory
+from playground.terrain.place import Crs, Place
+from playground.terrain.rows import FileRows
 
 
 @dataclass(frozen=True)
@@ -32,7 +35,11 @@ def read_npy(path: Path) -> Found:
     with path.open("rb") as handle:
         header = _array_header(handle, path)
         check_grid(header.shape, header.dtype, path)
-        return Found(_array_body(handle, header, path.stat().st_size, path))
+        length = path.stat().st_size
+        if header.by_columns:
+            return in_memory(_array_body(handle, header, length, path))
+        _refuse_cut(handle, header, length, path)
+        return Found(FileRows(path, (header.shape[0], header.shape[1]), header.dtype, handle.tell()))
 
 
 def _array_header(handle: IO[bytes], path: Path) -> _Header:
@@ -49,10 +56,16 @@ def _array_header(handle: IO[bytes], path: Path) -> _Header:
     return header
 
 
-def _array_body(handle: IO[bytes], header: _Header, length: int, path: Path) -> NDArray[Any]:
+def _refuse_cut(handle: IO[bytes], header: _Header, length: int, path: Path) -> int:
+    """Return how many bytes an array takes; raise ``DataError`` where they are not there."""
     need, have = math.prod(header.shape) * header.dtype.itemsize, length - handle.tell()
     if need > have:
         raise DataError(f"is cut short: its header promises {need} bytes, {have} are there", file=path)
+    return need
+
+
+def _array_body(handle: IO[bytes], header: _Header, length: int, path: Path) -> NDArray[Any]:
+    need = _refuse_cut(handle, header, length, path)
     flat = np.frombuffer(handle.read(need), dtype=header.dtype)
     return flat.reshape(header.shape[::-1]).T if header.by_columns else flat.reshape(header.shape)
 
@@ -125,7 +138,7 @@ def read_npz(path: Path) -> Found:
         x0, x1, y0, y1 = (archive.number(name) for name in ("xmin", "xmax", "ymin", "ymax"))
         units = archive.word("units")
     if dx is None and dy is None:
-        return Found(values)
+        return in_memory(values)
     dx, dy = abs(dx or dy or 0.0), abs(dy or dx or 0.0)
     if not dx or not dy:
         raise DataError("'dx' and 'dy' are zero; expected the distance between texels", file=path)
@@ -143,7 +156,24 @@ def read_npz(path: Path) -> Found:
             f"'units' is {units!r}; expected 'm', or 'degrees' together with 'ymin' and 'ymax'", file=path
         )
     if not in_degrees:
-        return Found(values, (dx, dy), in_metres=True)
+        return in_memory(values, (dx, dy), in_metres=True)
     assert y0 is not None and y1 is not None
     spacing, notes = spacing_from_degrees(dx, dy, (y0 + y1) / 2)
-    return Found(values, spacing, in_metres=True, notes=notes)
+    place = None
+    if x0 is not None and x1 is not None:
+        place = _place((x0, x1), (y0, y1), (dx, dy), (values.shape[1], values.shape[0]))
+    return in_memory(values, spacing, in_metres=True, place=place, notes=notes)
+
+
+def _place(
+    x: tuple[float, float], y: tuple[float, float], step: tuple[float, float], size: tuple[int, int]
+) -> Place | None:
+    """Return where the nodes lie, on WGS 84; None where the bounds are neither areas' nor nodes'."""
+    inside = []
+    for ends, of, count in zip((x, y), step, size, strict=True):
+        more = abs(ends[1] - ends[0]) / of - (count - 1)  # 1 for areas, 0 for nodes
+        if min(abs(more), abs(more - 1.0)) > 0.01:
+            return None
+        inside.append(0.5 * of * round(more))
+    crs = Crs(((MODEL, 2), (RASTER, IS_POINT), (GEOGRAPHIC, 4326)))
+    return Place(min(x) + inside[0], max(y) - inside[1], step, size, crs)

@@ -4,9 +4,9 @@ Heights come out as float32 with row 0 in the south
 and NaN where the file has no data. Heights are on nodes: n texels in a row
 are n - 1 spacings long, so the corners of the terrain are the corners of the grid.
 
-Each format has a reader of its own (`geotiff`, `arrays`, `raw`); this chooses one and
-finishes what it hands over. Raw numbers (0..65535) stay raw: which heights they mean is
-the sketch's choice.
+Each format has a reader of its own (`geotiff`, `esri`, `arrays`, `raw`, `gis`); this chooses one and
+finishes what it hands over: whole, or at another size without ever having all of it in memory. Raw
+numbers (0..65535) stay raw: which heights they mean is the sketch's choice.
 """
 
 from __future__ import annotations
@@ -18,22 +18,27 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from playground.errors import DataError, nearest
 from playground.images.files import checked_file, read_samples, read_texts, reason
+from playground.sketch.allowed_files import ELEVATIONS
 from playground.terrain.arrays import read_npy, read_npz
+from playground.terrain.decimate import decimate
+from playground.terrain.esri import read_asc, read_bil, read_flt
 from playground.terrain.geotiff import read_tiff
+from playground.terrain.gis import read_netcdf
 from playground.terrain.grid import Found, Heights, Packing, check_grid, from_channels
+from playground.terrain.place import Place
 from playground.terrain.raw import read_hgt, read_raw
 
 Edge = Literal["north", "south"]
 
-READABLE = (".png", ".tif", ".tiff", ".npy", ".npz", ".r16", ".raw", ".hgt")
-
-_SHORT_VOID = -32768  # "no data" in 16-bit elevations: SRTM's value, and the custom since
+_OVERVIEW = 2**20
+"""Texels, at least, of the overview that tells how low and high a terrain is."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,6 +54,8 @@ class Elevation:
     # None for other metres and for floats
     notes: tuple[str, ...] = ()  # sentences: what was assumed, what was lost
     path: Path | None = None  # where it was read from
+    place: Place | None = None  # where all of the file's texels lie; None: the file is silent
+    range: tuple[float, float] | None = None  # the lowest and the highest of the file; None: of ``heights``
 
     @property
     def size(self) -> tuple[int, int]:
@@ -59,25 +66,122 @@ class Elevation:
     @property
     def extent(self) -> tuple[float, float] | None:
         """Return the width and depth in metres, from first to last node; None if unknown."""
-        if self.spacing is None:
-            return None
-        nx, ny = self.size
-        return (nx - 1) * self.spacing[0], (ny - 1) * self.spacing[1]
+        return _extent(self.spacing, self.size)
 
     @cached_property
     def lowest(self) -> float:
         """Return the lowest height there is, no-data texels apart."""
-        return float(np.nanmin(self.heights))
+        return float(np.nanmin(self.heights)) if self.range is None else self.range[0]
 
     @cached_property
     def highest(self) -> float:
         """Return the highest height there is, no-data texels apart."""
-        return float(np.nanmax(self.heights))
+        return float(np.nanmax(self.heights)) if self.range is None else self.range[1]
 
     @cached_property
     def missing(self) -> int:
         """Return how many texels have no data."""
         return int(np.count_nonzero(np.isnan(self.heights)))
+
+
+@dataclass(frozen=True, eq=False)
+class ElevationFile:
+    """An elevation file that was opened: its header is known, its heights can be read."""
+
+    path: Path
+    found: Found
+    south_first: bool
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Return (nx, ny), in texels."""
+        return self.found.size
+
+    @property
+    def extent(self) -> tuple[float, float] | None:
+        """Return the width and depth in metres, from first to last node; None if unknown."""
+        return _extent(self.found.spacing, self.size)
+
+    def read(self) -> Elevation:
+        """Return all heights."""
+        heights = np.empty(self.found.rows.shape, np.float32)
+        with _damage_explained(self.path):
+            for start, band in self.found.rows.bands():
+                heights[start : start + len(band)] = self._heights(start, band)
+        return self._finished(heights, self.found.spacing)
+
+    def read_at(self, size: tuple[int, int]) -> Elevation:
+        """Return the heights at another size (nx, ny), corners on corners, a part of the file at a time.
+
+        Where that is smaller than an overview of the file, the overview is read. The lowest and the highest
+        are those of the file, or of an overview of a million texels or more.
+        """
+        rows, whole = self.found.rows, self.size
+        if size == whole:
+            found = self.read()
+            return replace(found, range=self.lowest_and_highest) if self.found.overviews else found
+        # Twice as fine as what is wanted: the mean that an overview's texel is counts little then.
+        fine = [
+            o
+            for o in self.found.overviews
+            if all(a >= 2 * b for a, b in zip(o.shape, size[::-1], strict=True))
+        ]
+        with _damage_explained(self.path):
+            made = decimate(fine[-1] if fine else rows, size, self._heights, whole if fine else None)
+        extent = self.extent
+        spacing = None
+        if extent is not None:
+            spacing = extent[0] / (size[0] - 1), extent[1] / (size[1] - 1)
+        span = self.lowest_and_highest if self.found.overviews else (made.lowest, made.highest)
+        return replace(self._finished(made.heights, spacing), range=span)
+
+    @cached_property
+    def lowest_and_highest(self) -> tuple[float, float]:
+        """Return those of an overview of a million texels or more, else of all texels."""
+        large = [rows for rows in self.found.overviews if math.prod(rows.shape) >= _OVERVIEW]
+        rows = large[-1] if large else self.found.rows
+        low, high = math.inf, -math.inf
+        with _damage_explained(self.path):
+            for start, band in rows.bands():
+                heights = self._heights(start, band)
+                if not np.isnan(heights).all():
+                    low, high = min(low, float(np.nanmin(heights))), max(high, float(np.nanmax(heights)))
+        if low > high:
+            raise self._nothing()
+        return low, high
+
+    def _heights(self, start: int, band: NDArray[Any]) -> NDArray[np.floating[Any]]:
+        heights = self.found.heights(start, band)
+        if np.isinf(heights).any():
+            row, x = (int(n) for n in np.argwhere(np.isinf(heights))[0])
+            y = start + row if self.south_first else self.found.rows.shape[0] - 1 - start - row
+            message = f"a height is infinite, at texel ({x}, {y}) from the south-west corner"
+            raise DataError(message, file=self.path)
+        return heights
+
+    def _nothing(self) -> DataError:
+        return DataError("no texel has any data", file=self.path)
+
+    def _finished(self, heights: Heights, spacing: tuple[float, float] | None) -> Elevation:
+        found, path = self.found, self.path
+        if np.isnan(heights).all():
+            raise self._nothing()
+        if not self.south_first:
+            heights = np.ascontiguousarray(heights[::-1])
+        notes, dtype = found.notes, found.rows.dtype
+        if dtype.itemsize > 2 and dtype != np.float32:
+            low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
+            grain = float(np.spacing(np.float32(max(abs(low), abs(high)))))
+            if high > low and grain > (high - low) / 65536.0:
+                notes += (f"{dtype} heights up to {high:.6g} are kept as float32, to {grain:.2g} only",)
+        heights.setflags(write=False)
+        return Elevation(
+            heights, path.name, spacing, found.in_metres, found.code_range, notes, path, found.place
+        )
+
+
+def _extent(spacing: tuple[float, float] | None, size: tuple[int, int]) -> tuple[float, float] | None:
+    return None if spacing is None else ((size[0] - 1) * spacing[0], (size[1] - 1) * spacing[1])
 
 
 def read_elevation(
@@ -87,7 +191,18 @@ def read_elevation(
     packing: Packing = "grey",
     first_row: Edge = "north",
 ) -> Elevation:
-    """Read an elevation file; the name's ending tells the format.
+    """Read all heights of an elevation file; the arguments and mistakes are those of ``open_elevation``."""
+    return open_elevation(path, raw_size=raw_size, packing=packing, first_row=first_row).read()
+
+
+def open_elevation(
+    path: str | Path,
+    *,
+    raw_size: tuple[int, int] | None = None,
+    packing: Packing = "grey",
+    first_row: Edge = "north",
+) -> ElevationFile:
+    """Open an elevation file; the name's ending tells the format.
 
     * `.png`: 8 or 16 bits, grey, raw numbers, or metres if its texts `scale_m` and `offset_m`
       say which, as `playground export` writes them, with the spacing in `spacing_m`. Fully
@@ -98,6 +213,9 @@ def read_elevation(
       `dx` and `dy` give the spacing. They are degrees if `xmin`, `xmax`, `ymin`, `ymax`
       are there, look like degrees (|x| <= 360, |y| <= 90, spacing below 0.05) and no
       string `units` says "m"; else metres.
+    * `.asc`, and `.bil` and `.flt` with an `.hdr`: ESRI's grids. A `.prj` next to them says
+      whether their cells are metres or degrees.
+    * `.nc`: NetCDF, read by GDAL in the extra `gis`.
     * `.r16`, `.raw`: unsigned 16-bit little-endian numbers, square unless `raw_size`
       (nx, ny) says otherwise.
     * `.hgt`: SRTM, signed 16-bit big-endian metres over one degree; the latitude is
@@ -106,7 +224,8 @@ def read_elevation(
     `packing="rgb"` reads R*65536 + G*256 + B from three 8-bit channels of a PNG or
     TIFF. `first_row` says which edge the file begins with: "north" for everything
     image-like and, by custom, for arrays; an `.npy` that `write_values` wrote is
-    "south". In 16-bit signed files -32768 is no data.
+    "south". What the file itself says counts more than "north" does. In 16-bit signed
+    files -32768 is no data.
 
     Raises:
         DataError: a file that is missing, damaged, too large (`images.bounds`),
@@ -115,10 +234,10 @@ def read_elevation(
     """
     path = Path(path)
     ending = path.suffix.lower()
-    if ending not in READABLE:
+    if ending not in ELEVATIONS:
         checked_file(path)
         shown = f"{ending!r} is" if ending else "a name without an ending is"
-        raise DataError(f"{shown} no elevation format; readable are {', '.join(READABLE)}", file=path)
+        raise DataError(f"{shown} no elevation format; readable are {', '.join(ELEVATIONS)}", file=path)
     for what, word, words in (
         ("packing", packing, ("grey", "rgb")),
         ("first row", first_row, ("north", "south")),
@@ -140,11 +259,17 @@ def read_elevation(
             found = read_npy(path)
         elif ending == ".npz":
             found = read_npz(path)
+        elif ending in (".r16", ".raw"):
+            found = read_raw(path, raw_size)
         elif ending == ".hgt":
             found = read_hgt(path, raw_size)
         else:
-            found = read_raw(path, raw_size)
-    return _finish(found, path, first_row)
+            found = _READERS[ending](path)
+    check_grid(found.rows.shape, found.rows.dtype, path)
+    return ElevationFile(path, found, found.south_first or first_row == "south")
+
+
+_READERS = {".asc": read_asc, ".bil": read_bil, ".flt": read_flt, ".nc": read_netcdf}
 
 
 def _scaled(found: Found, text: Mapping[str, str]) -> Found:
@@ -189,34 +314,3 @@ def _damage_explained(path: Path) -> Iterator[None]:
         raise DataError(f"cannot be read: {reason(error)}", file=path) from error
     except Exception as error:
         raise DataError(f"the file is damaged or cut short: {reason(error)}", file=path) from error
-
-
-def _finish(found: Found, path: Path, first_row: Edge) -> Elevation:
-    values = found.values
-    check_grid(values.shape, values.dtype, path)
-    void = found.void
-    if values.dtype == np.int16:
-        short = values == _SHORT_VOID
-        void = short if void is None else void | short
-    with np.errstate(all="ignore"):
-        plain = (found.scale, found.offset) == (1.0, 0.0)
-        scaled = values if plain else values.astype(np.float64) * found.scale + found.offset
-        heights = np.array(scaled, dtype=np.float32)
-    if void is not None:
-        heights[void] = np.nan
-    if first_row == "north":
-        heights = np.ascontiguousarray(heights[::-1])
-    if np.isinf(heights).any():
-        y, x = np.argwhere(np.isinf(heights))[0]
-        raise DataError(f"a height is infinite, at texel ({x}, {y}) from the south-west corner", file=path)
-    gaps = np.isnan(heights)
-    if gaps.all():
-        raise DataError("no texel has any data", file=path)
-    notes = found.notes
-    if values.dtype.itemsize > 2 and values.dtype != np.float32:
-        low, high = float(np.nanmin(heights)), float(np.nanmax(heights))
-        grain = float(np.spacing(np.float32(max(abs(low), abs(high)))))
-        if high > low and grain > (high - low) / 65536.0:
-            notes += (f"{values.dtype} heights up to {high:.6g} are kept as float32, to {grain:.2g} only",)
-    heights.setflags(write=False)
-    return Elevation(heights, path.name, found.spacing, found.in_metres, found.code_range, notes, path)

@@ -1,7 +1,8 @@
 """Read elevations from TIFF files, with what GeoTIFF's tags say of metres and gaps.
 
-Reads the first picture only, and does not reproject. Sources: OGC GeoTIFF 1.1 (OGC
-19-008r4, 2019) for tags and keys; GDAL's raster driver documentation for tags 42112 and 42113.
+Reads the first picture only, strip by strip or tile by tile where that can be done, and does not
+reproject. Sources: OGC GeoTIFF 1.1 (OGC 19-008r4, 2019) for tags and keys; GDAL's raster driver
+documentation for tags 42112 and 42113 and for overviews.
 """
 
 from __future__ import annotations
@@ -11,7 +12,6 @@ import math
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,8 +21,31 @@ from numpy.typing import NDArray
 from playground.errors import DataError
 from playground.images.bounds import refuse_bomb
 from playground.images.files import reason
-from playground.terrain.geodesy import spacing_from_degrees
-from playground.terrain.grid import EIGHT_BIT, SIXTEEN_BIT, Found, Packing, check_grid, from_channels
+from playground.terrain import gis
+from playground.terrain.geokeys import (
+    DIRECTORY,
+    DOUBLES,
+    IS_POINT,
+    METRE,
+    RASTER,
+    UNITS,
+    VERTICAL_UNIT,
+    WORDS,
+    code,
+    read_keys,
+)
+from playground.terrain.grid import (
+    EIGHT_BIT,
+    SIXTEEN_BIT,
+    Found,
+    Packing,
+    check_grid,
+    from_channels,
+    void_of,
+)
+from playground.terrain.place import Crs, Place, turned
+from playground.terrain.rows import ArrayRows, Rows
+from playground.terrain.tiff_rows import tiff_rows
 
 if TYPE_CHECKING:
     import tifffile
@@ -53,37 +76,51 @@ def read_tiff(path: Path, packing: Packing) -> Found:
         end = max((o + n for o, n in zip(page.dataoffsets, page.databytecounts, strict=False)), default=0)
         if end > path.stat().st_size:
             raise DataError(f"is cut short: its data ends at byte {end}, the file before", file=path)
-        refuse_bomb(path, math.prod(shape) * page.dtype.itemsize, sum(page.databytecounts))
-        values = _tiff_values(page, path)
-        if axes == "SYX":
-            values = np.moveaxis(values, 0, -1)
-        geo = _geography(page, rows_cols, path)
-        void = _tiff_void(page, values)
+        sparse = 0 in page.databytecounts
+        if not sparse:
+            refuse_bomb(path, math.prod(shape) * page.dtype.itemsize, sum(page.databytecounts))
+        no_data = _no_data(page)
+        rows = _rows(page, path, no_data)
+        place, south_first = _place(page, (rows_cols[1], rows_cols[0]), path)
         packed = _packing(page, path)
-        notes = geo.notes
-        if len(pages) > 1 and not getattr(pages[1], "is_reduced", True):
-            notes += (f"the first of {len(pages)} pictures was read",)
-    if values.ndim == 3:
-        found = from_channels(values, packing, path)
+        overviews, notes = _further(tif, page, path, no_data)
+    if isinstance(rows, gis.GdalRows):
+        overviews = gis.overview_rows(path, "GTiff")
+    spacing, in_metres = None, False
+    if place is not None:
+        spacing, more = place.spacing
+        in_metres, notes = place.crs.facts.kind != "", (*more, *notes)
+    void = None
+    if isinstance(rows, np.ndarray) and rows.ndim == 3:
+        found = from_channels(rows, packing, path)
+        void = void_of(rows, no_data)
         void = None if void is None else void[..., 0]
         if found.void is not None:
             void = found.void if void is None else void | found.void
-        values, code_range, notes = found.values, found.code_range, notes + found.notes
+        rows, code_range, notes = found.rows, found.code_range, notes + found.notes
+        no_data, overviews = None, ()
     elif packing == "rgb":
         raise DataError("packed heights need three channels of 8 bits; found one", file=path)
     else:
-        code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(values.dtype.str[1:])
-    in_metres = geo.in_metres and (packed is not None or code_range in (None, SIXTEEN_BIT))
+        rows = ArrayRows(rows) if isinstance(rows, np.ndarray) else rows
+        code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(rows.dtype.str[1:])
+    in_metres = in_metres and (packed is not None or code_range in (None, SIXTEEN_BIT))
     scale, offset = packed if packed is not None and in_metres else (1.0, 0.0)
-    unit = geo.height_unit if in_metres else 1.0
+    unit = 1.0
+    if place is not None and in_metres:
+        unit = UNITS.get(code(dict(place.crs.keys), VERTICAL_UNIT, METRE), 1.0)
     return Found(
-        values,
-        geo.spacing,
+        rows,
+        spacing,
         in_metres=in_metres,
         code_range=None if in_metres else code_range,
         void=void,
+        no_data=no_data,
         scale=scale * unit,
         offset=offset * unit,
+        place=place,
+        south_first=south_first,
+        overviews=overviews,
         notes=notes,
     )
 
@@ -103,21 +140,27 @@ def _without_log(name: str) -> Iterator[None]:
         log.removeFilter(nothing)
 
 
-def _tiff_values(page: tifffile.TiffPage, path: Path) -> NDArray[Any]:
+def _rows(page: tifffile.TiffPage, path: Path, no_data: float | None) -> Rows | NDArray[Any]:
+    """Return the rows of the picture, to be read in turn; else all its samples (rows, cols[, channels])."""
+    rows = tiff_rows(page, path, no_data or 0.0)
+    if rows is not None:
+        return rows
     try:
-        return np.asarray(page.asarray())
+        values = np.asarray(page.asarray())
+        return np.moveaxis(values, 0, -1) if page.axes == "SYX" else values
     except ImportError:  # zstd, of which Python knows from 3.14 on
         pass
     except (ValueError, KeyError) as error:
         if "imagecodecs" not in str(error):
             raise
+    if page.axes == "YX" and gis.has_rasters():
+        return gis.raster_rows(path, "GTiff")
     # tifffile alone lacks LZW and the floating-point predictor too; Pillow's libtiff has them.
     import PIL.Image
 
     assert page.dtype is not None
     modes = {"u1": ("L", "RGB", "RGBA", "LA"), "u2": ("I;16",), "i2": ("I",), "i4": ("I",), "f4": ("F",)}
     compression = getattr(page.compression, "name", page.compression)
-    install = "the package imagecodecs reads it: python -m pip install imagecodecs"
     try:
         with PIL.Image.open(path, formats=("TIFF",)) as picture:
             if picture.mode in modes.get(page.dtype.str[1:], ()):
@@ -127,28 +170,45 @@ def _tiff_values(page: tifffile.TiffPage, path: Path) -> NDArray[Any]:
     except PIL.UnidentifiedImageError:
         pass
     except OSError as error:
-        message = f"its compression {compression} cannot be undone ({error}): it is damaged, or {install}"
+        message = f"its compression {compression} cannot be undone ({error}): it is damaged, or {gis.ADVICE}"
         raise DataError(message, file=path) from error
     raise DataError(
         f"its {page.dtype} numbers under compression {compression} cannot be read here; "
-        f"expected no compression or deflate; {install}",
+        f"expected no compression or deflate; {gis.ADVICE}",
         file=path,
     )
 
 
-def _tiff_void(page: tifffile.TiffPage, values: NDArray[Any]) -> NDArray[np.bool_] | None:
+def _further(
+    tif: tifffile.TiffFile, page: tifffile.TiffPage, path: Path, no_data: float | None
+) -> tuple[tuple[Rows, ...], tuple[str, ...]]:
+    """Return the overviews of the first picture, finest first, and what is to be said of other pictures."""
+    import tifffile
+
+    found: list[Rows] = []
+    notes: list[str] = []
+    for other in tif.pages[1:]:
+        if isinstance(other, tifffile.TiffFrame):
+            other = other.aspage()
+        if other.is_mask:
+            notes.append("its mask of texels that count is not read")
+        elif other.is_reduced and other.dtype == page.dtype:
+            rows = tiff_rows(other, path, no_data or 0.0)
+            if rows is not None:
+                found.append(rows)
+        elif not other.is_reduced:
+            notes.append(f"the first of {len(tif.pages)} pictures was read")
+            break
+    found.sort(key=lambda rows: -rows.shape[0])
+    return tuple(found), tuple(dict.fromkeys(notes))
+
+
+def _no_data(page: tifffile.TiffPage) -> float | None:
     text = page.tags.valueof(42113)  # GDAL_NODATA: a number in ASCII
     try:
-        value = float(str(text).strip(" \0"))
+        return float(str(text).strip(" \0"))
     except ValueError:
         return None
-    if values.dtype.kind != "f":
-        bounds = np.iinfo(values.dtype)
-        exact = value.is_integer() and bounds.min <= value <= bounds.max
-        return np.asarray(values == int(value)) if exact else None
-    if abs(value) > 1e30:  # the lowest float, which programs round in several ways before printing
-        return np.asarray(np.abs(values) > 1e30)
-    return np.asarray(values == values.dtype.type(value))
 
 
 def _packing(page: tifffile.TiffPage, path: Path) -> tuple[float, float] | None:
@@ -170,58 +230,29 @@ def _packing(page: tifffile.TiffPage, path: Path) -> tuple[float, float] | None:
     return scale, offset
 
 
-@dataclass(frozen=True)
-class _Geography:
-    spacing: tuple[float, float] | None
-    in_metres: bool  # heights are, after the factor
-    height_unit: float = 1.0  # [m]
-    notes: tuple[str, ...] = ()
-
-
-_FOOT = {9001: 1.0, 9002: 0.3048, 9003: 1200.0 / 3937.0}  # EPSG units: metre, foot, US survey foot
-
-
-def _geography(page: tifffile.TiffPage, rows_cols: tuple[int, ...], path: Path) -> _Geography:
+def _place(page: tifffile.TiffPage, size: tuple[int, int], path: Path) -> tuple[Place | None, bool | None]:
+    """Return where the nodes lie, and whether the first row is the south's; None for what is not said."""
     tags = page.tags
-    scale, tie, matrix = (tags.valueof(code) for code in (33550, 33922, 34264))
-    keys = _geo_keys(tags.valueof(34735))
-    rows, _ = rows_cols
-    middle = (rows - 1) / 2 + (0.0 if keys.get(1025) == 2 else 0.5)  # raster type 1: pixel is area
+    scale, tie, matrix = (tags.valueof(number) for number in (33550, 33922, 34264))
+    crs = Crs(read_keys(*(tags.valueof(number) for number in (DIRECTORY, DOUBLES, WORDS))))
+    middle = 0.0 if code(dict(crs.keys), RASTER) == IS_POINT else 0.5  # of a texel, from its place
     if scale is not None and len(scale) >= 2:
-        dx, dy = abs(float(scale[0])), abs(float(scale[1]))
-        row, y = (float(tie[1]), float(tie[4])) if tie is not None and len(tie) >= 6 else (middle, math.nan)
-        north = y - (middle - row) * dy
+        dx, dy = float(scale[0]), -abs(float(scale[1]))  # as GDAL takes their signs
+        column, row, west, north = 0.0, 0.0, math.nan, math.nan
+        if tie is not None and len(tie) >= 6:
+            column, row, west, north = (float(tie[k]) for k in (0, 1, 3, 4))
+        west, north = west + (middle - column) * dx, north + (middle - row) * dy
     elif matrix is not None and len(matrix) == 16:
-        dx, dy = math.hypot(matrix[0], matrix[4]), math.hypot(matrix[1], matrix[5])
-        north = float(matrix[5]) * middle + float(matrix[7])
         if matrix[1] or matrix[4]:
-            return _Geography(None, False, notes=("its grid is turned against north, so no spacing",))
+            raise turned(path, float(matrix[0]), float(matrix[4]))
+        dx, dy = float(matrix[0]), float(matrix[5])
+        west, north = float(matrix[3]) + middle * dx, float(matrix[7]) + middle * dy
     else:
-        return _Geography(None, False)
-    if not (0.0 < dx < math.inf and 0.0 < dy < math.inf):
-        raise DataError(f"says that a texel is {dx} x {dy}; expected lengths above zero", file=path)
-    height_unit = _FOOT.get(keys.get(4099, 9001), 1.0)
-    model = keys.get(1024)
-    if model == 2:
-        if not math.isfinite(north):
-            return _Geography(None, True, height_unit, ("its texels are degrees at an unknown latitude",))
-        degrees = math.degrees(1.0) if keys.get(2054) == 9101 else 1.0
-        spacing, notes = spacing_from_degrees(dx * degrees, dy * degrees, north * degrees)
-        return _Geography(spacing, True, height_unit, notes)
-    if model == 1:
-        unit = keys.get(3076, 9001)
-        factor = _FOOT.get(unit, 1.0)
-        notes = () if unit in _FOOT else (f"its unit of length, EPSG {unit}, is taken for a metre",)
-        if keys.get(3072) == 3857 and math.isfinite(north):
-            # Web Mercator stretches by 1 / cos(latitude), which is cosh(y / R), since
-            # y = R artanh(sin(latitude)): Snyder 1987, p. 41, eq. (7-2a).
-            factor /= math.cosh(north / 6378137.0)
-        return _Geography((dx * factor, dy * factor), True, height_unit, notes)
-    return _Geography(None, False, notes=("it has a texel size but does not say whether that is metres",))
-
-
-def _geo_keys(directory: Any) -> dict[int, int]:
-    # GeoKeyDirectory: groups of four numbers; those stored in place have location 0.
-    numbers = [int(n) for n in directory] if directory is not None else []
-    groups = [numbers[k : k + 4] for k in range(4, len(numbers) - 3, 4)]
-    return {key: value for key, location, _, value in groups if location == 0}
+        return None, None
+    if not (0.0 < abs(dx) < math.inf and 0.0 < abs(dy) < math.inf):
+        raise DataError(f"says that a texel is {dx} x {abs(dy)}; expected lengths above zero", file=path)
+    if dx < 0.0:
+        raise turned(path, dx, 0.0)
+    if dy > 0.0:
+        north += (size[1] - 1) * dy
+    return Place(west, north, (dx, abs(dy)), size, crs), dy > 0.0

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 import re
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.images.bounds import MAX_TEXELS
-from playground.terrain.geodesy import spacing_from_degrees
+from playground.terrain.geokeys import GEOGRAPHIC, IS_POINT, MODEL, RASTER
 from playground.terrain.grid import SIXTEEN_BIT, Found, check_grid
+from playground.terrain.place import Crs, Place
+from playground.terrain.rows import FileRows
 
 
 def read_raw(path: Path, size: tuple[int, int] | None) -> Found:
@@ -23,18 +23,22 @@ def read_raw(path: Path, size: tuple[int, int] | None) -> Found:
 
 def read_hgt(path: Path, size: tuple[int, int] | None) -> Found:
     """Read an SRTM tile: signed big-endian metres over one degree, whose place is in its name."""
-    values = _numbers(path, ">i2", size).astype(np.int16)
+    rows = _numbers(path, ">i2", size)
     named = re.match(r"([NS])(\d{1,2})([EW])(\d{1,3})", path.name, re.IGNORECASE)
     if not named:
         note = "an .hgt file's name tells its latitude, as N36W085.hgt; this one does not, so no spacing"
-        return Found(values, in_metres=True, notes=(note,))
+        return Found(rows, in_metres=True, notes=(note,))
     south = int(named[2]) * (1 if named[1].upper() == "N" else -1)
-    ny, nx = values.shape
-    spacing, notes = spacing_from_degrees(1.0 / (nx - 1), 1.0 / (ny - 1), south + 0.5)
-    return Found(values, spacing, in_metres=True, notes=notes)
+    west = int(named[4]) * (1 if named[3].upper() == "E" else -1)
+    ny, nx = rows.shape
+    # Nodes lie on the degrees. WGS 84, as its keys in GeoTIFF.
+    crs = Crs(((MODEL, 2), (RASTER, IS_POINT), (GEOGRAPHIC, 4326)))
+    place = Place(west, south + 1, (1.0 / (nx - 1), 1.0 / (ny - 1)), (nx, ny), crs)
+    spacing, notes = place.spacing
+    return Found(rows, spacing, in_metres=True, place=place, notes=notes)
 
 
-def _numbers(path: Path, dtype: str, size: tuple[int, int] | None) -> NDArray[Any]:
+def _numbers(path: Path, dtype: str, size: tuple[int, int] | None) -> FileRows:
     length = path.stat().st_size
     count = length // 2
     if size is None:
@@ -51,7 +55,7 @@ def _numbers(path: Path, dtype: str, size: tuple[int, int] | None) -> NDArray[An
             f"holds {length} bytes; {nx} x {ny} heights of 16 bits need {2 * nx * ny}{_fitting(length)}",
             file=path,
         )
-    return np.fromfile(path, dtype=dtype).reshape(ny, nx)
+    return FileRows(path, (ny, nx), np.dtype(dtype))
 
 
 def _not_square(length: int) -> str:

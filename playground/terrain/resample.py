@@ -59,7 +59,7 @@ def _resized(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
     values = np.ascontiguousarray(values)
     if count == len(values):
         return values
-    weights, sources, first, last = _taps(len(values), count)
+    weights, sources, first, last = taps(len(values), count)
     result = first[:, None] * values[0] + last[:, None] * values[-1]
     for start in range(0, count, 64):
         # A band of results needs a band of sources: small dense products, which are fast.
@@ -71,17 +71,16 @@ def _resized(values: NDArray[np.float64], count: int) -> NDArray[np.float64]:
     return np.asarray(result)
 
 
-def _taps(
-    n: int, count: int
+def taps(
+    n: int, count: int, lead: float = 0.0
 ) -> tuple[NDArray[np.float64], NDArray[np.intp], NDArray[np.float64], NDArray[np.float64]]:
-    # For each of `count` results its weights and their sources (both count x taps), and what
-    # the first and the last value count besides.
-    ratio = (n - 1) / (count - 1)
+    """Return what each of ``count`` results is the sum of: n values, times weights.
+
+    Weights and their sources are (count, taps); what the first and the last value count besides is
+    (count,) each. The first result is ``lead`` values after the first value, the last as far before the last.
+    """
+    ratio, away, index = steps_away(n, count, lead)
     scale = max(ratio, 1.0)
-    places = np.linspace(0.0, n - 1, count)
-    start = np.floor(places - 2.0 * scale).astype(np.intp) + 1
-    index = start[:, None] + np.arange(math.ceil(4.0 * scale) + 1)
-    away = index - places[:, None]
     weights = _catmull_rom(away / scale)
     weights /= weights.sum(axis=1, keepdims=True)
     if scale > 1.0:
@@ -99,6 +98,19 @@ def _taps(
     first = -2.0 * (weights * periods).sum(axis=1)
     last = 2.0 * (weights * (periods + ~inside)).sum(axis=1)
     return np.where(inside, weights, -weights), np.where(inside, place, period - place), first, last
+
+
+def steps_away(n: int, count: int, lead: float = 0.0) -> tuple[float, NDArray[np.float64], NDArray[np.intp]]:
+    """Return the values from one result to the next, and how far which values are from each result.
+
+    Both arrays are (count, taps): the steps, and the values' numbers, which go on beyond the edges.
+    """
+    ratio = (n - 1 - 2.0 * lead) / (count - 1)
+    places = np.linspace(lead, n - 1 - lead, count)
+    scale = max(ratio, 1.0)
+    start = np.floor(places - 2.0 * scale).astype(np.intp) + 1
+    index = start[:, None] + np.arange(math.ceil(4.0 * scale) + 1)
+    return ratio, index - places[:, None], index
 
 
 def _catmull_rom(x: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -18,16 +18,7 @@ from numpy.typing import NDArray
 from playground.media.live_inputs import LiveInputs
 from playground.media.now import Now
 from playground.sketch.model import Value
-
-
-@dataclass(frozen=True, slots=True)
-class Terrain:
-    """What a source knows of its terrain; None where it does not."""
-
-    size: tuple[int, int] | None = None  # texels, x and y
-    extent: tuple[float, float] | None = None  # [m]
-    relief: float | None = None  # [m] from height 0 to height 1
-    base_elevation: float | None = None  # [m] above sea level at height 0
+from playground.terrain.known import Terrain
 
 
 class Make(Protocol):
@@ -82,11 +73,12 @@ class Recording:
 class SourceKind:
     """One entry of the registry."""
 
-    describe: Callable[[Mapping[str, Value]], Terrain]
+    describe: Callable[[Mapping[str, Value]], Terrain]  # its size: the one it has, where a sketch says none
     make: Make | None  # None where it has a ``work``
     files: tuple[str, ...]  # parameters that name files
     parameters: tuple[str, ...]  # what the kernel's file must declare
     makes: str  # in words, with an article
+    optional: tuple[str, ...] = ()  # what it may declare besides
     notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
     picture: Callable[[Mapping[str, Value], tuple[int, int]], Path | None] = lambda values, size: None
     # the image whose channels, where it has this size, are the texels of the one output as they are

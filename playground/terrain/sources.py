@@ -5,25 +5,21 @@ A closed registry: a sketch is data and cannot bring Python. What an entry holds
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from functools import lru_cache
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.errors import DataError, SketchError, nearest
-from playground.images.content_hash import content_key
-from playground.paths import shown
+from playground.errors import SketchError, nearest
 from playground.sketch.model import Value
+from playground.terrain import elevation_source as elevation
 from playground.terrain import live_sources as live
 from playground.terrain import ranked
+from playground.terrain import vector_source as vector
 from playground.terrain.delaunay import Rules, tables, triangulate
-from playground.terrain.elevation import Edge, Elevation, read_elevation
 from playground.terrain.example import source as example
-from playground.terrain.gaps import Voids, fill_no_data
-from playground.terrain.grid import Packing
+from playground.terrain.known import Terrain
 from playground.terrain.masks import read_mask
 from playground.terrain.over_time import (
     LEAD,
@@ -39,8 +35,7 @@ from playground.terrain.over_time import (
     size_of_sound,
     size_of_video,
 )
-from playground.terrain.resample import resample
-from playground.terrain.source_kinds import Recording, SourceKind, Terrain
+from playground.terrain.source_kinds import Recording, SourceKind
 
 
 def source_kind(name: str) -> SourceKind:
@@ -48,73 +43,6 @@ def source_kind(name: str) -> SourceKind:
     if name not in SOURCES:
         raise SketchError(f"there is no source '{name}'{nearest(name, SOURCES)}")
     return SOURCES[name]
-
-
-@lru_cache(maxsize=4)
-def _read(
-    path: str,
-    content: str,  # changes whenever the file does
-    raw_size: tuple[int, int] | None,
-    packing: Packing,
-    voids: Voids,
-    first_row: Edge,
-) -> Elevation:
-    elevation = read_elevation(Path(path), raw_size=raw_size, packing=packing, first_row=first_row)
-    return fill_no_data(elevation, voids)
-
-
-@contextmanager
-def _memory_explained(path: Path) -> Iterator[None]:
-    try:
-        yield
-    except MemoryError:
-        raise DataError("there is not enough memory to read it", file=shown(path)) from None
-
-
-def _elevation(values: Mapping[str, Value]) -> Elevation:
-    path = Path(str(values["elevation"]))
-    raw = values["raw_size"]
-    size = (int(raw[0]), int(raw[1])) if isinstance(raw, tuple) and raw[0] and raw[1] else None
-    packing: Packing = "rgb" if values["packing"] == 1 else "grey"
-    voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
-    first_row: Edge = "south" if values["first_row"] == 1 else "north"
-    with _memory_explained(path):
-        return _read(str(path), content_key(path), size, packing, voids, first_row)
-
-
-def _describe_elevation(values: Mapping[str, Value]) -> Terrain:
-    elevation = _elevation(values)
-    low, high = elevation.lowest, elevation.highest
-    metres = values["metres"]  # of the file's lowest and highest codes; equal: nothing is known
-    relief = base = None
-    if isinstance(metres, tuple) and metres[0] != metres[1]:
-        codes = elevation.code_range or (low, high)
-        scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
-        base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
-    elif elevation.in_metres:
-        base, relief = low, high - low
-    return Terrain(elevation.size, elevation.extent, relief, base)
-
-
-def _make_elevation(
-    values: Mapping[str, Value], size: tuple[int, int], moment: None = None
-) -> dict[str, NDArray[np.float32]]:
-    elevation = _elevation(values)
-    low, span = elevation.lowest, elevation.highest - elevation.lowest
-    with _memory_explained(Path(str(values["elevation"]))):
-        heights = (
-            (elevation.heights - np.float32(low)) / np.float32(span)
-            if span > 0
-            else np.zeros_like(elevation.heights)
-        )
-        if size != elevation.size:
-            heights = resample(heights, size, within=(0.0, 1.0))
-    return {"height": heights}
-
-
-def _notes_of_elevation(values: Mapping[str, Value]) -> tuple[str, ...]:
-    elevation = _elevation(values)
-    return tuple(f"{elevation.name}: {note}" for note in elevation.notes)
 
 
 def _make_triangulation(
@@ -154,12 +82,13 @@ def _number(values: Mapping[str, Value], name: str) -> float:
 
 SOURCES: dict[str, SourceKind] = {
     "elevation_file": SourceKind(
-        _describe_elevation,
-        _make_elevation,
+        elevation.describe,
+        elevation.make,
         ("elevation",),
         ("elevation", "raw_size", "packing", "no_data", "first_row", "metres"),
         "the elevation file's terrain",
-        notes=_notes_of_elevation,
+        optional=("longest",),
+        notes=elevation.notes,
     ),
     "delaunay": SourceKind(
         lambda _: Terrain(),
@@ -194,6 +123,14 @@ SOURCES: dict[str, SourceKind] = {
         ("image", "texels"),
         "the mask",
         picture=_mask_picture,
+    ),
+    "vector_file": SourceKind(
+        lambda _: Terrain(),
+        vector.make,
+        ("vectors", "elevation"),
+        ("vectors", "elevation", "width", "polygons"),
+        "the mask of what the file draws",
+        notes=vector.notes,
     ),
     "video_file": SourceKind(
         lambda _: Terrain(),

@@ -17,8 +17,13 @@ const HERE = dirname(fileURLToPath(import.meta.url));
 /** What runtime/ is bundled to: a classic script (iife) may be in a page that is opened from disk, where a
  *  module (esm) is refused.
  *  @type {Object<string, "iife" | "esm" | "css">} */
-const ENTRIES = { "page.js": "iife", "page.css": "css", "book.js": "iife", "book.css": "css", "notebook.js": "esm", "notebook.css": "css",
-  "remote.js": "iife", "remote.css": "css" };
+const ENTRIES = {
+  "loader.js": "iife", "page.js": "iife", "page.css": "css",
+  "with_keyframes.js": "iife", "with_plain.js": "iife",
+  "book.js": "iife", "book.css": "css",
+  "notebook.js": "esm", "notebook.css": "css",
+  "remote.js": "iife", "remote.css": "css",
+};
 
 /** A hash of the runtime's files and of what bundles them: names and bytes, in the order of their names. */
 function hashOfSources() {

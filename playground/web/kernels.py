@@ -72,6 +72,8 @@ class Kernels:
             found |= {"stride": tree(kernel.stride), "between": kernel.between}
         if kernel.at_once != "1":
             found["atOnce"] = tree(kernel.at_once)
+        if kernel.until:
+            found["until"] = kernel.until
         if kernel.accepts:
             found |= {"accepts": kernel.accepts, "accepted": accepted(kernel.accepts)}
         if kernel.kind == "draw":

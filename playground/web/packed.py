@@ -8,7 +8,6 @@ it, since the library's own files read from the library alone; ``use`` then name
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
@@ -85,11 +84,6 @@ def pack_data(sketch: Sketch, names: Mapping[str, str], blobs: Blobs) -> dict[st
         },
         "shots": [shot.name for shot in sketch.shots],
     }
-
-
-def pack_blob(sketch: Sketch, names: Mapping[str, str], blobs: Blobs) -> str:
-    """Return the key of a sketch's pack, as JSON, among a page's bytes."""
-    return blobs.add(json.dumps(pack_data(sketch, names, blobs), ensure_ascii=False).encode())
 
 
 def _toml(sketch: Sketch, named: Callable[[str], str]) -> list[Piece] | None:

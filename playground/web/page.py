@@ -1,10 +1,10 @@
 """Make one HTML file of a page's data and the runtime, which opens from disk and asks nothing of a network.
 
-The data are JSON in an element that no browser runs, and so are the runtime's style and script, packed. A
-script of a few lines unpacks those; the page's policy names all of them by their hashes, and nothing
-else may run or be fetched. What people wrote is escaped where it stands in the page itself
-(``markup``), and packed in the data. The poster is the picture for printing, and for browsers that cannot
-run the rest.
+The runtime's style, the data as JSON and the runtime's script are one text, pressed, in an element that no
+browser runs. The loader, a short script, unpacks that; the page's policy names all scripts and
+styles by their hashes, and nothing else may run or be fetched. What people wrote is escaped where it stands
+in the page itself (``markup``), and pressed in the data. The poster is the picture for printing, and for
+browsers that cannot run the rest.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 from playground._version import __version__
 from playground.markup import Markup, tag
-from playground.web.blobs import packed
+from playground.web.bundle import read_bundle
+from playground.web.pressed import dense, pressed
 
+_MARK = "\ufeff"  # that this is UTF-8, whatever a server says
 _ICON = "data:,"  # or a browser would ask for favicon.ico
 _POSTER_STYLE = "img{max-width:100%;height:auto}"
 _SCRIPTS_OFF = (
@@ -46,6 +46,9 @@ def page_html(
 
     ``script`` and ``style`` are the runtime's (see ``bundle``). The same arguments give the same text.
     """
+    loader = read_bundle("loader.js")
+    data, blobs = page_texts(page)
+    whole = pressed("\0".join((style, data, script)))
     sketch = page["sketches"][0]
     title = sketch["title"] or sketch["name"]
     width, height = poster.size
@@ -59,7 +62,7 @@ def page_html(
     )
     head = (
         Markup('<meta charset="utf-8">'),
-        tag("meta", http_equiv="Content-Security-Policy", content=policy_of(script, style)),
+        tag("meta", http_equiv="Content-Security-Policy", content=policy_of(loader, script, style)),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
         tag("meta", name="color-scheme", content="light dark"),
         tag("meta", name="description", content=f"{title}: a terrain shader that runs in this page."),
@@ -73,46 +76,38 @@ def page_html(
         tag("noscript", tag("p", _SCRIPTS_OFF)),
         tag("p", _TOO_OLD, id="playground-old", hidden=True),
         "\n",
-        tag("script", Markup(_json(page_file(page))), type="application/json", id="playground-page"),
+        tag(
+            "script",
+            Markup(whole),
+            type="text/plain",
+            id="playground-pressed",
+        ),
         "\n",
-        tag("script", packed(style.encode()), type="application/gzip", id="playground-style"),
+        *(tag("script", Markup(text), type="text/plain", data_blob=key) for key, text in blobs.items()),
         "\n",
-        tag("script", packed(script.encode()), type="application/gzip", id="playground-runtime"),
-        "\n",
-        tag("script", Markup(_loader())),
+        tag("script", Markup(loader)),
     )
     html = tag("html", tag("head", *head), "\n", tag("body", *body), lang=language)
-    return f"<!doctype html>\n{html}\n"
+    return f"{_MARK}<!doctype html>\n{html}\n"
 
 
-def page_file(page: Mapping[str, Any]) -> dict[str, Any]:
-    """Return a page's data with all but its bytes packed: see ``PageFile`` in schema.js."""
+def page_texts(page: Mapping[str, Any]) -> tuple[str, dict[str, str]]:
+    """Return a page's data as JSON, and the bytes that it holds beside by key: see page_file.js."""
     shared = {name: value for name, value in page["shared"].items() if name != "blobs"}
     text = json.dumps({**page, "shared": shared}, separators=(",", ":"), ensure_ascii=False, allow_nan=False)
-    return {"format": page["format"], "packed": packed(text.encode()), "blobs": page["shared"]["blobs"]}
+    return text, {key: f"~{dense(base64.b64decode(blob))}" for key, blob in page["shared"]["blobs"].items()}
 
 
-def policy_of(script: str, style: str) -> str:
-    """Return the page's Content-Security-Policy: its own script and style, and pictures that it makes."""
+def policy_of(loader: str, script: str, style: str) -> str:
+    """Return the page's Content-Security-Policy: its own scripts and style, and pictures that it makes."""
     scripts, styles = (
         " ".join(f"'sha256-{_hash(text)}'" for text in texts)
-        for texts in ((_loader(), script), (_POSTER_STYLE, style))
+        for texts in ((loader, script), (_POSTER_STYLE, style))
     )
     return (
         f"default-src 'none'; script-src {scripts}; style-src {styles};"
         " img-src data: blob:; base-uri 'none'; form-action 'none'"
     )
-
-
-@cache
-def _loader() -> str:
-    return (Path(__file__).parent / "loader.js").read_text(encoding="utf-8")
-
-
-def _json(value: Mapping[str, Any]) -> str:
-    """Return JSON in which nothing ends a script element, or begins a comment in one."""
-    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
-    return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 
 
 def _hash(text: str) -> str:

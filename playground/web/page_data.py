@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
-from playground.web.packed import pack_blob
+from playground.web.packed import pack_data
 from playground.web.plan import FORMAT, sketch_data
 from playground.web.shared import SharedData
 from playground.web.techniques import technique_menus
@@ -39,5 +39,5 @@ def page_data(
         one["choices"] = choices
     if packed:
         for sketch, one in zip(sketches, written, strict=True):
-            one["pack"] = pack_blob(sketch, shared.texts.names, shared.blobs)
+            one["pack"] = pack_data(sketch, shared.texts.names, shared.blobs)
     return {"format": FORMAT, "sketches": written, "shared": shared.data()}

@@ -21,7 +21,9 @@ from playground.engine.planner import Planner
 from playground.engine.source_facts import extent_follows_size
 from playground.engine.view_inputs import view_height
 from playground.paths import GLSL, shown
+from playground.sketch.allowed_files import is_elevation
 from playground.sketch.assign import Shown, values_of
+from playground.sketch.elevation_sketch import elevation_text
 from playground.sketch.expressions import counts_frames, follows_time
 from playground.sketch.flat import Fed, Leaf, Loop, Node, Source
 from playground.sketch.map_sketch import map_kernel, refs_of
@@ -142,7 +144,11 @@ class _Writing:
         return {path: value for path, value in shape.constants.items() if path not in shape.copied}
 
     def _file(self) -> str:
-        text = read_text(Path(self.sketch.file), any_encoding=True)
+        path = Path(self.sketch.file)
+        if is_elevation(path):  # as it would be saved next to the file
+            text = elevation_text(path, path.name)
+            return self.shared.texts.add_file(str(path.with_suffix(".toml")), text, self.sketch.folder)
+        text = read_text(path, any_encoding=True)
         return self.shared.texts.add_file(self.sketch.file, text, self.sketch.folder)
 
     def _node(self, node: Node) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from playground.web.blobs import Blobs
 from playground.web.images import Images
 from playground.web.texts import Texts
 
-_OWN = ("copy.frag", "spread.frag", "fill_between.frag", "triangle.vert")
+_OWN = ("copy.frag", "spread.frag", "fill_between.frag", "changed.frag", "triangle.vert")
 
 
 class SharedData:

@@ -172,7 +172,7 @@ class Commands:
         if draft is None:
             return
         if is_shader(draft):
-            self.notices.say("a shader opened alone is no TOML; Save makes a sketch of it")
+            self.notices.say(f"{Path(draft.file.file).name} is no TOML; Save makes a sketch of it")
             return
         file = Path(draft.file.file)
         try:

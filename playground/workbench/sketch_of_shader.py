@@ -1,7 +1,8 @@
 """Save a shader that was opened alone as a sketch next to it, with the user's edits; the shader stays.
 
 The sketch uses the shader's file. What was edited is done again on the sketch: a shader opened alone
-has its stand-ins as passes of its own, and in a sketch they are inside its technique.
+has its stand-ins as passes of its own, and in a sketch they are inside its technique. An elevation file
+that was opened alone is saved likewise, as the sketch around it.
 """
 
 from __future__ import annotations
@@ -13,9 +14,10 @@ from pathlib import Path
 from playground.errors import DataError
 from playground.images.files import new_name
 from playground.paths import GLSL
-from playground.sketch.allowed_files import TECHNIQUES
+from playground.sketch.allowed_files import TECHNIQUES, is_elevation
 from playground.sketch.assign import TERRAIN_KEYS, find_targets
 from playground.sketch.channels import Channel, channels, in_order, source_of
+from playground.sketch.elevation_sketch import elevation_text
 from playground.sketch.load import load
 from playground.sketch.model import PassSpec, Sketch, kernels_of
 from playground.sketch.save import save, written_size
@@ -25,18 +27,20 @@ from playground.workbench.edits import Draft, Edits
 
 
 def is_shader(draft: Draft) -> bool:
-    """Return whether a draft is of a shader that was opened alone."""
+    """Return whether a draft is of a shader, or of an elevation file, that was opened alone."""
     return not draft.file.file.endswith(".toml")
 
 
 def save_as_sketch(draft: Draft, folder: Path) -> Draft:
     """Write the sketch of a draft for which ``is_shader``, as a new file; return its draft.
 
-    It is in the folder of the shader, or that of the sketch around it; of a shader that ships, in
+    It is in the folder of the file, or that of the sketch around it; of a shader that ships, in
     ``folder``. Files from elsewhere are copied next to it. Raises ``DataError`` where the shader's name
     cannot be used or nothing can be written, and as ``save``.
     """
     shader = Path(draft.file.file)
+    if is_elevation(shader):
+        return _save_elevation(draft, shader, folder)
     if shader.suffix not in TECHNIQUES:
         *endings, last = (ending for ending in TECHNIQUES if ending != ".toml")
         known = f"{', '.join(endings)} or {last}"
@@ -55,6 +59,18 @@ def save_as_sketch(draft: Draft, folder: Path) -> Draft:
         save(loaded, wanted)
         saved = load(path)
     return Draft(saved, saved, Edits(locked=again.edits.locked))
+
+
+def _save_elevation(draft: Draft, file: Path, folder: Path) -> Draft:
+    """Write the sketch around an elevation file as ``save_as_sketch`` does."""
+    ships = file.is_relative_to(GLSL)
+    named = file.relative_to(GLSL).as_posix() if ships else file.name
+    with new_name((folder if ships else file.parent) / f"{file.stem}.toml") as path:
+        path.write_text(elevation_text(file, named), "utf-8")
+        loaded = load(path)
+        save(loaded, Draft(loaded, loaded).with_edits(draft.edits).sketch)
+        saved = load(path)
+    return Draft(saved, saved, Edits(locked=draft.edits.locked))
 
 
 def _dialects(sketch: Sketch) -> set[str]:

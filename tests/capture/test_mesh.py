@@ -14,9 +14,10 @@ import trimesh
 import playground
 from playground import Sketch
 from playground.capture.gltf import encode_glb
-from playground.capture.mesh import grid_of, sampled, terrain_mesh
+from playground.capture.mesh import sampled, terrain_mesh
 from playground.capture.obj import encode_obj
 from playground.engine.engine import Engine
+from playground.terrain.grid import fitted
 
 from .conftest import metres
 
@@ -210,10 +211,10 @@ def test_an_obj_has_every_bit_of_its_floats():
 
 
 def test_grids_keep_the_terrain_s_shape():
-    assert grid_of((403, 344), 513) == (403, 344)
-    assert grid_of((1025, 513), 257) == (257, 129)
-    assert grid_of((4097, 2), 513) == (513, 2)
-    assert grid_of((403, 344), 2) == (2, 2)
+    assert fitted((403, 344), 513) == (403, 344)
+    assert fitted((1025, 513), 257) == (257, 129)
+    assert fitted((4097, 2), 513) == (513, 2)
+    assert fitted((403, 344), 2) == (2, 2)
 
 
 def test_sampling_is_exact_where_texels_meet_and_linear_between():

@@ -12,6 +12,7 @@ from playground import cli
 from playground.capture.extensions import ENDINGS
 from playground.commands.export import HELP
 
+from ..elevations import write_geotiff
 from ..sketch_texts import map_of, passes
 
 HEIGHT = """// rise.glsl -- a slope that rises to the north.
@@ -182,14 +183,16 @@ def test_every_example_of_the_help_runs(folder: Path, capsys: pytest.CaptureFixt
     """On a small sketch in the place of those that ship, which take longer."""
     examples = re.findall(r"^  playground (export .*)$", HELP, re.MULTILINE)
     assert len(examples) > 4
+    dem = write_geotiff(folder / "dem.tif")
     for line in examples:
         line = re.sub("jacksboro|diamond_square", "rise/lit.toml", line).replace("size=1025", "size=33")
         assert cli.main(line.split()) == 0, printed(capsys)[1]
+    dem.unlink()
     written = set(printed(capsys)[0].split())
     assert written == set(names(folder)) == {
         "lit.glb", "terrain.png", "terrain.tif", "terrain.r16", "terrain.r16.json", "ground.webp",
         "terrain.glb", "terrain.obj", "terrain.mtl", "terrain-texture.png",
-        "hills.json", "fractal.fs", "page.html", "noise.html",
+        "hills.json", "fractal.fs", "page.html", "noise.html", "in-its-place.tif",
     }  # fmt: skip
 
 

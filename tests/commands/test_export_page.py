@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import base64
-import gzip
 import io
 import json
 import re
@@ -14,6 +13,8 @@ import PIL.Image
 import pytest
 
 from playground import cli
+
+from ..web.unpressed import parts_of
 
 HEIGHT = """// rise.glsl -- A slope that rises to the north.
 #pragma kernel(output = "height:r32f")
@@ -69,10 +70,9 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def page_in(path: Path) -> dict[str, Any]:
     """Return the data of a page."""
-    found = re.search(r'id="playground-page">(.*?)</script>', path.read_text("utf-8"))
+    found = re.search(r'id="playground-pressed">(.*?)</script>', path.read_text("utf-8"))
     assert found
-    file = json.loads(found[1])
-    page: dict[str, Any] = json.loads(gzip.decompress(base64.b64decode(file["packed"])))
+    page: dict[str, Any] = json.loads(parts_of(found[1])[1])
     return page
 
 

@@ -22,6 +22,7 @@ import pytest
 
 from playground import cli
 
+from ..elevations import write_geotiff
 from ..live.screen import ON_LINUX, Program, Screen
 from .pages import PAGES, ROOT, blocks_of, files, outside_of_blocks, write_files
 
@@ -192,6 +193,8 @@ def furnish(folder: Path, command: str) -> None:
     for heightmap in ("land.png", "land.r16"):
         if f"height.elevation={heightmap}" in words:
             assert cli.main(["export", "jacksboro", "--to", heightmap]) == 0
+    if "dem.tif" in words:
+        write_geotiff(folder / "dem.tif")
     if "--replay" in words:
         (folder / "evening.jsonl").write_text(
             "\n".join([json.dumps(FLIGHT), "[20, 50, 10, -30, 0]"]), "utf-8"

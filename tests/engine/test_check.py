@@ -130,14 +130,14 @@ def test_a_sketch_may_have_no_hole_at_all(folder, sandbox):
 def test_a_file_that_the_child_does_not_survive_is_not_read_here(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """2 GiB of holes: more than the child may take."""
-    from playground.terrain import sources
+    """2 GiB of holes, by columns, so that they are not read by rows: more than the child may take."""
+    from playground.terrain import elevation_source
 
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("read by the parent")
 
     with (tmp_path / "heights.npy").open("wb") as file:
-        head = {"descr": "<f8", "fortran_order": False, "shape": (16384, 16384)}
+        head = {"descr": "<f8", "fortran_order": True, "shape": (16384, 16384)}
         np.lib.format.write_array_header_1_0(file, head)
         file.truncate(file.tell() + 8 * 16384**2)
     (tmp_path / "sketch.toml").write_text(
@@ -145,7 +145,7 @@ def test_a_file_that_the_child_does_not_survive_is_not_read_here(
         'set = { elevation = "heights.npy" }\n[view]\nuse = "view/map"\ninputs = { shown = "height" }\n',
         encoding="utf-8",
     )
-    monkeypatch.setattr(sources, "read_elevation", refuse)
+    monkeypatch.setattr(elevation_source, "open_elevation", refuse)
     with Sandbox(memory_bytes=2**30) as small:
         found = wrong(tmp_path / "sketch.toml", small)
     assert "not enough memory to read it" in found.message and "heights.npy" in found.message

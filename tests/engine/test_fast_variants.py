@@ -145,6 +145,37 @@ def test_a_size_that_a_variant_does_not_take_has_the_plain_form_run(drawing, hil
     ]
 
 
+@pytest.mark.parametrize(("most", "fast"), [(17, True), (16, False), (8, False)])
+def test_in_a_loop_over_levels_a_variant_runs_if_it_takes_every_size(drawing, hill, kind, most, fast):
+    """Sizes 5, 9 and 17."""
+    engine, sentences = drawing
+    accepts = f'accepts = "n up to {most}"'
+    if kind == "compute":
+        hill.write("hill.comp", COMPUTE.replace("agrees", f"{accepts}, agrees"))
+    else:
+        hill.write("part.glsl", HALF.replace('f")', f'f", {accepts})'))
+    trust(hill.path)
+    hill.write(
+        "sum.glsl",
+        '#pragma kernel(output = "sum:r32f")\nuniform sampler2D height; //! input\n'
+        'uniform sampler2D last; //! input("black")\n'
+        "float kernel(ivec2 texel) { return texelFetch(height, size - 1, 0).r"
+        " + texelFetch(last, ivec2(0), 0).r; }\n",
+    )
+    hill.write("level.toml", passes(height="./hill", sum="./sum") + '[inputs]\nlast = "sum.last"\n')
+    sketch = hill.sketch(
+        '[[pass]]\nname = "l"\nuse = "./level"\nrepeat = 3\nfeedback = { last = "sum" }\n'
+        'size = "2 ** (iteration + 2) + 1"\n'
+    )
+    assert engine.read(sketch, "l:sum")[0, 0] == 4 + 8 + 16
+    assert ran_fast(engine) is fast
+    file, side = "hill.comp" if kind == "compute" else "part.glsl", 17 if most == 16 else 9
+    expected = (
+        f"l.height: {file} takes n up to {most} texels a side, not {side} x {side}; the plain form runs"
+    )
+    assert sentences == ([] if fast else [expected])
+
+
 def test_comments_and_white_space_change_nothing(drawing, hill):
     engine, sentences = drawing
     text = HILL.replace("float kernel", "// mine\nfloat   kernel").replace("How high", "A tooltip")

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
+from playground.engine.programs import Program
 
 from ..sketch_texts import passes
 
@@ -357,6 +358,55 @@ def test_what_changes_with_an_outer_loop_by_way_of_what_is_fed_back(engine, fold
             far = b
         assert engine.read(sketch, "o:b", time=time)[1, 1] == far
         assert engine.read(sketch, "c", time=time)[1, 1] == a * 10.0
+
+
+SAME = """#pragma kernel(output = "v:r32f")
+uniform sampler2D before; //! input
+uniform sampler2D other;  //! input("white")
+uniform float gain = 1.0; //! slider(-9, 9)
+uniform bool turned = false;
+float kernel(ivec2 texel) {
+    float v = gain * texelFetch(before, texel, 0).r + texelFetch(other, ivec2(0), 0).r;
+    return turned ? -v + float(iteration) : v + (wired_other ? 0.5 : 0.25);
+}
+"""
+
+
+def test_passes_of_one_text_in_a_loop_keep_their_own_values_and_wires(engine, folder):
+    """What a program was set to for one pass is not taken for the next one's."""
+    folder.write("same.glsl", SAME)
+    folder.write("start.glsl", START)
+    folder.write(
+        "both.toml",
+        '[[pass]]\nname = "a"\nuse = "./same"\n'
+        '[[pass]]\nname = "b"\nuse = "./same"\ninputs = { before = "a", other = "a" }\nset = { gain = 0.5 }\n'
+        '[[pass]]\nname = "c"\nuse = "./same"\ninputs = { before = "b" }\n'
+        "set = { turned = true, gain = 0.25 }\n"
+        '[inputs]\nbefore = "a.before"\n[outputs]\nv = "c:v"\n',
+    )
+    sketch = folder.sketch(
+        '[[pass]]\nname = "start"\nuse = "./start"\n[[pass]]\nname = "l"\nuse = "./both"\nrepeat = 7\n'
+        'inputs = { before = "start" }\nfeedback = { before = "v" }\n'
+    )
+    y, x = np.mgrid[0:17, 0:17]
+    for gain in (1.0, 2.0):
+        v = ((x * 5 + y * 3) % 7).astype(np.float64)
+        for iteration in range(7):
+            a = gain * v + 1.0 + 0.25
+            b = 0.5 * a + a[0, 0] + 0.5
+            v = -(0.25 * b + 1.0) + iteration
+        found = engine.read(sketch.with_values({"l.a.gain": gain}), "l")
+        np.testing.assert_allclose(found, v, rtol=1e-6)
+
+
+def test_an_iteration_sets_only_what_changes(engine, rain, monkeypatch):
+    written = []
+    usual = Program.set_all
+    monkeypatch.setattr(
+        Program, "set_all", lambda self, values: written.append(values) or usual(self, values)
+    )
+    engine.texture(rain("200"), "rain:water")
+    assert sum("size" in values for values in written) <= 2 * 3, "once for what is wired first, once after"
 
 
 # ── what it costs ────────────────────────────────────────────────────────────

@@ -57,6 +57,17 @@ def test_an_engine_reports_each_once(any_engine, sketch):
     assert sum("#line is left out" in message for _, message in reports) == 1
 
 
+def test_steps_past_the_end_of_a_repeat_that_follows_the_time_are_said_once(any_engine, folder):
+    """One whose number stays is refused; this one may grow."""
+    reports: list[str] = []
+    any_engine.warnings.report = lambda found: reports.append(f"{found.severity}: {found.message}")
+    text = '#pragma kernel(output = "a:r32f", repeat = "floor(2 * time)")\n'
+    text += "float kernel(ivec2 texel) { return previous(texel) + 1.0; }\n"
+    for time, expected in ((1.0, 2), (1.5, 3), (6.0, 5)):
+        assert any_engine.read(folder.one(text), "a", time=time, steps={"a": 5})[0, 0] == expected
+    assert reports == ["warning: steps: 'a' stops after 5 steps, but at 1 s it has 2"]
+
+
 def test_a_program_gets_them_as_python_s_own_warnings(sketch):
     with playground.headless() as engine, pytest.warns(playground.PlaygroundWarning) as caught:
         engine.render(sketch, size=(8, 8))

@@ -16,7 +16,7 @@ from pathlib import Path
 import pytest
 
 from playground.engine.accepted_sizes import smallest_terrain
-from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch
+from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch, reading_seconds
 from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
 from playground.sketch.load import load
 
@@ -444,3 +444,15 @@ def test_an_answer_is_announced(tmp_path: Path) -> None:
         assert announced.wait(PATIENCE)
         report = sandbox.poll()
         assert report is not None and report.ok
+
+
+def test_large_data_files_are_given_the_time_to_be_read(tmp_path):
+    (tmp_path / "sketch.toml").write_text(
+        'format = 1\n[[pass]]\nname = "height"\nuse = "generation/heightmap"\nset = { elevation = "a.npy" }\n'
+        '[view]\nuse = "view/map"\ninputs = { shown = "height" }\n'
+    )
+    assert reading_seconds(TrySketch(load(tmp_path))) == 0.0, "there is no file"
+    for size, seconds in ((2**20, 0.0), (2**28, 16.0), (2**40, 120.0)):
+        with (tmp_path / "a.npy").open("wb") as file:
+            file.truncate(size)
+        assert reading_seconds(TrySketch(load(tmp_path))) == seconds

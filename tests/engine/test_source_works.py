@@ -20,7 +20,8 @@ from playground.images.files import write_png
 from playground.process.messages import Cancelled
 from playground.sketch.load import load
 from playground.terrain import sources
-from playground.terrain.source_kinds import Material, SourceKind, Terrain
+from playground.terrain.known import Terrain
+from playground.terrain.source_kinds import Material, SourceKind
 
 RAMP = """#pragma kernel(output = "ramp:r32f")
 uniform float rise = 1.0;  //! slider(0, 9)

@@ -322,6 +322,30 @@ def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
     assert "picture.png is neither" in notices_of(bare)
 
 
+def test_an_elevation_file_that_is_dropped_opens_where_nothing_takes_it_and_is_saved_beside_it(
+    bare: Bare, folder: Path
+) -> None:
+    dem = folder / "dem.npy"
+    np.save(dem, np.add.outer(np.arange(9.0), np.arange(7.0)))
+    bare.drops.take([dem])
+    bare.run_frames(3)
+    assert bare.session.path == dem and bare.session.error is None
+    assert bare.session.sketch is not None and bare.session.sketch.title == "dem"
+    # Now a parameter takes one; it may still have a sketch of its own.
+    bare.drops.take([dem])
+    bare.run_frames(3)
+    bare.click("Into a sketch of its own")
+    assert bare.drops.waiting == [] and bare.session.path == dem
+    bare.session.drafts.set("weights.rock_slope", 41.0)
+    before = dem.read_bytes()
+    bare.bench.commands.save_values()
+    assert bare.bench.commands.file.offer.startswith("An elevation file opened alone has no sketch file")
+    bare.bench.commands.save_a_copy()
+    assert bare.session.path == folder / "dem.toml" and dem.read_bytes() == before
+    assert "rock_slope = 41" in (folder / "dem.toml").read_text("utf-8")
+    assert 'elevation = "dem.npy"' in (folder / "dem.toml").read_text("utf-8")
+
+
 def test_a_sketch_that_does_not_open_leaves_the_panel_the_title_and_the_path_of_the_one_shown(
     bare: Bare, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

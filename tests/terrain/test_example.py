@@ -12,10 +12,12 @@ from scipy.ndimage import gaussian_filter
 from playground.errors import DataError
 from playground.paths import GLSL
 from playground.terrain.elevation import Elevation, read_elevation
+from playground.terrain.example import source
 from playground.terrain.example.candidates import CELLS, Candidates, Fit, features_of, in_cells, oriented
 from playground.terrain.example.mirrored import integrated, smoothed
 from playground.terrain.example.quilt import cut, quilted
 from playground.terrain.example.terrain import Wishes, made_like
+from playground.terrain.source_kinds import Material
 
 from ..truth.drainage import drained_areas, exponent_of
 
@@ -251,3 +253,42 @@ def test_it_reports_how_far_it_is_and_can_be_stopped(example):
 
     with pytest.raises(Stop):
         made_like(example, example.spacing, (65, 65), (METRES, METRES), FEW, report=stop)
+
+
+# ── the source ───────────────────────────────────────────────────────────────
+
+
+def values(file: Path, **more: float) -> dict[str, object]:
+    usual = {"texel": 0.0, "rise": 0.0, "piece": 3840.0, "candidates": 60, "follow": 0.5, "seed": 1}
+    return {"elevation": str(file), **usual, **more}
+
+
+def test_the_file_says_the_relief_and_heights_are_in_it():
+    known = source.describe(values(JACKSBORO))
+    assert (known.relief, known.base_elevation, known.size) == (840.0, 236.0, None)
+    for relief in (840.0, 420.0):
+        material = Material({}, (METRES, METRES), relief)
+        found = relief * source.work(values(JACKSBORO), (65, 65), material)["height"]
+        assert found.min() == 0 and 300 < found.max() < 1200, "metres are metres"
+    assert source.notes(values(JACKSBORO)) == ()
+
+
+def test_a_file_without_metres_is_told_them(tmp_path):
+    file = tmp_path / "hills.npy"
+    np.save(file, gaussian_filter(np.random.default_rng(2).normal(size=(90, 70)), 4).astype(np.float32))
+    assert source.describe(values(file)).relief is None
+    assert source.describe(values(file, rise=300.0)).relief == 300.0
+    assert "it does not say how large it is" in source.notes(values(file))[0]
+    assert source.notes(values(file, texel=30.0)) == ()
+    for rise, wanted in ((0.0, 1.0), (300.0, 0.3)):  # of a relief of 1000 m
+        material = Material({}, (METRES, METRES), 1000.0)
+        made = source.work(values(file, rise=rise, piece=1600.0), (65, 65), material)["height"]
+        assert 0.4 * wanted < made.max() < 1.6 * wanted
+
+
+def test_of_a_large_file_no_more_is_read_than_an_example_needs(tmp_path):
+    file = tmp_path / "large.npy"
+    np.save(file, np.add.outer(np.zeros(20), np.arange(4097)).astype(np.float32))
+    assert "its 4097 x 20 texels are read as 2049 x " in source.notes(values(file, texel=10.0))[0]
+    example, coarser = source._example(values(file))
+    assert (example.size[0], coarser) == (2049, 2.0)

@@ -12,7 +12,7 @@ from playground.errors import DataError, SketchError
 from playground.images.content_hash import content_key
 from playground.paths import GLSL
 from playground.sketch.techniques import read_technique
-from playground.terrain.source_kinds import Terrain
+from playground.terrain.known import Terrain
 from playground.terrain.sources import SOURCES, source_kind
 
 KIND = source_kind("elevation_file")
@@ -32,7 +32,7 @@ def values(tmp_path):
 
 def test_the_kernel_declares_what_the_source_reads():
     parameters = read_technique("generation/heightmap", GLSL, GLSL).parameters
-    assert set(KIND.parameters) == {p.name for p in parameters}
+    assert {*KIND.parameters, *KIND.optional} == {p.name for p in parameters}
     menus = {p.name: p.widget.choices for p in parameters if p.widget.kind == "menu"}
     assert menus == {
         "packing": ("grey", "rgb"),
@@ -156,6 +156,7 @@ def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
         "example_file",
         "ranked_heights",
         "mask_file",
+        "vector_file",
         "video_file",
         "sound_file",
         "keyboard",

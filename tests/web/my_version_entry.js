@@ -1,9 +1,10 @@
 // my_version_entry.js -- the page's engine with the editor on it, for tests: a sketch is edited and saved.
 
+import "../../playground/web/runtime/with_all.js";
 import { createEditor } from "../../playground/web/runtime/editor.js";
 import { EDITOR_WORDS } from "../../playground/web/runtime/editor_words.js";
 import { createEngine } from "../../playground/web/runtime/engine.js";
-import { packOf, versionFiles } from "../../playground/web/runtime/my_version.js";
+import { versionFiles } from "../../playground/web/runtime/my_version.js";
 import { createRecovery } from "../../playground/web/runtime/recovery.js";
 import { finished } from "../../playground/web/runtime/waiting.js";
 import { zip } from "../../playground/web/runtime/zip.js";
@@ -22,7 +23,7 @@ export async function open(page) {
         const made = {
             texts: editor.drafts, values: new Map(values), rows, camera, time: 0, steps: new Map(), frame: sketch.frame,
         };
-        const { files } = await versionFiles(await packOf(sketch, page.shared), sketch, page.shared, made);
+        const { files } = await versionFiles(sketch.pack, sketch, page.shared, made);
         return coded(await zip(files));
     };
     const set = (values, camera) => {

@@ -21,6 +21,7 @@ from .firefox import Firefox
 from .node import NODE
 
 HOME = Path(playground.web.__file__).parent
+ENGINE = Path(__file__).with_name("whole_engine.js")
 ESBUILD = HOME / "node_modules" / "esbuild"
 if not MISSING and not (NODE and ESBUILD.exists()):
     MISSING = "needs Node, and npm ci in playground/web"
@@ -94,7 +95,7 @@ class PageError(Exception):
 def script_of(folder: Path) -> Path:
     """Return the runtime with its engine as one script, bundled into a folder."""
     made = folder / "engine.js"
-    command = [str(NODE or shutil.which("node")), "build.mjs", "runtime/engine.js", str(made)]
+    command = [str(NODE or shutil.which("node")), "build.mjs", str(ENGINE), str(made)]
     subprocess.run(command, cwd=HOME, check=True, capture_output=True)
     return made
 

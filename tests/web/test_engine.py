@@ -151,6 +151,25 @@ def test_a_loop_feeds_back(pages: Pages, drawn: Engine, sketch: Made):
         assert picture.ran == drawn.ran
 
 
+def test_a_repeat_ends_once_it_has_settled(pages: Pages, drawn: Engine, sketch: Made):
+    """Two outputs, one of them integers in a texture of bytes; without ``until`` a million steps."""
+    header = '#pragma kernel(output = "soft:r32f, rest:rgba8", repeat = "1000000", until = "unchanged")\n'
+    body = "    rest = vec4(0.0, 0.0, 0.0, previous_rest(texel).a + 1.0 / 255.0);\n"
+    far = "max(previous_soft(texel - ivec2(1, 0)), previous_soft(texel - ivec2(0, 1)))"
+    kernel = f"void kernel(ivec2 texel, out float soft, out vec4 rest) {{\n{body}"
+    kernel += f"    soft = max(previous_soft(texel), 0.999 * {far});\n}}\n"
+    text = header + "uniform sampler2D initial_soft;  //! input\n" + kernel
+    chain = CHAIN.replace("initial = ", "initial_soft = ").replace(
+        'field = "spread"', 'field = "spread:soft"'
+    )
+    whole = sketch(chain, spread=text)
+    begun(pages, whole)
+    drawn.cache.clear()
+    frame = drawn.render(whole, size=SIZE)
+    assert 255 < drawn.record.iterations["spread"] < 300
+    assert pages.picture(whole.name).levels_off(frame.array) == 0
+
+
 def test_levels_of_a_loop_have_their_own_sizes_and_counts(pages: Pages, drawn: Engine, sketch: Made):
     flow = FLOW.replace("water, texel, 0", "water, texel * textureSize(water, 0) / size, 0")
     more = 'inputs = { rough = "rough" }\nrepeat = "iterations - iteration"\nfeedback = { water = "flow" }\n'

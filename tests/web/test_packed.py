@@ -28,10 +28,10 @@ from .node import Node
 from .shipped import SHIPPED
 
 ZIP = """async (page, made, store, load) => {
-    const { packOf, versionFiles } = await load("my_version.js"), { zip } = await load("zip.js");
+    const { versionFiles } = await load("my_version.js"), { zip } = await load("zip.js");
     const sketch = page.sketches[0], rows = new Map(sketch.shown.map((row) => [row.path, row]));
     const given = { ...made, rows, values: new Map(made.values), steps: new Map(made.steps) };
-    const { shared } = page, pack = await packOf(sketch, shared);
+    const { shared } = page, { pack } = sketch;
     const { files, aside } = await versionFiles(pack, sketch, shared, given);
     return { bytes: await zip(files, { store }), aside };
 }"""
@@ -183,8 +183,8 @@ def test_a_text_that_no_file_of_the_sketch_reads_is_said_to_be_aside(node: Node,
 
 def test_data_that_are_too_large_for_a_page_are_listed_in_the_zip(node: Node):
     script = """async (page, leftOut, load) => {
-        const { packOf, versionFiles } = await load("my_version.js"), { shared, sketches: [sketch] } = page;
-        const pack = { ...await packOf(sketch, shared), leftOut };
+        const { versionFiles } = await load("my_version.js"), { shared, sketches: [sketch] } = page;
+        const pack = { ...sketch.pack, leftOut };
         const made = { texts: {}, values: new Map(), rows: new Map(), camera: null, time: 0 };
         const given = { ...made, steps: new Map(), frame: [9, 9] };
         const { files } = await versionFiles(pack, sketch, shared, given);

@@ -8,17 +8,21 @@ import hashlib
 import json
 import re
 from html.parser import HTMLParser
+from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
+from threading import Thread
 from typing import Any
 
 import pytest
 
 from playground.sketch.load import load
+from playground.web.blobs import packed
 from playground.web.page import Poster, page_html
 from playground.web.page_data import page_data
 
 from ..report import browser as browsers
 from .node import Node
+from .unpressed import parts_of, undense
 
 EVIL = "</script></title><img src=x onerror=\"document.body.dataset.broken='1'\"><!--<script>"
 POSTER = Poster(
@@ -66,7 +70,7 @@ class Elements(HTMLParser):
 
     def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
         self.found.append((tag, dict(attrs)))
-        self.inside = dict(attrs).get("id") or tag
+        self.inside = dict(attrs).get("id") or dict(attrs).get("data-blob") or tag
 
     def handle_endtag(self, tag: str) -> None:
         self.inside = ""
@@ -78,29 +82,24 @@ class Elements(HTMLParser):
         raise AssertionError(f"a comment: {data}")
 
 
-def unpacked(text: str) -> str:
-    return gzip.decompress(base64.b64decode(text)).decode()
-
-
 def test_what_people_wrote_is_text(evil: dict[str, Any]):
     page = Elements(page_of(evil))
     expected = "html head meta meta meta meta meta meta title link style body"
-    expected += " main img noscript p p script script script script"
+    expected += " main img noscript p p script script"
     assert [tag for tag, _ in page.found] == expected.split()
     assert page.texts["title"] == EVIL
     [image] = [given for tag, given in page.found if tag == "img"]
     assert image["alt"] == EVIL and set(image) == {"id", "src", "alt", "width", "height"}
-    file = json.loads(page.texts["playground-page"])
-    assert json.loads(unpacked(file["packed"]))["sketches"][0]["title"] == EVIL
-    assert file["blobs"] == evil["shared"]["blobs"]
+    _, data, _ = parts_of(page.texts["playground-pressed"])
+    assert json.loads(data)["sketches"][0]["title"] == EVIL
 
 
 def test_nothing_in_the_data_can_end_its_element(evil: dict[str, Any]):
-    evil["shared"]["blobs"][EVIL] = EVIL  # the one part that is not packed
-    html = page_of(evil)
-    start = html.index('id="playground-page">') + len('id="playground-page">')
-    text = html[start : html.index("</script>", start)]
-    assert "<" not in text and json.loads(text)["blobs"][EVIL] == EVIL
+    evil["shared"]["blobs"][EVIL] = packed(data := 99 * bytes(range(256)) + EVIL.encode())
+    page = Elements(page_of(evil))
+    assert [given["data-blob"] for _, given in page.found if "data-blob" in given] == [EVIL]
+    text = page.texts[EVIL]
+    assert text[0] == "~" and "<" not in text and gzip.decompress(undense(text[1:])) == data
 
 
 def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]):
@@ -112,8 +111,8 @@ def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]
     def digest(text: str) -> str:
         return f"'sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}'"
 
-    assert unpacked(page.texts["playground-runtime"]) == SCRIPT
-    assert unpacked(page.texts["playground-style"]) == STYLE
+    style, _, script = parts_of(page.texts["playground-pressed"])
+    assert (style, script) == (STYLE, SCRIPT)
     assert rules == {
         "default-src": "'none'",
         "script-src": f"{digest(page.texts['script'])} {digest(SCRIPT)}",
@@ -126,10 +125,24 @@ def test_the_policy_names_what_runs_and_allows_nothing_else(evil: dict[str, Any]
 
 
 def test_it_is_read_as_it_was_written(node: Node, evil: dict[str, Any]):
-    page = Elements(page_of(evil))
-    found = node.call("page_file.js", "readPage", page.texts["playground-page"])
+    evil["shared"]["blobs"][EVIL] = packed(b"elevation")
+    texts = Elements(page_of(evil)).texts
+    script = """async (texts, keys, load) => {
+        const { unpressed } = await load("pressed.js"), { unpacked } = await load("packed.js");
+        const { readPage } = await load("page_file.js");
+        const data = unpressed(texts["playground-pressed"]).split("\\0")[1];
+        const elements = keys.map((key) => ({ dataset: { blob: key }, textContent: texts[key] }));
+        const page = readPage({
+            getElementById: () => ({ textContent: data }), querySelectorAll: () => elements,
+        });
+        const { blobs } = page.shared;
+        for (const key of keys) blobs[key] = new Uint8Array(await unpacked(blobs[key]));
+        return page;
+    }"""
+    found = node.run(script, texts, [EVIL])
+    assert found["shared"].pop("blobs")[EVIL].tobytes() == b"elevation"
+    del evil["shared"]["blobs"]
     assert found == json.loads(json.dumps(evil))
-    assert node.call("page_file.js", "readPage", json.dumps(evil)) == found, "one that is not packed, too"
 
 
 def test_the_same_sketch_gives_the_same_bytes():
@@ -157,3 +170,29 @@ def test_a_browser_runs_the_runtime_and_nothing_that_was_put_in(tmp_path: Path, 
         )
         assert browser.run("return document.body.dataset.broken ?? ''") == ""
         assert any("Content Security Policy" in line for line in browser.log())
+
+
+@pytest.mark.skipif(bool(browsers.MISSING), reason=browsers.MISSING)
+def test_a_server_that_names_another_encoding_does_no_harm(tmp_path: Path, evil: dict[str, Any]):
+    body = page_of(evil).encode()
+
+    class Latin(BaseHTTPRequestHandler):
+        def do_GET(self) -> None:
+            self.send_response(200)
+            self.send_header("Content-Type", "text/html; charset=iso-8859-1")
+            self.end_headers()
+            self.wfile.write(body)
+
+        def log_message(self, *_: object) -> None:
+            pass
+
+    with (
+        ThreadingHTTPServer(("127.0.0.1", 0), Latin) as server,
+        browsers.Browser(tmp_path / "profile") as browser,
+    ):
+        Thread(target=server.serve_forever, daemon=True).start()
+        browser.open(f"http://127.0.0.1:{server.server_port}/")
+        browser.wait("document.readyState === 'complete'")
+        ran = browser.run("return document.documentElement.dataset.ran ?? ''")
+        server.shutdown()
+    assert ran == "yes"

@@ -17,9 +17,10 @@ from playground.paths import GLSL
 from playground.sketch import expressions
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
-from playground.web.page import page_file
+from playground.web.page import page_texts
 from playground.web.page_data import page_data
 from playground.web.plan import KINDS
+from playground.web.pressed import pressed
 
 from .. import dialect_texts, isf_texts
 from .node import Node
@@ -61,7 +62,8 @@ def test_it_is_json_and_says_nothing_of_this_machine(name: str):
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_its_plan_and_its_texts_are_small(name: str):
-    assert len(page_file(written(name))["packed"]) < 96 * 1024
+    text, _ = page_texts(written(name))
+    assert len(pressed(text).encode()) < 96 * 1024
 
 
 @pytest.mark.parametrize("name", SHIPPED)

@@ -14,7 +14,7 @@ from playground.engine.sandbox import SandboxReport
 from playground.errors import SandboxCrash
 from playground.images.files import write_png
 from playground.sketch.model import Camera
-from playground.terrain import elevation, sources
+from playground.terrain import elevation, elevation_source
 from playground.workbench.inspect.compare import Compare
 from playground.workbench.inspect.inspector import Inspector
 from playground.workbench.inspect.thumbnails import Thumbnails
@@ -37,14 +37,15 @@ def read(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[str]]:
     """Give the names of the elevation files that this process has read."""
     names: list[str] = []
 
-    def reading(path: Path, **named: object) -> elevation.Elevation:
-        names.append(path.name)
-        return elevation.read_elevation(path, **named)  # type: ignore[arg-type]
+    def reading(self: elevation.ElevationFile) -> elevation.Elevation:
+        names.append(self.path.name)
+        return whole(self)
 
-    monkeypatch.setattr(sources, "read_elevation", reading)
-    sources._read.cache_clear()
+    whole = elevation.ElevationFile.read
+    monkeypatch.setattr(elevation.ElevationFile, "read", reading)
+    elevation_source._whole.cache_clear()
     yield names
-    sources._read.cache_clear()
+    elevation_source._whole.cache_clear()
 
 
 @pytest.fixture
@@ -187,9 +188,9 @@ def test_the_sandbox_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: En
     from playground.engine.sandbox import Sandbox, TrySketch
     from playground.sketch.load import load
 
-    with (folder / "terrain.npy").open("wb") as file:  # 4 GiB of float32 and of holes
+    with (folder / "terrain.npy").open("wb") as file:  # 2 GiB of holes, by columns: not to be read by rows
         np.lib.format.write_array_header_1_0(
-            file, {"descr": "<f8", "fortran_order": False, "shape": (16384, 16384)}
+            file, {"descr": "<f8", "fortran_order": True, "shape": (16384, 16384)}
         )
         file.truncate(file.tell() + 8 * 16384**2)
     with Sandbox(memory_bytes=2**30) as sandbox:

@@ -14,7 +14,8 @@ from playground.engine.sandbox import SandboxReport
 from playground.live.overlay import behind_text
 from playground.process.messages import Cancelled
 from playground.terrain import sources
-from playground.terrain.source_kinds import SourceKind, Terrain
+from playground.terrain.known import Terrain
+from playground.terrain.source_kinds import SourceKind
 from playground.workbench.session import Session
 
 from ..sketch_texts import map_of, passes

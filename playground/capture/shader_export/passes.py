@@ -151,6 +151,8 @@ class _Passes:
                     f"{who} repeats passes ({node.spec.repeat}), which these formats have not; once a frame"
                     f' (repeat = "{FRAMES}") would do'
                 )
+            if len(node.bodies) > 1:
+                return f"{who} has other sizes or counts in each step, which these formats have not"
             if any(isinstance(inside, LoopStep) for inside in node.body):
                 return f"{who} is a loop in a loop, which these formats have not"
             return next(filter(None, map(self._reason, node.body)), "")

@@ -1,5 +1,6 @@
 // book.js -- the entry of a book's pages: starts a figure where a reader asks for it.
 
+import "./with_all.js";
 import { openBook, settled } from "./book_data.js";
 import { liveFigure } from "./book_figure.js";
 import { liveCompare, liveSlider, liveSteps } from "./book_series.js";

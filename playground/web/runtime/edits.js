@@ -4,6 +4,7 @@
 import { complaints } from "./complaints.js";
 import { readKernel, stagesOf } from "./kernel_texts.js";
 import { libraryOf } from "./name_suggestions.js";
+import { checkSignature } from "./signature.js";
 
 /** @typedef {{file: string, line: number, column?: number, message: string, kernel: string}} Complaint
  *  line 0: of no line */
@@ -26,6 +27,7 @@ export const tried = async (engine, all, before, texts) => {
     if (kernel.kind === "source") continue;
     try {
       const text = readKernel(engine.shared, kernel, texts), was = before(kernel);
+      checkSignature(kernel, text.flat);
       if (text.identity === was.identity) continue;
       const hands = was.hands.size ? [...was.hands.values()] : [new Map()];
       for (const byHand of hands) asked.push({ text, program: kernels.ask(text, byHand) });

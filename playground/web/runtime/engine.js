@@ -1,12 +1,12 @@
 // engine.js -- one WebGL2 context for many figures: what they share, and what is left when it is lost.
 
+import { addOns } from "./addons.js";
 import { createBinder } from "./binder.js";
 import { createCache } from "./cache.js";
 import { failure, openContext } from "./context.js";
 import { createDraws } from "./draws.js";
 import { createImages } from "./images.js";
 import { createKernels } from "./kernels.js";
-import { createPlain } from "./plain.js";
 import { createPlayer } from "./player.js";
 import { createPrograms } from "./programs.js";
 import { createClock } from "./slices.js";
@@ -27,7 +27,7 @@ import { createTextures } from "./textures.js";
  *  @property {import("./binder.js").Binder} binder
  *  @property {import("./kernels.js").Kernels} kernels
  *  @property {ReturnType<typeof createDraws>} draws
- *  @property {ReturnType<typeof createPlain>} plain
+ *  @property {ReturnType<typeof import("./plain.js").createPlain> | undefined} plain  an add-on
  *  @property {import("./cache.js").Cache} cache */
 
 /** @typedef {object} Engine
@@ -61,7 +61,7 @@ export const createEngine = (canvas, shared, options = {}) => {
     const binder = createBinder(context, textures, images);
     const kernels = createKernels(context, textures, programs, binder, shared, options.often);
     const draws = createDraws(context, textures, programs, binder, kernels);
-    const plain = createPlain(context, textures, images, binder, kernels);
+    const plain = addOns.plain?.createPlain(context, textures, images, binder, kernels);
     const cache = createCache(bytes, textures);
     return { context, textures, programs, images, binder, kernels, draws, plain, cache };
   };
@@ -95,7 +95,7 @@ export const createEngine = (canvas, shared, options = {}) => {
     close: () => {
       for (const player of [...players]) player.close();
       const { cache, textures, images, binder, draws, plain, programs } = engine.parts;
-      for (const part of [cache, textures, images, binder, draws, plain, programs]) part.clear();
+      for (const part of [cache, textures, images, binder, draws, plain, programs]) part?.clear();
       canvas.removeEventListener("webglcontextlost", keep);
     },
   };

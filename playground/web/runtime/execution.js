@@ -28,7 +28,7 @@ import { continuedOf } from "./staleness.js";
  *  @property {import("./textures.js").Textures} textures
  *  @property {import("./kernels.js").Kernels} kernels
  *  @property {ReturnType<typeof import("./draws.js").createDraws>} draws
- *  @property {ReturnType<typeof import("./plain.js").createPlain>} plain
+ *  @property {ReturnType<typeof import("./plain.js").createPlain> | undefined} plain
  *  @property {import("./images.js").Images} images
  *  @property {WebGL2RenderingContext} gl
  *  @property {(step: Step, frame: number | null) => Object<string, any>} given
@@ -148,6 +148,7 @@ export const createExecution = (plan, nodes, around) => {
       if (from) kernels.copy(textures.targetOf(texture), texture.size, from);
     }
     made.iterations = found.iterations;
+    made.settled = found.settled;
     return made;
   };
 
@@ -167,7 +168,8 @@ export const createExecution = (plan, nodes, around) => {
       given: around.given(step, loops ? loops.frame : null), keepsSurface: continued.has(step.path),
       time: plan.time, rows: (width, height) => around.rows(text, width, height),
     };
-    return yield* (kind === "draw" ? draws : kind === "plain_fragment" ? plain : kernels).run(job);
+    const runner = kind === "draw" ? draws : kind === "plain_fragment" ? plain : kernels;
+    return yield* /** @type {NonNullable<typeof runner>} */ (runner).run(job); // its text needs the add-on
   };
 
   /** Draw again what a draw goes on from, where its samples went on into an earlier run of this draw.

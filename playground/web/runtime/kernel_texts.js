@@ -1,14 +1,12 @@
 // kernel_texts.js -- what a kernel's text says: names it reads, what it is known by, the texts of its stages.
 
+import { needed } from "./addons.js";
 import { hash } from "./hash.js";
 import { usedBy } from "./staleness.js";
-import { checkSignature } from "./signature.js";
 import { flatten } from "./source.js";
 import { stageText } from "./wrap.js";
 import { toES } from "./es.js";
 import { declaredUniforms } from "./uniforms.js";
-import { withConversions } from "./conversions.js";
-import { withoutDesktopForms } from "./desktop_glsl.js";
 import { filteredByHand } from "./linear_by_hand.js";
 
 /** @typedef {import("./schema.js").Kernel} Kernel */
@@ -26,15 +24,13 @@ import { filteredByHand } from "./linear_by_hand.js";
  *  @property {Map<string, Map<string, import("./linear_by_hand.js").Wrap>>} hands   those ways
  *  @property {[string, any][]} own    uniforms with a value in the text that its header does not know */
 
-/** Read a kernel; throws where a file is missing, or its function has another form than its header asks for,
- *  with `file` and `line`.
+/** Read a kernel; throws where a file is missing, with `file` and `line`.
  *  @param {Shared} shared @param {Kernel} kernel @param {Object<string, string>} texts edited files
  *  @returns {KernelText} */
 export const readKernel = (shared, kernel, texts) => {
   const source = kernel.kind === "source";
   const flat = source ? { lines: [], names: new Set() }
     : flatten(shared, kernel.file, texts, { once: !!kernel.dialect });
-  checkSignature(kernel, flat);
   const once = { once: !!kernel.dialect }, own = kernel.vertex?.file;
   const vertex = own ? flatten(shared, own, texts, once) : flat;
   const lines = own ? [...flat.lines, ...vertex.lines] : flat.lines;
@@ -60,7 +56,7 @@ export const readKernel = (shared, kernel, texts) => {
 export const stagesOf = ({ kernel, flat, vertex, desktop }, byHand, atEnd) => {
   const stages = [kernel.vertex, kernel.fragment].map((stage, i) => {
     const { text, first } = stageText(stage, i ? flat : vertex);
-    const written = desktop ? withConversions(withoutDesktopForms(text)) : text;
+    const written = desktop ? needed("fromDesktop")(text) : text;
     const filtered = byHand.size ? filteredByHand(written, byHand) : { text: written, functions: "" };
     const found = i && atEnd ? filtered.text.replace(/\}\s*$/, `${atEnd} }\n`) : filtered.text;
     const how = { extensions: kernel.extensions, declarations: filtered.functions };

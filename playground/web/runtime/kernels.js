@@ -7,11 +7,12 @@
 import { failure } from "./context.js";
 import { whole } from "./expressions.js";
 import { roundedOutputs } from "./formats.js";
-import { complaintsOf } from "./edits.js";
+import { addOns } from "./addons.js";
 import { createChosen } from "./chosen.js";
 import { stagesOf } from "./kernel_texts.js";
 import { isSize, PLAIN } from "./binder.js";
 import { setUniform } from "./programs.js";
+import { createSettling } from "./settling.js";
 import { toES } from "./es.js";
 import { ownNames } from "./counts.js";
 
@@ -78,6 +79,8 @@ export const createKernels = (context, textures, programs, binder, shared, often
     gl.bindVertexArray(null);
     gl.drawArrays(gl.TRIANGLES, 0, 3);
   };
+
+  const settling = createSettling(gl, textures, binder, fill, () => own("changed.frag"));
 
   /** Fill what is bound by one of the engine's own shaders, which reads a texture.
    *  @param {string} shader @param {[number, number]} size @param {Texture} source
@@ -166,7 +169,10 @@ export const createKernels = (context, textures, programs, binder, shared, often
 
   /** @param {import("./kernel_texts.js").KernelText} text @param {Program} program */
   const refused = (text, program) => {
-    const complaints = complaintsOf(text, program, shared, {}), [{ file, line, message }] = complaints;
+    const { kernel } = text, log = [...program.logs, program.link].join("\n").trim();
+    const complaints = addOns.edits?.complaintsOf(text, program, shared, {})
+      ?? [{ file: kernel.file, line: 0, message: log, kernel: kernel.name }];
+    const [{ file, line, message }] = complaints;
     return failure("shader", `${file}:${line}: ${message}`, { complaints });
   };
 
@@ -202,13 +208,19 @@ export const createKernels = (context, textures, programs, binder, shared, often
 
   /** Run a kernel; the result is the caller's. @param {Job} job @returns {Work} */
   const run = function* (job) {
-    const { step, start } = job, { kernel, size } = step, state = initial(job);
+    const { step, start } = job, { kernel, size } = step;
+    if (start && start.settled) {
+      start.iterations = step.repeat;
+      return start;
+    }
+    const state = initial(job);
     if (!step.repeat) return untouched(job, state);
     const program = programOf(job), reads = readsOf(job);
     let unit = binder.bind(program, job, reads);
     const atOnce = kernel.atOnce === undefined ? 1 : Math.max(whole(kernel.atOnce, namesOf(job)), 1);
     const lattice = kernel.stride !== undefined && !state.size;
     let before = start, iteration = start ? start.iterations : 0, shift = 0;
+    const watch = kernel.until ? settling.watch(iteration) : null;
     /** @type {Result | null} */
     let result = null;
     try {
@@ -236,10 +248,16 @@ export const createKernels = (context, textures, programs, binder, shared, often
           begin();
         };
         if (yield* filled(job, width, height, again)) unit = binder.bind(program, job, reads);
+        iteration += turns;
+        const found = before && watch ? watch(iteration, result, before) : "";
+        if (found) unit = binder.bind(program, job, reads);
         if (before) textures.give(before);
         before = result;
         result = null;
-        iteration += turns;
+        if (found === "settled") {
+          before.settled = iteration;
+          break;
+        }
       }
       let done = /** @type {Result} */ (before);
       if (shift) { // each texel of the lattice goes to its place, with zeros between

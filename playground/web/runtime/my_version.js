@@ -1,7 +1,7 @@
 // my_version.js -- the zip of "download my version": a sketch with all that was changed in a page.
 
 import { copiesOf, isReached } from "./library_copies.js";
-import { unpacked, unpackedJson } from "./packed.js";
+import { unpacked } from "./packed.js";
 import { fill, shotText } from "./toml_fill.js";
 import { shellWord, write } from "./value_text.js";
 import { zip } from "./zip.js";
@@ -26,13 +26,6 @@ import { zip } from "./zip.js";
 /** @typedef {Map<string, string | Uint8Array>} Files */
 
 const SETTINGS = "settings.txt";
-
-/** Return the pack of a sketch; null where the page does not hold one.
- *  @param {Sketch} sketch @param {Shared} shared @returns {Promise<Pack | null>} */
-export async function packOf(sketch, shared) {
-  if (!sketch.pack) return null;
-  return unpackedJson(shared.blobs[sketch.pack]);
-}
 
 /** Return the files of the zip, by name.
  *  @param {Pack} pack @param {Sketch} sketch @param {Shared} shared @param {Made} made

@@ -3,6 +3,7 @@
 // Traits: those of notebook_live.js; `live` says to the kernel that nobody waits for its pictures. Without
 // widgets, as in HTML that was made of a notebook, `revive` makes a saved figure live.
 
+import "./with_all.js";
 import { renderLive } from "./notebook_live.js";
 import { renderPicture } from "./notebook_picture.js";
 

@@ -29,7 +29,8 @@ function modelOf(state) {
 /** Make a saved figure live in the place of its picture, which stays where the browser cannot draw it.
  *  @param {HTMLElement} place  with the picture in it @param {Saved} saved */
 export async function revive(place, saved) {
-  const image = /** @type {HTMLImageElement} */ (place.querySelector("img")), words = bookWords(saved.language);
+  const image = /** @type {HTMLImageElement} */ (place.querySelector("img"));
+  const words = bookWords(saved.language);
   try {
     await renderLive({ model: modelOf({ ...saved }), el: place }, image.src);
   } catch (error) {

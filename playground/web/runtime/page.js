@@ -1,5 +1,6 @@
 // page.js -- the entry of a page about one sketch: reads its data, and brings engine and interface together.
 
+import "./with_editing.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
 import { readPage } from "./page_file.js";
@@ -11,11 +12,11 @@ import { EDITOR_WORDS } from "./editor_words.js";
 import { PAGE_WORDS } from "./page_words.js";
 import { wordsOf } from "./words.js";
 
-async function start() {
+function start() {
   const main = /** @type {HTMLElement} */ (document.getElementById("playground"));
   const poster = /** @type {HTMLImageElement | null} */ (document.getElementById("playground-poster"));
   const words = wordsOf(document.documentElement.lang, PAGE_WORDS, EDITOR_WORDS);
-  const page = await readPage(document.getElementById("playground-page")?.textContent ?? "");
+  const page = readPage(document);
   const canvas = document.createElement("canvas");
   let engine;
   try {

@@ -2,7 +2,7 @@
 
 import { createEditor } from "./editor.js";
 import { createGuard, keyOf } from "./last_good.js";
-import { download, packOf, versionFiles } from "./my_version.js";
+import { download, versionFiles } from "./my_version.js";
 import { createRecovery } from "./recovery.js";
 import { finished } from "./waiting.js";
 import { fill } from "./words.js";
@@ -70,7 +70,7 @@ export function createCode(engine, host, { words, figure }) {
 
   /** @param {Player} player @param {Object<string, string>} texts @param {boolean} broken */
   async function saved(player, texts, broken) {
-    const { sketch, shared } = player, { session } = figure(), pack = await packOf(sketch, shared);
+    const { sketch, shared } = player, { session } = figure(), { pack } = sketch;
     if (!pack) return words.noPack;
     const { edits: values, camera, time, steps } = session;
     const rows = new Map(session.rows().map((row) => [row.path, row]));

@@ -1,17 +1,12 @@
-// page_file.js -- reads what an HTML file holds of a page: JSON, all but its bytes packed.
+// page_file.js -- reads what an HTML file holds of a page: JSON, and its bytes beside.
 
-import { unpackedJson } from "./packed.js";
-
-/** @typedef {import("./schema.js").Page} Page */
-/** @typedef {import("./schema.js").PageFile} PageFile */
-
-/** Return the page that a text of JSON holds. @param {string} text @returns {Promise<Page>} */
-export async function readPage(text) {
-  /** @type {Page | PageFile} */
-  const file = JSON.parse(text);
-  if (!("packed" in file)) return file;
-  /** @type {Page} */
-  const page = await unpackedJson(file.packed);
-  page.shared.blobs = file.blobs;
+/** Return the page whose JSON, but for `shared.blobs`, is the text of the element #playground-page, and
+ *  whose bytes are those of elements with `data-blob`, their keys.
+ *  @param {Document} document @returns {import("./schema.js").Page} */
+export function readPage(document) {
+  const page = JSON.parse(document.getElementById("playground-page")?.textContent ?? "");
+  const elements = /** @type {HTMLElement[]} */ ([...document.querySelectorAll("[data-blob]")]);
+  const blobs = elements.map(({ dataset, textContent }) => [dataset.blob, textContent]);
+  page.shared.blobs = Object.fromEntries(blobs);
   return page;
 }

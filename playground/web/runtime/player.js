@@ -1,8 +1,8 @@
 // player.js -- one sketch in an engine: its state, its picture, its texts.
 
+import { needed as addOn } from "./addons.js";
 import { failure } from "./context.js";
 import { readTexture } from "./draws.js";
-import { tried } from "./edits.js";
 import { createExecution } from "./execution.js";
 import { createEyeHeight } from "./eye_height.js";
 import { readKernel } from "./kernel_texts.js";
@@ -10,7 +10,6 @@ import { makePlan } from "./planner.js";
 import { isLoop, needed, stepsOf } from "./plan_nodes.js";
 import { blobAt, playingOf } from "./recordings.js";
 import { keysOf } from "./staleness.js";
-import { usualOf } from "./usual.js";
 import { PLAIN } from "./binder.js";
 
 /** @typedef {import("./planner.js").Plan} Plan */
@@ -87,7 +86,8 @@ export const createPlayer = (engine, sketch, onClose) => {
           return { output: texture.output, format: texture.format, blob: blobAt(texture, playing, now) };
         }) };
       }
-      if (kernel.kind === "plain_fragment") return usualOf(plan, step, frame, player.state.live ?? {});
+      const { live = {} } = player.state;
+      if (kernel.kind === "plain_fragment") return addOn("plain").usualOf(plan, step, frame, live);
       /** @type {Object<string, any>} */
       const found = {};
       for (const name of textOf(kernel).given) {
@@ -290,7 +290,7 @@ export const createPlayer = (engine, sketch, onClose) => {
 
     edit: async (file, text) => {
       const texts = { ...player.texts, [file]: text };
-      const { kernels, ...found } = await tried(engine, sketch.kernels, textOf, texts);
+      const { kernels, ...found } = await addOn("edits").tried(engine, sketch.kernels, textOf, texts);
       if (!found.errors.length) {
         stop();
         player.texts = texts;

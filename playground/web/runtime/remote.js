@@ -1,4 +1,4 @@
-// remote.js -- the page of a window's remote: rows made from what GET parameters says, that follow its events.
+// remote.js -- the page of a window's remote: rows of what GET parameters says, which follow its events.
 
 import { makeRow } from "./controls.js";
 import { make } from "./dom.js";

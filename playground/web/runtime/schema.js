@@ -59,6 +59,7 @@
  *  @property {Object<string, string>} initial      input → output that begins with it
  *  @property {Expression} [stride]
  *  @property {Expression} [atOnce]
+ *  @property {"unchanged"} [until]                 no more steps are run once one has changed no texel
  *  @property {"" | "squares" | "triangles"} [between]
  *  @property {string} [accepts]                    as the header has it
  *  @property {Accepted} [accepted]                 the same, to be evaluated
@@ -173,7 +174,7 @@
  *                                                  for maps
  *  @property {MapView} map
  *  @property {Choice[]} choices                    techniques that may be exchanged
- *  @property {string} [pack]                       key in `Shared.blobs` of its Pack, as JSON
+ *  @property {Pack} [pack]
  *  @property {string[]} notes                      what a page does otherwise, or cannot, a sentence each */
 
 /** How any texture is shown from above: the kernel view/map, whose input `shown` is wired when asked for.
@@ -189,7 +190,7 @@
  *            | {terrain: string, was: string} | {use: string, of: string} | {aside: string}
  *            | {into: string, open: string, join: string, close: string, was: string}} Piece */
 
-/** What "download my version" writes: JSON among the page's bytes, see playground/web/packed.py.
+/** What "download my version" writes: see playground/web/packed.py.
  *  @typedef {object} Pack
  *  @property {string} folder        of the zip that all files are in
  *  @property {string} main          the file that opens, in the folder
@@ -212,17 +213,13 @@
  *  @property {Object<string, Object<string, string>>} includes   file → what it writes → file
  *  @property {Object<string, [string, string]>} given   name → GLSL type and meaning (reserved_names.GIVEN)
  *  @property {Object<string, string>} own          the engine's own shaders: copy.frag, spread.frag,
- *                                                  fill_between.frag
+ *                                                  fill_between.frag, changed.frag
  *  @property {Object<string, {size: [number, number], kind: "rgba8" | "srgb8" | "rgba16f", blob: string,
  *             file?: string}>} images              image files by key; blob: raw texels, row 0 south, or
  *                                                  (file) the file itself, to be decoded by the browser
- *  @property {Object<string, string>} blobs        gzip in base64, by key */
+ *  @property {Object<string, string>} blobs        by key, see packed.js */
 
-/** A page: what one HTML file holds, or what a book's scripts put together.
+/** A page: what one HTML file holds (see page_file.js), or what a book's scripts put together.
  *  @typedef {{format: 1, sketches: Sketch[], shared: Shared}} Page */
-
-/** What an HTML file holds in its element #playground-page: a page, or (see page_file.js) one whose JSON,
- *  but for `shared.blobs`, is packed: gzip in base64.
- *  @typedef {{format: 1, packed: string, blobs: Object<string, string>}} PageFile */
 
 export {};

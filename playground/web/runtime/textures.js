@@ -16,6 +16,7 @@ import { formatsOf } from "./formats.js";
  *  @property {Map<string, Texture>} textures   by output
  *  @property {WebGLFramebuffer | null} target  of several outputs
  *  @property {number} iterations               done, of a pass that repeats
+ *  @property {number} settled                  the steps that ran, where they changed nothing more; else 0
  *  @property {number} number                   of all that were handed out: textures are used again, it is
  *  not
  *  @property {Surface | null} surface          a draw's samples and depth, while a later draw may go on
@@ -124,7 +125,8 @@ export const createTextures = (context, limit) => {
   /** @param {[number, number]} size @param {Map<string, Texture>} textures @param {Partial<Result>} [more]
    *  @returns {Result} */
   const result = (size, textures, more) => ({
-    size, textures, target: null, iterations: 0, number: ++taken, surface: null, mipmapped: new Set(),
+    size, textures, target: null, iterations: 0, settled: 0, number: ++taken, surface: null,
+    mipmapped: new Set(),
     copies: new Map(), read: new Map(), of: null, gone: false, ...more,
   });
 

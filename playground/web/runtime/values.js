@@ -1,7 +1,7 @@
 // values.js -- the values of a sketch's parameters and its camera at a time: its own, keyframes', a user's.
 
+import { needed } from "./addons.js";
 import { follow } from "./follows.js";
-import { valueAt } from "./keyframes.js";
 
 /** @typedef {import("./schema.js").Sketch} Sketch */
 /** @typedef {import("./schema.js").Kernel} Kernel */
@@ -25,7 +25,7 @@ export function valuesAt(sketch, given, time) {
   const found = { ...sketch.values };
   for (const track of sketch.tracks) {
     if (track.of !== "value") continue;
-    const value = valueAt(track, time);
+    const value = needed("keyframes").valueAt(track, time);
     for (const path of track.targets) found[path] = value;
   }
   Object.assign(found, given);
@@ -38,7 +38,8 @@ export function valuesAt(sketch, given, time) {
 export function cameraAt(sketch, given, time) {
   if (given) return given;
   const tracks = sketch.tracks.filter((track) => track.of === "camera");
-  const found = Object.fromEntries(tracks.map((track) => [track.name, valueAt(track, time)]));
+  const at = (/** @type {import("./schema.js").Track} */ track) => needed("keyframes").valueAt(track, time);
+  const found = Object.fromEntries(tracks.map((track) => [track.name, at(track)]));
   return { ...sketch.camera, ...found };
 }
 

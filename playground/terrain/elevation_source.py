@@ -1,0 +1,137 @@
+"""Terrain from an elevation file: what is known of it, and its heights at the size of a pass.
+
+A large file is read at that size, a part at a time, and never has all of its texels in memory.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.errors import DataError
+from playground.images.content_hash import content_key
+from playground.paths import shown
+from playground.sketch.model import Value
+from playground.terrain.elevation import Edge, Elevation, ElevationFile, open_elevation
+from playground.terrain.gaps import Voids, fill_no_data
+from playground.terrain.grid import Packing, fitted
+from playground.terrain.known import Terrain
+from playground.terrain.resample import resample
+
+LARGE = 2**24
+"""Texels of a file above which not all of them are read, unless the terrain has its size."""
+
+USUAL_SIDE = 4097
+"""Texels of the longer side of terrain from a large file, where nothing says how many."""
+
+Asked = tuple[str, str, tuple[int, int] | None, Packing, Voids, Edge]
+"""A file's path, what changes whenever its contents do, and what its parameters say."""
+
+
+def describe(values: Mapping[str, Value]) -> Terrain:
+    """Return what the file knows of its terrain."""
+    asked = _asked(values)
+    file = _opened(asked)
+    size = _size(file, values)
+    elevation = _at(asked, size)
+    low, high = elevation.lowest, elevation.highest
+    metres = values["metres"]  # of the file's lowest and highest codes; equal: nothing is known
+    relief = base = None
+    if isinstance(metres, tuple) and metres[0] != metres[1]:
+        codes = elevation.code_range or (low, high)
+        scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
+        base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
+    elif elevation.in_metres:
+        base, relief = low, high - low
+    return Terrain(size, file.extent, relief, base, file.found.place)
+
+
+def make(
+    values: Mapping[str, Value], size: tuple[int, int], moment: None = None
+) -> dict[str, NDArray[np.float32]]:
+    """Return the heights at a size: 0 at the file's lowest, 1 at its highest.
+
+    Of a large file, those at less than half of the size that it has by itself are made of these: previews
+    need not go through it again.
+    """
+    asked = _asked(values)
+    own = _size(_opened(asked), values)
+    elevation = _at(asked, own if all(2 * a <= b for a, b in zip(size, own, strict=True)) else size)
+    low, span = elevation.lowest, elevation.highest - elevation.lowest
+    with _memory_explained(Path(str(values["elevation"]))):
+        heights = (
+            (elevation.heights - np.float32(low)) / np.float32(span)
+            if span > 0
+            else np.zeros_like(elevation.heights)
+        )
+        if size != elevation.size:
+            heights = resample(heights, size, within=(0.0, 1.0))
+    return {"height": heights}
+
+
+def notes(values: Mapping[str, Value]) -> tuple[str, ...]:
+    """Return what was assumed of the file, or lost."""
+    asked = _asked(values)
+    file = _opened(asked)
+    size = _size(file, values)
+    found = _at(asked, size).notes
+    if not values.get("longest") and size != file.size:
+        texels, fewer = (f"{x} x {y}" for x, y in (file.size, size))
+        found += (f"has {texels} texels; unless a size or `longest` says how many, {fewer} are read",)
+    return tuple(f"{file.path.name}: {note}" for note in found)
+
+
+def _size(file: ElevationFile, values: Mapping[str, Value]) -> tuple[int, int]:
+    """Return the size of the terrain where the sketch says none."""
+    longest = values.get("longest", 0)  # kernels made before it was there have none
+    assert isinstance(longest, int)  # the kernel's file says so
+    if longest:
+        return fitted(file.size, longest)
+    return fitted(file.size, USUAL_SIDE) if math.prod(file.size) > LARGE else file.size
+
+
+def _asked(values: Mapping[str, Value]) -> Asked:
+    path = str(values["elevation"])
+    raw = values["raw_size"]
+    size = (int(raw[0]), int(raw[1])) if isinstance(raw, tuple) and raw[0] and raw[1] else None
+    packing: Packing = "rgb" if values["packing"] == 1 else "grey"
+    voids: Voids = "fill" if values["no_data"] == 1 else "refuse"
+    first_row: Edge = "south" if values["first_row"] == 1 else "north"
+    return path, content_key(Path(path)), size, packing, voids, first_row
+
+
+@lru_cache(maxsize=4)
+def _opened(asked: Asked) -> ElevationFile:
+    path, _, raw_size, packing, _, first_row = asked
+    with _memory_explained(Path(path)):
+        return open_elevation(path, raw_size=raw_size, packing=packing, first_row=first_row)
+
+
+def _at(asked: Asked, size: tuple[int, int]) -> Elevation:
+    """Return all heights of a file; of a large one, those of a size."""
+    with _memory_explained(Path(asked[0])):
+        return _large(asked, size) if math.prod(_opened(asked).size) > LARGE else _whole(asked)
+
+
+@lru_cache(maxsize=4)
+def _whole(asked: Asked) -> Elevation:
+    return fill_no_data(_opened(asked).read(), asked[4])
+
+
+@lru_cache(maxsize=2)
+def _large(asked: Asked, size: tuple[int, int]) -> Elevation:
+    return fill_no_data(_opened(asked).read_at(size), asked[4])
+
+
+@contextmanager
+def _memory_explained(path: Path) -> Iterator[None]:
+    try:
+        yield
+    except MemoryError:
+        raise DataError("there is not enough memory to read it", file=shown(path)) from None
