@@ -18,6 +18,7 @@ from .shots import picture_of
 
 FOLDERS = {
     "generation": "Generation: what gives heights",
+    "erosion": "Erosion: what gravity and water make of heights",
     "simulation": "Simulation: what goes on from frame to frame",
     "texturing": "Texturing: what gives colours and weights",
     "lighting": "Lighting: what gives light and shadows",

@@ -1,0 +1,119 @@
+// erosion/hydraulic/move.glsl -- water takes its load along; the bed is worn and built.
+//
+//   gives    state: red the bed, green the water on it, blue what the water carries, alpha the
+//            mean flow
+//   needs    erosion/hydraulic/clock.glsl; state, flux and site of this step
+//   units    metres, the load as metres of rock, the flow as metres of water a step
+//   source   Mei, Decaudin and Hu 2007, "Fast Hydraulic Erosion Simulation and Visualization on
+//            GPU", Pacific Graphics, sections 3.2.2 to 3.5, but that the load goes with the
+//            water through the pipes (upwind), for going back along the velocity loses rock;
+//            the slump: Musgrave, Kolb and Mace 1989, section 3.3
+//   tested   tests/glsl/test_hydraulic.py, against a step in float64, and by what is conserved
+//
+// What leaves one texel is what another receives, product for product, so water, rock and load
+// are conserved to rounding. Opposite sides are summed first, so that a terrain that is turned or
+// mirrored is worn alike but for what compilers regroup.
+#include "erosion/hydraulic/clock.glsl"
+#pragma kernel(output = "state:rgba32f")
+
+uniform sampler2D state;  //! input
+uniform sampler2D flux;   //! input
+uniform sampler2D site;   //! input
+
+uniform float evaporation = 0.02;  //! slider(0, 1) step(0.001) unit("1/h")
+                                   //! The share of the water that dries
+uniform float capacity = 5.0;      //! log_slider(0.1, 100)
+                                   //! What a metre of water can carry down a wall [m of rock]
+uniform float settling = 0.3;      //! slider(0, 2) step(0.01) unit("1/h")
+                                   //! How fast the water drops what it carries too much of
+uniform float repose = 36.0;       //! angle(1, 89) Angle of repose: what is steeper slumps
+uniform float creep = 1.0;         //! slider(0, 100) step(0.1) unit("m²/h")
+                                   //! How fast the soil creeps downhill, which rounds the ground
+
+const float LEAST_SLOPE = 0.01;  // that water carries by, so that plains are not dead
+const float SLUMP = 0.25;        // share of what is too steep that slides in a step of an hour
+const float MOST_CREEP = 0.1;    // share of a difference, well below the 1/4 that oscillates
+const float MEMORY = 50.0;       // [h] over which the flow is averaged
+const float FILM = 1e-9;         // [m] of water, below which it counts as dry
+
+vec4 state_at(ivec2 texel) {
+    return texelFetch(state, clamp(texel, ivec2(0), size - 1), 0);
+}
+
+// The bed of a diagonal neighbour; past an edge, `own`, from which nothing slides.
+float bed_across(ivec2 texel, float own) {
+    ivec2 there = clamp(texel, ivec2(0), size - 1);
+    return there == texel ? texelFetch(state, there, 0).x : own;
+}
+
+// Nothing comes from past an edge.
+vec4 flux_at(ivec2 texel) {
+    vec4 found = texelFetch(flux, clamp(texel, ivec2(0), size - 1), 0);
+    return clamp(texel, ivec2(0), size - 1) == texel ? found : vec4(0.0);
+}
+
+// What is over the most that lies still, of neighbours so much higher or lower.
+vec4 over(vec4 rise, vec4 most) {
+    return rise - clamp(rise, -most, most);
+}
+
+// 1 - exp(-x), to 0.2 % up to x = 1.2.
+float share_in(float x) {
+    return x / (1.0 + x * (0.5 + x / 12.0));
+}
+
+vec4 kernel(ivec2 texel) {
+    ivec2 e = ivec2(1, 0), n = ivec2(0, 1);
+    vec4 here = state_at(texel);
+    vec4 west = state_at(texel - e), east = state_at(texel + e);
+    vec4 south = state_at(texel - n), north = state_at(texel + n);
+    vec4 leaves = texelFetch(flux, texel, 0);
+    vec4 arrives = vec4(flux_at(texel - e).y, flux_at(texel + e).x,
+                        flux_at(texel - n).w, flux_at(texel + n).z);
+    float hours = step_hours(size);
+
+    // Water, and the load with it.
+    float lost = (leaves.x + leaves.y) + (leaves.z + leaves.w);
+    float gained = (arrives.x + arrives.y) + (arrives.z + arrives.w);
+    float water = max(here.y + (gained - lost), 0.0);
+    vec4 brought = arrives * vec4(west.z, east.z, south.z, north.z)
+                 / max(vec4(west.y, east.y, south.y, north.y), FILM);
+    float load = here.z - lost * (here.z / max(here.y, FILM))
+               + ((brought.x + brought.y) + (brought.z + brought.w));
+
+    // What it can carry: more, the more water flows and the steeper its surface.
+    vec2 mean = 0.5 * vec2((arrives.x - arrives.y) + (leaves.y - leaves.x),
+                           (arrives.z - arrives.w) + (leaves.w - leaves.z));
+    float flow = length(mean);
+    vec2 fall = (vec2(east.x - west.x, north.x - south.x)
+                 + vec2(east.y - west.y, north.y - south.y)) / (2.0 * spacing);
+    float squared = dot(fall, fall);
+    float can = capacity * flow * max(sqrt(squared / (1.0 + squared)), LEAST_SLOPE);
+
+    // Wear or settling. Wear leaves the bed at least half the drop to its lowest neighbour, or
+    // single texels become wells. What the bed really loses, after rounding, is what the load
+    // gains: rounded apart, a thousand small steps would make rock out of nothing.
+    vec2 given = texelFetch(site, texel, 0).rg;
+    float settled = min(share_in(settling * hours), 0.5);
+    float change = (can > load ? given.g : settled) * (can - load);
+    float lowest = min(min(west.x, east.x), min(south.x, north.x));
+    float bed = max(here.x - change, min(here.x, 0.5 * (here.x + lowest)));
+    load += here.x - bed;
+
+    // Slump and creep, from the bed as it was, as the neighbours see it. Creep damps waves two
+    // texels long, which the slope over two texels does not see.
+    float talus = tan(radians(repose));
+    vec4 beside = vec4(west.x, east.x, south.x, north.x) - here.x;
+    vec4 across = vec4(bed_across(texel - e - n, here.x), bed_across(texel + e + n, here.x),
+                       bed_across(texel + e - n, here.x), bed_across(texel - e + n, here.x))
+                - here.x;
+    float slides = 0.125 * min(SLUMP / hours, 1.0);
+    vec2 creeps = min(creep * hours / (spacing * spacing), MOST_CREEP);
+    vec4 straight = slides * over(beside, talus * spacing.xxyy) + creeps.xxyy * beside;
+    vec4 aslant = slides * over(across, vec4(talus * length(spacing)));
+    bed += ((straight.x + straight.y) + (straight.z + straight.w))
+         + ((aslant.x + aslant.y) + (aslant.z + aslant.w));
+
+    water = water / (1.0 + evaporation * hours) + given.r;
+    return vec4(bed, water, load, mix(here.w, flow, hours / (hours + MEMORY)));
+}

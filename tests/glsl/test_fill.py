@@ -1,0 +1,86 @@
+"""Depressions filled as by a priority flood; every texel drains; turning the terrain turns it."""
+
+import numpy as np
+import pytest
+
+from .water_truth import edge_of, ends_of, flooded
+
+PASSES = """
+[[pass]]
+name = "height"
+use = "./rough"
+[[pass]]
+name = "fill"
+use = "water/fill"
+set = {{ steps = {steps} }}
+[[pass]]
+name = "down"
+use = "water/directions"
+inputs = {{ height = "fill" }}
+"""
+ROUGH = """
+#include "noise/hash.glsl"
+#pragma kernel(output = "height:r32f")
+uniform float flat_to = 0.0;  //! slider(0, 1) Nothing lies lower
+uniform int turn = 0;         //! slider(0, 1) Half a turn
+uniform int mirror = 0;       //! slider(0, 1) East for west
+float kernel(ivec2 texel) {
+    if (turn == 1) texel = size - 1 - texel;
+    if (mirror == 1) texel.x = size.x - 1 - texel.x;
+    float sum = 0.0;
+    for (int k = 0; k < 4; k++) sum += random(texel >> k, uint(k)) * float(1 << k) / 15.0;
+    return max(sum, flat_to);
+}
+"""
+SIZE, EXTENT, RELIEF = [71, 53], [2100.0, 1300.0], 400.0
+SPACING = (EXTENT[0] / 70, EXTENT[1] / 52)
+FALL = 1e-4 / RELIEF
+
+
+@pytest.fixture
+def terrain(make_sketch):
+    return make_sketch(PASSES.format(steps=400), size=SIZE, extent=EXTENT, relief=RELIEF, rough=ROUGH)
+
+
+def test_equal_to_a_priority_flood(engine, terrain):
+    height, level = engine.read(terrain, "height").copy(), engine.read(terrain, "fill").copy()
+    assert (level >= height).all() and (level - height > 0.02).mean() > 0.1
+    # Heights up to 1, rounded once a texel of the way.
+    np.testing.assert_allclose(level, flooded(height, SPACING, FALL), rtol=0, atol=2e-6)
+
+
+def test_without_the_fall_it_is_the_lowest_water_that_stands(engine, terrain):
+    """The classical fill, without any fall: never above the level, and below it by the fall at most."""
+    height, level = engine.read(terrain, "height").copy(), engine.read(terrain, "fill").copy()
+    still = flooded(height, SPACING, 0.0)
+    longest = height.size * np.hypot(*SPACING)
+    assert (level >= still).all()
+    assert (level - still).max() < FALL * longest
+
+
+@pytest.mark.parametrize("steps", [1, 7, 400])
+@pytest.mark.parametrize("flat_to", [0.0, 0.5, 1.0])
+def test_every_texel_drains_after_any_number_of_steps(engine, make_sketch, steps, flat_to):
+    sketch = make_sketch(PASSES.format(steps=steps), size=SIZE, extent=EXTENT, relief=RELIEF, rough=ROUGH)
+    sketch = sketch.with_values({"height.flat_to": flat_to})
+    level, receiver = engine.read(sketch, "fill").ravel().copy(), engine.read(sketch, "down").astype(int)
+    edge = edge_of(receiver.shape)
+    assert edge.ravel()[ends_of(receiver)].all(), "every way ends at an edge"
+    inner = ~edge.ravel()
+    assert (level[receiver.ravel()[inner]] < level[inner]).all()
+
+
+def test_turned_or_mirrored_terrain_is_filled_turned_or_mirrored(engine, terrain):
+    level = engine.read(terrain, "fill").copy()
+    for key, axes in (("turn", (0, 1)), ("mirror", (1,))):
+        found = engine.read(terrain.with_values({f"height.{key}": 1}), "fill")
+        # The way on which a flood begins is rounded once a doubling.
+        np.testing.assert_allclose(np.flip(found, axes), level, rtol=0, atol=2e-6)
+
+
+def test_hostile_scales_keep_their_ways(engine, make_sketch):
+    """A relief of kilometres on texels of centimetres, where the fall is near what a float rounds to."""
+    for extent, relief in ([0.7, 0.5], 9000.0), ([7e6, 5e6], 0.01):
+        sketch = make_sketch(PASSES.format(steps=60), size=SIZE, extent=extent, relief=relief, rough=ROUGH)
+        receiver = engine.read(sketch, "down").astype(int)
+        assert edge_of(receiver.shape).ravel()[ends_of(receiver)].all()

@@ -1,0 +1,306 @@
+"""Hydraulic erosion: a step against float64, what is conserved, symmetry, waves, hostile parameters."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter
+
+from ..sketch_texts import passes
+from ..truth.pipes import Pipes
+
+RELIEF = 1200.0
+ULP = 2**-23
+"""The distance from 1 to the next float32."""
+
+
+def hills(size, seed=0):
+    """Return heights 0..1 with slopes of all kinds, (ny, nx)."""
+    random = np.random.default_rng(seed)
+    ny, nx = size[1], size[0]
+    total = np.zeros((ny, nx))
+    y, x = np.mgrid[0 : 1 : ny * 1j, 0 : 1 : nx * 1j]
+    for octave in range(5):
+        for _ in range(3):
+            way = random.normal(size=2) * 2.0**octave * 3
+            total += np.sin(x * way[0] + y * way[1] + random.uniform(0, 7)) / 2.0**octave
+    return ((total - total.min()) / np.ptp(total)).astype(np.float32)
+
+
+@pytest.fixture
+def eroded(make_sketch, tmp_path):
+    """Give ``eroded(heights, extent=…, inputs=…, **parameters)``: its pass "worn" is the technique."""
+    numbers = iter(range(1000))
+
+    def make(heights, extent=5000.0, relief=RELIEF, extra="", inputs="", files=None, **values):
+        file = f"land_{next(numbers)}.npy"
+        np.save(tmp_path / file, heights)
+        text = ", ".join(f"{name} = {written(value)}" for name, value in values.items())
+        return make_sketch(
+            passes(
+                height=(
+                    "generation/heightmap",
+                    f'set = {{ elevation = "{file}", first_row = "south" }}',
+                ),
+            )
+            + extra
+            + passes(
+                worn=("erosion/hydraulic", f"set = {{ {text} }}", inputs and f"inputs = {{ {inputs} }}")
+            ),
+            size=[heights.shape[1], heights.shape[0]],
+            extent=extent if isinstance(extent, float) else list(extent),
+            relief=relief,
+            **(files or {}),
+        )
+
+    return make
+
+
+def written(value):
+    return f'"{value}"' if isinstance(value, str) else str(value).lower()
+
+
+def state(engine, sketch, steps):
+    """Return bed, water, load, mean flow and the flux after so many steps, in float64."""
+    found = [
+        engine.read(sketch, f"worn.water:{name}", steps={"worn.water": steps}).astype(np.float64)
+        for name in ("state", "flux")
+    ]
+    return (*np.moveaxis(found[0], -1, 0), np.moveaxis(found[1], -1, 0))
+
+
+def test_a_step_is_that_of_the_equations(engine, eroded):
+    for size, extent, closed in (((40, 28), (5000.0, 2100.0), False), ((33, 33), 5000.0, True)):
+        values = {"rain": 0.08, "capacity": 6.0, "evaporation": 0.03, "repose": 30.0}
+        sketch = eroded(hills(size), extent, edges="closed" if closed else "open", **values)
+        spacing = sketch.extent[0] / (size[0] - 1), sketch.extent[1] / (size[1] - 1)
+        for steps in (1, 6, 60):
+            pipes = Pipes(*state(engine, sketch, steps), spacing=spacing, closed=closed, **values)
+            before = replace(pipes)
+            pipes.step()
+            bed, water, load, mean_flow, flux = state(engine, sketch, steps + 1)
+            # Heights up to 1200 m are rounded at each of a dozen operations; of their differences a
+            # quarter drives the pipes, and what they carry is a thing of a few metres.
+            fine = 12 * ULP * RELIEF
+            np.testing.assert_allclose(flux, pipes.flux, atol=fine)
+            np.testing.assert_allclose(water, pipes.water, atol=8 * fine)
+            np.testing.assert_allclose(mean_flow, pipes.mean_flow, atol=8 * fine)
+            # The load follows the capacity, which multiplies the flow.
+            np.testing.assert_allclose(load, pipes.load, atol=6 * 8 * fine)
+            np.testing.assert_allclose(bed, pipes.bed, atol=6 * 8 * fine)
+        assert np.abs(bed - before.bed).max() > 0.01 and water.max() > 1
+
+
+def test_rock_and_water_are_conserved_in_a_thousand_steps_with_closed_edges(engine, eroded):
+    heights = hills((65, 65), 3)
+    sketch = eroded(heights, edges="closed", evaporation=0.0, rain=0.002, hours=5000, capacity=8.0)
+    bed, water, load, _, _ = state(engine, sketch, 1000)
+    rock = RELIEF * heights.astype(np.float64)
+    assert abs((bed + load).sum() / rock.sum() - 1) < 1e-6
+    # The first step has rain already, and each adds the same, as a float32.
+    supply = engine.read(sketch, "worn.start:site")[..., 0].astype(np.float64)
+    assert abs(water.sum() / (1001 * supply.sum()) - 1) < 1e-6
+    assert np.abs(bed - rock).mean() > 1 and load.max() > 0.1, "it is worn"
+
+
+def test_what_leaves_through_open_edges_is_accounted_for(engine, eroded):
+    heights = hills((33, 29), 1)
+    sketch = eroded(heights, (4000.0, 3500.0), evaporation=0.0, hours=5000, capacity=8.0)
+    supply = engine.read(sketch, "worn.start:site")[..., 0].astype(np.float64)
+    left = np.zeros(2)
+    edge = np.s_[:, 0], np.s_[:, -1], np.s_[0], np.s_[-1]
+    bed, water, load, _, _ = state(engine, sketch, 0)
+    rock, rain = bed.sum(), supply.sum()
+    for steps in range(1, 201):
+        share = load / np.maximum(water, 1e-9)
+        bed, water, load, _, flux = state(engine, sketch, steps)
+        for k, at in enumerate(edge):
+            left += flux[k][at].sum(), (flux[k] * share)[at].sum()
+        rain += supply.sum()
+    assert abs(water.sum() + left[0] - rain) < 1e-6 * rain
+    assert abs((bed + load).sum() + left[1] - rock) < 1e-6 * rock
+    assert left[0] > 0.5 * rain and left[1] > 1e-4 * rock, "most of the rain leaves, and rock with it"
+
+
+def test_water_that_dries_is_a_share_of_it_an_hour(engine, eroded):
+    sketch = eroded(hills((33, 33)), edges="closed", evaporation=0.05, rain=0.004, hours=5000)
+    supply = engine.read(sketch, "worn.start:site")[..., 0].astype(np.float64).sum()
+    kept = 1 / (1 + 0.05 * 8)
+    for steps in (1, 5, 100):
+        water = state(engine, sketch, steps)[1].sum()
+        expected = supply * (1 - kept ** (steps + 1)) / (1 - kept)
+        assert water == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize("way", ["quarter", "half", "mirrored", "transposed"])
+def test_a_terrain_that_is_turned_or_mirrored_is_worn_alike(engine, eroded, way):
+    """To rounding: compilers may regroup sums. 100 steps may differ by 2**-17 of the relief, 9 mm."""
+    turned = {
+        "quarter": np.rot90,
+        "half": lambda a: np.rot90(a, 2),
+        "mirrored": np.fliplr,
+        "transposed": lambda a: a.swapaxes(0, 1),
+    }[way]
+    heights = hills((33, 33), 4)
+    values = {"hours": 800, "capacity": 8.0}
+    for output, scale in (("height", 1), ("water", RELIEF), ("wetness", 50)):
+        plain = engine.read(eroded(heights, **values), f"worn:{output}")
+        found = engine.read(eroded(np.ascontiguousarray(turned(heights)), **values), f"worn:{output}")
+        np.testing.assert_allclose(found, turned(plain), rtol=0, atol=scale * 2**-17)
+
+
+def test_flat_ground_stays_flat_under_rain(engine, eroded):
+    sketch = eroded(np.zeros((33, 33), np.float32), edges="closed", hours=400)
+    np.testing.assert_array_equal(engine.read(sketch, "worn"), 0)
+    assert np.ptp(engine.read(sketch, "worn:water")) == 0
+
+
+def test_a_checkerboard_in_a_lake_decays(engine, eroded):
+    """Pipes one way and the other, by hand: in 8 steps of friction 0.84 less than half of it is left."""
+    y, x = np.mgrid[:33, :33]
+    sign = (-1.0) ** (x + y)
+    still = {"rain": 0.2, "evaporation": 0.0, "capacity": 0.1, "repose": 80.0, "creep": 0.0}
+    sketch = eroded((sign > 0).astype(np.float32), relief=1.2, edges="closed", hours=400, **still)
+    swings = []
+    for steps in (4, 12, 20, 50):
+        bed, water, *_ = state(engine, sketch, steps)
+        level = bed + water
+        swings.append(np.abs(((level - level.mean()) * sign).mean()))
+    # The first rain, 1.6 m a step, leaves the tops dry for a step, 0.6 m above the mean.
+    assert swings[0] < 0.6 and swings[1] < swings[0] / 2 and swings[2] < swings[1] / 2, swings
+    assert swings[3] < 1e-3
+
+
+def test_the_finest_waves_of_a_worn_terrain_carry_no_more_than_longer_ones(engine, eroded):
+    """Spectra of terrains fall with the wave number; a checkerboard would stand out at the end of it.
+
+    The corner of the spectrum is of waves shorter than two texels both ways; it may have twice the
+    power, a wave, of the band before it, for there are few waves in it.
+    """
+    sketch = eroded(hills((129, 129), 2), 5120.0, 900.0, hours=600)
+    bed, water, *_ = state(engine, sketch, 300)
+    window = np.hanning(129)[:, None] * np.hanning(129)
+    for field in (bed, bed + water):
+        power = np.abs(np.fft.fft2((field - field.mean()) * window)) ** 2
+        wave = np.hypot(*np.meshgrid(*(np.fft.fftfreq(129),) * 2))
+        band = [power[(wave > low) & (wave <= low + 0.1)].mean() for low in (0.2, 0.3, 0.4, 0.5, 0.6)]
+        assert band[1] < band[0] and band[4] < 2 * band[3] < 2 * band[1], band
+        assert power[wave > 0.5].sum() < 1e-4 * power.sum()
+
+
+def test_outputs_say_what_was_done(engine, eroded):
+    heights = hills((65, 65), 2)
+    sketch = eroded(heights, hours=1600)
+    read = {
+        name: engine.read(sketch, f"worn:{name}").astype(np.float64)
+        for name in ("height", "water", "wear", "deposit", "flow", "wetness")
+    }
+    change = RELIEF * (read["height"] - heights)
+    np.testing.assert_allclose(read["deposit"] - read["wear"], change, atol=4 * ULP * RELIEF)
+    assert (read["wear"] * read["deposit"] == 0).all() and min(a.min() for a in list(read.values())[1:]) >= 0
+    bed, water, load, mean_flow, _ = state(engine, sketch, 400)
+    np.testing.assert_allclose(read["height"], (bed + load) / RELIEF, rtol=4 * ULP)
+    np.testing.assert_array_equal(read["water"], water)
+    spacing, hours = 5000 / 64, 4
+    np.testing.assert_allclose(read["flow"], mean_flow * spacing / hours, rtol=1e-6)
+    np.testing.assert_allclose(read["wetness"], 1 - 2 ** (-read["flow"] / 20), atol=1e-5)
+
+
+def test_hard_rock_wears_less_and_rain_falls_where_the_map_says(engine, eroded):
+    text = """#pragma kernel(output = "factor:r32f")
+float kernel(ivec2 texel) {{ return 2 * texel.x < size.x ? {west} : {east}; }}
+"""
+    slope = np.repeat(np.linspace(1, 0, 65, dtype=np.float32)[:, None], 65, 1)
+    extra = '[[pass]]\nname = "map"\nuse = "./east_and_west"\n'
+    from_file = {"east_and_west": text.format(west="8.0", east="1.0")}
+    for wired in ("hardness", "rain"):
+        sketch = eroded(slope, extra=extra, inputs=f'{wired} = "map"', hours=200, files=from_file)
+        wear = engine.read(sketch, "worn:wear")
+        # Near the top, where the water has not yet all that it can carry.
+        west, east = wear[:4, :28].mean(), wear[:4, 36:].mean()
+        assert west < 0.5 * east if wired == "hardness" else west > 2 * east
+
+
+def test_a_spring_gives_as_much_as_it_says(engine, eroded):
+    flat = np.full((65, 65), 0.5, np.float32)
+    sketch = eroded(flat, rain=0.0, spring=2.0, spring_at=[0.3, 0.6], spring_width=1500.0, edges="closed")
+    supply = engine.read(sketch, "worn.start:site")[..., 0].astype(np.float64)
+    area = (5000 / 64) ** 2
+    # The sum over texels of a bump ten wide is its integral but for the error of a smooth function's sum.
+    assert supply.sum() * area / 4 == pytest.approx(2e6, rel=0.01)
+    y, x = np.unravel_index(supply.argmax(), supply.shape)
+    assert (x, y) == (round(0.3 * 64), round(0.6 * 64))
+
+
+def test_the_rain_can_be_watched(engine, eroded):
+    heights = hills((65, 65))
+    watched = eroded(heights, hours=200, watched=True, pace=8)
+    done = eroded(heights, hours=200)
+    for frame in (0, 3, 24, 60):
+        hours = min(200, 8 * (frame + 1))
+        expected = engine.read(done.with_values({"worn.hours": hours}), "worn")
+        np.testing.assert_array_equal(engine.read(watched, "worn", time=frame / 60), expected)
+
+
+HOSTILE = {
+    "much of all": (
+        {"rain": 1.0, "wear": 2.0},
+        {"capacity": 100.0, "settling": 2.0, "repose": 89.0, "friction": 0.0, "creep": 100.0},
+    ),
+    "dry": ({"rain": 0.0}, {"evaporation": 1.0, "repose": 1.0, "edges": "closed"}),
+    "a torrent": (
+        {"rain": 0.0, "spring": 100.0, "spring_width": 1.0},
+        {"capacity": 100.0, "evaporation": 1.0, "edges": "closed"},
+    ),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("values", HOSTILE.values(), ids=HOSTILE)
+def test_ten_thousand_steps_with_hostile_parameters_stay_finite(engine, make_sketch, tmp_path, values):
+    heights = hills((33, 33), 7)
+    heights[12, 12], heights[3, 3] = 1, 0
+    np.save(tmp_path / "land.npy", heights)
+    start, step = (", ".join(f"{k} = {written(v)}" for k, v in given.items()) for given in values)
+    sketch = make_sketch(
+        passes(
+            height=("generation/heightmap", 'set = { elevation = "land.npy", first_row = "south" }'),
+            start=("erosion/hydraulic/start", f"set = {{ {start} }}"),
+            water=(
+                "erosion/hydraulic/step",
+                f"set = {{ {step} }}",
+                'inputs = { state = "start:state", flux = "start:flux", site = "start:site" }',
+                'repeat = 10000\nfeedback = { state = "state", flux = "flux" }',
+            ),
+        ),
+        size=33,
+        extent=30.0,
+        relief=20_000.0,
+    )
+    found, flux = (engine.read(sketch, f"water:{name}") for name in ("state", "flux"))
+    assert np.isfinite(found).all() and np.isfinite(flux).all()
+    assert (found[..., 1] >= 0).all() and (flux >= 0).all()
+
+
+@pytest.mark.slow
+def test_terrains_of_several_sizes_are_worn_alike(engine, make_sketch):
+    """Everything is of first order in the texel, so half the texel may differ by half as much.
+
+    Compared is what two texels of the coarsest grid can show, relative to what was worn there:
+    a sixth may differ between 129 and 513 texels a side, half of that between 257 and 513.
+    """
+    land = ("generation/gradient_noise", "set = { frequency = 3, octaves = 4, seed = 5 }")
+    worn = ("erosion/hydraulic", "set = { hours = 150 }", 'inputs = { height = "raw" }')
+    changes = {}
+    for size in (129, 257, 513):
+        sketch = make_sketch(passes(raw=land, worn=worn), size=size, extent=10240.0, relief=1800.0)
+        change = engine.read(sketch, "worn").astype(np.float64) - engine.read(sketch, "raw")
+        per = (size - 1) // 128
+        changes[size] = gaussian_filter(change, 2 * per, mode="nearest")[::per, ::per]
+    finest = changes[513]
+    scale = np.sqrt((finest**2).mean())
+    assert scale * 1800 > 10, "it is worn"
+    for size, bound in ((129, 1 / 6), (257, 1 / 12)):
+        assert np.sqrt(((changes[size] - finest) ** 2).mean()) < bound * scale, size

@@ -1,0 +1,266 @@
+"""Rivers against uplift: the slope-area law, drainage like a real terrain's, the same terrain at any size."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+from playground.paths import SKETCHES
+
+from .water_truth import counted, edge_of, ends_of, exceedance_power, flooded
+
+EXTENT, RELIEF = 20480.0, 1200.0
+PASSES = """
+[[pass]]
+name = "noise"
+use = "generation/gradient_noise"
+set = { frequency = 16, octaves = 8, seed = 5 }
+[[pass]]
+name = "low"
+use = "./low"
+inputs = { height = "noise" }
+[[pass]]
+name = "rivers"
+use = "erosion/stream_power"
+inputs = { height = "low" }
+"""
+LOW = """
+#pragma kernel(output = "height:r32f")
+uniform sampler2D height;  //! input
+uniform int turn = 0;      //! slider(0, 1) Half a turn
+uniform float dome = 0.0;  //! slider(0, 9) A hill in the middle
+float kernel(ivec2 texel) {
+    vec2 share = vec2(texel) / vec2(size - 1) - 0.5;
+    ivec2 from = turn == 1 ? size - 1 - texel : texel;
+    return 0.1 * texelFetch(height, from, 0).r + dome * (0.5 - dot(share, share));
+}
+"""
+TWO = """
+#pragma kernel(output = "two:r32f")
+float kernel(ivec2 texel) { return 2.0; }
+"""
+ONE_LEVEL = {"coarsest": 4096}
+BARE = {**ONE_LEVEL, "creep": 0.0, "steepest": 89.0, "head": 0.0, "randomness": 0.0}
+
+
+@pytest.fixture
+def worn(ctx, kept, make_sketch):
+    """Give ``worn(size, **parameters)``: metres, ways, areas [m2], and the metres before."""
+
+    def wear(size, passes=PASSES, extent=EXTENT, turn=0, dome=0.0, **values):
+        sketch = make_sketch(passes, size=size, extent=extent, relief=RELIEF, low=LOW, two=TWO)
+        chosen = {f"rivers.{k}": v for k, v in {"keep": 1.0, **values}.items()}
+        sketch = sketch.with_values({"low.turn": turn, "low.dome": dome, **chosen})
+        names = ("rivers:height", "rivers:receiver", "rivers:area", "low")
+        height, receiver, area, low = (kept.read(sketch, name).copy() for name in names)
+        return RELIEF * height.astype(float), receiver.astype(int), area, RELIEF * low.astype(float)
+
+    return wear
+
+
+def slopes_of(height, receiver, spacing):
+    """Return the slope along each texel's way, NaN at outlets."""
+    rows, columns = np.divmod(receiver, height.shape[1])
+    y, x = np.indices(height.shape)
+    length = spacing * np.hypot(rows - y, columns - x)
+    drop = height - height.ravel()[receiver]
+    return np.where(length > 0, drop / np.maximum(length, 1e-9), np.nan)
+
+
+@pytest.mark.parametrize("power", [0.4, 0.5])
+def test_slopes_of_a_steady_state_follow_the_law(worn, power):
+    """U = K A^m S, so S A^m K / U is 1 and log S falls with log A by m: both within 1 %."""
+    wear = 5.0 if power == 0.5 else 20.0
+    height, receiver, area, _ = worn(49, **BARE, age=100.0, steps=80, area_power=power, erodibility=wear)
+    slope = slopes_of(height, receiver, EXTENT / 48)
+    inner = ~edge_of(height.shape)
+    assert (slope[inner] > 0).all()
+    ratio = slope[inner] * 1e-6 * wear * area[inner].astype(float) ** power / 5e-4
+    assert np.median(ratio) == pytest.approx(1.0, abs=0.01)
+    exponent = np.polyfit(np.log(area[inner]), np.log(slope[inner]), 1)[0]
+    assert exponent == pytest.approx(-power, rel=0.01)
+
+
+def test_links_are_solved_as_one_after_another(engine, make_sketch):
+    passes = """
+[[pass]]
+name = "links"
+use = "./links"
+[[pass]]
+name = "solved"
+use = "erosion/stream_power/solve"
+inputs = { initial = "links" }
+"""
+    links = """
+#include "noise/hash.glsl"
+#include "water/texels.glsl"
+#pragma kernel(output = "link:rgba32f")
+vec4 kernel(ivec2 texel) {
+    vec2 drawn = random_pair(texel, 3u);
+    ivec2 to = ivec2(clamp(texel.x + int(3.0 * random(texel, 4u)) - 1, 0, size.x - 1), texel.y - 1);
+    return texel.y == 0 ? vec4(drawn.x, 0.0, number_of(texel, size), 0.0)
+                        : vec4(drawn.x, drawn.y, number_of(to, size), 0.0);
+}
+"""
+    sketch = make_sketch(passes, size=[31, 90], links=links)
+    link = engine.read(sketch, "links").reshape(-1, 4).astype(float)
+    wanted = link[:, 0].copy()
+    for number in range(31, len(link)):
+        wanted[number] += link[number, 1] * wanted[int(link[number, 2])]
+    found = engine.read(sketch, "solved")[..., 0].ravel()
+    np.testing.assert_allclose(found, wanted, rtol=2e-6)
+
+
+def test_nothing_is_under_lakes_and_all_areas_arrive(worn):
+    height, receiver, area, low = worn([97, 130], extent=[9600.0, 12900.0])
+    edge = edge_of(height.shape)
+    np.testing.assert_array_equal(height, flooded(height, (100.0, 100.0), 0.0))
+    assert edge.ravel()[ends_of(receiver)].all()
+    np.testing.assert_array_equal(area, 1e4 * counted(receiver))
+    np.testing.assert_allclose(height[edge], low[edge], atol=2e-4, err_msg="edges stay")
+
+
+def test_rivers_of_a_coarse_grid_are_those_of_the_fine_one(engine, make_sketch):
+    passes = (
+        PASSES.replace("[[pass]]", '[[pass]]\nsize = "(size.x - 1) // 2 + 1"')
+        + """
+[[pass]]
+name = "finer"
+use = "erosion/stream_power/finer"
+set = { winding = 1.0 }
+[pass.inputs]
+start = "low"
+coarse = "rivers:height"
+coarse_receiver = "rivers:receiver"
+coarse_level = "rivers:height"
+"""
+    )
+    for size in (65, 66):
+        sketch = make_sketch(passes, size=size, extent=EXTENT, relief=RELIEF, low=LOW)
+        coarse, way = engine.read(sketch, "rivers:height").copy(), engine.read(sketch, "rivers:receiver")
+        fine, ways = engine.read(sketch, "finer:height").copy(), engine.read(sketch, "finer:receiver")
+        np.testing.assert_array_equal(fine[2:-2:2, 2:-2:2][:31, :31], coarse[1:-1, 1:-1])
+        assert edge_of(fine.shape).ravel()[ends_of(ways)].all(), "no way goes in a circle"
+        kept = total = bent = 0
+        for y, x in np.argwhere(~edge_of(coarse.shape)):
+            goal = divmod(int(way[y, x]), 33)
+            here = divmod(int(ways[2 * y, 2 * x]), size)
+            bent += (here[0] != y + goal[0]) or (here[1] != x + goal[1])
+            there = here
+            for _ in range(3):
+                if there[0] % 2 or there[1] % 2:
+                    there = divmod(int(ways[there]), size)
+            total += 1
+            kept += there == (2 * goal[0], 2 * goal[1])
+            assert coarse[there[0] // 2, there[1] // 2] < coarse[y, x], "down, from one to the next"
+        # The others meet another stretch halfway, and go on to its lower end.
+        assert kept > 0.8 * total and bent > 0.5 * total
+
+
+def test_twice_as_hard_is_half_as_erodible_and_uplift_is_a_factor(worn):
+    values = {"steps": 12, "finer_steps": 2, "erodibility": 8.0}
+    factor = 'inputs = { height = "low", INPUT = "two" }'
+    two = '[[pass]]\nname = "two"\nuse = "./two"\nsize = 5\n' + PASSES
+    hard = two.replace('inputs = { height = "low" }', factor.replace("INPUT", "hardness"))
+    lifted = two.replace('inputs = { height = "low" }', factor.replace("INPUT", "uplift"))
+    for passes, same in ((hard, {"erodibility": 4.0}), (lifted, {"rise": 1.0})):
+        found, *_ = worn(65, passes=passes, **values)
+        wanted, *_ = worn(65, **{**values, **same})
+        assert np.median(np.abs(found - wanted)) < 0.01
+        assert np.abs(wanted - worn(65, **values)[0]).mean() > 10
+
+
+def test_a_terrain_grows_with_its_age(worn):
+    values = {"steps": 20, **ONE_LEVEL}
+    young, _, _, low = worn(65, age=0.02, **values)
+    # In 20,000 years it rises by 10 m at most, and by no more anywhere.
+    assert (young <= low.max() + 10.0 + 1e-3).all()
+    means = [worn(65, age=age, **values)[0].mean() for age in (0.02, 0.2, 1.0, 4.0)]
+    assert (np.diff(means) > 0).all()
+
+
+def test_hillsides_stand_no_steeper_than_they_may(worn):
+    values = {"rise": 5.0, "creep": 0.0, "slides": 30, **ONE_LEVEL}
+    height, *_ = worn(65, steepest=30.0, **values)
+    drop = [np.abs(np.diff(height, axis=a)[1:-1, 1:-1]).max() for a in (0, 1)]
+    assert max(drop) <= np.tan(np.radians(30)) * EXTENT / 64 * 1.001
+    free, *_ = worn(65, steepest=80.0, **values)
+    assert free.max() > height.max()
+
+
+def test_turned_terrain_wears_turned(worn):
+    """A hill without pits, and no chance: both drain alike, and differ by rounding alone."""
+    values = {**ONE_LEVEL, "randomness": 0.0, "steps": 6, "age": 0.3, "dome": 4.0}
+    height, *_ = worn(65, **values)
+    turned, *_ = worn(65, turn=1, **values)
+    np.testing.assert_allclose(turned[::-1, ::-1], height, atol=0.01)
+
+
+@pytest.mark.parametrize(
+    "hostile",
+    [
+        {"erodibility": 1000.0, "age": 100.0, "area_power": 0.8, "steps": 1},
+        {"rise": 20.0, "age": 100.0, "erodibility": 0.01, "steepest": 89.0, "head": 0.0},
+        {"creep": 10.0, "slides": 64, "age": 100.0, "steps": 2},
+        {"steepest": 1.0, "rise": 20.0, "randomness": 1.0, "winding": 1.0, "roughness": 1.0},
+    ],
+    ids=["erodibility", "rise", "creep", "chance"],
+)
+@pytest.mark.parametrize("extent", [0.5, 20480.0, 5e6])
+def test_hostile_parameters_give_numbers(worn, hostile, extent):
+    height, receiver, *_ = worn(33, extent=extent, **{"coarsest": 8, "finer_steps": 3, **hostile})
+    assert np.isfinite(height).all()
+    assert edge_of(height.shape).ravel()[ends_of(receiver)].all()
+
+
+REAL = """
+[[pass]]
+name = "height"
+use = "generation/heightmap"
+set = { elevation = "real.npz" }
+[[pass]]
+name = "fill"
+use = "water/fill"
+set = { steps = 400 }
+[[pass]]
+name = "down"
+use = "water/directions"
+inputs = { height = "fill" }
+[[pass]]
+name = "area"
+use = "water/accumulation"
+"""
+
+
+@pytest.mark.slow
+def test_it_drains_as_a_real_terrain(worn, kept, make_sketch, tmp_path):
+    """The share of texels that drain more than a falls as a^-tau: 0.46 in the Cumberland Mountains."""
+    shutil.copy(SKETCHES / "data" / "jacksboro_fault_dem.npz", tmp_path / "real.npz")
+    real = make_sketch(REAL, size=[403, 344], extent=[402.0, 343.0])
+    found = exceedance_power(kept.read(real, "area"), 1.0)
+    assert found == pytest.approx(0.46, abs=0.02)
+    *_, area, _ = worn(513)
+    assert exceedance_power(area, (EXTENT / 512) ** 2) == pytest.approx(found, abs=0.1)
+
+
+@pytest.mark.slow
+def test_it_is_the_same_terrain_at_any_size(worn):
+    """What a coarser grid cannot hold is a valley's head, one texel long and as steep as heads are.
+
+    So means of the whole differ by that height at most. Of a block of a sixteenth of the side the
+    rivers in it may have moved aside as well: twice that, as root mean square.
+    """
+    terrains = {size: worn(size)[0] for size in (257, 513, 1025)}
+    for coarse, fine in ((257, 513), (513, 1025)):
+        head = 5e-4 / 5e-6 / np.sqrt(3e4) * EXTENT / (coarse - 1)
+        blocks = [
+            t[:-1, :-1].reshape(16, (size - 1) // 16, 16, -1).mean((1, 3))
+            for size, t in terrains.items()
+            if size in (coarse, fine)
+        ]
+        apart = blocks[1] - blocks[0]
+        assert abs(apart.mean()) < head
+        assert np.sqrt((apart**2).mean()) < 2 * head
+        step = (fine - 1) // (coarse - 1)
+        shared = terrains[fine][::step, ::step]
+        assert np.corrcoef(shared.ravel(), terrains[coarse].ravel())[0, 1] > 0.85
