@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,7 +56,7 @@ def made_like(
     """
     report(0, _STEPS)
     rng = np.random.default_rng(wishes.seed)
-    ways = oriented(example.heights.astype(np.float64), spacing_of_example, spacing)
+    ways = _ways(example, spacing_of_example, spacing)
     side = _side(wishes, spacing, ways, example)
     pieces = Candidates(ways, side, _count(wishes, side), rng)
     report(1, _STEPS)
@@ -77,6 +78,14 @@ def made_like(
     deviation = float(smoothed(ways[0], side / 6).std()) / (float(wide.std()) or 1.0)
     near = (wide - wide.mean()) * deviation
     return integrated(quilt.east, quilt.north, near, 2 * wishes.follow * (1.5 / side) ** 2)
+
+
+@lru_cache(maxsize=2)
+def _ways(
+    example: Elevation, spacing_of_example: tuple[float, float], spacing: tuple[float, float]
+) -> list[Field]:
+    """Return the example's orientations; the same ones for another seed, size or guide."""
+    return oriented(example.heights.astype(np.float64), spacing_of_example, spacing)
 
 
 def _side(wishes: Wishes, spacing: tuple[float, float], ways: list[Field], example: Elevation) -> int:
