@@ -23,6 +23,8 @@ from playground.streams import let_go
 if TYPE_CHECKING:
     from rich.console import Console
 
+_BAR = 24  # letters
+
 
 def has_colour(stream: TextIO) -> bool:
     """Whether colour belongs on a stream."""
@@ -95,13 +97,21 @@ def print_indented(text: str) -> None:
 
 
 @contextmanager
-def busy(text: str) -> Iterator[None]:
-    """Show on a terminal that something is being done."""
+def busy(text: str) -> Iterator[Callable[[str, int, int], None]]:
+    """Show on a terminal that something is being done.
+
+    Yields a function that adds a bar to it: of what, how many parts are done, and of how many.
+    """
     if not sys.stderr.isatty():
-        yield
+        yield lambda what, done, wanted: None
         return
-    with console_for(sys.stderr).status(f"{text} …"):
-        yield
+    with console_for(sys.stderr).status(f"{text} …") as status:
+
+        def show(what: str, done: int, wanted: int) -> None:
+            filled = _BAR * done // max(wanted, 1)
+            status.update(f"{text} … {what} {'━' * filled}{'─' * (_BAR - filled)}")
+
+        yield show
 
 
 @contextmanager

@@ -18,7 +18,8 @@ from .shots import picture_of
 
 FOLDERS = {
     "generation": "Generation: what gives heights",
-    "erosion": "Erosion: what gravity and water make of heights",
+    "erosion": "Erosion: what gravity, water and rivers make of heights",
+    "water": "Water: where it goes on a terrain",
     "simulation": "Simulation: what goes on from frame to frame",
     "texturing": "Texturing: what gives colours and weights",
     "lighting": "Lighting: what gives light and shadows",

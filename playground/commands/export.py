@@ -154,8 +154,9 @@ def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: 
             paths = [stack.enter_context(new_name(f"{sketch.name}.glb"))]
         for path in paths:
             check(path, form)
-        stack.enter_context(busy(f"exporting {sketch.name}"))
+        show = stack.enter_context(busy(f"exporting {sketch.name}"))
         engine = stack.enter_context(renderer.open_engine(driver=driver))
+        engine.runner.works.on_progress = show
         # Every file is prepared before the first is written.
         jobs = [
             prepare(engine, sketch, path, form, time=moment.time, steps=moment.steps, frame=moment.size)

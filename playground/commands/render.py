@@ -212,7 +212,8 @@ def _draw(engine: Engine, output: Output, moment: Moment, target: Path) -> None:
         _draw_large(engine, moment, output.size, target)
         return
     at: dict[str, Any] = {"size": output.size, "time": moment.time, "steps": moment.steps}
-    with busy(f"rendering {moment.sketch.name}"):
+    with busy(f"rendering {moment.sketch.name}") as show:
+        engine.runner.works.on_progress = show
         if output.profile:
             _prepare_profile(engine, moment.sketch, output.texture, at)
         if output.texture:

@@ -31,6 +31,7 @@ from playground.engine.results import Result
 from playground.gpu.textures import bytes_of
 from playground.sketch.expressions import follows_time
 from playground.sketch.flat import Ref
+from playground.sketch.reserved_names import OF_THE_TERRAIN
 
 _PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
 
@@ -66,7 +67,7 @@ def _passes(step: Step, plan: Plan) -> bool:
     kernel = step.kernel
     if (
         kernel.kind.startswith("plain")
-        or kernel.depends
+        or not set(kernel.depends) <= set(OF_THE_TERRAIN)
         or step.path in plan.continued
         or step.window is not None
     ):
@@ -75,7 +76,7 @@ def _passes(step: Step, plan: Plan) -> bool:
         return True
     if follows_time(kernel.repeat):
         return True
-    return bool(kernel.depends) or any(kernel.reads(name) for name in _PASSING)
+    return any(kernel.reads(name) for name in _PASSING)
 
 
 @dataclass(frozen=True)

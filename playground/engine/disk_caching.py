@@ -75,7 +75,9 @@ class DiskCaching:
             return step.path not in passes and self._take(execution, step, keys.steps[step.path])
 
         def timed(path: str, key: str) -> AbstractContextManager[None]:
-            return nullcontext() if path in passes else self._timed(runner.ctx.finish, key)
+            if path in passes:
+                return nullcontext()
+            return self._timed(runner.ctx.finish, key, lambda: runner.works.took.pop(path, 0.0))
 
         found = choose(keys, needed(plan.nodes, ref), ref, execution.cache.get, read, skips=self.skips)
         self.skipped = found.skipped
@@ -94,14 +96,19 @@ class DiskCaching:
         return choose(keys, needed(plan.nodes, ref), ref, cache.peek, read, skips=self.skips).nodes
 
     @contextmanager
-    def _timed(self, wait: Callable[[], None], key: str) -> Iterator[None]:
-        """Measure what a step or a loop takes; both ends ``wait`` for the driver."""
+    def _timed(
+        self, wait: Callable[[], None], key: str, before: Callable[[], float] = lambda: 0.0
+    ) -> Iterator[None]:
+        """Measure what a step or a loop takes; both ends ``wait`` for the driver.
+
+        ``before`` returns what it has taken already, in a thread [s].
+        """
         wait()
         start = self._now()
         yield
         wait()
         self._costed_at, self._is_new = self._now(), True
-        self._note(key, (self._costed_at - start) * 1e3)
+        self._note(key, (self._costed_at - start + before()) * 1e3)
 
     def _take(self, execution: Execution, step: Step, key: str) -> bool:
         """Put what the disk cache has of a step into the cache in memory."""

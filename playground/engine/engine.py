@@ -82,7 +82,8 @@ class Engine(Recorded):
         self.runs: Counter[str] = Counter()  # how often each pass ran, by path
         super().__init__()
         self.profiling = False
-        self.patience: float | None = None  # [s] after which loops that follow the time raise ``Unfinished``
+        # [s] after which loops that follow the time, and sources at work, raise ``Unfinished``
+        self.patience: float | None = None
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
         self.painted = PaintedFiles()  # painted in this process, in place of their files
@@ -387,6 +388,8 @@ class Engine(Recorded):
         record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
         execution = Execution(record.keys, self.cache, self.runner, self._compute)
         execution.deadline = Deadline(self.patience, self.ctx.finish)
+        self.runner.works.waits = self.patience is None
+        self.runner.works.keep(record.keys.raw)
         with self.borrowed():
             if self.disk_caching is not None:
                 execution.run(self.disk_caching.begin(execution, plan, ref))
@@ -429,6 +432,7 @@ class Engine(Recorded):
                 iteration=iteration,
                 start=start,
                 keeps_surface=continued,
+                key="" if iteration is not None else record.keys.raw.get(step.path, ""),
             )
         if objects != self.pool.made + runner.programs.compiled:
             # What has run without an error before will do so again, and a query waits for the driver.

@@ -61,6 +61,7 @@ class Job:
     start: Result | None = None  # the same step after fewer iterations, to go on from; it is used up
     samples: int = 1  # of a draw
     keeps_surface: bool = False  # a later draw goes on from this one
+    key: str = ""  # what its textures depend on; in a loop none
 
     def count(self, program: Program, iteration: int, repeat: str, whole: int, at_once: int = 1) -> None:
         """Set a kernel's iteration: its own where it repeats, else that of the loop around it."""

@@ -9,6 +9,8 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, nullcontext
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from playground.engine.binder import Binder
 from playground.engine.compute_variant import ComputeVariants
 from playground.engine.draws import Draws
@@ -20,16 +22,18 @@ from playground.engine.programs import Programs
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.scene import MEANINGS as OF_THE_SCENE
 from playground.engine.scene import scene_of
+from playground.engine.source_works import Arrays, SourceWorks, Task
 from playground.errors import DataError
 from playground.gpu.context import ContextInfo
-from playground.gpu.textures import split_format, write_texture
+from playground.gpu.textures import read_texture, split_format, write_texture
 from playground.media.bands import bands_at
 from playground.media.live_inputs import LiveInputs
 from playground.media.now import Now
 from playground.sketch.expressions import FRAME_RATE, last_frame_at
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import MOMENT, NEUTRAL, PRESSED
-from playground.terrain.sources import SourceKind, source_kind
+from playground.sketch.reserved_names import MOMENT, NEUTRAL, OF_THE_TERRAIN, PRESSED
+from playground.terrain.source_kinds import Material, SourceKind
+from playground.terrain.sources import source_kind
 
 if TYPE_CHECKING:
     import moderngl
@@ -62,6 +66,7 @@ class Runner:
         self.draws = Draws(ctx, self.kernels)
         self.painted = PaintedFiles() if painted is None else painted
         self.paint = PaintedTextures(ctx)
+        self.works = SourceWorks()
         self.before_step: Callable[[Step], None] | None = None  # called before each step runs
         self._other_kinds: dict[str, Callable[[Job], Result]] = {  # than kernels
             "source": self._source,
@@ -98,6 +103,7 @@ class Runner:
 
     def release(self) -> None:
         """Release every program, mesh and texture."""
+        self.works.keep({})
         self.paint.release()
         self.draws.release()
         self.compute_variants.release()
@@ -111,7 +117,7 @@ class Runner:
         """
         kernel = step.kernel
         if kernel.kind == "source":
-            return self._moment(step, frame)
+            return self._moment(step, frame) | self._of_the_terrain(step)
         found: dict[str, Any] = {}
         if self.pressed:
             names = (p.name for p in kernel.parameters if p.widget.kind == "button")
@@ -120,13 +126,21 @@ class Runner:
             return found | dict(usual_of(kernel, self._usual(step, frame)))
         for name in kernel.given:
             if name == "spacing":
-                (width, height), (wide, tall) = self._given["extent"], step.whole_size
-                found[name] = width / max(wide - 1, 1), height / max(tall - 1, 1)
+                found[name] = self._spacing(step)
             elif name == "time" and frame is not None:
                 found[name] = frame / FRAME_RATE
             elif name in self._given:
                 found[name] = self._given[name]
         return found
+
+    def _spacing(self, step: Step) -> tuple[float, float]:
+        (width, height), (wide, tall) = self._given["extent"], step.whole_size
+        return width / max(wide - 1, 1), height / max(tall - 1, 1)
+
+    def _of_the_terrain(self, step: Step) -> dict[str, Any]:
+        """Return what a source reads of the terrain."""
+        known = {"spacing": self._spacing(step), "relief": self._given["relief"]}
+        return {name: known[name] for name in step.kernel.depends if name in OF_THE_TERRAIN}
 
     def given_for_key(self, step: Step) -> dict[str, Any]:
         """Return all that the engine gives a step and that its textures depend on."""
@@ -147,11 +161,13 @@ class Runner:
         iteration: LoopIteration | None = None,
         start: Result | None = None,
         keeps_surface: bool = False,
+        key: str = "",
     ) -> Result:
         """Run a step and return its textures, which are the caller's.
 
         ``iteration`` is where it is in the loops around it; ``start`` the same step after fewer iterations,
-        which is used up; ``keeps_surface`` says that a later draw goes on from this one.
+        which is used up; ``keeps_surface`` says that a later draw goes on from this one; ``key`` is what
+        its textures depend on, "" in a loop.
         """
         assert self._plan is not None, "look_at() comes first"
         if self.before_step is not None:
@@ -163,7 +179,7 @@ class Runner:
                 return self.kernels.run(job, driver)
         frame = iteration.frame if iteration is not None else None
         given, samples = self.given_for(step, frame), self._samples_for(step.kernel)
-        job = Job(step, given, inputs, iteration, start, samples, keeps_surface)
+        job = Job(step, given, inputs, iteration, start, samples, keeps_surface, key)
         with self._placed(step):
             return self._other_kinds[step.kernel.kind](job)
 
@@ -204,21 +220,42 @@ class Runner:
 
     def _source(self, job: Job) -> Result:
         step, kind = job.step, source_kind(job.step.kernel.registry)
-        result = self.pool.take(step.size, step.kernel.outputs)
         painted = self._painted_for(step, kind)
+        arrays = self._arrays(job, kind) if painted is None else {}
+        result = self.pool.take(step.size, step.kernel.outputs)
         if painted is not None:
             output = step.kernel.outputs[0]
             self.kernels.copy_texture(
                 result.textures[output.name], self.paint.texture_of(painted, output.format)
             )
             return result
-        arrays = kind.make(step.values, step.size, job.given.get(MOMENT))
         for output in step.kernel.outputs:
             if output.name not in arrays:
                 given = ", ".join(arrays)
                 raise step.spec.error(f"source '{step.kernel.registry}' gives {given}, not '{output.name}'")
             write_texture(result.textures[output.name], arrays[output.name])
         return result
+
+    def _arrays(self, job: Job, kind: SourceKind) -> Arrays:
+        """Return what a source makes, by its outputs' names."""
+        step, work = job.step, kind.work
+        if work is None:
+            assert kind.make is not None, "a kind has one of the two"
+            return kind.make(step.values, step.size, job.given.get(MOMENT))
+        if self.works.idle:
+            width, height = step.size
+            return {
+                o.name: np.zeros((height, width, split_format(o.format)[0]), np.float32)
+                for o in step.kernel.outputs
+            }
+
+        def task() -> Task:
+            wired = {name: one.texture for name, one in job.inputs.items() if one.texture is not None}
+            arrays = {name: read_texture(texture) for name, texture in wired.items()}
+            facts = {name: job.given[name] for name in OF_THE_TERRAIN if name in job.given}
+            return lambda report: work(step.values, step.size, Material(arrays, report=report, **facts))
+
+        return self.works.made(step.path, job.key, task)
 
     def _painted_for(self, step: Step, kind: SourceKind) -> Painted | None:
         """Return the picture whose pixels are a source's texels as they are, if it is painted here."""

@@ -88,6 +88,7 @@ class _Handler:
             engine = Engine(self._ctx, driver=driver, cache_bytes=64 * 2**20, notice=silent)
             # A mesh's fineness proves nothing more, and takes longer than all the rest.
             engine.runner.draws.finest = _FINEST
+            engine.runner.works.idle = True  # shaders are tried here; sources have no code of the user's
             self._engines[driver] = engine
         return self._engines[driver]
 

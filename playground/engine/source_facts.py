@@ -87,3 +87,8 @@ def _check_source(leaf: Leaf) -> None:
     missing = [name for name in kind.parameters if leaf.kernel.parameter(name) is None]
     if missing:
         raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs the parameters {', '.join(missing)}")
+    declared = [one.name for one in leaf.kernel.inputs]
+    if set(declared) != set(kind.inputs):
+        wanted = f"the inputs {', '.join(kind.inputs)}" if kind.inputs else "no inputs"
+        found = f"; the file declares {', '.join(declared) or 'none'}"
+        raise leaf.spec.error(f"source '{leaf.kernel.registry}' needs {wanted}{found}")

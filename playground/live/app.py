@@ -381,7 +381,7 @@ class Live:
         draw("what is not finite", lambda: draw_not_finite(found, session, look, above), None)
         errors = ErrorsList(bench.problems, bench.files, session, bench.interface)
         draw("the list of errors", lambda: errors.draw(look, above), None)
-        if picture is None and session.error is None:
+        if picture is None and session.error is None and session.catch_up.behind is None:
             subject, seconds = session.drafts.checking or (session.path.name, 0.0)
             draw_waiting(checking_text(subject, seconds), area)
         else:

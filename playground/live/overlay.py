@@ -32,15 +32,27 @@ def draw_checking(session: Session, look: Theme, area: Area) -> None:
 
 
 def draw_behind(session: Session, look: Theme, area: Area) -> None:
-    """Show how far the frames before the wanted one have come, after ``PATIENCE``."""
+    """Show how far the frames before the wanted one, or a source, have come, after ``PATIENCE``."""
     behind = session.catch_up.behind
     if behind is not None and session.catch_up.seconds >= PATIENCE:
         margin = 14 * look.scale
-        _plate(behind_text(*behind), (area[0] + margin, area[1] + margin), look, ink=theme.WARM)
+        text, low = behind_text(*behind, session.catch_up.source), (area[0] + margin, area[1] + margin)
+        corner = _plate(text, low, look, ink=theme.WARM)
+        if session.catch_up.source:
+            _bar(behind[0] / behind[1], low[0], corner, look)
 
 
-def behind_text(done: int, wanted: int) -> str:
-    """Return "computing frame 1,200 of 36,000 …"."""
+def _bar(share: float, left: float, corner: ImVec2, look: Theme) -> None:
+    """Draw how much is done as a bar along the lower edge of a plate."""
+    top, paint = corner.y - 3 * look.scale, imgui.get_foreground_draw_list()
+    end = ImVec2(left + (corner.x - left) * share, corner.y)
+    paint.add_rect_filled(ImVec2(left, top), end, theme.packed(theme.WARM))
+
+
+def behind_text(done: int, wanted: int, source: str = "") -> str:
+    """Return "computing frame 1,200 of 36,000 …", or of a source "making height … 34 %"."""
+    if source:
+        return f"making {source} … {done * 100 // wanted} %"
     return f"computing frame {done:,} of {wanted:,} …"
 
 

@@ -13,7 +13,7 @@ from playground.sketch.allowed_files import SHADERS
 from playground.sketch.annotation import arguments
 from playground.sketch.expressions import ExpressionError
 from playground.sketch.model import Buffer, Kernel, Output
-from playground.sketch.reserved_names import DRIVER_BOUND, PLAIN_UNIFORMS
+from playground.sketch.reserved_names import DRIVER_BOUND, OF_THE_TERRAIN, PLAIN_UNIFORMS
 from playground.sketch.source import Line, SourceText
 from playground.sketch.uniforms import check_name, is_given, read_uniforms
 
@@ -51,7 +51,7 @@ _EXAMPLES = {
     "compute": '(groups = "size.y, 1", agrees = "exact")',
 }
 _SIZE = ("size.x", "size.y")
-_SOURCE_READS = ("time", "keys", "microphone", "camera")
+_SOURCE_READS = ("time", "keys", "microphone", "camera", *OF_THE_TERRAIN)
 _NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?![\w.]|\s*:)")
 _NOT_IN_WHERE = ("size", "if", "else", "and", "or", "not", "log2", "min", "max", "abs", "floor", "ceil")
 _BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()

@@ -30,6 +30,9 @@ GIVEN: dict[str, tuple[str, str]] = {
 RESERVED: frozenset[str] = frozenset({"previous", "kernel", "visit", "vertex", "fragment"})
 """Functions that the engine gives or calls; ``previous_`` begins more of them."""
 
+OF_THE_TERRAIN = ("spacing", "relief")
+"""Given names that a source may read; they change with the terrain, not from frame to frame."""
+
 WIRED, MATCHES, TOWARDS = "wired_", "matches_", "towards_"
 """What begins a given name for each input (bool: something is wired to it; it has the size of this
 pass) and each direction (vec3: the unit vector towards it); declared where a text names it."""

@@ -34,7 +34,7 @@ def read_npy(path: Path) -> Found:
     """Read the one array of an `.npy`; it says nothing of metres."""
     with path.open("rb") as handle:
         header = _array_header(handle, path)
-        check_grid(header.shape, header.dtype, path)
+        check_grid(header.shape, header.dtype, path, in_turn=not header.by_columns)
         length = path.stat().st_size
         if header.by_columns:
             return in_memory(_array_body(handle, header, length, path))

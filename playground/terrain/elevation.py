@@ -103,7 +103,8 @@ class ElevationFile:
         return _extent(self.found.spacing, self.size)
 
     def read(self) -> Elevation:
-        """Return all heights."""
+        """Return all heights; raise ``DataError`` for more than fit."""
+        check_grid(self.found.rows.shape, self.found.rows.dtype, self.path)
         heights = np.empty(self.found.rows.shape, np.float32)
         with _damage_explained(self.path):
             for start, band in self.found.rows.bands():
@@ -265,7 +266,7 @@ def open_elevation(
             found = read_hgt(path, raw_size)
         else:
             found = _READERS[ending](path)
-    check_grid(found.rows.shape, found.rows.dtype, path)
+    check_grid(found.rows.shape, found.rows.dtype, path, in_turn=True)
     return ElevationFile(path, found, found.south_first or first_row == "south")
 
 

@@ -39,7 +39,7 @@ def read_asc(path: Path) -> Found:
     header, start = _text_header(path)
     size = _size(header, path)
     dtype = np.dtype(np.float32)
-    check_grid(size[::-1], dtype, path)
+    check_grid(size[::-1], dtype, path, in_turn=True)
     rows = StreamRows(size[::-1], dtype, partial(_numbers_in_text, path, start, size))
     return _found(rows, header, path)
 
@@ -122,7 +122,7 @@ def _real(header: Header, name: str, path: Path) -> float | None:
 def _stored(path: Path, size: tuple[int, int], kind: str, header: Header) -> Rows:
     order = ">" if header.get("byteorder", "I").lower() in ("m", "msbfirst") else "<"
     dtype = np.dtype(order + kind)
-    check_grid(size[::-1], dtype, path)
+    check_grid(size[::-1], dtype, path, in_turn=True)
     skipped = _whole(header, "skipbytes", path, 0)
     wide = _whole(header, "totalrowbytes", path, size[0] * dtype.itemsize)
     need, have = skipped + (size[1] - 1) * wide + size[0] * dtype.itemsize, path.stat().st_size

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
-from playground.images.bounds import refuse_bomb
+from playground.images.bounds import MAX_TEXELS, refuse_bomb
 from playground.images.files import reason
 from playground.terrain import gis
 from playground.terrain.geokeys import (
@@ -70,7 +70,7 @@ def read_tiff(path: Path, packing: Packing) -> Found:
             raise DataError(f"has axes {axes} {shape}; expected one picture", file=path)
         rows_cols = tuple(n for n, axis in zip(shape, axes, strict=True) if axis != "S")
         samples = math.prod(shape) // max(1, math.prod(rows_cols))
-        check_grid(rows_cols, page.dtype, path)
+        check_grid(rows_cols, page.dtype, path, in_turn=axes == "YX")
         if samples > 4:
             raise DataError(f"has {samples} channels; expected one, or three with packing 'rgb'", file=path)
         end = max((o + n for o, n in zip(page.dataoffsets, page.databytecounts, strict=False)), default=0)
@@ -90,6 +90,9 @@ def read_tiff(path: Path, packing: Packing) -> Found:
     if place is not None:
         spacing, more = place.spacing
         in_metres, notes = place.crs.facts.kind != "", (*more, *notes)
+    crs = place.crs if place is not None else Crs()
+    if place is not None and not math.isfinite(place.west + place.north):
+        place = None  # it has steps, but no point that they go from
     void = None
     if isinstance(rows, np.ndarray) and rows.ndim == 3:
         found = from_channels(rows, packing, path)
@@ -107,8 +110,8 @@ def read_tiff(path: Path, packing: Packing) -> Found:
     in_metres = in_metres and (packed is not None or code_range in (None, SIXTEEN_BIT))
     scale, offset = packed if packed is not None and in_metres else (1.0, 0.0)
     unit = 1.0
-    if place is not None and in_metres:
-        unit = UNITS.get(code(dict(place.crs.keys), VERTICAL_UNIT, METRE), 1.0)
+    if in_metres:
+        unit = UNITS.get(code(dict(crs.keys), VERTICAL_UNIT, METRE), 1.0)
     return Found(
         rows,
         spacing,
@@ -145,6 +148,10 @@ def _rows(page: tifffile.TiffPage, path: Path, no_data: float | None) -> Rows | 
     rows = tiff_rows(page, path, no_data or 0.0)
     if rows is not None:
         return rows
+    if page.axes == "YX" and math.prod(page.shape) > MAX_TEXELS and gis.has_rasters():
+        return gis.raster_rows(path, "GTiff")
+    assert page.dtype is not None
+    check_grid(page.shape[:2] if page.axes != "SYX" else page.shape[1:], page.dtype, path)
     try:
         values = np.asarray(page.asarray())
         return np.moveaxis(values, 0, -1) if page.axes == "SYX" else values
@@ -158,7 +165,6 @@ def _rows(page: tifffile.TiffPage, path: Path, no_data: float | None) -> Rows | 
     # tifffile alone lacks LZW and the floating-point predictor too; Pillow's libtiff has them.
     import PIL.Image
 
-    assert page.dtype is not None
     modes = {"u1": ("L", "RGB", "RGBA", "LA"), "u2": ("I;16",), "i2": ("I",), "i4": ("I",), "f4": ("F",)}
     compression = getattr(page.compression, "name", page.compression)
     try:

@@ -106,7 +106,7 @@ def read_netcdf(path: Path) -> Found:
         raise DataError(f"NetCDF is read by GDAL; {ADVICE}", file=path)
     name = _grid_in(path)
     with _explained(path), _open(name, _NETCDF) as raster:
-        check_grid(raster.shape, np.dtype(raster.dtypes[0]), path)
+        check_grid(raster.shape, np.dtype(raster.dtypes[0]), path, in_turn=True)
         notes = (f"the first of its {raster.count} bands was read",) if raster.count > 1 else ()
         place, more = _place(raster, path)
         scale, offset, no_data = raster.scales[0], raster.offsets[0], raster.nodata

@@ -22,6 +22,9 @@ EIGHT_BIT = (0.0, 255.0)
 SIXTEEN_BIT = (0.0, 65535.0)
 PACKED = (0.0, 16777215.0)
 
+MOST_IN_TURN = 2**34
+"""Texels of a file that is never read as a whole."""
+
 
 _SHORT_VOID = -32768  # "no data" in 16-bit elevations: SRTM's value, and the custom since
 
@@ -95,8 +98,11 @@ def fitted(size: tuple[int, int], longest: int) -> tuple[int, int]:
     return max(2, round((size[0] - 1) * ratio) + 1), max(2, round((size[1] - 1) * ratio) + 1)
 
 
-def check_grid(shape: tuple[int, ...], dtype: np.dtype[Any], path: Path) -> None:
-    """Raise ``DataError`` for what is no terrain; a header's claims are judged, before memory is taken."""
+def check_grid(shape: tuple[int, ...], dtype: np.dtype[Any], path: Path, *, in_turn: bool = False) -> None:
+    """Raise ``DataError`` for what is no terrain; a header's claims are judged, before memory is taken.
+
+    ``in_turn``: its rows can be read in turn, so that there may be more of them.
+    """
     size = " x ".join(map(str, reversed(shape))) or "a single number"
     if dtype.kind not in "iuf":
         raise DataError(f"holds {dtype}, not heights; expected integers or real numbers", file=path)
@@ -106,8 +112,9 @@ def check_grid(shape: tuple[int, ...], dtype: np.dtype[Any], path: Path) -> None
         )
     if min(shape) < 2:
         raise DataError(f"is {size} texels; expected at least 2 x 2", file=path)
-    if math.prod(shape) > MAX_TEXELS:
-        raise DataError(f"is {size} texels; the most is 2**28, as 16384 x 16384", file=path)
+    if math.prod(shape) > (MOST_IN_TURN if in_turn else MAX_TEXELS):
+        most = "2**34, as 131072 x 131072" if in_turn else "2**28, as 16384 x 16384"
+        raise DataError(f"is {size} texels; the most is {most}", file=path)
 
 
 def from_channels(samples: NDArray[Any], packing: Packing, path: Path) -> Found:

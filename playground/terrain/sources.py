@@ -1,29 +1,24 @@
 """The sources a sketch may name: what the processor must do to make terrain.
 
-A closed registry: a sketch is data and cannot bring Python. A source says what it knows
-of its terrain before any texel is made (``describe``), then makes the texels (``make``). What depends on
-more than its parameters, as a film does on the time, says on what (``moment``), and is made again when
-that changes.
+A closed registry: a sketch is data and cannot bring Python. What an entry holds: see ``source_kinds``.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import SketchError, nearest
-from playground.media.live_inputs import LiveInputs
-from playground.media.now import Now
 from playground.sketch.model import Value
 from playground.terrain import elevation_source as elevation
 from playground.terrain import live_sources as live
+from playground.terrain import ranked
 from playground.terrain import vector_source as vector
 from playground.terrain.delaunay import Rules, tables, triangulate
+from playground.terrain.example import source as example
 from playground.terrain.known import Terrain
 from playground.terrain.masks import read_mask
 from playground.terrain.numbers import read_numbers
@@ -41,56 +36,7 @@ from playground.terrain.over_time import (
     size_of_sound,
     size_of_video,
 )
-
-
-class Make(Protocol):
-    """Makes the texels of a source, by the names of its outputs; row 0 south."""
-
-    def __call__(
-        self, values: Mapping[str, Value], size: tuple[int, int], moment: Any = None, /
-    ) -> Mapping[str, NDArray[Any]]:
-        """Return an array (ny, nx) or (ny, nx, channels) for each output: 0..1, or bytes of r8 formats."""
-
-
-Frames = Iterator[tuple[float, Mapping[str, NDArray[Any]]]]
-"""What a source makes, frame by frame, each with the second of the source's own at which it begins."""
-
-
-@dataclass(frozen=True, slots=True)
-class Recording:
-    """What a source that plays a file has to play, whatever the time is: for who plays it elsewhere.
-
-    At a time it shows the second ``start + speed * time`` of the file, again and again where it loops.
-    """
-
-    frames: Callable[[Mapping[str, Value], tuple[int, int]], Frames]  # from the file's beginning
-    length: Callable[[Mapping[str, Value]], float]  # [s]
-    clock: Mapping[str, str]  # start, speed, loop → the parameters that say them
-    laps: Callable[[Mapping[str, Value], tuple[int, int]], Frames] | None = None
-    # where it repeats and hears what came before: from its end, as long as the silence before it is heard
-    lead: float = 0.0  # [s] from the beginning until each lap is as the one before
-
-
-@dataclass(frozen=True, slots=True)
-class SourceKind:
-    """One entry of the registry."""
-
-    describe: Callable[[Mapping[str, Value]], Terrain]  # its size: the one it has, where a sketch says none
-    make: Make
-    files: tuple[str, ...]  # parameters that name files
-    parameters: tuple[str, ...]  # what the kernel's file must declare
-    makes: str  # in words, with an article
-    optional: tuple[str, ...] = ()  # what it may declare besides
-    notes: Callable[[Mapping[str, Value]], tuple[str, ...]] = lambda _: ()  # what was assumed, what was lost
-    picture: Callable[[Mapping[str, Value], tuple[int, int]], Path | None] = lambda values, size: None
-    # the image whose channels, where it has this size, are the texels of the one output as they are
-    # What of now the texels depend on: its ``repr`` says all of it, and ``make`` gets it. None: nothing.
-    moment: Callable[[Mapping[str, Value], Now], object] | None = None
-    recording: Recording | None = None  # of what plays a file
-    # Texels, where the pass says none; None: those of the terrain.
-    size: Callable[[Mapping[str, Value]], tuple[int, int] | None] = lambda values: None
-    # Why nothing comes, where a window feeds it; "": something may.
-    lack: Callable[[Mapping[str, Value], LiveInputs], str] = lambda values, inputs: ""
+from playground.terrain.source_kinds import Recording, SourceKind
 
 
 def source_kind(name: str) -> SourceKind:
@@ -157,6 +103,25 @@ SOURCES: dict[str, SourceKind] = {
         (),
         ("points", "seed", "weights", "method", "flips", "heights", "roughness", "corners", "proportion"),
         "the triangulation",
+    ),
+    "example_file": SourceKind(
+        example.describe,
+        None,
+        ("elevation",),
+        example.PARAMETERS,
+        "the terrain",
+        notes=example.notes,
+        inputs=example.INPUTS,
+        work=example.work,
+    ),
+    "ranked_heights": SourceKind(
+        lambda _: Terrain(),
+        None,
+        (),
+        ranked.PARAMETERS,
+        "the table of ranks",
+        inputs=ranked.INPUTS,
+        work=ranked.work,
     ),
     "mask_file": SourceKind(
         lambda _: Terrain(),

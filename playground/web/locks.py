@@ -7,10 +7,12 @@ have are locked as well: setting them would need another plan.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from playground.engine.plan import Plan
 from playground.sketch import named_numbers
 from playground.sketch.expressions import names_in
-from playground.sketch.flat import Leaf
+from playground.sketch.flat import Fed, Leaf, Loop, Ref, Source
 from playground.sketch.flatten import is_exported
 from playground.sketch.model import Graph
 from playground.sketch.named_numbers import FRAME, TERRAIN, base_of, counting, named
@@ -27,6 +29,9 @@ class Locks:
         self.sources = {leaf.path: leaf for leaf in self.flat.leaves if leaf.kernel.kind == "source"}
         self._own = {path: self._has_own_size(leaf) for path, leaf in self.sources.items()}
         self._needed_by: dict[str, str] = {}  # path of a value, or a base → the source whose size it sets
+        self._read_by = self._readers()  # path of a leaf → the source that was made of it
+        for path in self._read_by:
+            self._note(path, self._read_by[path], set())
         for path in self.sources:
             if not self._own[path]:
                 self._note(path, path, set())
@@ -44,6 +49,9 @@ class Locks:
             leaf, _, name = target.rpartition(".")
             if leaf in self.sources and not self._plays_by(leaf, name):
                 return _sentence(f"{made_by(self.sources[leaf])} was made when the page was exported")
+            if leaf in self._read_by:
+                made = made_by(self.sources[self._read_by[leaf]])
+                return _sentence(f"{made} was made of this when the page was exported")
             if target in self._needed_by:
                 made = made_by(self.sources[self._needed_by[target]])
                 return _sentence(f"{made} was made in this size when the page was exported")
@@ -60,12 +68,55 @@ class Locks:
         made = made_by(self.sources[self._needed_by[TERRAIN]])
         return _sentence(f"{made} was made in this size when the page was exported")
 
+    def of_metres(self) -> dict[str, str]:
+        """Return why the terrain's ``extent`` and ``relief`` cannot be changed, of those that cannot."""
+        leaves = {leaf.path: leaf for leaf in self.flat.leaves}
+        found: dict[str, str] = {}
+        for path, source in {**{path: path for path in self.sources}, **self._read_by}.items():
+            kernel = leaves[path].kernel
+            for name, names in (("extent", ("extent", "spacing")), ("relief", ("relief",))):
+                if any(map(kernel.reads, names)):
+                    made = made_by(self.sources[source])
+                    found[name] = _sentence(f"{made} was made by this when the page was exported")
+        return found
+
     def notes(self) -> list[str]:
         """Return a sentence on each source that a page has in the size of the picture at export."""
         if FRAME not in self._needed_by:
             return []
         path = self._needed_by[FRAME]
         return [f"{path}: {made_by(self.sources[path])} has the size of the picture at export"]
+
+    def _readers(self) -> dict[str, str]:
+        """Return the leaves that the inputs of sources read, however far behind."""
+        leaves = {leaf.path: leaf for leaf in self.flat.leaves}
+        loops = {name: (first, ref) for name, first, ref in self._fed()}
+        found: dict[str, str] = {}
+
+        def note(read: Source | None, source: str, known: set[Fed]) -> None:
+            if isinstance(read, Fed):
+                if read not in known:
+                    known.add(read)
+                    for each in loops[read]:
+                        note(each, source, known)
+            elif read is not None and read.path not in found:
+                found[read.path] = source
+                for _, each in leaves[read.path].inputs:
+                    note(each, source, known)
+
+        for path, leaf in self.sources.items():
+            for _, each in leaf.inputs:
+                note(each, path, set())
+        return found
+
+    def _fed(self) -> Iterator[tuple[Fed, Source | None, Ref]]:
+        """Yield what each loop feeds back: what its first iteration reads, and what the next ones do."""
+        waiting = list(self.flat.nodes)
+        while waiting:
+            node = waiting.pop()
+            if isinstance(node, Loop):
+                waiting += node.body
+                yield from ((Fed(node.path, name), first, ref) for name, first, ref in node.feedback)
 
     def _plays_by(self, path: str, parameter: str) -> bool:
         """Return whether a parameter of a source says which second of a file shows: that a page works out."""

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Any
 
+from numpy.typing import NDArray
+
 from playground.engine.files import find_file
-from playground.engine.plan import Plan
+from playground.engine.plan import Plan, Step
 from playground.engine.planner import Planner
 from playground.engine.source_facts import extent_follows_size
 from playground.engine.view_inputs import view_height
@@ -29,6 +32,7 @@ from playground.sketch.named_numbers import base_of, counting
 from playground.sketch.source import read_text
 from playground.sketch.traits import is_animated
 from playground.terrain.sources import source_kind
+from playground.web.drawn_sources import drawn
 from playground.web.kernels import Kernels
 from playground.web.locks import Locks, made_by
 from playground.web.pass_trees import pass_tree
@@ -98,6 +102,7 @@ class _Writing:
                 "relief": terrain.relief,
                 "base_elevation": terrain.base_elevation,
                 "locked": self.locks.of_terrain(),
+                "lockedMetres": self.locks.of_metres(),
                 "extentFollows": extent_follows_size(sketch, self.flat, self.given),
             },
             "camera": asdict(sketch.camera),
@@ -169,13 +174,19 @@ class _Writing:
             "base": leaf.path,
         }
         if leaf.kernel.kind == "source":
-            made = source_data(self.steps[leaf.path], made_by(leaf), self.shared.blobs)
+            step = self.steps[leaf.path]
+            made = source_data(step, made_by(leaf), self.shared.blobs, partial(self._drawn, step))
+            found["inputs"] = []  # what it was made of is not drawn again
             self.notes.append(made.note)
             found["data"] = made.textures
             recording = source_kind(leaf.kernel.registry).recording
             if recording is not None:
                 found["clock"] = {what: paths[name] for what, name in recording.clock.items()}
         return found
+
+    def _drawn(self, step: Step) -> dict[str, NDArray[Any]]:
+        plan = self.plan
+        return drawn(self.sketch, step, frame=plan.frame_size, time=plan.time, steps=plan.steps)
 
     def _passes(self) -> dict[str, dict[str, Any]]:
         """Return the size of every pass at every level, and of a loop its repeat."""

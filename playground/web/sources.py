@@ -7,7 +7,7 @@ also what is heard of its end in the next lap. What a window feeds has nothing t
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,7 +17,8 @@ from playground.engine.plan import Step
 from playground.gpu.textures import texels_in
 from playground.media.live_inputs import LiveInputs
 from playground.media.now import Now
-from playground.terrain.sources import Recording, source_kind
+from playground.terrain.source_kinds import Recording
+from playground.terrain.sources import source_kind
 from playground.web.blobs import Blobs
 
 MOST_BYTES = 3 * 2**20
@@ -34,14 +35,18 @@ class SourceData:
     note: str  # a sentence on what that is
 
 
-def source_data(step: Step, what: str, blobs: Blobs) -> SourceData:
+def source_data(
+    step: Step, what: str, blobs: Blobs, drawn: Callable[[], Mapping[str, NDArray[Any]]]
+) -> SourceData:
     """Return the texels of a source; ``what`` it makes, in words.
 
-    Raises ``DataError`` for a file that cannot be read.
+    ``drawn`` gives the texels of one that has inputs. Raises ``DataError`` for a file that cannot be read.
     """
     kind = source_kind(step.kernel.registry)
     if kind.recording is not None:
         return _recorded(kind.recording, step, what, blobs)
+    if kind.make is None:
+        return SourceData(_textures(step, drawn(), blobs), f"{step.path}: {what} is exported as it is")
     moment = kind.moment(step.values, Now(0.0, LiveInputs())) if kind.moment else None
     textures = _textures(step, kind.make(step.values, step.size, moment), blobs)
     if kind.moment is not None:

@@ -468,6 +468,9 @@ class Session:
             )
 
         texture = self.catch_up.draw(engine, now, drawn_at, in_full=in_full)
+        if traits.files and self._data_of is not sketch:
+            self.data.take(sketch)
+            self._data_of = sketch
         if texture is None:
             return
         self._picture.copy(texture)
@@ -476,9 +479,6 @@ class Session:
         self.draws += 1
         self.times |= engine.times
         self.plan = engine.plan
-        if traits.files and self._data_of is not sketch:
-            self.data.take(sketch)
-            self._data_of = sketch
         if engine.eye_height.message:
             self._note_once("ground", engine.eye_height.message)
         if traits.arcs and engine.plan is not None and "arc" not in self._reported:

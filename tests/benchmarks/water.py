@@ -33,15 +33,14 @@ FLOW = """
 [[pass]]
 name = "fill"
 use = "water/fill"
-set = {{ steps = {steps} }}
 [[pass]]
 name = "ways"
 use = "water/directions"
-inputs = {{ height = "fill:level" }}
+inputs = { height = "fill:level" }
 [[pass]]
 name = "area"
 use = "water/accumulation"
-inputs = {{ receiver = "ways" }}
+inputs = { receiver = "ways" }
 """
 CARVE = """
 [[pass]]
@@ -80,13 +79,13 @@ class Erosion(Bench):
 
     def metres(self, size: int, filled: bool = False) -> np.ndarray:
         """Return the terrain in metres, float64, south row first."""
-        sketch = self.sketch(TERRAIN.format(size=size) + FLOW.format(steps=size))
+        sketch = self.sketch(TERRAIN.format(size=size) + FLOW)
         name = "fill:level" if filled else "height"
         return RELIEF * self.engines["auto"].read(sketch, name).astype(np.float64)
 
 
 def fill(bench: Erosion, size: int) -> Iterator[Comparison]:
-    """Depressions filled, until nothing changes on such a terrain."""
+    """Depressions filled."""
     z = bench.metres(size)
     theirs: dict[str, Run] = {}
     if richdem := peer("richdem"):
@@ -98,7 +97,7 @@ def fill(bench: Erosion, size: int) -> Iterator[Comparison]:
         theirs["scikit-image"] = lambda: morphology.reconstruction(seed, z, method="erosion")
     if dem := peer("pyflwdir.dem"):
         theirs["pyflwdir"] = lambda: dem.fill_depressions(z)
-    sketch = bench.sketch(TERRAIN.format(size=size) + FLOW.format(steps=3 * size // 5))
+    sketch = bench.sketch(TERRAIN.format(size=size) + FLOW)
     yield Comparison("fill", bench.ours(sketch, "fill:level", "height.seed"), theirs, alone=frozenset(theirs))
 
 
@@ -114,7 +113,7 @@ def flow(bench: Erosion, size: int) -> Iterator[Comparison]:
         if hasattr(xrspatial, "flow_accumulation"):
             raster = xarray.DataArray(z)
             theirs["xarray-spatial"] = lambda: xrspatial.flow_accumulation(xrspatial.flow_direction(raster))
-    sketch = bench.sketch(TERRAIN.format(size=size) + FLOW.format(steps=size))
+    sketch = bench.sketch(TERRAIN.format(size=size) + FLOW)
     ours = bench.ours(sketch, "area", "ways.seed", before="fill:level")
     yield Comparison("flow", ours, theirs, "≤ 250 ms C at 1025²", alone=frozenset(theirs))
 

@@ -49,6 +49,17 @@ def test_equal_to_a_priority_flood(engine, terrain):
     np.testing.assert_allclose(level, flooded(height, SPACING, FALL), rtol=0, atol=2e-6)
 
 
+@pytest.mark.parametrize("size", [[71, 53], [130, 97]], ids=str)
+def test_in_few_steps_it_is_too_high_by_a_part_of_the_fall(engine, make_sketch, size):
+    """What is not found is a shorter way of the same spill: the fall across the terrain bounds that."""
+    sketch = make_sketch(PASSES.format(steps=16), size=size, extent=EXTENT, relief=RELIEF, rough=ROUGH)
+    height, level = engine.read(sketch, "height").copy(), engine.read(sketch, "fill").copy()
+    spacing = [e / (s - 1) for e, s in zip(EXTENT, size, strict=True)]
+    over = level - flooded(height, spacing, FALL)
+    assert over.min() > -2e-6
+    assert over.max() < FALL * np.hypot(*EXTENT)
+
+
 def test_without_the_fall_it_is_the_lowest_water_that_stands(engine, terrain):
     """The classical fill, without any fall: never above the level, and below it by the fall at most."""
     height, level = engine.read(terrain, "height").copy(), engine.read(terrain, "fill").copy()

@@ -93,14 +93,16 @@ def test_a_step_is_that_of_the_equations(engine, eroded):
         assert np.abs(bed - before.bed).max() > 0.01 and water.max() > 1
 
 
-def test_rock_and_water_are_conserved_in_a_thousand_steps_with_closed_edges(engine, eroded):
+@pytest.mark.parametrize("rain", [0.003, 0.01])
+def test_rock_and_water_are_conserved_in_a_thousand_steps_with_closed_edges(engine, eroded, rain):
     heights = hills((65, 65), 3)
-    sketch = eroded(heights, edges="closed", evaporation=0.0, rain=0.002, hours=5000, capacity=8.0)
+    sketch = eroded(heights, edges="closed", evaporation=0.0, rain=rain, hours=5000, capacity=8.0)
     bed, water, load, _, _ = state(engine, sketch, 1000)
     rock = RELIEF * heights.astype(np.float64)
     assert abs((bed + load).sum() / rock.sum() - 1) < 1e-6
-    # The first step has rain already, and each adds the same, as a float32.
+    # The first step has rain already, and each adds the same, in whole 65536ths of a metre.
     supply = engine.read(sketch, "worn.start:site")[..., 0].astype(np.float64)
+    assert supply[0, 0] == pytest.approx(4 * rain, abs=2**-17)
     assert abs(water.sum() / (1001 * supply.sum()) - 1) < 1e-6
     assert np.abs(bed - rock).mean() > 1 and load.max() > 0.1, "it is worn"
 

@@ -59,3 +59,37 @@ def test_folds_bend_the_layers_no_further_than_they_say(hardness):
     for y in range(rows, 257 - rows, 16):
         assert np.isin(folded[y], even[y - rows : y + rows + 1, 0]).mean() > 0.9
     assert (folded != even).any()
+
+
+ROUND = """title = "Layers laid bare in turn"
+[[pass]]
+name = "hard"
+use = "erosion/strata"
+set = { thickness = 40.0, contrast = 6.0 }
+[[pass]]
+name = "worn"
+use = "erosion/hydraulic"
+inputs = { hardness = "hard" }
+set = { hours = 40 }
+[[pass]]
+name = "fallen"
+use = "erosion/thermal"
+inputs = { height = "worn:height", hardness = "hard" }
+set = { steps = 5 }
+[inputs]
+height = ["hard.height", "worn.height"]
+[outputs]
+height = "fallen:height"
+"""
+
+
+def test_erosion_follows_erosion_and_the_layers_that_it_lays_bare(engine, make_sketch, tmp_path):
+    (tmp_path / "round.toml").write_text(ROUND)
+    hills = "generation/gradient_noise", "set = { frequency = 3, octaves = 5 }"
+    wired = 'inputs = { height = "raw" }'
+    rounds = "./round", wired, 'repeat = 3\nfeedback = { height = "height" }'
+    made = passes(raw=hills, once=("./round", wired), worn=rounds)
+    sketch = make_sketch(made, size=65, extent=5000.0, relief=800.0)
+    raw, once, worn = (engine.read(sketch, name).astype(np.float64) for name in ("raw", "once", "worn"))
+    changes = [800 * np.abs(found - raw).mean() for found in (once, worn)]
+    assert np.isfinite(worn).all() and changes[1] > 1.5 * changes[0] > 1.5

@@ -281,3 +281,27 @@ def test_netcdf_that_is_none_is_a_sentence(tmp_path):
     (tmp_path / "a.nc").write_bytes(RNG.bytes(300))
     with pytest.raises(DataError, match="cannot be read by GDAL"):
         read_elevation(tmp_path / "a.nc")
+
+
+def test_more_texels_than_any_picture_may_have_are_read_in_turn(tmp_path, values):
+    """A terrain of 2**29 texels of which one tile is stored; the others have no data."""
+    path = tmp_path / "a.tif"
+    facts = {"driver": "GTiff", "width": 2**15, "height": 2**14, "count": 1, "dtype": "uint8"}
+    tiles = {"tiled": True, "blockxsize": 2048, "blockysize": 2048, "compress": "deflate"}
+    with rasterio.open(path, "w", **facts, transform=NORTH_UP, nodata=0, SPARSE_OK=True, **tiles) as file:
+        window = rasterio.windows.Window(4096, 2048, 2048, 2048)
+        file.write(np.full((2048, 2048), 7, np.uint8), 1, window=window)
+    file = open_elevation(path)
+    assert file.size == (2**15, 2**14)
+    with pytest.raises(DataError, match=r"32768 x 16384 texels; the most is 2\*\*28"):
+        file.read()
+
+
+def test_a_raster_without_a_tie_point_has_steps_and_no_place(tmp_path):
+    import tifffile
+
+    keys = (1, 1, 1, 2, 1024, 0, 1, 1, 3072, 0, 1, 32633)
+    tags = [(33550, "d", 3, (10.0, 20.0, 0.0), True), (34735, "H", len(keys), keys, True)]
+    tifffile.imwrite(tmp_path / "a.tif", HEIGHTS, extratags=tags, metadata=None, photometric="minisblack")
+    found = read_elevation(tmp_path / "a.tif")
+    assert found.place is None and found.spacing == (10.0, 20.0) and found.in_metres

@@ -12,7 +12,8 @@ from playground.errors import DataError, SketchError
 from playground.images.content_hash import content_key
 from playground.paths import GLSL
 from playground.sketch.techniques import read_technique
-from playground.terrain.sources import SOURCES, Terrain, source_kind
+from playground.terrain.known import Terrain
+from playground.terrain.sources import SOURCES, source_kind
 
 KIND = source_kind("elevation_file")
 HEIGHTS = np.array([[10, 20, 30], [40, 60, 50]], np.uint8)  # first row first
@@ -152,6 +153,8 @@ def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
     assert list(SOURCES) == [
         "elevation_file",
         "delaunay",
+        "example_file",
+        "ranked_heights",
         "mask_file",
         "numbers_file",
         "vector_file",

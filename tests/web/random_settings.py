@@ -66,9 +66,10 @@ def random_settings(chance: random.Random, data: dict[str, Any], plan: Plan) -> 
     terrain = data["terrain"]
     if not terrain["locked"] and chance.random() < 0.8:
         found.terrain["size"] = TOO_LARGE if chance.random() < 0.05 else chance.choice(TERRAINS)
-    if chance.random() < 0.5:
+    locked = terrain["lockedMetres"]
+    if chance.random() < 0.5 and "relief" not in locked:
         found.terrain["relief"] = chance.uniform(0.0, 3000.0)
-    if chance.random() < 0.2:
+    if chance.random() < 0.2 and "extent" not in locked:
         found.terrain["extent"] = (chance.uniform(10.0, 2e4), chance.uniform(10.0, 2e4))
     if chance.random() < 0.6:
         found.camera = Camera(

@@ -34,7 +34,7 @@ def bytes_of(page: dict[str, Any], key: str) -> bytes:
     return gzip.decompress(base64.b64decode(page["shared"]["blobs"][key]))
 
 
-@pytest.mark.parametrize("name", ["delaunay_flips", "jacksboro", "splat_mask"])
+@pytest.mark.parametrize("name", ["delaunay_flips", "from_example", "jacksboro", "splat_mask"])
 def test_a_source_has_the_engines_texels(any_engine: Engine, name: str):
     sketch = load(name)
     page = page_data([sketch])
@@ -121,6 +121,43 @@ def test_a_sources_own_parameters_are_locked_and_no_others():
     source = {row["path"] for row in found.values() if "triangulation" in row["locked"]}
     assert source and all(found[path]["locked"] for path in source)
     assert [path for path, row in found.items() if not row["locked"]]
+
+
+def test_what_a_source_was_made_of_is_locked_with_it():
+    """A page does not draw the passes that only the source read, and says why they cannot be changed."""
+    [data] = page_data([load("from_example")])["sketches"]
+    found = {row["path"]: row["locked"] for row in data["shown"]}
+    assert found["pieces.follow"] == "The terrain was made when the page was exported."
+    assert found["ridges.texels"].endswith("was made when the page was exported.")
+    assert not found["light.sun"] and not found["view.exposure"]
+    [node] = [node for node in data["nodes"] if node["path"] == "pieces"]
+    assert node["inputs"] == []
+    assert data["terrain"]["locked"] == "The terrain was made in this size when the page was exported."
+    why = "The terrain was made by this when the page was exported."
+    assert data["terrain"]["lockedMetres"] == {"extent": why, "relief": why}
+
+
+def test_kernels_that_a_source_reads_are_locked(tmp_path: Path):
+    """However far behind it, and round a loop."""
+    (tmp_path / "base.glsl").write_text(BASE)
+    (tmp_path / "more.glsl").write_text(
+        '#pragma kernel(output = "height:r32f")\nuniform sampler2D before;  //! input("zero")\n'
+        "uniform sampler2D base;  //! input\nuniform float gain = 1.0;  //! slider(0, 4) How much\n"
+        "float kernel(ivec2 t) { return gain * texelFetch(base, t, 0).r + texelFetch(before, t, 0).r; }\n"
+    )
+    text = "format = 1\nsize = 17\n" + passes(
+        first=("./base",),
+        other=("./base",),
+        looped=("./more", 'inputs = { base = "first" }', "repeat = 3", 'feedback = { before = "height" }'),
+        noise=("generation/by_example", 'inputs = { example = "looped" }'),
+    )
+    (tmp_path / "sketch.toml").write_text(text + map_of("noise"))
+    [data] = page_data([load(tmp_path)])["sketches"]
+    found = {row["path"]: row["locked"] for row in data["shown"]}
+    made = "The table of ranks was made of this when the page was exported."
+    assert (found["first.rise"], found["looped.gain"], found["other.rise"]) == (made, made, "")
+    assert found["noise.widest"] == "The table of ranks was made when the page was exported."
+    assert found["noise.seed"] == ""
 
 
 BASE = """#pragma kernel(output = "height:r32f")

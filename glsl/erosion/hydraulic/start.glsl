@@ -44,7 +44,9 @@ float at(sampler2D field, ivec2 texel) {
 void kernel(ivec2 texel, out vec4 state, out vec4 flux, out vec2 site) {
     float supply = max(rain * at(rain_map, texel), 0.0);
     if (spring > 0.0) supply += river(share_of_texel(texel, size) * extent);
-    supply *= step_hours(size);
+    // In whole 65536ths of a metre: what is below the last bit of a lake's depth would be lost,
+    // and the same every step.
+    supply = floor(supply * step_hours(size) * 65536.0 + 0.5) / 65536.0;
     flux = vec4(0.0);
     state = vec4(relief * at(height, texel), supply, 0.0, 0.0);
     site = vec2(supply, 1.0 - exp(-wear * step_hours(size) / max(at(hardness, texel), 1e-3)));

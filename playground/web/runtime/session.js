@@ -44,7 +44,7 @@ export function terrainRows(sketch) {
       ranges: /** @type {[number, number][]} */ (ranged ? spans : []),
       exported: true,
       main: 0,
-      locked: name === "size" ? terrain.locked : "",
+      locked: name === "size" ? terrain.locked : (terrain.lockedMetres?.[name] ?? ""),
       value,
       targets: [],
     };

@@ -167,7 +167,11 @@ class Controls:
         session, sketch = self.session, self.session.sketch
         if session.catch_up.behind is not None:
             done, wanted = session.catch_up.behind
-            raise Behind(f"there is no picture yet: the window computes frame {done:,} of {wanted:,}")
+            source = session.catch_up.source
+            what = (
+                f"makes {source}, {done} of {wanted}" if source else f"computes frame {done:,} of {wanted:,}"
+            )
+            raise Behind(f"there is no picture yet: the window {what} {done:,} of {wanted:,}")
         if size is None or sketch is None:
             frame = session.read()
             if frame is None:

@@ -1,11 +1,11 @@
-// erosion/stream_power/resampled.glsl -- the terrain before its rivers, read at a level's texels.
+// water/levels/resampled.glsl -- the terrain before its rivers, read at a level's texels.
 //
 //   gives    height
-//   needs    erosion/stream_power/parameters/keep.glsl, terrain/heightfield.glsl
+//   needs    water/levels/parameters/keep.glsl, terrain/heightfield.glsl
 //   units    heights without unit
 //   source   none: made here
 //   tested   tests/glsl/test_stream_power.py
-#include "erosion/stream_power/parameters/keep.glsl"
+#include "water/levels/parameters/keep.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "height:r32f")
 

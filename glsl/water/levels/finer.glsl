@@ -1,7 +1,7 @@
-// erosion/stream_power/finer.glsl -- the same terrain and the same rivers on a grid twice as fine.
+// water/levels/finer.glsl -- the same terrain and the same rivers on a grid twice as fine.
 //
 //   gives    height, receiver: where each texel drains to, along the rivers that there are
-//   needs    erosion/stream_power/parameters/keep.glsl, maths/land.glsl, noise/hash.glsl,
+//   needs    water/levels/parameters/keep.glsl, maths/land.glsl, noise/hash.glsl,
 //            terrain/heightfield.glsl, water/texels.glsl
 //   units    heights without unit; roughness in metres per metre
 //   source   made here; a middle displaced sideways is Fournier, Fussell and Carpenter 1982,
@@ -15,7 +15,7 @@
 // at random, and drain to the lowest coarse texel around. Where stretches meet, all go on to the
 // lowest end: levels fall along every stretch, so that no way goes in a circle. Edges have the
 // heights that they began with. A grid of the same size stays as it is.
-#include "erosion/stream_power/parameters/keep.glsl"
+#include "water/levels/parameters/keep.glsl"
 #include "maths/land.glsl"
 #include "noise/hash.glsl"
 #include "terrain/heightfield.glsl"
@@ -30,7 +30,7 @@ uniform float roughness = 0.05;     //! slider(0, 1) step(0.01) How far new texe
 uniform float winding = 0.6;        //! slider(0, 1) step(0.01) Share of the stretches that bend
 uniform uint seed = 1u;             //! slider(0, 9999) Which ones
 
-const uint SALT = 0xd18f9355u;  // CRC-32 of "erosion/stream_power/finer"
+const uint SALT = 0xa72d9128u;  // CRC-32 of "water/levels/finer"
 
 ivec2 grid() { return textureSize(coarse, 0); }
 

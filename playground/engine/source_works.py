@@ -1,0 +1,110 @@
+"""Work out what a source makes of other passes: at once, or in a thread while the window answers.
+
+A work has the key of its step: while that is asked for again and again it goes on, and where another is
+asked for in its place it is cancelled. It may take seconds, and says how far it is.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from numpy.typing import NDArray
+
+from playground.engine.unfinished import Unfinished
+from playground.process.messages import Cancelled
+
+Arrays = Mapping[str, NDArray[Any]]
+Report = Callable[[int, int], None]
+"""Takes how many parts are done, and of how many; raises ``Cancelled`` where the work is to stop."""
+
+Task = Callable[[Report], Arrays]
+_WAIT = 0.03  # [s] that one picture waits for a work
+
+
+class SourceUnfinished(Unfinished):
+    """A source is still at work; the next frame asks again."""
+
+    def __init__(self, path: str, done: int, wanted: int) -> None:
+        super().__init__(done, wanted)
+        self.path = path
+
+
+class SourceWorks:
+    """The works of one engine, one for each step."""
+
+    def __init__(self) -> None:
+        self.waits = True  # for each work to end; else ``SourceUnfinished`` is raised meanwhile
+        self.idle = False  # nothing is worked out at all: where only shaders are tried
+        self.on_progress: Callable[[str, int, int], None] = lambda path, done, wanted: None
+        self.took: dict[str, float] = {}  # [s] that the last work in a thread took, by the step's path
+        self._works: dict[str, _Work] = {}  # likewise
+
+    def made(self, path: str, key: str, task: Callable[[], Task]) -> Arrays:
+        """Return what a step's work gives, or raise what it raises.
+
+        ``task`` is called where it has to begin. A step without a key, as in a loop, is waited for.
+        """
+        work = self._works.get(path)
+        if work is not None and work.key != key:
+            self._works.pop(path).cancel()
+            work = None
+        if work is None:
+            if self.waits or not key:
+                return task()(lambda done, wanted: self.on_progress(path, done, wanted))
+            work = self._works[path] = _Work(key, task())
+        while not work.ended.wait(_WAIT):
+            if not self.waits:
+                raise SourceUnfinished(path, *work.progress)
+            self.on_progress(path, *work.progress)
+        del self._works[path]
+        self.took[path] = work.seconds
+        return work.result()
+
+    def keep(self, keys: Mapping[str, str]) -> None:
+        """Cancel all works but those of these keys, by the path of their step."""
+        for path in [path for path, work in self._works.items() if keys.get(path) != work.key]:
+            self._works.pop(path).cancel()
+
+
+class _Work:
+    """One task in a thread."""
+
+    def __init__(self, key: str, task: Task) -> None:
+        self.key = key
+        self.progress = (0, 1)
+        self.seconds = 0.0  # that it took
+        self.ended = threading.Event()
+        self._task = task
+        self._cancelled = False
+        self._found: Arrays = {}
+        self._error: BaseException | None = None
+        # A daemon: a process that ends does not wait for it.
+        threading.Thread(target=self._run, name="source", daemon=True).start()
+
+    def cancel(self) -> None:
+        """Have it stop at its next report."""
+        self._cancelled = True
+
+    def result(self) -> Arrays:
+        """Return what it found, or raise what it raised."""
+        if self._error is not None:
+            raise self._error
+        return self._found
+
+    def _report(self, done: int, wanted: int) -> None:
+        if self._cancelled:
+            raise Cancelled
+        self.progress = done, wanted
+
+    def _run(self) -> None:
+        start = time.perf_counter()
+        try:
+            self._found = self._task(self._report)
+        except BaseException as error:
+            self._error = error
+        finally:
+            self.seconds = time.perf_counter() - start
+            self.ended.set()

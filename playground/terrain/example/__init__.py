@@ -1,0 +1,1 @@
+"""Make terrain that looks like a piece of real terrain."""

@@ -1,0 +1,43 @@
+"""Ranks and sorted heights against SciPy's."""
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter
+from scipy.special import ndtri
+from scipy.stats import rankdata
+
+from playground.terrain.ranked import normal_deviate, work
+from playground.terrain.source_kinds import Material
+
+RNG = np.random.default_rng(4)
+
+
+def test_normal_deviates_are_scipy_s():
+    shares = np.concatenate([np.geomspace(1e-9, 0.5, 4000), 1 - np.geomspace(1e-9, 0.5, 4000)])
+    np.testing.assert_allclose(normal_deviate(shares), ndtri(shares), atol=1e-8)
+
+
+def test_ranks_become_normal_and_heights_are_sorted():
+    heights = RNG.permutation(13 * 17).reshape(13, 17).astype(np.float32)
+    found = work({"widest": 0.0}, (17, 13), Material({"example": heights}))
+    np.testing.assert_array_equal(found["sorted"].ravel(), np.sort(heights, axis=None))
+    shares = (rankdata(heights) - 0.5) / heights.size
+    np.testing.assert_allclose(found["normal"], ndtri(shares).reshape(13, 17), atol=1e-6)
+
+
+def test_what_is_too_wide_is_left_out():
+    heights = RNG.normal(size=(60, 80)).astype(np.float32)
+    found = work({"widest": 0.2}, (80, 60), Material({"example": heights[..., None]}))
+    wanted = heights - gaussian_filter(heights.astype(np.float64), 4.0, mode="reflect", truncate=9)
+    np.testing.assert_allclose(found["sorted"].ravel(), np.sort(wanted, axis=None), atol=1e-5)
+
+
+@pytest.mark.parametrize("given", [{}, {"example": np.full((1, 1), 3.0, np.float32)}], ids=["none", "texel"])
+def test_no_example_is_flat(given):
+    assert not work({"widest": 0.1}, (4, 3), Material(given))["sorted"].any()
+
+
+def test_numbers_that_are_none_count_as_0():
+    heights = np.array([[1, np.nan], [np.inf, -np.inf]], np.float32)
+    found = work({"widest": 0.0}, (2, 2), Material({"example": heights}))
+    np.testing.assert_array_equal(found["sorted"].ravel(), [0, 0, 0, 1])

@@ -1,0 +1,128 @@
+"""While a source is at work the window shows the last picture, how far it is, and takes changes."""
+
+from __future__ import annotations
+
+import threading
+from datetime import datetime
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.sandbox import SandboxReport
+from playground.live.overlay import behind_text
+from playground.process.messages import Cancelled
+from playground.terrain import sources
+from playground.terrain.known import Terrain
+from playground.terrain.source_kinds import SourceKind
+from playground.workbench.session import Session
+
+from ..sketch_texts import map_of, passes
+from .test_session import FakeSandbox
+
+SOURCE = """#pragma source("slow", output = "height:r32f")
+uniform sampler2D given;   //! input("black")
+uniform float gain = 0.5;  //! slider(0, 1)
+"""
+SIZE = (16, 16)
+
+
+@pytest.fixture
+def cancelled():
+    return threading.Event()
+
+
+@pytest.fixture
+def gate(monkeypatch, cancelled):
+    opened = threading.Event()
+    opened.set()
+
+    def work(values, size, material):
+        for done in range(50):
+            material.report(done, 100)
+        try:
+            while not opened.wait(0.002):
+                material.report(50, 100)
+        except Cancelled:
+            cancelled.set()
+            raise
+        return {"height": np.full(size[::-1], values["gain"], np.float32)}
+
+    kind = SourceKind(lambda _: Terrain(), None, (), ("gain",), "the slow", inputs=("given",), work=work)
+    monkeypatch.setitem(sources.SOURCES, "slow", kind)
+    yield opened
+    opened.set()
+
+
+@pytest.fixture
+def session(tmp_path: Path, any_engine: Engine, gate):
+    (tmp_path / "slow.glsl").write_text(SOURCE, encoding="utf-8")
+    (tmp_path / "sketch.toml").write_text(
+        "format = 1\nsize = 9\n" + passes(height="./slow") + map_of("height", "red"), encoding="utf-8"
+    )
+    made = Session(any_engine, tmp_path / "sketch.toml")
+    drawn(made)
+    yield made
+    made.release()
+
+
+def drawn(session: Session) -> np.ndarray:
+    for _ in range(500):
+        session.frame(SIZE)
+        if session.catch_up.behind is None:
+            frame = session.read()
+            assert frame is not None and session.error is None
+            return frame.array
+    raise AssertionError("it never ends")
+
+
+def test_the_last_picture_stays_until_the_source_has_ended(session, gate):
+    before, draws = drawn(session), session.draws
+    gate.clear()
+    session.drafts.set("height.gain", 0.9)
+    for _ in range(3):
+        assert session.frame(SIZE) is not None
+    assert session.catch_up.behind == (50, 100) and session.catch_up.source == "height"
+    assert session.draws == draws and not session.rests and session.error is None
+    assert behind_text(50, 100, "height") == "making height … 50 %"
+    session.clock.playing, at = True, session.clock.time
+    session.advance(0.5, datetime(2026, 1, 1))
+    assert session.clock.time == at, "the clock waits"
+    gate.set()
+    after = drawn(session)
+    assert session.catch_up.source == "" and not np.array_equal(before, after)
+    np.testing.assert_array_equal(after[0, 0, :3], after[-1, -1, :3])
+
+
+def test_a_value_set_back_shows_at_once_and_stops_the_work(session, gate, cancelled):
+    before = drawn(session)
+    gate.clear()
+    session.drafts.set("height.gain", 0.9)
+    session.frame(SIZE)
+    assert session.catch_up.behind is not None
+    session.drafts.set("height.gain", 0.5)
+    session.frame(SIZE)
+    assert session.catch_up.behind is None
+    np.testing.assert_array_equal(drawn(session), before)
+    assert cancelled.wait(5.0)
+
+
+def test_a_first_picture_that_reads_a_file_is_drawn_once_the_source_has_ended(
+    session, any_engine, gate, tmp_path
+):
+    """What the sandbox has read is not new any more, though nothing was drawn with it yet."""
+    np.save(tmp_path / "hills.npy", np.eye(9, dtype=np.float32))
+    file = ("generation/heightmap", 'set = { elevation = "hills.npy" }')
+    text = passes(hills=file, height=("./slow", 'inputs = { given = "hills" }')) + map_of("height", "red")
+    (tmp_path / "other.toml").write_text("format = 1\nsize = 9\n" + text, encoding="utf-8")
+    gate.clear()
+    made = Session(any_engine, tmp_path / "other.toml", sandbox=FakeSandbox())
+    made.drafts._checks.sandbox.answer = SandboxReport(True)
+    for _ in range(5):
+        made.frame(SIZE)
+    assert made.catch_up.source == "height" and made.draws == 0
+    gate.set()
+    drawn(made)
+    assert made.draws == 1 and made.plan is not None
+    made.release()
