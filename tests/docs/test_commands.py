@@ -24,6 +24,7 @@ from playground import cli
 
 from ..elevations import write_geotiff
 from ..live.screen import ON_LINUX, Program, Screen
+from ..report.browser import MISSING
 from .pages import PAGES, ROOT, blocks_of, files, outside_of_blocks, write_files
 
 TEXTS = ROOT / "playground" / "lessons" / "texts"
@@ -330,6 +331,7 @@ SMALL = {
     "python tests/benchmarks/generation.py": ["--size", "65", "--rounds", "1"],
     "python tests/benchmarks/lighting.py": ["--size", "65", "--rounds", "1"],
 }
+FRAMES = "python -m tests.benchmarks.page_frames"
 IN_HILLS = [c for c in OTHERS if re.fullmatch(r"(python -m )?pytest hills.*", c)]
 EXPORT = "jupyter nbconvert --to terrain_html diamond_square.ipynb"
 OF_PLAY = [c for c in OTHERS if c.startswith("./play test ")]
@@ -337,7 +339,7 @@ UPDATE = "pytest hills --shots-update"
 
 
 def test_every_other_program_is_known():
-    assert set(OTHERS) == {*SMALL, *IN_HILLS, *OF_PLAY, EXPORT}
+    assert set(OTHERS) == {*SMALL, FRAMES, *IN_HILLS, *OF_PLAY, EXPORT}
     assert {"pytest hills", UPDATE} <= set(IN_HILLS)
 
 
@@ -353,6 +355,14 @@ def test_the_truth_is_printed():
 def test_a_program_of_the_checkout_runs(command: str):
     done = run(ROOT, [*command.split(), *SMALL[command]])
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(bool(MISSING), reason=MISSING)
+def test_frames_of_a_page_are_compared_with_the_engines():
+    done = run(ROOT, [*FRAMES.split(), "--frames", "1", "--runs", "1", "white_noise"])
+    assert done.returncode == 0, done.stderr
+    assert "white_noise" in done.stdout
 
 
 @pytest.mark.slow
