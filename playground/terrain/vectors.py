@@ -12,6 +12,7 @@ import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from importlib.util import find_spec
+from mmap import ACCESS_READ, mmap
 from pathlib import Path
 from typing import Any, Literal
 
@@ -30,12 +31,22 @@ MOST_BYTES = 2**28
 
 _WGS_84 = "EPSG:4326"
 _BEGINS = {  # what OGR may open by these names: others lead to further files, or into the network
-    ".gpkg": rb"SQLite format 3\0",
+    ".gpkg": rb"(?s)SQLite format 3\0.{52}(GPKG|GP10|GP11)",  # the mark of GeoPackage 1.3, 1.1.1
     ".shp": rb"\0\0\x27\x0a",
-    ".fgb": rb"fgb",
-    ".kml": rb"(?s).{0,500}<kml",
-    ".gpx": rb"(?s).{0,500}<gpx",
+    ".fgb": rb"(?s)fgb\x03fgb.{4}\0",  # a header below 16 MiB, so that no text begins here
+    ".kml": rb"<(\w+:)?kml[\s>]",
+    ".gpx": rb"<(\w+:)?gpx[\s>]",
 }
+_DRIVERS = {
+    ".gpkg": ("GPKG",),
+    ".shp": ("ESRI Shapefile",),
+    ".fgb": ("FlatGeobuf",),
+    ".kml": ("LIBKML", "KML"),
+    ".gpx": ("GPX",),
+}
+_PROLOG = re.compile(rb"\s*(?:<\?.*?\?>|<!--.*?-->)", re.DOTALL)
+_LEADS_AWAY = re.compile(rb"<OGR|opengis\.net/gml")
+"""In the text of what OGR may take for one of its lists of sources, wherever in a file, or for GML."""
 _KINDS: dict[str, tuple[Kind, int]] = {  # with how deep their coordinates nest
     "Point": ("point", 0),
     "MultiPoint": ("point", 1),
@@ -157,9 +168,8 @@ def _crs_of(document: dict[str, Any], path: Path) -> str:
 def _by_ogr(path: Path, ending: str) -> Vectors:
     if find_spec("pyogrio") is None:
         raise DataError(f"{ending} is read by OGR; {ADVICE}", file=path)
-    with path.open("rb") as handle:
-        if not re.match(_BEGINS[ending], handle.read(1000)):
-            raise DataError(f"is no {ending[1:]} file, although its name says so", file=path)
+    if not _is_what_it_says(path, ending):
+        raise DataError(f"is no {ending[1:]} file, although its name says so", file=path)
     import pyogrio
     from pyogrio.errors import DataLayerError, DataSourceError
 
@@ -169,6 +179,9 @@ def _by_ogr(path: Path, ending: str) -> Vectors:
         for name, kind in pyogrio.list_layers(path):
             if kind is None or str(name).endswith("_points"):  # of a GPX, once more what its lines are
                 continue
+            driver = pyogrio.read_info(path, layer=str(name))["driver"]
+            if driver not in _DRIVERS[ending]:
+                raise DataError(f"is no {ending[1:]} file to OGR, but one of {driver}", file=path)
             meta, _, shapes, _ = pyogrio.raw.read(path, layer=str(name), columns=[], force_2d=True)
             own = [shape for blob in shapes if blob is not None for shape in _from_binary(bytes(blob))]
             systems += [meta["crs"] or ""] if own else []
@@ -178,6 +191,26 @@ def _by_ogr(path: Path, ending: str) -> Vectors:
     same = systems.count(systems[0]) if systems else 0
     notes = (f"{len(systems) - same} layers in another reference system are left out",)
     return Vectors(tuple(found), systems[0] if systems else "", notes if same < len(systems) else ())
+
+
+def _is_what_it_says(path: Path, ending: str) -> bool:
+    """Return whether a file's first bytes, or the first element of its XML, are those of its ending.
+
+    OGR goes by what a file holds, not by its name.
+    """
+    begins = re.compile(_BEGINS[ending])
+    with path.open("rb") as handle:
+        if ending not in (".kml", ".gpx"):
+            return begins.match(handle.read(100)) is not None
+        if not path.stat().st_size:
+            return False
+        with mmap(handle.fileno(), 0, access=ACCESS_READ) as text:
+            at = 3 if text[:3] == b"\xef\xbb\xbf" else 0
+            while (skipped := _PROLOG.match(text, at)) is not None:
+                at = skipped.end()
+            while text[at : at + 1].isspace():
+                at += 1
+            return begins.match(text, at) is not None and _LEADS_AWAY.search(text) is None
 
 
 def _from_binary(blob: bytes) -> tuple[Shape, ...]:

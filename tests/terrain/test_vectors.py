@@ -229,6 +229,62 @@ def test_other_formats_are_read_by_ogr_or_name_the_extra(tmp_path, monkeypatch, 
         read_vectors(path)
 
 
+_VRT = (
+    "<OGRVRTDataSource>{0}<OGRVRTLayer name='secret'><SrcDataSource>{1}</SrcDataSource></OGRVRTLayer>"
+    "</OGRVRTDataSource>"
+)
+
+
+@pytest.mark.parametrize("ending", [".kml", ".gpx", ".fgb"])
+@pytest.mark.parametrize(
+    "text",
+    [
+        _VRT.format("<!-- <{2} -->", "{1}"),
+        "<?xml version='1.0'?><!-- <{2}> -->" + _VRT,
+        "<!-- <{2}>" + "-" * 400 + "-->" + _VRT,
+        "<{2}></{2}>" + _VRT,
+        "<{2}><!--" + "-" * 2000 + "-->" + _VRT + "</{2}>",
+        "fgb\x03fgb\x01" + _VRT,
+        "<!-- <{2}> --><OGRWFSDataSource><URL>http://127.0.0.1:9/</URL></OGRWFSDataSource>",
+        "<!DOCTYPE {2} [<!ENTITY a SYSTEM '{1}'>]><{2}>&a;</{2}>",
+        "<{2} xmlns:gml='http://www.opengis.net/gml' xsi:schemaLocation='a http://127.0.0.1:9/'></{2}>",
+    ],
+    ids=["inside", "before", "long", "second", "deep", "marked", "network", "entity", "schema"],
+)
+def test_a_list_of_other_sources_does_not_pass_for_a_file_of_shapes(tmp_path, ending, text):
+    pytest.importorskip("pyogrio")  # of the extra gis
+    private = geojson(tmp_path / "private.geojson", geometry("Point", [1, 2]))
+    path = tmp_path / f"a{ending}"
+    path.write_text(text.format("", private, ending[1:]))
+    with pytest.raises(DataError, match=f"is no {ending[1:]} file, although its name says so"):
+        read_vectors(path)
+
+
+def test_what_ogr_takes_for_another_format_is_not_read(tmp_path, monkeypatch):
+    pytest.importorskip("pyogrio")
+    monkeypatch.setattr(vectors, "_is_what_it_says", lambda *_: True)
+    private = geojson(tmp_path / "private.geojson", geometry("Point", [1, 2]))
+    path = tmp_path / "a.kml"
+    path.write_text(_VRT.format("", private).replace("secret", "private"))
+    with pytest.raises(DataError, match="is no kml file to OGR, but one of OGR_VRT"):
+        read_vectors(path)
+
+
+@pytest.mark.parametrize(
+    "begin", ["", "\ufeff", "<?xml version='1.0'?>\n<!-- <a> --> <!--b-->\n", "<!--" + "a" * 5000 + "-->"]
+)
+def test_what_may_come_before_the_first_element_does(tmp_path, begin):
+    pytest.importorskip("pyogrio")
+    path = tmp_path / "a.kml"
+    path.write_text(
+        begin
+        + '<kml xmlns="http://www.opengis.net/kml/2.2"><Document><Folder><name>a</name><Placemark><Point>'
+        "<coordinates>7,46</coordinates></Point></Placemark></Folder></Document></kml>",
+        "utf-8",
+    )
+    assert [s.kind for s in read_vectors(path).shapes] == ["point"]
+
+
 # On the terrain
 
 KIND = source_kind("vector_file")
