@@ -20,6 +20,7 @@ from playground.images.content_hash import content_key
 from playground.sketch.model import Value
 from playground.terrain.elevation import open_elevation
 from playground.terrain.gis import ADVICE, has_rasters, name_for_gdal, transformed
+from playground.terrain.grid import check_grid
 from playground.terrain.place import Place
 from playground.terrain.vector_mask import Grid, draw
 from playground.terrain.vectors import Line, Shape, read_vectors
@@ -45,6 +46,7 @@ def make(
     values: Mapping[str, Value], size: tuple[int, int], moment: None = None
 ) -> dict[str, NDArray[np.float32]]:
     """Return how much of each texel the shapes cover."""
+    check_grid(size[::-1], np.dtype(np.float32), Path("mask of vector data"))
     placed = _placed(*_asked(values))
     west, south, east, north = placed.place.bounds
     scale = (size[0] - 1) / (east - west), (size[1] - 1) / (north - south)

@@ -106,11 +106,11 @@ def _geojson(path: Path) -> Vectors:
         raise DataError(f"is not GeoJSON: {reason(error)}", file=path) from None
     if not isinstance(document, dict) or not isinstance(document.get("type"), str):
         raise DataError('is not GeoJSON: expected an object that has a "type"', file=path)
-    shapes = tuple(shape for geometry in _geometries(document) for shape in _shapes(geometry, path))
+    shapes = tuple(shape for geometry in _geometries(document, path) for shape in _shapes(geometry, path))
     return Vectors(shapes, _crs_of(document, path))
 
 
-def _geometries(found: Any) -> Iterator[dict[str, Any]]:
+def _geometries(found: Any, path: Path) -> Iterator[dict[str, Any]]:
     """Yield the geometries of a document, of a feature, or of several of them."""
     waiting = [found]
     while waiting:
@@ -120,15 +120,30 @@ def _geometries(found: Any) -> Iterator[dict[str, Any]]:
         if one.get("type") == "Feature":
             waiting.append(one.get("geometry"))
         elif "features" in one or "geometries" in one:
-            waiting += [*(one.get("features") or ()), *(one.get("geometries") or ())][::-1]
+            parts = [part for name in ("features", "geometries") for part in _listed(one, name, path)]
+            waiting += parts[::-1]
         else:
             yield one
 
 
+def _listed(one: dict[str, Any], name: str, path: Path) -> list[Any]:
+    found = one.get(name)
+    if not isinstance(found, list | None):
+        message = f'is not GeoJSON: expected "{name}" to be a list; found {_shortened(found)}'
+        raise DataError(message, file=path)
+    return found or []
+
+
+def _shortened(found: object) -> str:
+    text = repr(found)
+    return text if len(text) <= 40 else f"{text[:39]}…"
+
+
 def _shapes(geometry: dict[str, Any], path: Path) -> Iterator[Shape]:
     word = geometry.get("type")
-    if word not in _KINDS:
-        raise DataError(f"holds a {word!r}; expected {', '.join(_KINDS)}", file=path)
+    if not isinstance(word, str) or word not in _KINDS:
+        message = f"is not GeoJSON: it holds a {_shortened(word)}; expected {', '.join(_KINDS)}"
+        raise DataError(message, file=path)
     kind, depth = _KINDS[word]
     wanted = {"point": 0, "line": 1, "polygon": 2}[kind]
     several: list[Any] = [geometry.get("coordinates")]
@@ -144,7 +159,7 @@ def _shapes(geometry: dict[str, Any], path: Path) -> Iterator[Shape]:
                 raise ValueError
             if all(map(len, arrays)) and arrays:
                 yield Shape(kind, arrays)
-    except (TypeError, ValueError, IndexError):
+    except (TypeError, ValueError, IndexError, OverflowError):
         raise DataError(f"holds a {word} whose coordinates are no numbers", file=path) from None
 
 
@@ -153,12 +168,14 @@ def _crs_of(document: dict[str, Any], path: Path) -> str:
     crs = document.get("crs")
     if crs is None:
         return _WGS_84
-    name = crs.get("properties", {}).get("name", "") if isinstance(crs, dict) else ""
+    properties = crs.get("properties") if isinstance(crs, dict) else None
+    name = properties.get("name", "") if isinstance(properties, dict) else ""
     if re.search(r"CRS84$", str(name)):
         return _WGS_84
     code = re.search(r"EPSG:(?:[\d.]*:)?(\d+)$", str(name))
     if code is None:
-        raise DataError(f"names an unknown reference system, {name!r}; expected an EPSG code", file=path)
+        message = f"names an unknown reference system, {_shortened(name)}; expected an EPSG code"
+        raise DataError(message, file=path)
     return f"EPSG:{code[1]}"
 
 

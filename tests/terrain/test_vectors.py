@@ -175,7 +175,7 @@ def test_every_kind_of_geometry_is_read_with_and_without_heights(tmp_path):
     [
         ("{", "is not GeoJSON: "),
         ("[1, 2]", 'expected an object that has a "type"'),
-        ('{"type": "Topology"}', "holds a 'Topology'; expected Point"),
+        ('{"type": "Topology"}', "is not GeoJSON: it holds a 'Topology'; expected Point"),
         ('{"type": "Point", "coordinates": ["a", "b"]}', "Point whose coordinates are no numbers"),
         ('{"type": "LineString", "coordinates": [[1], [2]]}', "coordinates are no numbers"),
         ('{"type": "Polygon", "coordinates": null}', "coordinates are no numbers"),
@@ -185,6 +185,23 @@ def test_every_kind_of_geometry_is_read_with_and_without_heights(tmp_path):
             '{"type": "Point", "coordinates": [1, 2], "crs": {"properties": {"name": "local"}}}',
             "names an unknown reference system, 'local'",
         ),
+        (
+            '{"type": "Point", "coordinates": [1, 2], "crs": {"properties": null}}',
+            "names an unknown reference system, ''",
+        ),
+        (
+            '{"type": "FeatureCollection", "features": 5}',
+            'is not GeoJSON: expected "features" to be a list; found 5',
+        ),
+        (
+            '{"type": "GeometryCollection", "geometries": "ab"}',
+            "is not GeoJSON: expected \"geometries\" to be a list; found 'ab'",
+        ),
+        (
+            '{"type": "Feature", "geometry": {"type": [], "coordinates": [1, 2]}}',
+            r"is not GeoJSON: it holds a \[\]; expected Point",
+        ),
+        ('{"type": "Point", "coordinates": [1' + "0" * 400 + ", 1]}", "coordinates are no numbers"),
     ],
 )
 def test_what_is_wrong_with_a_file_is_a_sentence(tmp_path, text, words):
@@ -332,6 +349,14 @@ def test_a_place_in_degrees_is_at_its_place_on_terrain_in_degrees(tmp_path, valu
     share = (10.0423 - 10.0) / 0.06, (46.9577 - 46.92) / 0.08
     assert centre(made) == pytest.approx([s * (n - 1) for s, n in zip(share, size, strict=True)], abs=0.05)
     assert KIND.notes(values(path, dem)) == ()
+
+
+@pytest.mark.parametrize("size", [(1, 5), (5, 1), (1, 1)])
+def test_a_pass_of_one_texel_is_a_sentence(tmp_path, values, size):
+    dem = terrain(tmp_path / "a.tif", 4326, 10.0, 47.0, (0.001, 0.002), model=2)
+    path = geojson(tmp_path / "a.json", geometry("Point", [10.0423, 46.9577]))
+    with pytest.raises(DataError, match=rf"is {size[0]} x {size[1]} texels; expected at least 2 x 2"):
+        KIND.make(values(path, dem), size)
 
 
 def utm(longitude, latitude, middle):
