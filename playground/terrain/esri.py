@@ -20,6 +20,7 @@ from playground.terrain.place import Crs, Place
 from playground.terrain.rows import Band, FileRows, Rows, StreamRows
 
 _CHUNK = 2**24  # [bytes] of text at a time
+_LONGEST_WORD = 2**16  # [bytes]
 _NUMBERS = {
     ("unsignedint", 8): "u1",
     ("signedint", 8): "i1",
@@ -187,9 +188,10 @@ def _numbers_in_text(path: Path, start: int, size: tuple[int, int]) -> Iterator[
         while row < rows:
             read = handle.read(_CHUNK)
             # A number may go on in the next part.
-            cut = max(read.rfind(end) for end in b" \n\t\r") + 1 if read else 0
-            text, rest = (rest + read[:cut], read[cut:]) if read else (rest, b"")
-            if read and not cut:
+            rest += read
+            cut = max(rest.rfind(end) for end in b" \n\t\r") + 1 if read else len(rest)
+            text, rest = rest[:cut], rest[cut:]
+            if len(rest) > _LONGEST_WORD:
                 raise DataError("holds a word as long as a book; expected numbers", file=path)
             numbers = np.concatenate([left, _parsed(text, path)])
             count = min(len(numbers) // columns, rows - row)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import compress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,10 +37,10 @@ def draw(shapes: Sequence[Shape], grid: Grid, width: float, *, filled: bool) -> 
     Lines are ``width`` metres wide and points discs as wide as that; polygons are ``filled``, or lines.
     """
     mask = np.zeros(grid.size[::-1], np.float32)
-    polygons = [shape for shape in shapes if shape.kind == "polygon" and filled]
-    lines = [line for shape in shapes if shape not in polygons for line in shape.lines]
-    _stroke(mask, grid, _segments(lines), 0.5 * width)
-    for polygon in polygons:
+    areas = [filled and shape.kind == "polygon" for shape in shapes]
+    outlines = [shape for shape, area in zip(shapes, areas, strict=True) if not area]
+    _stroke(mask, grid, _segments([line for shape in outlines for line in shape.lines]), 0.5 * width)
+    for polygon in compress(shapes, areas):
         _fill(mask, grid, polygon)
     return mask
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from playground.errors import DataError
+from playground.terrain import esri
 from playground.terrain.elevation import read_elevation
 from playground.terrain.geodesy import degree_lengths
 
@@ -51,6 +52,14 @@ def test_a_grid_of_text_however_its_lines_part_it(tmp_path, per_line):
     # The corner is the cell's: its middle, the node, lies half a cell inside.
     assert found.place.bounds == (1012.5, 2012.5, 1112.5, 2162.5)
     assert found.place.crs.facts.epsg == 32633
+
+
+@pytest.mark.parametrize("chunk", [1, 2, 3, 7, 16])
+def test_a_part_of_a_text_may_be_one_number_without_an_end(tmp_path, monkeypatch, chunk):
+    path = asc(tmp_path / "a.asc")
+    path.write_text(path.read_text().rstrip())
+    monkeypatch.setattr(esri, "_CHUNK", chunk)
+    np.testing.assert_array_equal(read_elevation(path).heights[::-1], HEIGHTS)
 
 
 def test_the_corner_or_the_middle_of_the_cell_and_cells_that_are_not_square(tmp_path):

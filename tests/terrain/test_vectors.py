@@ -136,6 +136,22 @@ def test_a_long_and_winding_line_is_drawn_in_a_moment():
     assert made[on[:, 1], on[:, 0]].min() > 0.5
 
 
+def test_shapes_are_not_compared_with_one_another():
+    compared = []
+
+    class Compared(Shape):
+        def __eq__(self, other):
+            compared.append(other)
+            return self is other
+
+        __hash__ = Shape.__hash__
+
+    ring = np.array([(2.5, 2.5), (12.5, 2.5), (12.5, 12.5)])
+    shapes = [Compared(kind, (ring,)) for kind in ("polygon", "line") for _ in range(50)]
+    draw(shapes, Grid((21, 21), (1.0, 1.0)), 1.0, filled=True)
+    assert len(compared) <= len(shapes), "50 000 buildings would be compared a milliard times"
+
+
 # Files
 
 
