@@ -7,7 +7,7 @@ from pathlib import Path
 from playground.errors import DataError, nearest
 from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL, shown
-from playground.sketch.allowed_files import ELEVATIONS, VECTORS
+from playground.sketch.allowed_files import ELEVATIONS, VECTORS, outside_sidecar
 
 _IMAGES = (".jpg", ".jpeg", ".webp")
 _DATA = {*_IMAGES, *ELEVATIONS, *VECTORS, *VIDEO_FILES, *SOUND_FILES}
@@ -33,6 +33,10 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
         if candidate.is_file() and any(
             candidate.is_relative_to(root.resolve()) for root in (Path(folder), GLSL)
         ):
+            outside = outside_sidecar(candidate, (Path(folder), GLSL))
+            if outside is not None:
+                message = f"{parameter}: {outside.name} next to it leads out of the sketch's folder"
+                raise DataError(message, file=shown(candidate))
             return candidate
     folders = [(place / path).parent for place in places] or [path.parent]
     near = sorted(

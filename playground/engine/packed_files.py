@@ -14,6 +14,7 @@ from playground.sketch.assign import resolve, values_of
 from playground.sketch.libraries import libraries, library_around
 from playground.sketch.load import is_technique
 from playground.sketch.model import Sketch, Value, kernels_of
+from playground.sketch.sidecars import sidecars
 
 _DOCUMENTS = ("README*", "readme*", "LICENSE*", "LICENCE*")
 
@@ -55,7 +56,10 @@ def folder_of(sketch: Sketch) -> str:
 
 
 def _data(sketch: Sketch) -> Iterator[Path]:
-    """Yield the files that parameters name: as the sketch is, and in its presets, shots and keyframes."""
+    """Yield the files that parameters name: as the sketch is, and in its presets, shots and keyframes.
+
+    After each come the files next to it that say how to read it.
+    """
     values = values_of(sketch)
     declared = {
         f"{prefix}.{parameter.name}": parameter
@@ -71,4 +75,6 @@ def _data(sketch: Sketch) -> Iterator[Path]:
     for path, value in named:
         if value and path in declared:
             parameter = declared[path]
-            yield find_file(str(value), sketch.folder, parameter.file, parameter.name)
+            file = find_file(str(value), sketch.folder, parameter.file, parameter.name)
+            yield file
+            yield from sidecars(file)

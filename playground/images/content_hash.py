@@ -9,6 +9,7 @@ from pathlib import Path
 
 from playground.errors import DataError
 from playground.paths import shown
+from playground.sketch.sidecars import sidecars
 
 _TICK = 50_000_000  # [ns] more than a file system's clock takes to move on
 _LARGE = 2**26  # [bytes] takes longer to read than a tick lasts
@@ -17,6 +18,7 @@ _LARGE = 2**26  # [bytes] takes longer to read than a tick lasts
 def content_key(path: Path) -> str:
     """Return what changes whenever a file's contents do: their hash, or of a large file its times and size.
 
+    The files next to it that say how to read it count as its contents.
     Raises ``DataError`` for a file that cannot be read.
     """
     try:
@@ -25,14 +27,24 @@ def content_key(path: Path) -> str:
         raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
     if stat.st_size < _LARGE:
         return content_hash(path)
-    return f"{stat.st_mtime_ns} {stat.st_ctime_ns} {stat.st_size} {stat.st_ino}"
+    own = f"{stat.st_mtime_ns} {stat.st_ctime_ns} {stat.st_size} {stat.st_ino}"
+    return " ".join((own, *(f"{file.suffix} {content_key(file)}" for file in sidecars(path))))
 
 
 def content_hash(path: Path) -> str:
     """Return a hash of a file's contents, worked out anew when its times, size or identity change.
 
+    The files next to it that say how to read it count as its contents.
     Raises ``DataError`` for a file that cannot be read.
     """
+    further = sidecars(path)
+    if not further:
+        return _own_hash(path)
+    parts = [_own_hash(path), *(f"{file.suffix} {_own_hash(file)}" for file in further)]
+    return hashlib.blake2b(" ".join(parts).encode(), digest_size=16).hexdigest()
+
+
+def _own_hash(path: Path) -> str:
     try:
         stat = path.stat()
         # Two saves may fall into one tick of a file system's clock: what is so new is not remembered.

@@ -16,6 +16,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import TypeVar
 
 from playground.paths import GLSL
+from playground.sketch.sidecars import sidecars
 
 SHADERS = (".glsl", ".frag", ".comp", ".fs", ".fragment")
 """Endings of what is a shader, and so may be opened alone."""
@@ -244,6 +245,7 @@ def is_inside(path: Path, roots: Iterable[Path]) -> bool:
 def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
     """Return whether a data file that a sketch names lies outside its ``folder`` and ``glsl/``.
 
+    So it does where a file next to it lies outside that says how to read it.
     ``declared_in`` is the kernel that has the parameter: files are also looked for in its folder.
     Names of files that are not there are judged by where they would be.
     """
@@ -253,7 +255,16 @@ def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
     places = [folder, *([Path(declared_in).parent] if declared_in else []), GLSL]
     candidates = [place / text for place in places]
     there = [candidate for candidate in candidates if is_file(candidate)]
-    return not any(is_inside(candidate, roots) for candidate in there or candidates)
+    return not any(
+        is_inside(candidate, roots) and outside_sidecar(candidate, roots) is None
+        for candidate in there or candidates
+    )
+
+
+def outside_sidecar(path: Path, roots: Iterable[Path]) -> Path | None:
+    """Return a file next to a data file that says how to read it, and leads out of some folders; or None."""
+    places, found = tuple(roots), real(path) or path
+    return next((file for file in sidecars(found) if not is_inside(file, places)), None)
 
 
 def is_absolute(text: str) -> bool:

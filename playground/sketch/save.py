@@ -12,7 +12,7 @@ import os
 import shutil
 import stat
 import tomllib
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -30,6 +30,7 @@ from playground.sketch.save_values import (
     written_terrain_value,
     written_value,
 )
+from playground.sketch.sidecars import sidecars
 from playground.sketch.source import normalised
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_edit import append, drop, key_text, put, text_of
@@ -325,22 +326,31 @@ def _with_files_inside(wanted: Sketch) -> Sketch:
 
 
 def _copied_into(folder: Path, source: Path) -> str:
-    """Copy a file whole or not at all; return its name there, numbered where another file has it."""
+    """Copy a file whole or not at all; return its name there, numbered where another file has it.
+
+    The files next to it that say how to read it go along.
+    """
     if source.is_absolute() and source.is_relative_to(folder):
         return source.relative_to(folder).as_posix()
     target, number = folder / source.name, 2
     try:
-        data = source.read_bytes()
-        while target.exists() and target.read_bytes() != data:
+        data = _contents((source, *sidecars(source)))
+        while (there := _contents(filter(Path.exists, (target, *sidecars(target))))) and there != data:
             target, number = folder / f"{source.stem}-{number}{source.suffix}", number + 1
-        with partial_file(target) as partial:
-            partial.handle.write(data)
-            partial.rename(target)
+        for ending, content in reversed(data.items()):  # the file itself comes last
+            with partial_file(target.with_suffix(ending)) as partial:
+                partial.handle.write(content)
+                partial.rename(target.with_suffix(ending))
     except OSError as error:
         raise DataError(
             f"cannot be copied into the folder of the sketch: {error.strerror}", file=source
         ) from None
     return target.name
+
+
+def _contents(files: Iterable[Path]) -> dict[str, bytes]:
+    """Return what files of one name hold, by their endings."""
+    return {file.suffix: file.read_bytes() for file in files}
 
 
 def _new_folder(folder: Path, name: str) -> Path:
@@ -361,7 +371,8 @@ def _own_files(file: Sketch, wanted: Sketch) -> list[str]:
     folder, found = Path(file.folder), dict[str, None]()
     texts = [Path(name) for name in (*file.files, *wanted.files)]
     values = [v for v in values_of(wanted).values() if isinstance(v, str) and v]
-    for path in (*texts, *(folder / value for value in values)):
+    data = [file for value in values for file in (folder / value, *sidecars(folder / value))]
+    for path in (*texts, *data):
         if path.is_file() and path.is_relative_to(folder) and str(path) != file.file:
             found[path.relative_to(folder).as_posix()] = None
     return list(found)

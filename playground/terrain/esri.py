@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from playground.errors import DataError
+from playground.sketch.sidecars import sidecars
 from playground.terrain.grid import Found, check_grid
 from playground.terrain.place import Crs, Place
 from playground.terrain.rows import Band, FileRows, Rows, StreamRows
@@ -69,17 +70,11 @@ def read_bil(path: Path) -> Found:
 
 def _header_beside(path: Path) -> Header:
     """Return the words of a header file: a name and a value a line."""
-    beside = _beside(path, ".hdr")
+    beside = next((file for file in sidecars(path) if file.suffix.lower() == ".hdr"), None)
     if beside is None:
         raise DataError(f"needs {path.with_suffix('.hdr').name} next to it, which says its size", file=path)
     lines = (line.split() for line in beside.read_text("utf-8", "replace").splitlines())
     return {words[0].lower(): words[1] for words in lines if len(words) >= 2}
-
-
-def _beside(path: Path, ending: str) -> Path | None:
-    """Return the file of the same name with another ending, in small letters or large ones."""
-    names = (path.with_suffix(ending), path.with_suffix(ending.upper()))
-    return next((name for name in names if name.is_file()), None)
 
 
 def _text_header(path: Path) -> tuple[Header, int]:
@@ -173,7 +168,7 @@ def _place(header: Header, size: tuple[int, int], path: Path) -> Place | None:
         if ends[0] is None or ends[1] is None:
             return None
         west, north = ends[0], ends[1] + (ny - 1) * dy
-    beside = _beside(path, ".prj")
+    beside = next((file for file in sidecars(path) if file.suffix.lower() == ".prj"), None)
     wkt = beside.read_text("utf-8", "replace") if beside is not None else ""
     return Place(west, north, (dx, dy), (nx, ny), Crs(wkt=wkt))
 

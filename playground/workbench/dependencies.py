@@ -11,6 +11,7 @@ from playground.paths import GLSL, current_folder, without_part
 from playground.sketch.allowed_files import Signature
 from playground.sketch.assign import values_of
 from playground.sketch.model import Sketch
+from playground.sketch.sidecars import sidecar_places
 from playground.sketch.traits import traits_of
 
 
@@ -23,7 +24,10 @@ def files_of(sketch: Sketch) -> frozenset[Path]:
 
 
 def data_files(sketch: Sketch) -> frozenset[Path]:
-    """Return the images and elevation files that a sketch's parameters name, there or missing."""
+    """Return the images and elevation files that a sketch's parameters name, there or missing.
+
+    With each come the files next to it that say how to read it, there or missing.
+    """
     found: set[Path] = set()
     parameters = traits_of(sketch).files
     values = values_of(sketch) if parameters else {}
@@ -32,9 +36,10 @@ def data_files(sketch: Sketch) -> frozenset[Path]:
         if not text:
             continue
         try:
-            found.add(find_file(str(text), sketch.folder, parameter.file, parameter.name))
+            file = find_file(str(text), sketch.folder, parameter.file, parameter.name)
         except DataError:
-            found.add(Path(sketch.folder, str(text)))
+            file = Path(sketch.folder, str(text))
+        found |= {file, *sidecar_places(file)}
     return frozenset(found)
 
 
