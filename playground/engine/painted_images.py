@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.gpu.textures import make_texture, split_format, write_texels, write_texture
-from playground.images.content_hash import content_hash
+from playground.images.content_hash import content_key
 
 if TYPE_CHECKING:
     import moderngl
@@ -53,9 +53,9 @@ class PaintedFiles(dict[Path, Painted]):
         return painted if painted is not None and painted.holds() else None
 
     def content(self, path: Path) -> str:
-        """Return a hash of a file's contents, or the version of what is painted over it."""
+        """Return what tells a file's contents from others, or the version of what is painted over it."""
         painted = self.of(path)
-        return content_hash(path) if painted is None else f"painted {painted.token} {painted.version}"
+        return content_key(path) if painted is None else f"painted {painted.token} {painted.version}"
 
 
 class PaintedTextures:

@@ -1,0 +1,24 @@
+"""What the engine reads of a file to tell whether its textures are stale."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from playground.engine.painted_images import PaintedFiles
+from playground.images import content_hash as hashes
+
+
+def test_a_file_of_many_gigabytes_is_not_read_to_tell_whether_a_texture_is_stale(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "a.r16"
+    with path.open("wb") as handle:
+        handle.truncate(2**27)  # sparse: it takes no room
+    monkeypatch.setattr(hashes, "_hash", None)
+    before = PaintedFiles().content(path)
+    assert PaintedFiles().content(path) == before
+    with path.open("ab") as handle:
+        handle.write(b"more")
+    assert PaintedFiles().content(path) != before
