@@ -113,6 +113,6 @@ void kernel(ivec2 texel, out float height, out float gully) {
         wide *= 0.5;
         depth *= gain;
     }
-    height = cut / relief;
+    height = cut / max(relief, 1e-3);
     gully = smoothstep(0.1, 0.6, floors / max(weights, 1.0));
 }

@@ -25,16 +25,18 @@ uniform vec3 horizon = vec3(0.60, 0.70, 0.80);  //! colour group("Sky") What it 
 uniform int sky = 0;  //! menu("colours", "daylight") group("Sky")
                       //! Whether it mirrors that colour, or the sky of lighting/daylight
 
+const float BURIED = 0.05;  // more than the mesh differs from the heights at a shore
+
 vec4 vertex(vec3 corner, out vec3 position) {
     position = vec3(corner.xy * extent, sea_level - base_elevation);
-    // Below all of the terrain it would float in the air: no triangle is left of it.
-    if (sea_level < base_elevation) return vec4(0.0, 0.0, 0.0, 1.0);
     return clip_from_world * vec4(position, 1.0);
 }
 
 vec4 fragment(vec3 position) {
     vec2 share = position.xy / extent;
     float ground = height_at(height, share * vec2(textureSize(height, 0) - 1)) * relief;
+    // Far below the ground it cannot be seen, unless it floats in the air below the whole terrain.
+    if (ground - position.z > BURIED * relief) discard;
     float depth = max(position.z - ground, 0.0);
     float facing = abs(normalize(eye - position).z);
     float mirrored = 0.02 + 0.98 * pow(1.0 - facing, 5.0);

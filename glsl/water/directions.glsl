@@ -13,7 +13,8 @@
 // number below 1 lets them wander; what is chosen is still lower, so no way leads up.
 #include "noise/hash.glsl"
 #include "water/texels.glsl"
-#pragma kernel(output = "receiver:r32f")
+#pragma kernel(output = "receiver:r32f", \
+               accepts = "n up to 4096, m up to 4096")
 
 uniform sampler2D height;         //! input
 uniform float randomness = 0.0;   //! slider(0, 1) step(0.01) How far the ways wander; 0 is the

@@ -6,7 +6,8 @@
 //   source   none: made here
 //   tested   tests/glsl/test_water_texels.py, against NumPy's ravel and unravel
 //
-// A float holds every number of a texel up to 4096 x 4096.
+// A float holds every number of a texel up to 4096 x 4096: what gives such numbers accepts no
+// more.
 #ifndef WATER_TEXELS
 #define WATER_TEXELS
 #include "maths/whole.glsl"

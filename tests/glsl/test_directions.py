@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from playground.errors import SketchError
+
 from .water_truth import edge_of, steepest_slopes
 
 ROUGH = """
@@ -86,3 +88,9 @@ def test_on_an_even_slope_water_wanders_to_both_sides_alike(engine, make_sketch)
     # 159^2 draws of which about a half go aside: four standard deviations of their mean.
     assert 0.2 < np.abs(sideways).mean() < 0.8
     assert abs(sideways.mean()) < 4 * sideways.std() / 159
+
+
+def test_a_terrain_with_more_texels_than_a_float_numbers_is_refused(engine, make_sketch):
+    sketch = make_sketch(PASSES, size=[5001, 33], rough=ROUGH)
+    with pytest.raises(SketchError, match=r"takes n up to 4096, m up to 4096 texels a side, not 5001 x 33"):
+        engine.read(sketch, "down")

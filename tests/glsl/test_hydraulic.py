@@ -210,6 +210,18 @@ def test_outputs_say_what_was_done(engine, eroded):
     np.testing.assert_allclose(read["wetness"], 1 - 2 ** (-read["flow"] / 20), atol=1e-5)
 
 
+@pytest.mark.parametrize("spacing", [(20.0, 10.0), (10.0, 20.0), (15.0, 15.0)])
+def test_a_river_of_rain_brings_what_fell_above_it(engine, eroded, spacing):
+    """On a slope to the east, where nothing dries, the discharge of a metre of width is rain times length."""
+    slope = np.repeat(np.linspace(1, 0, 65, dtype=np.float32)[None], 9, 0)
+    extent = 64 * spacing[0], 8 * spacing[1]
+    still = {"evaporation": 0.0, "capacity": 0.1, "wear": 0.0, "creep": 0.0, "repose": 89.0}
+    sketch = eroded(slope, extent, edges="closed", rain=0.05, hours=1000, **still)
+    flow = engine.read(sketch, "worn:flow")[:, 8:40]
+    fell = 0.05 * spacing[0] * (np.arange(8, 40) + 0.5)  # a texel's own rain flows from its middle
+    np.testing.assert_allclose(flow, np.broadcast_to(fell, flow.shape), rtol=0.01)
+
+
 def test_hard_rock_wears_less_and_rain_falls_where_the_map_says(engine, eroded):
     text = """#pragma kernel(output = "factor:r32f")
 float kernel(ivec2 texel) {{ return 2 * texel.x < size.x ? {west} : {east}; }}

@@ -95,7 +95,7 @@ def test_a_device_that_filters_no_floats_draws_a_sketch_within_3_levels(
 
 
 def test_most_sketches_read_floats_with_a_filter(written: dict[str, Any]):
-    """As many as were counted when the page was planned, or the test before shows little."""
+    """Or the test before shows little."""
     assert sum(map(reads_filtered_floats, written["sketches"])) >= 58
 
 

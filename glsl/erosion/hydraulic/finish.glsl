@@ -29,7 +29,7 @@ void kernel(ivec2 texel, out float height, out float water, out float wear, out 
     ivec2 there = ivec2(place_on(grid, texel, size) + 0.5);
     float was = relief * texelFetch(before, there, 0).r;
     float ground = now.x + now.z;
-    height = ground / relief;
+    height = ground / max(relief, 1e-3);
     water = now.y;
     wear = max(was - ground, 0.0);
     deposit = max(ground - was, 0.0);

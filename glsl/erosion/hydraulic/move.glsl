@@ -84,7 +84,8 @@ vec4 kernel(ivec2 texel) {
     // What it can carry: more, the more water flows and the steeper its surface.
     vec2 mean = 0.5 * vec2((arrives.x - arrives.y) + (leaves.y - leaves.x),
                            (arrives.z - arrives.w) + (leaves.w - leaves.z));
-    float flow = length(mean);
+    // For each metre of width: the more, the longer a texel is along the flow.
+    float flow = length(mean * (spacing / min(spacing.x, spacing.y)));
     vec2 fall = (vec2(east.x - west.x, north.x - south.x)
                  + vec2(east.y - west.y, north.y - south.y)) / (2.0 * spacing);
     float squared = dot(fall, fall);

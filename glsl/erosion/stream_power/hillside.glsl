@@ -9,7 +9,8 @@
 //   tested   tests/glsl/test_stream_power.py, by slopes and by the law without them
 //
 // The Laplacian is that of nine points, the same along the axes as along the diagonals to third
-// order where spacings are equal. Each step is implicit in its own texel, so none is too long.
+// order where spacings are equal, and right along both axes where they are not. Each step is
+// implicit in its own texel, so none is too long.
 #include "erosion/stream_power/parameters/time.glsl"
 #include "water/texels.glsl"
 #pragma kernel(output = "height:r32f", repeat = "slides")
@@ -36,9 +37,11 @@ float kernel(ivec2 texel) {
         float there = height_before(texel + neighbour_of(k));
         float squared = dot(way, way);
         most = min(most, there + rise * sqrt(squared));
-        // 2/3 and 1/6 of a square grid's nine points: each over its distance squared, times 2/3
-        // and 1/3.
-        float weight = (neighbour_of(k).x * neighbour_of(k).y == 0 ? 2.0 : 1.0) / (3.0 * squared);
+        // 2/3 and 1/6 of a square grid's nine points; where the spacings differ, what the corners
+        // do not give along each axis its two neighbours give.
+        float corner = 1.0 / (3.0 * dot(spacing, spacing));
+        bool straight = neighbour_of(k).x * neighbour_of(k).y == 0;
+        float weight = straight ? 1.0 / squared - 2.0 * corner : corner;
         sum += weight * there;
         weights += weight;
     }

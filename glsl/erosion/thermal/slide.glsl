@@ -72,5 +72,5 @@ float kernel(ivec2 texel) {
                     + high.x * high.y * comes(texel, e + n, here))
                  + (high.x * low.y * comes(texel, e - n, here)
                     + low.x * high.y * comes(texel, n - e, here));
-    return here + rate * 0.125 * (straight + aslant) / relief;
+    return here + rate * 0.125 * (straight + aslant) / max(relief, 1e-3);
 }

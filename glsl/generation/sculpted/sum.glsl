@@ -12,5 +12,6 @@ uniform sampler2D change;        //! input
 uniform float amount = 1.0;      //! slider(0, 1) Share of the painted change that is added
 
 float kernel(ivec2 texel) {
-    return texelFetch(height, texel, 0).r + amount * texelFetch(change, texel, 0).r / relief;
+    float added = amount * texelFetch(change, texel, 0).r / max(relief, 1e-3);
+    return texelFetch(height, texel, 0).r + added;
 }

@@ -11,7 +11,8 @@
 // A texel may have eight donors, and a texture's texel holds four numbers. Here a texel knows one
 // donor, and each donor the next one of the same receiver.
 #include "water/texels.glsl"
-#pragma kernel(output = "node:rgba32f")
+#pragma kernel(output = "node:rgba32f", \
+               accepts = "n up to 4096, m up to 4096")
 
 uniform sampler2D receiver;  //! input
 uniform sampler2D rain;      //! input("white")

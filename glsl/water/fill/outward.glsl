@@ -9,7 +9,8 @@
 // Water that ends in a pit goes straight towards the nearest edge instead, until it meets a way
 // that leads down to one. So no way goes in a circle.
 #include "water/texels.glsl"
-#pragma kernel(output = "receiver:r32f")
+#pragma kernel(output = "receiver:r32f", \
+               accepts = "n up to 4096, m up to 4096")
 
 uniform sampler2D receiver;  //! input
 uniform sampler2D outlet;    //! input

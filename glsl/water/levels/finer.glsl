@@ -20,7 +20,8 @@
 #include "noise/hash.glsl"
 #include "terrain/heightfield.glsl"
 #include "water/texels.glsl"
-#pragma kernel(output = "height:r32f, receiver:r32f")
+#pragma kernel(output = "height:r32f, receiver:r32f", \
+               accepts = "n up to 4096, m up to 4096")
 
 uniform sampler2D start;            //! input
 uniform sampler2D coarse;           //! input
