@@ -101,9 +101,11 @@ def test_most_sketches_read_floats_with_a_filter(written: dict[str, Any]):
 
 def reads_filtered_floats(data: dict[str, Any]) -> bool:
     """Whether a sketch reads a texture of 32-bit floats, as a pass makes it, with a linear filter."""
-    steps = [step for node in data["nodes"] for step in (node["body"] if "body" in node else [node])]
+    steps = steps_of(data["nodes"])
     kernels = {step["path"]: data["kernels"][step["kernel"]] for step in steps}
-    fed = {(node["path"], name): last for node in data["nodes"] for name, _, last in node.get("feedback", ())}
+    fed = {
+        (loop["path"], name): last for loop in loops_of(data["nodes"]) for name, _, last in loop["feedback"]
+    }
     for step in steps:
         wired = dict(step["inputs"])
         for each in kernels[step["path"]]["inputs"]:
@@ -146,3 +148,17 @@ def test_another_renderer_differs_in_its_rounding_only(
             difference = np.abs(pages.picture(one["name"]).pixels.astype(int) - frame.array)[..., :3]
             assert difference.mean() < 0.4, one["name"]
             assert (difference.max(axis=2) > 8).mean() < 0.02, one["name"]
+
+
+def loops_of(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the loops among some nodes, and those inside them."""
+    loops = [node for node in nodes if "body" in node]
+    return loops + [inside for loop in loops for inside in loops_of(loop["body"])]
+
+
+def steps_of(nodes: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Return the passes among some nodes, and those inside their loops."""
+    found: list[dict[str, Any]] = []
+    for node in nodes:
+        found += steps_of(node["body"]) if "body" in node else [node]
+    return found

@@ -62,7 +62,8 @@ Stretch stretch_of(ivec2 from) {
     }
     ivec2 begin = side ? ivec2(along.x, 0) : ivec2(0, along.y);
     Stretch bent = Stretch(end, 2 * from + begin, 2 * from + begin + along);
-    return on_edge(bent.second, size) ? straight : bent;
+    if (on_edge(bent.second, size)) return straight;
+    return bent;
 }
 
 // The second texel of a diagonal's bend is 1 + sqrt(2) of its 2 + sqrt(2) along.
