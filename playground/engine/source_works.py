@@ -31,6 +31,9 @@ class SourceUnfinished(Unfinished):
         super().__init__(done, wanted)
         self.path = path
 
+    def __str__(self) -> str:
+        return f"{self.path} is being made, {self.done} of {self.wanted}: try again when it is there"
+
 
 class SourceWorks:
     """The works of one engine, one for each step."""
@@ -41,6 +44,11 @@ class SourceWorks:
         self.on_progress: Callable[[str, int, int], None] = lambda path, done, wanted: None
         self.took: dict[str, float] = {}  # [s] that the last work in a thread took, by the step's path
         self._works: dict[str, _Work] = {}  # likewise
+
+    @property
+    def at_work(self) -> bool:
+        """Whether a work has begun that was not asked for since it ended."""
+        return bool(self._works)
 
     def made(self, path: str, key: str, task: Callable[[], Task]) -> Arrays:
         """Return what a step's work gives, or raise what it raises.

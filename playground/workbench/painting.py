@@ -174,15 +174,23 @@ class Painting:
         if self.canvas is not None and not self.canvas.holds():
             # Another program has removed the file, or painted on it.
             self._saved(self.canvas.take_in if self.canvas.path.exists() else self.canvas.save)
-        if self._height() is None:
+        plan, step = self.session.plan, self._step_of(self.target)
+        if self._heights[1] is None:
+            self._heights = None, None  # what could not be read may be there now
+        if self._height() is None and not (plan and view_height(plan)):
             self.session.notes.append("the view shows no height, so there is no ground to paint on")
         self._last = self.ground(place)
-        canvas = self._begun() if self._last is not None else None
+        if self._last is None:
+            return
+        ground = ground_of(self.session, step.path) if step is not None and self.sculpts else None
+        if ground is None and self.sculpts and self._adds_metres:
+            self._last = None  # a note says why it cannot be read
+            return
+        canvas = self._begun()
         if canvas is not None:
             self._hand_over(canvas)
-            step = self._step_of(self.target)
-            if isinstance(canvas, Sculpture) and step is not None:
-                canvas.lie_on(ground_of(self.session, step.path))
+            if isinstance(canvas, Sculpture):
+                canvas.lie_on(ground)
             canvas.begin()
             self._stroke = canvas
             self._saved_at = -SAVES_EVERY
