@@ -1,4 +1,4 @@
-"""Run a technique on arrays instead of on a sketch's passes: for a brush, on a window of the terrain.
+"""Run a technique on arrays instead of on a sketch's passes: for Python users, and tools that work on arrays.
 
 The arrays become textures of passes that never run, each under a number of its own, so that no texture
 computed of other arrays is taken for one of these. What depends on them leaves the cache afterwards;
@@ -20,6 +20,7 @@ from playground.engine.cache import Cached
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopStep, Plan, every_version, sources_of, walk
 from playground.engine.plan_warnings import PlanWarnings
+from playground.engine.source_works import SourceWorks
 from playground.engine.standalone import free_name, shown_alone, text_of
 from playground.errors import ParameterError, nearest
 from playground.gpu.textures import read_texture, write_texture
@@ -132,13 +133,18 @@ class OnArrays:
 
     @contextmanager
     def _apart(self) -> Iterator[None]:
-        """Leave the engine's last frame and counts as they are, and its disk cache alone."""
-        engine = self.engine
+        """Leave the engine's last frame, counts and sources at work as they are, and its disk cache alone.
+
+        All is waited for, whatever the engine's patience.
+        """
+        engine, runner = self.engine, self.engine.runner
+        works, patience, runner.works, engine.patience = runner.works, engine.patience, SourceWorks(), None
         record, runs, disk, warnings = engine.record, engine.runs.copy(), engine.disk_caching, engine.warnings
         engine.disk_caching, engine.warnings = None, PlanWarnings()
         try:
             yield
         finally:
+            runner.works, engine.patience = works, patience
             engine.record, engine.disk_caching, engine.warnings = record, disk, warnings
             engine.runs.clear()
             engine.runs.update(runs)

@@ -31,6 +31,9 @@ class SourceUnfinished(Unfinished):
         super().__init__(done, wanted)
         self.path = path
 
+    def __str__(self) -> str:
+        return f"{self.path} is being made, {self.done} of {self.wanted}: try again when it is there"
+
 
 class SourceWorks:
     """The works of one engine, one for each step."""
@@ -41,19 +44,30 @@ class SourceWorks:
         self.on_progress: Callable[[str, int, int], None] = lambda path, done, wanted: None
         self.took: dict[str, float] = {}  # [s] that the last work in a thread took, by the step's path
         self._works: dict[str, _Work] = {}  # likewise
+        self._ending: dict[str, _Work] = {}  # likewise, those that were cancelled: they may go on for a while
+
+    @property
+    def at_work(self) -> bool:
+        """Whether a work has begun that was not asked for since it ended."""
+        return bool(self._works)
 
     def made(self, path: str, key: str, task: Callable[[], Task]) -> Arrays:
         """Return what a step's work gives, or raise what it raises.
 
-        ``task`` is called where it has to begin. A step without a key, as in a loop, is waited for.
+        ``task`` is called where it has to begin, which is not before the step's cancelled work has ended. A
+        step without a key, as in a loop, is waited for.
         """
         work = self._works.get(path)
         if work is not None and work.key != key:
-            self._works.pop(path).cancel()
+            self._cancel(path)
             work = None
         if work is None:
             if self.waits or not key:
                 return task()(lambda done, wanted: self.on_progress(path, done, wanted))
+            ending = self._ending.get(path)
+            if ending is not None and not ending.ended.wait(_WAIT):
+                raise SourceUnfinished(path, 0, ending.progress[1])
+            self._ending.pop(path, None)
             work = self._works[path] = _Work(key, task())
         while not work.ended.wait(_WAIT):
             if not self.waits:
@@ -66,7 +80,11 @@ class SourceWorks:
     def keep(self, keys: Mapping[str, str]) -> None:
         """Cancel all works but those of these keys, by the path of their step."""
         for path in [path for path, work in self._works.items() if keys.get(path) != work.key]:
-            self._works.pop(path).cancel()
+            self._cancel(path)
+
+    def _cancel(self, path: str) -> None:
+        work = self._ending[path] = self._works.pop(path)
+        work.cancel()
 
 
 class _Work:

@@ -19,6 +19,7 @@ from playground.terrain.source_kinds import Material
 
 PARAMETERS = ("widest",)
 INPUTS = ("example",)
+_STEPS = 5  # resampling, smoothing, sorting, the deviates, and what is left
 
 
 def work(
@@ -29,20 +30,26 @@ def work(
     ``sorted`` holds the heights from the lowest on, row by row.
     """
     nx, ny = size
+    material.report(0, _STEPS)
     given = material.inputs.get("example")
     heights = np.zeros((ny, nx)) if given is None else given.reshape(*given.shape[:2], -1)[..., 0]
     heights = np.nan_to_num(np.asarray(heights, np.float64), posinf=0.0, neginf=0.0)
     if heights.shape != (ny, nx):
         heights = resample(heights, size).astype(np.float64) if min(heights.shape) > 1 else np.zeros((ny, nx))
+    material.report(1, _STEPS)
     widest = values["widest"]
     assert isinstance(widest, int | float)  # the kernel's file says so
     if widest > 0:
         heights = heights - smoothed(heights, widest * nx / 4)  # a hill is some four deviations wide
+    material.report(2, _STEPS)
     order = heights.ravel().argsort(kind="stable")
+    material.report(3, _STEPS)
     ranks = np.empty(order.size)
     ranks[order] = np.arange(order.size)
+    normal = normal_deviate((ranks + 0.5) / order.size)
+    material.report(4, _STEPS)
     return {
-        "normal": normal_deviate((ranks + 0.5) / order.size).reshape(ny, nx).astype(np.float32),
+        "normal": normal.reshape(ny, nx).astype(np.float32),
         "sorted": heights.ravel()[order].reshape(ny, nx).astype(np.float32),
     }
 

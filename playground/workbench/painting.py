@@ -56,6 +56,7 @@ class Painting:
         self._found: tuple[Sketch | None, tuple[str, ...]] = (None, ())
         self._chosen = ""
         self._heights: tuple[object, NDArray[np.float32] | None] = (None, None)  # and of which picture
+        self._stroke: Canvas | None = None  # what the stroke that goes on is painted on
         self._last: tuple[float, float] | None = None  # where the stroke is
         self._saved_at = 0.0
         self._moved_at = 0.0
@@ -173,24 +174,33 @@ class Painting:
         if self.canvas is not None and not self.canvas.holds():
             # Another program has removed the file, or painted on it.
             self._saved(self.canvas.take_in if self.canvas.path.exists() else self.canvas.save)
-        if self._height() is None:
+        plan, step = self.session.plan, self._step_of(self.target)
+        if self._heights[1] is None:
+            self._heights = None, None  # what could not be read may be there now
+        if self._height() is None and not (plan and view_height(plan)):
             self.session.notes.append("the view shows no height, so there is no ground to paint on")
         self._last = self.ground(place)
-        canvas = self._begun() if self._last is not None else None
+        if self._last is None:
+            return
+        ground = ground_of(self.session, step.path) if step is not None and self.sculpts else None
+        if ground is None and self.sculpts and self._adds_metres:
+            self._last = None  # a note says why it cannot be read
+            return
+        canvas = self._begun()
         if canvas is not None:
             self._hand_over(canvas)
-            step = self._step_of(self.target)
-            if isinstance(canvas, Sculpture) and step is not None:
-                canvas.lie_on(ground_of(self.session, step.path))
+            if isinstance(canvas, Sculpture):
+                canvas.lie_on(ground)
             canvas.begin()
+            self._stroke = canvas
             self._saved_at = -SAVES_EVERY
             self._moved_at = self._now() - CLICK
             self.move(place)
 
     def move(self, place: tuple[float, float]) -> None:
-        """Go on with the stroke, for as long as it is since the last time."""
+        """Go on with the stroke, for as long as it is since the last time; nothing where it has ended."""
         plan, canvas = self.session.plan, self.canvas
-        if plan is None or plan.terrain.extent is None or canvas is None:
+        if plan is None or plan.terrain.extent is None or canvas is None or canvas is not self._stroke:
             return
         now, at = self.ground(place), self._now()
         seconds, self._moved_at = min(at - self._moved_at, LONGEST), at
@@ -204,8 +214,8 @@ class Painting:
         self._last = now
 
     def release(self) -> None:
-        """End the stroke."""
-        self._last = None
+        """End the stroke; until the next press nothing is painted."""
+        self._last = self._stroke = None
         if self.canvas is not None and not self.canvas.saved:
             self._saved(self.canvas.save)
 
@@ -222,7 +232,8 @@ class Painting:
         self._edit(self._begun(), Canvas.clear)
 
     def _edit(self, canvas: Canvas | None, act: Callable[[Canvas], None]) -> None:
-        """Change a mask and save it; what another program has painted on it since is read instead."""
+        """End the stroke, change a mask and save it; what others have painted on it is read instead."""
+        self.release()
         if canvas is None:
             return
         if canvas.holds() or not canvas.path.exists():

@@ -79,7 +79,7 @@ def _stamp(
         case "flatten":
             added = np.expm1(-APPROACH * weight * seconds) * (_terrain(change, ground, part) - level)
         case "smooth":
-            radius = min(brush.radius, _FINEST * max(dx, dy))
+            radius = min(brush.radius, _FINEST * min(dx, dy))
             terrain = _terrain(change, ground, part)
             added = _spread(terrain, weight, radius**2 / 16 * seconds, (dx, dy)) - terrain
         case "sharpen":

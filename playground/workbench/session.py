@@ -21,6 +21,7 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Plan
+from playground.engine.source_works import SourceUnfinished
 from playground.errors import ContextError, PlaygroundError
 from playground.sketch.assign import find_targets, resolve
 from playground.sketch.find import find
@@ -311,23 +312,30 @@ class Session:
         self.view.stop_at(path, step if 0 <= step < self.repeats.get(path, 0) else None)
 
     def fit_map(self) -> None:
-        """Fit the map's channel and range to the texture's values."""
+        """Fit the map's channel and range to the texture's values; it stays while sources are at work."""
         shown = self.view.map
         if shown is not None and self.sketch is not None:
             values = self.read_values(shown.ref)
-            self.view.show(fitted(shown, values) if values is not None else None)
+            if values is not None or not self.engine.runner.works.at_work:
+                self.view.show(fitted(shown, values) if values is not None else None)
 
     def read_values(self, ref: str) -> NDArray[np.float32] | None:
-        """Return a texture's values as the picture has them, row 0 south; None, and a note, if that fails."""
+        """Return a texture's values as the picture has them, row 0 south; None, and a note, if that fails.
+
+        It fails as well while a source is at work on them: nothing is waited for.
+        """
         if self.sketch is None or self.awaits_data:
             return None
-        now = self.clock.time
+        now, engine = self.clock.time, self.engine
         stops, fills = self.view.stops(self.sketch, now), self.view.interpolated
+        engine.patience = float("inf")  # loops run to their end
         try:
-            return self.engine.read(self.sketch, ref, time=now, steps=stops, interpolated=fills)
-        except PlaygroundError as error:
+            return engine.read(self.sketch, ref, time=now, steps=stops, interpolated=fills)
+        except (PlaygroundError, SourceUnfinished) as error:
             self.notes.append(str(error))
             return None
+        finally:
+            engine.patience = None
 
     # ── the picture ──────────────────────────────────────────────────────────
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pytest
 
 from playground.engine.on_arrays import OnArrays
+from playground.engine.source_works import SourceUnfinished
 from playground.errors import PlaygroundError
 from playground.sketch.load import load
 from playground.sketch.techniques import read_technique
@@ -136,6 +139,35 @@ def test_the_picture_stays_the_last_frame_and_nothing_of_the_arrays_stays_cached
     assert engine.record is record and engine.runs == runs
     engine.draw(sketch, size=(32, 24))
     assert engine.ran == []
+
+
+def test_a_source_that_a_window_waits_for_goes_on(engine, sketch, slumps):
+    ended, may_end = threading.Event(), threading.Event()
+
+    def work(report):
+        try:
+            while not may_end.wait(0.002):
+                report(0, 1)
+        finally:
+            ended.set()
+        return {"height": np.ones((2, 2), np.float32)}
+
+    works = engine.runner.works
+    works.waits = False
+    with pytest.raises(SourceUnfinished):
+        works.made("height", "key", lambda: work)
+    engine.patience = 0.1
+    try:
+        OnArrays(engine, slumps).run({"height_before": np.zeros((5, 4), np.float32)}, **OPTIONS)
+        assert engine.patience == 0.1
+    finally:
+        engine.patience = None
+    assert engine.runner.works is works and not works.waits
+    assert not ended.wait(0.1) and works.at_work
+    may_end.set()
+    assert ended.wait(5.0)
+    assert works.made("height", "key", lambda: work)["height"].all()
+    works.waits = True
 
 
 def test_warm_it_neither_compiles_nor_plans_anew(any_engine, slumps):

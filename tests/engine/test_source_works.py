@@ -268,6 +268,43 @@ def test_works_are_one_for_each_step():
     assert ran == ["a", "b", "c", "d"]
 
 
+def test_of_a_step_one_work_runs_at_a_time_however_often_it_is_cancelled():
+    """One that does not look whether it is cancelled goes on to its end; no other begins meanwhile."""
+    works, may_end, begun = SourceWorks(), threading.Event(), []
+    works.waits = False
+
+    def task(name):
+        def begin():
+            begun.append(name)
+
+            def work(report):
+                may_end.wait(10.0)
+                return {"name": np.array([ord(name)])}
+
+            return work
+
+        return begin
+
+    for name in "abcd":
+        with pytest.raises(SourceUnfinished) as met:
+            works.made("p", name, task(name))
+        assert met.value.path == "p"
+    works.keep({})
+    with pytest.raises(SourceUnfinished):
+        works.made("p", "e", task("e"))
+    with pytest.raises(SourceUnfinished):
+        works.made("q", "f", task("f"))
+    assert begun == ["a", "f"]
+    may_end.set()
+    for _ in range(100):
+        try:
+            assert works.made("p", "g", task("g"))["name"] == ord("g")
+            break
+        except SourceUnfinished:
+            continue
+    assert begun == ["a", "f", "g"]
+
+
 # ── where it is not made ─────────────────────────────────────────────────────
 
 

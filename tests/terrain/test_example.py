@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from itertools import pairwise, product
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from scipy.ndimage import gaussian_filter
 from playground.errors import DataError
 from playground.paths import GLSL
 from playground.terrain.elevation import Elevation, read_elevation
-from playground.terrain.example import source
+from playground.terrain.example import quilt, source, terrain
 from playground.terrain.example.candidates import CELLS, Candidates, Fit, features_of, in_cells, oriented
 from playground.terrain.example.mirrored import integrated, smoothed
 from playground.terrain.example.quilt import cut, quilted
@@ -135,11 +136,11 @@ def test_a_quilt_of_an_even_slope_has_no_seam():
     """All pieces of one orientation are the same: so whatever is cut, it is that plane."""
     plane = np.add.outer(2.0 * np.arange(60), 3.0 * np.arange(60))
     pieces = Candidates([plane] * 5, 16, 20, np.random.default_rng(1))
-    quilt = quilted(pieces, (50, 37), 5)
-    assert (quilt.heights.shape, quilt.east.shape) == ((37, 50), (37, 50))
-    np.testing.assert_allclose(quilt.east, 3.0)
-    np.testing.assert_allclose(quilt.north, 2.0)
-    np.testing.assert_allclose(np.diff(quilt.heights, axis=1), 3.0, atol=1e-4)
+    laid = quilted(pieces, (50, 37), 5)
+    assert (laid.heights.shape, laid.east.shape) == ((37, 50), (37, 50))
+    np.testing.assert_allclose(laid.east, 3.0)
+    np.testing.assert_allclose(laid.north, 2.0)
+    np.testing.assert_allclose(np.diff(laid.heights, axis=1), 3.0, atol=1e-4)
 
 
 # ── the whole ────────────────────────────────────────────────────────────────
@@ -239,6 +240,29 @@ def test_an_example_smaller_than_a_piece_is_a_sentence():
     assert not made(flat, 65, lines(65)).any()
 
 
+def test_it_can_be_stopped_between_any_two_of_its_heavy_steps(example, monkeypatch):
+    order = []
+    for name in ("oriented", "Candidates", "features_of", "quilted", "smoothed", "integrated"):
+        act = getattr(terrain, name)
+
+        def noted(*given, _name=name, _act=act, **more):
+            order.append(_name)
+            return _act(*given, **more)
+
+        monkeypatch.setattr(terrain, name, noted)
+    terrain._ways.cache_clear()
+    guide = lines(65)
+    made_like(
+        example, example.spacing, (65, 65), (METRES, METRES), FEW, guide, lambda *at: order.append("report")
+    )
+    heavy = ["oriented", "Candidates", "features_of", "quilted", "smoothed", "integrated"]
+    assert [name for name in dict.fromkeys(order) if name != "report"] == heavy
+    for name in heavy:
+        around = order[order.index(name) - 1], order[order.index(name) + 1]
+        assert around[name == "quilted"] == "report", f"before {name}; a quilt does so by itself"
+    assert order[-1] == "report", "and after the last"
+
+
 def test_it_reports_how_far_it_is_and_can_be_stopped(example):
     seen = []
     made_like(example, example.spacing, (65, 65), (METRES, METRES), FEW, report=lambda *at: seen.append(at))
@@ -253,6 +277,59 @@ def test_it_reports_how_far_it_is_and_can_be_stopped(example):
 
     with pytest.raises(Stop):
         made_like(example, example.spacing, (65, 65), (METRES, METRES), FEW, report=stop)
+
+
+def slow_order(strength):
+    """Yield the places by the rule itself: each time all that wait are looked at."""
+    weak, sides = quilt._WEAK, ((0, -1), (0, 1), (-1, 0), (1, 0))
+    waiting = set(product(*map(range, strength.shape)))
+    border = set()
+
+    def rank(place):
+        beside = sum((place[0] + dj, place[1] + di) not in waiting for dj, di in sides)
+        strong = float(strength[place]) if strength[place] > weak else 0.0
+        return strong, beside, (-place[0], -place[1])
+
+    while waiting:
+        strong = [place for place in border if strength[place] > weak]
+        if not strong and any(strength[place] > weak for place in waiting):
+            place = max(waiting, key=rank)
+        else:
+            place = max(strong or border or waiting, key=rank)
+        waiting.remove(place)
+        border.discard(place)
+        border |= {(place[0] + dj, place[1] + di) for dj, di in sides} & waiting
+        yield place
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (7, 1), (12, 17)])
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.6, 1.0])
+def test_pieces_are_laid_in_the_order_of_the_rule(shape, share):
+    rng = np.random.default_rng(8)
+    strength = np.where(rng.random(shape) < share, rng.integers(1, 6, shape) / 4.0, 0.1)
+    assert list(quilt._order(strength)) == list(slow_order(strength))
+
+
+def calls(order, strength):
+    """Return how many calls an order of all places makes."""
+    count = 0
+
+    def note(frame, event, given):
+        nonlocal count
+        count += event in ("call", "c_call")
+
+    sys.setprofile(note)
+    try:
+        assert len(list(order(strength))) == strength.size
+    finally:
+        sys.setprofile(None)
+    return count
+
+
+@pytest.mark.parametrize("height", [0.1, 1.0])
+def test_the_order_of_four_times_the_pieces_takes_little_more_than_four_times_the_work(height):
+    few, many = np.full((12, 12), height), np.full((24, 24), height)
+    assert calls(quilt._order, many) < 5 * calls(quilt._order, few)
 
 
 # ── the source ───────────────────────────────────────────────────────────────

@@ -41,3 +41,22 @@ def test_numbers_that_are_none_count_as_0():
     heights = np.array([[1, np.nan], [np.inf, -np.inf]], np.float32)
     found = work({"widest": 0.0}, (2, 2), Material({"example": heights}))
     np.testing.assert_array_equal(found["sorted"].ravel(), [0, 0, 0, 1])
+
+
+def test_it_says_how_far_it_is_and_stops_where_it_is_told_to():
+    heights, seen = RNG.normal(size=(20, 30)).astype(np.float32), []
+    material = Material({"example": heights}, report=lambda *at: seen.append(at))
+    work({"widest": 0.2}, (80, 60), material)
+    assert seen == [(done, len(seen)) for done in range(len(seen))] and len(seen) >= 4
+
+    class Stop(Exception):
+        pass
+
+    for last in range(len(seen)):
+
+        def stop(done, wanted, last=last):
+            if done == last:
+                raise Stop
+
+        with pytest.raises(Stop):
+            work({"widest": 0.2}, (80, 60), Material({"example": heights}, report=stop))

@@ -136,6 +136,40 @@ def test_the_file_has_the_window_s_bits_and_draws_its_picture(
             other.release()
 
 
+@pytest.mark.parametrize("act", ["undo", "redo", "clear"])
+def test_what_ends_a_stroke_with_the_button_down_leaves_nothing_that_cannot_be_undone(
+    painting: Painting, act: str
+) -> None:
+    stroke(painting, PLACE)
+    canvas = painting.canvas
+    assert canvas is not None
+    first = canvas.pixels.copy()
+    painting.press(PLACE)
+    getattr(painting, act)()
+    ended = canvas.pixels.copy()
+    for place in (PLACE, (0.6, 0.55)):  # the button is still down
+        painting._now.now += 0.05  # type: ignore[attr-defined]
+        painting.move(place)
+    painting.release()
+    np.testing.assert_array_equal(canvas.pixels, ended)
+    np.testing.assert_array_equal(read_numbers(canvas.path, (97, 65)), ended)
+    stroke(painting, PLACE)
+    painting.undo()
+    np.testing.assert_array_equal(canvas.pixels, ended)
+    while canvas.can_undo:
+        painting.undo()
+    assert not canvas.pixels.any() and first.any()
+
+
+def test_a_stroke_that_begins_in_the_sky_paints_nothing(session: Session, painting: Painting) -> None:
+    stroke(painting, PLACE)
+    canvas = painting.canvas
+    assert canvas is not None and painting.ground((0.5, 0.99)) is None
+    before = canvas.pixels.copy()
+    stroke(painting, (0.5, 0.99), PLACE)
+    np.testing.assert_array_equal(canvas.pixels, before)
+
+
 def test_each_stroke_is_undone_and_redone_to_the_same_bytes(session: Session, painting: Painting) -> None:
     states, files = [], []
     for tool in ("raise", "smooth", "flatten", "sharpen", "lower", "erase"):

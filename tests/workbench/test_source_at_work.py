@@ -16,6 +16,8 @@ from playground.process.messages import Cancelled
 from playground.terrain import sources
 from playground.terrain.known import Terrain
 from playground.terrain.source_kinds import SourceKind
+from playground.workbench.brush import Brush
+from playground.workbench.painting import Painting
 from playground.workbench.session import Session
 
 from ..sketch_texts import map_of, passes
@@ -125,4 +127,89 @@ def test_a_first_picture_that_reads_a_file_is_drawn_once_the_source_has_ended(
     gate.set()
     drawn(made)
     assert made.draws == 1 and made.plan is not None
+    made.release()
+
+
+# ── what waits for nothing ───────────────────────────────────────────────────
+
+SCULPTED = (
+    """format = 1
+size = 33
+extent = [2000.0, 2000.0]
+relief = 200.0
+"""
+    + passes(low="./slow", height="generation/sculpted", light="lighting/l_dot_n").replace(
+        'use = "generation/sculpted"', 'use = "generation/sculpted"\ninputs = { height = "low" }'
+    )
+    + """[view]
+use = "view/terrain"
+samples = 1
+camera = { azimuth = 180, elevation = 60, distance = 3000 }
+"""
+)
+
+
+class Opening:
+    """A gate that opens by itself after some seconds, so that who waits for it fails and does not hang."""
+
+    def __init__(self, gate: threading.Event) -> None:
+        self.waited = False
+        self._timer = threading.Timer(3.0, self._open, [gate])
+        self._timer.start()
+
+    def _open(self, gate: threading.Event) -> None:
+        self.waited = True
+        gate.set()
+
+    def close(self) -> None:
+        self._timer.cancel()
+
+
+@pytest.fixture
+def closed(gate):
+    gate.clear()
+    opening = Opening(gate)
+    yield opening
+    opening.close()
+
+
+def test_values_are_not_waited_for(session, gate, closed):
+    session.drafts.set("height.gain", 0.9)
+    session.frame(SIZE)
+    assert session.read_values("height") is None and not closed.waited
+    assert session.notes[-1] == "height is being made, 50 of 100: try again when it is there"
+    session.show("height")
+    assert not closed.waited and session.view.map is not None, "it is shown when it is there"
+    gate.set()
+    drawn(session)
+    assert session.read_values("height").max() == np.float32(0.9)
+
+
+@pytest.mark.parametrize("hovers", [True, False])
+def test_a_brush_that_is_pressed_waits_for_no_source(any_engine, gate, closed, tmp_path, hovers):
+    (tmp_path / "slow.glsl").write_text(SOURCE, encoding="utf-8")
+    (tmp_path / "sketch.toml").write_text(SCULPTED, encoding="utf-8")
+    gate.set()
+    made = Session(any_engine, tmp_path / "sketch.toml")
+    drawn(made)
+    painting = Painting(made, tmp_path)
+    painting.toggle()
+    painting.brush = Brush(tool="flatten", radius=150.0)
+    if hovers:
+        assert painting.ground((0.5, 0.5)) is not None
+    gate.clear()
+    made.drafts.set("low.gain", 0.9)
+    made.frame(SIZE)
+    assert made.catch_up.source == "low"
+    made.notes.clear()
+    painting.press((0.5, 0.5))
+    painting.move((0.5, 0.52))
+    painting.release()
+    assert not closed.waited and painting.canvas is None, "nothing is painted on ground that is not there"
+    assert made.notes and all("low is being made" in note for note in made.notes)
+    gate.set()
+    drawn(made)
+    painting.press((0.5, 0.5))
+    painting.release()
+    assert painting.canvas is not None
     made.release()

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from heapq import heappop, heappush
 
 import numpy as np
 from numpy.typing import NDArray
@@ -81,25 +82,34 @@ _WEAK = 0.25
 
 
 def _order(strength: Field) -> Iterator[tuple[int, int]]:
-    """Yield all places: the strongest first, then always one beside those, the strongest of them."""
-    waiting = {(j, i) for j in range(strength.shape[0]) for i in range(strength.shape[1])}
-    border: set[tuple[int, int]] = set()
+    """Yield all places: the strongest first, then always one beside those, the strongest of them.
 
-    def rank(place: tuple[int, int]) -> tuple[float, int, tuple[int, int]]:
+    Of equally strong ones first that with the most beside it, then the southernmost, then the westernmost.
+    Features that are strong but not beside any place begin another line before weak places are filled.
+    """
+    rows, columns = strength.shape
+    strong = np.where(strength > _WEAK, strength, 0.0).tolist()
+    waiting = {(j, i) for j in range(rows) for i in range(columns)}
+
+    def rank(place: tuple[int, int]) -> tuple[float, int, int, int]:
+        """Return what is least for the place that comes first; it falls as places beside it are filled."""
         j, i = place
         beside = sum((j + dj, i + di) not in waiting for dj, di in _SIDES)
-        strong = float(strength[place]) if strength[place] > _WEAK else 0.0
-        return strong, beside, (-j, -i)
+        return -strong[j][i], -beside, j, i
 
+    begins = sorted(map(rank, waiting), reverse=True)  # the first is the last
+    border: list[tuple[float, int, int, int]] = []  # a heap; of a place that is in it twice the lesser counts
     while waiting:
-        strong = [place for place in border if strength[place] > _WEAK]
-        if not strong and any(strength[place] > _WEAK for place in waiting):
-            place = max(waiting, key=rank)  # another line begins
-        else:
-            place = max(strong or border or waiting, key=rank)
+        while begins and begins[-1][2:] not in waiting:
+            begins.pop()
+        while border and border[0][2:] not in waiting:
+            heappop(border)
+        follows = border and (border[0][0] < 0 or begins[-1][0] == 0)
+        place = (heappop(border) if follows else begins.pop())[2:]
         waiting.remove(place)
-        border.discard(place)
-        border |= {(place[0] + dj, place[1] + di) for dj, di in _SIDES} & waiting
+        for dj, di in _SIDES:
+            if (beside := (place[0] + dj, place[1] + di)) in waiting:
+                heappush(border, rank(beside))
         yield place
 
 

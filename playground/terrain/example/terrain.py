@@ -26,7 +26,7 @@ _LEAST, _MOST = 12, 192  # texels of a piece's side
 _BYTES = 2**26  # that the pieces may take
 _OVERLAP = 3  # a piece overlaps the next by a third of it
 _WEIGHT = 8.0  # of features that are followed wholly, beside the overlaps
-_STEPS = 3  # besides the pieces: reading, cutting out, joining
+_BEFORE, _STEPS = 3, 6  # resampling, cutting out, features; with what comes after the pieces are laid
 
 
 @dataclass(frozen=True)
@@ -58,26 +58,38 @@ def made_like(
     rng = np.random.default_rng(wishes.seed)
     ways = _ways(example, spacing_of_example, spacing)
     side = _side(wishes, spacing, ways, example)
-    pieces = Candidates(ways, side, _count(wishes, side), rng)
     report(1, _STEPS)
+    pieces = Candidates(ways, side, _count(wishes, side), rng)
+    report(2, _STEPS)
     hills = _guide(guide, size)
     features = features_of(hills, side / 6) if hills is not None and wishes.follow > 0 else None
     if features is not None and (deviation := float(features.std())) > 0:
         features = features / deviation
+    laid = 0
+
+    def laying(done: int, wanted: int) -> None:
+        nonlocal laid
+        laid = wanted
+        report(done + _BEFORE, wanted + _STEPS)
+
     quilt = quilted(
         pieces,
         size,
         max(side // _OVERLAP, 1),
         features=features,
         weight=_WEIGHT * wishes.follow,
-        report=lambda done, wanted: report(done + 1, wanted + _STEPS),
+        report=laying,
     )
-    if features is None or hills is None:
-        return integrated(quilt.east, quilt.north, quilt.heights, (0.15 / side) ** 2)
-    wide = smoothed(hills, side / 6)
-    deviation = float(smoothed(ways[0], side / 6).std()) / (float(wide.std()) or 1.0)
-    near = (wide - wide.mean()) * deviation
-    return integrated(quilt.east, quilt.north, near, 2 * wishes.follow * (1.5 / side) ** 2)
+    report(laid + _BEFORE, laid + _STEPS)
+    near, nearness = quilt.heights, (0.15 / side) ** 2
+    if features is not None and hills is not None:
+        wide = smoothed(hills, side / 6)
+        deviation = float(smoothed(ways[0], side / 6).std()) / (float(wide.std()) or 1.0)
+        near, nearness = (wide - wide.mean()) * deviation, 2 * wishes.follow * (1.5 / side) ** 2
+    report(laid + _BEFORE + 1, laid + _STEPS)
+    found = integrated(quilt.east, quilt.north, near, nearness)
+    report(laid + _BEFORE + 2, laid + _STEPS)
+    return found
 
 
 @lru_cache(maxsize=2)

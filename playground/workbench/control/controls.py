@@ -169,9 +169,11 @@ class Controls:
             done, wanted = session.catch_up.behind
             source = session.catch_up.source
             what = (
-                f"makes {source}, {done} of {wanted}" if source else f"computes frame {done:,} of {wanted:,}"
+                f"makes {source}, {done:,} of {wanted:,}"
+                if source
+                else f"computes frame {done:,} of {wanted:,}"
             )
-            raise Behind(f"there is no picture yet: the window {what} {done:,} of {wanted:,}")
+            raise Behind(f"there is no picture yet: the window {what}")
         if size is None or sketch is None:
             frame = session.read()
             if frame is None:

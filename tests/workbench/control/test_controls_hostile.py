@@ -12,7 +12,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 from playground.workbench.control.addresses import Addresses
-from playground.workbench.control.controls import Controls
+from playground.workbench.control.controls import Behind, Controls
 
 from ...remote.desk import Desk, write_sketch
 
@@ -96,3 +96,15 @@ def test_what_is_asked_by_chance_ends_in_a_sentence_at_worst(desk: Desk, seed: i
     controls.reset("height.grass")  # it may name a file that is not there, as in the panel
     desk.frame()
     assert refused > 50 and desk.session.error is None and controls.parameters()
+
+
+@pytest.mark.parametrize(
+    ("source", "what"),
+    [("", "computes frame 5 of 36,001"), ("height", "makes height, 5 of 36,001")],
+)
+def test_a_picture_that_is_not_there_yet_is_said_once(desk: Desk, source: str, what: str):
+    desk.frame()
+    desk.session.catch_up.behind, desk.session.catch_up.source = (5, 36_001), source
+    with pytest.raises(Behind) as met:
+        Controls(desk.bench).picture()
+    assert str(met.value) == f"there is no picture yet: the window {what}"
