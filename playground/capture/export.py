@@ -141,7 +141,7 @@ def prepare(
     check(path, form)
     if path.suffix.lower() in PAGES:
         plan = engine.plan_for(sketch, frame or DEFAULT_PICTURE, time, steps)
-        page = prepare_page(sketch, path, form.techniques, frame=frame, time=time, steps=steps)
+        page = prepare_page(engine, sketch, path, form.techniques, frame=frame, time=time, steps=steps)
         return ExportJob(sketch=sketch, path=path, form=form, plan=plan, texture="", kind="", page=page)
     if path.suffix.lower() in SHADERS:
         return _prepare_shader(engine, sketch, path, form, time, steps)

@@ -45,6 +45,7 @@ class WebPage:
 
 
 def prepare_page(
+    engine: Engine,
     sketch: Sketch,
     path: Path,
     techniques: Mapping[str, tuple[str, ...]],
@@ -55,11 +56,13 @@ def prepare_page(
 ) -> WebPage:
     """Write down a sketch for a page; raise ``PlaygroundError`` for what no page can run, or is too large.
 
-    ``frame`` is the picture's size in pixels at first; None for the usual one.
+    ``frame`` is the picture's size in pixels at first; None for the usual one. The engine draws what
+    sources are made of, once for all combinations of techniques.
     """
     size, stops = frame or DEFAULT_PICTURE, dict(steps or {})
     style = read_bundle("page.css")
-    data = page_data([sketch], frame=size, time=time, steps=stops, techniques=techniques, packed=True)
+    at: dict[str, Any] = {"frame": size, "time": time, "steps": stops}
+    data = page_data([sketch], **at, techniques=techniques, packed=True, engine=engine)
     bytes_of_data = _bytes_of_blobs(data)
     if bytes_of_data > LARGEST:
         largest = f"at most {LARGEST // 2**20} MiB; a smaller terrain, image or film would do"

@@ -1,8 +1,9 @@
-"""Draw what a source with inputs makes, on a context of its own: a page has no other way to its texels."""
+"""Draw what a source with inputs makes: a page has no other way to its texels."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import nullcontext
 from typing import Any
 
 from numpy.typing import NDArray
@@ -15,9 +16,22 @@ from playground.sketch.model import Sketch
 
 
 def drawn(
-    sketch: Sketch, step: Step, *, frame: tuple[int, int], time: float, steps: Mapping[str, int]
+    engine: Engine | None,
+    sketch: Sketch,
+    step: Step,
+    *,
+    frame: tuple[int, int],
+    time: float,
+    steps: Mapping[str, int],
 ) -> dict[str, NDArray[Any]]:
-    """Return the texels of a source, by its outputs' names; raises as ``Engine.read`` does."""
-    with Engine(open_context(), owns_context=True, notice=silent) as engine:
-        at: dict[str, Any] = {"size": frame, "time": time, "steps": steps}
-        return {o.name: engine.read(sketch, f"{step.path}:{o.name}", **at) for o in step.kernel.outputs}
+    """Return the texels of a source, by its outputs' names; raises as ``Engine.read`` does.
+
+    Without an engine one is opened, on a context of its own.
+    """
+    at: dict[str, Any] = {"size": frame, "time": time, "steps": steps}
+    with nullcontext(engine) if engine is not None else _opened() as used:
+        return {o.name: used.read(sketch, f"{step.path}:{o.name}", **at) for o in step.kernel.outputs}
+
+
+def _opened() -> Engine:
+    return Engine(open_context(), owns_context=True, notice=silent)

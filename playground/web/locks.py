@@ -19,6 +19,13 @@ from playground.sketch.named_numbers import FRAME, TERRAIN, base_of, counting, n
 from playground.sketch.variant_check import INSIDE
 from playground.terrain.sources import source_kind
 
+_METRES = {
+    "extent": ("extent", "spacing"),
+    "relief": ("relief",),
+    "base_elevation": ("base_elevation",),
+}
+"""What a terrain says in metres → the given names of a kernel that depend on it."""
+
 
 class Locks:
     """The locks of one planned sketch."""
@@ -69,23 +76,29 @@ class Locks:
         return _sentence(f"{made} was made in this size when the page was exported")
 
     def of_metres(self) -> dict[str, str]:
-        """Return why the terrain's ``extent`` and ``relief`` cannot be changed, of those that cannot."""
+        """Return why the terrain's metres cannot be changed, of those by name that cannot."""
         leaves = {leaf.path: leaf for leaf in self.flat.leaves}
         found: dict[str, str] = {}
         for path, source in {**{path: path for path in self.sources}, **self._read_by}.items():
             kernel = leaves[path].kernel
-            for name, names in (("extent", ("extent", "spacing")), ("relief", ("relief",))):
+            for name, names in _METRES.items():
                 if any(map(kernel.reads, names)):
                     made = made_by(self.sources[source])
                     found[name] = _sentence(f"{made} was made by this when the page was exported")
         return found
 
     def notes(self) -> list[str]:
-        """Return a sentence on each source that a page has in the size of the picture at export."""
-        if FRAME not in self._needed_by:
-            return []
-        path = self._needed_by[FRAME]
-        return [f"{path}: {made_by(self.sources[path])} has the size of the picture at export"]
+        """Return a sentence on each source that a page has as it was at export: its size, its moment."""
+        found = []
+        if FRAME in self._needed_by:
+            path = self._needed_by[FRAME]
+            found.append(f"{path}: {made_by(self.sources[path])} has the size of the picture at export")
+        for leaf in self.flat.leaves:
+            if leaf.path in self._read_by and leaf.kernel.reads("time"):
+                made = made_by(self.sources[self._read_by[leaf.path]])
+                moment = f"at {self.plan.time:g} s, so that it does not move in a page"
+                found.append(f"{leaf.path}: {made} was made of this {moment}")
+        return found
 
     def _readers(self) -> dict[str, str]:
         """Return the leaves that the inputs of sources read, however far behind."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from playground.engine.engine import Engine
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 from playground.web.packed import pack_data
 from playground.web.plan import FORMAT, sketch_data
@@ -20,12 +21,14 @@ def page_data(
     steps: Mapping[str, int] | None = None,
     techniques: Mapping[str, Sequence[str]] | None = None,
     packed: bool = False,
+    engine: Engine | None = None,
 ) -> dict[str, Any]:
     """Return sketches as one page's data: JSON's own types only.
 
     ``frame`` in pixels, ``time`` in seconds, ``steps`` stops repeats early, by path, as in
     ``Engine.render``. ``techniques`` lists by pass what else may fill it in the first sketch (an empty
     list: all that fits), for a page with menus of them; ``packed``: with what "download my version" needs.
+    ``engine`` draws what sources are made of, as in ``sketch_data``.
     The same sketches give the same data. Raises ``PlaygroundError`` for any mistake in a sketch, and for
     what no page can run.
     """
@@ -34,7 +37,8 @@ def page_data(
     if techniques:
         made, first = technique_menus(sketches[0], techniques)
         sketches, menus = [*made, *sketches[1:]], [*first, *menus[1:]]
-    written = [sketch_data(one, shared, frame=frame, time=time, steps=steps) for one in sketches]
+    at: dict[str, Any] = {"frame": frame, "time": time, "steps": steps, "engine": engine}
+    written = [sketch_data(one, shared, **at) for one in sketches]
     for one, choices in zip(written, menus, strict=True):
         one["choices"] = choices
     if packed:

@@ -15,6 +15,7 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from playground.engine.engine import Engine
 from playground.engine.files import find_file
 from playground.engine.plan import Plan, Step
 from playground.engine.planner import Planner
@@ -52,24 +53,28 @@ def sketch_data(
     frame: tuple[int, int] = DEFAULT_PICTURE,
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
+    engine: Engine | None = None,
 ) -> dict[str, Any]:
     """Return a sketch as data; what several have in common goes into ``shared``.
 
-    ``frame`` in pixels, ``time`` in seconds, ``steps`` stops repeats early, by path. Raises
-    ``PlaygroundError`` for any mistake in the sketch, and for what no page can run.
+    ``frame`` in pixels, ``time`` in seconds, ``steps`` stops repeats early, by path. ``engine``
+    draws what sources are made of, and has it in its cache for the next sketch; without one, an engine
+    is opened for each source that needs it. Raises ``PlaygroundError`` for any mistake in the sketch, and
+    for what no page can run.
     """
     plan = Planner().plan(sketch, frame_size=frame, time=time, variants=KINDS, steps=steps, interpolated=True)
-    return _Writing(sketch, plan, shared).data()
+    return _Writing(sketch, plan, shared, engine).data()
 
 
 class _Writing:
     """One sketch being written."""
 
-    def __init__(self, sketch: Sketch, plan: Plan, shared: SharedData) -> None:
+    def __init__(self, sketch: Sketch, plan: Plan, shared: SharedData, engine: Engine | None) -> None:
         self.sketch = sketch
         self.plan = plan
         self.flat = plan.flat
         self.shared = shared
+        self.engine = engine
         self.kernels = Kernels(shared.texts, sketch.folder)
         self.leaves = {leaf.path: leaf for leaf in self.flat.leaves}
         self.steps = {step.path: step for step in plan.walk()}
@@ -186,7 +191,7 @@ class _Writing:
 
     def _drawn(self, step: Step) -> dict[str, NDArray[Any]]:
         plan = self.plan
-        return drawn(self.sketch, step, frame=plan.frame_size, time=plan.time, steps=plan.steps)
+        return drawn(self.engine, self.sketch, step, frame=plan.frame_size, time=plan.time, steps=plan.steps)
 
     def _passes(self) -> dict[str, dict[str, Any]]:
         """Return the size of every pass at every level, and of a loop its repeat."""

@@ -184,7 +184,7 @@ def test_answers_are_folded_away_and_all_is_there_without_a_script(book):
 def test_a_figure_with_sliders_that_no_page_can_run_says_where_they_are(
     tmp_path, lesson, french, engine, monkeypatch
 ):
-    monkeypatch.setattr(build, "live_book", lambda lessons: LiveBook({"small": frozenset()}, {}))
+    monkeypatch.setattr(build, "live_book", lambda *_: LiveBook({"small": frozenset()}, {}))
     book = tmp_path / "book"
     write_book(prepare(book, {"en": [lesson], "fr": [french]}, gallery=False), engine)
     for language, option in (("en", ""), ("fr", " --lang fr")):

@@ -83,7 +83,7 @@ def test_a_figure_shows_itself_where_there_are_no_widgets(opened):
 
 
 def test_what_no_page_can_run_is_a_picture(opened, monkeypatch):
-    monkeypatch.setattr(notebook_lesson, "widget_page", lambda _: "")
+    monkeypatch.setattr(notebook_lesson, "widget_page", lambda *_: "")
     data, _ = opened.show("land")._repr_mimebundle_()
     assert "text/html" not in data and "image/png" in data
 

@@ -160,6 +160,20 @@ def test_kernels_that_a_source_reads_are_locked(tmp_path: Path):
     assert found["noise.seed"] == ""
 
 
+def test_what_a_kernel_before_a_source_is_given_is_locked_or_said(tmp_path: Path):
+    (tmp_path / "sea.glsl").write_text(
+        '#pragma kernel(output = "height:r32f")\n'
+        "float kernel(ivec2 t) { return base_elevation + fract(time) + float(t.x); }\n"
+    )
+    text = passes(sea=("./sea",), noise=("generation/by_example", 'inputs = { example = "sea" }'))
+    (tmp_path / "sketch.toml").write_text("format = 1\nsize = 17\n" + text + map_of("noise"))
+    [data] = page_data([load(tmp_path)], time=1.5)["sketches"]
+    why = "The table of ranks was made by this when the page was exported."
+    assert data["terrain"]["lockedMetres"]["base_elevation"] == why
+    [note] = [note for note in data["notes"] if note.startswith("sea: ")]
+    assert note == "sea: the table of ranks was made of this at 1.5 s, so that it does not move in a page"
+
+
 BASE = """#pragma kernel(output = "height:r32f")
 uniform float rise = 1.0;  //! slider(0, 4) How high
 uniform float start = 0.0;  //! slider(0, 4) From where

@@ -46,7 +46,7 @@ def exported(drawn: Engine, tmp_path_factory: pytest.TempPathFactory) -> Any:
     def export(name: str) -> tuple[Sketch, str]:
         if name not in made:
             sketch, path = load(name), folder / f"{name}.html"
-            html, _ = page_bytes(drawn, sketch, prepare_page(sketch, path, {}))
+            html, _ = page_bytes(drawn, sketch, prepare_page(drawn, sketch, path, {}))
             path.write_bytes(html)
             made[name] = sketch, path.as_uri()
         return made[name]

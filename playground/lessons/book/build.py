@@ -89,7 +89,7 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
     _begin(build.folder)
     build.album.draw(engine, build.names, advance)
     numbers = {lesson.name: numbers_of(engine, lesson) for lesson in next(iter(build.lessons.values()))}
-    live = live_book(next(iter(build.lessons.values())))
+    live = live_book(next(iter(build.lessons.values())), engine)
     info = context_info(engine.ctx)
     written = [f"{PICTURES}/{name}" for name in build.names]
     for language, lessons in build.lessons.items():

@@ -16,6 +16,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from playground.engine.engine import Engine
 from playground.lessons.book.live_blocks import block_data, lesson_data
 from playground.lessons.book.live_scenes import Library, Scenes
 from playground.lessons.model import Lesson, Named
@@ -37,9 +38,12 @@ class LiveBook:
     files: dict[str, str]  # by path in the book's folder
 
 
-def live_book(lessons: Sequence[Lesson]) -> LiveBook:
-    """Return what can be run of some lessons; raise ``PlaygroundError`` where the runtime is not built."""
-    library = Library()
+def live_book(lessons: Sequence[Lesson], engine: Engine | None = None) -> LiveBook:
+    """Return what can be run of some lessons; raise ``PlaygroundError`` where the runtime is not built.
+
+    ``engine`` draws what sources are made of; see ``Library``.
+    """
+    library = Library(engine)
     data = {lesson.name: lesson_data(lesson, library) for lesson in lessons}
     blocks = {name: frozenset(found["blocks"]) for name, found in data.items()}
     if not any(blocks.values()):
@@ -49,9 +53,12 @@ def live_book(lessons: Sequence[Lesson]) -> LiveBook:
     return LiveBook(blocks, files)
 
 
-def widget_page(block: Named) -> str:
-    """Return all that a notebook's widget needs to run one block, packed; "" for one that cannot be live."""
-    library = Library()
+def widget_page(block: Named, engine: Engine | None = None) -> str:
+    """Return all that a notebook's widget needs to run one block, packed; "" for one that cannot be live.
+
+    ``engine`` draws what sources are made of; see ``Library``.
+    """
+    library = Library(engine)
     scenes = Scenes(library)
     found = block_data(block, scenes)
     if found is None:

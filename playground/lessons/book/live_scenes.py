@@ -10,6 +10,7 @@ import json
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+from playground.engine.engine import Engine
 from playground.lessons.model import Scene
 from playground.web.plan import sketch_data
 from playground.web.shared import SharedData
@@ -20,8 +21,12 @@ SET = ("terrain", "camera", "frame", "time", "steps")
 
 @dataclass
 class Library:
-    """What all lessons of a book share: texts, kernels, images, bytes."""
+    """What all lessons of a book share: texts, kernels, images, bytes, and who draws some of these.
 
+    Without an ``engine``, one is opened for each source that is made of textures.
+    """
+
+    engine: Engine | None = None
     shared: SharedData = field(default_factory=SharedData)
     kernels: list[Any] = field(default_factory=list)
     _numbers: dict[str, int] = field(default_factory=dict)  # a kernel as text → its number
@@ -73,7 +78,8 @@ class Scenes:
         if key not in self._known:
             sketch = replace(scene.sketch, presets=(), shots=())  # a figure offers none
             steps = dict(scene.steps)
-            found = sketch_data(sketch, self.library.shared, frame=scene.pixels, time=scene.time, steps=steps)
+            at: dict[str, Any] = {"frame": scene.pixels, "time": scene.time, "steps": steps}
+            found = sketch_data(sketch, self.library.shared, **at, engine=self.library.engine)
             self._known[key] = self._written(found)
         return self._known[key]
 

@@ -133,6 +133,6 @@ class NotebookLesson:
         except ModuleNotFoundError:
             return self._frame(scene_at(block, {control.key: control.value for control in controls}))
         labels = controls[0].choices if not isinstance(block, model.Figure) else ()
-        page = widget_page(block)
+        page = on_engine(lambda engine: widget_page(block, engine))
         language = self.lesson.language
         return PictureWidget(png, controls, block.alt, page=page, labels=labels, language=language)

@@ -142,8 +142,8 @@
 
 /** @typedef {{size: [number, number], extent: [number, number], relief: number, base_elevation: number,
  *             locked: string, lockedMetres?: Record<string, string>, extentFollows?: boolean}} Terrain
- *  locked: why its size cannot be changed; "": it can. lockedMetres: likewise of extent and relief, where
- *  they cannot. extentFollows: nothing says the extent, so that its sides are to each other as the size's
+ *  locked: why its size cannot be changed; "": it can. lockedMetres: likewise of what is in metres, where
+ *  it cannot. extentFollows: nothing says the extent, so that its sides are to each other as the size's
  *  are. */
 
 /** One way to make the picture: a graph with its passes in order.
