@@ -203,7 +203,8 @@ def test_a_server_that_names_another_encoding_does_no_harm(tmp_path: Path, evil:
 LOADED = """
 async (loader, text, old, load) => {
     const shown = {}, made = [];
-    const element = (id) => shown[id] ??= { hidden: true, textContent: id === "playground-pressed" ? text : "" };
+    const textOf = (id) => (id === "playground-pressed" ? text : "");
+    const element = (id) => shown[id] ??= { hidden: true, textContent: textOf(id) };
     const document = {
         getElementById: element, createElement: (kind) => ({ kind }),
         head: { append: (one) => made.push(one.kind + ":" + one.textContent) },
