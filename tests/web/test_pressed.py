@@ -7,6 +7,8 @@ import random
 import numpy as np
 import pytest
 
+from playground.web.blobs import Blobs
+from playground.web.page import page_texts
 from playground.web.pressed import dense, pressed
 
 from .node import Node, NodeError
@@ -83,3 +85,11 @@ def test_a_letter_that_is_another_or_missing_is_noticed(node: Node):
     for text in damaged:
         with pytest.raises(NodeError, match="damaged"):
             node.call("pressed.js", "unpressed", text)
+
+
+def test_blobs_count_what_they_take_in_a_page():
+    """As they stand in it: seven bits a letter, not base64's six."""
+    blobs = Blobs()
+    blobs.add(RANDOM.randbytes(70_000))
+    _, texts = page_texts({"shared": {"blobs": blobs.texts}})
+    assert blobs.size == pytest.approx(sum(len(text.encode()) for text in texts.values()), rel=1e-3)

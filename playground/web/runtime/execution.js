@@ -148,7 +148,8 @@ export const createExecution = (plan, nodes, around) => {
   const earlier = (step, unfinished) => {
     const key = cache.earlier(step.path, unfinished, step.repeat);
     if (!key) return null;
-    if (!cache.isPinned(key) && ![...keys.raw.values()].includes(key)) return { key, result: cache.take(key) };
+    const isRead = cache.isPinned(key) || [...keys.raw.values()].includes(key);
+    if (!isRead) return { key, result: cache.take(key) };
     const [found] = /** @type {Cached} */ (cache.peek(key)).results.values();
     const made = textures.take(step.size, step.kernel.outputs, isTall(step));
     for (const [name, texture] of made.textures) {
