@@ -15,6 +15,7 @@ from playground.engine.frame import Frame
 from playground.errors import DataError
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 from playground.web.addons import page_script
+from playground.web.blobs import bytes_in_page
 from playground.web.bundle import read_bundle
 from playground.web.page import Poster, page_html
 from playground.web.page_data import page_data
@@ -63,7 +64,7 @@ def prepare_page(
     style = read_bundle("page.css")
     at: dict[str, Any] = {"frame": size, "time": time, "steps": stops}
     data = page_data([sketch], **at, techniques=techniques, packed=True, engine=engine)
-    bytes_of_data = _bytes_of_blobs(data)
+    bytes_of_data = bytes_in_page(data["shared"]["blobs"])
     if bytes_of_data > LARGEST:
         largest = f"at most {LARGEST // 2**20} MiB; a smaller terrain, image or film would do"
         raise DataError(f"its data would be {bytes_of_data / 2**20:.0f} MiB of a page, {largest}", file=path)
@@ -77,7 +78,7 @@ def page_bytes(engine: Engine, sketch: Sketch, page: WebPage) -> tuple[bytes, st
     size = (max(round(width * scale), 1), max(round(height * scale), 1))
     poster = encoded_poster(engine.render(sketch, size=size, time=page.time, steps=page.steps))
     html = page_html(page.data, poster, script=page.script, style=page.style).encode()
-    inside = _bytes_of_blobs(page.data) + len(poster.data) * 4 // 3
+    inside = bytes_in_page(page.data["shared"]["blobs"]) + len(poster.data) * 4 // 3
     count = len(page.data["sketches"])
     parts = [
         f"{len(html) / 1024:.0f} KiB",
@@ -86,11 +87,6 @@ def page_bytes(engine: Engine, sketch: Sketch, page: WebPage) -> tuple[bytes, st
         f"{len(page.data['shared']['files'])} texts to edit",
     ]
     return html, "; ".join(filter(None, parts))
-
-
-def _bytes_of_blobs(data: Mapping[str, Any]) -> int:
-    """Return what a page's data take in it besides its JSON: base64's six bits a letter as seven."""
-    return sum(map(len, data["shared"]["blobs"].values())) * 6 // 7
 
 
 def encoded_poster(frame: Frame) -> Poster:

@@ -28,6 +28,7 @@ _SCRIPTS_OFF = (
     "This picture is alive where scripts may run: allow them for this page, or open it in a browser."
 )
 _TOO_OLD = "This browser is too old for the live picture: it cannot unpack it."
+_DAMAGED = "This file is damaged, so the picture stands still: export or copy it again."
 
 
 @dataclass(frozen=True)
@@ -75,6 +76,7 @@ def page_html(
         tag("main", image, id="playground"),
         tag("noscript", tag("p", _SCRIPTS_OFF)),
         tag("p", _TOO_OLD, id="playground-old", hidden=True),
+        tag("p", _DAMAGED, id="playground-damaged", hidden=True),
         "\n",
         tag(
             "script",

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import lzma
 import re
+import zlib
 from collections import Counter
 from string import ascii_letters
 
@@ -42,7 +43,8 @@ _FILTERS = [
 def pressed(text: str) -> str:
     """Return a text as pressed.js reads it; the same text gives the same."""
     data = _with_words(text.encode())
-    return dense(len(data).to_bytes(4, "little") + lzma.compress(data, lzma.FORMAT_RAW, filters=_FILTERS))
+    coded = len(data).to_bytes(4, "little") + lzma.compress(data, lzma.FORMAT_RAW, filters=_FILTERS)
+    return dense(zlib.adler32(coded).to_bytes(4, "little") + coded)
 
 
 def _with_words(data: bytes) -> bytes:

@@ -134,15 +134,29 @@ def test_other_widgets_keep_their_network_and_are_named(opened, caplog):
     with caplog.at_level(logging.WARNING):
         (_, other), after, resources = figures(nb)
     assert caplog.messages == ["the outputs of cells 2 are shown by scripts that a network gives"]
-    assert VIEW in other and "other" in after.metadata["widgets"][STATES]["state"]
-    assert resources["needs_network"]
+    assert VIEW in other and resources["needs_network"]
+    rest = after.metadata["widgets"][STATES]["state"]
+    assert "other" in rest and not [one for one in rest.values() if "_esm" in one["state"]]
 
 
-def test_a_page_has_formulas_without_a_script_and_asks_for_nothing(opened):
+def test_a_figure_in_another_widget_keeps_its_state(opened):
+    land, turns = opened.show("land"), opened.show("turns")
+    nb = notebook_of([land, turns])
+    box = {"children": [f"IPY_MODEL_{turns.model_id}"]}
+    nb.metadata["widgets"][STATES]["state"]["box"] = {"model_name": "VBoxModel", "state": box}
+    _, after, _ = figures(nb)
+    rest = after.metadata["widgets"][STATES]["state"]
+    assert {"box", turns.model_id} <= rest.keys() and land.model_id not in rest
+
+
+def test_a_page_has_formulas_without_a_script_and_asks_for_nothing(opened, caplog):
     nb = notebook_of([opened.show("land")])
     text = "So $\\sigma^2$ and\n\n$$h = \\sqrt{x}$$\n\nand $\\unheard{x}$."
     nb.cells.insert(0, nbformat.v4.new_markdown_cell(text))
-    html, _ = TerrainHTMLExporter().from_notebook_node(nb)
+    with caplog.at_level(logging.WARNING):
+        html, _ = TerrainHTMLExporter().from_notebook_node(nb)
+    (message,) = [one for one in caplog.messages if "formula" in one]
+    assert message == "the formula \\unheard{x} stays LaTeX: it has no MathML here"
     assert html.count("<math") == 2 and "<msqrt>" in html and "$\\unheard{x}$" in html
     assert not re.search(r"<(?:script|link|img|iframe)[^>]*(?:src|href)=\"http", html)
     assert len(RUNTIME.findall(html)) == 1 and STATES not in html

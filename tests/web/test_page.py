@@ -17,8 +17,10 @@ import pytest
 
 from playground.sketch.load import load
 from playground.web.blobs import packed
+from playground.web.bundle import read_bundle
 from playground.web.page import Poster, page_html
 from playground.web.page_data import page_data
+from playground.web.pressed import pressed
 
 from ..report import browser as browsers
 from .node import Node
@@ -85,7 +87,7 @@ class Elements(HTMLParser):
 def test_what_people_wrote_is_text(evil: dict[str, Any]):
     page = Elements(page_of(evil))
     expected = "html head meta meta meta meta meta meta title link style body"
-    expected += " main img noscript p p script script"
+    expected += " main img noscript p p p script script"
     assert [tag for tag, _ in page.found] == expected.split()
     assert page.texts["title"] == EVIL
     [image] = [given for tag, given in page.found if tag == "img"]
@@ -196,3 +198,36 @@ def test_a_server_that_names_another_encoding_does_no_harm(tmp_path: Path, evil:
         ran = browser.run("return document.documentElement.dataset.ran ?? ''")
         server.shutdown()
     assert ran == "yes"
+
+
+LOADED = """
+async (loader, text, old, load) => {
+    const shown = {}, made = [];
+    const textOf = (id) => (id === "playground-pressed" ? text : "");
+    const element = (id) => shown[id] ??= { hidden: true, textContent: textOf(id) };
+    const document = {
+        getElementById: element, createElement: (kind) => ({ kind }),
+        head: { append: (one) => made.push(one.kind + ":" + one.textContent) },
+    };
+    const world = old ? {} : { DecompressionStream: class {} };
+    new Function("document", "globalThis", loader)(document, world);
+    return [made, Object.keys(shown).filter((id) => !shown[id].hidden)];
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "old", "made", "told"),
+    [
+        (pressed("a\0b\0c"), False, ["style:a", "script:b", "script:c"], []),
+        (pressed("a\0b\0c"), True, [], ["playground-old"]),
+        (pressed("a\0b"), False, [], ["playground-damaged"]),
+        (pressed("a\0b\0c")[:-1], False, [], ["playground-damaged"]),
+        ("", False, [], ["playground-damaged"]),
+    ],
+    ids=["whole", "old browser", "a part less", "a letter less", "nothing"],
+)
+def test_the_loader_says_whether_the_browser_is_too_old_or_the_file_is_damaged(
+    text: str, old: bool, made: list[str], told: list[str], node: Node
+):
+    assert node.run(LOADED, read_bundle("loader.js"), text, old) == [made, told]

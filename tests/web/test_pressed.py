@@ -7,9 +7,11 @@ import random
 import numpy as np
 import pytest
 
+from playground.web.blobs import Blobs
+from playground.web.page import page_texts
 from playground.web.pressed import dense, pressed
 
-from .node import Node
+from .node import Node, NodeError
 from .unpressed import undense, unpressed
 
 RANDOM = random.Random(7)
@@ -72,3 +74,22 @@ def test_it_is_read_by_its_definition(text: str):
 def test_bytes_without_any_order_come_back(node: Node):
     text = np.random.default_rng(1).integers(0, 256, 300_000, np.uint8).tobytes().decode("latin-1")
     assert node.call("pressed.js", "unpressed", pressed(text)) == text
+
+
+def test_a_letter_that_is_another_or_missing_is_noticed(node: Node):
+    """Of LZMA alone not one would be: it gives other bytes, and throws nothing."""
+    good = pressed("vec3 height = texture(rock, place);\n" * 40)
+    places = range(0, len(good), 7)
+    damaged = [good[:at] + ("a" if good[at] != "a" else "b") + good[at + 1 :] for at in places]
+    damaged += [good[:at] + good[at + 1 :] for at in places] + [good[:at] for at in places]
+    for text in damaged:
+        with pytest.raises(NodeError, match="damaged"):
+            node.call("pressed.js", "unpressed", text)
+
+
+def test_blobs_count_what_they_take_in_a_page():
+    """As they stand in it: seven bits a letter, not base64's six."""
+    blobs = Blobs()
+    blobs.add(RANDOM.randbytes(70_000))
+    _, texts = page_texts({"shared": {"blobs": blobs.texts}})
+    assert blobs.size == pytest.approx(sum(len(text.encode()) for text in texts.values()), rel=1e-3)

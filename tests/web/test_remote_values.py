@@ -15,6 +15,7 @@ def test_a_menu_has_a_name_in_json_and_a_number_in_its_row(node: Node):
     for number, name in enumerate(MENU["choices"]):
         assert node.call("remote_values.js", "shownValue", MENU, name) == number
         assert node.call("remote_values.js", "toldValue", MENU, number) == name
+    assert node.call("remote_values.js", "shownValue", MENU, "unheard") == -1  # not the first
 
 
 @pytest.mark.parametrize("raw", [False, True])

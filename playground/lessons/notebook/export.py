@@ -5,13 +5,15 @@
 JupyterLab has it as well: File, Save and Export Notebook As. What ``--to html`` writes of a notebook with
 saved widgets loads Jupyter's widget scripts from a network, and shows no picture without them. Here figures
 are live by themselves, with the values they had when the notebook was saved; the runtime is there once, and
-formulas are MathML. What else needs a network keeps it, and is named in a warning.
+formulas are MathML. Cells whose outputs need a network keep it, and are named in a warning; of the text, only
+formulas are looked at: one that has no MathML here stays LaTeX, and is named in a warning too.
 """
 
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterator, Mapping
+import json
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from jinja2 import DictLoader, pass_context
@@ -58,9 +60,14 @@ class LiveFigures(Preprocessor):  # type: ignore[misc]
                 html = _text(data["text/html"])
                 data["text/html"] = without_runtime(html, held)
                 held |= runtimes_in(html)
-        rest = {model: one for model, one in saved.items() if not _is_figure(one) and _shown(one)}
-        if not rest:
+        others = {model: one for model, one in saved.items() if not _is_figure(one)}
+        if not any(map(_shown, others.values())):
             nb.metadata.pop("widgets", None)
+        else:
+            told = json.dumps(others)  # a figure in another widget is shown by that
+            for model in saved.keys() - others.keys():
+                if f'"IPY_MODEL_{model}"' not in told:
+                    del saved[model]
         left = [number for number, output in _outputs(nb) if {_VIEW, *_SCRIPTED} & output["data"].keys()]
         if left:
             cells = ", ".join(map(str, dict.fromkeys(left)))
@@ -105,19 +112,29 @@ class TerrainHTMLExporter(HTMLExporter):  # type: ignore[misc]
             exclude_anchor_links=self.exclude_anchor_links,
             **self.lexer_options,
         )
+        renderer.warn = self.log.warning
         return str(MarkdownWithMath(renderer=renderer).render(source))
 
 
 class _MathML(IPythonRenderer):  # type: ignore[misc]
+    warn: Callable[[str], None]
+
     def block_math(self, body: str) -> str:
-        return _formula(body, "block") or str(super().block_math(body))
+        return self.formula(body, "block") or str(super().block_math(body))
 
     def inline_math(self, body: str) -> str:
-        return _formula(body, "inline") or str(super().inline_math(body))
+        return self.formula(body, "inline") or str(super().inline_math(body))
 
     def latex_environment(self, name: str, body: str) -> str:
         whole = f"\\begin{{{name}}}{body}\\end{{{name}}}"
-        return _formula(whole, "block") or str(super().latex_environment(name, body))
+        return self.formula(whole, "block") or str(super().latex_environment(name, body))
+
+    def formula(self, latex: str, display: str) -> str:
+        """Return a formula as MathML; "" and a warning for one that cannot be."""
+        made = _formula(latex, display)
+        if not made:
+            self.warn(f"the formula {' '.join(latex.split())} stays LaTeX: it has no MathML here")
+        return made
 
 
 def _formula(latex: str, display: str) -> str:

@@ -14,7 +14,12 @@
     const style = document.createElement("style");
     style.textContent = css;
     document.head.append(style);
-    return import(URL.createObjectURL(new Blob([esm], { type: "text/javascript" })));
+    const url = URL.createObjectURL(new Blob([esm], { type: "text/javascript" }));
+    try {
+      return await import(url);
+    } finally {
+      URL.revokeObjectURL(url);
+    }
   };
   const start = async (root) => {
     const place = root.firstElementChild, key = root.dataset.terrainSaved;
@@ -23,7 +28,7 @@
       await revive(place, await unpacked(root.querySelector("[data-terrain-state]").textContent));
     } catch (error) {
       const sentence = document.createElement("p");
-      sentence.textContent = root.dataset.still.replace("{reason}", error.message);
+      sentence.textContent = root.dataset.still.replace("{reason}", () => error.message);
       place.append(sentence);
     }
   };

@@ -9,7 +9,7 @@ import { createBookRecovery } from "./book_recovery.js";
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
-import { fill } from "./words.js";
+import { lackOf } from "./lacks.js";
 
 /** @typedef {import("./book_figure.js").Room} Room */
 
@@ -63,9 +63,8 @@ export async function start(root, folder, lesson) {
     end();
     host.remove();
     root.classList.remove("is-live");
-    const { code = "", message = String(error) } = /** @type {any} */ (error ?? {});
-    const sentence = message.endsWith(".js") ? words.missing : words.lacks;
-    const text = code === "no-webgl2" ? words.noWebGL : fill(sentence, { reason: message });
+    const isFile = String(/** @type {any} */ (error)?.message).endsWith(".js");
+    const text = lackOf(error, words, isFile ? words.missing : words.lacks);
     still.after(make("p", { className: "live-failed", role: "status" }, text));
   }
 }

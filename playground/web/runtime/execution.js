@@ -130,17 +130,26 @@ export const createExecution = (plan, nodes, around) => {
     /** @type {Map<string, Wired | null>} */
     const inputs = new Map();
     for (const [name, source] of step.inputs) inputs.set(name, wiredTo(source, new Map()));
-    const made = keep(key, step, yield* compute(step, inputs, null, start));
+    const job = jobOf(step, inputs, null, start?.result ?? null);
+    let made;
+    try {
+      made = keep(key, step, yield* compute(job));
+    } finally { // what a run that was given up had not begun to change stays known
+      const left = job.start && { results: new Map([[step.path, job.start]]), iterations: 0 };
+      if (start && left) cache.put(start.key, left, new Set());
+    }
     if (goesOn) cache.noteProgress(step.path, unfinished, key, step.repeat);
     return made;
   };
 
-  /** Return the same step after fewer iterations: what is known, or a copy where a pass or a run reads that.
+  /** Return the same step after fewer iterations, and the key that has it: what is known, or a copy where a
+   *  pass or a run reads that.
    *  @param {Step} step @param {string} unfinished */
   const earlier = (step, unfinished) => {
     const key = cache.earlier(step.path, unfinished, step.repeat);
     if (!key) return null;
-    if (!cache.isPinned(key) && ![...keys.raw.values()].includes(key)) return cache.take(key);
+    const isRead = cache.isPinned(key) || [...keys.raw.values()].includes(key);
+    if (!isRead) return { key, result: cache.take(key) };
     const [found] = /** @type {Cached} */ (cache.peek(key)).results.values();
     const made = textures.take(step.size, step.kernel.outputs, isTall(step));
     for (const [name, texture] of made.textures) {
@@ -149,25 +158,29 @@ export const createExecution = (plan, nodes, around) => {
     }
     made.iterations = found.iterations;
     made.settled = found.settled;
-    return made;
+    return { key, result: made };
   };
 
   /** @param {Step} step @returns {Job["tall"]} */
   const isTall = (step) => (name) => tall.has(`${step.path}:${name}`);
 
   /** @param {Step} step @param {Map<string, Wired | null>} inputs @param {Job["around"]} loops
-   *  @param {Result | null} start @returns {Working<Result>} */
-  const compute = function* (step, inputs, loops, start) {
-    ran.push(step.path);
-    const { kind } = step.kernel, text = around.text(step.kernel);
-    if (kind === "source") return fromData(step, loops);
-    if (kind === "draw") yield* withSamples(step, inputs);
-    /** @type {Job} */
-    const job = {
+   *  @param {Result | null} start @returns {Job} */
+  const jobOf = (step, inputs, loops, start) => {
+    const text = around.text(step.kernel);
+    return {
       step, text, inputs, around: loops, start, tall: isTall(step), samples: around.samples(step),
       given: around.given(step, loops ? loops.frame : null), keepsSurface: continued.has(step.path),
       time: plan.time, rows: (width, height) => around.rows(text, width, height),
     };
+  };
+
+  /** @param {Job} job @returns {Working<Result>} */
+  const compute = function* (job) {
+    const { step, inputs, around: loops } = job, { kind } = step.kernel;
+    ran.push(step.path);
+    if (kind === "source") return fromData(step, loops);
+    if (kind === "draw") yield* withSamples(step, inputs);
     const runner = kind === "draw" ? draws : kind === "plain_fragment" ? plain : kernels;
     return yield* /** @type {NonNullable<typeof runner>} */ (runner).run(job); // its text needs the add-on
   };
@@ -181,7 +194,7 @@ export const createExecution = (plan, nodes, around) => {
     /** @type {Map<string, Wired | null>} */
     const again = new Map();
     for (const [name, source] of earlier.inputs) again.set(name, wiredTo(source, new Map()));
-    const made = yield* compute(earlier, again, null, null);
+    const made = yield* compute(jobOf(earlier, again, null, null));
     owner.surface = made.surface;
     made.surface = null;
     textures.give(made);
@@ -329,7 +342,7 @@ export const createExecution = (plan, nodes, around) => {
       return;
     }
     const inputs = new Map(node.inputs.map(([name, source]) => [name, inputOf(node, name, source, fed)]));
-    const made = yield* compute(node, inputs, at, null);
+    const made = yield* compute(jobOf(node, inputs, at, null));
     owned.set(node.path, made);
     results.set(node.path, made);
   };

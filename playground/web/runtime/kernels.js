@@ -7,7 +7,7 @@
 import { failure } from "./context.js";
 import { whole } from "./expressions.js";
 import { roundedOutputs } from "./formats.js";
-import { addOns } from "./addons.js";
+import { needed } from "./addons.js";
 import { createChosen } from "./chosen.js";
 import { stagesOf } from "./kernel_texts.js";
 import { isSize, PLAIN } from "./binder.js";
@@ -34,7 +34,7 @@ import { ownNames } from "./counts.js";
  *  @property {Object<string, any>} given
  *  @property {Map<string, Wired | null>} inputs
  *  @property {{number: number, whole: number, frame: number | null} | null} around   where its loops are
- *  @property {Result | null} start            the same step after fewer iterations; it is used up
+ *  @property {Result | null} start            the same step after fewer iterations; null once used up
  *  @property {number} samples                 of a draw
  *  @property {boolean} keepsSurface           a later draw goes on from it
  *  @property {(name: string) => boolean} tall whether an output is read with levels
@@ -169,9 +169,7 @@ export const createKernels = (context, textures, programs, binder, shared, often
 
   /** @param {import("./kernel_texts.js").KernelText} text @param {Program} program */
   const refused = (text, program) => {
-    const { kernel } = text, log = [...program.logs, program.link].join("\n").trim();
-    const complaints = addOns.edits?.complaintsOf(text, program, shared, {})
-      ?? [{ file: kernel.file, line: 0, message: log, kernel: kernel.name }];
+    const complaints = needed("edits").complaintsOf(text, program, shared, {});
     const [{ file, line, message }] = complaints;
     return failure("shader", `${file}:${line}: ${message}`, { complaints });
   };
@@ -211,6 +209,7 @@ export const createKernels = (context, textures, programs, binder, shared, often
     const { step, start } = job, { kernel, size } = step;
     if (start && start.settled) {
       start.iterations = step.repeat;
+      job.start = null;
       return start;
     }
     const state = initial(job);
@@ -253,7 +252,7 @@ export const createKernels = (context, textures, programs, binder, shared, often
         if (found) unit = binder.bind(program, job, reads);
         if (before) textures.give(before);
         before = result;
-        result = null;
+        job.start = result = null;
         if (found === "settled") {
           before.settled = iteration;
           break;
@@ -270,7 +269,7 @@ export const createKernels = (context, textures, programs, binder, shared, often
       return done;
     } finally {
       if (result) textures.give(result);
-      if (before) textures.give(before);
+      if (before && before !== job.start) textures.give(before);
     }
   };
 

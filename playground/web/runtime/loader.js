@@ -10,12 +10,25 @@ function put(kind, text, attributes = {}) {
   document.head.append(Object.assign(document.createElement(kind), { textContent: text, ...attributes }));
 }
 
-try {
-  if (!globalThis.DecompressionStream) throw new Error("images and elevation could not be unpacked");
-  const [style, data, script] = unpressed(byId("playground-pressed").textContent ?? "").split("\0");
-  put("style", style);
-  put("script", data, { type: "application/json", id: "playground-page" });
-  put("script", script);
-} catch {
-  byId("playground-old").hidden = false;
+/** The style, the data as JSON and the script; throws where the file is damaged. */
+function parts() {
+  const found = unpressed(byId("playground-pressed").textContent ?? "").split("\0");
+  if (found.length !== 3) throw new Error("three parts were expected");
+  return found;
 }
+
+function start() {
+  if (!globalThis.DecompressionStream) return "playground-old"; // images and elevation stay packed
+  try {
+    const [style, data, script] = parts();
+    put("style", style);
+    put("script", data, { type: "application/json", id: "playground-page" });
+    put("script", script);
+    return "";
+  } catch {
+    return "playground-damaged";
+  }
+}
+
+const sentence = start();
+if (sentence) byId(sentence).hidden = false;

@@ -106,13 +106,21 @@ export async function renderLive({ model, el }, url) {
   el.replaceChildren(host);
   const comma = /^fr/.test(language), watched = createBookRecovery(engine, language).watch(host);
   const room = { host, still, block, sketches, begin: null, engine, watched, words, comma };
-  const made = await KINDS[block.kind](room);
-  const stops = block.kind === "steps" ? block.iterations
-    : block.kind === "slider" ? [...sketches.keys()] : [];
-  const unbind = bind(model, host, block.kind === "figure" ? made : null, stops);
-  return () => {
-    unbind();
+  const close = () => {
     watched.end();
     engine.close();
   };
+  try {
+    const made = await KINDS[block.kind](room);
+    const stops = block.kind === "steps" ? block.iterations
+      : block.kind === "slider" ? [...sketches.keys()] : [];
+    const unbind = bind(model, host, block.kind === "figure" ? made : null, stops);
+    return () => {
+      unbind();
+      close();
+    };
+  } catch (error) {
+    close();
+    throw error;
+  }
 }

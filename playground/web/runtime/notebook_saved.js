@@ -2,8 +2,8 @@
 
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
+import { lackOf } from "./lacks.js";
 import { renderLive } from "./notebook_live.js";
-import { fill } from "./words.js";
 
 /** What a widget had when its notebook was saved.
  *  @typedef {{page: string, language: string, labels: string[], alt: string,
@@ -34,8 +34,7 @@ export async function revive(place, saved) {
   try {
     await renderLive({ model: modelOf({ ...saved }), el: place }, image.src);
   } catch (error) {
-    const { code = "", message = String(error) } = /** @type {any} */ (error ?? {});
-    const text = code === "no-webgl2" ? words.noWebGL : fill(words.lacks, { reason: message });
-    place.replaceChildren(image, make("p", { className: "mistake", role: "status" }, text));
+    const sentence = make("p", { className: "mistake", role: "status" }, lackOf(error, words));
+    place.replaceChildren(image, sentence);
   }
 }

@@ -26,9 +26,23 @@ function withWords(bytes) {
   return found;
 }
 
-/** The text that such a text holds: four bytes that count its bytes, the lowest first, then LZMA.
+/** The Adler-32 checksum of bytes (RFC 1950). @param {Uint8Array} bytes */
+function checksum(bytes) {
+  let low = 1, high = 0;
+  for (const byte of bytes) {
+    low = (low + byte) % 65521;
+    high = (high + low) % 65521;
+  }
+  return high * 65536 + low;
+}
+
+/** The text that such a text holds: two numbers of four bytes, the lowest first, the checksum of what follows
+ *  and how many bytes are unpacked, then LZMA. Damaged LZMA gives other bytes: nothing in it says so.
  *  @param {string} text @returns {string} */
 export function unpressed(text) {
-  const bytes = undense(text), [length] = new Uint32Array(bytes.slice(0, 4).buffer);
-  return new TextDecoder("utf-8", { ignoreBOM: true }).decode(withWords(unlzma(bytes.subarray(4), length)));
+  const bytes = undense(text), head = new Uint8Array(8);
+  head.set(bytes.subarray(0, 8));
+  const [check, length] = new Uint32Array(head.buffer);
+  if (checksum(bytes.subarray(4)) !== check) throw new Error("the text is damaged");
+  return new TextDecoder("utf-8", { ignoreBOM: true }).decode(withWords(unlzma(bytes.subarray(8), length)));
 }

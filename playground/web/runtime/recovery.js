@@ -1,6 +1,7 @@
 // recovery.js -- what a page does where a picture fails: a sentence, the poster, and the way on.
 
 import { button, make } from "./dom.js";
+import { lackOf } from "./lacks.js";
 import { estimate, smallerFrame } from "./pace.js";
 import { fill } from "./words.js";
 
@@ -50,9 +51,7 @@ export function createRecovery(host, { words, poster, guard = () => undefined, r
   /** Say why there is no picture, and show the poster.
    *  @param {unknown} error  one of the engine's, with its code, or any other */
   function lacks(error) {
-    const { code = "", sentence = "", message = "" } = /** @type {Object<string, string>} */ (error ?? {});
-    const known = { "no-webgl2": words.noWebGL, "no-float-targets": words.noFloat }[code];
-    say(known ?? fill(words.lacks, { reason: sentence || message || String(error) }));
+    say(lackOf(error, words));
     poster(true);
   }
 

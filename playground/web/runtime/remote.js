@@ -157,13 +157,13 @@ function rowOf(one) {
     press(down) { if (down) set(one.path, true); },
   });
   show(shownValue(one, one.value));
-  return {
-    one, label: one.label, element: row.element,
-    told(value) {
-      clearTimeout(late);
-      late = window.setTimeout(() => show(shownValue(one, value)), Math.max(quiet - performance.now(), 0));
-    },
+  const told = (/** @type {any} */ value) => {
+    const left = quiet - performance.now();
+    clearTimeout(late);
+    if (left > 0) late = window.setTimeout(() => told(value), left); // a change meanwhile makes it longer
+    else show(shownValue(one, value));
   };
+  return { one, label: one.label, element: row.element, told };
 }
 
 function search() {

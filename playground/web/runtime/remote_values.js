@@ -10,7 +10,7 @@ import { fromHex } from "./colours.js";
 
 /** @param {Pick<Told, "widget" | "choices" | "raw">} one @param {any} told @returns {Value} */
 export function shownValue({ widget, choices, raw }, told) {
-  if (widget === "menu") return Math.max(choices.indexOf(told), 0);
+  if (widget === "menu") return choices.indexOf(told); // -1: the menu shows none
   return widget === "colour" && typeof told === "string" ? fromHex(told, raw) ?? [0, 0, 0] : told;
 }
 
