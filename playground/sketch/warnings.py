@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -33,7 +34,8 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
     """Return a warning for each parameter and input of a kernel that nothing reads.
 
     Included declarations count, at their own file and line. What a fast variant, a pragma or a macro
-    reads counts as read. Sources and draws are left alone: the engine reads their uniforms.
+    reads counts as read, and so does what a size or a repeat of the technique around it names. Sources
+    and draws are left alone: the engine reads their uniforms.
     """
     if kernel.kind in ("source", "draw"):
         return ()
@@ -46,6 +48,8 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
         rest = re.sub(declared, "", code)
         if re.search(rf"\b(?:\w+_)?{re.escape(name)}\b", rest):
             continue
+        if re.search(rf"\b{re.escape(name)}\b", counts_around(Path(kernel.path))):
+            continue
         for line in kernel.source.lines:
             if match := re.search(declared, line.code):
                 column = match.start() + match[0].index(name) + 1
@@ -54,6 +58,19 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
                 )
                 break
     return tuple(found)
+
+
+def counts_around(path: Path) -> str:
+    """Return the sizes and repeats of the techniques that a kernel's folder is of, or holds, as one text."""
+    folder = path.parent
+    found = []
+    for file in (folder.with_suffix(".toml"), *sorted(folder.glob("*.toml"))):
+        try:
+            passes = tomllib.loads(file.read_text(encoding="utf-8")).get("pass", [])
+            found += [str(each.get(key, "")) for each in passes for key in ("size", "repeat")]
+        except (OSError, ValueError, AttributeError):
+            continue  # it is not there, or reading the technique itself says what is wrong with it
+    return "\n".join(found)
 
 
 def former_names_used(sketch: Sketch) -> tuple[Diagnostic, ...]:

@@ -25,7 +25,10 @@ def read_numbers(path: Path, size: tuple[int, int]) -> NDArray[np.float32]:
     found = read_elevation(path)
     if found.missing:
         raise DataError(f"{found.missing} texels have no data; expected a number in each", file=path)
-    return found.heights if found.size == size else resample(found.heights, size)
+    if found.size == size:
+        return found.heights
+    nx, ny = size
+    return resample(found.heights, (max(nx, 2), max(ny, 2)))[:ny, :nx]
 
 
 def write_numbers(path: Path, numbers: NDArray[np.float32]) -> None:

@@ -22,7 +22,7 @@ from ..sketch_texts import map_of, passes
 
 SKETCH = (
     "format = 1\nsize = 9\n"
-    + passes(height=("generation/heightmap", 'set = { elevation = "turned.tif" }'), other="./mine")
+    + passes(height=("generation/heightmap", 'set = { elevation = "two.tif" }'), other="./mine")
     + map_of("height")
 )
 KERNEL = """#pragma kernel(output = "height:r32f")
@@ -30,16 +30,15 @@ uniform float idle = 1.0;  //! slider(0, 2)
 #line 7
 float kernel(ivec2 texel) { return 1.0; }
 """
-TURNED = "turned.tif: its grid is turned against north, so no spacing"
+SECOND = "two.tif: the first of 2 pictures was read"
 
 
 @pytest.fixture
 def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A sketch of an elevation file that lies aslant, and a kernel with an idle parameter."""
+    """A sketch of an elevation file of two pictures, and a kernel with an idle parameter."""
     terrain = np.arange(72, dtype=np.float32).reshape(8, 9)
-    slant = (1.0, 0.5, 0, 0, -0.5, 1.0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1.0)
-    tags = [(34264, "d", 16, slant), (34735, "H", 8, (1, 1, 0, 1, 1024, 0, 1, 1))]
-    tifffile.imwrite(folder.path / "turned.tif", terrain, extratags=tags)
+    for _ in range(2):
+        tifffile.imwrite(folder.path / "two.tif", terrain, append=True)
     folder.write("mine.glsl", KERNEL)
     path = folder.write("sketch.toml", SKETCH)
     monkeypatch.chdir(folder.path)
@@ -52,7 +51,7 @@ def test_an_engine_reports_each_once(any_engine, sketch):
     any_engine.warnings.report = lambda found: reports.append((found.place, found.message))
     for size in ((8, 8), (9, 9)):
         any_engine.render(load(sketch), size=size)
-    place = next(place for place, message in reports if message == TURNED)
+    place = next(place for place, message in reports if message == SECOND)
     assert len(reports) == 2 and place.endswith("sketch.toml:3")
     assert sum("#line is left out" in message for _, message in reports) == 1
 
@@ -72,7 +71,7 @@ def test_a_program_gets_them_as_python_s_own_warnings(sketch):
     with playground.headless() as engine, pytest.warns(playground.PlaygroundWarning) as caught:
         engine.render(sketch, size=(8, 8))
         engine.render(sketch, size=(9, 9))
-    assert sorted(TURNED in str(w.message) for w in caught) == [False, True]
+    assert sorted(SECOND in str(w.message) for w in caught) == [False, True]
 
 
 def test_render_and_export_print_each_once(sketch, capsys):
@@ -81,19 +80,19 @@ def test_render_and_export_print_each_once(sketch, capsys):
         for command in (["render", ".", "--size", "16x9", "-o", "a.png"], ["export", ".", "--to", "b.npy"]):
             assert cli.main(command) == 0
             printed = capsys.readouterr().err
-            assert printed.count(TURNED) == 1, printed
-            assert f"warning: sketch.toml:3: {TURNED}" in printed
+            assert printed.count(SECOND) == 1, printed
+            assert f"warning: sketch.toml:3: {SECOND}" in printed
 
 
 def test_check_shows_them_and_fails_for_none(sketch, capsys):
     assert cli.main(["check", "."]) == 0
     out = capsys.readouterr().out
-    assert out.count(f"warning: sketch.toml:3: {TURNED}") == 1
+    assert out.count(f"warning: sketch.toml:3: {SECOND}") == 1
     assert out.count("nothing reads 'idle'") == 1  # of the kernel, and again of the sketch
     assert "2 files checked, none failed, 3 warnings" in out
     with Sandbox() as made:
         report = check_file(sketch, made).as_json()
-    assert report["ok"] and TURNED in [w["message"] for w in report["warnings"]]
+    assert report["ok"] and SECOND in [w["message"] for w in report["warnings"]]
 
 
 def test_a_former_name_of_a_parameter_is_reported_once(folder, monkeypatch, capsys):
@@ -113,7 +112,7 @@ def test_the_window_lists_them(any_engine, sketch):
     known = Warnings(lambda kernel: ())
     loaded = load(sketch)
     any_engine.render(loaded, size=(8, 8))
-    assert [w.message for w in known.of(loaded, any_engine.plan)] == [TURNED]
+    assert [w.message for w in known.of(loaded, any_engine.plan)] == [SECOND]
     while known.waiting:
         known.look()
     assert [w.line for w in known.of(loaded, any_engine.plan)] == [2, 3, 3]
@@ -122,7 +121,7 @@ def test_the_window_lists_them(any_engine, sketch):
 def test_a_file_that_goes_while_its_picture_is_shown_is_no_mistake_of_the_list(any_engine, sketch):
     loaded = load(sketch)
     any_engine.render(loaded, size=(8, 8))
-    (sketch.parent / "turned.tif").unlink()
+    (sketch.parent / "two.tif").unlink()
     assert Warnings(lambda kernel: ()).of(loaded, any_engine.plan) == []
 
 

@@ -60,3 +60,14 @@ def test_the_library_has_none() -> None:
             seen += 1
             assert unread(kernel) == (), path
     assert seen > 50
+
+
+def test_what_a_techniques_repeat_names_is_read(folder) -> None:
+    text = '#pragma kernel(output = "height:r32f")\nuniform int steps = 4;  //! slider(1, 9)\n'
+    text += "float kernel(ivec2 texel) { return 1.0; }\n"
+    path = folder.write("worn/finish.glsl", text)
+    assert [each.message for each in unread(read_kernel(path, folder.path))] == [
+        "nothing reads 'steps', so it has no effect"
+    ]
+    folder.write("worn.toml", '[[pass]]\nname = "a"\nuse = "./worn/finish"\nrepeat = "2 * steps"\n')
+    assert unread(read_kernel(path, folder.path)) == ()
