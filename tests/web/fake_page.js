@@ -1,5 +1,6 @@
 // fake_page.js -- a page over a player that draws without WebGL what its state says, for tests.
 
+import "../../playground/web/runtime/with_all.js";
 import { createPage } from "../../playground/web/runtime/sketch_page.js";
 import { PAGE_WORDS } from "../../playground/web/runtime/page_words.js";
 
