@@ -1,4 +1,4 @@
-// trees/density.glsl -- how densely trees stand: by slope, height, wetness and layer; none on paths.
+// trees/density.glsl -- how densely trees stand: by slope, height, wetness, layer; not on paths.
 //
 //   gives    density, 0..1: the share of the cells of trees/place that hold a tree
 //   needs    noise/gradient.glsl, terrain/heightfield.glsl, terrain/maps.glsl; a height; if wired
@@ -19,12 +19,14 @@ uniform sampler2D paths;    //! input("black")
 uniform float most = 1.0;          //! slider(0, 1) step(0.01) Density of the densest stand
 uniform vec2 steep = vec2(0.75, 1.0);  //! slider(0, 5) parts("from", "none")
                                        //! Slopes between which trees grow fewer
-uniform float lowest = -500.0;     //! slider(-500, 9000) unit("m") Above sea level: lower there are none
+uniform float lowest = -500.0;     //! slider(-500, 9000) unit("m")
+                                   //! Above sea level: lower there are none
 uniform float highest = 9000.0;    //! slider(-500, 9000) unit("m") The tree line
-uniform float band = 60.0;         //! log_slider(1, 1000) unit("m") How gradually both ends come
+uniform float band = 60.0;         //! log_slider(1, 1000) unit("m")
+                                   //! How gradually both ends come
 uniform float wet = 0.0;           //! slider(-1, 1) step(0.01)
                                    //! 1: only on wet ground, -1: only on dry ground, 0: on either
-uniform vec4 bears = vec4(1.0);    //! slider(0, 1) parts("layer 1", "layer 2", "layer 3", "layer 4")
+uniform vec4 bears = vec4(1.0);    //! slider(0, 1) parts("first", "second", "third", "fourth")
                                    //! How well trees grow on each layer of the weights
 uniform float clearings = 0.0;     //! slider(0, 1) step(0.01) Share of the ground that is meadow
 uniform float clearing = 600.0;    //! log_slider(10, 10000) unit("m") How wide a clearing is
@@ -39,9 +41,11 @@ float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 at = place_on(grid, texel, size);
     float metres = height_at(height, at) * relief + base_elevation;
-    float slope = relief * length(slope_at(height, at, spacing_of(grid, extent), CENTRAL_DIFFERENCES));
+    vec2 rise = slope_at(height, at, spacing_of(grid, extent), CENTRAL_DIFFERENCES);
+    float slope = relief * length(rise);
     float density = most * (1.0 - smoothstep(steep.x, max(steep.y, steep.x + 1e-4), slope));
-    density *= smoothstep(lowest, lowest + band, metres) * (1.0 - smoothstep(highest - band, highest, metres));
+    density *= smoothstep(lowest, lowest + band, metres);
+    density *= 1.0 - smoothstep(highest - band, highest, metres);
     if (wired_wetness) {
         float soaked = clamp(map_at(wetness, texel, size).r, 0.0, 1.0);
         density *= 1.0 - abs(wet) * (wet > 0.0 ? 1.0 - soaked : soaked);
@@ -49,8 +53,9 @@ float kernel(ivec2 texel) {
     if (wired_weights) density *= clamp(dot(bears, map_at(weights, texel, size)), 0.0, 1.0);
     if (clearings > 0.0) {
         vec2 place = share_of_texel(texel, size) * extent / clearing;
-        float noise = perlin(place, seed + SALT).x + 0.5 * perlin(2.3 * place, seed + SALT + 1u).x;
-        // The share of noise below -s to s is about that of a straight line through its middle half.
+        float noise = perlin(place, seed + SALT).x;
+        noise += 0.5 * perlin(2.3 * place, seed + SALT + 1u).x;
+        // As if the noise were even: near enough to its true distribution.
         float level = (1.0 - 2.0 * clearings) * 2.0 * HALF_OF_NOISE;
         density *= 1.0 - smoothstep(level - 0.06, level + 0.06, noise);
     }

@@ -7,7 +7,8 @@
 //   tested   tests/glsl/test_trees.py
 #ifndef TREES_PARAMETERS_REACH
 #define TREES_PARAMETERS_REACH
-uniform float whole = 1700.0;  //! log_slider(10, 10000) unit("m") Nearer than this no tree is left out
+uniform float whole = 1700.0;  //! log_slider(10, 10000) unit("m")
+                               //! Nearer than this no tree is left out
 uniform float reach = 4800.0;  //! log_slider(50, 20000) unit("m")
-                               //! Where single trees end: farther away they are colour of the ground
+                               //! Where single trees end: beyond, they colour the ground
 #endif

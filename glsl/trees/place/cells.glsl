@@ -16,12 +16,10 @@
 uniform sampler2D height;          //! input
 uniform sampler2D density;         //! input("white")
 #include "trees/parameters/reach.glsl"
-uniform float cell = 9.0;          //! slider(1, 100) unit("m") Side of a cell: at most one tree in each
-uniform float tallest = 21.0;      //! slider(1, 100) unit("m") Height of the tallest trees
-uniform float shortest = 0.55;     //! slider(0.1, 1) step(0.01) Height of the shortest, as a share of it
+#include "trees/parameters/stand.glsl"
 uniform bool all_round = false;    //! Those outside the picture as well
 uniform float margin = 60.0;       //! slider(0, 500) unit("m")
-                                   //! How far outside the picture a tree may stand: its shadow comes in
+                                   //! How far outside the picture trees are drawn: shadows come in
 uniform uint seed = 5u;            //! slider(0, 9999) Which trees
 
 const uint SALT = 0xc07a7689u;  // CRC-32 of "trees/place"
@@ -52,11 +50,13 @@ void kernel(ivec2 texel, out vec4 tree, out float key) {
     // Nearly all of the cells end here, and their neighbours with them.
     float top = relief + 2.0 * tallest;
     if (!all_round && !may_be_seen(place, min(relief, 0.0), max(top, 0.0))) return;
-    float wanted = wired_density ? height_at(density, share * vec2(textureSize(density, 0) - 1)) : 1.0;
+    float wanted = 1.0;
+    if (wired_density) wanted = height_at(density, share * vec2(textureSize(density, 0) - 1));
     if (unit_from_bits(first.z) >= wanted) return;
     float up = height_at(height, share * vec2(textureSize(height, 0) - 1)) * relief;
     float away = distance(eye, vec3(place, up));
-    float kept = kept_share(away, whole, min(reach, 0.5 * cell * float(min(size.x, size.y) - 2)));
+    float half_side = 0.5 * cell * float(min(size.x, size.y) - 2);
+    float kept = kept_share(away, whole, min(reach, half_side));
     float rank = unit_from_bits(second.x);
     if (rank >= kept) return;
     if (!all_round && !may_be_seen(place, up, up + 2.0 * tallest)) return;
