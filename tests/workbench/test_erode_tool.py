@@ -158,6 +158,7 @@ def test_in_a_session_a_stroke_is_seen_saved_and_undone_to_the_bit(
     painting.undo()
     np.testing.assert_array_equal(canvas.pixels, raised)
     painting.redo()
+    painting.settle()
     np.testing.assert_array_equal(canvas.pixels, worn)
     np.testing.assert_array_equal(read_numbers(canvas.path, canvas.size), worn)
 
