@@ -105,9 +105,10 @@
 
 /** Every pass at every level, by path: its size, and what it has unless it says one; its repeat.
  *  @typedef {{base: string, size?: [Expression, Expression], own?: [number, number], where: string,
- *             repeat?: Expression, counting?: boolean}} Pass
+ *             repeat?: Expression, counting?: boolean, locked?: string}} Pass
  *  base: "#terrain", "#frame" or the path of the technique around it; own: of data; where: for errors;
- *  counting: a size or a count inside names its iteration, so that each has sizes and counts of its own. */
+ *  counting: a size or a count inside names its iteration, so that each has sizes and counts of its own;
+ *  locked: why a repeat cannot be stopped early, where it cannot. */
 
 /** One row of the panel.
  *  @typedef {object} Shown
