@@ -2,8 +2,9 @@
 //
 //   gives    frame, linear light
 //   needs    scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
-//            lighting/sun.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, view/surface.glsl; seen,
-//            ground, albedo and a sky; a daylight, a light, bumps or a shadow if there are
+//            lighting/sun.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
+//            view/surface.glsl; seen, ground, albedo and a sky; a daylight, a light, bumps or a
+//            shadow if there are
 //   units    metres; slopes in metres over metres; light without unit, 1 for white
 //   source   deferred: Saito and Takahashi 1990, "Comprehensible Rendering of 3-D Shapes"
 //            (SIGGRAPH); the light as lighting/shade has it
@@ -24,14 +25,14 @@
 #include "view/surface.glsl"
 #pragma kernel(output = "frame:rgba16f")
 
-uniform sampler2D seen;    //! input
-uniform sampler2D ground;  //! input("linear", "mipmap")
-uniform sampler2D albedo;  //! input
-uniform sampler2D sky;     //! input
-uniform sampler2D light;   //! input("linear", "mipmap", "white")
+uniform sampler2D seen;        //! input
+uniform sampler2D ground;      //! input("linear", "mipmap")
+uniform sampler2D albedo;      //! input
+uniform sampler2D sky;         //! input
+uniform sampler2D light;       //! input("linear", "mipmap", "white")
 uniform sampler2D visibility;  //! input("white")
-uniform sampler2D bumps;   //! input("zero")
-uniform sampler2D shadow;  //! input("white")
+uniform sampler2D bumps;       //! input("zero")
+uniform sampler2D shadow;      //! input("white")
 #include "lighting/parameters/sun.glsl"
 #include "lighting/parameters/sunlight.glsl"
 #include "lighting/parameters/skylight.glsl"

@@ -1,7 +1,7 @@
 // scene/surfaces.glsl -- which surface a pixel of the scene sees, by the fourth number of `seen`.
 //
-//   gives    SKY, TOP, CUT, WATER, BROKEN_GROUND, packed_cut, depth_of_cut, is_sky, is_top, is_cut,
-//            is_water, is_broken, is_object
+//   gives    SKY, TOP, CUT, WATER, BROKEN_GROUND, packed_cut, depth_of_cut, is_sky, is_top,
+//            is_cut, is_water, is_broken, is_object
 //   needs    scene/packing.glsl: pure functions, no uniforms, no textures
 //   units    depths of the cut 0..1
 //   source   none: made here

@@ -181,9 +181,11 @@ def test_with_a_baked_light_it_is_view_terrain(any_engine, scene, height):
     expected, found, top = pictures(any_engine, *both)
     assert top.sum() > 4000 and expected[top].std() > 10
     assert np.abs(found - expected)[top].max() <= 1
-    others = ~top & ~np.any([np.roll(top, step, axis) for axis in (0, 1) for step in (1, -1)], axis=0)
-    assert others.sum() > 500
-    assert (np.abs(found - expected)[others].max(axis=-1) > 1).mean() < 0.02, "the cut and the sky as well"
+    seen = any_engine.read(both[1], "view.where", size=SIZE)[::-1, :, 3]
+    sky, cut = seen == 0, (seen >= 2) & (seen < 3)
+    assert sky.sum() > 100 or cut.sum() > 100
+    np.testing.assert_array_equal(found[sky], expected[sky])
+    np.testing.assert_allclose(found[cut], expected[cut], atol=1)
 
 
 def test_each_pixel_is_lit_as_a_plane_is_by_a_map(any_engine, scene):
