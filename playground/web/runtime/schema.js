@@ -65,6 +65,7 @@
  *  @property {Accepted} [accepted]                 the same, to be evaluated
  *  @property {string} [mesh]                       of a draw
  *  @property {Expression} [count]                  of a draw
+ *  @property {Expression} [instances]              of a draw: it may name an input's first texel, as list.x
  *  @property {"none" | "add" | "alpha"} [blend]
  *  @property {"none" | "less" | "equal"} [depth]
  *  @property {number} [samples]                    of a draw; 0: the sketch's
