@@ -210,6 +210,8 @@ def _cases(place: Place) -> Iterator[tuple[str, Sketch]]:
     sizes = list(dict.fromkeys(_accepted(place.sketch, size) for size in SIZES))
     seeds = [path for path in all_paths(place.sketch.graph) if path.rpartition(".")[2] == "seed"]
     own = [path for path in seeds if path.partition(".")[0] == place.path.partition(".")[0]]
+    # A seed that the technique keeps inside would have the plain form run.
+    own = [path for path in own if path.rpartition(".")[0] not in _within(place)]
     for number, size in enumerate(sizes):
         for order, seed in enumerate(_SEEDS if own else _SEEDS[:1]):
             extent = _EXTENTS[(number + order) % len(_EXTENTS)]
@@ -220,6 +222,14 @@ def _cases(place: Place) -> Iterator[tuple[str, Sketch]]:
         small = replace(place.sketch, size=sizes[0], extent=_EXTENTS[1], relief=_RELIEF)
         for path, value in _variations(place):
             yield f"{path.rpartition('.')[2]} = {value}", small.with_values({path: value})
+
+
+def _within(place: Place) -> set[str]:
+    """Return the paths of all passes inside a place's technique."""
+    if not isinstance(place.technique, Graph):
+        return set()
+    inside = (path for spec in place.technique.passes for path, _ in _inside(spec))
+    return {f"{place.path}.{path}" for path in inside}
 
 
 def _accepted(sketch: Sketch, size: tuple[int, int]) -> tuple[int, int]:

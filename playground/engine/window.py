@@ -27,6 +27,7 @@ from playground.sketch.reserved_names import MATCHES, WINDOW, WIRED, ZOOM
 from playground.sketch.source import SourceText
 
 _KERNEL = re.compile(r"\bkernel\s*\(\s*(?:in\s+)?(ivec2\s+)(\w+)\b[^)]*\)\s*\{")
+_BLOCK = re.compile(r"^(?:\w+\s+\w+\s*\([^()]*\)|struct\s+\w+)\s*\{", re.MULTILINE)
 _LOCAL = "k_local"
 _COORDINATES = re.compile(r"\bgl_FragCoord\b")
 
@@ -99,8 +100,8 @@ def _previous(kernel: Kernel) -> list[str]:
 
 
 def _names(code: str, *names: str) -> bool:
-    """Return whether a text names something besides declaring a sampler of that name."""
-    return any(re.search(rf"(?<!sampler2D )\b{name}\b", code) for name in names)
+    """Return whether a text names something besides a sampler's declaration and fields of that name."""
+    return any(re.search(rf"(?<!sampler2D )(?<!\.)\b{name}\b", code) for name in names)
 
 
 def _kernel_code(kernel: Kernel, code: str, inputs: Iterable[str]) -> tuple[str | None, str]:
@@ -118,7 +119,7 @@ def _kernel_code(kernel: Kernel, code: str, inputs: Iterable[str]) -> tuple[str 
         own = rf"\btexelFetch\s*\(\s*{name}\s*,\s*{texel}\s*,\s*0\s*\)"
         body = re.sub(own, f"texelFetch(k_own_{name}, {_LOCAL}, 0)", body)
         body = re.sub(rf"\btextureSize\s*\(\s*{name}\s*,\s*0\s*\)", "size", body)
-        if _names(body, name) or _names(others, name):
+        if _names(body, name) or _names(_without_own(others, name), name):
             return None, f"it reads '{name}' elsewhere than at its own texel"
         body = body.replace(f"k_own_{name}", name)
     for wired in (i.name for i in kernel.inputs if i.name not in inputs):
@@ -128,6 +129,17 @@ def _kernel_code(kernel: Kernel, code: str, inputs: Iterable[str]) -> tuple[str 
     if others != code[:start] + code[end:]:
         return None, "a function of its own asks whether an input matches"
     return f"{head} ivec2 {texel} = {_LOCAL} + {WINDOW};{body}{code[end:]}", ""
+
+
+def _without_own(code: str, name: str) -> str:
+    """Blank the functions and structs of a text that have a variable of a name: there it is no texture."""
+    own = re.compile(rf"\b(?:bool|int|uint|float|[biu]?vec[234]|mat\w+)\s+{name}\b")
+    found = code
+    for match in _BLOCK.finditer(code):
+        end = _end_of_body(code, match.end())
+        if own.search(code, match.start(), end):
+            found = found[: match.start()] + " " * (end - match.start()) + found[end:]
+    return found
 
 
 def _end_of_body(code: str, start: int) -> int:

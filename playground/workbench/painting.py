@@ -22,12 +22,13 @@ from playground.engine.view_inputs import view_height
 from playground.errors import DataError, PlaygroundError
 from playground.gpu.textures import split_format
 from playground.sketch.assign import resolve, shown_parameters, value_of, values_of
-from playground.sketch.model import Sketch
+from playground.sketch.model import Parameter, Sketch
 from playground.terrain.camera import Eye
 from playground.terrain.pick import ground_under, seen_from
 from playground.terrain.sources import source_kind
-from playground.workbench.brush import Brush, Tool
+from playground.workbench.brush import TOOLS, Brush, Tool
 from playground.workbench.canvas import MOST_TEXELS, Canvas
+from playground.workbench.erode_tool import ErodeTool, technique_at
 from playground.workbench.painted_mask import MOST_BY_FILE, Mask
 from playground.workbench.sculpted_ground import ground_of, ground_ref
 from playground.workbench.sculpture import Sculpture, rate_of
@@ -56,6 +57,7 @@ class Painting:
         self._found: tuple[Sketch | None, tuple[str, ...]] = (None, ())
         self._chosen = ""
         self._heights: tuple[object, NDArray[np.float32] | None] = (None, None)  # and of which picture
+        self._eroding: ErodeTool | None = None
         self._stroke: Canvas | None = None  # what the stroke that goes on is painted on
         self._last: tuple[float, float] | None = None  # where the stroke is
         self._saved_at = 0.0
@@ -86,6 +88,16 @@ class Painting:
         return step is not None and _kind_of(step) is Sculpture
 
     @property
+    def tools(self) -> tuple[Tool, ...]:
+        """The tools that what is painted on takes: it erodes where heights are and a technique is named."""
+        return TOOLS if self.erodes_by else tuple(tool for tool in TOOLS if tool != "erode")
+
+    @property
+    def erodes_by(self) -> str:
+        """The technique that erode runs, as ``use`` names it; "" where it has none, or no height."""
+        return self._parameter().erode if self._adds_metres else ""
+
+    @property
     def levels(self) -> tuple[float, float]:
         """The least and the most that flatten may be told to go to."""
         relief = self.session.plan.terrain.relief if self.session.plan else None
@@ -105,6 +117,8 @@ class Painting:
         """Paint on another parameter, by its path."""
         self.release()
         self._chosen = target
+        if self.brush.tool not in self.tools:
+            self.brush = replace(self.brush, tool="raise")
 
     @property
     def files(self) -> frozenset[Path]:
@@ -150,8 +164,12 @@ class Painting:
 
     def take_tool(self, tool: Tool) -> None:
         """Sculpt with another tool, while the brush is on what can be sculpted."""
-        if self.on and self.sculpts:
+        if not (self.on and self.sculpts):
+            return
+        if tool in self.tools:
             self.brush = replace(self.brush, tool=tool)
+        else:
+            self.session.notes.append(f"there is nothing to {tool} in {self.target}: choose another tool")
 
     def ground(self, place: tuple[float, float]) -> tuple[float, float] | None:
         """Return where on the terrain a place of the picture lies, both in shares; None in the sky."""
@@ -191,6 +209,9 @@ class Painting:
             self._hand_over(canvas)
             if isinstance(canvas, Sculpture):
                 canvas.lie_on(ground)
+                if self.brush.tool == "erode" and not self._erodes(canvas):
+                    self._last = None  # a note says why
+                    return
             canvas.begin()
             self._stroke = canvas
             self._saved_at = -SAVES_EVERY
@@ -205,7 +226,12 @@ class Painting:
         now, at = self.ground(place), self._now()
         seconds, self._moved_at = min(at - self._moved_at, LONGEST), at
         if now is not None:
-            canvas.paint(self._last or now, now, plan.terrain.extent, self.brush, seconds)
+            try:
+                canvas.paint(self._last or now, now, plan.terrain.extent, self.brush, seconds)
+            except PlaygroundError as error:
+                self.session.notes.append(str(error))
+                self.release()
+                return
             if canvas.path in self.session.engine.painted:
                 self.session.redraw()
             elif at - self._saved_at >= SAVES_EVERY:
@@ -262,6 +288,31 @@ class Painting:
         painted.pop(canvas.path, None)
         if step is not None and self._shows(step, canvas.path, canvas.size):
             painted[canvas.path] = canvas
+
+    def _erodes(self, canvas: Sculpture) -> bool:
+        """Have a canvas erode by the technique that its parameter names, as its files are now.
+
+        Return whether it can; a note says why not.
+        """
+        parameter, engine = self._parameter(), self.session.engine
+        if "erode" not in self.tools:
+            self.session.notes.append(f"there is nothing to erode in {self.target}: choose another tool")
+            return False
+        try:
+            technique = technique_at(parameter.erode, parameter.file)
+            known = self._eroding.runner if self._eroding is not None else None
+            if known is None or known.engine is not engine or known.technique != technique:
+                self._eroding = ErodeTool(engine, technique)
+        except PlaygroundError as error:
+            self.session.notes.append(str(error))
+            return False
+        canvas.eroding = self._eroding
+        return True
+
+    def _parameter(self) -> Parameter:
+        """Return the parameter that is painted on; there is one."""
+        assert self.session.sketch is not None
+        return resolve(self.session.sketch.graph, self.target)[0].parameter
 
     def _step_of(self, path: str) -> Step | None:
         """Return the step of the plan whose parameter has a path."""

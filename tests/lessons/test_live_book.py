@@ -12,15 +12,17 @@ import pytest
 from playground.lessons import model
 from playground.lessons.book.blocks import Setting
 from playground.lessons.book.build import prepare, write_book
-from playground.lessons.book.live_blocks import beginning, lesson_data
+from playground.lessons.book.live_blocks import beginning, block_data, lesson_data
 from playground.lessons.book.live_files import FEW, live_book, packed_json
 from playground.lessons.book.live_scenes import Library, Scenes
 from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import pictures_in
 from playground.lessons.read import read_lesson
+from playground.sketch.load import load
 from playground.web.plan import sketch_data
 from playground.web.shared import SharedData
 
+from ..sketch_texts import map_of, passes
 from .conftest import SKETCHES
 
 SCRIPT = re.compile(r'\(globalThis\.bookData\?\?=\{\}\)\["([\w/]+)"\]="([A-Za-z0-9+/=]+)";\n')
@@ -148,6 +150,24 @@ def test_blocks_of_each_kind(lesson, horizons, of_horizons):
     assert {"light.clouds", "view.exposure"} <= set(more["clouds"]["rows"])
     exercise = horizons.named["clouds"]
     assert dict(beginning(exercise.scene).overrides) == {}
+
+
+def test_iterations_that_only_a_source_reads_stay_pictures(any_engine, tmp_path):
+    """A page has what the source made of the last one."""
+    (tmp_path / "spread.glsl").write_text(
+        '#pragma kernel(output = "height:r32f", repeat = "4")\n'
+        "float kernel(ivec2 t) { return previous(t) + fract(float(t.x * 7 + t.y * 5) / 11.0); }\n"
+    )
+    steps = passes(
+        spread=("./spread",),
+        free=("./spread",),
+        noise=("generation/by_example", 'inputs = { example = "spread" }'),
+    )
+    (tmp_path / "sketch.toml").write_text("format = 1\nsize = 17\n" + steps + map_of("noise"))
+    scenes = (model.Scene(load(tmp_path), (32, 18)),)
+    blocks = [model.Steps(0, "", name, scenes, (name,), (1, 4)) for name in ("spread", "free")]
+    found = [block_data(block, Scenes(Library(any_engine))) for block in blocks]
+    assert found[0] is None and found[1]["passes"] == ["free"]
 
 
 def test_values_that_a_processor_makes_are_listed_ones(delaunay):

@@ -495,3 +495,30 @@ def test_paint_is_a_word_of_files_alone(tmp_path: Path) -> None:
     kernel.write_text(f'{head}uniform sampler2D a_mask; //! input("paint")\n{body}')
     with pytest.raises(ShaderError, match="'paint' is not a way to read a texture"):
         load(kernel)
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        (
+            'uniform sampler2D a; //! file("a.tif") erode("erosion/brush")',
+            "'a' is not painted on; erode is for a",
+        ),
+        (
+            'uniform sampler2D a; //! input erode("erosion/brush")',
+            "'a' is not painted on; erode is for a file",
+        ),
+        (
+            'uniform float a = 1.0; //! erode("erosion/brush")',
+            "erode is for a file that is painted on; 'a' is",
+        ),
+        ('uniform sampler2D a; //! file("a.tif", "paint") erode()', "erode\\(\\) takes one text in quotes"),
+    ],
+)
+def test_erode_is_for_what_is_painted_on(tmp_path: Path, line: str, sentence: str) -> None:
+    kernel = tmp_path / "k.glsl"
+    kernel.write_text(
+        f'#pragma kernel(output = "h:r32f")\n{line}\nfloat kernel(ivec2 texel) {{ return 0.0; }}\n'
+    )
+    with pytest.raises(ShaderError, match=sentence):
+        load(kernel)

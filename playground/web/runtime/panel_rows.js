@@ -83,7 +83,7 @@ export function createRows(session, words) {
   };
 }
 
-const whyLocked = (/** @type {string} */ reason) => make("p", { className: "note why-locked" }, reason);
+export const whyLocked = (/** @type {string} */ reason) => make("p", { className: "note why-locked" }, reason);
 
 /** A fold whose inside is made when it is first opened.
  *  @param {string} title @param {boolean} open @param {() => (Node | null)[]} inside
