@@ -265,6 +265,18 @@ def test_the_air_lets_through_and_adds(any_engine, scene):
     np.testing.assert_array_equal(found[~land], before[~land])
 
 
+def test_another_picture_of_the_sky_takes_the_plain_one_s_place(any_engine, scene):
+    picture = COLOUR.format("vec4(vec2(texel) / 256.0, 0.5, 1.0)").replace("colour:", "sky_picture:")
+    passes = f'[[pass]]\nname = "sky_picture"\nuse = "./picture"\nsize = [{SIZE[0]}, {SIZE[1]}]\n'
+    sketch = scene(passes=passes, picture=picture).with_camera(replace(LOOK, distance=1500))
+    found = any_engine.read(sketch, "view.shaded", size=SIZE)[..., :3].astype(float)
+    sky = any_engine.read(sketch, "view.where", size=SIZE)[..., 3] == 0
+    expected = np.concatenate([all_pixels() / 256, np.full((*SIZE[::-1], 1), 0.5)], axis=-1)
+    assert sky.sum() > 500
+    np.testing.assert_allclose(found[sky], expected[sky], atol=1e-3)
+    assert any_engine.plan.step("view.sky").size == (1, 1), "which is not made in vain"
+
+
 def decoded(value):
     """Return the linear value of one encoded as sRGB, both 0..1."""
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
