@@ -7,6 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from playground.engine.plan import Window
+from playground.errors import SketchError
+from playground.gpu.textures import read_picture
 from playground.sketch.model import Camera
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
@@ -32,6 +35,7 @@ def scene(make_sketch):
     """Give a function that makes a sketch of a height and a colour, and what else its text has."""
 
     def make(height=PLANE, colour=TINTED, view="scene/terrain", given="", passes="", wired="", **more):
+        given = ", ".join(filter(None, [given, "antialias = false" if view.startswith("scene") else ""]))
         set_ = f"set = {{ grid = 65{', ' if given else ''}{given} }}"
         inputs = f"inputs = {{ {wired} }}\n" if wired else ""
         text = f'{PASSES}{passes}[view]\nuse = "{view}"\nsamples = 1\n{inputs}{set_}\n'
@@ -258,13 +262,17 @@ def test_what_is_no_number_is_marked(any_engine, scene):
 
 
 def test_a_picture_in_parts_is_the_whole_picture(any_engine, scene):
-    """Every pass reads the pictures of pixels at its own pixel alone."""
-    from playground.engine.plan import Window
-    from playground.gpu.textures import read_picture
-
-    sketch = replace(scene(BUMPY, given=f"{HAZE}, {LIT}"), samples=1)
+    """All but three passes read pictures of pixels at their own pixel alone; those can be switched off."""
+    sketch = scene(BUMPY, given=f"{HAZE}, {LIT}, vignette = 0.3")
+    window = Window((0, 0), (70, 50), SIZE)
+    for name, value in (("antialias", True), ("bloom", 0.1), ("adapts", True)):
+        looking = sketch.with_values({"view.antialias": False, f"view.{name}": value})
+        with pytest.raises(SketchError, match=f"turn '{name}' off or choose a smaller picture"):
+            any_engine.draw_window(looking, window)
+    sketch = sketch.with_values({"view.antialias": False})
     whole = any_engine.render(sketch, size=SIZE).array
-    for x, y, width, height in ((0, 0, 70, 50), (70, 50, 80, 47)):
-        part = read_picture(any_engine.draw_window(sketch, Window((x, y), (width, height), SIZE)))
+    for part in (window, Window((70, 50), (80, 47), SIZE)):
+        (x, y), (width, height) = part.origin, part.size
+        found = read_picture(any_engine.draw_window(sketch, part))
         rows = slice(SIZE[1] - y - height, SIZE[1] - y)
-        np.testing.assert_array_equal(part, whole[rows, x : x + width])
+        np.testing.assert_array_equal(found, whole[rows, x : x + width])
