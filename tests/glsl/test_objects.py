@@ -34,7 +34,12 @@ name = "height"
 use = "generation/white_noise"
 [view]
 use = "view/terrain"
-camera = {{ azimuth = 160.0, elevation = 15.0, distance = 60.0, target = [500.0, 400.0, 26.0], field_of_view = 20.0 }}
+[view.camera]
+azimuth = 160.0
+elevation = 15.0
+distance = 60.0
+target = [500.0, 400.0, 26.0]
+field_of_view = 20.0
 """
 
 
