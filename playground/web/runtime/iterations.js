@@ -1,8 +1,8 @@
 // iterations.js -- repeats that may be stopped early, a slider each; of one that may not, why.
 
+import { whyLocked } from "./controls.js";
 import { make } from "./dom.js";
 import { labelOf } from "./labels.js";
-import { whyLocked } from "./panel_rows.js";
 import { fill } from "./words.js";
 
 /** @typedef {import("./session.js").Session} Session */
