@@ -74,6 +74,13 @@ float share_above(Stand s, float height) {
     return min(total, 1.0);
 }
 
+// How much of a cell's side lies within a length, anywhere over the cells: the mean over those
+// that it meets, each as often as it is met.
+float overlap(float along, float side) {
+    float whole = along / side;
+    return whole < 1.0 ? whole * (1.0 - whole / 3.0) : 1.0 - 1.0 / (3.0 * whole);
+}
+
 // Minus the logarithm of what no crown is in the way of, along `towards` from the ground up.
 // For trees anywhere that is n A. Where a cell holds one tree with the probability p, and the
 // part f of it is in the way, what is free is (1 - p f), less than exp(-p f).
@@ -82,8 +89,8 @@ float depth_towards(Stand s, vec3 towards) {
     float shadow = TREE_PI * s.across * length(vec2(s.across, s.up * run));
     // A band as wide as a crown, and as long as makes the same area, anywhere over the cells.
     float wide = 2.0 * s.across;
-    float side = JITTER * s.cell;
-    float part = wide / (wide + side) * (shadow / (shadow + wide * side));
+    float side = max(JITTER * s.cell, 1e-3);
+    float part = overlap(wide, side) * overlap(shadow / wide, side);
     float hit = min(s.dense * s.cell * s.cell * part, 0.95);
     return s.dense * shadow * (hit > 1e-3 ? -log(1.0 - hit) / hit : 1.0);
 }
