@@ -1,4 +1,4 @@
-// trees/canopy.glsl -- how high the wood stands over the ground, for what casts shadows and mirrors.
+// trees/canopy.glsl -- how high the wood stands over the ground, for what casts shadows.
 //
 //   gives    canopy, metres over the ground; height, 0..1, with the wood on it
 //   needs    terrain/heightfield.glsl, trees/stand.glsl; a height and a density
