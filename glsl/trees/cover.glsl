@@ -2,8 +2,8 @@
 //
 //   gives    albedo; taken: of the sun what goes with the facing and what does not, and of the sky
 //            (scene/shaded); shadow: what trees leave of the sun on the ground
-//   needs    lighting/daylight_reading.glsl, noise/gradient.glsl, scene/surfaces.glsl,
-//            terrain/heightfield.glsl,
+//   needs    lighting/daylight_reading.glsl, noise/gradient.glsl, scene/ground_reading.glsl,
+//            scene/surfaces.glsl, terrain/heightfield.glsl,
 //            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of the ground,
 //            a height, a density, the table of trees/wood and the shadows of trees/shade
 //   units    metres; colours linear; shares 0..1
@@ -15,6 +15,7 @@
 // Ground between trees gets as much less light as they take.
 #include "lighting/daylight_reading.glsl"
 #include "noise/gradient.glsl"
+#include "scene/ground_reading.glsl"
 #include "scene/surfaces.glsl"
 #include "terrain/heightfield.glsl"
 #include "trees/light.glsl"
@@ -24,6 +25,7 @@
 uniform sampler2D seen;     //! input
 uniform sampler2D cover;    //! input
 uniform sampler2D height;   //! input
+uniform sampler2D ground;   //! input("linear", "mipmap")
 uniform sampler2D density;  //! input
 uniform sampler2D table;    //! input
 uniform sampler2D shade;    //! input("black")
@@ -59,6 +61,9 @@ float lumps(vec2 place, float pixel) {
 
 float brightness(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
 
+// No lower than where the table of trees/wood ends.
+vec3 raised(vec3 towards) { return normalize(vec3(towards.xy, max(towards.z, LOWEST))); }
+
 // How much of the sun is taken away here, and 1 in the square where that is known, else 0.
 vec2 shade_at(vec2 place) {
     vec2 at = (place - eye.xy) / shade_wide;
@@ -66,6 +71,17 @@ vec2 shade_at(vec2 place) {
     if (!wired_shade || aside >= 0.5) return vec2(0.0);
     vec2 on = (at + 0.5) * vec2(textureSize(shade, 0)) - 0.5;
     return vec2(height_at(shade, on), 1.0 - smoothstep(0.42, 0.49, aside));
+}
+
+// The table is for level ground: on a slope one sees more of the tops in it than there are,
+// so that a wood on a steep slope (0.35) towards the eye is 7 to 11 hundredths brighter far away.
+vec2 wood_on_slope(Stand all, float stands, vec3 to_eye, vec3 to_sun, vec3 through) {
+    float depth = depth_towards(all, to_eye);
+    // How many of the crowns are above what one sees, on the mean.
+    float share = depth < 0.01 ? 0.5 : 1.0 / depth - 1.0 / (exp(min(depth, 60.0)) - 1.0);
+    vec2 lit = wood_at(table, to_eye, to_sun, stands);
+    lit.x *= reaches(all, share, through) / max(reaches(all, share, to_sun), 1e-3);
+    return lit;
 }
 
 void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
@@ -79,14 +95,16 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     float stands = clamp(map_of(density, share), 0.0, 1.0);
     float away = distance(eye, at.xyz);
     vec3 to_eye = eye - at.xyz;
-    to_eye = normalize(vec3(to_eye.xy, max(to_eye.z, LOWEST * away)));
+    vec2 slope = ground_at(ground, at.xy, extent, 2.0 * cell).slope;
+    to_eye = raised(over_ground(to_eye, slope));
     vec3 to_sun = sun_direction(wired_daylight, daylight, towards_sun);
+    vec3 through = to_sun.z > 0.0 ? raised(over_ground(to_sun, slope)) : to_sun;
     float needled = needle_share(needles, needles_from, at.z + base_elevation);
     Stand all = stand_of(stands, cell, tallest, shortest, needled);
     Stand drawn = thinned(all, away, whole, reach);
     if (tree) {
         float over = at.z - map_of(height, share) * relief;
-        vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun);
+        vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun, through);
         albedo = vec4(colour_of_kind(kind_of(at.w), day), 1.0);
         taken = vec4(0.0, light, 1.0);
         return;
@@ -100,13 +118,13 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     // Half the angle of a pixel is one over the lens's scale, times one over the picture's half.
     float lens = length(transpose(clip_from_world)[1].xyz);
     float pixel = 2.0 * away / (lens * float(size.y)) / sqrt(max(to_eye.z, 0.05));
-    vec3 leaves = mean_leaf_colour(needled, day);
+    vec3 leaves = mean_leaf_colour(needle_area(needled), day);
     if (hidden > 0.01) leaves *= lumps(at.xy, pixel);
     albedo.rgb = mix(albedo.rgb, leaves, hidden);
     // By brightness, what comes from the leaves of the colour that both have together.
     float part = hidden * brightness(leaves) / max(brightness(albedo.rgb), 1e-6);
-    float sun_left = mix(reaches(all, 1.0, to_sun), 1.0, shaded.y);
-    vec2 lit = wood_at(table, to_eye, to_sun, stands);
+    float sun_left = mix(reaches(all, 1.0, through), 1.0, shaded.y);
+    vec2 lit = wood_on_slope(all, stands, to_eye, to_sun, through);
     float sky_left = reaches(all, 1.0, SKY_FROM);
     taken = vec4((1.0 - part) * sun_left, part * lit.x, mix(sky_left, lit.y, part), 1.0);
 }

@@ -1,6 +1,6 @@
 // trees/crown.glsl -- the shape of a tree's crown, by its place and height alone.
 //
-//   gives    Crown, crown_of, needle_share, visible_place, NARROWEST,
+//   gives    Crown, crown_of, needle_share, needle_area, visible_place, NARROWEST,
 //            WIDEST, HALF_HEIGHT, MIDDLE
 //   needs    noise/hash.glsl, trees/kinds.glsl
 //   units    metres; sizes of crowns as shares of the tree's height
@@ -22,6 +22,7 @@ const vec2 NARROWEST = vec2(0.26, 0.19);
 const vec2 WIDEST = vec2(0.36, 0.19);
 const vec2 HALF_HEIGHT = vec2(0.44, 0.475);
 const vec2 MIDDLE = vec2(0.56, 0.525);
+const float CONE_AREA = 0.6366;  // of the ellipse around it: 2 a b / (pi a b)
 
 struct Crown {
     vec3 middle;
@@ -34,6 +35,12 @@ struct Crown {
 // `metres`: above sea level.
 float needle_share(float needles, float needles_from, float metres) {
     return mix(needles, 1.0, smoothstep(needles_from - 150.0, needles_from + 150.0, metres));
+}
+
+// Of what one sees of them the share that is needles: cones are slim, 2 a b for pi a b.
+float needle_area(float share) {
+    float slim = share * CONE_AREA * NARROWEST.y * HALF_HEIGHT.y;
+    return slim / (slim + (1.0 - share) * 0.5 * (NARROWEST.x + WIDEST.x) * HALF_HEIGHT.x);
 }
 
 Crown crown_of(vec4 tree, float needle_share) {

@@ -1,7 +1,7 @@
 // trees/stand.glsl -- what a stand of trees hides, and the light on what one sees of it.
 //
-//   gives    Stand, stand_of, thinned, share_above, share_in, depth_towards, reaches, crown_light,
-//            wood_light
+//   gives    Stand, stand_of, thinned, share_above, share_in, depth_towards, over_ground,
+//            reaches, crown_light, wood_light
 //   needs    trees/crown.glsl, trees/level.glsl
 //   units    metres; trees a square metre; shares 0..1; light as a share of that on a surface
 //            that faces the sun, and of that of the whole sky on open level ground
@@ -32,7 +32,6 @@ struct Stand {
 };
 
 const float TREE_PI = 3.14159265;
-const float CONE_AREA = 0.6366;     // of the ellipse around it: 2 a b / (pi a b)
 const float SHRUNK_AREA = 0.8667;   // mean of shrunk(key)^2 for keys from 0 to 1
 const float WRAP = 0.25;            // leaves let light through: so far round the edge they are lit
 const vec3 SKY_FROM = vec3(0.7071, 0.0, 0.7071);  // where the sky's light comes from on the mean
@@ -74,6 +73,13 @@ float share_above(Stand s, float height) {
     return min(total, 1.0);
 }
 
+// How much of a cell's side lies within a length, anywhere over the cells: the mean over those
+// that it meets, each as often as it is met.
+float overlap(float along, float side) {
+    float whole = along / side;
+    return whole < 1.0 ? whole * (1.0 - whole / 3.0) : 1.0 - 1.0 / (3.0 * whole);
+}
+
 // Minus the logarithm of what no crown is in the way of, along `towards` from the ground up.
 // For trees anywhere that is n A. Where a cell holds one tree with the probability p, and the
 // part f of it is in the way, what is free is (1 - p f), less than exp(-p f).
@@ -82,10 +88,15 @@ float depth_towards(Stand s, vec3 towards) {
     float shadow = TREE_PI * s.across * length(vec2(s.across, s.up * run));
     // A band as wide as a crown, and as long as makes the same area, anywhere over the cells.
     float wide = 2.0 * s.across;
-    float side = JITTER * s.cell;
-    float part = wide / (wide + side) * (shadow / (shadow + wide * side));
+    float side = max(JITTER * s.cell, 1e-3);
+    float part = overlap(wide, side) * overlap(shadow / wide, side);
     float hit = min(s.dense * s.cell * s.cell * part, 0.95);
     return s.dense * shadow * (hit > 1e-3 ? -log(1.0 - hit) / hit : 1.0);
+}
+
+// A direction as it rises over ground of a slope, which is as level ground under a leaning sky.
+vec3 over_ground(vec3 towards, vec2 slope) {
+    return normalize(vec3(towards.xy, towards.z - dot(slope, towards.xy)));
 }
 
 // What of light along `towards` no crown is in the way of, where such a share of them is above.
@@ -95,10 +106,12 @@ float reaches(Stand s, float share, vec3 towards) {
 
 // Sun (x) and sky (y) on a crown where such a share of the others is above; `normal`: its
 // sphere's. All over the sphere it is as much sun as without leaves that let light through.
-vec2 crown_light(Stand s, vec3 normal, float share, vec3 to_sun) {
+//
+// `through`: to_sun, as over_ground has it.
+vec2 crown_light(Stand s, vec3 normal, float share, vec3 to_sun, vec3 through) {
     float facing = max(dot(normal, to_sun) + WRAP, 0.0) / ((1.0 + WRAP) * (1.0 + WRAP));
     float open = reaches(s, share, SKY_FROM);
-    return vec2(facing * reaches(s, share, to_sun), (0.5 + 0.5 * normal.z) * open);
+    return vec2(facing * reaches(s, share, through), (0.5 + 0.5 * normal.z) * open);
 }
 
 // The share above in the stand `all` of what is as deep in it as a share above is in the stand
@@ -127,7 +140,7 @@ vec2 wood_light(Stand s, vec3 to_eye, vec3 to_sun) {
         vec3 place = visible_place(disc, to_eye, vec2(s.across, s.up));
         float share = share_above(s, of.x * (s.middle + s.up * place.z));
         float seen = of.y * reaches(s, share, to_eye) + 1e-6;
-        total += seen * vec3(crown_light(s, place, share, to_sun), 1.0);
+        total += seen * vec3(crown_light(s, place, share, to_sun, to_sun), 1.0);
     }
     return total.xy / total.z;
 }

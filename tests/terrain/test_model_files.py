@@ -138,6 +138,7 @@ GLB = struct.pack("<III", 0x46546C67, 2, 24) + struct.pack("<II", 4, 0x4E4F534A)
         (document(asset={"version": "1.0"}), "is glTF 1.0"),
         (document(extensionsRequired=["KHR_draco_mesh_compression"]), "needs KHR_draco_mesh_compression"),
         (document(nodes=[{"children": [0]}]), "a node inside itself"),
+        (document(nodes=[{"children": [1] * 200}, {"children": [2] * 200}, {}]), "has more than 16384 nodes"),
         (document(scenes=[{"nodes": [3]}]), r"names nodes\[3\], which it does not have"),
         (document(meshes=[]), r"names meshes\[0\]"),
         (document(scenes=[{"nodes": []}]), "has no triangles in its scene"),
