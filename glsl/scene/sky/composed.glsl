@@ -56,8 +56,7 @@ vec4 kernel(ivec2 texel) {
     vec3 towards = direction_of(vec2(texel) + 0.5);
     float height = 0.001 * max(base_elevation + eye.z, 0.0);
     vec3 sun = texelFetch(daylight, ivec2(0), 0).rgb;
-    Weather now = weather(daylight);
-    vec4 cloud = vec4(vec3(0.0), clouds == 0 ? now.open : 1.0);
+    vec4 cloud = vec4(0.0, 0.0, 0.0, 1.0);
     if (clouds != 0) cloud = textureLod(cloud_picture, share, 0.0);
     float ground = way_to_ground(height, towards.z);
     float base = 0.001 * (base_elevation + texelFetch(drift, ivec2(0), 0).z);
@@ -65,13 +64,14 @@ vec4 kernel(ivec2 texel) {
     vec3 found = textureLod(backdrop, drape_uv(share, textureSize(backdrop, 0)), 0.0).rgb;
     if (ground >= 0.0) {
         Aerial air = aerial(scattered, left, share, 1000.0 * ground);
-        found = beyond * now.level * air.left + air.scattered;
+        found = beyond * weather(daylight).level * air.left + air.scattered;
     }
     if (clouds != 0) found *= cloud.a;
     if (ground < 0.0 && distance(towards, sun) < 0.1) {
         float pixel = distance(towards, direction_of(vec2(texel) + vec2(0.5, 1.5)));
         // Of the disc's own light nothing that was turned aside.
-        float straight = clouds == 0 ? cloud.a
+        Weather now = weather(daylight);
+        float straight = clouds == 0 ? now.open
                 : pow(clamp(cloud.a, 0.0, 1.0), 1.0 / (1.0 - UNSCATTERED));
         found += straight * disc_in(towards, sun, max(pixel, 1e-6), height, now);
     }
