@@ -3,8 +3,8 @@
 //   gives    frame, linear light
 //   needs    scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
 //            lighting/sun.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
-//            view/surface.glsl, clouds/shadow.glsl, scene/air_reading.glsl; seen, ground, albedo
-//            and a sky; a daylight, a light, bumps, a shadow, clouds or air if there are
+//            scene/air_reading.glsl, clouds/shadow.glsl, view/surface.glsl; seen, ground, albedo
+//            and a sky; a daylight, a light, bumps, a shadow, clouds, or the air if there are
 //   units    metres; slopes in metres over metres; light without unit, 1 for white
 //   source   deferred: Saito and Takahashi 1990, "Comprehensible Rendering of 3-D Shapes"
 //            (SIGGRAPH); the light as lighting/shade has it
@@ -40,9 +40,9 @@ uniform sampler2D bumps;       //! input("zero")
 uniform sampler2D shadow;      //! input("white")
 uniform sampler2D taken;       //! input("zero")
 uniform sampler2D cloud;       //! input("linear", "repeat", "mipmap", "white")
-uniform sampler2D drift;       //! input("zero")
-uniform sampler2D scattered;   //! input("linear", "zero")
-uniform sampler2D left;        //! input("linear", "white")
+uniform sampler2D drift;       //! input("black")
+uniform sampler2D scattered;   //! input("linear", "black")
+uniform sampler2D left;        //! input("linear", "black")
 uniform sampler2D sky_picture; //! input("zero")
 #include "lighting/parameters/sun.glsl"
 #include "lighting/parameters/sunlight.glsl"
@@ -73,7 +73,24 @@ vec3 light_at(vec4 at, PixelRay ray, vec2 bump, float sun_share, vec3 takes) {
     if (is_object(at.w)) normal = normal_of(at.w);
     else normal = normal_of_slope(around.slope + bump);
     Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, sky_colour);
+    if (wired_cloud && wired_drift) {
+        vec4 wind = texelFetch(drift, ivec2(0), 0);
+        // A daylight's sun is dimmed by the mean of all clouds already.
+        sun_share *= wired_daylight ? cloud_share(cloud, wind, at.xyz, from.direction)
+                : cloud_transmittance(cloud, wind, at.xyz, from.direction);
+    }
     return received(from, normal, around, sun_share, takes);
+}
+
+vec3 in_air(vec3 shown, vec3 place, ivec2 texel) {
+    float far = distance(eye, place);
+    if (wired_scattered && wired_left) {
+        Aerial air = aerial(scattered, left, (vec2(texel) + 0.5) / vec2(size), far);
+        return shown * air.left + air.scattered;
+    }
+    if (haze <= 0.0) return shown;
+    vec3 air = wired_daylight ? horizon_of(daylight, 0.001 * (base_elevation + eye.z)) : horizon;
+    return through_air(shown, air, haze, far, extent);
 }
 
 vec4 kernel(ivec2 texel) {
@@ -86,23 +103,9 @@ vec4 kernel(ivec2 texel) {
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     vec2 bump = wired_bumps ? texelFetch(bumps, texel, 0).xy : vec2(0.0);
     float sun_share = wired_shadow ? texelFetch(shadow, texel, 0).r : 1.0;
-    if (wired_cloud) {
-        vec3 beam = sun_direction(wired_daylight, daylight, towards_sun);
-        vec4 wind = texelFetch(drift, ivec2(0), 0);
-        sun_share *= wired_daylight ? cloud_share(cloud, wind, at.xyz, beam)
-                : cloud_transmittance(cloud, wind, at.xyz, beam);
-    }
     vec3 takes = wired_taken ? texelFetch(taken, texel, 0).xyz : vec3(1.0, 0.0, 1.0);
     vec3 light = light_at(at, ray, bump, sun_share, takes);
     vec3 shown = texelFetch(albedo, texel, 0).rgb * light;
     if (!is_number(shown.r + shown.g + shown.b)) return vec4(NOT_A_NUMBER, 1.0);
-    if (wired_scattered) {
-        Aerial through = aerial(scattered, left, (vec2(texel) + 0.5) / vec2(size),
-                                distance(eye, at.xyz));
-        return vec4(shown * through.left + through.scattered, 1.0);
-    }
-    vec3 air = horizon;
-    if (wired_daylight) air = horizon_of(daylight, 0.001 * (base_elevation + eye.z));
-    if (haze > 0.0) shown = through_air(shown, air, haze, distance(eye, at.xyz), extent);
-    return vec4(shown, 1.0);
+    return vec4(in_air(shown, at.xyz, texel), 1.0);
 }
