@@ -37,13 +37,14 @@ vec4 kernel(ivec2 texel) {
     ahead = over_horizon(ahead, from, height);
     vec2 span = layer_crossing(from, ahead.z, height, height + 1e-3);
     if (span.y <= span.x || span.x > FARTHEST) return vec4(0.0, 0.0, 0.0, 1.0);
-    CloudLight light = cloud_light(daylight, columns, bounced, from, ahead, span.x, height);
     float texel_wide = wind.w / float(textureSize(cloud, 0).x);
     float pixel = 1000.0 * span.x * angle;
     // Seen at an angle a pixel is longer than wide; between the two little flickers or blurs.
     float stretched = pixel * inversesqrt(max(abs(ahead.z), 0.02));
     float level = max(log2(max(stretched, 1e-3) / texel_wide), 0.0);
     vec4 here = textureLod(cloud, tile_of(eye.xy + ahead.xy * (1000.0 * span.x), wind), level);
+    if (here.a > 0.9995) return vec4(0.0, 0.0, 0.0, 1.0);
+    CloudLight light = cloud_light(daylight, columns, bounced, from, ahead, span.x, height);
     float whole = CLOUD_DEPTH * here.r;
     float sine = max(light.to_sun.z, LOWEST_SUN);
     Crossing crossed = crossing(whole, sine);

@@ -69,8 +69,8 @@ vec4 kernel(ivec2 texel) {
     ahead = over_horizon(ahead, from, base);
     vec2 span = layer_crossing(from, ahead.z, base, base + 0.001 * CLOUD_TALL);
     if (span.y <= span.x || span.x > FARTHEST) return vec4(0.0, 0.0, 0.0, 1.0);
-    CloudLight light = cloud_light(daylight, columns, bounced, from, ahead, span.x, base);
-    float together = dot(ahead, light.to_sun);
+    vec3 to_sun = sun_direction(true, daylight, vec3(0.0));
+    float together = dot(ahead, to_sun);
     float texel_wide = wind.w / float(textureSize(cloud, 0).x);
     float pixel = 1000.0 * span.x * angle;
     // A whole level: one look at the tile in place of two.
@@ -80,7 +80,8 @@ vec4 kernel(ivec2 texel) {
     float sideways = CLOUD_TALL / wind.w;
     float phase = drops_phase_wide(together);
     float kept = 1.0;
-    vec3 found = vec3(0.0);
+    // What the eye receives of the sun, of sky and ground together, and of the ground.
+    vec3 part = vec3(0.0);
     for (int k = 0; k < steps; k++) {
         float way = 1000.0 * span.x + (float(k) + bayer(texel)) * step_of;
         float up = (1000.0 * (height_along(from, ahead.z, 0.001 * way) - base)) / CLOUD_TALL;
@@ -93,21 +94,23 @@ vec4 kernel(ivec2 texel) {
         for (int s = 0; s < 3; s++) {
             float start = s == 0 ? 0.0 : s == 1 ? 100.0 : 300.0;
             float long_ = s == 0 ? 100.0 : s == 1 ? 200.0 : 600.0;
-            vec3 to = light.to_sun * (start + 0.5 * long_);
+            vec3 to = to_sun * (start + 0.5 * long_);
             float there = textureLod(cloud, at + to.xy / wind.w, level).r;
             depth += long_ * density_at(there, up + to.z / CLOUD_TALL);
         }
         depth *= per_metre;
-        float behind = CLOUD_DEPTH * mix(0.5 * thick, up, clamp(light.to_sun.z, 0.0, 1.0));
+        float behind = CLOUD_DEPTH * mix(0.5 * thick, up, clamp(to_sun.z, 0.0, 1.0));
         Diffuse around = diffuse_of_beam(depth, depth + behind, 1.0);
-        vec3 source = 3.14159265 * light.sun * (phase * exp(-depth) + around.mean
-                                                + WIDE_G * around.down * together)
-                + diffuse_between(light.above, light.below, CLOUD_DEPTH * max(thick - up, 0.0),
-                                  CLOUD_DEPTH * max(thick, up));
+        float from_sun = phase * exp(-depth) + around.mean + WIDE_G * around.down * together;
+        float from_below = share_from_below(CLOUD_DEPTH * max(thick - up, 0.0),
+                                            CLOUD_DEPTH * max(thick, up));
         float left = exp(-much * per_metre * step_of);
-        found += kept * (1.0 - left) * source;
+        part += kept * (1.0 - left) * vec3(3.14159265 * from_sun, 1.0, from_below);
         kept *= left;
         if (kept < 0.01) break;
     }
+    if (kept == 1.0) return vec4(0.0, 0.0, 0.0, 1.0);
+    CloudLight light = cloud_light(daylight, columns, bounced, from, ahead, span.x, base);
+    vec3 found = part.x * light.sun + (part.y - part.z) * light.above + part.z * light.below;
     return vec4(found + aureole(light.sun, kept, together), kept);
 }

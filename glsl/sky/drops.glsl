@@ -1,7 +1,7 @@
 // sky/drops.glsl -- light among drops of water, which scatter all of it and mostly forwards.
 //
 //   gives    UNSCATTERED, drops_phase, drops_phase_wide, drops_peak, Diffuse, diffuse_of_beam,
-//            diffuse_between, Crossing, crossing
+//            share_from_below, diffuse_between, Crossing, crossing
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    optical depths without unit, of what is not scattered nearly straight on (the depth
 //            times 1 - UNSCATTERED), counted downwards; cosines; per unit of the beam on a surface
@@ -64,11 +64,14 @@ Diffuse diffuse_of_beam(float depth, float whole, float rise) {
                    c - BEAM_Q * rise * here);
 }
 
-// The mean of all directions at a depth where `above` comes in evenly from above, `below` from
-// below: it falls evenly from one to the other.
+// How much of the mean of all directions at a depth comes from below, where light comes in evenly
+// from above and from below: it goes evenly from one to the other.
+float share_from_below(float depth, float whole) {
+    return (2.0 / 3.0 + (1.0 - WIDE_G) * depth) / (4.0 / 3.0 + (1.0 - WIDE_G) * whole);
+}
+
 vec3 diffuse_between(vec3 above, vec3 below, float depth, float whole) {
-    return mix(above, below, (2.0 / 3.0 + (1.0 - WIDE_G) * depth)
-                             / (4.0 / 3.0 + (1.0 - WIDE_G) * whole));
+    return mix(above, below, share_from_below(depth, whole));
 }
 
 struct Crossing {
