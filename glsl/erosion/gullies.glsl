@@ -103,9 +103,11 @@ void kernel(ivec2 texel, out float height, out float gully) {
         Cells cells = cells_of_width(wide, tiles ? extent : vec2(0.0));
         vec2 wave = stripes(place, side / wide, cells, lattice_seed(seed + SALT, octave));
         float fade = smoothstep(0.0, 0.5, steep) * whole;
+        // anchor: octave
         float deep = shown * depth * min(steep, 1.0) * fade;
         cut += deep * (wave.x - 0.3);
         slope -= deep * TAU / wide * wave.y * side;
+        // end: octave
         floors += weight * fade * (0.5 - 0.5 * wave.x);
         weights += weight;
         weight *= 0.7;  // of the mask: fine gullies show in it though they are not deep

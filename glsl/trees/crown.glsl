@@ -1,11 +1,12 @@
 // trees/crown.glsl -- the shape of a tree's crown, by its place and height alone.
 //
-//   gives    Crown, crown_of, needle_share, visible_place, NARROWEST, WIDEST, HALF_HEIGHT, MIDDLE
+//   gives    Crown, crown_of, needle_share, visible_place, NARROWEST,
+//            WIDEST, HALF_HEIGHT, MIDDLE
 //   needs    noise/hash.glsl, trees/kinds.glsl
 //   units    metres; sizes of crowns as shares of the tree's height
 //   source   ellipsoids, as in Max 1996, "Hierarchical Rendering of Trees from Precomputed
 //            Multi-Layer Z-Buffers" (Eurographics workshop on rendering); proportions made here
-//   tested   tests/glsl/test_trees.py
+//   tested   tests/glsl/test_trees_light.py
 //
 // Broad leaves are an ellipsoid, needles a cone in the same box. An ellipsoid is a sphere that was
 // stretched, so what an eye far away sees of it is a hemisphere of that sphere, stretched as well.

@@ -5,7 +5,7 @@
 //   units    kinds as of scene/packing.glsl; days of the year from 0; colours linear
 //   source   colours made here: albedos of leaves are 0.03 to 0.1 in green light, of autumn leaves
 //            up to 0.2 (Hosgood and others 1994, LOPEX93)
-//   tested   tests/glsl/test_trees.py
+//   tested   tests/glsl/test_trees_light.py
 //
 // 0 to 31 are broad leaves of so many tints, 32 to 47 needles, 48 to 55 rocks, the rest is free.
 #ifndef TREES_KINDS

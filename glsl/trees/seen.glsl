@@ -8,9 +8,11 @@
 #include "scene/packing.glsl"
 #include "trees/billboard.glsl"
 #include "trees/quad.glsl"
-#pragma draw(mesh = "triangles", count = "2 * trees", output = "seen:rgba32f", samples = 1)
+#pragma draw(mesh = "sheet", instances = "min(total.x, trees)", output = "seen:rgba32f", \
+             samples = 1)
 
-uniform sampler2D tree;        //! input
+uniform sampler2D tree;   //! input
+uniform sampler2D total;  //! input
 #include "trees/parameters/budget.glsl"
 #include "trees/parameters/species.glsl"
 #include "trees/parameters/ragged.glsl"
@@ -18,10 +20,10 @@ uniform sampler2D tree;        //! input
 const uint SALT = 0xc8c979e4u;  // CRC-32 of "trees/seen"
 
 vec4 vertex(vec3 corner, out vec2 disc, out vec4 middle, out vec4 form) {
-    vec4 found = tree_of(tree, corner);
+    vec4 found = tree_of(tree, gl_InstanceID);
     if (found.w <= 0.0) return NOWHERE;
     float share = needle_share(needles, needles_from, found.z + base_elevation);
-    Billboard board = billboard_of(found, quad_of(corner), share, eye);
+    Billboard board = billboard_of(found, square_of(corner), share, eye);
     disc = board.disc;
     middle = board.middle;
     form = board.form;

@@ -32,7 +32,9 @@ float kernel(ivec2 texel) {
     for (int k = 0; k < NEIGHBOURS; k++) {
         ivec2 step_to = neighbour_of(k);
         ivec2 there = texel + step_to;
+        // anchor: steepest
         float drop = (here - texelFetch(height, there, 0).r) / length(vec2(step_to) * spacing);
+        // end: steepest
         if (randomness > 0.0) {
             drop *= 1.0 - randomness * random(3 * texel + step_to + 1, seed + SALT);
         }

@@ -8,7 +8,8 @@ of the whole picture, and so are a draw's clip space and its viewport, clipped t
 A kernel's text is changed for that in three places: it gets the texel of the whole, reads
 the window's own textures at the window's texel, and `gl_FragCoord` counts from the whole's
 corner. What reads such a texture anywhere but at its own texel cannot be drawn in parts,
-and a sentence says so.
+and a sentence says so, and which parameter switches it off if one does: a kernel that runs no step
+hands on what it begins with, part by part.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
 
-from playground.engine.plan import LoopStep, Plan, PlanNode, Window, sources_of, walk
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, Window, sources_of, walk
 from playground.errors import SketchError
 from playground.sketch.flat import Ref
 from playground.sketch.identity import Identity
@@ -56,16 +57,18 @@ def _in_window(node: PlanNode, of_pixels: set[str], window: Window) -> PlanNode:
             raise _refused(node, "it repeats")
         return node
     read = _read(node, of_pixels)
+    if node.kernel.kind == "kernel" and not node.repeat:  # it hands on what it begins with, or zeros
+        return replace(node, size=window.size, window=window) if inside else node
     if not inside:
         if read:
-            raise _refused(node, f"it reads '{read[0]}', whose size is another")
+            raise _refused(node, f"it reads '{read[0]}', whose size is another", _switch(node))
         return node
     if node.kernel.kind in ("source", "compute", "plain_compute"):
         raise _refused(node, f"it is a {node.kernel.kind.replace('_', ' ')} shader")
     names = tuple(n for n, source in node.inputs if isinstance(source, Ref) and source.path in of_pixels)
     kernel = _changed(Identity(node.kernel), names)
     if isinstance(kernel, str):
-        raise _refused(node, kernel)
+        raise _refused(node, kernel, _switch(node))
     return replace(node, kernel=kernel, size=window.size, window=window)
 
 
@@ -73,8 +76,15 @@ def _read(node: PlanNode, of_pixels: set[str]) -> list[str]:
     return [s.path for s in sources_of(node) if isinstance(s, Ref) and s.path in of_pixels]
 
 
-def _refused(node: PlanNode, why: str) -> SketchError:
-    return node.spec.error(f"pass '{node.path}' cannot be drawn in parts: {why}; choose a smaller picture")
+def _refused(node: PlanNode, why: str, switch: str = "") -> SketchError:
+    instead = f"turn '{switch}' off or choose" if switch else "choose"
+    return node.spec.error(f"pass '{node.path}' cannot be drawn in parts: {why}; {instead} a smaller picture")
+
+
+def _switch(step: Step) -> str:
+    """Return the parameter that alone says whether a kernel runs; "" where there is none."""
+    names = [p.name for p in step.kernel.parameters if re.search(rf"\b{p.name}\b", step.kernel.repeat)]
+    return names[0] if len(names) == 1 and " else 0" in step.kernel.repeat else ""
 
 
 @lru_cache(maxsize=64)

@@ -15,15 +15,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-Values = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class Grid:
-    """The places and metres of a heightmap's texels."""
-
-    spacing: tuple[float, float] = (1.0, 1.0)  # [m] from texel to texel, eastwards and northwards
-    relief: float = 1.0  # [m] from height 0 to height 1
+from playground.lessons.drainage import pits, slope_area_power, slope_where_drained, tail_power
+from playground.lessons.grid import Grid, Values
 
 
 @dataclass(frozen=True)
@@ -44,6 +37,12 @@ class OfRun:
 def mean(values: Values, grid: Grid) -> float:
     """Return the mean."""
     return float(values.mean())
+
+
+def mean_below_mesh(values: Values, grid: Grid) -> float:
+    """Return the mean of the mesh through the texels: one on an edge counts half, in a corner a quarter."""
+    east, north = (np.r_[0.5, np.ones(count - 2), 0.5] for count in values.shape[::-1])
+    return float(np.average(values, weights=np.outer(north, east)))
 
 
 def lowest(values: Values, grid: Grid) -> float:
@@ -195,10 +194,11 @@ def edge_match(values: Values, grid: Grid) -> float:
 
 
 _FUNCTIONS: tuple[Callable[..., float], ...] = (
-    *(mean, lowest, highest, spread, deviation, distinct),
+    *(mean, mean_below_mesh, lowest, highest, spread, deviation, distinct),
     *(share_below, share_above, share_between, share_steeper),
     *(local_maxima, peaks_on_lattice, mean_slope, spectrum_slope, box_dimension),
     *(diagonal_crease, step_across, correlation, edge_match),
+    *(pits, tail_power, slope_where_drained, slope_area_power),
 )
 
 MEASURES: dict[str, OfTexture | OfRun] = {

@@ -15,7 +15,8 @@ from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan, Step, every_version, needed
 from playground.engine.planner import Planner
 from playground.errors import SketchError
-from playground.lessons.measures import MEASURES, Grid, OfTexture
+from playground.lessons.grid import Grid
+from playground.lessons.measures import MEASURES, OfTexture
 from playground.lessons.model import Lesson, Markdown, Measure, Scene
 
 _PLACE = re.compile(r"\{\{\s*([a-z0-9-]+)\s*\}\}")

@@ -17,6 +17,7 @@
     painting.py         the brush over the picture
       brush.py          where a stroke reaches
       canvas.py         an image that is painted on, its file and its strokes undone
+      latest_write.py   a file written on a thread
       painted_mask.py   four weights a texel
       sculpture.py, sculpting.py, sculpted_ground.py   metres on a ground, and the tools
       erode_tool.py     the tool that runs a technique

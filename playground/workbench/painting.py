@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -47,7 +48,14 @@ SAVES_EVERY = 0.1
 class Painting:
     """What is painted in one session."""
 
-    def __init__(self, session: Session, folder: Path, now: Callable[[], float] = time.perf_counter) -> None:
+    def __init__(
+        self,
+        session: Session,
+        folder: Path,
+        now: Callable[[], float] = time.perf_counter,
+        wake: Callable[[], None] | None = None,
+    ) -> None:
+        """Paint on a session's sketch; ``wake`` is called, on any thread, where ``follow`` has work."""
         self.session = session
         self.folder = folder  # where new masks go
         self.brush = Brush(radius=0.0)
@@ -58,6 +66,8 @@ class Painting:
         self._chosen = ""
         self._heights: tuple[object, NDArray[np.float32] | None] = (None, None)  # and of which picture
         self._eroding: ErodeTool | None = None
+        self._wake = wake
+        self._reported: dict[Path, int] = {}  # how many writes of a canvas's file have been looked at
         self._stroke: Canvas | None = None  # what the stroke that goes on is painted on
         self._last: tuple[float, float] | None = None  # where the stroke is
         self._saved_at = 0.0
@@ -245,6 +255,39 @@ class Painting:
         if self.canvas is not None and not self.canvas.saved:
             self._saved(self.canvas.save)
 
+    def follow(self) -> None:
+        """Report what went wrong with files that were written meanwhile, and show those that are read."""
+        for canvas in self._canvases.values():
+            ended = canvas.writing.writes
+            if self._reported.get(canvas.path) == ended:
+                continue
+            self._reported[canvas.path] = ended
+            if canvas.writing.error is not None:
+                self.session.notes.append(str(canvas.writing.error))
+            if canvas.path not in self.session.engine.painted:
+                self.session.redraw()
+
+    def settle(self) -> bool:
+        """Wait until the files hold what is painted, for who is about to read them; a note says what fails.
+
+        Return whether they do.
+        """
+        for canvas in self._canvases.values():
+            if not canvas.saved:
+                canvas.save()
+        for canvas in self._canvases.values():
+            with suppress(PlaygroundError):  # what ``follow`` reports
+                canvas.writing.wait()
+        self.follow()
+        return all(canvas.saved for canvas in self._canvases.values())
+
+    def close(self) -> list[str]:
+        """End the stroke and wait for the files; return a sentence for each that could not be written."""
+        self.release()
+        self.settle()
+        errors = (canvas.writing.error for canvas in self._canvases.values())
+        return [str(error) for error in errors if error is not None]
+
     def undo(self) -> None:
         """Undo the last stroke."""
         self._edit(self.canvas, Canvas.undo)
@@ -339,7 +382,11 @@ class Painting:
         except PlaygroundError as error:
             self.session.notes.append(str(error))
             return None
+        if path in self._canvases:
+            self.settle()  # another takes its place, and nobody looks after it any more
         self._canvases[path] = canvas
+        self._reported[canvas.path] = canvas.writing.writes
+        canvas.writing.ended = self._wake or canvas.writing.ended
         self.session.data.trust(canvas.path)
         self.session.drafts.set(path, str(canvas.path))
         self.session.notes.append(f"painting on {canvas.path.name} in {canvas.path.parent}")

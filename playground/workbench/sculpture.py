@@ -47,9 +47,10 @@ class Sculpture(Canvas):
         """Return a file's numbers at a size (nx, ny). Raises ``DataError`` where it cannot be read."""
         return np.array(read_numbers(path, size))
 
-    def write(self) -> None:
-        """Write the file, whole or not at all. Raises ``DataError`` where that fails."""
-        write_numbers(self.path, self.pixels)
+    @classmethod
+    def write(cls, path: Path, pixels: NDArray[np.float32]) -> None:
+        """Write numbers to a file, whole or not at all. Raises ``DataError`` where that fails."""
+        write_numbers(path, pixels)
 
     def begin(self) -> None:
         """Begin a stroke, which one undo will take back; it flattens to the height where it begins."""

@@ -7,6 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from playground.engine.plan import Window
+from playground.errors import SketchError
+from playground.gpu.textures import read_picture
 from playground.sketch.model import Camera
 
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
@@ -32,6 +35,7 @@ def scene(make_sketch):
     """Give a function that makes a sketch of a height and a colour, and what else its text has."""
 
     def make(height=PLANE, colour=TINTED, view="scene/terrain", given="", passes="", wired="", **more):
+        given = ", ".join(filter(None, [given, "antialias = false" if view.startswith("scene") else ""]))
         set_ = f"set = {{ grid = 65{', ' if given else ''}{given} }}"
         inputs = f"inputs = {{ {wired} }}\n" if wired else ""
         text = f'{PASSES}{passes}[view]\nuse = "{view}"\nsamples = 1\n{inputs}{set_}\n'
@@ -244,6 +248,35 @@ def test_bumps_turn_a_pixel_s_slope_and_a_shadow_hides_the_sun(any_engine, scene
     np.testing.assert_allclose(frame[top], albedo[top] * sky, rtol=2e-3)
 
 
+def test_the_air_lets_through_and_adds(any_engine, scene):
+    """Of air that is alike at all distances, what is left and what is added are its own."""
+    maps = '#pragma kernel(output = "scattered:rgba16f, left:rgba16f")\n'
+    maps += "void kernel(ivec2 t, out vec4 scattered, out vec4 left) "
+    maps += "{ scattered = vec4(0.125, 0.25, 0.5, 0.0); left = vec4(0.75, 0.5, 0.25, 0.0); }\n"
+    passes = '[[pass]]\nname = "air"\nuse = "./air"\nsize = [64, 40]\n'
+    clear = scene(BUMPY, given=LIT)
+    aired = scene(BUMPY, given=f"{LIT}, haze = 0.7", passes=passes, air=maps)
+    before = any_engine.read(clear, "view.shaded", size=SIZE)[..., :3].astype(float)
+    found = any_engine.read(aired, "view.shaded", size=SIZE)[..., :3].astype(float)
+    seen = any_engine.read(aired, "view.where", size=SIZE)
+    land = seen[..., 3] > 0
+    expected = before[land] * [0.75, 0.5, 0.25] + [0.125, 0.25, 0.5]
+    np.testing.assert_allclose(found[land], expected, rtol=3e-3)
+    np.testing.assert_array_equal(found[~land], before[~land])
+
+
+def test_another_picture_of_the_sky_takes_the_plain_one_s_place(any_engine, scene):
+    picture = COLOUR.format("vec4(vec2(texel) / 256.0, 0.5, 1.0)").replace("colour:", "sky_picture:")
+    passes = f'[[pass]]\nname = "sky_picture"\nuse = "./picture"\nsize = [{SIZE[0]}, {SIZE[1]}]\n'
+    sketch = scene(passes=passes, picture=picture).with_camera(replace(LOOK, distance=1500))
+    found = any_engine.read(sketch, "view.shaded", size=SIZE)[..., :3].astype(float)
+    sky = any_engine.read(sketch, "view.where", size=SIZE)[..., 3] == 0
+    expected = np.concatenate([all_pixels() / 256, np.full((*SIZE[::-1], 1), 0.5)], axis=-1)
+    assert sky.sum() > 500
+    np.testing.assert_allclose(found[sky], expected[sky], atol=1e-3)
+    assert any_engine.plan.step("view.sky").size == (1, 1), "which is not made in vain"
+
+
 def decoded(value):
     """Return the linear value of one encoded as sRGB, both 0..1."""
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
@@ -258,13 +291,17 @@ def test_what_is_no_number_is_marked(any_engine, scene):
 
 
 def test_a_picture_in_parts_is_the_whole_picture(any_engine, scene):
-    """Every pass reads the pictures of pixels at its own pixel alone."""
-    from playground.engine.plan import Window
-    from playground.gpu.textures import read_picture
-
-    sketch = replace(scene(BUMPY, given=f"{HAZE}, {LIT}"), samples=1)
+    """All but three passes read pictures of pixels at their own pixel alone; those can be switched off."""
+    sketch = scene(BUMPY, given=f"{HAZE}, {LIT}, vignette = 0.3")
+    window = Window((0, 0), (70, 50), SIZE)
+    for name, value in (("antialias", True), ("bloom", 0.1), ("adapts", True)):
+        looking = sketch.with_values({"view.antialias": False, f"view.{name}": value})
+        with pytest.raises(SketchError, match=f"turn '{name}' off or choose a smaller picture"):
+            any_engine.draw_window(looking, window)
+    sketch = sketch.with_values({"view.antialias": False})
     whole = any_engine.render(sketch, size=SIZE).array
-    for x, y, width, height in ((0, 0, 70, 50), (70, 50, 80, 47)):
-        part = read_picture(any_engine.draw_window(sketch, Window((x, y), (width, height), SIZE)))
+    for part in (window, Window((70, 50), (80, 47), SIZE)):
+        (x, y), (width, height) = part.origin, part.size
+        found = read_picture(any_engine.draw_window(sketch, part))
         rows = slice(SIZE[1] - y - height, SIZE[1] - y)
-        np.testing.assert_array_equal(part, whole[rows, x : x + width])
+        np.testing.assert_array_equal(found, whole[rows, x : x + width])

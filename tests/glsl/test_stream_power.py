@@ -81,6 +81,42 @@ def test_slopes_of_a_steady_state_follow_the_law(worn, power):
     assert exponent == pytest.approx(-power, rel=0.01)
 
 
+HALF_DRY = """
+#pragma kernel(output = "rain:r32f")
+float kernel(ivec2 texel) { return 2 * texel.x < size.x ? 0.125 : 1.5; }
+"""
+
+
+def test_rain_makes_a_steady_state_of_discharges(engine, make_sketch):
+    """S = (U / K) Q^-m where Q is the rain above; where it is even, that is another K: within 1 % both."""
+    values = {**BARE, "age": 100.0, "steps": 80, "keep": 1.0}
+
+    def steady(rain="", text=HALF_DRY, **more):
+        wet = f'[[pass]]\nname = "wet"\nuse = "./wet"\nsize = {rain}\n' if rain else ""
+        wired = 'inputs = { height = "low", rain = "wet" }' if rain else 'inputs = { height = "low" }'
+        passes = wet + PASSES.replace('inputs = { height = "low" }', wired)
+        sketch = make_sketch(passes, size=49, extent=EXTENT, relief=RELIEF, low=LOW, wet=text)
+        sketch = sketch.with_values({f"rivers.{k}": v for k, v in {**values, **more}.items()})
+        height = RELIEF * engine.read(sketch, "rivers:height").astype(float)
+        return height, engine.read(sketch, "rivers:receiver").astype(int)
+
+    height, receiver = steady(49)
+    half = np.where(2 * np.arange(49) < 49, 0.125, 1.5) * np.ones((49, 1))
+    discharge = (EXTENT / 48) ** 2 * counted(receiver, half)
+    slope, inner = slopes_of(height, receiver, EXTENT / 48), ~edge_of(height.shape)
+    ratio = slope[inner] * 5e-6 * discharge[inner] ** 0.5 / 5e-4
+    assert np.median(ratio) == pytest.approx(1.0, abs=0.01)
+    assert (np.abs(ratio - 1) < 0.01).mean() > 0.95
+    dry, wet = height[1:-1, 1:24].mean(), height[1:-1, 25:-1].mean()
+    assert dry > 1.5 * wet
+
+    # Rain of any size of its own: 4 everywhere is twice the K.
+    found, _ = steady(5, HALF_DRY.replace("2 * texel.x < size.x ? 0.125 : 1.5", "4.0"))
+    wanted, _ = steady(erodibility=10.0)
+    assert np.median(np.abs(found - wanted)) < 0.01 * np.median(wanted)
+    np.testing.assert_allclose(np.quantile(found, [0.5, 0.9]), np.quantile(wanted, [0.5, 0.9]), rtol=0.01)
+
+
 def test_links_are_solved_as_one_after_another(engine, make_sketch):
     passes = """
 [[pass]]
@@ -194,6 +230,60 @@ def test_turned_terrain_wears_turned(worn):
     height, *_ = worn(65, **values)
     turned, *_ = worn(65, turn=1, **values)
     np.testing.assert_allclose(turned[::-1, ::-1], height, atol=0.01)
+
+
+@pytest.mark.parametrize("share", [0.1, 0.5, 3.0])
+def test_a_checkerboard_on_a_hillside_decays_as_theory_says(engine, make_sketch, share):
+    """By hand: of its nine points a step leaves (1 - 2 r) / (1 + 10 r / 3), r = D dt / spacing^2."""
+    passes = """
+[[pass]]
+name = "board"
+use = "./board"
+[[pass]]
+name = "worn"
+use = "erosion/stream_power/hillside"
+inputs = { link = "board" }
+set = { age = 1.0, steps = 1, slides = SLIDES, steepest = 89.0, creep = CREEP }
+"""
+    board = """
+#pragma kernel(output = "link:rgba32f")
+vec4 kernel(ivec2 texel) { return vec4((texel.x + texel.y) % 2 == 0 ? 0.51 : 0.49, 0.0, 0.0, 0.0); }
+"""
+    sign = (-1.0) ** np.add(*np.mgrid[:41, :41])
+    for slides in (1, 4):
+        creep = share * slides * 400.0**2 / 1e6
+        text = passes.replace("SLIDES", str(slides)).replace("CREEP", str(creep))
+        sketch = make_sketch(text, size=41, extent=16000.0, relief=RELIEF, board=board)
+        left = ((engine.read(sketch, "worn").astype(float) - 0.5) * sign)[15:-15, 15:-15] / 0.01
+        np.testing.assert_allclose(left, ((1 - 2 * share) / (1 + 10 * share / 3)) ** slides, atol=2e-5)
+
+
+BOARD = LOW.replace("return 0.1", "return ((texel.x + texel.y) % 2 == 0 ? 20.0 / 1200.0 : 0.0) + 0.1")
+
+
+@pytest.mark.parametrize(
+    ("low", "values"), [(LOW, ONE_LEVEL), (BOARD, {})], ids=["one level", "from a board"]
+)
+def test_rivers_leave_no_checkerboard(engine, make_sketch, low, values):
+    """From noise, or on several levels from one of 20 m: its waves carry as much as waves a little longer.
+
+    Spectra of terrains fall with the wave number. The corner of the spectrum, of the shortest waves
+    both ways, may have twice the power, a wave, of the band before it, for there are few waves in it.
+    """
+
+    def powers(field):
+        window = np.hanning(129)[:, None] * np.hanning(129)
+        power = np.abs(np.fft.fft2((field - field.mean()) * window)) ** 2
+        least = np.minimum(*np.meshgrid(*(np.abs(np.fft.fftfreq(129)),) * 2))
+        return power[least > 0.45].mean(), power[(least > 0.35) & (least <= 0.45)].mean()
+
+    sketch = make_sketch(PASSES, size=129, extent=EXTENT, relief=RELIEF, low=low)
+    sketch = sketch.with_values({f"rivers.{k}": v for k, v in {"keep": 1.0, **values}.items()})
+    begun, worn = (engine.read(sketch, name).astype(float) for name in ("low", "rivers:height"))
+    corner, band = powers(begun)
+    assert (corner > 10 * band) == (low is BOARD)
+    corner, band = powers(worn)
+    assert corner < 2 * band
 
 
 @pytest.mark.parametrize(

@@ -1,5 +1,7 @@
 """Trees by their counts against a density's integral, as sets, and by what changes along a flight."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -149,7 +151,7 @@ def test_where_there_are_too_many_fewer_are_kept_everywhere(kept, ctx, make_sket
         counts, of = np.histogram(found[:, axis], bins)[0], np.histogram(whole[:, axis], bins)[0]
         assert (np.abs(counts - share * of) < 4 * np.sqrt(share * of)).all()
     limit = kept.read(placed(make_sketch, EVERY.replace("200000", str(budget))), "trees:limit")[0, 0]
-    assert found[:, 3].max() <= 21 * limit**-0.3 + 1e-3
+    assert found[:, 3].max() <= 21 * limit**-0.4 + 1e-3
 
 
 PLANE = """
@@ -217,3 +219,22 @@ def test_clearings_take_their_share_of_the_ground(kept, ctx, make_sketch):
         text = DENSITY.format(slope=0.0, wired="", values=f"clearings = {share}, clearing = 10")
         found = kept.read(make_sketch(text, size=257, extent=640.0, relief=100.0, plane=PLANE), "density")
         assert abs(1 - found.mean() - share) < 0.1
+
+
+def test_nothing_pops_as_the_eye_comes_nearer(kept, ctx, make_sketch):
+    """A hundredth nearer each step: no tree jumps, and those of one place cover as much."""
+    sketch = placed(make_sketch, "all_round = true, whole = 200, reach = 1200, trees = 200000")
+    for distance, nearer in ((1160.0, 0.999), (950.0, 0.99), (600.0, 0.99), (250.0, 0.99)):
+        found = []
+        for step in (1.0, nearer):
+            tree = listed(kept, sketch.with_camera(replace(sketch.camera, distance=distance * step)))
+            near = tree[np.hypot(tree[:, 0] - 1300, tree[:, 1] - 700) < 120]
+            found.append({(x, y): h for x, y, _, h in near.tolist()})
+        one, other = found
+        areas = [sum(h * h for h in tall.values()) for tall in found]
+        assert abs(areas[1] / areas[0] - 1) < 0.02 or distance > 0.9 * 1200 - 120
+        jumps = [abs(one.get(at, 0.0) - other.get(at, 0.0)) for at in one.keys() | other.keys()]
+        # The share that is kept changes by twice a step, so a key by no more, and a height by five of these.
+        # In the last tenth of the reach all go, by up to 1.5 / 0.1 of that share a step.
+        steepest = 2.0 if distance < 0.9 * 1200 - 120 else 2.0 + 2.0 * 1.5 / 0.1
+        assert max(jumps) / max(other.values()) < 1.2 * 5.0 * steepest * (1 - nearer), distance

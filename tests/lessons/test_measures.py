@@ -10,7 +10,8 @@ import scipy.ndimage
 
 from playground.errors import SketchError
 from playground.lessons import measures
-from playground.lessons.measures import MEASURES, Grid, OfTexture
+from playground.lessons.grid import Grid
+from playground.lessons.measures import MEASURES, OfTexture
 from playground.lessons.measuring import filled, measured, named_in, numbers_of, spelled
 
 GRID = Grid((10.0, 10.0), 100.0)
@@ -183,3 +184,9 @@ def test_what_is_no_number_is_refused(make_lesson, engine):
     block = make_lesson(('what    = "spread"', over)).named["spread"]
     with pytest.raises(SketchError, match="measure 'spread': nan is not a number to show"):
         measured(engine, block)
+
+
+def test_the_mean_below_a_mesh_counts_edges_by_half():
+    """That of the bilinear surface, by its value in the middle of each cell."""
+    cells = (NOISE[1:, 1:] + NOISE[1:, :-1] + NOISE[:-1, 1:] + NOISE[:-1, :-1]) / 4
+    assert measures.mean_below_mesh(NOISE, GRID) == pytest.approx(cells.mean())

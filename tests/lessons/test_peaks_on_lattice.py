@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from playground.lessons.measures import Grid, peaks_on_lattice
+from playground.lessons.grid import Grid
+from playground.lessons.measures import peaks_on_lattice
 
 
 def test_a_peak_counts_where_its_row_and_its_column_are_on_the_lattice():

@@ -18,6 +18,18 @@ FILES = {
     path: path.read_text("utf-8") for path in RUNTIME.glob("*.js") if not path.name.endswith("_words.js")
 }
 
+BY_NAME = {
+    "editor.js": ("broken", "edited"),
+    "keys.js": (
+        *("keyFrame", "keyFull", "keyHelp", "keyMap", "keyPanel"),
+        *("keyPlay", "keyResetView", "keySave", "keyStart"),
+    ),
+    "notices.js": ("header", "annotation", "initial", "added", "removed"),
+    "session.js": ("size", "extent", "relief", "base_elevation"),
+    "sketch_files.js": ("ownFiles", "kernelFiles", "libraryFiles"),
+}
+"""The words that are chosen while a page runs, by ``words[…]``, and the file that names them."""
+
 
 @pytest.fixture(scope="module")
 def tables(node: Node) -> dict[str, dict[str, dict[str, str]]]:
@@ -45,9 +57,12 @@ def test_every_word_is_used_and_every_use_has_one(tables):
     known = {key for table in tables.values() for key in table["en"]}
     text = "\n".join(FILES.values())
     used = set(re.findall(r"\bwords\.([a-zA-Z]\w*)\b(?!\()", text)) - {"js", "length"}  # a file; a list
+    for names in re.findall(r"\{ ([\w, ]+) \} = (?:\w+\.)*words;", text):
+        used |= set(names.split(", "))
     assert not used - known
-    other = {key for key in known - used if not re.search(rf"\b{key}\b", text)}
-    assert not other
+    for name, keys in BY_NAME.items():
+        assert not [key for key in keys if f'"{key}"' not in FILES[RUNTIME / name]], name
+    assert known - used == {key for keys in BY_NAME.values() for key in keys}
 
 
 def test_the_words_of_a_language_are_those_of_its_tables(node: Node, tables):

@@ -16,8 +16,8 @@ uniform sampler2D brush;   //! input("white")
 uniform sampler2D water;   //! input("zero")
 uniform sampler2D flux;    //! input("zero")
 
-uniform float rain = 0.02; //! slider(0, 1) step(0.001) unit("m/h") Rain in the brush's middle
-uniform float wear = 0.015; //! slider(0, 2) step(0.001) unit("1/h")
+uniform float rain = 0.03; //! slider(0, 1) step(0.001) unit("m/h") Rain in the brush's middle
+uniform float wear = 0.02;  //! slider(0, 2) step(0.001) unit("1/h")
                            //! How fast water takes up what it can carry
 
 void kernel(ivec2 texel, out vec4 state, out vec4 runs, out vec2 site) {

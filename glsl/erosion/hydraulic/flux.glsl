@@ -43,8 +43,10 @@ vec4 kernel(ivec2 texel) {
     if (border.w) head.w = beyond;
     vec2 reach = min(spacing.x, spacing.y) / spacing;
     vec4 drive = COURANT_SQUARED * (reach * reach).xxyy;
+    // anchor: pipes
     float kept = max(1.0 - friction * step_hours(size), 0.0);
     vec4 out_ = max(kept * texelFetch(flux, texel, 0) + drive * head, 0.0);
     float total = (out_.x + out_.y) + (out_.z + out_.w);
     return total > here.y ? out_ * (here.y / total) : out_;
+    // end: pipes
 }

@@ -75,20 +75,26 @@ vec4 kernel(ivec2 texel) {
     // Water, and the load with it.
     float lost = (leaves.x + leaves.y) + (leaves.z + leaves.w);
     float gained = (arrives.x + arrives.y) + (arrives.z + arrives.w);
+    // anchor: load
     float water = max(here.y + (gained - lost), 0.0);
     vec4 brought = arrives * vec4(west.z, east.z, south.z, north.z)
                  / max(vec4(west.y, east.y, south.y, north.y), FILM);
     float load = here.z - lost * (here.z / max(here.y, FILM))
                + ((brought.x + brought.y) + (brought.z + brought.w));
+    // end: load
 
     // What it can carry: more, the more water flows and the steeper its surface.
-    vec2 mean = 0.5 * vec2((arrives.x - arrives.y) + (leaves.y - leaves.x),
-                           (arrives.z - arrives.w) + (leaves.w - leaves.z));
-    // For each metre of width: the more, the longer a texel is along the flow.
-    float flow = length(mean * (spacing / min(spacing.x, spacing.y)));
+    // For each metre of width: the more, the longer a texel is along the flow. What goes through
+    // counts, not a vector's length: a stream a texel wide goes aslant from side to side, where
+    // the vector of what comes and goes has 0.71 of the length. So streams would keep to the axes.
+    vec2 through = 0.5 * vec2((arrives.x + arrives.y) + (leaves.x + leaves.y),
+                              (arrives.z + arrives.w) + (leaves.z + leaves.w));
+    through *= spacing / min(spacing.x, spacing.y);
+    float flow = through.x + through.y;
     vec2 fall = (vec2(east.x - west.x, north.x - south.x)
                  + vec2(east.y - west.y, north.y - south.y)) / (2.0 * spacing);
     float squared = dot(fall, fall);
+    // anchor: bed
     float can = capacity * flow * max(sqrt(squared / (1.0 + squared)), LEAST_SLOPE);
 
     // Wear or settling. Wear leaves the bed at least half the drop to its lowest neighbour, or
@@ -100,6 +106,7 @@ vec4 kernel(ivec2 texel) {
     float lowest = min(min(west.x, east.x), min(south.x, north.x));
     float bed = max(here.x - change, min(here.x, 0.5 * (here.x + lowest)));
     load += here.x - bed;
+    // end: bed
 
     // Slump and creep, from the bed as it was, as the neighbours see it. Creep damps waves two
     // texels long, which the slope over two texels does not see. What spreads, as both do, goes

@@ -7,6 +7,8 @@
 //   source   Braun and Willett 2013, "A very efficient O(n), implicit and parallel method to solve
 //            the stream power equation", Geomorphology 180-181, eq. 22:
 //                dz/dt = U - K A^m S,   S = (z - z_receiver) / L
+//            of uneven rain A is the discharge: Whipple and Tucker 1999, "Dynamics of the
+//            stream-power river incision model", J. Geophys. Res. 104(B8), eq. 3
 //   tested   tests/glsl/test_stream_power.py, against the slopes of a steady state
 //
 // With F = K A^m dt / L the new height is (z + U dt + F z_receiver) / (1 + F): a mean, so no step
@@ -50,8 +52,10 @@ vec4 kernel(ivec2 texel) {
     float hard = wired_hardness ? max(value_here(hardness, texel), 1e-3) : 1.0;
     float drained = clamp(texelFetch(area, texel, 0).r + head, 1e-6, 1e15);
     float way = length(vec2(there - texel) * spacing);
+    // anchor: implicit
     float wear = 1e-6 * erodibility / hard * years * power(drained, area_power) / way;
     wear = min(wear, MOST);
     float raised = ground + 1e-3 * rise * years * lifts / max(relief, 1e-3);
     return vec4(raised / (1.0 + wear), wear / (1.0 + wear), to, 0.0);
+    // end: implicit
 }

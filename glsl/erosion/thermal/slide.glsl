@@ -57,15 +57,18 @@ float comes(ivec2 texel, ivec2 way, float here) {
     float share = quickness(texel);
     if (wired_repose_map) talus = 0.5 * (talus + tangent(texel + way));
     if (wired_hardness) share = min(share, quickness(texel + way));
+    // anchor: rule
     float rise = relief * (previous(texel + way) - here);
     float most = talus * length(vec2(way) * spacing);
     return share * (rise - clamp(rise, -most, most));
+    // end: rule
 }
 
 float kernel(ivec2 texel) {
     ivec2 e = ivec2(1, 0), n = ivec2(0, 1);
     float here = previous(texel);
     vec2 low = weight(texel - 1, texel), high = weight(texel + 1, texel);
+    // anchor: eight
     float straight = (low.x * comes(texel, -e, here) + high.x * comes(texel, e, here))
                    + (low.y * comes(texel, -n, here) + high.y * comes(texel, n, here));
     float aslant = (low.x * low.y * comes(texel, -e - n, here)
@@ -73,4 +76,5 @@ float kernel(ivec2 texel) {
                  + (high.x * low.y * comes(texel, e - n, here)
                     + low.x * high.y * comes(texel, n - e, here));
     return here + rate * 0.125 * (straight + aslant) / max(relief, 1e-3);
+    // end: eight
 }

@@ -61,11 +61,13 @@ float kernel(ivec2 texel) {
     vec2 tile = vec2(texel) * spacing / width;
     HexCopies copies = hex_copies(tile, cells);
     vec3 weights = hex_sharpened(copies.weights, sharpness);
+    // anchor: blended
     float sum = weights.x * piece(copies.corner[0], tile)
               + weights.y * piece(copies.corner[1], tile)
               + weights.z * piece(copies.corner[2], tile);
     ivec2 sides = textureSize(sorted, 0);
     float place = normal_share(sum / length(weights)) * float(sides.x * sides.y) - 0.5;
+    // end: blended
     float held = clamp(place, 0.0, float(sides.x * sides.y - 1));
     int low = int(held);
     float there = mix(entry(low), entry(min(low + 1, sides.x * sides.y - 1)), held - float(low));

@@ -44,7 +44,7 @@ vec4 kernel(ivec2 texel) {
         if (found >= most) continue;
         if (rest < 0.5) {
             vec4 tree = texelFetch(table, from, 0);
-            return vec4(tree.xyz, tree.w * shrunk(found / most) * pow(most, -0.3));
+            return vec4(tree.xyz, tree.w * shrunk(found / most) * pow(most, GROWTH));
         }
         rest -= 1.0;
     }

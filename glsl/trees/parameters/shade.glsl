@@ -4,7 +4,7 @@
 //   needs    nothing
 //   units    metres
 //   source   none
-//   tested   tests/glsl/test_trees.py
+//   tested   tests/glsl/test_trees_light.py
 #ifndef TREES_PARAMETERS_SHADE
 #define TREES_PARAMETERS_SHADE
 uniform float shade_wide = 4000.0;  //! log_slider(100, 20000) unit("m")

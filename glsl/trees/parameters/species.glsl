@@ -4,7 +4,7 @@
 //   needs    nothing
 //   units    shares 0..1; metres above sea level
 //   source   none
-//   tested   tests/glsl/test_trees.py
+//   tested   tests/glsl/test_trees_light.py
 #ifndef TREES_PARAMETERS_SPECIES
 #define TREES_PARAMETERS_SPECIES
 uniform float needles = 0.12;         //! slider(0, 1) step(0.01) group("Species")

@@ -23,7 +23,6 @@ uniform float margin = 60.0;       //! slider(0, 500) unit("m")
 uniform uint seed = 5u;            //! slider(0, 9999) Which trees
 
 const uint SALT = 0xc07a7689u;  // CRC-32 of "trees/place"
-const float JITTER = 0.8;       // of a cell: trees keep a fifth of it apart
 
 // Whether a place, anywhere between two heights, may be in the picture or `margin` beside it.
 bool may_be_seen(vec2 place, float low, float high) {

@@ -37,11 +37,13 @@ vec4 kernel(ivec2 texel) {
     bool opens_first = node.y >= 0.0 && links_of(first) + int(node.z >= 0.0) <= 2;
     int left = opens_first ? links_of(first) : int(node.y >= 0.0);
     bool opens_second = node.z >= 0.0 && links_of(second) + left <= 2;
+    // anchor: fold
     float sum = node.x + (opens_first ? first.x : 0.0) + (opens_second ? second.x : 0.0);
     vec2 links = vec2(-1.0);
     links = joined(links, opens_first ? first.y : node.y);
     if (opens_first) links = joined(links, first.z);
     links = joined(links, opens_second ? second.y : node.z);
     if (opens_second) links = joined(links, second.z);
+    // end: fold
     return vec4(sum, links, 0.0);
 }

@@ -21,10 +21,12 @@ float kernel(ivec2 texel) {
     float ground = texelFetch(height, texel, 0).r;
     if (on_edge(texel, size)) return ground;
     vec3 falls = falls_between(spacing, relief);
+    // anchor: flood
     float west_east = min(previous(texel - ivec2(1, 0)), previous(texel + ivec2(1, 0)));
     float south_north = min(previous(texel - ivec2(0, 1)), previous(texel + ivec2(0, 1)));
     float rising = min(previous(texel - 1), previous(texel + 1));
     float falling = min(previous(texel + ivec2(-1, 1)), previous(texel + ivec2(1, -1)));
     float straight = min(west_east + falls.x, south_north + falls.y);
     return max(ground, min(straight, min(rising, falling) + falls.z));
+    // end: flood
 }

@@ -11,7 +11,6 @@ export const PAGE_WORDS = {
     failed: "The picture cannot be made: {reason}",
     kept: "This setting cannot be shown, the last picture stays: {reason}",
     frameTook: "{size}, {time} ms",
-    still: "This is a still picture: {reason}",
     // the bar over the picture
     save: "Save picture",
     saved: "Saved {name}",
@@ -113,7 +112,6 @@ export const PAGE_WORDS = {
     failed: "L’image ne peut pas être faite : {reason}",
     kept: "Ce réglage ne peut pas être montré, la dernière image reste : {reason}",
     frameTook: "{size}, {time} ms",
-    still: "Cette image est fixe : {reason}",
     save: "Enregistrer l’image",
     saved: "{name} enregistré",
     full: "Plein écran",
