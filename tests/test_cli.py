@@ -177,6 +177,7 @@ def test_completion_offers_the_shipped_sketches(run: Run, monkeypatch: pytest.Mo
     ("arguments", "sentence"),
     [
         (["render", "jacksbro"], "no shipped sketch 'jacksbro'; did you mean 'jacksboro'?"),
+        (["render", "lighting/l_dot_nn"], "'lighting/l_dot_nn'; did you mean 'lighting/l_dot_n'?"),
         (["render", "no/such.toml"], "there is no file and no shipped sketch 'no/such.toml'"),
         (["render", "empty"], "this folder holds no sketch.toml"),
         (["render", "--size", "12"], "--size 12: expected width and height, 1 to 65536 pixels, as 1280x720"),

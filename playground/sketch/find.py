@@ -59,7 +59,8 @@ def find(name: str | Path) -> Path:
         raise SketchError("this folder holds no sketch.toml, and no Image of Shadertoy of its own", file=path)
     if exists(path):
         raise SketchError("this is a pipe, a socket or a device; a file was expected", file=path)
-    raise SketchError(f"there is no file and no shipped sketch '{text}'{nearest(text, shipped_sketches())}")
+    names = [*shipped_sketches(), *(shipped_names() if "/" in text else [])]
+    raise SketchError(f"there is no file and no shipped sketch '{text}'{nearest(text, names)}")
 
 
 def shipped_sketches() -> list[str]:

@@ -59,7 +59,8 @@ def read_tiff(path: Path, packing: Packing) -> Found:
         with _without_log("tifffile"):
             tif = tifffile.TiffFile(path)
     except tifffile.TiffFileError as error:
-        raise DataError(f"not a TIFF file, although its name says so: {reason(error)}", file=path) from error
+        why = reason(error).removeprefix("not a TIFF file: ")
+        raise DataError(f"not a TIFF file, although its name says so: {why}", file=path) from error
     with _without_log("tifffile"), tif:
         pages = tif.pages
         page = pages[0]

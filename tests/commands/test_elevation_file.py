@@ -39,7 +39,7 @@ def test_a_page_of_a_file_has_its_sketch_to_edit(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
-        ("a.tif", b"hello", "a.tif: not a TIFF file, although its name says so"),
+        ("a.tif", b"hello", "a.tif: not a TIFF file, although its name says so: header=b'hell'"),
         ("a.hgt", b"x" * 7, "a.hgt: holds 7 bytes, an odd number"),
         ("a.asc", b"what is this", "a.asc: its header says no ncols"),
         ("a.bil", b"0000", "a.bil: needs a.hdr next to it"),
