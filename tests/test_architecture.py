@@ -239,10 +239,11 @@ def test_the_engine_names_no_technique():
         for node in ast.walk(tree):
             if not isinstance(node, ast.Constant) or not isinstance(node.value, str) or id(node) in prose:
                 continue
-            last = node.value.removesuffix(".glsl").removesuffix(".toml").rpartition("/")[2]
-            is_path = "/" in node.value
-            if last in names - allowed and (is_path or "_" in last):
-                wrong.append(f"{path.relative_to(ROOT)}:{node.lineno} names {node.value!r}")
+            for text in (node.value, *re.findall(r'^\s*use\s*=\s*"([^"]*)"', node.value, re.MULTILINE)):
+                last = text.removesuffix(".glsl").removesuffix(".toml").rpartition("/")[2]
+                is_path = "/" in text
+                if last in names - allowed and (is_path or "_" in last):
+                    wrong.append(f"{path.relative_to(ROOT)}:{node.lineno} names {text!r}")
     assert not wrong, "\n".join(wrong)
 
 

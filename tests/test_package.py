@@ -55,6 +55,8 @@ def test_the_wheel_carries_every_file_of_the_library(wheel: Path):
     web = {name for name in inside if name.startswith("playground/web/") and not name.endswith(".py")}
     bundles = {f"playground/web/bundle/{path.name}" for path in (ROOT / "playground/web/bundle").glob("*")}
     assert bundles and web == bundles
+    tables = list((ROOT / "playground/sketch").glob("*.toml"))
+    assert tables and inside >= {f"playground/sketch/{path.name}" for path in tables}
     assert not [name for name in inside if name.startswith(("tests/", "screenshots/"))]
 
 

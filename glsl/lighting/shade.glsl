@@ -3,7 +3,8 @@
 //   gives    light: red, green, blue; alpha the visible part of the sun, 0 where the surface is
 //            turned away from it
 //   needs    lighting/daylight_reading.glsl, lighting/sun.glsl, terrain/heightfield.glsl,
-//            terrain/maps.glsl; unwired, the sun and the sky are whole
+//            terrain/maps.glsl; unwired, the sun and the sky are whole; clouds over it by
+//            clouds/shade, if there are any
 //   units    light without unit, 1 for white; not cut at 1, that is the view's to do
 //   source   Belaiche 2010, sections 3.5.3 and 4.4 (eqs 4.1 and 4.2)
 //   tested   tests/glsl/test_lighting.py, against NumPy
@@ -22,6 +23,7 @@
 uniform sampler2D height;                //! input
 uniform sampler2D visibility;            //! input("white")
 uniform sampler2D sky_factor;            //! input("white")
+uniform sampler2D overhead;              //! input("white")
 #include "lighting/parameters/sun.glsl"
 #include "lighting/parameters/sunlight.glsl"
 #include "lighting/parameters/skylight.glsl"
@@ -42,5 +44,7 @@ vec4 kernel(ivec2 texel) {
     if (received <= 0.0) visible = 0.0;
     vec3 sky = from.sky * ambient;
     if (wired_sky_factor) sky *= map_at(sky_factor, texel, size).rgb;
-    return vec4(from.sun * (visible * gain * received) + sky, visible);
+    float beam = visible;
+    if (wired_overhead) beam *= map_at(overhead, texel, size).r;
+    return vec4(from.sun * (beam * gain * received) + sky, min(beam, 1.0));
 }

@@ -1,6 +1,6 @@
 // water/least_fall.glsl -- the fall that standing water is given, so that it has a way to go.
 //
-//   gives    least_fall
+//   gives    least_fall, falls_between
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    height without unit, per metre
 //   source   Planchon and Darboux 2002, section 2.1; the rounding derived here
@@ -13,5 +13,10 @@
 
 float least_fall(vec2 spacing, float relief) {
     return max(1e-4 / max(relief, 1e-3), 1e-6 / min(spacing.x, spacing.y));
+}
+
+// From a texel to its neighbours: along x, along y, aslant.
+vec3 falls_between(vec2 spacing, float relief) {
+    return least_fall(spacing, relief) * vec3(spacing, length(spacing));
 }
 #endif

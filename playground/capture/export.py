@@ -94,6 +94,7 @@ def export(
     grid: int = 0,
     light: bool = False,
     techniques: Mapping[str, tuple[str, ...]] | None = None,
+    language: str = "",
     time: float = 0.0,
     steps: Mapping[str, int] | None = None,
     engine: Engine | None = None,
@@ -117,6 +118,7 @@ def export(
         grid=grid,
         light=light,
         techniques=techniques or {},
+        language=language,
     )
     found = opened(sketch)
     check(Path(path), form)
@@ -205,7 +207,7 @@ def run(engine: Engine, job: ExportJob) -> Exported:
         sidecars = tuple(path for path in job.shader.files if path != job.path)
         return Exported(job.path, job.shader.summary, sidecars, job.shader.warnings)
     if job.page is not None:
-        html, summary = page_bytes(engine, job.sketch, job.page)
+        html, summary = page_bytes(engine, job.sketch, job.page, job.form.language or "en")
         write_together({job.path: html})
         return Exported(job.path, summary, (), job.page.warnings)
     return _write_mesh(engine, job) if job.ending in MESHES else _write_values(engine, job)

@@ -23,6 +23,7 @@ from playground.capture.extensions import (
 )
 from playground.errors import DataError, ParameterError, nearest
 from playground.paths import shown
+from playground.web.page import LANGUAGES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -37,6 +38,7 @@ class Form:
     light: bool = False  # multiply a mesh's texture by the light
     techniques: Mapping[str, tuple[str, ...]] = field(default_factory=dict)  # of a web page: what else may
     # fill a pass, by the pass; none listed: all that fits
+    language: str = ""  # of a web page's interface: en or fr; "": English
 
 
 def check(path: Path, form: Form) -> None:
@@ -56,6 +58,10 @@ def check(path: Path, form: Form) -> None:
             raise ParameterError(f"a range from {low:g} to {high:g}; expected two numbers, the lower first")
     if form.techniques and ending not in PAGES:
         raise DataError("menus of techniques are for a web page: .html", file=path)
+    if form.language and form.language not in LANGUAGES:
+        raise ParameterError(f"no page is in '{form.language}'; expected {' or '.join(LANGUAGES)}")
+    if form.language and ending not in PAGES:
+        raise DataError("a language is for a web page: .html", file=path)
     if ending in PAGES:
         _check_page(path, form)
     elif ending in SHADERS:

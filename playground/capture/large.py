@@ -18,11 +18,13 @@ from numpy.typing import NDArray
 
 from playground.engine.engine import Engine, opened
 from playground.engine.plan import Window
+from playground.engine.supersampling import drawn_size
 from playground.errors import DataError, ParameterError, SketchError
 from playground.gpu.textures import read_picture
 from playground.images.files import replacing
 from playground.images.png_strips import PngStrips
-from playground.sketch.model import Sketch
+from playground.images.supersampled import reduced
+from playground.sketch.model import LARGEST_PICTURE, Sketch
 
 TILE = (2048, 512)
 """Width and height of a tile in pixels."""
@@ -37,6 +39,7 @@ def is_large(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> bool:
     More than the driver's textures hold must be; more than 3840 x 2160 is, where the sketch's
     passes allow it.
     """
+    size = drawn_size(sketch, size, LARGEST_PICTURE)
     limits = ("GL_MAX_TEXTURE_SIZE", "GL_MAX_RENDERBUFFER_SIZE")
     if max(size) > min(int(engine.ctx.info[name]) for name in limits):
         return True
@@ -64,6 +67,13 @@ def tiles_of(size: tuple[int, int], tile: tuple[int, int] = TILE) -> list[list[W
     ]
 
 
+def uncut(tile: tuple[int, int], times: int) -> tuple[int, int]:
+    """Return a tile, hardly smaller, that cuts no square of so many pixels which become one."""
+    unit = 2 * times
+    wide, tall = (max(side // unit, 1) * unit if times > 1 else side for side in tile)
+    return wide, tall
+
+
 def count_tiles(size: tuple[int, int], tile: tuple[int, int] = TILE) -> int:
     """Return how many tiles a picture has."""
     return sum(len(row) for row in tiles_of(size, tile))
@@ -86,15 +96,17 @@ def strips(
     in parts, before anything of it is drawn.
     """
     found = opened(sketch)
-    for row in tiles_of(size, tile):
-        strip = np.empty((row[0].size[1], size[0], 4), np.uint8)
+    times = found.supersample
+    whole = drawn_size(found, size, LARGEST_PICTURE)
+    for row in tiles_of(whole, uncut(tile, times)):
+        strip = np.empty((row[0].size[1], whole[0], 4), np.uint8)
         for window in row:
             left = window.origin[0]
             texture = engine.draw_window(found, window, time=time, steps=steps)
             strip[:, left : left + window.size[0]] = read_picture(texture)
             engine.forget_unused()
             done()
-        yield strip
+        yield reduced(strip, times)
 
 
 def encode_strips(

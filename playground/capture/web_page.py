@@ -71,13 +71,13 @@ def prepare_page(
     return WebPage(data, page_script(data), style, stops, time, size)
 
 
-def page_bytes(engine: Engine, sketch: Sketch, page: WebPage) -> tuple[bytes, str]:
-    """Return a page, its poster drawn, and a line on what it holds."""
+def page_bytes(engine: Engine, sketch: Sketch, page: WebPage, language: str = "en") -> tuple[bytes, str]:
+    """Return a page in a language of ``LANGUAGES``, its poster drawn, and a line on what it holds."""
     width, height = page.frame
     scale = min(1.0, POSTER_WIDTH / width)
     size = (max(round(width * scale), 1), max(round(height * scale), 1))
     poster = encoded_poster(engine.render(sketch, size=size, time=page.time, steps=page.steps))
-    html = page_html(page.data, poster, script=page.script, style=page.style).encode()
+    html = page_html(page.data, poster, script=page.script, style=page.style, language=language).encode()
     inside = bytes_in_page(page.data["shared"]["blobs"]) + len(poster.data) * 4 // 3
     count = len(page.data["sketches"])
     parts = [

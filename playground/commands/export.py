@@ -109,6 +109,15 @@ def export(
             " May be repeated.",
         ),
     ] = None,
+    lang: Annotated[
+        str,
+        value(
+            "--lang CODE",
+            "Language of a web page's interface: en or fr; English without it. Names and explanations of"
+            " parameters, and notes, stay in English.",
+            options.complete_language,
+        ),
+    ] = "",
     settings: options.Set = None,
     shot: Annotated[str, value("--shot NAME", "Export the terrain of a shot of the sketch.")] = "",
     preset: options.Preset = "",
@@ -131,6 +140,7 @@ def export(
         grid=_read_whole("--grid", grid),
         light=light,
         techniques=_read_techniques(technique or []),
+        language=lang,
     )
     values, stops, seconds = read_values(settings), read_steps(steps), read_seconds(time)
     runs_by = read_driver(driver)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -31,7 +31,7 @@ from playground.commands.options import flag, value
 from playground.commands.standard_input import kept
 from playground.errors import DataError, ParameterError, counted
 from playground.images.extensions import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
-from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE
+from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE, MOST_SUPERSAMPLE
 from playground.streams import Nowhere
 from playground.terminal import busy, console_for, note, progress
 
@@ -103,6 +103,14 @@ def render(
     preset: options.Preset = "",
     texture: Annotated[str, value("--texture PASS", "Write this pass's own values, not the picture.")] = "",
     steps: options.Steps = None,
+    supersample: Annotated[
+        str,
+        value(
+            "--supersample N",
+            "Draw N times as wide and high, and take the mean light of each pixel; as the sketch says by"
+            " default.",
+        ),
+    ] = "",
     profile: Annotated[bool, flag("--profile", "Print the milliseconds of each pass.")] = False,
     video: Annotated[
         str,
@@ -153,6 +161,9 @@ def render(
     series.check(output, texture, profile)
     pixels, seconds_in, values = read_pixels(size, LARGEST_PICTURE), read_seconds(time), read_values(settings)
     runs_by, stops = read_driver(driver), read_steps(steps)
+    times = read_option(
+        "--supersample", supersample, within(1, MOST_SUPERSAMPLE), f"a whole number, 1 to {MOST_SUPERSAMPLE}"
+    )
     moment = moment_of(
         load(kept(sketch, "render"), dialect=dialect).plainly(plain),
         shot=shot,
@@ -162,6 +173,8 @@ def render(
         time=seconds_in,
     )
     renderer: Renderer = ctx.obj.or_else(software, device)
+    if times is not None:
+        moment = replace(moment, sketch=replace(moment.sketch, supersample=times))
     if series.many:
         _note_hidden_defaults(moment.sketch)
         make_series(SeriesJob(series, moment, output, pixels, renderer, runs_by))
@@ -250,9 +263,12 @@ def _note_not_finite(engine: Engine) -> None:
 
 
 def _draw_large(engine: Engine, moment: Moment, size: tuple[int, int], target: Path) -> None:
-    from playground.capture.large import count_tiles, encode_strips, strips, write_large
+    from playground.capture.large import TILE, count_tiles, encode_strips, strips, uncut, write_large
+    from playground.engine.supersampling import drawn_size
 
-    with progress(f"rendering {moment.sketch.name} in parts", count_tiles(size)) as done:
+    whole = drawn_size(moment.sketch, size, LARGEST_PICTURE)
+    tiles = count_tiles(whole, uncut(TILE, moment.sketch.supersample))
+    with progress(f"rendering {moment.sketch.name} in parts", tiles) as done:
         at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "done": done}
         if target.name == "-":
             encode_strips(sys.stdout.buffer, size, strips(engine, moment.sketch, size, **at))

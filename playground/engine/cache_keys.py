@@ -96,7 +96,8 @@ class _Text:
 
 
 def _read_text(kernel: Kernel, text: str) -> _Text:
-    counts = [kernel.visits, kernel.groups, kernel.count, *(b.count for b in kernel.buffers)]
+    counts = [kernel.visits, kernel.groups, kernel.count, kernel.instances]
+    counts += [buffer.count for buffer in kernel.buffers]
     if kernel.kind == "compute":
         counts.append(kernel.repeat)  # a kernel's own repeat is known to the plan, a compute variant's is not
     header: list[Any] = [*(getattr(kernel, name) for name in _HEADER), counts]

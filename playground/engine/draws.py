@@ -3,26 +3,30 @@
 Meshes stay on the graphics card, with a vertex array for each program that draws them;
 the surface of a draw is used again by the next draw of its size. Of a mesh with levels of
 detail, only what the view needs is drawn: the textures that the choice depends on are read
-back from the graphics card once, when they were computed.
+back from the graphics card once, when they were computed. So is the texel that says how many
+instances of a mesh are drawn: OpenGL 3.3 takes no counts from textures by itself.
 """
 
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
+from playground.engine.instances import Texels, instances_of
 from playground.engine.kernels import Job, Kernels
 from playground.engine.plan import Window
 from playground.engine.programs import Program
-from playground.engine.results import Result, Surface, Wired
+from playground.engine.results import Result, Surface, Wired, started
 from playground.errors import ContextError, SketchError
 from playground.gpu.textures import drain, make_framebuffer, read_texture, split_format
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError
+from playground.sketch.flat import Ref
 from playground.sketch.model import Value
 from playground.sketch.reserved_names import ZOOM
 from playground.terrain.lod import CHOOSERS
@@ -48,6 +52,7 @@ class Draws:
         self._meshes: OrderedDict[_MeshKey, _Loaded] = OrderedDict()
         self._surfaces: list[Surface] = []  # spare, newest last
         self._tables: WeakKeyDictionary[Result, dict[str, NDArray[np.float32]]] = WeakKeyDictionary()
+        self._texels = Texels(ctx)
         limits = ctx.info["GL_MAX_VIEWPORT_DIMS"]
         self.widest: tuple[int, int] = (int(limits[0]), int(limits[1]))  # [pixels] of a viewport
         self.triangles = 0  # of the last draw of a mesh with levels of detail
@@ -67,11 +72,11 @@ class Draws:
     def run(self, job: Job) -> Result:
         """Draw a mesh over what the draw starts from; the result is the caller's."""
         step, kernel, ctx = job.step, job.step.kernel, self.ctx
-        output = kernel.outputs[0]
         program = self.kernels.program(job, "draw")
         loaded, array = self._array(program, job)
+        instances = instances_of(job, self._texels) if step.repeat else 0
         chosen = self._chosen(job) if loaded.places is not None and step.repeat else None
-        surface = self._surface(step.size, output.format, job.samples)
+        surface = self._surface(step.size, tuple([o.format for o in kernel.outputs]), job.samples)
         self._start_from(job, surface)
         surface.framebuffer.use()
         if step.window is not None:
@@ -82,8 +87,9 @@ class Draws:
             for iteration in range(step.repeat):
                 job.count(program, iteration, kernel.repeat, step.whole)
                 if chosen is None:
-                    array.render(ctx.TRIANGLES)
-                    self.drawn += loaded.triangles
+                    if instances:
+                        array.render(ctx.TRIANGLES, instances=instances)
+                    self.drawn += loaded.triangles * instances
                 else:
                     self.triangles = loaded.render(array, chosen)
                     self.drawn += self.triangles
@@ -113,56 +119,64 @@ class Draws:
         moved = (wide - 2 * x - width) / width, (tall - 2 * y - height) / height
         program.set(ZOOM, (wide / width, tall / height, *moved))
 
-    def _surface(self, size: tuple[int, int], form: str, samples: int) -> Surface:
+    def _surface(self, size: tuple[int, int], formats: tuple[str, ...], samples: int) -> Surface:
         """Return something to draw on: a spare surface if there is one."""
         for spare in self._surfaces:
-            if (spare.size, spare.format, spare.samples) == (size, form, samples):
+            if (spare.size, spare.formats, spare.samples) == (size, formats, samples):
                 self._surfaces.remove(spare)
                 return spare
-        return self._new_surface(size, form, samples)
+        return self._new_surface(size, formats, samples)
 
-    def _new_surface(self, size: tuple[int, int], form: str, samples: int) -> Surface:
-        components, dtype = split_format(form)
+    def _new_surface(self, size: tuple[int, int], formats: tuple[str, ...], samples: int) -> Surface:
         many = samples if samples > 1 else 0
         drain(self.ctx)
-        colour = self.ctx.renderbuffer(size, components, samples=many, dtype=dtype)
+        kinds = [split_format(form) for form in formats]
+        colours = [self.ctx.renderbuffer(size, parts, samples=many, dtype=dtype) for parts, dtype in kinds]
         depth = self.ctx.depth_renderbuffer(size, samples=many)
         error = self.ctx.error
         try:
             if error != "GL_NO_ERROR":
                 raise RuntimeError(error)
-            framebuffer = make_framebuffer(self.ctx, [colour], depth)
+            framebuffer = make_framebuffer(self.ctx, colours, depth)
         except Exception as refusal:  # moderngl raises its own Error for an incomplete framebuffer
-            colour.release()
-            depth.release()
-            raise ContextError(
-                f"the driver refused to draw {size[0]} x {size[1]} {form} with {samples} samples: {refusal}"
-            ) from None
-        return Surface(framebuffer, colour, depth, size, form, samples)
+            for buffer in (*colours, depth):
+                buffer.release()
+            what = f"{size[0]} x {size[1]} {', '.join(formats)} with {samples} samples"
+            raise ContextError(f"the driver refused to draw {what}: {refusal}") from None
+        return Surface(framebuffer, tuple(colours), depth, size, formats, samples)
 
     def _start_from(self, job: Job, surface: Surface) -> None:
         """Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing."""
         wired = job.inputs.get("initial", Wired())
         earlier = wired.result.surface if wired.result is not None else None
         if earlier is not None and (earlier.size, earlier.samples) == (surface.size, surface.samples):
+            _refuse_others(job, wired)
             self.ctx.copy_framebuffer(surface.framebuffer, earlier.framebuffer)
             return
+        begun = started(job.step.kernel.outputs, wired)
         surface.framebuffer.use()
-        surface.framebuffer.color_mask = (wired.texture is None,) * 4  # what is overwritten needs no clearing
+        if len(surface.formats) == 1:  # what is overwritten needs no clearing
+            surface.framebuffer.color_mask = (not begun,) * 4
         surface.framebuffer.clear(0, 0, 0, 0, depth=1.0)
-        surface.framebuffer.color_mask = (True,) * 4
-        if wired.texture is None:
-            return
+        if len(surface.formats) == 1:
+            surface.framebuffer.color_mask = (True,) * 4
         alike = surface.samples == 1 and wired.result is not None and wired.result.size == surface.size
-        if (
-            wired.result is not None
-            and alike
-            and [o.format for o in wired.result.outputs] == [surface.format]
-        ):
+        if wired.result is not None and alike and _same_outputs(wired.result, surface, begun):
             # The same bits, on a software renderer in a tenth of the time.
             self.ctx.copy_framebuffer(surface.framebuffer, wired.result.framebuffer(self.ctx))
-        else:
-            self.kernels.copy(surface.framebuffer, surface.size, wired.texture)
+            return
+        for unit, output in enumerate(job.step.kernel.outputs):
+            if output.name in begun:
+                self._copy_into(surface, unit, begun[output.name])
+
+    def _copy_into(self, surface: Surface, unit: int, texture: moderngl.Texture) -> None:
+        """Begin one of the outputs with a texture, nearest texel for nearest."""
+        if len(surface.colours) == 1:
+            self.kernels.copy(surface.framebuffer, surface.size, texture)
+            return
+        single = make_framebuffer(self.ctx, [surface.colours[unit]])
+        self.kernels.copy(single, surface.size, texture)
+        single.release()
 
     def _chosen(self, job: Job) -> Chosen:
         """Return what to draw of a mesh with levels of detail."""
@@ -211,6 +225,23 @@ class Draws:
         if array is None:
             array = program.arrays[key] = self._meshes[key].array(program)
         return self._meshes[key], array
+
+
+def _same_outputs(result: Result, surface: Surface, begun: Mapping[str, moderngl.Texture]) -> bool:
+    """Return whether a result has just the textures that a surface begins with, in its order."""
+    formats = tuple([output.format for output in result.outputs])
+    return formats == surface.formats and [*result.textures.values()] == [*begun.values()]
+
+
+def _refuse_others(job: Job, wired: Wired) -> None:
+    """Refuse to go on from a draw of more or fewer outputs, whose samples have no place here."""
+    given = [output.name for output in wired.result.outputs] if wired.result else []
+    own = [output.name for output in job.step.kernel.outputs]
+    if len(given) != len(own) or given[0] != wired.output:
+        source = dict(job.step.inputs)["initial"]
+        earlier = source.path if isinstance(source, Ref) else "initial"
+        what = f"a draw of {', '.join(given)}; it gives {', '.join(own)}, and they must be as many"
+        raise job.step.spec.error(f"pass '{job.step.path}' goes on from '{earlier}', {what}")
 
 
 def _mesh_values(job: Job) -> dict[str, Value]:

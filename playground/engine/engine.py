@@ -34,6 +34,7 @@ from playground.engine.plan_warnings import PlanWarnings
 from playground.engine.planner import Planner, repeated_in
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
+from playground.engine.supersampling import drawn_size
 from playground.engine.unfinished import Deadline
 from playground.engine.window import windowed
 from playground.errors import ContextError, Diagnostic, OpenGLFault
@@ -41,6 +42,7 @@ from playground.gpu.context import ContextInfo, context_info
 from playground.gpu.textures import read_picture, read_texture
 from playground.gpu.timers import Timer
 from playground.gpu.wrap import COMPUTE, FRAGMENT
+from playground.images.supersampled import reduced
 from playground.paths import shown
 from playground.sketch.flat import Ref
 from playground.sketch.load import load
@@ -170,8 +172,9 @@ class Engine(Recorded):
         Raises ``PlaygroundError`` for any mistake in the sketch.
         """
         found = opened(sketch)
+        size = drawn_size(found, size)
         texture = self.draw(found, size=size, time=time, steps=steps, interpolated=interpolated)
-        return Frame(read_picture(texture), found.name, time)
+        return Frame(reduced(read_picture(texture), found.supersample), found.name, time)
 
     def draw(
         self,
@@ -333,7 +336,9 @@ class Engine(Recorded):
         steps: Mapping[str, int] | None = None,
     ) -> str:
         """Return a hash of all that a picture depends on, the renderer included, without drawing it."""
-        plan = self.plan_for(sketch, size, time, steps, largest=LARGEST_PICTURE)
+        found = opened(sketch)
+        size = drawn_size(found, size, LARGEST_PICTURE)
+        plan = self.plan_for(found, size, time, steps, largest=LARGEST_PICTURE)
         with self._supposing(plan):
             made = f"{self._hash_of(plan)} {self.info.renderer} {self.info.opengl}"
         return blake2b(made.encode(), digest_size=16).hexdigest()

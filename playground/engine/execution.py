@@ -12,7 +12,7 @@ from contextlib import AbstractContextManager, nullcontext
 from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, walk
-from playground.engine.results import UNWIRED, Result, Wired
+from playground.engine.results import UNWIRED, Result, Wired, started
 from playground.engine.runner import Runner
 from playground.engine.unfinished import Deadline
 from playground.sketch.expressions import follows_time
@@ -70,7 +70,9 @@ class Execution:
             return None
         if start.result.surface is None or start.result.size != step.size:
             return None
-        textures = {step.kernel.outputs[0].name: start.texture}
+        textures = started(step.kernel.outputs, start)
+        if len(textures) < len(step.kernel.outputs):
+            return None
         return Result(step.size, step.kernel.outputs, textures, surface=start.result.surface)
 
     def _stale_result(self, step: Step) -> Result:

@@ -38,7 +38,9 @@ class PictureHasher:
         def smoothed(step: Step) -> dict[str, Any]:
             return {n: value if n == MOMENT else rounded(value) for n, value in given(step).items()}
 
-        return self._keys.keys_of(plan, driver, smoothed).steps[plan.picture.path]
+        found = self._keys.keys_of(plan, driver, smoothed).steps[plan.picture.path]
+        times = plan.sketch.supersample
+        return found if times == 1 else f"{found} reduced {times} times"
 
 
 def rounded(value: Any) -> Any:

@@ -23,16 +23,17 @@ class Surface:
     """What a draw draws on: samples of colour and depth."""
 
     framebuffer: moderngl.Framebuffer
-    colour: moderngl.Renderbuffer
+    colours: tuple[moderngl.Renderbuffer, ...]  # of each output
     depth: moderngl.Renderbuffer
     size: tuple[int, int]
-    format: str
+    formats: tuple[str, ...]  # of each output
     samples: int  # 1: without multisampling
 
     def release(self) -> None:
         """Release its framebuffer and renderbuffers."""
         self.framebuffer.release()
-        self.colour.release()
+        for colour in self.colours:
+            colour.release()
         self.depth.release()
 
 
@@ -64,7 +65,8 @@ class Result:
         total += sum([copy.bytes for copy in self.shaped.values()])
         if (surface := self.surface) is not None:
             width, height = surface.size
-            total += (bytes_of(surface.size, surface.format) + 4 * width * height) * surface.samples
+            colours = sum([bytes_of(surface.size, form) for form in surface.formats])
+            total += (colours + 4 * width * height) * surface.samples
         return total
 
     def framebuffer(self, ctx: moderngl.Context) -> moderngl.Framebuffer:
@@ -101,6 +103,17 @@ class Wired(NamedTuple):
 
 
 UNWIRED = Wired()
+
+
+def started(outputs: Sequence[Output], start: Wired) -> dict[str, moderngl.Texture]:
+    """Return the textures that a draw's outputs begin with, by output, of what its ``initial`` reads.
+
+    The first begins with what is wired, each other with the output of its name beside that, if there is one.
+    """
+    if start.texture is None or start.result is None:
+        return {}
+    found = {o.name: start.result.textures[o.name] for o in outputs[1:] if o.name in start.result.textures}
+    return {outputs[0].name: start.texture, **found}
 
 
 class Pool:

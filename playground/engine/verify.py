@@ -36,7 +36,7 @@ from playground.sketch.model import (
 )
 from playground.sketch.variant_check import check_shape
 from playground.sketch.variants import without_variants
-from playground.sketch.wiring import initial_names, inner, output_names
+from playground.sketch.wiring import initial_names, inner, input_names, is_optional, output_names
 
 SIZES = ((33, 33), (64, 48), (129, 129), (97, 130), (257, 193))
 """Texels; a technique that takes others is drawn at the nearest that it takes."""
@@ -107,9 +107,8 @@ def places_of(
         key=lambda pair: sum(1 for _ in kernels_of(pair[0])),
     )
     for number, seed in enumerate(_SEEDS):
-        yield Place(
-            _standalone(technique, seed, picture), _subject(technique), technique, variant, number == 0
-        )
+        alone = _standalone(technique, seed, picture, variant)
+        yield Place(alone, _subject(technique), technique, variant, number == 0)
     for user, path in found[:_USERS]:
         yield Place(_standalone(user, _SEEDS[0], picture), f"{_subject(user)}.{path}", technique, variant)
 
@@ -169,10 +168,13 @@ def _subject(technique: Technique) -> str:
     return free_name("subject", technique)
 
 
-def _standalone(technique: Technique, seed: int, picture: Path) -> Sketch:
+def _standalone(technique: Technique, seed: int, picture: Path, variant: Variant | None = None) -> Sketch:
+    """Return a sketch of a technique; what its ``variant`` cannot read, and it can do without, is unwired."""
     folder = GLSL if Path(technique.path).is_relative_to(GLSL) else Path(technique.path).parent
     made = standalone_sketch(technique, _subject(technique), folder, picture, seed=seed)
     starts = {export.name for export in technique.inputs if _starts(technique, export.name)}
+    known = input_names(variant.technique) if variant else input_names(technique)
+    starts |= {n for n in input_names(technique) if n not in known and is_optional(technique, n)}
     passes = tuple(spec for spec in made.graph.passes if spec.name not in starts)
     return replace(made, graph=replace(made.graph, passes=passes))
 
@@ -210,6 +212,8 @@ def _cases(place: Place) -> Iterator[tuple[str, Sketch]]:
     sizes = list(dict.fromkeys(_accepted(place.sketch, size) for size in SIZES))
     seeds = [path for path in all_paths(place.sketch.graph) if path.rpartition(".")[2] == "seed"]
     own = [path for path in seeds if path.partition(".")[0] == place.path.partition(".")[0]]
+    # A seed that the technique keeps inside would have the plain form run.
+    own = [path for path in own if path.rpartition(".")[0] not in _within(place)]
     for number, size in enumerate(sizes):
         for order, seed in enumerate(_SEEDS if own else _SEEDS[:1]):
             extent = _EXTENTS[(number + order) % len(_EXTENTS)]
@@ -220,6 +224,14 @@ def _cases(place: Place) -> Iterator[tuple[str, Sketch]]:
         small = replace(place.sketch, size=sizes[0], extent=_EXTENTS[1], relief=_RELIEF)
         for path, value in _variations(place):
             yield f"{path.rpartition('.')[2]} = {value}", small.with_values({path: value})
+
+
+def _within(place: Place) -> set[str]:
+    """Return the paths of all passes inside a place's technique."""
+    if not isinstance(place.technique, Graph):
+        return set()
+    inside = (path for spec in place.technique.passes for path, _ in _inside(spec))
+    return {f"{place.path}.{path}" for path in inside}
 
 
 def _accepted(sketch: Sketch, size: tuple[int, int]) -> tuple[int, int]:

@@ -8,7 +8,8 @@ of the whole picture, and so are a draw's clip space and its viewport, clipped t
 A kernel's text is changed for that in three places: it gets the texel of the whole, reads
 the window's own textures at the window's texel, and `gl_FragCoord` counts from the whole's
 corner. What reads such a texture anywhere but at its own texel cannot be drawn in parts,
-and a sentence says so.
+and a sentence says so, and which parameter switches it off if one does: a kernel that runs no step
+hands on what it begins with, part by part.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache
 
-from playground.engine.plan import LoopStep, Plan, PlanNode, Window, sources_of, walk
+from playground.engine.plan import LoopStep, Plan, PlanNode, Step, Window, sources_of, walk
 from playground.errors import SketchError
 from playground.sketch.flat import Ref
 from playground.sketch.identity import Identity
@@ -27,6 +28,7 @@ from playground.sketch.reserved_names import MATCHES, WINDOW, WIRED, ZOOM
 from playground.sketch.source import SourceText
 
 _KERNEL = re.compile(r"\bkernel\s*\(\s*(?:in\s+)?(ivec2\s+)(\w+)\b[^)]*\)\s*\{")
+_BLOCK = re.compile(r"^(?:\w+\s+\w+\s*\([^()]*\)|struct\s+\w+)\s*\{", re.MULTILINE)
 _LOCAL = "k_local"
 _COORDINATES = re.compile(r"\bgl_FragCoord\b")
 
@@ -55,16 +57,18 @@ def _in_window(node: PlanNode, of_pixels: set[str], window: Window) -> PlanNode:
             raise _refused(node, "it repeats")
         return node
     read = _read(node, of_pixels)
+    if node.kernel.kind == "kernel" and not node.repeat:  # it hands on what it begins with, or zeros
+        return replace(node, size=window.size, window=window) if inside else node
     if not inside:
         if read:
-            raise _refused(node, f"it reads '{read[0]}', whose size is another")
+            raise _refused(node, f"it reads '{read[0]}', whose size is another", _switch(node))
         return node
     if node.kernel.kind in ("source", "compute", "plain_compute"):
         raise _refused(node, f"it is a {node.kernel.kind.replace('_', ' ')} shader")
     names = tuple(n for n, source in node.inputs if isinstance(source, Ref) and source.path in of_pixels)
     kernel = _changed(Identity(node.kernel), names)
     if isinstance(kernel, str):
-        raise _refused(node, kernel)
+        raise _refused(node, kernel, _switch(node))
     return replace(node, kernel=kernel, size=window.size, window=window)
 
 
@@ -72,8 +76,15 @@ def _read(node: PlanNode, of_pixels: set[str]) -> list[str]:
     return [s.path for s in sources_of(node) if isinstance(s, Ref) and s.path in of_pixels]
 
 
-def _refused(node: PlanNode, why: str) -> SketchError:
-    return node.spec.error(f"pass '{node.path}' cannot be drawn in parts: {why}; choose a smaller picture")
+def _refused(node: PlanNode, why: str, switch: str = "") -> SketchError:
+    instead = f"turn '{switch}' off or choose" if switch else "choose"
+    return node.spec.error(f"pass '{node.path}' cannot be drawn in parts: {why}; {instead} a smaller picture")
+
+
+def _switch(step: Step) -> str:
+    """Return the parameter that alone says whether a kernel runs; "" where there is none."""
+    names = [p.name for p in step.kernel.parameters if re.search(rf"\b{p.name}\b", step.kernel.repeat)]
+    return names[0] if len(names) == 1 and " else 0" in step.kernel.repeat else ""
 
 
 @lru_cache(maxsize=64)
@@ -99,8 +110,8 @@ def _previous(kernel: Kernel) -> list[str]:
 
 
 def _names(code: str, *names: str) -> bool:
-    """Return whether a text names something besides declaring a sampler of that name."""
-    return any(re.search(rf"(?<!sampler2D )\b{name}\b", code) for name in names)
+    """Return whether a text names something besides a sampler's declaration and fields of that name."""
+    return any(re.search(rf"(?<!sampler2D )(?<!\.)\b{name}\b", code) for name in names)
 
 
 def _kernel_code(kernel: Kernel, code: str, inputs: Iterable[str]) -> tuple[str | None, str]:
@@ -118,7 +129,7 @@ def _kernel_code(kernel: Kernel, code: str, inputs: Iterable[str]) -> tuple[str 
         own = rf"\btexelFetch\s*\(\s*{name}\s*,\s*{texel}\s*,\s*0\s*\)"
         body = re.sub(own, f"texelFetch(k_own_{name}, {_LOCAL}, 0)", body)
         body = re.sub(rf"\btextureSize\s*\(\s*{name}\s*,\s*0\s*\)", "size", body)
-        if _names(body, name) or _names(others, name):
+        if _names(body, name) or _names(_without_own(others, name), name):
             return None, f"it reads '{name}' elsewhere than at its own texel"
         body = body.replace(f"k_own_{name}", name)
     for wired in (i.name for i in kernel.inputs if i.name not in inputs):
@@ -128,6 +139,17 @@ def _kernel_code(kernel: Kernel, code: str, inputs: Iterable[str]) -> tuple[str 
     if others != code[:start] + code[end:]:
         return None, "a function of its own asks whether an input matches"
     return f"{head} ivec2 {texel} = {_LOCAL} + {WINDOW};{body}{code[end:]}", ""
+
+
+def _without_own(code: str, name: str) -> str:
+    """Blank the functions and structs of a text that have a variable of a name: there it is no texture."""
+    own = re.compile(rf"\b(?:bool|int|uint|float|[biu]?vec[234]|mat\w+)\s+{name}\b")
+    found = code
+    for match in _BLOCK.finditer(code):
+        end = _end_of_body(code, match.end())
+        if own.search(code, match.start(), end):
+            found = found[: match.start()] + " " * (end - match.start()) + found[end:]
+    return found
 
 
 def _end_of_body(code: str, start: int) -> int:

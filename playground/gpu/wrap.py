@@ -311,6 +311,9 @@ def _variant(kernel: Kernel) -> Recipe:
 def _draw(kernel: Kernel) -> dict[str, Recipe]:
     vertex = _function(kernel, "vertex", "vec4 vertex(vec3 corner, out vec3 position)")
     fragment = _function(kernel, "fragment", "vec4 fragment(vec3 position)")
+    several = kernel.outputs if len(kernel.outputs) > 1 else ()
+    if several:
+        fragment = _without_outputs(kernel, fragment)
     varyings = {name: kind for way, kind, name in vertex if way == "out"}
     attributes = [(kind, name) for way, kind, name in vertex if way != "out"]
     for _, kind, name in fragment:
@@ -333,7 +336,11 @@ def _draw(kernel: Kernel) -> dict[str, Recipe]:
     first = _recipe(kernel, before, after, expected, without="fragment")
     before = ["#version 330", "#define FRAGMENT_STAGE", *_given(kernel)]
     after = [f"{_flat(kind)}in {kind} k_to_{name};" for name, kind in varyings.items()]
-    after.append(own_part("main_draw.glsl", arguments=", ".join(f"k_to_{name}" for _, _, name in fragment)))
+    names = [f"k_out_{output.name}" for output in several] or ["k_out"]
+    after += [f"layout(location = {unit}) out vec4 {name};" for unit, name in enumerate(names)]
+    read = ", ".join([f"k_to_{name}" for _, _, name in fragment] + (names if several else []))
+    call = f"fragment({read});" if several else f"k_out = fragment({read});"
+    after.append(own_part("main_draw.glsl", call=call))
     second = _recipe(kernel, before, after, expected, without="vertex")
     return {"vertex": first, "fragment": second}
 
@@ -345,7 +352,10 @@ def _flat(kind: str) -> str:
 def _function(kernel: Kernel, name: str, example: str) -> list[tuple[str, str, str]]:
     """Return (in | out, type, name) of each argument of a draw's function."""
     match = re.search(SIGNATURE.format(name=name), kernel.source.code)
-    if not match or match.group(1) != "vec4":
+    several = name == "fragment" and len(kernel.outputs) > 1
+    if match and several and match.group(1) != "void":
+        raise _line_of(kernel, name).error(f"fragment must be {_fragment_signature(kernel)}")
+    if not match or match.group(1) != ("void" if several else "vec4"):
         raise _unsigned(kernel, f"a draw needs a function {example}")
     found = [_argument(part) for part in match.group(2).split(",") if part.strip()]
     for (way, kind, called), part in zip(found, match.group(2).split(","), strict=False):
@@ -353,6 +363,23 @@ def _function(kernel: Kernel, name: str, example: str) -> list[tuple[str, str, s
             message = f"cannot read the argument '{part.strip()}' of {name}; expected {example}"
             raise _line_of(kernel, name).error(message)
     return found
+
+
+def _fragment_signature(kernel: Kernel) -> str:
+    """Return the signature of the fragment function of a draw with several outputs."""
+    return f"void fragment(…, {', '.join(f'out vec4 {output.name}' for output in kernel.outputs)})"
+
+
+def _without_outputs(kernel: Kernel, arguments: list[tuple[str, str, str]]) -> list[tuple[str, str, str]]:
+    """Return the arguments of a fragment function that are not outputs; refuse other outputs than wanted."""
+    first = len(arguments) - len(kernel.outputs)
+    wanted = [("out", "vec4", output.name) for output in kernel.outputs]
+    if arguments[max(first, 0) :] != wanted or any(way == "out" for way, _, _ in arguments[:first]):
+        message = (
+            f"fragment must be {_fragment_signature(kernel)}: its outputs last, in the order of the pragma"
+        )
+        raise _line_of(kernel, "fragment").error(message)
+    return arguments[:first]
 
 
 def _line_of(kernel: Kernel, name: str) -> Line:

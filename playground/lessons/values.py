@@ -16,4 +16,4 @@ def spelled_value(slider: Slider, value: Value, language: str) -> str:
         text = text.replace(".", ",")
     if parameter.unit:
         return f"{text}\u202f{parameter.unit}"
-    return f"{text}°" if parameter.widget.kind == "angle" else text
+    return f"{text}°" if parameter.widget.kind in ("angle", "direction") else text

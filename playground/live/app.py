@@ -145,6 +145,7 @@ def run(
         live.lessons.begin(lesson, language, show_lessons=show_lessons)
         stack.callback(live.release)
         stack.callback(live.bench.captures.close)
+        stack.callback(live.finish_painting, report)
         stack.callback(autosave.close)
         stack.callback(live.caching.close)
         try:
@@ -201,7 +202,7 @@ class Live:
             is_full=lambda: self.place.full,
             sign_held=lambda: window.sign_held,
         )
-        self.bench = Bench(session, controls, opener=Opener(wake), size=remembered_size())
+        self.bench = Bench(session, controls, opener=Opener(wake), size=remembered_size(), wake=wake)
         self.drops = Drops(self.bench.commands)
         self.guard = Guard(self.bench.notices.say)
         self.terminal = TerminalErrors(report)
@@ -255,6 +256,11 @@ class Live:
         self.window.cancel_close()
         self.bench.files.leaving, self._settling = True, _SETTLES
         return True
+
+    def finish_painting(self, report: Callable[[str], None]) -> None:
+        """Wait until what is painted is written; the terminal learns of what cannot be."""
+        for error in self.bench.painting.close():
+            report(error)
 
     def release(self) -> None:
         """Release all that was made in the window's context."""

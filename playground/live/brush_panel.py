@@ -68,9 +68,14 @@ def _with_tool(painting: Painting) -> Brush:
     """Draw the choice of a tool, and what flatten goes to; return the brush as it is chosen."""
     brush = painting.brush
     with row("Tool", f"What the brush does while the button is down (1 to {len(TOOLS)})", fixed=True):
-        tool = choose("##tool", brush.tool, TOOLS, brush.tool, name=str)
+        tool = choose("##tool", brush.tool, painting.tools, brush.tool, name=str)
     if tool is not None:
         brush = replace(brush, tool=tool)
+    if brush.tool == "erode":
+        with row(
+            "Technique", "What erodes while the button is down; erode(…) in its file names it", fixed=True
+        ):
+            imgui.text_disabled(painting.erodes_by)
     if brush.tool != "flatten":
         return brush
     note = "Flatten to the height where each stroke begins, or to the level below"

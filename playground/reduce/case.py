@@ -14,6 +14,7 @@ from functools import cached_property
 from pathlib import Path
 
 from playground.reduce.variant import record_text
+from playground.sketch.map_sketch import USE
 from playground.sketch.model import Camera, Value
 from playground.sketch.variant_record import NAME
 
@@ -142,7 +143,7 @@ class Case:
         if self.target == "view":
             lines += ["", "[view]", *_pass(self.live[-1])]
         else:
-            lines += ["", "[view]", 'use = "view/map"', f'inputs = {{ shown = "{self.target}" }}']
+            lines += ["", "[view]", f'use = "{USE}"', f'inputs = {{ shown = "{self.target}" }}']
         if self.samples != 4:
             lines.append(f"samples = {self.samples}")
         camera = [

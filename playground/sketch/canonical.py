@@ -55,6 +55,7 @@ def _of_kernel(kernel: Kernel) -> list[Any]:
     header += [_parameter(p) for p in kernel.parameters]
     # Only where it is there: hashes of others in records stay valid.
     more = [kernel.own_accepts] if kernel.own_accepts else []
+    more += [kernel.instances] if kernel.instances else []
     return [header, kernel.agrees, compiled_text(kernel.source.code), *more]
 
 

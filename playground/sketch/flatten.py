@@ -53,8 +53,8 @@ def flatten(
 
     A variant gives its technique's outputs only, and after the last step: it does not replace
     a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
-    or a parameter inside that is set and that it does not have, nor one that is itself among
-    the ``stopped`` or the ``refused``, or whose initial state is wired.
+    or a parameter inside that is set and that it does not have, or an input that it does not have,
+    nor one that is itself among the ``stopped`` or the ``refused``, or whose initial state is wired.
     Leaves of ``before``, an earlier result, are reused where their values are the same objects.
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
     """
@@ -173,7 +173,8 @@ class _Flattener:
         self.paths: dict[str, tuple[tuple[str, str], ...]] = {}
         self.constants: dict[str, Value] = {}
         self.copied: dict[str, str] = {}
-        self.inside: dict[str, dict[str, Ref]] = {}  # pass → what the passes of its fast variant give for it
+        # Pass → what gives its outputs: the passes of its fast variant, or its own where that steps back.
+        self.inside: dict[str, dict[str, Ref]] = {}
         self.opened: set[str] = set()
         if kinds:
             for path in (*opened, *stopped):
@@ -220,9 +221,9 @@ class _Flattener:
         return active_variant(technique, self.kinds) if self.kinds and path not in self.opened else None
 
     def real(self, source: Source | None) -> Any:
-        """Return what gives a texture: the pass inside, where a variant of several passes is active."""
-        if isinstance(source, Ref) and source.path in self.inside:
-            return self.inside[source.path][source.output]
+        """Return what gives a texture: the pass inside, of a variant of passes or where one steps back."""
+        while isinstance(source, Ref) and source.path in self.inside:
+            source = self.inside[source.path][source.output]
         return source
 
     def expand(self, graph: Graph, prefix: str, wires: Mapping[str, Source | None]) -> list[Node]:
@@ -291,6 +292,11 @@ class _Flattener:
         variant = self._active(technique, path)
         if isinstance(technique, Kernel) and any(wires.get(name) for name in initial_names(technique)):
             variant = None  # only the canonical form takes an initial state
+        if variant and any(wires.get(name) for name in _lacking(technique, variant)):
+            variant = None
+            if isinstance(technique, Graph):
+                self.opened.add(path)
+                self.inside[path] = self._outputs_of(technique, path)
         if variant and isinstance(variant.technique, Graph):
             return self._passes(variant.technique, spec, path, wires)
         if isinstance(technique, Kernel):
@@ -382,6 +388,11 @@ class _Flattener:
         hint = f"candidates: {', '.join(candidates)}" if candidates else "there is no earlier pass"
         message = f"pass '{spec.name}' needs its input '{name}' wired, as inputs = {{ {name} = \"…\" }}"
         raise spec.error(f"{message}; {hint}")
+
+
+def _lacking(technique: Technique, variant: Variant) -> set[str]:
+    """Return the inputs of a technique that its fast variant does not have."""
+    return {*input_names(technique)} - {*input_names(variant.technique)}
 
 
 def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]) -> bool:

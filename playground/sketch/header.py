@@ -36,14 +36,14 @@ _IMAGE = re.compile(
 _KEYS = {
     "kernel": ("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once", "until"),
     "source": ("name", "output", "reads"),
-    "draw": ("where", "mesh", "count", "output", "blend", "depth", "samples", "repeat"),
+    "draw": ("where", "mesh", "count", "instances", "output", "blend", "depth", "samples", "repeat"),
     "compute": (
         *("where", "accepts", "groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned"),
         "agrees",
     ),
 }
 # The options that may use the names of where.
-_EXPRESSIONS = ("groups", "buffers", "repeat", "count", "visits", "stride", "at_once")
+_EXPRESSIONS = ("groups", "buffers", "repeat", "count", "instances", "visits", "stride", "at_once")
 _EXAMPLES = {
     "kernel": '(output = "height:r32f")',
     "source": '("elevation_file", output = "height:r32f")',
@@ -231,8 +231,6 @@ def _plain(name: str, source: SourceText, version: Line) -> Kernel:
 def _draw(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
     if not options.get("mesh"):
         raise line.error('#pragma draw needs a mesh, as mesh = "grid"')
-    if len(kernel.outputs) != 1:
-        raise line.error("a draw has one output")
     blend, depth = options.get("blend", "none"), options.get("depth", "less")
     for key, value, valid in (
         ("blend", blend, ("none", "alpha", "add")),
@@ -245,7 +243,12 @@ def _draw(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         raise line.error(f"samples = {samples}: expected 1, or 0 for as many as the view has")
     if count:
         _check("count", count, (*_SIZE, *_numbers(kernel)), line)
+    instances = options.get("instances", "")
+    if instances:
+        texels = [f"{declared.name}.{component}" for declared in kernel.inputs for component in "xyzw"]
+        _check("instances", instances, (*_SIZE, *_numbers(kernel), *texels), line)
     kernel = replace(kernel, registry=options["mesh"], blend=blend, depth=depth, count=count)
+    kernel = replace(kernel, instances=instances)
     return replace(kernel, samples=int(samples), repeat=options.get("repeat", "1"))
 
 

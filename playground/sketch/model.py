@@ -33,6 +33,7 @@ __all__ = [
     "DRIVERS",
     "LARGEST_PICTURE",
     "LARGEST_SIDE",
+    "MOST_SUPERSAMPLE",
     "SHAPES",
     "VARIANTS",
     "Buffer",
@@ -63,6 +64,9 @@ LARGEST_PICTURE = 65_536
 DEFAULT_PICTURE = (1280, 720)
 """Size in pixels of a picture unless another is given."""
 
+MOST_SUPERSAMPLE = 8
+"""Times that a picture may be drawn as wide and as high as it is wanted."""
+
 DRIVERS = ("auto", "fragment", "compute")
 """What may run kernels; "auto" takes for each the one that it gains by."""
 
@@ -89,6 +93,7 @@ class Shot:
     values: tuple[tuple[str, Value], ...] = ()  # parameter path → value
     preset: str = ""
     samples: int | None = None  # None: the view's
+    supersample: int | None = None  # likewise
     steps: tuple[tuple[str, int], ...] = ()  # pass → step to stop at
     marks: tuple[str, ...] = ()  # pytest's markers of its test, as "slow"
     line: int = 0
@@ -117,6 +122,7 @@ class Sketch:
     base_elevation: float | None = None  # [m] above sea level at height 0
     camera: Camera = Camera()
     samples: int = 4  # antialiasing of draws
+    supersample: int = 1  # times as wide and high as a finished picture is drawn; not live
     shots: tuple[Shot, ...] = ()
     presets: tuple[Preset, ...] = ()
     overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets
@@ -199,4 +205,6 @@ class Sketch:
             sketch = sketch.with_camera(shot.camera)
         if shot.samples is not None:
             sketch = replace(sketch, samples=shot.samples)
+        if shot.supersample is not None:
+            sketch = replace(sketch, supersample=shot.supersample)
         return sketch

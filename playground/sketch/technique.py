@@ -87,6 +87,7 @@ class Kernel:
     blend: str = "none"
     depth: str = "less"
     count: str = ""  # of a draw: elements of a mesh that has no size of its own
+    instances: str = ""  # of a draw: how often its mesh is drawn, perhaps by the first texel of an input
     samples: int = 0  # of a draw: samples a pixel; 0: the view's
     groups: str = ""  # of a compute variant
     local: tuple[int, int] = (8, 8)

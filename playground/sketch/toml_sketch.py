@@ -11,7 +11,16 @@ from playground.paths import GLSL, shown
 from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed, resolve
 from playground.sketch.flat import repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
-from playground.sketch.model import LARGEST_SIDE, Camera, Graph, PassSpec, Preset, Shot, Sketch
+from playground.sketch.model import (
+    LARGEST_SIDE,
+    MOST_SUPERSAMPLE,
+    Camera,
+    Graph,
+    PassSpec,
+    Preset,
+    Shot,
+    Sketch,
+)
 from playground.sketch.toml_camera import read_camera
 from playground.sketch.toml_graph import Read, read_pass, read_passes, read_set
 from playground.sketch.toml_keyframes import read_keyframes
@@ -24,8 +33,8 @@ SKETCH_KEYS = frozenset({*TERRAIN_KEYS, "main", "view", "shot", "preset", "keyfr
 """What a sketch's TOML may hold and a technique's may not."""
 
 _TOP = ("format", "title", "pass", *sorted(SKETCH_KEYS))
-_VIEW = ("use", "inputs", "set", "camera", "samples")
-_SHOT = ("name", "size", "time", "camera", "set", "preset", "samples", "steps", "marks")
+_VIEW = ("use", "inputs", "set", "camera", "samples", "supersample")
+_SHOT = ("name", "size", "time", "camera", "set", "preset", "samples", "supersample", "steps", "marks")
 _PAIRS = {"size": "a whole number of texels, or [x, y]", "extent": "metres, or [east, north]"}
 _DEFAULT_VIEW = "view/terrain"
 _PLAIN_VIEW = "view/map"  # of a sketch without [view]: its last pass from above
@@ -40,6 +49,9 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
     name = file.path.parent.name if file.path.name == "sketch.toml" else file.path.stem
     title = file.take(file.table, "title", str, "")
     terrain = {key: _terrain_value(file, key) for key in TERRAIN_KEYS if key in file.table}
+    supersample = 1
+    if isinstance(table := file.table.get("view"), dict):
+        supersample = _supersample(file, table, 1, ("view",))
     sketch = Sketch(
         name=name,
         file=str(file.path),
@@ -48,6 +60,7 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
         title=title or name,
         camera=camera,
         samples=samples,
+        supersample=supersample,
         **terrain,
     )
     check_graph(sketch.graph)
@@ -110,6 +123,14 @@ def _samples(file: TomlFile, table: Mapping[str, Any], default: int, place: Plac
     return found
 
 
+def _supersample(file: TomlFile, table: Mapping[str, Any], default: int, place: Place) -> int:
+    found: int = file.take(table, "supersample", int, default, *place)
+    if not 1 <= found <= MOST_SUPERSAMPLE:
+        message = f"supersample = {spell(found)}: expected a whole number, 1 to {MOST_SUPERSAMPLE}"
+        raise file.error(message, *place, "supersample")
+    return found
+
+
 def _presets(file: TomlFile, sketch: Sketch) -> tuple[Preset, ...]:
     found: list[Preset] = []
     for index, table in enumerate(file.tables("preset")):
@@ -150,6 +171,7 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
                 values=read_set(file, sketch, table, place, f"shot '{name}'"),
                 preset=preset,
                 samples=_samples(file, table, sketch.samples, place) if "samples" in table else None,
+                supersample=_supersample(file, table, 1, place) if "supersample" in table else None,
                 steps=read_steps(file, sketch, table, place),
                 marks=_marks(file, table, place),
                 line=file.line(*place),

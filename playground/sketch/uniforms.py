@@ -51,7 +51,7 @@ _LONGEST_LITERAL = 64
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
 _BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
-_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "values", "follows", "was"})
+_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "values", "follows", "was", "erode"})
 
 Calls = dict[str, list[str]]
 
@@ -182,6 +182,8 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
     if "file" in calls and "input" in calls:
         raise line.error(f"'{name}' has two widgets: file and input")
     is_file = "file" in calls
+    if "erode" in calls and not (is_file and "paint" in calls["file"]):
+        raise line.error(f"'{name}' is not painted on; erode is for a file with the word \"paint\"")
     if "was" in calls and not is_file:
         raise line.error(f"'{name}' is an input; was is for a parameter")
     words = list(calls.get("file" if is_file else "input", []))
@@ -217,6 +219,7 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         Widget("file"),
         sampling=sampling,
         painted="paint" in words,
+        erode=_text(calls, "erode", line),
         **_described(calls, tooltip, line),
         former=_former_names(name, calls, line),
     )
@@ -226,6 +229,8 @@ def _parameter(
     name: str, glsl_type: str, initial: str | None, calls: Calls, tooltip: str, line: Line
 ) -> Parameter:
     widgets = [word for word in calls if word in _ROLES]
+    if "erode" in calls:
+        raise line.error(f"erode is for a file that is painted on; '{name}' is a {glsl_type}")
     if len(widgets) > 1:
         raise line.error(f"'{name}' has two widgets: {' and '.join(widgets)}")
     kind = widgets[0] if widgets else ("checkbox" if glsl_type == "bool" else "number")

@@ -7,8 +7,9 @@ import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 
-from playground.errors import Diagnostic
+from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import GLSL
+from playground.sketch.expressions import names_in
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.uniforms import unfed_samplers
 
@@ -48,7 +49,7 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
         rest = re.sub(declared, "", code)
         if re.search(rf"\b(?:\w+_)?{re.escape(name)}\b", rest):
             continue
-        if re.search(rf"\b{re.escape(name)}\b", counts_around(Path(kernel.path))):
+        if name in _counted(Path(kernel.path)):
             continue
         for line in kernel.source.lines:
             if match := re.search(declared, line.code):
@@ -60,17 +61,30 @@ def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:
     return tuple(found)
 
 
-def counts_around(path: Path) -> str:
-    """Return the sizes and repeats of the techniques that a kernel's folder is of, or holds, as one text."""
+def _counted(path: Path) -> frozenset[str]:
+    """Return the parameters of a kernel that sizes and repeats name in the techniques of its folder.
+
+    These are the technique that the folder is of, and those in it. A name is followed to what it exports.
+    """
     folder = path.parent
-    found = []
+    found: set[str] = set()
     for file in (folder.with_suffix(".toml"), *sorted(folder.glob("*.toml"))):
         try:
-            passes = tomllib.loads(file.read_text(encoding="utf-8")).get("pass", [])
-            found += [str(each.get(key, "")) for each in passes for key in ("size", "repeat")]
-        except (OSError, ValueError, AttributeError):
+            table = tomllib.loads(file.read_text(encoding="utf-8"))
+            exports = table.get("parameters", {})
+            uses = {each["name"]: each["use"].rpartition("/")[2] for each in table.get("pass", [])}
+            counts = [each.get(key, "") for each in table.get("pass", []) for key in ("size", "repeat")]
+            both = [text for count in counts for text in (count if isinstance(count, list) else [count])]
+            for name in {name for text in both if text for name in names_in(str(text))}:
+                targets = exports.get(name, name)
+                for target in [targets] if isinstance(targets, str) else targets:
+                    used = uses.get(target.partition(".")[0], path.stem)
+                    # Of a technique in the technique any pass may be the kernel's.
+                    if used == path.stem or not (folder / f"{used}.glsl").is_file():
+                        found.add(target.rpartition(".")[2])
+        except (OSError, ValueError, AttributeError, KeyError, TypeError, PlaygroundError):
             continue  # it is not there, or reading the technique itself says what is wrong with it
-    return "\n".join(found)
+    return frozenset(found)
 
 
 def former_names_used(sketch: Sketch) -> tuple[Diagnostic, ...]:

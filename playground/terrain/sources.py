@@ -136,7 +136,7 @@ SOURCES: dict[str, SourceKind] = {
         _make_numbers,
         ("image",),
         ("image",),
-        "the painted numbers",
+        "the layer of painted numbers",
         picture=lambda values, size: Path(str(values["image"])),
     ),
     "vector_file": SourceKind(

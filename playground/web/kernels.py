@@ -81,6 +81,8 @@ class Kernels:
             found["samples"] = kernel.samples
             if kernel.count:
                 found["count"] = tree(kernel.count)
+            if kernel.instances:
+                found["instances"] = tree(kernel.instances)
         if kernel.kind.startswith("plain"):
             found |= {"usual": [list(pair) for pair in kernel.usual], "dialect": kernel.dialect}
         if used := _used(kernel):
@@ -126,7 +128,7 @@ def _uniform(parameter: Parameter) -> dict[str, Any]:
 
 def _used(kernel: Kernel) -> list[str]:
     """Return the names that a kernel's textures depend on though its text may not name them twice."""
-    used = set(_IDENTIFIER.findall(f"{kernel.count} {kernel.stride} {kernel.at_once}"))
+    used = set(_IDENTIFIER.findall(f"{kernel.count} {kernel.instances} {kernel.stride} {kernel.at_once}"))
     if kernel.kind == "draw":
         used |= set(mesh_parameters(kernel.registry))
     if kernel.kind == "source":

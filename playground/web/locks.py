@@ -57,8 +57,7 @@ class Locks:
             if leaf in self.sources and not self._plays_by(leaf, name):
                 return _sentence(f"{made_by(self.sources[leaf])} was made when the page was exported")
             if leaf in self._read_by:
-                made = made_by(self.sources[self._read_by[leaf]])
-                return _sentence(f"{made} was made of this when the page was exported")
+                return self._made_of(leaf)
             if target in self._needed_by:
                 made = made_by(self.sources[self._needed_by[target]])
                 return _sentence(f"{made} was made in this size when the page was exported")
@@ -67,6 +66,17 @@ class Locks:
             if parameter is not None and parameter.widget.kind == "file":
                 return "The image was chosen when the page was exported."
         return self._replaced_around(path)
+
+    def of_steps(self, path: str) -> str:
+        """Return why a repeated pass cannot be stopped early, a sentence; "": it can, or is not repeated."""
+        spec = self.flat.specs[path]
+        leaf = next((one for one in self.flat.leaves if one.path == path), None)
+        if not spec.repeat and (leaf is None or leaf.kernel.repeat == "1"):
+            return ""
+        for read in self._read_by:
+            if f"{read}.".startswith(f"{path}."):
+                return self._made_of(read)
+        return ""
 
     def of_terrain(self) -> str:
         """Return why the terrain's size cannot be changed; "": it can."""
@@ -130,6 +140,11 @@ class Locks:
             if isinstance(node, Loop):
                 waiting += node.body
                 yield from ((Fed(node.path, name), first, ref) for name, first, ref in node.feedback)
+
+    def _made_of(self, path: str) -> str:
+        """Return the sentence on a leaf that a source reads."""
+        made = made_by(self.sources[self._read_by[path]])
+        return _sentence(f"{made} was made of this when the page was exported")
 
     def _plays_by(self, path: str, parameter: str) -> bool:
         """Return whether a parameter of a source says which second of a file shows: that a page works out."""

@@ -24,11 +24,24 @@ from playground.web.pressed import dense, pressed
 _MARK = "\ufeff"  # that this is UTF-8, whatever a server says
 _ICON = "data:,"  # or a browser would ask for favicon.ico
 _POSTER_STYLE = "img{max-width:100%;height:auto}"
-_SCRIPTS_OFF = (
-    "This picture is alive where scripts may run: allow them for this page, or open it in a browser."
-)
-_TOO_OLD = "This browser is too old for the live picture: it cannot unpack it."
-_DAMAGED = "This file is damaged, so the picture stands still: export or copy it again."
+_WORDS = {
+    "en": {
+        "about": "{title}: a terrain shader that runs in this page.",
+        "scripts_off": "This picture is alive where scripts may run: allow them for this page, or open it in"
+        " a browser.",
+        "too_old": "This browser is too old for the live picture: it cannot unpack it.",
+        "damaged": "This file is damaged, so the picture stands still: export or copy it again.",
+    },
+    "fr": {
+        "about": "{title} : un shader de terrain qui s’exécute dans cette page.",
+        "scripts_off": "Cette image est vivante là où les scripts sont permis : autorisez-les pour cette"
+        " page, ou ouvrez-la dans un navigateur.",
+        "too_old": "Ce navigateur est trop ancien pour l’image vivante : il ne sait pas la décompresser.",
+        "damaged": "Ce fichier est endommagé, l’image reste donc fixe : exportez-le ou copiez-le de nouveau.",
+    },
+}
+"""What a page says before its script runs; what it says then is in the runtime's tables."""
+LANGUAGES = tuple(_WORDS)
 
 
 @dataclass(frozen=True)
@@ -45,8 +58,10 @@ def page_html(
 ) -> str:
     """Return the whole page: one HTML file.
 
-    ``script`` and ``style`` are the runtime's (see ``bundle``). The same arguments give the same text.
+    ``script`` and ``style`` are the runtime's (see ``bundle``); ``language`` is one of ``LANGUAGES``. The
+    same arguments give the same text.
     """
+    words = _WORDS[language]
     loader = read_bundle("loader.js")
     data, blobs = page_texts(page)
     whole = pressed("\0".join((style, data, script)))
@@ -66,7 +81,7 @@ def page_html(
         tag("meta", http_equiv="Content-Security-Policy", content=policy_of(loader, script, style)),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
         tag("meta", name="color-scheme", content="light dark"),
-        tag("meta", name="description", content=f"{title}: a terrain shader that runs in this page."),
+        tag("meta", name="description", content=words["about"].format(title=title)),
         tag("meta", name="generator", content=f"terrain shader playground {__version__}"),
         tag("title", title),
         tag("link", rel="icon", href=_ICON),
@@ -74,9 +89,9 @@ def page_html(
     )
     body = (
         tag("main", image, id="playground"),
-        tag("noscript", tag("p", _SCRIPTS_OFF)),
-        tag("p", _TOO_OLD, id="playground-old", hidden=True),
-        tag("p", _DAMAGED, id="playground-damaged", hidden=True),
+        tag("noscript", tag("p", words["scripts_off"])),
+        tag("p", words["too_old"], id="playground-old", hidden=True),
+        tag("p", words["damaged"], id="playground-damaged", hidden=True),
         "\n",
         tag(
             "script",

@@ -33,7 +33,6 @@ from playground.sketch.named_numbers import base_of, counting
 from playground.sketch.source import read_text
 from playground.sketch.traits import is_animated
 from playground.terrain.sources import source_kind
-from playground.web.drawn_sources import drawn
 from playground.web.kernels import Kernels
 from playground.web.locks import Locks, made_by
 from playground.web.pass_trees import pass_tree
@@ -58,9 +57,9 @@ def sketch_data(
     """Return a sketch as data; what several have in common goes into ``shared``.
 
     ``frame`` in pixels, ``time`` in seconds, ``steps`` stops repeats early, by path. ``engine``
-    draws what sources are made of, and has it in its cache for the next sketch; without one, an engine
-    is opened for each source that needs it. Raises ``PlaygroundError`` for any mistake in the sketch, and
-    for what no page can run.
+    draws what sources are made of, and has it in its cache for the next sketch. Raises
+    ``PlaygroundError`` for any mistake in the sketch, and for what no page can run; ``TypeError`` where a
+    source is made of textures and there is no engine.
     """
     plan = Planner().plan(sketch, frame_size=frame, time=time, variants=KINDS, steps=steps, interpolated=True)
     return _Writing(sketch, plan, shared, engine).data()
@@ -190,8 +189,13 @@ class _Writing:
         return found
 
     def _drawn(self, step: Step) -> dict[str, NDArray[Any]]:
+        """Return the texels of a source with inputs: a page has no other way to them."""
+        if self.engine is None:
+            raise TypeError(f"{step.path} is made of textures, which only an engine draws")
         plan = self.plan
-        return drawn(self.engine, self.sketch, step, frame=plan.frame_size, time=plan.time, steps=plan.steps)
+        at: dict[str, Any] = {"size": plan.frame_size, "time": plan.time, "steps": plan.steps}
+        outputs = [output.name for output in step.kernel.outputs]
+        return {name: self.engine.read(self.sketch, f"{step.path}:{name}", **at) for name in outputs}
 
     def _passes(self) -> dict[str, dict[str, Any]]:
         """Return the size of every pass at every level, and of a loop its repeat."""
@@ -206,6 +210,8 @@ class _Writing:
             if spec.repeat:
                 one["repeat"] = pass_tree(spec.repeat, self.flat, path, repeat=True)
                 one["counting"] = path in counting(self.flat)
+            if locked := self.locks.of_steps(path):
+                one["locked"] = locked
             found[path] = one
         return found
 

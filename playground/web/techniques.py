@@ -9,6 +9,7 @@ from typing import Any
 
 from playground.engine.planner import Planner
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
+from playground.sketch.allowed_files import looking_once
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 from playground.sketch.parameter import label_of
 from playground.sketch.replace_technique import choices, with_technique
@@ -18,6 +19,7 @@ MOST = 24
 """Sketches that a page may hold: one for each combination of techniques."""
 
 
+@looking_once()
 def technique_menus(
     sketch: Sketch, wanted: Mapping[str, Sequence[str]]
 ) -> tuple[list[Sketch], list[list[dict[str, Any]]]]:
@@ -37,20 +39,21 @@ def technique_menus(
     chosen = list(product(*lists.values()))
     numbers = {uses: number for number, uses in enumerate(chosen)}
     sketches: list[Sketch] = []
-    menus: list[list[dict[str, Any]]] = []
     for uses in chosen:
         made = sketch
         for name, use in zip(lists, uses, strict=True):
             made = with_technique(made, name, use)
         sketches.append(made)
+    menus: list[list[dict[str, Any]]] = []
+    for uses in chosen:
         menus.append([])
         for at, name in enumerate(lists):
             others = []
             for use in lists[name]:
-                titled = with_technique(made, name, use).graph.find(name)
-                assert titled is not None
                 number = numbers[(*uses[:at], use, *uses[at + 1 :])]
-                others.append({"use": use, "title": titled.technique.title, "sketch": number})
+                filled = sketches[number].graph.find(name)
+                assert filled is not None
+                others.append({"use": use, "title": filled.technique.title, "sketch": number})
             menus[-1].append({"pass": name, "label": label_of(name), "now": uses[at], "others": others})
     return sketches, menus
 

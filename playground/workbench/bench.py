@@ -34,6 +34,7 @@ class Bench:
         now: Callable[[], float] = time.perf_counter,
         opener: Opener | None = None,
         size: InterfaceSize | None = None,
+        wake: Callable[[], None] | None = None,
     ) -> None:
         folder = folder or Path.cwd()  # where pictures, masks and copies go
         self.session = session
@@ -41,12 +42,13 @@ class Bench:
         self.notices = Notices(now)
         self.problems = Problems()
         self.inspection = Inspection(session)
-        self.painting = Painting(session, folder)
+        self.painting = Painting(session, folder, wake=wake)
         self.file = SketchFile(session, self.notices)
         self.undo = Undo(session, self.notices, self.painting, self.file)
         self.commands = Commands(session, self.notices, self.undo, self.file, folder)
         self.keyframes = KeyframeEdits(session, self.notices, self.undo, self.file)
-        self.captures = Captures(session=session, notices=self.notices, folder=folder)
+        settle = self.painting.settle
+        self.captures = Captures(session=session, notices=self.notices, folder=folder, settle=settle)
         self.files = OpenFiles(self.notices, opener or Opener())
         self.interface = Interface(size=size or InterfaceSize())
         self.lessons = LessonControls()
@@ -54,4 +56,5 @@ class Bench:
 
     def take_notes(self) -> None:
         """Show what the session and the editors report, and remove notices that are over."""
+        self.painting.follow()
         self.notices.take(self.session.notes, self.files.opener.notes)

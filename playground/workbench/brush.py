@@ -15,7 +15,7 @@ ERASER = -1
 """The layer that takes paint away: the rules below show again."""
 
 
-Tool = Literal["raise", "lower", "smooth", "flatten", "sharpen", "erase"]
+Tool = Literal["raise", "lower", "smooth", "flatten", "sharpen", "erase", "erode"]
 TOOLS: tuple[Tool, ...] = get_args(Tool)
 
 
@@ -80,9 +80,13 @@ def covered(
     along = ((x - ends[0][0]) * way[0] + (y - ends[0][1]) * way[1]) / length if length > 0 else 0.0 * (x + y)
     along = np.clip(along, 0.0, 1.0)
     away = np.hypot(x - ends[0][0] - along * way[0], y - ends[0][1] - along * way[1])
-    fade = max(brush.radius * brush.softness, 1e-6)
-    share = np.clip((brush.radius - away) / fade, 0.0, 1.0)
-    return rows, columns, (share * share * (3 - 2 * share)).astype(np.float32)
+    return rows, columns, falloff(away, brush.radius, brush.softness).astype(np.float32)
+
+
+def falloff(away: NDArray[np.float64], radius: float, softness: float) -> NDArray[np.float64]:
+    """Return the share, 0..1, of a brush at distances [m] from its middle: a cubic over its softness."""
+    share = np.clip((radius - away) / max(radius * softness, 1e-6), 0.0, 1.0)
+    return np.asarray(share * share * (3 - 2 * share))
 
 
 def stroke(

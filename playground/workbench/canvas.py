@@ -1,9 +1,9 @@
 """An image that is painted on, and the file that it is stored in.
 
 The picture shows the image from memory, stroke by stroke (see ``engine.painted_images``); the file is
-written when a stroke has ended. What a stroke changes is remembered by tiles: a copy of each tile from
-before the stroke, made where the brush reaches it first, so that the cost of a stroke follows the brush
-and not the image.
+written when a stroke has ended, on a thread, of a copy (see ``latest_write``). What a stroke changes is
+remembered by tiles: a copy of each tile from before the stroke, made where the brush reaches it first, so
+that the cost of a stroke follows the brush and not the image.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from playground.images.files import new_name
 from playground.sketch.allowed_files import Signature, signature
 from playground.workbench.brush import Brush, Part
+from playground.workbench.latest_write import LatestWrite
 
 MOST_TEXELS = 4097
 """Of an image's longer side; a larger terrain's is resampled from it."""
@@ -53,7 +54,8 @@ class Canvas(ABC):
         self.pixels = pixels  # what the file is to hold
         self.token = secrets.token_hex(8)
         self.version = 0
-        self.saved = False  # whether the file holds what is painted
+        self.writing = LatestWrite()
+        self._given = -1  # the version that was given to be written last
         self._written: Signature | None = None  # of the file, as it was written here
         self._changes: deque[tuple[int, Part]] = deque(maxlen=_REMEMBERED)  # each with its version
         self._tiles: dict[tuple[int, int], Patch] | None = None  # from before the stroke that goes on
@@ -75,6 +77,7 @@ class Canvas(ABC):
         with new_name(folder.resolve() / f"{name}{cls.ending}") as path:
             made = cls(path, pixels)
             made.save()
+            made.writing.wait()
         return made
 
     @staticmethod
@@ -82,9 +85,10 @@ class Canvas(ABC):
     def read(path: Path, size: tuple[int, int]) -> NDArray[Any]:
         """Return a file's pixels at a size (nx, ny). Raises ``DataError`` where it cannot be read."""
 
+    @classmethod
     @abstractmethod
-    def write(self) -> None:
-        """Write the file, whole or not at all. Raises ``DataError`` where that fails."""
+    def write(cls, path: Path, pixels: NDArray[Any]) -> None:
+        """Write pixels to a file, whole or not at all. Raises ``DataError`` where that fails."""
 
     @abstractmethod
     def paint(
@@ -104,6 +108,11 @@ class Canvas(ABC):
         return nx, ny
 
     @property
+    def saved(self) -> bool:
+        """Whether the file holds what is painted, or is about to; not where writing it has failed."""
+        return self._given == self.version and (self.writing.pending or self.writing.error is None)
+
+    @property
     def can_undo(self) -> bool:
         """Whether there is a stroke to undo."""
         return bool(self._before or self._tiles)
@@ -115,7 +124,7 @@ class Canvas(ABC):
 
     def holds(self) -> bool:
         """Return whether it is what its file holds, or newer; not where others have written the file."""
-        return not self.saved or signature(self.path) == self._written
+        return self.writing.pending or not self.saved or signature(self.path) == self._written
 
     def changed_since(self, version: int) -> Part:
         """Return the rows and columns of all that was changed since a version."""
@@ -158,12 +167,17 @@ class Canvas(ABC):
         self._tiles = None
         self._before, self._after = [], []
         self._change(whole)
-        self.saved, self._written = True, signature(self.path)
+        self._given, self._written = self.version, signature(self.path)
 
     def save(self) -> None:
-        """Write the file, whole or not at all. Raises ``DataError`` where that fails."""
-        self.write()
-        self.saved, self._written = True, signature(self.path)
+        """Have the file written soon, as the image is now; ``writing`` has what goes wrong."""
+        pixels, self._given = self.pixels.copy(), self.version
+
+        def write() -> None:
+            self.write(self.path, pixels)
+            self._written = signature(self.path)
+
+        self.writing.give(write)
 
     def _replace(self, patch: Patch) -> None:
         """Put pixels in their place."""
@@ -184,7 +198,6 @@ class Canvas(ABC):
         """Note that a part has changed."""
         self.version += 1
         self._changes.append((self.version, part))
-        self.saved = False
 
     def _settle(self) -> None:
         """End the stroke that goes on: what it has changed can be undone."""

@@ -10,6 +10,7 @@ import os
 import subprocess
 import sys
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from fractions import Fraction
 from pathlib import Path
@@ -54,6 +55,7 @@ class Captures:
     session: Session
     notices: Notices
     folder: Path  # where pictures go
+    settle: Callable[[], object]  # has what is painted written, which the other process reads
     wish: Wish = field(default_factory=Wish)
     shown: bool = False  # the capture's window is open
     working: JobProcess | None = None
@@ -84,6 +86,7 @@ class Captures:
         if self.working is not None:
             return
         self.failed = ""
+        self.settle()
         try:
             job = self.job()
         except PlaygroundError as error:

@@ -189,6 +189,7 @@ class Commands:
         if drafts.shown is None:
             self.notices.say("there is no sketch to save yet")
             return None
+        self.undo.painting.settle()
         drafts.shorten_values()
         if drafts.shown.edits.camera is not None:
             drafts.set_camera(rounded(drafts.shown.edits.camera))

@@ -25,18 +25,18 @@ class Mask(Canvas):
 
     def __init__(self, path: Path, pixels: NDArray[np.uint8]) -> None:
         super().__init__(path, pixels)
-        self.mask = np.asarray(
-            pixels / np.float32(255), np.float32
-        )  # in steps finer than the file's, which soft strokes add up
+        # In steps finer than the file's, which soft strokes add up.
+        self.mask = np.asarray(pixels / np.float32(255), np.float32)
 
     @staticmethod
     def read(path: Path, size: tuple[int, int]) -> NDArray[np.uint8]:
         """Return an image's channels at a size (nx, ny). Raises ``DataError`` where it cannot be read."""
         return _bytes(resized(weights_of(read_image(path)), size))
 
-    def write(self) -> None:
-        """Write the file, whole or not at all. Raises ``DataError`` where that fails."""
-        write_png(self.path, self.pixels[::-1])
+    @classmethod
+    def write(cls, path: Path, pixels: NDArray[np.uint8]) -> None:
+        """Write channels to a file, whole or not at all. Raises ``DataError`` where that fails."""
+        write_png(path, pixels[::-1])
 
     def paint(
         self,

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -22,12 +23,13 @@ from playground.engine.view_inputs import view_height
 from playground.errors import DataError, PlaygroundError
 from playground.gpu.textures import split_format
 from playground.sketch.assign import resolve, shown_parameters, value_of, values_of
-from playground.sketch.model import Sketch
+from playground.sketch.model import Parameter, Sketch
 from playground.terrain.camera import Eye
 from playground.terrain.pick import ground_under, seen_from
 from playground.terrain.sources import source_kind
-from playground.workbench.brush import Brush, Tool
+from playground.workbench.brush import TOOLS, Brush, Tool
 from playground.workbench.canvas import MOST_TEXELS, Canvas
+from playground.workbench.erode_tool import ErodeTool, technique_at
 from playground.workbench.painted_mask import MOST_BY_FILE, Mask
 from playground.workbench.sculpted_ground import ground_of, ground_ref
 from playground.workbench.sculpture import Sculpture, rate_of
@@ -46,7 +48,14 @@ SAVES_EVERY = 0.1
 class Painting:
     """What is painted in one session."""
 
-    def __init__(self, session: Session, folder: Path, now: Callable[[], float] = time.perf_counter) -> None:
+    def __init__(
+        self,
+        session: Session,
+        folder: Path,
+        now: Callable[[], float] = time.perf_counter,
+        wake: Callable[[], None] | None = None,
+    ) -> None:
+        """Paint on a session's sketch; ``wake`` is called, on any thread, where ``follow`` has work."""
         self.session = session
         self.folder = folder  # where new masks go
         self.brush = Brush(radius=0.0)
@@ -56,6 +65,9 @@ class Painting:
         self._found: tuple[Sketch | None, tuple[str, ...]] = (None, ())
         self._chosen = ""
         self._heights: tuple[object, NDArray[np.float32] | None] = (None, None)  # and of which picture
+        self._eroding: ErodeTool | None = None
+        self._wake = wake
+        self._reported: dict[Path, int] = {}  # how many writes of a canvas's file have been looked at
         self._stroke: Canvas | None = None  # what the stroke that goes on is painted on
         self._last: tuple[float, float] | None = None  # where the stroke is
         self._saved_at = 0.0
@@ -86,6 +98,16 @@ class Painting:
         return step is not None and _kind_of(step) is Sculpture
 
     @property
+    def tools(self) -> tuple[Tool, ...]:
+        """The tools that what is painted on takes: it erodes where heights are and a technique is named."""
+        return TOOLS if self.erodes_by else tuple(tool for tool in TOOLS if tool != "erode")
+
+    @property
+    def erodes_by(self) -> str:
+        """The technique that erode runs, as ``use`` names it; "" where it has none, or no height."""
+        return self._parameter().erode if self._adds_metres else ""
+
+    @property
     def levels(self) -> tuple[float, float]:
         """The least and the most that flatten may be told to go to."""
         relief = self.session.plan.terrain.relief if self.session.plan else None
@@ -105,6 +127,8 @@ class Painting:
         """Paint on another parameter, by its path."""
         self.release()
         self._chosen = target
+        if self.brush.tool not in self.tools:
+            self.brush = replace(self.brush, tool="raise")
 
     @property
     def files(self) -> frozenset[Path]:
@@ -150,8 +174,12 @@ class Painting:
 
     def take_tool(self, tool: Tool) -> None:
         """Sculpt with another tool, while the brush is on what can be sculpted."""
-        if self.on and self.sculpts:
+        if not (self.on and self.sculpts):
+            return
+        if tool in self.tools:
             self.brush = replace(self.brush, tool=tool)
+        else:
+            self.session.notes.append(f"there is nothing to {tool} in {self.target}: choose another tool")
 
     def ground(self, place: tuple[float, float]) -> tuple[float, float] | None:
         """Return where on the terrain a place of the picture lies, both in shares; None in the sky."""
@@ -191,6 +219,9 @@ class Painting:
             self._hand_over(canvas)
             if isinstance(canvas, Sculpture):
                 canvas.lie_on(ground)
+                if self.brush.tool == "erode" and not self._erodes(canvas):
+                    self._last = None  # a note says why
+                    return
             canvas.begin()
             self._stroke = canvas
             self._saved_at = -SAVES_EVERY
@@ -205,7 +236,12 @@ class Painting:
         now, at = self.ground(place), self._now()
         seconds, self._moved_at = min(at - self._moved_at, LONGEST), at
         if now is not None:
-            canvas.paint(self._last or now, now, plan.terrain.extent, self.brush, seconds)
+            try:
+                canvas.paint(self._last or now, now, plan.terrain.extent, self.brush, seconds)
+            except PlaygroundError as error:
+                self.session.notes.append(str(error))
+                self.release()
+                return
             if canvas.path in self.session.engine.painted:
                 self.session.redraw()
             elif at - self._saved_at >= SAVES_EVERY:
@@ -218,6 +254,39 @@ class Painting:
         self._last = self._stroke = None
         if self.canvas is not None and not self.canvas.saved:
             self._saved(self.canvas.save)
+
+    def follow(self) -> None:
+        """Report what went wrong with files that were written meanwhile, and show those that are read."""
+        for canvas in self._canvases.values():
+            ended = canvas.writing.writes
+            if self._reported.get(canvas.path) == ended:
+                continue
+            self._reported[canvas.path] = ended
+            if canvas.writing.error is not None:
+                self.session.notes.append(str(canvas.writing.error))
+            if canvas.path not in self.session.engine.painted:
+                self.session.redraw()
+
+    def settle(self) -> bool:
+        """Wait until the files hold what is painted, for who is about to read them; a note says what fails.
+
+        Return whether they do.
+        """
+        for canvas in self._canvases.values():
+            if not canvas.saved:
+                canvas.save()
+        for canvas in self._canvases.values():
+            with suppress(PlaygroundError):  # what ``follow`` reports
+                canvas.writing.wait()
+        self.follow()
+        return all(canvas.saved for canvas in self._canvases.values())
+
+    def close(self) -> list[str]:
+        """End the stroke and wait for the files; return a sentence for each that could not be written."""
+        self.release()
+        self.settle()
+        errors = (canvas.writing.error for canvas in self._canvases.values())
+        return [str(error) for error in errors if error is not None]
 
     def undo(self) -> None:
         """Undo the last stroke."""
@@ -263,6 +332,31 @@ class Painting:
         if step is not None and self._shows(step, canvas.path, canvas.size):
             painted[canvas.path] = canvas
 
+    def _erodes(self, canvas: Sculpture) -> bool:
+        """Have a canvas erode by the technique that its parameter names, as its files are now.
+
+        Return whether it can; a note says why not.
+        """
+        parameter, engine = self._parameter(), self.session.engine
+        if "erode" not in self.tools:
+            self.session.notes.append(f"there is nothing to erode in {self.target}: choose another tool")
+            return False
+        try:
+            technique = technique_at(parameter.erode, parameter.file)
+            known = self._eroding.runner if self._eroding is not None else None
+            if known is None or known.engine is not engine or known.technique != technique:
+                self._eroding = ErodeTool(engine, technique)
+        except PlaygroundError as error:
+            self.session.notes.append(str(error))
+            return False
+        canvas.eroding = self._eroding
+        return True
+
+    def _parameter(self) -> Parameter:
+        """Return the parameter that is painted on; there is one."""
+        assert self.session.sketch is not None
+        return resolve(self.session.sketch.graph, self.target)[0].parameter
+
     def _step_of(self, path: str) -> Step | None:
         """Return the step of the plan whose parameter has a path."""
         sketch, plan = self.session.sketch, self.session.plan
@@ -288,7 +382,11 @@ class Painting:
         except PlaygroundError as error:
             self.session.notes.append(str(error))
             return None
+        if path in self._canvases:
+            self.settle()  # another takes its place, and nobody looks after it any more
         self._canvases[path] = canvas
+        self._reported[canvas.path] = canvas.writing.writes
+        canvas.writing.ended = self._wake or canvas.writing.ended
         self.session.data.trust(canvas.path)
         self.session.drafts.set(path, str(canvas.path))
         self.session.notes.append(f"painting on {canvas.path.name} in {canvas.path.parent}")

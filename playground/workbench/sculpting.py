@@ -11,6 +11,7 @@ how many frames it was painted in. ``w`` is strength times falloff, 0..1; h the 
     erase          dc/dt = -10/s w c, of the change c alone
 
 Flatten, sharpen and erase are integrated exactly over a stamp: their shares are 1 - exp(-rate dt).
+Erode runs a technique instead: see ``erode_tool``.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ from playground.terrain.numbers import read_numbers, write_numbers
 from playground.terrain.resample import resample
 from playground.workbench.brush import Brush, reached
 from playground.workbench.canvas import Canvas
+from playground.workbench.erode_tool import ErodeTool
 from playground.workbench.sculpting import sculpt
 
 RISE = 0.5  # [1/s] radii that raise goes at full strength, where metres are painted
@@ -33,6 +34,7 @@ class Sculpture(Canvas):
         super().__init__(path, pixels)
         self.level: float | None = None  # what the stroke that goes on flattens to
         self.ground: NDArray[np.float32] | None = None  # (ny, nx) [m] that it is added to; None: to none
+        self.eroding: ErodeTool | None = None  # what "erode" runs; None: nothing
 
     def lie_on(self, heights: NDArray[np.float32] | None) -> None:
         """Take the heights [m] that it is added to, at any size; None where it changes no height."""
@@ -45,9 +47,10 @@ class Sculpture(Canvas):
         """Return a file's numbers at a size (nx, ny). Raises ``DataError`` where it cannot be read."""
         return np.array(read_numbers(path, size))
 
-    def write(self) -> None:
-        """Write the file, whole or not at all. Raises ``DataError`` where that fails."""
-        write_numbers(self.path, self.pixels)
+    @classmethod
+    def write(cls, path: Path, pixels: NDArray[np.float32]) -> None:
+        """Write numbers to a file, whole or not at all. Raises ``DataError`` where that fails."""
+        write_numbers(path, pixels)
 
     def begin(self) -> None:
         """Begin a stroke, which one undo will take back; it flattens to the height where it begins."""
@@ -62,9 +65,14 @@ class Sculpture(Canvas):
         brush: Brush,
         seconds: float = 0.0,
     ) -> None:
-        """Go on with a stroke for some seconds."""
+        """Go on with a stroke for some seconds. Raises ``PlaygroundError`` where a technique fails."""
         if self.level is None:
             self.level = self._height_at(start) if brush.level is None else brush.level
+            if self.eroding is not None:
+                self.eroding.begin(self._height_at(start))
+        if brush.tool == "erode":
+            self._erode(start, end, extent, brush, seconds)
+            return
         part = reached(self.size, start, end, extent, brush.radius)
         if not self.pixels[part].size:
             return
@@ -80,6 +88,23 @@ class Sculpture(Canvas):
             level=self.level,
         )
         self._change(part)
+
+    def _erode(
+        self,
+        start: tuple[float, float],
+        end: tuple[float, float],
+        extent: tuple[float, float],
+        brush: Brush,
+        seconds: float,
+    ) -> None:
+        if self.eroding is None:
+            return
+        for place, share in self.eroding.stamps(start, end, extent, brush.radius, seconds):
+            terrain = self.pixels, self.ground
+            part, added = self.eroding.change(terrain, place, extent, brush, share)
+            self._remember(part)
+            self.pixels[part] += added
+            self._change(part)
 
     def _height_at(self, place: tuple[float, float]) -> float:
         """Return the terrain's height at its texel nearest to a place."""

@@ -19,6 +19,7 @@ from pathlib import Path
 from playground.engine.engine import Engine
 from playground.gpu.context import open_context
 from playground.workbench.brush import TOOLS, Brush
+from playground.workbench.erode_tool import STAMP
 from playground.workbench.painting import Painting
 from playground.workbench.session import Session
 
@@ -74,7 +75,7 @@ def measure(size: int, radius: int) -> None:
             frame()
             brush, drawn = [], []
             for n in range(STEPS):
-                clock[0] += 1 / 30
+                clock[0] += STAMP
                 place = 0.4 + 0.005 * n, 0.45
                 brush.append(spent(lambda place=place: painting.move(place)))  # type: ignore[misc]
                 drawn.append(spent(frame))

@@ -86,6 +86,17 @@ def test_one_file_is_written_and_a_line_says_what_it_holds(folder: Path, capfd: 
     assert sorted(path.name for path in folder.iterdir()) == ["a.html", "all.comp", "rise"]
 
 
+def test_a_page_has_its_language(folder: Path):
+    """Its data are the same: names and notes are the sketch's."""
+    for name, more in (("a.html", []), ("b.html", ["--lang", "en"]), ("c.html", ["--lang", "fr"])):
+        assert cli.main(["export", "rise", *more, "--to", name]) == 0
+    usual, english, french = (folder / name for name in ("a.html", "b.html", "c.html"))
+    assert usual.read_bytes() == english.read_bytes()
+    assert page_in(french) == page_in(usual)
+    text = french.read_text("utf-8")
+    assert '<html lang="fr">' in text and "ouvrez-la dans un navigateur" in text
+
+
 def test_a_shot_with_its_values_time_and_size_and_the_poster_of_it(folder: Path):
     assert cli.main(["export", "rise", "--shot", "quarter", "--to", "a.html"]) == 0
     [sketch] = page_in(folder / "a.html")["sketches"]
@@ -153,6 +164,8 @@ def test_two_menus_have_a_sketch_for_each_pair(folder: Path):
         (["rise", "--to", "a.htm"], "nothing is exported as '.htm'; did you mean '.html'?"),
         (["rise", "--technique", "height", "--to", "a.png"], "menus of techniques are for a web page"),
         (["rise", "--technique", "height"], "menus of techniques are for a web page"),
+        (["rise", "--lang", "de", "--to", "a.html"], "no page is in 'de'; expected en or fr"),
+        (["rise", "--lang", "fr", "--to", "a.png"], "a language is for a web page"),
         (["rise", "--technique", "=a", "--to", "a.html"], "expected a pass, as height"),
         (["rise", "--technique", "height=", "--to", "a.html"], "expected a pass, as height"),
         (["rise", "--technique", "hight", "--to", "a.html"], "no pass 'hight'"),

@@ -99,6 +99,28 @@ def test_a_verified_variant_runs_and_says_nothing(drawing, hill):
     assert sentences == []
 
 
+@pytest.mark.parametrize("around", [False, True], ids=["alone", "inside"])
+def test_an_input_that_a_variant_does_not_have_has_the_plain_form_run(drawing, hill, kind, around):
+    """A variant would leave out what is wired: of the inputs it may have fewer."""
+    more = HALF.replace("float kernel", 'uniform sampler2D more;  //! input("black")\nfloat kernel')
+    hill.write("part.glsl", more.replace("return", "return 4.0 * texelFetch(more, texel, 0).r +"))
+    hill.write("both.toml", PASSES.partition("\n")[2] + '[inputs]\nmore = "part.more"\n')
+    ending = ".comp" if kind == "compute" else ".fast.toml"
+    (hill.path / f"hill{ending}").rename(hill.path / f"both{ending}")
+    hill.write("one.glsl", '#pragma kernel(output = "one:r32f")\nfloat kernel(ivec2 texel) { return 1.0; }\n')
+    hill.write("around.toml", '[[pass]]\nname = "hill"\nuse = "./both"\n[inputs]\nmore = "hill.more"\n')
+    trust(hill.path)
+    engine, sentences = drawing
+    body = '[[pass]]\nname = "one"\nuse = "./one"\n[[pass]]\nname = "h"\nuse = "./both"\n'
+    body = body.replace("./both", "./around") if around else body
+    plain = hill.sketch(body)
+    np.testing.assert_array_equal(engine.read(plain, "h"), slopes())
+    assert ran_fast(engine)
+    wired = hill.sketch(body + 'inputs = { more = "one" }\n')
+    np.testing.assert_array_equal(engine.read(wired, "h"), slopes() + 8.0)
+    assert not ran_fast(engine) and sentences == []
+
+
 def test_a_renamed_parameter_of_the_plain_text_leaves_the_variant_out(drawing, hill):
     engine, sentences = drawing
     hill.write("hill.glsl", HILL.replace("scale", "steepness"))

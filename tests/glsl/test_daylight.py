@@ -22,11 +22,12 @@ HEIGHTS += (-18.0, -30.0, -90.0)
 def day(make_sketch):
     """Give a sketch of daylight alone: the sun free and the eye not adapted, unless given."""
 
-    def make(passes="", **given):
+    def make(passes="", files=None, **given):
         values = {"position": "free", "adaptation": 0.0, **given}
         text = ", ".join(f"{k} = {toml_value(v)}" for k, v in values.items())
         return make_sketch(
-            f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {text} }}\n{passes}'
+            f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {text} }}\n{passes}',
+            **(files or {}),
         )
 
     return make
@@ -279,6 +280,39 @@ def test_unwired_it_is_the_parameters_and_wired_it_is_daylight(engine, make_sket
     assert found[0, 3] == 1
     np.testing.assert_array_equal(found[1, :2], [row[1, 3], row[0, 3]])
     np.testing.assert_array_equal(found[2:4, :3], row[1:3, :3])
+
+
+SAY = """
+#include "lighting/daylight_weather.glsl"
+#pragma kernel(output = "told:rgba32f")
+uniform sampler2D daylight;  //! input
+vec4 kernel(ivec2 texel) {
+    Weather now = weather(daylight);
+    return texel.x == 0 ? vec4(now.turbidity, now.open, now.adapted, 1.0)
+            : vec4(texel.x == 1 ? now.overcast : now.level, 1.0);
+}
+"""
+
+
+def test_daylight_says_how_hazy_and_how_cloudy_it_is(engine, day):
+    """Turbidity and cover, set once, are read by all that draws air or clouds, which get its tables too."""
+    told = '[[pass]]\nname = "told"\nuse = "./say"\nsize = [3, 1]\n'
+    sketch = day(told, {"say": SAY}, turbidity=3.5, clouds=0.25, adaptation=0.5, ground=0.4)
+    found, row = engine.read(sketch, "told")[0].astype(np.float64), row_of(engine, sketch)
+    np.testing.assert_allclose(found[0, :3], [3.5, 0.75, row[3, 3]], rtol=1e-6)
+    np.testing.assert_array_equal(found[2, :3], row[5, :3])
+    level = row[1, :3] * row[0, 2] + row[2, :3]
+    np.testing.assert_allclose(found[2, :3], level, rtol=1e-4)
+    clear = row_of(engine, day(turbidity=3.5, ground=0.4))
+    held = 0.75 * clear[2, :3]  # of the open sky
+    held += (1 - 0.75 * 0.25**3.4) * (1 - 0.25**2) * clear[1, :3] * clear[0, 2]  # and of the sun
+    np.testing.assert_allclose(found[1, :3], level - row[3, 3] * held, rtol=2e-3)
+    assert engine.read(sketch, "daylight:cover")[0, 0] == pytest.approx(0.25)
+    assert engine.read(sketch, "daylight:bounced")[3, 3, 3] == pytest.approx(0.4)
+    for name in ("columns", "bounced", "dome"):
+        np.testing.assert_array_equal(
+            engine.read(sketch, f"daylight:{name}"), engine.read(sketch, f"daylight.{name}")
+        )
 
 
 def test_both_drivers_give_the_same_bits(ctx, day):

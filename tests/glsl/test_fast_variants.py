@@ -71,7 +71,7 @@ def test_it_agrees_within_its_bound(ctx, those_that_ship, name):
     if found.skipped:
         pytest.skip(found.skipped)
     assert found.ok, found.words
-    assert found.drawings >= 20
+    assert found.drawings >= 10
 
 
 def with_edit(text):

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from playground.engine.engine import Engine
+
 from .water_truth import edge_of, ends_of, flooded
 
 PASSES = """
@@ -47,6 +49,50 @@ def test_equal_to_a_priority_flood(engine, terrain):
     assert (level >= height).all() and (level - height > 0.02).mean() > 0.1
     # Heights up to 1, rounded once a texel of the way.
     np.testing.assert_allclose(level, flooded(height, SPACING, FALL), rtol=0, atol=2e-6)
+
+
+FLOOD = """
+[[pass]]
+name = "high"
+use = "./high"
+[[pass]]
+name = "flood"
+use = "water/fill/flood"
+inputs = { height = "height", initial = "high" }
+"""
+HIGH = """
+#include "water/texels.glsl"
+#pragma kernel(output = "level:r32f")
+uniform sampler2D height;  //! input
+float kernel(ivec2 texel) { return on_edge(texel, size) ? texelFetch(height, texel, 0).r : 1e30; }
+"""
+# A way that goes to and fro in every second row, 1,800 texels to the one gap in the wall.
+MAZE = """
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) {
+    bool wall = texel.y % 2 == 0 && texel.x != (texel.y % 4 == 0 ? 1 : size.x - 2);
+    return wall || texel.x == 0 || texel.x == size.x - 1 || texel.y == size.y - 1 ? 1.0 : 0.0;
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("rough", "size"),
+    [(ROUGH, [71, 53]), (ROUGH, [200, 129]), (ROUGH, [2, 3]), (MAZE, [71, 53])],
+    ids=["71x53", "200x129", "2x3", "maze"],
+)
+def test_tiles_fall_to_the_bits_of_a_flood_that_falls_step_by_step(ctx, make_sketch, size, rough):
+    """In whatever order texels fall, a flood ends at the same levels; and they are the water's."""
+    if ctx.version_code < 430:
+        pytest.skip("tiles fall by compute shaders")
+    passes = PASSES.replace("set = {{ steps = {steps} }}", "").replace("{{", "{").replace("}}", "}") + FLOOD
+    extent = [30.0 * (n - 1) for n in size]
+    sketch = make_sketch(passes, size=size, extent=extent, relief=RELIEF, rough=rough, high=HIGH)
+    with Engine(ctx) as engine:
+        height, level = engine.read(sketch, "height").copy(), engine.read(sketch, "fill").copy()
+        np.testing.assert_array_equal(level, engine.read(sketch, "flood"))
+    rounded = 2e-6 if rough == ROUGH else 6e-8 * 1800
+    np.testing.assert_allclose(level, flooded(height, (30.0, 30.0), FALL), rtol=0, atol=rounded)
 
 
 @pytest.mark.parametrize("size", [[71, 53], [130, 97]], ids=str)

@@ -81,6 +81,42 @@ def test_slopes_of_a_steady_state_follow_the_law(worn, power):
     assert exponent == pytest.approx(-power, rel=0.01)
 
 
+HALF_DRY = """
+#pragma kernel(output = "rain:r32f")
+float kernel(ivec2 texel) { return 2 * texel.x < size.x ? 0.125 : 1.5; }
+"""
+
+
+def test_rain_makes_a_steady_state_of_discharges(engine, make_sketch):
+    """S = (U / K) Q^-m where Q is the rain above; where it is even, that is another K: within 1 % both."""
+    values = {**BARE, "age": 100.0, "steps": 80, "keep": 1.0}
+
+    def steady(rain="", text=HALF_DRY, **more):
+        wet = f'[[pass]]\nname = "wet"\nuse = "./wet"\nsize = {rain}\n' if rain else ""
+        wired = 'inputs = { height = "low", rain = "wet" }' if rain else 'inputs = { height = "low" }'
+        passes = wet + PASSES.replace('inputs = { height = "low" }', wired)
+        sketch = make_sketch(passes, size=49, extent=EXTENT, relief=RELIEF, low=LOW, wet=text)
+        sketch = sketch.with_values({f"rivers.{k}": v for k, v in {**values, **more}.items()})
+        height = RELIEF * engine.read(sketch, "rivers:height").astype(float)
+        return height, engine.read(sketch, "rivers:receiver").astype(int)
+
+    height, receiver = steady(49)
+    half = np.where(2 * np.arange(49) < 49, 0.125, 1.5) * np.ones((49, 1))
+    discharge = (EXTENT / 48) ** 2 * counted(receiver, half)
+    slope, inner = slopes_of(height, receiver, EXTENT / 48), ~edge_of(height.shape)
+    ratio = slope[inner] * 5e-6 * discharge[inner] ** 0.5 / 5e-4
+    assert np.median(ratio) == pytest.approx(1.0, abs=0.01)
+    assert (np.abs(ratio - 1) < 0.01).mean() > 0.95
+    dry, wet = height[1:-1, 1:24].mean(), height[1:-1, 25:-1].mean()
+    assert dry > 1.5 * wet
+
+    # Rain of any size of its own: 4 everywhere is twice the K.
+    found, _ = steady(5, HALF_DRY.replace("2 * texel.x < size.x ? 0.125 : 1.5", "4.0"))
+    wanted, _ = steady(erodibility=10.0)
+    assert np.median(np.abs(found - wanted)) < 0.01 * np.median(wanted)
+    np.testing.assert_allclose(np.quantile(found, [0.5, 0.9]), np.quantile(wanted, [0.5, 0.9]), rtol=0.01)
+
+
 def test_links_are_solved_as_one_after_another(engine, make_sketch):
     passes = """
 [[pass]]

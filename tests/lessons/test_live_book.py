@@ -12,15 +12,20 @@ import pytest
 from playground.lessons import model
 from playground.lessons.book.blocks import Setting
 from playground.lessons.book.build import prepare, write_book
-from playground.lessons.book.live_blocks import beginning, lesson_data
+from playground.lessons.book.live_blocks import beginning, block_data, lesson_data
 from playground.lessons.book.live_files import FEW, live_book, packed_json
 from playground.lessons.book.live_scenes import Library, Scenes
 from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import pictures_in
 from playground.lessons.read import read_lesson
+from playground.lessons.values import spelled_value
+from playground.sketch.assign import shown_parameters
+from playground.sketch.load import load
 from playground.web.plan import sketch_data
 from playground.web.shared import SharedData
+from playground.web.shown import row as row_data
 
+from ..sketch_texts import map_of, passes
 from .conftest import SKETCHES
 
 SCRIPT = re.compile(r'\(globalThis\.bookData\?\?=\{\}\)\["([\w/]+)"\]="([A-Za-z0-9+/=]+)";\n')
@@ -148,6 +153,40 @@ def test_blocks_of_each_kind(lesson, horizons, of_horizons):
     assert {"light.clouds", "view.exposure"} <= set(more["clouds"]["rows"])
     exercise = horizons.named["clouds"]
     assert dict(beginning(exercise.scene).overrides) == {}
+
+
+def test_a_directions_degrees_stand_after_it():
+    slider = model.Slider(0, "", "sun", (model.Scene(load("jacksboro"), (32, 18)),), "light.sun")
+    assert spelled_value(slider, (110.0, 10.5), "en") == "110; 10.5°"
+
+
+def test_a_colour_between_two_is_spelled_as_those_are(node):
+    """However many digits its numbers have."""
+    shown = next(one for one in shown_parameters(load("jacksboro")) if one.path == "view.horizon")
+    row = row_data(shown, (0.0, 0.0, 0.0), ("view.horizon",))
+    colour = (0.6120607621465106, 0.5431826535604307, 0.44618878000622914)
+    encoded = [round(255 * (1.055 * part ** (1 / 2.4) - 0.055)) for part in colour]  # IEC 61966-2-1
+    for comma in (False, True):
+        found = node.call("between.js", "spelled", row, colour, comma)
+        assert found == "#" + "".join(f"{byte:02x}" for byte in encoded)
+
+
+def test_iterations_that_only_a_source_reads_stay_pictures(any_engine, tmp_path):
+    """A page has what the source made of the last one."""
+    (tmp_path / "spread.glsl").write_text(
+        '#pragma kernel(output = "height:r32f", repeat = "4")\n'
+        "float kernel(ivec2 t) { return previous(t) + fract(float(t.x * 7 + t.y * 5) / 11.0); }\n"
+    )
+    steps = passes(
+        spread=("./spread",),
+        free=("./spread",),
+        noise=("generation/by_example", 'inputs = { example = "spread" }'),
+    )
+    (tmp_path / "sketch.toml").write_text("format = 1\nsize = 17\n" + steps + map_of("noise"))
+    scenes = (model.Scene(load(tmp_path), (32, 18)),)
+    blocks = [model.Steps(0, "", name, scenes, (name,), (1, 4)) for name in ("spread", "free")]
+    found = [block_data(block, Scenes(Library(any_engine))) for block in blocks]
+    assert found[0] is None and found[1]["passes"] == ["free"]
 
 
 def test_values_that_a_processor_makes_are_listed_ones(delaunay):

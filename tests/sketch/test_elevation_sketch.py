@@ -8,7 +8,7 @@ import tifffile
 
 from playground.errors import SketchError
 from playground.sketch.allowed_files import ELEVATIONS
-from playground.sketch.elevation_sketch import SIDE, elevation_text
+from playground.sketch.elevation_sketch import elevation_text
 from playground.sketch.find import find
 from playground.sketch.load import load
 
@@ -25,7 +25,7 @@ def test_the_sketch_around_a_file_names_it_and_leaves_the_rest_to_it(dem):
     assert (sketch.file, sketch.folder, sketch.name) == (str(dem), str(dem.parent), dem.stem)
     assert (sketch.size, sketch.extent, sketch.relief, sketch.base_elevation) == (None,) * 4
     height = sketch.graph.find("height")
-    assert dict(height.values) == {"elevation": dem.name, "longest": SIDE, "no_data": 1}
+    assert dict(height.values) == {"elevation": dem.name, "longest": 1025, "no_data": 1}
     assert [spec.name for spec in sketch.graph.passes if spec.name in ("colour", "light", "view")]
     assert {spec.line for spec in sketch.graph.passes} == {0}, "no line of the file says any of it"
     assert not sketch.warnings

@@ -305,7 +305,7 @@ def test_every_shipped_file_has_a_header_that_can_be_read(path):
         ('#pragma source("x")', "needs output"),
         ("#pragma draw()", "needs a mesh"),
         ('#pragma draw(mesh = "grid", blend = "alfa")', "expected one of none, alpha, add"),
-        ('#pragma draw(mesh = "grid", output = "a:r8, b:r8")', "one output"),
+        ('#pragma draw(mesh = "grid", instances = "lost.x")', "names 'lost.x', which is not known"),
         ('#pragma draw(mesh = "grid", samples = 4)', "samples = 4: expected 1, or 0 for as many as"),
         ('#pragma draw(mesh = "triangles", count = "pionts")', "count: 'pionts' names 'pionts'"),
         ('#pragma draw(mesh = "triangles", count = "2,")', "count: "),

@@ -62,12 +62,27 @@ def test_the_library_has_none() -> None:
     assert seen > 50
 
 
-def test_what_a_techniques_repeat_names_is_read(folder) -> None:
-    text = '#pragma kernel(output = "height:r32f")\nuniform int steps = 4;  //! slider(1, 9)\n'
-    text += "float kernel(ivec2 texel) { return 1.0; }\n"
-    path = folder.write("worn/finish.glsl", text)
-    assert [each.message for each in unread(read_kernel(path, folder.path))] == [
-        "nothing reads 'steps', so it has no effect"
-    ]
-    folder.write("worn.toml", '[[pass]]\nname = "a"\nuse = "./worn/finish"\nrepeat = "2 * steps"\n')
-    assert unread(read_kernel(path, folder.path)) == ()
+COUNTED = '#pragma kernel(output = "height:r32f")\nuniform int steps = 4;  //! slider(1, 9)\n'
+COUNTED += "float kernel(ivec2 texel) { return 1.0; }\n"
+
+
+@pytest.mark.parametrize(
+    ("toml", "read"),
+    [
+        ('repeat = "2 * steps"\n[parameters]\nsteps = "a.steps"', True),
+        ('size = ["2 * rounds", 1]\n[parameters]\nrounds = ["a.steps", "b.n"]', True),
+        ('size = [1, "a.steps"]', True),
+        ('size = "rounds"\n[parameters]\nrounds = "b.steps"', False),
+        ('size = "steps"\n[parameters]\nsteps = "a.rounds"', False),
+        ('size = "b.steps"', False),
+        ('size = "2 +"', False),
+    ],
+)
+def test_what_a_techniques_repeat_or_size_names_is_read(folder, toml: str, read: bool) -> None:
+    path = folder.write("worn/finish.glsl", COUNTED)
+    unheard = ["nothing reads 'steps', so it has no effect"]
+    assert [each.message for each in unread(read_kernel(path, folder.path))] == unheard
+    folder.write("worn/other.glsl", COUNTED)
+    other = '[[pass]]\nname = "b"\nuse = "./worn/other"\n'
+    folder.write("worn.toml", f'{other}[[pass]]\nname = "a"\nuse = "./worn/finish"\n{toml}\n')
+    assert [each.message for each in unread(read_kernel(path, folder.path))] == ([] if read else unheard)

@@ -31,6 +31,13 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Pages]:
         yield found
 
 
+@pytest.fixture(scope="session")
+def exporting(shared_context: moderngl.Context) -> Iterator[Engine]:
+    """Give an engine that draws what sources are made of, as each export has one."""
+    with Engine(shared_context, notice=lambda _: None) as made:
+        yield made
+
+
 @pytest.fixture(scope="module")
 def drawn(shared_context: moderngl.Context, pages: Pages) -> Iterator[Engine]:
     """Give an engine that draws as pages do: by fragment shaders, on the renderer that they are on."""

@@ -45,9 +45,9 @@ def small(name: str, land: int = LAND) -> Sketch:
 
 
 @pytest.fixture(scope="module")
-def written() -> dict[str, Any]:
+def written(exporting: Engine) -> dict[str, Any]:
     """Give all sketches as one page has them, which shares their texts and images."""
-    return page_data([small(name) for name in shipped_sketches()], frame=SIZE)
+    return page_data([small(name) for name in shipped_sketches()], frame=SIZE, engine=exporting)
 
 
 @pytest.fixture(scope="module")

@@ -37,7 +37,7 @@ def bytes_of(page: dict[str, Any], key: str) -> bytes:
 @pytest.mark.parametrize("name", ["delaunay_flips", "from_example", "jacksboro", "splat_mask"])
 def test_a_source_has_the_engines_texels(any_engine: Engine, name: str):
     sketch = load(name)
-    page = page_data([sketch])
+    page = page_data([sketch], engine=any_engine)
     sources = [node for node in page["sketches"][0]["nodes"] if node.get("data")]
     assert sources
     for node in sources:
@@ -123,9 +123,9 @@ def test_a_sources_own_parameters_are_locked_and_no_others():
     assert [path for path, row in found.items() if not row["locked"]]
 
 
-def test_what_a_source_was_made_of_is_locked_with_it():
+def test_what_a_source_was_made_of_is_locked_with_it(any_engine: Engine):
     """A page does not draw the passes that only the source read, and says why they cannot be changed."""
-    [data] = page_data([load("from_example")])["sketches"]
+    [data] = page_data([load("from_example")], engine=any_engine)["sketches"]
     found = {row["path"]: row["locked"] for row in data["shown"]}
     assert found["pieces.follow"] == "The terrain was made when the page was exported."
     assert found["ridges.texels"].endswith("was made when the page was exported.")
@@ -137,7 +137,7 @@ def test_what_a_source_was_made_of_is_locked_with_it():
     assert data["terrain"]["lockedMetres"] == {"extent": why, "relief": why}
 
 
-def test_kernels_that_a_source_reads_are_locked(tmp_path: Path):
+def test_kernels_that_a_source_reads_are_locked(any_engine: Engine, tmp_path: Path):
     """However far behind it, and round a loop."""
     (tmp_path / "base.glsl").write_text(BASE)
     (tmp_path / "more.glsl").write_text(
@@ -145,29 +145,37 @@ def test_kernels_that_a_source_reads_are_locked(tmp_path: Path):
         "uniform sampler2D base;  //! input\nuniform float gain = 1.0;  //! slider(0, 4) How much\n"
         "float kernel(ivec2 t) { return gain * texelFetch(base, t, 0).r + texelFetch(before, t, 0).r; }\n"
     )
+    (tmp_path / "spread.glsl").write_text(
+        '#pragma kernel(output = "height:r32f", repeat = "5")\nuniform sampler2D base;  //! input\n'
+        "float kernel(ivec2 t) { return previous(t) + texelFetch(base, t, 0).r; }\n"
+    )
     text = "format = 1\nsize = 17\n" + passes(
         first=("./base",),
         other=("./base",),
-        looped=("./more", 'inputs = { base = "first" }', "repeat = 3", 'feedback = { before = "height" }'),
+        spread=("./spread", 'inputs = { base = "first" }'),
+        free=("./spread", 'inputs = { base = "first" }'),
+        looped=("./more", 'inputs = { base = "spread" }', "repeat = 3", 'feedback = { before = "height" }'),
         noise=("generation/by_example", 'inputs = { example = "looped" }'),
     )
     (tmp_path / "sketch.toml").write_text(text + map_of("noise"))
-    [data] = page_data([load(tmp_path)])["sketches"]
+    [data] = page_data([load(tmp_path)], engine=any_engine)["sketches"]
     found = {row["path"]: row["locked"] for row in data["shown"]}
     made = "The table of ranks was made of this when the page was exported."
     assert (found["first.rise"], found["looped.gain"], found["other.rise"]) == (made, made, "")
     assert found["noise.widest"] == "The table of ranks was made when the page was exported."
     assert found["noise.seed"] == ""
+    stopped = {path: one["locked"] for path, one in data["passes"].items() if "locked" in one}
+    assert stopped == {"spread": made, "looped": made}, "their iterations would change nothing"
 
 
-def test_what_a_kernel_before_a_source_is_given_is_locked_or_said(tmp_path: Path):
+def test_what_a_kernel_before_a_source_is_given_is_locked_or_said(any_engine: Engine, tmp_path: Path):
     (tmp_path / "sea.glsl").write_text(
         '#pragma kernel(output = "height:r32f")\n'
         "float kernel(ivec2 t) { return base_elevation + fract(time) + float(t.x); }\n"
     )
     text = passes(sea=("./sea",), noise=("generation/by_example", 'inputs = { example = "sea" }'))
     (tmp_path / "sketch.toml").write_text("format = 1\nsize = 17\n" + text + map_of("noise"))
-    [data] = page_data([load(tmp_path)], time=1.5)["sketches"]
+    [data] = page_data([load(tmp_path)], time=1.5, engine=any_engine)["sketches"]
     why = "The table of ranks was made by this when the page was exported."
     assert data["terrain"]["lockedMetres"]["base_elevation"] == why
     [note] = [note for note in data["notes"] if note.startswith("sea: ")]

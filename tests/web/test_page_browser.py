@@ -362,6 +362,23 @@ def test_search_presets_techniques_iterations(page: Page):
     assert page.run("return document.title") == "Ridges" and page.value("height.level") == 0.75
 
 
+def test_iterations_that_change_nothing_are_locked(wide: Browser, script: Path, tmp_path: Path):
+    repeated = {"base": "#terrain", "where": "", "locked": MADE}
+    data = fake_page.page(passes={"height": repeated}, choices=[])
+    page = Page(wide, fake_page.write(script, tmp_path / "page.html", data).as_uri())
+    page.open()
+    page.run(OPEN_ALL)
+    row = "const row = document.querySelector('.is-steps'), range = row.querySelector('input');"
+    found = "range.disabled, range.ariaDescription, row.previousSibling.textContent"
+    assert page.run(f"{row} return [{found}]") == [True, MADE, MADE]
+    page.run(f"{row} range.value = 5; range.oninput(); row.ondblclick()")
+    page.at_rest()
+    assert page.state(".steps") == {}
+    page.run(f"{row} row.scrollIntoView()")
+    page.keep("locked-iterations")
+    no_complaint(page)
+
+
 # ── time, maps, address ──────────────────────────────────────────────────────
 
 

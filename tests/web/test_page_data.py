@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
@@ -32,14 +34,18 @@ STAGES = """async (shared, kernels, load) => {
 }"""
 
 
+Written = Callable[[str], dict[str, Any]]
+
+
 @cache
 def shipped(name: str) -> Sketch:
     return load(name)
 
 
-@cache
-def written(name: str) -> dict[str, Any]:
-    return page_data([shipped(name)], frame=(320, 180))
+@pytest.fixture(scope="module")
+def written(exporting: Engine) -> Written:
+    """Return a function that gives the page of a sketch, which is written once."""
+    return cache(lambda name: page_data([shipped(name)], frame=(320, 180), engine=exporting))
 
 
 @cache
@@ -52,7 +58,7 @@ def plan_of(sketch: Sketch) -> Plan:
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_it_is_json_and_says_nothing_of_this_machine(name: str):
+def test_it_is_json_and_says_nothing_of_this_machine(name: str, written: Written):
     page = written(name)
     text = json.dumps(page, allow_nan=False)
     assert json.dumps(json.loads(text)) == text
@@ -61,13 +67,13 @@ def test_it_is_json_and_says_nothing_of_this_machine(name: str):
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_its_plan_and_its_texts_are_small(name: str):
+def test_its_plan_and_its_texts_are_small(name: str, written: Written):
     text, _ = page_texts(written(name))
     assert len(pressed(text).encode()) < 96 * 1024
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_a_page_makes_the_engines_own_stages(node: Node, name: str):
+def test_a_page_makes_the_engines_own_stages(node: Node, name: str, written: Written):
     check_stages(node, written(name), planned(name))
 
 
@@ -165,7 +171,7 @@ class Numbers:
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str):
+def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str, written: Written):
     [sketch] = written(name)["sketches"]
     plan = planned(name)
     numbers = Numbers(plan, sketch)
@@ -187,9 +193,9 @@ def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str):
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_values_are_those_that_the_engine_gives(name: str):
+def test_values_are_those_that_the_engine_gives(name: str, written: Written):
     """Before keyframes and what follows: those the page works out by itself."""
-    [sketch] = written(name)["sketches"]
+    [sketch], images = written(name)["sketches"], written(name)["shared"]["images"]
     plan = planned(name)
     set_elsewhere = {path for track in sketch["tracks"] for path in track["targets"]}
     set_elsewhere |= {path for rule in sketch["rules"] for path in rule["targets"]}
@@ -203,11 +209,6 @@ def test_values_are_those_that_the_engine_gives(name: str):
             if path in set_elsewhere:
                 continue
             if parameter.widget.kind == "file":
-                assert value in page_images(name) or step.kernel.kind == "source"
+                assert value in images or step.kernel.kind == "source"
             else:
                 assert parameter.widget.given(value) == step.values[parameter.name]
-
-
-def page_images(name: str) -> dict[str, Any]:
-    images: dict[str, Any] = written(name)["shared"]["images"]
-    return images

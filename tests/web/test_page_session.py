@@ -8,6 +8,7 @@ from typing import Any
 
 import pytest
 
+from playground.engine.engine import Engine
 from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
 from playground.web.page_data import page_data
@@ -176,9 +177,10 @@ def test_a_hostile_link_does_no_harm(node: Node, text: str):
 
 
 @pytest.mark.parametrize("step", [18, pytest.param(6, marks=pytest.mark.slow)])
-def test_what_is_copied_is_what_python_takes(node: Node, step: int):
+def test_what_is_copied_is_what_python_takes(node: Node, exporting: Engine, step: int):
     """Three parameters of some shipped sketches, changed: as --set, and as a preset of the file."""
-    pages = {name: page_data([load(name)], frame=(320, 180)) for name in shipped_sketches()[::step]}
+    at: dict[str, Any] = {"frame": (320, 180), "engine": exporting}
+    pages = {name: page_data([load(name)], **at) for name in shipped_sketches()[::step]}
     body = """const isRanged = (one) => !one.locked && one.exported && one.targets.length
             && one.ranges[0]?.[1] > one.ranges[0]?.[0] && typeof one.value === "number";
         const rows = session.rows().filter(isRanged).slice(0, 3);

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
@@ -21,7 +22,7 @@ from playground.sketch.map_sketch import Map
 from playground.sketch.model import Camera, Kernel, Sketch
 from playground.web import texts
 from playground.web.blobs import Blobs
-from playground.web.plan import KINDS, sketch_data
+from playground.web.plan import KINDS, _Writing, sketch_data
 from playground.web.shared import SharedData
 
 from ..sketch_texts import map_of, passes
@@ -84,6 +85,7 @@ def shared() -> Iterator[SharedData]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(texts, "_is_as_written", lambda *_: True)
         patch.setattr(Blobs, "add", lambda *_: "texels")
+        patch.setattr(_Writing, "_drawn", lambda *_: defaultdict(lambda: np.zeros((1, 1), np.float32)))
         patch.setattr("playground.web.images._lossless", lambda _: b"")
         yield SharedData()
 

@@ -94,32 +94,37 @@ def test_a_canvas_has_the_terrain_s_size_and_a_very_large_one_is_held_to_a_bound
     assert MOST_TEXELS == 2**12 + 1
 
 
+def read_written(canvas: Mask) -> np.ndarray:
+    canvas.writing.wait()
+    return read_image(canvas.path).pixels
+
+
 def test_strokes_are_saved_in_the_file_north_up_and_taken_back_one_by_one(tmp_path: Path):
     canvas = Mask.begun(tmp_path, "mask", None, SIZE)
-    pictures = [read_image(canvas.path).pixels]
+    pictures = [read_written(canvas)]
     for x in (0.2, 0.8):
         canvas.begin()
         canvas.paint((x, 0.9), (x, 0.95), EXTENT, HARD)
         canvas.save()
-        pictures.append(read_image(canvas.path).pixels)
+        pictures.append(read_written(canvas))
     north, south = pictures[-1][:16], pictures[-1][-16:]
     assert north[..., 1].max() == 255 and south[..., 1].max() == 0
     assert (pictures[1] != pictures[2]).any()
     for wanted in (pictures[1], pictures[0]):
         assert canvas.can_undo
         canvas.undo()
-        np.testing.assert_array_equal(read_image(canvas.path).pixels, wanted)
+        np.testing.assert_array_equal(read_written(canvas), wanted)
     assert not canvas.can_undo
     canvas.undo()
     for wanted in pictures[1:]:
         assert canvas.can_redo
         canvas.redo()
-        np.testing.assert_array_equal(read_image(canvas.path).pixels, wanted)
+        np.testing.assert_array_equal(read_written(canvas), wanted)
     assert not canvas.can_redo
     canvas.redo()
-    np.testing.assert_array_equal(read_image(canvas.path).pixels, pictures[2])
+    np.testing.assert_array_equal(read_written(canvas), pictures[2])
     canvas.undo()
-    np.testing.assert_array_equal(read_image(canvas.path).pixels, pictures[1])
+    np.testing.assert_array_equal(read_written(canvas), pictures[1])
 
 
 def test_after_another_stroke_what_was_taken_back_is_not_painted_again(tmp_path: Path):
@@ -131,7 +136,7 @@ def test_after_another_stroke_what_was_taken_back_is_not_painted_again(tmp_path:
     canvas.clear()
     assert not canvas.can_redo
     canvas.redo()
-    assert (read_image(canvas.path).pixels == 0).all()
+    assert (read_written(canvas) == 0).all()
 
 
 def test_clearing_can_be_undone(tmp_path: Path):
@@ -139,18 +144,18 @@ def test_clearing_can_be_undone(tmp_path: Path):
     canvas.begin()
     canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, HARD)
     canvas.save()
-    painted = read_image(canvas.path).pixels
+    painted = read_written(canvas)
     canvas.clear()
-    assert (read_image(canvas.path).pixels == 0).all()
+    assert (read_written(canvas) == 0).all()
     canvas.undo()
-    np.testing.assert_array_equal(read_image(canvas.path).pixels, painted)
+    np.testing.assert_array_equal(read_written(canvas), painted)
 
 
 def test_a_mask_that_is_there_is_copied_and_stays_as_it_was(tmp_path: Path):
     pixels = np.random.default_rng(1).integers(0, 256, (SIZE[1], SIZE[0], 4), np.uint8)
     write_png(tmp_path / "old.png", pixels)
     canvas = Mask.begun(tmp_path, "new", tmp_path / "old.png", SIZE)
-    np.testing.assert_array_equal(read_image(canvas.path).pixels, pixels)
+    np.testing.assert_array_equal(read_written(canvas), pixels)
     canvas.clear()
     np.testing.assert_array_equal(read_image(tmp_path / "old.png").pixels, pixels)
 
@@ -160,7 +165,7 @@ def test_a_mask_of_another_size_takes_the_pass_s(tmp_path: Path):
     pixels[0] = [0, 200, 0, 0]  # the north
     write_png(tmp_path / "coarse.png", pixels)
     canvas = Mask.begun(tmp_path, "fine", tmp_path / "coarse.png", SIZE)
-    found = read_image(canvas.path).pixels
+    found = read_written(canvas)
     assert found.shape == (SIZE[1], SIZE[0], 4)
     assert found[0, 0, 1] == 200 and found[-1, -1, 1] == 0 and 90 < found[SIZE[1] // 2, 7, 1] < 110
 
@@ -171,6 +176,7 @@ def test_a_canvas_that_is_full_of_the_fourth_layer_is_read_back_as_that(tmp_path
     canvas.begin()
     canvas.paint((0.5, 0.5), (0.5, 0.5), EXTENT, everything)
     canvas.save()
+    canvas.writing.wait()
     np.testing.assert_array_equal(read_mask(canvas.path, SIZE), np.broadcast_to([0, 0, 0, 1], (64, 128, 4)))
 
 
@@ -307,9 +313,11 @@ def test_a_mask_that_was_taken_away_is_written_again(session: Session, tmp_path:
     painting.release()
     canvas = painting.canvas
     assert canvas is not None
+    assert painting.settle()
     canvas.path.unlink()
     painting.press((0.4, 0.5))
     painting.release()
+    assert painting.settle()
     session.frame((160, 120))
     assert canvas.path.exists() and session.error is None
 
@@ -349,7 +357,7 @@ def test_the_picture_follows_each_move_and_the_file_is_written_at_the_end(
     assert not canvas.saved and canvas.path.read_bytes() == file
     assert (weights(session) != begun).any()
     painting.release()
-    assert canvas.saved
+    assert painting.settle() and canvas.saved
     seen = weights(session)
     np.testing.assert_array_equal(seen, read_mask(canvas.path, (128, 128)), "as the file says")
     with Engine(session.engine.ctx, driver=session.engine.driver) as another:
@@ -387,6 +395,7 @@ def test_a_mask_that_others_paint_on_is_read_again(session: Session, tmp_path: P
     canvas = painting.canvas
     assert canvas is not None
     weights(session)
+    assert painting.settle()
     theirs = np.zeros((128, 128, 4), np.uint8)
     theirs[:, :, 2] = 255
     write_png(canvas.path, theirs)
@@ -408,6 +417,7 @@ def test_what_others_painted_since_is_not_taken_back(session: Session, tmp_path:
         painting.release()
     canvas = painting.canvas
     assert canvas is not None
+    assert painting.settle()
     theirs = np.zeros((128, 128, 4), np.uint8)
     theirs[:, :, 2] = 255
     write_png(canvas.path, theirs)
@@ -494,4 +504,31 @@ def test_paint_is_a_word_of_files_alone(tmp_path: Path) -> None:
     body = "float kernel(ivec2 texel) { return 0.0; }\n"
     kernel.write_text(f'{head}uniform sampler2D a_mask; //! input("paint")\n{body}')
     with pytest.raises(ShaderError, match="'paint' is not a way to read a texture"):
+        load(kernel)
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        (
+            'uniform sampler2D a; //! file("a.tif") erode("erosion/brush")',
+            "'a' is not painted on; erode is for a",
+        ),
+        (
+            'uniform sampler2D a; //! input erode("erosion/brush")',
+            "'a' is not painted on; erode is for a file",
+        ),
+        (
+            'uniform float a = 1.0; //! erode("erosion/brush")',
+            "erode is for a file that is painted on; 'a' is",
+        ),
+        ('uniform sampler2D a; //! file("a.tif", "paint") erode()', "erode\\(\\) takes one text in quotes"),
+    ],
+)
+def test_erode_is_for_what_is_painted_on(tmp_path: Path, line: str, sentence: str) -> None:
+    kernel = tmp_path / "k.glsl"
+    kernel.write_text(
+        f'#pragma kernel(output = "h:r32f")\n{line}\nfloat kernel(ivec2 texel) {{ return 0.0; }}\n'
+    )
+    with pytest.raises(ShaderError, match=sentence):
         load(kernel)

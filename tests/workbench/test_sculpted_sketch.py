@@ -82,6 +82,7 @@ def stroke(painting: Painting, *places: tuple[float, float], seconds: float = 0.
         painting._now.now += seconds  # type: ignore[attr-defined]
         painting.move(place)
     painting.release()
+    painting.settle()
 
 
 def test_what_is_painted_is_added_in_metres(session: Session, painting: Painting) -> None:
@@ -151,6 +152,7 @@ def test_what_ends_a_stroke_with_the_button_down_leaves_nothing_that_cannot_be_u
         painting._now.now += 0.05  # type: ignore[attr-defined]
         painting.move(place)
     painting.release()
+    painting.settle()
     np.testing.assert_array_equal(canvas.pixels, ended)
     np.testing.assert_array_equal(read_numbers(canvas.path, (97, 65)), ended)
     stroke(painting, PLACE)
@@ -183,6 +185,7 @@ def test_each_stroke_is_undone_and_redone_to_the_same_bytes(session: Session, pa
     for act, order in ((painting.undo, range(4, -1, -1)), (painting.redo, range(1, 6))):
         for n in order:
             act()
+            painting.settle()
             np.testing.assert_array_equal(canvas.pixels, states[n])
             assert canvas.path.read_bytes() == files[n]
             np.testing.assert_array_equal(read(session, "height.strokes"), states[n])

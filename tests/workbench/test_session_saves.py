@@ -357,8 +357,8 @@ def check(tmp_path: Path, engine: Engine, seed: int, sandbox: Sandbox | None) ->
 
 def pictures_of(
     past: Path, folder: Folder, truth: Truth, levels: list[float | None], seconds: float
-) -> set[bytes]:
-    """Return the pictures of every state that the folder has been in.
+) -> Iterator[bytes]:
+    """Yield the pictures of every state that the folder has been in, the last first: one of those is shown.
 
     What an image is, the picture shows at once; what a text is, once it is right. So the
     texts of each state count with the images of that state or of any later one.
@@ -369,14 +369,13 @@ def pictures_of(
         for later in folder.states[number:]:
             images = [item for item in later.items() if is_data(item[0])]
             places[tuple(sorted(texts + images))] = None
-    found = set()
-    for number, files in enumerate(places):
+    for number, files in enumerate(reversed(places)):
         for name, data in files:
             (past / str(number) / name).parent.mkdir(parents=True, exist_ok=True)
             (past / str(number) / name).write_bytes(data)
         if "sketch.toml" in dict(files):
-            found |= {truth.of(past / str(number), level, seconds)[1] for level in levels}
-    return found - {b""}
+            found = (truth.of(past / str(number), level, seconds)[1] for level in reversed(levels))
+            yield from filter(None, found)
 
 
 def is_data(name: str) -> bool:

@@ -7,6 +7,8 @@
 //   source   Braun and Willett 2013, "A very efficient O(n), implicit and parallel method to solve
 //            the stream power equation", Geomorphology 180-181, eq. 22:
 //                dz/dt = U - K A^m S,   S = (z - z_receiver) / L
+//            of uneven rain A is the discharge: Whipple and Tucker 1999, "Dynamics of the
+//            stream-power river incision model", J. Geophys. Res. 104(B8), eq. 3
 //   tested   tests/glsl/test_stream_power.py, against the slopes of a steady state
 //
 // With F = K A^m dt / L the new height is (z + U dt + F z_receiver) / (1 + F): a mean, so no step

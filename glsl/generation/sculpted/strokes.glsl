@@ -10,5 +10,5 @@
 // the window B takes the brush; the sketch's own file is never written to.
 #pragma source("numbers_file", output = "painted:r32f")
 
-uniform sampler2D image;    //! file("sketches/data/not_sculpted.tif", "paint") TIFF of 32-bit
-                            //! floats, or any elevation file
+uniform sampler2D image;    //! file("sketches/data/not_sculpted.tif", "paint")
+                            //! erode("erosion/brush") TIFF of 32-bit floats, or any elevation file

@@ -1,6 +1,7 @@
 // lighting/daylight/bounced.glsl -- light that air and ground have scattered twice or more.
 //
-//   gives    bounced: the logarithm of it, by the sun's height along x and by height along y
+//   gives    bounced: the logarithm of it, by the sun's height along x and by height along y; in
+//            alpha what the ground throws back
 //   needs    sky/bounced.glsl, sky/slab.glsl; the columns, the air
 //   units    per unit of the sun's light outside the air, per steradian
 //   source   Hillaire 2020, "A Scalable and Production Ready Sky and Atmosphere Rendering
@@ -61,5 +62,5 @@ vec4 kernel(ivec2 texel) {
     }
     float count = float(RISES * SIDES);
     vec3 light = second / count / (1.0 - min(again / count, 0.95));
-    return vec4(log(light + LEAST_BOUNCED), 1.0);
+    return vec4(log(light + LEAST_BOUNCED), ground);
 }

@@ -1,11 +1,12 @@
 // lighting/daylight/light.glsl -- what sun and sky come to, under clouds and to the adapted eye.
 //
 //   gives    light, a row of texels: 0 direction to the sun, elevation; 1 its light, azimuth; 2
-//            the sky's light on level ground; 3 the zenith, what all is multiplied by for the eye;
-//            4 the mean horizon; 5 sun and sky on level ground; 6 what clouds send down, share of
-//            open sky; from 7 on the mean horizon as seen from each height of sky/dome.glsl
+//            the sky's light on level ground, turbidity; 3 the zenith, what all is multiplied by
+//            for the eye; 4 the mean horizon; 5 sun and sky on level ground; 6 what clouds send
+//            down, share of open sky; from 7 on the mean horizon as seen from each height of
+//            sky/dome.glsl
 //   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place,
-//            the air and two tables
+//            the air, the cover and two tables
 //   units    light without unit, 1 that of the sun outside the air on a surface that faces it;
 //            degrees
 //   source   see sky/clouds.glsl and sky/columns.glsl; the adapted eye: a light meter for incident
@@ -26,8 +27,7 @@ uniform sampler2D place;           //! input
 uniform sampler2D columns;         //! input
 uniform sampler2D dome;            //! input
 uniform sampler2D air;             //! input
-uniform float clouds = 0.0;        //! slider(0, 1) step(0.01)
-                                   //! Cover of cloud: dims the sun, whitens the sky
+uniform sampler2D cover;           //! input
 uniform float adaptation = 0.75;   //! slider(0, 1) step(0.01)
                                    //! How much of the light's loss the eye makes up for
 
@@ -45,7 +45,9 @@ vec3 towards(float rise, float turned, vec3 sun) {
 vec4 kernel(ivec2 texel) {
     vec2 at = texelFetch(place, ivec2(0), 0).rg;
     vec3 sun = to_sun(at);
-    vec3 beam = left_of_sunlight(columns, air_of(texelFetch(air, ivec2(0), 0).r), 0.0, sun.z);
+    float turbidity = texelFetch(air, ivec2(0), 0).r;
+    float clouds = texelFetch(cover, ivec2(0), 0).r;
+    vec3 beam = left_of_sunlight(columns, air_of(turbidity), 0.0, sun.z);
     vec3 sky = vec3(0.0);
     vec3 horizon = vec3(0.0);
     float height = dome_height(clamp(texel.x - 7, 0, DOMES - 1));
@@ -73,7 +75,7 @@ vec4 kernel(ivec2 texel) {
     vec4 found = vec4(eye * cloud, open);
     if (texel.x == 0) found = vec4(sun, at.y);
     if (texel.x == 1) found = vec4(eye * beam, at.x);
-    if (texel.x == 2) found = vec4(eye * (open * sky + cloud), 1.0);
+    if (texel.x == 2) found = vec4(eye * (open * sky + cloud), turbidity);
     if (texel.x == 3) found = vec4(eye * (open * zenith + cloud * overcast(1.0)), eye);
     if (texel.x == 4 || texel.x >= 7) {
         found = vec4(eye * (open * horizon + cloud * overcast(HORIZON)), 1.0);

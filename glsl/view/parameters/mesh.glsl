@@ -1,28 +1,12 @@
 // view/parameters/mesh.glsl -- the mesh of the terrain, and its cut.
 //
 //   gives    height, spans, errors, detail, grid, tolerance, skirt, earth
-//   needs    nothing
+//   needs    view/parameters/shape.glsl, view/parameters/earth.glsl
 //   units    see each; colours linear
 //   source   Belaiche 2010, section 2.5
 //   tested   tests/glsl/test_view.py
 #ifndef VIEW_PARAMETERS_MESH
 #define VIEW_PARAMETERS_MESH
-uniform sampler2D height;                       //! input("linear")
-uniform sampler2D spans;                        //! input("black")
-uniform sampler2D errors;                       //! input("black")
-uniform int detail = 0;                         //! menu("full grid", "geomipmap", "morph")
-                                                //! group("Mesh")
-                                                //! How fine the mesh is where: alike everywhere,
-                                                //! by tiles, or by tiles that morph into each
-                                                //! other
-uniform int grid = 257;                         //! slider(2, 1025) group("Mesh")
-                                                //! Vertices a side of the full grid
-uniform float tolerance = 1.0;                  //! slider(0, 16) step(0.1) unit("pixels")
-                                                //! group("Mesh")
-                                                //! How far a coarser level may lie from the
-                                                //! terrain
-uniform float skirt = 0.03;                     //! slider(0, 0.5) step(0.005) group("Mesh")
-                                                //! How far the cut earth reaches below height 0,
-                                                //! over the terrain's width
-uniform vec3 earth = vec3(0.135, 0.10, 0.075);  //! colour group("Mesh") The cut earth's colour
+#include "view/parameters/shape.glsl"
+#include "view/parameters/earth.glsl"
 #endif

@@ -27,19 +27,7 @@ uniform sampler2D path;     //! input("linear", "repeat", "mipmap")
 uniform sampler2D means;    //! input("white")
 uniform sampler2D light;    //! input("linear", "mipmap", "white")
 
-uniform float grass_repeats = 48.0;   //! slider(1, 512) step(1) group("Layers")
-                                      //! How often its tile repeats from west to east
-uniform float rock_repeats = 48.0;    //! slider(1, 512) step(1) group("Layers")
-                                      //! How often its tile does
-uniform float snow_repeats = 48.0;    //! slider(1, 512) step(1) group("Layers")
-                                      //! How often its tile does
-uniform float path_repeats = 48.0;    //! slider(1, 512) step(1) group("Layers")
-                                      //! How often its tile does
-uniform int blend = 0;                //! menu("even", "by heights") group("Layers")
-                                      //! How materials mix where they meet: as in a mist, or what
-                                      //! is higher comes through
-uniform float contrast = 6.0;         //! slider(0, 20) step(0.1) group("Layers")
-                                      //! How strictly heights decide; 0 is even
+#include "view/parameters/layers.glsl"
 #include "view/parameters/haze.glsl"
 
 vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark) {

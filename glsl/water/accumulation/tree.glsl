@@ -2,14 +2,16 @@
 //
 //   gives    node: red what falls on a texel, green its first donor, blue its next sibling, both
 //            numbers of texels or -1
-//   needs    water/texels.glsl
-//   units    cells, times the rain
+//   needs    maths/land.glsl, terrain/heightfield.glsl, water/texels.glsl
+//   units    cells, times the rain, which may have a size of its own
 //   source   the tree of first child and next sibling: Knuth, The Art of Computer Programming,
 //            volume 1, section 2.3.2
 //   tested   tests/glsl/test_accumulation.py
 //
 // A texel may have eight donors, and a texture's texel holds four numbers. Here a texel knows one
 // donor, and each donor the next one of the same receiver.
+#include "maths/land.glsl"
+#include "terrain/heightfield.glsl"
 #include "water/texels.glsl"
 #pragma kernel(output = "node:rgba32f", \
                accepts = "n up to 4096, m up to 4096")
@@ -35,6 +37,9 @@ vec4 kernel(ivec2 texel) {
     int after = place < 4 ? place + 1 : place;
     bool drains = back != ivec2(0) && all(lessThanEqual(abs(back), ivec2(1)));
     float sibling = drains ? donor_of(down, after) : -1.0;
-    float falls = wired_rain ? max(texelFetch(rain, texel, 0).r, 0.0) : 1.0;
+    float falls = 1.0;
+    if (wired_rain) {
+        falls = max(height_at(rain, place_on(textureSize(rain, 0), texel, size)), 0.0);
+    }
     return vec4(falls, donor_of(texel, 0), sibling, 0.0);
 }

@@ -20,7 +20,7 @@ uniform int steps = 16384;  //! slider(1, 65536) Texels over which a way out is 
 float kernel(ivec2 texel) {
     float ground = texelFetch(height, texel, 0).r;
     if (on_edge(texel, size)) return ground;
-    vec3 falls = least_fall(spacing, relief) * vec3(spacing, length(spacing));
+    vec3 falls = falls_between(spacing, relief);
     // anchor: flood
     float west_east = min(previous(texel - ivec2(1, 0)), previous(texel + ivec2(1, 0)));
     float south_north = min(previous(texel - ivec2(0, 1)), previous(texel + ivec2(0, 1)));

@@ -51,9 +51,12 @@ def _data(block: model.Named, scenes: Scenes) -> LiveData | None:
     return None
 
 
-def _steps(block: model.Steps, scenes: Scenes) -> LiveData:
-    """Stop together: any iteration between those that are shown."""
+def _steps(block: model.Steps, scenes: Scenes) -> LiveData | None:
+    """Stop together: any iteration between those that are shown; nothing where that changes no page."""
     setting = scenes.setting(block.scenes[-1])
+    for path, one in scenes.sketches[setting["sketch"]]["passes"].items():
+        if "locked" in one and any(f"{path}.".startswith(f"{stopped}.") for stopped in block.passes):
+            return None
     return {
         "kind": "steps",
         "scenes": [setting],

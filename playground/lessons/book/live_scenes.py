@@ -21,12 +21,9 @@ SET = ("terrain", "camera", "frame", "time", "steps")
 
 @dataclass
 class Library:
-    """What all lessons of a book share: texts, kernels, images, bytes, and who draws some of these.
+    """What all lessons of a book share: texts, kernels, images, bytes, and who draws some of these."""
 
-    Without an ``engine``, one is opened for each source that is made of textures.
-    """
-
-    engine: Engine | None = None
+    engine: Engine | None = None  # as of ``sketch_data``
     shared: SharedData = field(default_factory=SharedData)
     kernels: list[Any] = field(default_factory=list)
     _numbers: dict[str, int] = field(default_factory=dict)  # a kernel as text → its number

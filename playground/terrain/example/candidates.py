@@ -31,6 +31,11 @@ def features_of(heights: Field, width: float) -> Field:
     return smoothed(heights, width / 2) - smoothed(heights, 1.5 * width)
 
 
+def features_both_ways(orientations: list[Field], side: int) -> list[Field]:
+    """Return the features of an upright example and of a turned one, for pieces (side, side)."""
+    return [features_of(one, side / 6) for one in (orientations[0], orientations[4])]
+
+
 def in_cells(field: NDArray[np.floating[Any]]) -> NDArray[np.floating[Any]]:
     """Return the means of CELLS × CELLS parts of squares (…, side, side), as (…, CELLS²)."""
     side = field.shape[-1]
@@ -65,15 +70,25 @@ class Fit:
 
 
 class Candidates:
-    """So many pieces of an example, each (side, side) texels."""
+    """So many pieces of an example, each (side, side) texels.
 
-    def __init__(self, orientations: list[Field], side: int, count: int, rng: np.random.Generator) -> None:
+    ``features`` is what `features_both_ways` gives, which takes longer than all the rest, where it is known.
+    """
+
+    def __init__(
+        self,
+        orientations: list[Field],
+        side: int,
+        count: int,
+        rng: np.random.Generator,
+        features: list[Field] | None = None,
+    ) -> None:
         self.side = side
         self.orientations = orientations
         self.which = rng.integers(len(orientations), size=count)
         shapes = np.array([one.shape for one in orientations])[self.which] - side - 1
         self.corners = (rng.random((count, 2)) * (shapes + 1)).astype(np.intp)  # y, x in its orientation
-        features = [features_of(one, side / 6) for one in orientations[:1] + orientations[4:5]]
+        features = features or features_both_ways(orientations, side)
         self.deviation = float(features[0].std()) or 1.0
         turned = [*_mirrored(features[0]), *_mirrored(features[1])]
         found = np.empty((count, side, side), np.float32)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.terrain.elevation import Elevation
-from playground.terrain.example.candidates import Candidates, features_of, oriented
+from playground.terrain.example.candidates import Candidates, features_both_ways, features_of, oriented
 from playground.terrain.example.mirrored import integrated, smoothed
 from playground.terrain.example.quilt import quilted
 from playground.terrain.resample import resample
@@ -59,7 +59,8 @@ def made_like(
     ways = _ways(example, spacing_of_example, spacing)
     side = _side(wishes, spacing, ways, example)
     report(1, _STEPS)
-    pieces = Candidates(ways, side, _count(wishes, side), rng)
+    known = _features(example, spacing_of_example, spacing, side)
+    pieces = Candidates(ways, side, _count(wishes, side), rng, known)
     report(2, _STEPS)
     hills = _guide(guide, size)
     features = features_of(hills, side / 6) if hills is not None and wishes.follow > 0 else None
@@ -98,6 +99,14 @@ def _ways(
 ) -> list[Field]:
     """Return the example's orientations; the same ones for another seed, size or guide."""
     return oriented(example.heights.astype(np.float64), spacing_of_example, spacing)
+
+
+@lru_cache(maxsize=1)
+def _features(
+    example: Elevation, spacing_of_example: tuple[float, float], spacing: tuple[float, float], side: int
+) -> list[Field]:
+    """Return the features of the example's orientations, likewise; another side of the pieces has others."""
+    return features_both_ways(_ways(example, spacing_of_example, spacing), side)
 
 
 def _side(wishes: Wishes, spacing: tuple[float, float], ways: list[Field], example: Elevation) -> int:

@@ -1,5 +1,6 @@
 // between.js -- a slider's listed values, and those between them.
 
+import { toHex } from "./colours.js";
 import { clamp, isWhole, unitOf, written } from "./numbers.js";
 import { write } from "./value_text.js";
 
@@ -23,7 +24,8 @@ export function valueAt(row, values, place) {
 /** A value as a reader sees it: with its unit, in the places that suit the parameter.
  *  @param {Shown} row @param {Value} value @param {boolean} comma */
 export function spelled(row, value, comma) {
-  if (row.widget === "colour" || typeof value === "boolean") return write(row, value);
+  if (typeof value === "boolean") return write(row, value);
+  if (row.widget === "colour" && Array.isArray(value)) return toHex(value, row.raw);
   const all = Array.isArray(value) ? value : [value];
   const numbers = all.map((number, part) => written(row, Number(number), part));
   const text = numbers.join("; ") + unitOf(row);

@@ -1,6 +1,6 @@
 // book_figure.js -- a live picture in the text of a book, what can be dragged of it, its time.
 
-import { makeRow } from "./controls.js";
+import { makeRow, whyLocked } from "./controls.js";
 import { button, make } from "./dom.js";
 import { createFigure } from "./figure.js";
 import { labelOf } from "./labels.js";
@@ -52,21 +52,23 @@ export function makePicture(room, host, session, options = {}) {
   return figure;
 }
 
-/** Make rows for some parameters of a session, those there are.
+/** Make rows for some parameters of a session, those there are; why several are locked stands once.
  *  @param {Session} session @param {string[]} paths @param {Object<string, string>} words */
 export function makeRows(session, paths, words) {
   const box = make("div", { className: "rows" });
   /** @type {[string, ReturnType<typeof makeRow>][]} */
   const rows = [];
-  for (const path of paths) {
-    const one = session.row(path);
-    if (!one) continue;
+  const found = paths.flatMap((path) => session.row(path) ?? []), known = new Set([""]);
+  for (const one of found) {
+    const { path, locked } = one, several = found.filter((other) => other.locked === locked).length > 1;
+    if (several && !known.has(locked)) box.append(whyLocked(locked));
+    if (several) known.add(locked);
     const row = makeRow(one, labelOf(one.label), {
       words,
       changed: (value) => session.set(path, value),
       reset: () => session.reset(path),
       press: (down) => session.press(path, down),
-    });
+    }, several);
     rows.push([path, row]);
     box.append(row.element);
   }

@@ -121,6 +121,9 @@ const KINDS = {
   },
 };
 
+/** Why rows are locked, before the first of several. @param {string} reason */
+export const whyLocked = (reason) => make("p", { className: "note why-locked" }, reason);
+
 /** Make a row. `show` puts a value into it and marks it as changed, or not; `said`: why it is locked stands
  *  somewhere else.
  *  @param {Shown} one @param {string} label @param {Acts} acts @param {boolean} [said] */

@@ -18,7 +18,7 @@ import { ranges } from "./tiles.js";
 /** @typedef {{key: string, attributes: [string, number, WebGLBuffer][], indices: WebGLBuffer, length: number,
  *             tiles: WebGLBuffer | null}} Mesh */
 
-const MOST_MESHES = 16;
+const MOST_MESHES = 16, MOST_INSTANCES = 2 ** 20;
 
 /** @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures
  *  @param {import("./programs.js").Programs} programs @param {import("./binder.js").Binder} binder
@@ -122,28 +122,86 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
   /** Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing.
    *  @param {Job} job */
   const begun = (job) => {
-    const { step, samples, inputs } = job, { format } = step.kernel.outputs[0];
+    const { step, samples, inputs } = job, { outputs } = step.kernel;
     const wired = inputs.get("initial"), owner = wired && (wired.result.of || wired.result);
-    if (owner && owner.surface && isSize(owner.surface.size, step.size)) {
-      const { surface } = owner;
+    if (wired && owner && owner.surface && isSize(owner.surface.size, step.size)) {
+      const { surface } = owner, given = [...wired.result.textures.keys()];
+      if (given.length !== outputs.length || given[0] !== wired.output) {
+        const own = outputs.map(({ name }) => name).join(", ");
+        const what = `a draw of ${given.join(", ")}; it gives ${own}, and they must be as many`;
+        const { path } = /** @type {any} */ (step.inputs.find(([name]) => name === "initial"))[1];
+        throw failure("sketch", `pass '${step.path}' goes on from '${path}', ${what}`);
+      }
       owner.surface = null;
       return surface;
     }
-    const surface = textures.surface(step.size, format, samples);
+    const surface = textures.surface(step.size, outputs.map(({ format }) => format), samples);
     gl.bindFramebuffer(gl.FRAMEBUFFER, surface.target);
     gl.clearColor(0, 0, 0, 0);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    if (wired) kernels.copy(surface.target, step.size, wired.texture);
+    const begins = started(outputs, wired);
+    outputs.forEach(({ name }, i) => {
+      const texture = begins.get(name);
+      if (texture) copyInto(surface, i, texture);
+    });
     return surface;
+  };
+
+  /** Begin one of a surface's outputs with a texture.
+   *  @param {import("./textures.js").Surface} surface @param {number} unit
+   *  @param {import("./textures.js").Texture} texture */
+  const copyInto = (surface, unit, texture) => {
+    const { buffers, size } = surface;
+    if (buffers.length === 2) {
+      kernels.copy(surface.target, size, texture);
+      return;
+    }
+    const single = make("Framebuffer");
+    gl.bindFramebuffer(gl.FRAMEBUFFER, single);
+    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, buffers[unit]);
+    kernels.copy(single, size, texture);
+    drop("Framebuffer", single);
+  };
+
+  /** How often a draw draws its mesh: an expression, which may name an input's first texel.
+   *  @param {Job} job */
+  const instancesOf = (job) => {
+    const { step } = job, { instances, mesh } = step.kernel;
+    if (instances === undefined) return 1;
+    if (mesh && mesh in CHOSEN_BY) {
+      const why = `mesh '${mesh}' is drawn once for each of its tiles; it takes no instances`;
+      throw failure("sketch", `pass '${step.path}': ${why}`);
+    }
+    const names = kernels.namesOf(job), found = whole(instances, {
+      name: (name) => names.name(name) ?? componentOf(job, name),
+    });
+    if (found >= 0 && found <= MOST_INSTANCES) return found;
+    const message = `instances = ${found}; 0 to ${MOST_INSTANCES} were expected`;
+    throw failure("sketch", `pass '${step.path}': ${message}`);
+  };
+
+  /** A component of an input's first texel, of a name as `list.x`; read once each time that it is computed.
+   *  @param {Job} job @param {string} name */
+  const componentOf = ({ step, inputs }, name) => {
+    const [declared, component] = name.split("."), wired = inputs.get(declared);
+    if (!wired) throw failure("sketch", `pass '${step.path}': nothing is wired to '${declared}'`);
+    const { read } = wired.result, key = `${wired.output} first`;
+    if (!read.has(key)) read.set(key, readTexture(context, textures, wired.texture, [1, 1]));
+    const number = /** @type {Float32Array} */ (read.get(key))["xyzw".indexOf(component)];
+    if (Number.isFinite(number)) return Number.isInteger(number) ? BigInt(number) : number;
+    const message = `'${declared}' holds ${number} as its ${component}; a number was expected`;
+    throw failure("sketch", `pass '${step.path}': instances: ${message}`);
   };
 
   /** Draw a mesh over what the draw begins with; the result is the caller's. @param {Job} job
    *  @returns {Work} */
   const run = function* (job) {
-    const { step, text } = job, { kernel, size } = step, [{ format }] = kernel.outputs;
-    if (kernel.blend !== "none" && !context.floatBlend && textures.formats(format).float32)
+    const { step, text } = job, { kernel, size } = step;
+    const floats = kernel.outputs.some(({ format }) => textures.formats(format).float32);
+    if (kernel.blend !== "none" && !context.floatBlend && floats)
       throw failure("no-float-blend", `pass '${step.path}': this device cannot blend 32-bit numbers.`);
     const program = kernels.programOf(job), reads = kernels.readsOf(job), mesh = meshOf(job);
+    const instances = step.repeat ? instancesOf(job) : 0;
     const chosen = mesh.tiles && step.repeat ? chosenOf(job) : null;
     const surface = begun(job);
     /** @type {Result | null} */
@@ -169,15 +227,13 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
       for (let iteration = 0; iteration < step.repeat; iteration++) {
         kernels.count(program, job, iteration);
         if (chosen) drawTiles(mesh, chosen);
-        else gl.drawElements(gl.TRIANGLES, mesh.length, gl.UNSIGNED_INT, 0);
+        else gl.drawElementsInstanced(gl.TRIANGLES, mesh.length, gl.UNSIGNED_INT, 0, instances);
         end();
         yield { step, text, texels: size[0] * size[1] };
         if (iteration + 1 < step.repeat) begin();
       }
       result = textures.take(size, kernel.outputs, job.tall);
-      textures.drawTo(result);
-      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, surface.target);
-      gl.blitFramebuffer(0, 0, ...size, 0, 0, ...size, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+      textures.resolve(surface, result);
       if (job.keepsSurface) result.surface = surface;
       return result;
     } finally {
@@ -203,11 +259,25 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
   return { run, clear: () => [...meshes.values()].forEach(release) };
 };
 
-/** Return the texels of a texture as floats; those of normalised formats are 0..1.
+/** The textures that a draw's outputs begin with: what is wired, and beside it the outputs of their names.
+ *  @param {{name: string}[]} outputs @param {import("./binder.js").Wired | null | undefined} wired
+ *  @returns {Map<string, import("./textures.js").Texture>} */
+export const started = (outputs, wired) => {
+  const found = new Map();
+  outputs.forEach(({ name }, i) => {
+    const texture = i ? wired?.result.textures.get(name) : wired?.texture;
+    if (texture) found.set(name, texture);
+  });
+  return found;
+};
+
+/** Return the texels of a texture as floats, or those of its south-west corner; those of normalised formats
+ *  are 0..1.
  *  @param {import("./context.js").Context} context @param {import("./textures.js").Textures} textures
- *  @param {import("./textures.js").Texture} texture @returns {Float32Array} */
-export const readTexture = ({ gl }, textures, texture) => {
-  const { channels, type } = textures.formats(texture.format), [width, height] = texture.size;
+ *  @param {import("./textures.js").Texture} texture @param {[number, number]} [size]
+ *  @returns {Float32Array} */
+export const readTexture = ({ gl }, textures, texture, size = texture.size) => {
+  const { channels, type } = textures.formats(texture.format), [width, height] = size;
   const bytes = type === gl.UNSIGNED_BYTE, shorts = type === gl.UNSIGNED_SHORT;
   const all = new (bytes ? Uint8Array : shorts ? Uint16Array : Float32Array)(4 * width * height);
   gl.bindFramebuffer(gl.FRAMEBUFFER, textures.targetOf(texture));

@@ -5,6 +5,7 @@
 
 import { failure } from "./context.js";
 import { isSize } from "./binder.js";
+import { started } from "./draws.js";
 import { texelsOf } from "./formats.js";
 import { bodyOf, isLoop, readWithLevels, stepsOf } from "./plan_nodes.js";
 import { continuedOf } from "./staleness.js";
@@ -85,7 +86,8 @@ export const createExecution = (plan, nodes, around) => {
     const start = wiredTo(step.inputs.find(([name]) => name === "initial")?.[1] || null, new Map());
     if (!start || !continuesFrom(start) || !isSize(start.result.size, step.size)) return null;
     const owner = start.result.of || start.result;
-    return textures.result(step.size, new Map([[step.kernel.outputs[0].name, start.texture]]), { of: owner });
+    const made = started(step.kernel.outputs, start);
+    return made.size < step.kernel.outputs.length ? null : textures.result(step.size, made, { of: owner });
   };
 
   /** Whether what is wired is a draw's. @param {Wired} wired */

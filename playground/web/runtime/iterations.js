@@ -1,5 +1,6 @@
-// iterations.js -- repeats that may be stopped early, a slider each.
+// iterations.js -- repeats that may be stopped early, a slider each; of one that may not, why.
 
+import { whyLocked } from "./controls.js";
 import { make } from "./dom.js";
 import { labelOf } from "./labels.js";
 import { fill } from "./words.js";
@@ -14,6 +15,8 @@ export function iterationRows(session, words, rows, repeats) {
   const body = make("div", {});
   let known = "";
 
+  const lockedOf = (/** @type {string} */ path) => session.sketch.passes[path]?.locked ?? "";
+
   function slider(/** @type {string} */ path, /** @type {number} */ count) {
     const label = path.split(".").map(labelOf).join(", "), own = session.sketch.steps[path];
     const called = fill(words.iterationsOf, { name: label });
@@ -21,6 +24,10 @@ export function iterationRows(session, words, rows, repeats) {
     const text = make("output"), name = make("span", { className: "name", title: path }, label);
     const row = make("div", { className: "row is-steps" }, name, range, text);
     row.dataset.path = path;
+    const locked = lockedOf(path);
+    if (locked) range.setAttribute("aria-description", locked);
+    range.disabled = Boolean(locked);
+    row.classList.toggle("locked", range.disabled);
     range.oninput = () => session.stop(path, +range.value === (own ?? count) ? null : +range.value);
     row.ondblclick = () => session.stop(path, null);
     return rows.keep(row, () => {
@@ -38,7 +45,12 @@ export function iterationRows(session, words, rows, repeats) {
     if (now === known) return;
     known = now;
     rows.forget(body);
-    body.replaceChildren(...found.map(([path, count]) => slider(path, count)));
+    const said = new Set([""]); // why repeats are locked: once, before the first of those
+    body.replaceChildren(...found.flatMap(([path, count]) => {
+      const locked = lockedOf(path), why = said.has(locked) ? [] : [whyLocked(locked)];
+      said.add(locked);
+      return [...why, slider(path, count)];
+    }));
   });
   if (!session.sketch.kernels.some((kernel) => kernel.between)) return [body];
   const box = make("input", { type: "checkbox", checked: session.interpolated });

@@ -1,6 +1,6 @@
 // panel_rows.js -- the rows of a panel: made when they are first looked at, kept as the session is.
 
-import { makeRow } from "./controls.js";
+import { makeRow, whyLocked } from "./controls.js";
 import { button, make } from "./dom.js";
 import { grouped } from "./labels.js";
 
@@ -82,8 +82,6 @@ export function createRows(session, words) {
     forget(within) { shown = within ? shown.filter(([element]) => !within.contains(element)) : []; },
   };
 }
-
-const whyLocked = (/** @type {string} */ reason) => make("p", { className: "note why-locked" }, reason);
 
 /** A fold whose inside is made when it is first opened.
  *  @param {string} title @param {boolean} open @param {() => (Node | null)[]} inside

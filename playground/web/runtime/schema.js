@@ -65,6 +65,7 @@
  *  @property {Accepted} [accepted]                 the same, to be evaluated
  *  @property {string} [mesh]                       of a draw
  *  @property {Expression} [count]                  of a draw
+ *  @property {Expression} [instances]              of a draw: it may name an input's first texel, as list.x
  *  @property {"none" | "add" | "alpha"} [blend]
  *  @property {"none" | "less" | "equal"} [depth]
  *  @property {number} [samples]                    of a draw; 0: the sketch's
@@ -104,9 +105,10 @@
 
 /** Every pass at every level, by path: its size, and what it has unless it says one; its repeat.
  *  @typedef {{base: string, size?: [Expression, Expression], own?: [number, number], where: string,
- *             repeat?: Expression, counting?: boolean}} Pass
+ *             repeat?: Expression, counting?: boolean, locked?: string}} Pass
  *  base: "#terrain", "#frame" or the path of the technique around it; own: of data; where: for errors;
- *  counting: a size or a count inside names its iteration, so that each has sizes and counts of its own. */
+ *  counting: a size or a count inside names its iteration, so that each has sizes and counts of its own;
+ *  locked: why a repeat cannot be stopped early, where it cannot. */
 
 /** One row of the panel.
  *  @typedef {object} Shown

@@ -17,7 +17,9 @@ const EXAMPLES = [
 export function checkSignature({ kind, outputs, repeat }, flat) {
   if (kind === "draw") {
     for (const [name, example] of EXAMPLES) {
-      if (definition(flat, name)?.type !== "vec4") throw unsigned(flat, `a draw needs a function ${example}`);
+      const type = definition(flat, name)?.type, several = name === "fragment" && outputs.length > 1;
+      if (several && type) checkOutputs(outputs, flat);
+      else if (type !== "vec4") throw unsigned(flat, `a draw needs a function ${example}`);
     }
   }
   if (kind === "kernel") {
@@ -45,6 +47,18 @@ function checkKernel(outputs, flat) {
   if (!single && given.slice(1).some(({ name }, k) => name !== outputs[k].name)) {
     throw unsigned(flat, `kernel must be ${signature}: its outputs in the order of the pragma`, found.line);
   }
+}
+
+/** The fragment function of a draw with several outputs.
+ *  @param {Kernel["outputs"]} outputs @param {Flat} flat */
+function checkOutputs(outputs, flat) {
+  const found = definition(flat, "fragment"), wanted = outputs.map(({ name }) => `out vec4 ${name}`);
+  if (!found) return;
+  const signature = `fragment must be void fragment(…, ${wanted.join(", ")})`;
+  if (found.type !== "void") throw unsigned(flat, signature, found.line);
+  const given = found.parts.map(argument).map(({ way, type, name }) => `${way} ${type} ${name}`);
+  if (given.slice(-wanted.length).join() === wanted.join()) return;
+  throw unsigned(flat, `${signature}: its outputs last, in the order of the pragma`, found.line);
 }
 
 /** @param {Kernel["outputs"]} outputs @param {boolean} once @param {Flat} flat */

@@ -7,8 +7,8 @@ import { formatsOf } from "./formats.js";
  *             target: WebGLFramebuffer | null}} Texture */
 
 /** Samples of colour and depth that a draw draws on.
- *  @typedef {{target: WebGLFramebuffer, buffers: WebGLRenderbuffer[], size: [number, number], format: string,
- *             samples: number, bytes: number}} Surface */
+ *  @typedef {{target: WebGLFramebuffer, buffers: WebGLRenderbuffer[], size: [number, number],
+ *             formats: string, samples: number, bytes: number}} Surface */
 
 /** The textures that one pass computed.
  *  @typedef {object} Result
@@ -184,24 +184,44 @@ export const createTextures = (context, limit) => {
     }
   };
 
-  /** @param {[number, number]} size @param {string} format @param {number} wanted samples
-   *  @returns {Surface} */
-  const surface = (size, format, wanted) => {
-    const { internal, bytes: each } = formats(format);
-    const samples = wanted > 1 ? samplesOf(format, wanted) : 0;
+  /** @param {[number, number]} size @param {string[]} list formats, of each output
+   *  @param {number} wanted samples @returns {Surface} */
+  const surface = (size, list, wanted) => {
+    const kinds = list.map(formats), named = list.join(", ");
+    const samples = wanted > 1 ? Math.min(...list.map((format) => samplesOf(format, wanted))) : 0;
     const at = surfaces.findIndex((known) => known.size[0] === size[0] && known.size[1] === size[1]
-      && known.format === format && known.samples === samples);
+      && known.formats === named && known.samples === samples);
     if (at >= 0) return surfaces.splice(at, 1)[0];
-    const target = make("Framebuffer"), buffers = [make("Renderbuffer"), make("Renderbuffer")];
+    const target = make("Framebuffer"), drawn = kinds.map((_, i) => gl.COLOR_ATTACHMENT0 + i);
+    const stored = [...kinds.map(({ internal }) => internal), gl.DEPTH_COMPONENT24];
     gl.bindFramebuffer(gl.FRAMEBUFFER, target);
-    [gl.COLOR_ATTACHMENT0, gl.DEPTH_ATTACHMENT].forEach((where, i) => {
-      gl.bindRenderbuffer(gl.RENDERBUFFER, buffers[i]);
-      const stored = i ? gl.DEPTH_COMPONENT24 : internal;
-      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, stored, ...size);
-      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, where, gl.RENDERBUFFER, buffers[i]);
+    const buffers = [...drawn, gl.DEPTH_ATTACHMENT].map((where, i) => {
+      const made = make("Renderbuffer");
+      gl.bindRenderbuffer(gl.RENDERBUFFER, made);
+      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, samples, stored[i], ...size);
+      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, where, gl.RENDERBUFFER, made);
+      return made;
     });
-    checked(`${format} of ${samples} samples`);
-    return { target, buffers, size, format, samples, bytes: size[0] * size[1] * (each + 4) * (samples || 1) };
+    if (drawn.length > 1) gl.drawBuffers(drawn);
+    checked(`${named} of ${samples} samples`);
+    const each = kinds.reduce((sum, { bytes: own }) => sum + own, 4);
+    const taken = size[0] * size[1] * each * (samples || 1);
+    return { target, buffers, size, formats: named, samples, bytes: taken };
+  };
+
+  /** Copy what was drawn, its samples resolved, into a result's textures.
+   *  @param {Surface} from @param {Result} to */
+  const resolve = ({ target, size }, to) => {
+    const all = [...to.textures.values()], last = all.length - 1;
+    drawTo(to);
+    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, target);
+    all.forEach((_, i) => { // what is read goes into every buffer that is drawn to: each in its turn
+      if (last) gl.drawBuffers(all.map((_, k) => (k === i ? gl.COLOR_ATTACHMENT0 + k : gl.NONE)));
+      if (last) gl.readBuffer(gl.COLOR_ATTACHMENT0 + i);
+      gl.blitFramebuffer(0, 0, ...size, 0, 0, ...size, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    });
+    if (last) gl.drawBuffers(all.map((_, k) => gl.COLOR_ATTACHMENT0 + k));
+    if (last) gl.readBuffer(gl.COLOR_ATTACHMENT0);
   };
 
   /** @type {Map<string, number[]>} */
@@ -238,6 +258,6 @@ export const createTextures = (context, limit) => {
 
   return {
     formats, texture, write, buildLevels, release, targetOf, drawTo, bytesOf, result, take, give, surface,
-    giveSurface, clear, get bytes() { return bytes; },
+    resolve, giveSurface, clear, get bytes() { return bytes; },
   };
 };

@@ -11,7 +11,6 @@ from playground.capture.export_options import Form
 from playground.engine.engine import Engine
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
-from playground.web import drawn_sources
 
 from ..sketch_texts import map_of, passes
 
@@ -42,15 +41,12 @@ def sketch(tmp_path: Path) -> Sketch:
 def test_the_engine_of_an_export_makes_a_source_once(
     engine: Engine, sketch: Sketch, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    """No other context is opened; neither another technique nor the poster makes it again."""
-    opened: list[int] = []
-    usual = drawn_sources.open_context
-    monkeypatch.setattr(drawn_sources, "open_context", lambda: opened.append(1) or usual())
+    """Neither another technique nor the poster makes it again."""
     monkeypatch.setattr("playground.capture.web_page.read_bundle", lambda name: f"/* {name} */")
     engine.runs.clear()
     job = prepare(engine, sketch, tmp_path / "a.html", Form(techniques={"height": ("./two",)}))
     assert job.page is not None and len(job.page.data["sketches"]) == 2
     [source] = {n["path"] for one in job.page.data["sketches"] for n in one["nodes"] if n.get("data")}
-    assert (engine.runs[source], opened) == (1, [])
+    assert engine.runs[source] == 1
     run(engine, job)
     assert engine.runs[source] == 1

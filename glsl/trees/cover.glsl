@@ -1,0 +1,88 @@
+// trees/cover.glsl -- what trees make of a pixel's colour and light, single ones and whole woods.
+//
+//   gives    albedo; taken: of the sun what goes with the facing and what does not, and of the sky
+//            (scene/shaded); shadow: what trees leave of the sun on the ground
+//   needs    lighting/daylight_reading.glsl, scene/surfaces.glsl, terrain/heightfield.glsl,
+//            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of the ground,
+//            a height, a density, the table of trees/wood and the shadows of trees/shade
+//   units    metres; colours linear; shares 0..1
+//   source   trees/stand.glsl
+//   tested   tests/glsl/test_trees_light.py: a stand's mean colour is the same at any distance
+//
+// Farther away fewer trees are drawn, and what these hide less and less of is here, in the ground:
+// so a wood goes on beyond its last tree in its own colour. Ground between trees gets as much less
+// light as they take.
+#include "lighting/daylight_reading.glsl"
+#include "scene/surfaces.glsl"
+#include "terrain/heightfield.glsl"
+#include "trees/light.glsl"
+#include "trees/wood_reading.glsl"
+#pragma kernel(output = "albedo:rgba16f, taken:rgba16f, shadow:r16f")
+
+uniform sampler2D seen;     //! input
+uniform sampler2D cover;    //! input
+uniform sampler2D height;   //! input
+uniform sampler2D density;  //! input
+uniform sampler2D table;    //! input
+uniform sampler2D shade;    //! input("black")
+#include "lighting/parameters/sun.glsl"
+#include "trees/parameters/reach.glsl"
+#include "trees/parameters/stand.glsl"
+#include "trees/parameters/species.glsl"
+#include "trees/parameters/season.glsl"
+#include "trees/parameters/shade.glsl"
+
+// A texel of a map of the terrain, at a share of its sides.
+float map_of(sampler2D map, vec2 share) {
+    return height_at(map, clamp(share, 0.0, 1.0) * vec2(textureSize(map, 0) - 1));
+}
+
+float brightness(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
+
+// How much of the sun is taken away here, and 1 in the square where that is known, else 0.
+vec2 shade_at(vec2 place) {
+    vec2 at = (place - eye.xy) / shade_wide;
+    float aside = max(abs(at.x), abs(at.y));
+    if (!wired_shade || aside >= 0.5) return vec2(0.0);
+    vec2 on = (at + 0.5) * vec2(textureSize(shade, 0)) - 0.5;
+    return vec2(height_at(shade, on), 1.0 - smoothstep(0.42, 0.49, aside));
+}
+
+void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
+    vec4 at = texelFetch(seen, texel, 0);
+    albedo = texelFetch(cover, texel, 0);
+    taken = vec4(1.0, 0.0, 1.0, 1.0);
+    shadow = 1.0;
+    bool tree = is_object(at.w) && is_tree(kind_of(at.w));
+    if (!tree && !is_top(at.w)) return;
+    vec2 share = at.xy / extent;
+    float stands = clamp(map_of(density, share), 0.0, 1.0);
+    float away = distance(eye, at.xyz);
+    vec3 to_eye = eye - at.xyz;
+    to_eye = normalize(vec3(to_eye.xy, max(to_eye.z, LOWEST * away)));
+    vec3 to_sun = sun_direction(wired_daylight, daylight, towards_sun);
+    float needled = needle_share(needles, needles_from, at.z + base_elevation);
+    Stand all = stand_of(stands, cell, tallest, shortest, needled);
+    Stand drawn = thinned(all, away, whole, reach);
+    if (tree) {
+        float over = at.z - map_of(height, share) * relief;
+        vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun);
+        albedo = vec4(colour_of_kind(kind_of(at.w), day), 1.0);
+        taken = vec4(0.0, light, 1.0);
+        return;
+    }
+    vec2 shaded = shade_at(at.xy);
+    shadow = 1.0 - shaded.x * shaded.y;
+    if (stands <= 0.0) return;
+    // What of the ground all trees leave free, over what those leave free that are drawn.
+    float free = reaches(all, 1.0, to_eye) / max(reaches(drawn, 1.0, to_eye), 1e-6);
+    float hidden = 1.0 - clamp(free, 0.0, 1.0);
+    vec3 leaves = mean_leaf_colour(needled, day);
+    albedo.rgb = mix(albedo.rgb, leaves, hidden);
+    // By brightness, what comes from the leaves of the colour that both have together.
+    float part = hidden * brightness(leaves) / max(brightness(albedo.rgb), 1e-6);
+    float sun_left = mix(reaches(all, 1.0, to_sun), 1.0, shaded.y);
+    vec2 lit = wood_at(table, to_eye, to_sun, stands);
+    float sky_left = reaches(all, 1.0, SKY_FROM);
+    taken = vec4((1.0 - part) * sun_left, part * lit.x, mix(sky_left, lit.y, part), 1.0);
+}

@@ -1,0 +1,21 @@
+// trees/light.glsl -- the light on a tree's crown, as far away as it is.
+//
+//   gives    tree_light
+//   needs    trees/stand.glsl
+//   units    shares of the light
+//   source   trees/stand.glsl
+//   tested   tests/glsl/test_trees_light.py: a stand's mean colour is the same at any distance
+//
+// A tree far away stands for several: it is larger than they are, and one sees deeper between it
+// and the next. The light on it is that of what they would show there.
+#ifndef TREES_LIGHT
+#define TREES_LIGHT
+#include "trees/stand.glsl"
+
+// Shares of the sun, as of what faces it, and of the sky. `all`, `drawn`: the stand around, and
+// what of it is drawn so far away (`thinned`); `height`: over the ground.
+vec2 tree_light(Stand all, Stand drawn, vec3 normal, float height, vec3 to_eye, vec3 to_sun) {
+    float share = share_in(all, drawn, share_above(drawn, height), to_eye);
+    return crown_light(all, normal, share, to_sun);
+}
+#endif

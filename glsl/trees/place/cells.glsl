@@ -1,0 +1,65 @@
+// trees/place/cells.glsl -- at most one tree in each cell of a square around the eye.
+//
+//   gives    tree: its foot east, north and up, and how tall it is, 0 for none; key: its rank over
+//            the share of trees that is drawn so far away, below 1 for one that is drawn, else 2
+//   needs    noise/hash.glsl, terrain/heightfield.glsl, trees/level.glsl; a height, a density, the
+//            camera
+//   units    metres; density 0..1
+//   source   a cell is a whole number of the world, hashed, so where a tree stands depends neither
+//            on the eye nor on the picture; by level: Cook and others 2007 (trees/level.glsl)
+//   tested   tests/glsl/test_trees.py, by counts against the density's integral
+#include "noise/hash.glsl"
+#include "terrain/heightfield.glsl"
+#include "trees/level.glsl"
+#pragma kernel(output = "tree:rgba32f, key:r32f")
+
+uniform sampler2D height;          //! input
+uniform sampler2D density;         //! input("white")
+#include "trees/parameters/reach.glsl"
+#include "trees/parameters/stand.glsl"
+uniform bool all_round = false;    //! Those outside the picture as well
+uniform float margin = 60.0;       //! slider(0, 500) unit("m")
+                                   //! How far outside the picture trees are drawn: shadows come in
+uniform uint seed = 5u;            //! slider(0, 9999) Which trees
+
+const uint SALT = 0xc07a7689u;  // CRC-32 of "trees/place"
+
+// Whether a place, anywhere between two heights, may be in the picture or `margin` beside it.
+bool may_be_seen(vec2 place, float low, float high) {
+    mat4 rows = transpose(clip_from_world);
+    for (int k = 0; k < 4; k++) {
+        vec4 plane = rows[3] + ((k & 1) == 0 ? rows[k >> 1] : -rows[k >> 1]);
+        float level = dot(plane.xy, place) + plane.w;
+        float inside = level + max(plane.z * low, plane.z * high);
+        if (inside < -margin * length(plane.xyz)) return false;
+    }
+    return true;
+}
+
+void kernel(ivec2 texel, out vec4 tree, out float key) {
+    tree = vec4(0.0);
+    key = 2.0;
+    ivec2 here = ivec2(floor(eye.xy / cell)) + texel - size / 2;
+    uvec3 first = hash3(uvec3(uint(here.x), uint(here.y), seed + SALT));
+    uvec3 second = hash3(uvec3(uint(here.x), uint(here.y), seed + SALT + 1u));
+    vec2 jitter = vec2(unit_from_bits(first.x), unit_from_bits(first.y)) - 0.5;
+    vec2 place = (vec2(here) + 0.5 + JITTER * jitter) * cell;
+    vec2 share = place / extent;
+    if (any(lessThan(share, vec2(0.0))) || any(greaterThan(share, vec2(1.0)))) return;
+    // Nearly all of the cells end here, and their neighbours with them.
+    float top = relief + 2.0 * tallest;
+    if (!all_round && !may_be_seen(place, min(relief, 0.0), max(top, 0.0))) return;
+    float wanted = 1.0;
+    if (wired_density) wanted = height_at(density, share * vec2(textureSize(density, 0) - 1));
+    if (unit_from_bits(first.z) >= wanted) return;
+    float up = height_at(height, share * vec2(textureSize(height, 0) - 1)) * relief;
+    float away = distance(eye, vec3(place, up));
+    float half_side = 0.5 * cell * float(min(size.x, size.y) - 2);
+    float kept = kept_share(away, whole, min(reach, half_side));
+    float rank = unit_from_bits(second.x);
+    if (rank >= kept) return;
+    if (!all_round && !may_be_seen(place, up, up + 2.0 * tallest)) return;
+    float tall = tallest * mix(shortest, 1.0, unit_from_bits(second.y));
+    tree = vec4(place, up, tall * growth_of_kept(away, whole));
+    key = rank / kept;
+}

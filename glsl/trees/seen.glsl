@@ -1,0 +1,37 @@
+// trees/seen.glsl -- trees as the eye sees them: crowns with ragged outlines, turned to the eye.
+//
+//   gives    seen, over an earlier one: the point, and its normal and kind in one number
+//   needs    scene/packing.glsl, trees/billboard.glsl, trees/quad.glsl; a list of trees
+//   units    metres
+//   source   trees/billboard.glsl
+//   tested   tests/glsl/test_trees_light.py, by the area that they cover
+#include "scene/packing.glsl"
+#include "trees/billboard.glsl"
+#include "trees/quad.glsl"
+#pragma draw(mesh = "sheet", instances = "min(total.x, trees)", output = "seen:rgba32f", \
+             samples = 1)
+
+uniform sampler2D tree;   //! input
+uniform sampler2D total;  //! input
+#include "trees/parameters/budget.glsl"
+#include "trees/parameters/species.glsl"
+#include "trees/parameters/ragged.glsl"
+
+const uint SALT = 0xc8c979e4u;  // CRC-32 of "trees/seen"
+
+vec4 vertex(vec3 corner, out vec2 disc, out vec4 middle, out vec4 form) {
+    vec4 found = tree_of(tree, gl_InstanceID);
+    if (found.w <= 0.0) return NOWHERE;
+    float share = needle_share(needles, needles_from, found.z + base_elevation);
+    Billboard board = billboard_of(found, square_of(corner), share, eye);
+    disc = board.disc;
+    middle = board.middle;
+    form = board.form;
+    return clip_from_world * vec4(board.place, 1.0);
+}
+
+vec4 fragment(vec2 disc, vec4 middle, vec4 form) {
+    CrownPoint point = crown_point(disc, middle, form, ragged, SALT, eye);
+    if (!point.hit) discard;
+    return vec4(point.place, packed_object(point.normal, point.kind));
+}

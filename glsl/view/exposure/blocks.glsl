@@ -1,0 +1,29 @@
+// view/exposure/blocks.glsl -- the mean logarithm of the light of each block of a picture.
+//
+//   gives    blocks: the sum of the logarithms to base 2 of luminance, and the number of pixels
+//   needs    a picture in linear light
+//   units    logarithms of light without unit
+//   source   Reinhard, Stark, Shirley and Ferwerda 2002, "Photographic Tone Reproduction for
+//            Digital Images" (SIGGRAPH), eq. 1
+//   tested   tests/glsl/test_after.py, against NumPy in float64
+//
+// Each pixel is in one block. What is darker than a moonless night counts as that.
+#pragma kernel(output = "blocks:rg32f", repeat = "1 if adapts else 0")
+
+uniform sampler2D picture;  //! input
+#include "view/parameters/adapts.glsl"
+
+const float DARKEST = 1e-7;
+
+vec2 kernel(ivec2 texel) {
+    ivec2 pixels = textureSize(picture, 0);
+    ivec2 first = texel * pixels / size, last = (texel + 1) * pixels / size;
+    float total = 0.0;
+    for (int y = first.y; y < last.y; y++) {
+        for (int x = first.x; x < last.x; x++) {
+            vec3 light = texelFetch(picture, ivec2(x, y), 0).rgb;
+            total += log2(max(dot(light, vec3(0.2126, 0.7152, 0.0722)), DARKEST));
+        }
+    }
+    return vec2(total, float((last.x - first.x) * (last.y - first.y)));
+}

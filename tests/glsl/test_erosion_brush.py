@@ -1,0 +1,95 @@
+"""Erosion under a brush: rock is accounted for, its own step in float64, nothing outside, any window."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.on_arrays import OnArrays
+
+NY, NX = 47, 61
+SPACING = (9.0, 14.0)
+Y, X = np.mgrid[0:NY, 0:NX] * np.array([SPACING[1], SPACING[0]])[:, None, None]
+
+
+def hills(seed: int = 4) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    return (120 * np.sin(X / 130) * np.cos(Y / 170) + rng.normal(0, 1, (NY, NX))).astype(np.float32)
+
+
+def brush(strength: float = 0.9, radius: float = 230.0) -> np.ndarray:
+    away = np.hypot(X - X.mean(), Y - Y.mean())
+    t = np.clip((radius - away) / (0.6 * radius), 0, 1)
+    return (strength * t * t * (3 - 2 * t)).astype(np.float32)
+
+
+def stamped(run: OnArrays, height: np.ndarray, weight: np.ndarray, stamps: int, **values: float):
+    """Return the height and the water after some stamps, each given what the one before left."""
+    water, flux = (np.zeros((*height.shape, 4), np.float32) for _ in range(2))
+    for _ in range(stamps):
+        given = {"height": height, "brush": weight, "water": water, "flux": flux}
+        found = run.run(given, spacing=SPACING, relief=1.0, values=values)
+        height, water, flux = found["height"], found["water"], found["flux"]
+    return height, water
+
+
+def test_what_the_terrain_loses_is_carried_or_has_left_with_the_water(engine: Engine):
+    run, before, weight = OnArrays(engine, "erosion/brush"), hills(), brush()
+    after, water = stamped(run, before, weight, 30)
+    change = after.astype(np.float64) - before
+    worn = np.maximum(-change, 0).sum()
+    carried, left = water[..., 1].astype(np.float64).sum(), water[..., 2].astype(np.float64).sum()
+    assert worn > 500 and np.maximum(change, 0).sum() > 20 and left > 0.05 * worn
+    assert abs(change.sum() + carried + left) < 1e-6 * (worn + np.maximum(change, 0).sum())
+    assert (after[weight == 0] == before[weight == 0]).all()
+    assert (water[..., :2][weight == 0] == 0).all(), "past the rim there is no water"
+
+
+def test_a_step_of_the_brush_is_the_step_in_float64(engine: Engine):
+    rng = np.random.default_rng(8)
+    before, after = (rng.normal(0, 20, (NY, NX, 4)).astype(np.float32) for _ in range(2))
+    weight = brush()
+    options = {"spacing": SPACING, "relief": 1.0, "values": {"repose": 35.0, "creep": 0.03}}
+    given = {"before": before, "after": after, "brush": weight}
+    found = OnArrays(engine, "erosion/brush/hold").run(given, **options)["state"]
+    bed, w, slid = before[..., 0].astype(np.float64), weight.astype(np.float64), np.zeros((NY, NX))
+    for y in range(NY):
+        for x in range(NX):
+            for j, i, length in ((y, x - 1, 9.0), (y, x + 1, 9.0), (y - 1, x, 14.0), (y + 1, x, 14.0)):
+                if 0 <= j < NY and 0 <= i < NX:
+                    rise, most = bed[j, i] - bed[y, x], np.tan(np.radians(35.0)) * length
+                    over = max(rise - most, 0.0) if rise > 0 else min(rise + most, 0.0)
+                    slid[y, x] += min(w[y, x], w[j, i]) * (0.1 * over + 0.03 * rise)
+    wanted = bed + w * (after[..., 0] - bed) + slid
+    np.testing.assert_allclose(found[..., 0], np.where(w > 0, wanted, bed), atol=1e-4)
+    rock = after[..., 0].astype(np.float64) + after[..., 2]  # after the step
+    under = w > 0
+    np.testing.assert_allclose((found[..., 0] + found[..., 2] - slid)[under], rock[under], atol=1e-4)
+    gone = found[..., 3].astype(np.float64) - before[..., 3]
+    np.testing.assert_allclose((found[..., 0] + gone)[~under], rock[~under], atol=1e-4)
+
+
+def test_without_a_brush_it_erodes_everywhere(any_engine: Engine):
+    run, before = OnArrays(any_engine, "erosion/brush"), hills()
+    found = run.run({"height": before}, spacing=SPACING, relief=1.0)
+    assert (found["height"] != before).mean() > 0.5
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_mirrored_terrain_is_eroded_alike(any_engine: Engine, axis: int):
+    run, weight = OnArrays(any_engine, "erosion/brush"), brush()
+    after, _ = stamped(run, hills(), weight, 5)
+    other, _ = stamped(run, np.flip(hills(), axis).copy(), np.flip(weight, axis).copy(), 5)
+    change = after - hills()
+    # Rounding alone differs: what compilers regroup.
+    np.testing.assert_allclose(np.flip(other, axis), after, atol=1e-3 * np.abs(change).max())
+
+
+def test_hostile_parameters_leave_numbers(any_engine: Engine):
+    rng = np.random.default_rng(2)
+    run, rough = OnArrays(any_engine, "erosion/brush"), rng.normal(0, 2000, (NY, NX)).astype(np.float32)
+    hostile = {"rain": 1.0, "wear": 2.0, "capacity": 100.0, "settling": 2.0, "repose": 1.0, "creep": 0.1}
+    after, water = stamped(run, rough, brush(1.0), 60, **hostile)
+    assert np.isfinite(after).all() and np.isfinite(water).all()
+    assert rough.min() <= after.min() and after.max() <= rough.max()

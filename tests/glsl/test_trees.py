@@ -1,0 +1,240 @@
+"""Trees by their counts against a density's integral, as sets, and by what changes along a flight."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+SLOPE = """
+#include "maths/land.glsl"
+#pragma kernel(output = "height:r32f, density:r32f")
+uniform float most = 0.8;  //! slider(0, 1)
+void kernel(ivec2 texel, out float height, out float density) {
+    vec2 share = share_of_texel(texel, size);
+    height = 0.2 + 0.5 * share.x;
+    density = most * share.x * (1.0 - 0.7 * share.y);
+}
+"""
+PASSES = """
+[[pass]]
+name = "ground"
+use = "./ground"
+[[pass]]
+name = "trees"
+use = "trees/place"
+inputs = {{ height = "ground:height", density = "ground:density" }}
+set = {{ {values} }}
+[view]
+use = "view/terrain"
+camera = {{ azimuth = {azimuth}, elevation = 20.0, distance = 300.0, target = [{x}, {y}, 50.0] }}
+"""
+EXTENT = (2600.0, 1500.0)  # of 53 x 41 texels: unequal spacing
+EVERY = "all_round = true, whole = 10000, reach = 4000, trees = 200000"
+CELL = 9.0
+
+
+def placed(make_sketch, values=EVERY, azimuth=200.0, at=(1300.0, 700.0)):
+    passes = PASSES.format(values=values, azimuth=azimuth, x=at[0], y=at[1])
+    return make_sketch(passes, size=[53, 41], extent=list(EXTENT), relief=120.0, ground=SLOPE)
+
+
+def table(engine, sketch, **options):
+    """Return the trees of the table that are drawn, (n, 4), and their keys."""
+    tree = engine.read(sketch, "trees.cells:tree", **options).reshape(-1, 4).copy()
+    key = engine.read(sketch, "trees.cells:key", **options).ravel()
+    return tree[key < 1], key[key < 1]
+
+
+def listed(engine, sketch, **options):
+    tree = engine.read(sketch, "trees:tree", **options).reshape(-1, 4).copy()
+    total = int(engine.read(sketch, "trees:total", **options).ravel()[0])
+    assert (tree[total:] == 0).all()
+    return tree[:total]
+
+
+def rows(tree):
+    return set(map(tuple, tree.tolist()))
+
+
+def expected(kept=lambda x, y: 1.0):
+    """Return mean and variance of the number of trees: sums over cells much smaller than theirs."""
+    x, y = ((np.arange(n) + 0.5) / n for n in (2600, 1500))
+    share = 0.8 * x * (1 - 0.7 * y[:, None]) * kept(x * EXTENT[0], y[:, None] * EXTENT[1])
+    each = EXTENT[0] * EXTENT[1] / share.size / CELL**2
+    return share.sum() * each, (share * (1 - share)).sum() * each
+
+
+@pytest.mark.parametrize("seed", [3, 4])
+def test_there_are_as_many_as_the_density_says(kept, ctx, make_sketch, seed):
+    sketch = placed(make_sketch, f"{EVERY}, seed = {seed}")
+    tree, key = table(kept, sketch)
+    mean, variance = expected()
+    assert abs(len(tree) - mean) < 4 * np.sqrt(variance)
+    assert tree[:, 3].min() >= 0.55 * 21 - 1e-3 and tree[:, 3].max() <= 21 + 1e-3
+    np.testing.assert_allclose(tree[:, 2], 120 * (0.2 + 0.5 * tree[:, 0] / EXTENT[0]), atol=2e-3)
+    # The western half of one row of cells has its own share: where they stand follows the density.
+    west = tree[:, 0] < EXTENT[0] / 2
+    assert abs(west.mean() - 0.25) < 4 * np.sqrt(0.25 * 0.75 / len(tree))
+    assert abs(np.corrcoef(key, tree[:, 0])[0, 1]) < 4 / np.sqrt(len(tree)), "ranks know nothing of the place"
+
+
+def test_farther_away_fewer_are_kept_by_a_known_share(kept, ctx, make_sketch):
+    sketch = placed(make_sketch, "all_round = true, whole = 150, reach = 1200, trees = 200000")
+    tree, key = table(kept, sketch)
+    eye = np.array(kept.plan_for(sketch, (640, 360)).eye.position)
+
+    def share(x, y):
+        away = np.sqrt(
+            (x - eye[0]) ** 2 + (y - eye[1]) ** 2 + (120 * (0.2 + 0.5 * x / EXTENT[0]) - eye[2]) ** 2
+        )
+        end = np.clip((away - 0.9 * 1200) / 120, 0, 1)
+        return np.minimum(150 / away, 1) ** 2 * (1 - end * end * (3 - 2 * end))
+
+    mean, variance = expected(share)
+    assert abs(len(tree) - mean) < 4 * np.sqrt(variance)
+    assert abs(key.mean() - 0.5) < 4 / np.sqrt(12 * len(key)), "keys are uniform"
+
+
+def test_a_tree_stays_where_it_is_when_the_eye_moves(kept, ctx, make_sketch):
+    near = "all_round = true, whole = 5000, reach = 700, trees = 200000"
+    moves = [dict(at=(1300.0, 700.0)), dict(at=(1553.0, 711.0)), dict(at=(1300.0, 700.0), azimuth=77.0)]
+    found = [table(kept, placed(make_sketch, near, **move)) for move in moves]
+    eyes = [kept.plan_for(placed(make_sketch, near, **m), (640, 360)).eye.position for m in moves]
+    for (tree, _), eye in zip(found[1:], eyes[1:], strict=True):
+        first = found[0][0]
+        # Where both see all trees, both have the same.
+        both = [
+            rows(
+                t[
+                    (np.hypot(t[:, 0] - eyes[0][0], t[:, 1] - eyes[0][1]) < 550)
+                    & (np.hypot(t[:, 0] - eye[0], t[:, 1] - eye[1]) < 550)
+                ]
+            )
+            for t in (first, tree)
+        ]
+        assert len(both[0]) > 500 and both[0] == both[1]
+
+
+def test_what_the_picture_shows_does_not_depend_on_its_size(kept, ctx, make_sketch):
+    values = "whole = 5000, reach = 900, trees = 200000, margin = {}"
+    sketch = placed(make_sketch, values.format(30))
+    small = listed(kept, sketch, size=(160, 90))
+    large = listed(kept, sketch, size=(640, 360))
+    np.testing.assert_array_equal(small, large)
+    every = table(kept, placed(make_sketch, values.format(30) + ", all_round = true"))[0]
+    assert len(small) < 0.5 * len(every) and rows(table(kept, sketch)[0]) <= rows(every)
+    # Nobody who is in the picture is left out.
+    clip = np.c_[every[:, :3], np.ones(len(every))] @ kept.plan_for(sketch, (640, 360)).eye.clip_from_world.T
+    shown = (np.abs(clip[:, :2]) < clip[:, 3:]).all(1)
+    assert rows(every[shown]) <= rows(table(kept, sketch)[0]) and shown.sum() > 100
+
+
+def test_the_list_is_the_table(kept, ctx, make_sketch):
+    sketch = placed(make_sketch)
+    tree, key = table(kept, sketch)
+    found = listed(kept, sketch)
+    shrunk = np.clip((1 - key.astype(np.float64)) * 5, 0, 1)
+    assert rows(found[:, :3]) == rows(tree[:, :3]) and len(found) == len(tree)
+    order = [np.lexsort(t[:, :2].T) for t in (found, tree)]
+    np.testing.assert_allclose(found[order[0], 3], (tree[:, 3] * shrunk)[order[1]], rtol=1e-5)
+
+
+def test_where_there_are_too_many_fewer_are_kept_everywhere(kept, ctx, make_sketch):
+    whole = listed(kept, placed(make_sketch))
+    budget = 4096
+    found = listed(kept, placed(make_sketch, EVERY.replace("200000", str(budget))))
+    assert 0.85 * budget < len(found) <= budget < len(whole)
+    assert rows(found[:, :3]) <= rows(whole[:, :3])
+    share = len(found) / len(whole)
+    for axis in (0, 1):  # as large a share of every strip, to the last
+        bins = np.linspace(0, EXTENT[axis], 9)
+        counts, of = np.histogram(found[:, axis], bins)[0], np.histogram(whole[:, axis], bins)[0]
+        assert (np.abs(counts - share * of) < 4 * np.sqrt(share * of)).all()
+    limit = kept.read(placed(make_sketch, EVERY.replace("200000", str(budget))), "trees:limit")[0, 0]
+    assert found[:, 3].max() <= 21 * limit**-0.4 + 1e-3
+
+
+PLANE = """
+#pragma kernel(output = "height:r32f, a_wetness:r32f, a_weights:rgba8, a_painted:r32f, a_paths:r32f")
+uniform float slope = 0.5;  //! slider(0, 4)
+void kernel(ivec2 at, out float height, out float a_wetness, out vec4 a_weights, out float a_painted,
+            out float a_paths) {
+    height = 0.01 * slope * float(at.x);  // 100 m relief, spacing 1 m
+    a_wetness = float(at.y) / 32.0;
+    a_weights = vec4(0.25, 0.75, 0.0, 0.0);
+    a_painted = at.y == 3 ? 0.5 : 1.0;
+    a_paths = at.x == 20 ? 1.0 : 0.0;
+}
+"""
+DENSITY = """
+[[pass]]
+name = "ground"
+use = "./plane"
+set = {{ slope = {slope} }}
+[[pass]]
+name = "density"
+use = "trees/density"
+inputs = {{ height = "ground:height"{wired} }}
+set = {{ {values} }}
+"""
+
+
+@pytest.mark.parametrize(
+    "slope, wired, values, wanted",
+    [
+        (0.5, "", "most = 0.5", lambda x, y: 0.5 + 0 * x),
+        (0.875, "", "", lambda x, y: 0.5 + 0 * x),  # halfway through the steep ones
+        (2.0, "", "", lambda x, y: 0 * x),
+        (
+            1.0,
+            "",
+            "steep = [4, 5], lowest = 10, band = 8",
+            lambda x, y: np.where(x < 10, 0.0, np.where(x > 18, 1, np.nan)),
+        ),
+        (
+            1.0,
+            "",
+            "steep = [4, 5], highest = 20, band = 8",
+            lambda x, y: np.where(x > 20, 0.0, np.where(x < 12, 1, np.nan)),
+        ),
+        (0.0, "wetness", "wet = 1", lambda x, y: y / 32),
+        (0.0, "wetness", "wet = -0.5", lambda x, y: 1 - 0.5 * y / 32),
+        (0.0, "weights", "bears = [1, 0.2, 0, 0]", lambda x, y: 0.25 + 0.15 + 0 * x),
+        (0.0, "painted", "", lambda x, y: np.where(y == 3, 0.5, 1)),
+        (0.0, "paths", "", lambda x, y: np.where(x == 20, 0.0, 1)),
+    ],
+)
+def test_each_reason_for_fewer_trees_is_a_factor(kept, ctx, make_sketch, slope, wired, values, wanted):
+    wires = f', {wired} = "ground:a_{wired}"' if wired else ""
+    text = DENSITY.format(slope=slope, wired=wires, values=values)
+    density = kept.read(make_sketch(text, size=33, extent=32.0, relief=100.0, plane=PLANE), "density")
+    y, x = np.mgrid[:33, :33].astype(float)
+    truth = wanted(x, y)
+    known = np.isfinite(truth) & (x > 0) & (x < 32)
+    np.testing.assert_allclose(density[known], truth[known], atol=4e-3)  # weights of 8 bits, half floats
+
+
+def test_clearings_take_their_share_of_the_ground(kept, ctx, make_sketch):
+    for share in (0.2, 0.5, 0.7):
+        text = DENSITY.format(slope=0.0, wired="", values=f"clearings = {share}, clearing = 10")
+        found = kept.read(make_sketch(text, size=257, extent=640.0, relief=100.0, plane=PLANE), "density")
+        assert abs(1 - found.mean() - share) < 0.1
+
+
+def test_nothing_pops_as_the_eye_comes_nearer(kept, ctx, make_sketch):
+    """A hundredth nearer each step: no tree jumps, and those of one place cover as much."""
+    sketch = placed(make_sketch, "all_round = true, whole = 200, reach = 1200, trees = 200000")
+    for distance, nearer in ((1160.0, 0.999), (950.0, 0.99), (600.0, 0.99), (250.0, 0.99)):
+        found = []
+        for step in (1.0, nearer):
+            tree = listed(kept, sketch.with_camera(replace(sketch.camera, distance=distance * step)))
+            near = tree[np.hypot(tree[:, 0] - 1300, tree[:, 1] - 700) < 120]
+            found.append({(x, y): h for x, y, _, h in near.tolist()})
+        one, other = found
+        areas = [sum(h * h for h in tall.values()) for tall in found]
+        assert abs(areas[1] / areas[0] - 1) < 0.02 or distance > 0.9 * 1200 - 120
+        jumps = [abs(one.get(at, 0.0) - other.get(at, 0.0)) for at in one.keys() | other.keys()]
+        # The share that is kept changes by twice a step, so a key by no more, and a height by five of these.
+        # In the last tenth of the reach all go, by up to 1.5 / 0.1 of that share a step.
+        steepest = 2.0 if distance < 0.9 * 1200 - 120 else 2.0 + 2.0 * 1.5 / 0.1
+        assert max(jumps) / max(other.values()) < 1.2 * 5.0 * steepest * (1 - nearer), distance

@@ -1,0 +1,197 @@
+"""The tool "erode": its window, its stamps, its rim, undoing it, and which technique it runs."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.engine.on_arrays import OnArrays
+from playground.errors import ParameterError, SketchError
+from playground.gpu.textures import read_texture
+from playground.sketch.techniques import read_technique
+from playground.terrain.numbers import read_numbers
+from playground.workbench.brush import Brush
+from playground.workbench.erode_tool import STAMP, ErodeTool, technique_at
+from playground.workbench.painting import Painting
+from playground.workbench.sculpture import Sculpture
+from playground.workbench.session import Session
+
+from .test_sculpted_sketch import PICTURE, PLACE, read, stroke
+from .test_sculpted_sketch import painting as painting
+from .test_sculpted_sketch import session as session
+
+NY, NX = 97, 129
+EXTENT = (1280.0, 1440.0)
+DX, DY = EXTENT[0] / (NX - 1), EXTENT[1] / (NY - 1)  # [m] 10 and 15
+Y, X = np.mgrid[0:NY, 0:NX] * np.array([DY, DX])[:, None, None]
+BRUSH = Brush(tool="erode", radius=170.0, strength=0.9, softness=0.6)
+HERE = (0.5, 0.5)
+
+
+def hills(seed: int = 3) -> np.ndarray:
+    rng = np.random.default_rng(seed)
+    return (900 + 120 * np.sin(X / 110) * np.cos(Y / 150) + rng.normal(0, 1, (NY, NX))).astype(np.float32)
+
+
+def canvas(engine: Engine, tmp_path: Path) -> Sculpture:
+    made = Sculpture(tmp_path / "x.tif", np.zeros((NY, NX), np.float32))
+    made.lie_on(hills())
+    made.eroding = ErodeTool(engine, technique_at("erosion/brush", __file__))
+    return made
+
+
+def work(on: Sculpture, *path: tuple[float, float], seconds: float, frames: int = 1, brush: Brush = BRUSH):
+    """Return the change after one stroke along a path at an even pace, painted in so many frames."""
+    on.begin()
+    times, places = np.linspace(0, 1, len(path)), np.array(path)
+    shares = np.linspace(0, 1, frames + 1)
+    at = [tuple(float(np.interp(share, times, places[:, axis])) for axis in (0, 1)) for share in shares]
+    for a, b in pairwise(at):
+        on.paint(a, b, EXTENT, brush, seconds / frames)  # type: ignore[arg-type]
+    return on.pixels.astype(np.float64)
+
+
+def test_under_the_brush_the_terrain_is_worn_and_elsewhere_it_stays(any_engine: Engine, tmp_path: Path):
+    change = work(canvas(any_engine, tmp_path), HERE, HERE, seconds=1.0, frames=4)
+    away = np.hypot(X - 640, Y - 720)
+    assert change.min() < -2 and change.sum() < 0, "what is not laid down again leaves with the water"
+    assert (change[away >= 170] == 0).all() and (change[away < 80] != 0).mean() > 0.9
+
+
+def test_no_seam_is_at_the_brush_s_rim(any_engine: Engine, tmp_path: Path):
+    """Each step changes the bed by the brush's share of some change; a hard brush fades too."""
+    for softness in (0.6, 0.0):
+        brush = Brush(tool="erode", radius=170.0, strength=0.9, softness=softness)
+        change = work(canvas(any_engine, tmp_path), HERE, HERE, seconds=1.0, brush=brush)
+        away = np.hypot(X - 640, Y - 720)
+        fade = 170.0 * max(softness, 0.25)
+        for depth in (0.1, 0.2, 0.3):  # of the fade, from the rim: the share is 3 d^2 - 2 d^3
+            band = (away < 170) & (away > 170 - depth * fade)
+            assert np.abs(change[band]).max(initial=0) <= 3 * depth**2 * np.abs(change).max()
+
+
+def test_a_window_gives_what_the_whole_terrain_gives(any_engine: Engine, tmp_path: Path):
+    """Rates count by the clock of the grid's size: scaled, a step on the whole is a step on the window."""
+    on, stamps = canvas(any_engine, tmp_path), 10
+    ground = hills()
+    work(on, HERE, HERE, seconds=stamps * STAMP)
+    clock = (NX - 1) / (2 * np.ceil(170 / DX) + 2)  # of the window's hours a step to the terrain's
+    usual = {"rain": 0.03, "wear": 0.02, "evaporation": 0.02, "friction": 0.02, "settling": 0.01}
+    values = {name: value * clock for name, value in usual.items()} | {"hours": 2}
+    away = np.hypot(X - 640, Y - 720)
+    t = np.clip((170 - away) / (0.6 * 170), 0, 1)
+    level = ground[NY // 2, NX // 2]
+    given = {
+        "height": ground - level,
+        "brush": (0.9 * t * t * (3 - 2 * t)).astype(np.float32),
+        "water": np.zeros((NY, NX, 4), np.float32),
+        "flux": np.zeros((NY, NX, 4), np.float32),
+    }
+    run = OnArrays(any_engine, "erosion/brush")
+    for _ in range(stamps):
+        given |= run.run(given, spacing=(DX, DY), relief=1.0, values=values)
+    wanted = given["height"].astype(np.float64) - (ground - level)
+    assert np.abs(wanted).max() > 1
+    np.testing.assert_allclose(on.pixels, wanted, atol=1e-3 * np.abs(wanted).max())
+
+
+def test_a_stroke_is_the_same_bits_in_however_many_frames(any_engine: Engine, tmp_path: Path):
+    path = (0.4, 0.45), (0.55, 0.5), (0.5, 0.6)
+    found = [work(canvas(any_engine, tmp_path), *path, seconds=0.8, frames=frames) for frames in (4, 16, 64)]
+    assert np.abs(found[0]).max() > 1
+    for other in found[1:]:
+        np.testing.assert_array_equal(other, found[0])
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (1.0, 0.4), (0.02, 0.99)])
+def test_at_the_edges_it_wears_what_is_there(any_engine: Engine, tmp_path: Path, place: tuple[float, float]):
+    on = canvas(any_engine, tmp_path)
+    change = work(on, place, place, seconds=1.0)
+    away = np.hypot(X - place[0] * EXTENT[0], Y - place[1] * EXTENT[1])
+    assert np.isfinite(change).all() and change.min() < -0.5 and change.sum() < 0
+    assert (change[away >= 170] == 0).all()
+    # A mirrored terrain is eroded alike: no side is treated as another.
+    other = canvas(any_engine, tmp_path)
+    other.lie_on(hills()[:, ::-1].copy())
+    mirrored = work(other, (1 - place[0], place[1]), (1 - place[0], place[1]), seconds=1.0)
+    np.testing.assert_allclose(mirrored[:, ::-1], change, atol=5e-3 * np.abs(change).max())
+
+
+def test_a_brush_that_is_wider_than_the_terrain_works(any_engine: Engine, tmp_path: Path):
+    wide = Brush(tool="erode", radius=3000.0, strength=0.9)
+    change = work(canvas(any_engine, tmp_path), HERE, HERE, seconds=0.2, brush=wide)
+    assert np.isfinite(change).all() and (change != 0).mean() > 0.9
+
+
+def test_the_engine_keeps_its_frame_and_warm_stamps_compile_nothing(any_engine: Engine, tmp_path: Path):
+    on = canvas(any_engine, tmp_path)
+    work(on, HERE, (0.6, 0.5), seconds=0.3)
+    engine, known = any_engine, []
+    for _ in range(2):
+        known.append((len(engine.cache), engine.runner.programs.compiled, engine.pool.made))
+        planned = engine.planner.made_whole
+        work(on, (0.3, 0.5), (0.6, 0.7), seconds=0.5)
+        assert engine.planner.made_whole <= planned + 1, "one plan a stroke: of its own level"
+    assert known[0] == known[1]
+
+
+def test_in_a_session_a_stroke_is_seen_saved_and_undone_to_the_bit(
+    session: Session, painting: Painting, tmp_path: Path
+) -> None:
+    painting.brush = Brush(tool="raise", radius=150.0, strength=1.0)
+    stroke(painting, PLACE)
+    canvas = painting.canvas
+    assert isinstance(canvas, Sculpture)
+    raised = canvas.pixels.copy()
+    painting.brush = Brush(tool="erode", radius=300.0, strength=1.0)
+    stroke(painting, (0.4, 0.45), *[(0.6, 0.55)] * 10)
+    worn = canvas.pixels.copy()
+    assert (worn - raised).min() < -0.2
+    np.testing.assert_array_equal(read(session, "height.strokes"), worn)
+    picture = read_texture(session.frame(PICTURE))  # type: ignore[arg-type]
+    session.redraw()
+    np.testing.assert_array_equal(read_texture(session.frame(PICTURE)), picture)  # type: ignore[arg-type]
+    painting.undo()
+    np.testing.assert_array_equal(canvas.pixels, raised)
+    painting.redo()
+    painting.settle()
+    np.testing.assert_array_equal(canvas.pixels, worn)
+    np.testing.assert_array_equal(read_numbers(canvas.path, canvas.size), worn)
+
+
+def test_where_no_height_is_there_is_nothing_to_erode(session: Session, painting: Painting) -> None:
+    painting.take_tool("erode")
+    assert "erode" in painting.tools and painting.brush.tool == "erode"
+    painting.choose("rain.image")
+    assert "erode" not in painting.tools and painting.brush.tool == "raise"
+    painting.take_tool("erode")
+    assert painting.brush.tool == "raise"
+    assert "there is nothing to erode in rain.image: choose another tool" in session.notes
+
+
+OWN = """#pragma kernel(output = "height:r32f")
+uniform sampler2D height; //! input
+float kernel(ivec2 texel) { return texelFetch(height, texel, 0).r - 2.0; }
+"""
+
+
+def test_another_technique_may_erode(any_engine: Engine, tmp_path: Path):
+    """One that knows nothing of a brush is weighted by it."""
+    (tmp_path / "lower.glsl").write_text(OWN)
+    on = canvas(any_engine, tmp_path)
+    on.eroding = ErodeTool(any_engine, technique_at("./lower", str(tmp_path / "x.glsl")))
+    change = work(on, HERE, HERE, seconds=3 * STAMP)
+    away = np.hypot(X - 640, Y - 720)
+    t = np.clip((170 - away) / (0.6 * 170), 0, 1)
+    np.testing.assert_allclose(change, -3 * 2 * 0.9 * t * t * (3 - 2 * t), atol=1e-3)
+
+
+def test_a_technique_that_cannot_erode_says_so(any_engine: Engine, tmp_path: Path):
+    with pytest.raises(ParameterError, match="has no output 'height', so the brush cannot erode with it"):
+        ErodeTool(any_engine, read_technique("lighting/l_dot_n", tmp_path, tmp_path))
+    with pytest.raises(SketchError, match="did you mean 'erosion/brush'"):
+        technique_at("erosion/brus", __file__)

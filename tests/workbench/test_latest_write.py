@@ -1,0 +1,150 @@
+"""Images that are painted on are written on a thread: whole, the newest last, and none is lost."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.errors import DataError
+from playground.terrain.numbers import read_numbers
+from playground.workbench.captures import Captures
+from playground.workbench.latest_write import LatestWrite
+from playground.workbench.notices import Notices
+from playground.workbench.painting import Painting
+from playground.workbench.sculpture import Sculpture
+from playground.workbench.session import Session
+
+from .test_sculpted_sketch import PLACE, stroke
+from .test_sculpted_sketch import painting as painting
+from .test_sculpted_sketch import session as session
+
+
+def test_of_what_is_given_while_it_writes_the_newest_alone_is_written() -> None:
+    begun, may_end, seen = threading.Event(), threading.Event(), []
+    writing = LatestWrite()
+
+    def first() -> None:
+        begun.set()
+        may_end.wait(10)
+        seen.append(0)
+
+    writing.give(first)
+    assert begun.wait(10) and writing.pending
+    for number in (1, 2, 3):
+        writing.give(lambda number=number: seen.append(number))  # type: ignore[misc]
+    assert not seen, "nobody has waited for it"
+    may_end.set()
+    writing.wait()
+    assert seen == [0, 3] and writing.writes == 2 and not writing.pending
+
+
+def test_an_error_is_of_the_last_write_and_the_next_one_takes_it_away() -> None:
+    writing, ended = LatestWrite(), threading.Event()
+    writing.ended = ended.set
+
+    def fail() -> None:
+        raise DataError("no space left on device")
+
+    for wrong, sentence in ((fail, "no space left"), (lambda: 1 / 0, "could not be written: division")):
+        writing.give(wrong)
+        with pytest.raises(DataError, match=sentence):
+            writing.wait()
+    writing.give(lambda: None)
+    writing.wait()
+    assert writing.error is None and ended.wait(10)
+
+
+def test_a_stroke_s_end_waits_for_no_file(
+    session: Session, painting: Painting, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stroke(painting, PLACE)
+    canvas = painting.canvas
+    assert isinstance(canvas, Sculpture)
+    before, may_write = canvas.path.read_bytes(), threading.Event()
+    write = Sculpture.write
+
+    def slowly(path: Path, pixels: np.ndarray) -> None:
+        assert may_write.wait(10)
+        write(path, pixels)
+
+    monkeypatch.setattr(Sculpture, "write", staticmethod(slowly))
+    for _ in range(3):
+        painting.press(PLACE)
+        painting.release()
+        painting.undo()
+        painting.redo()
+    assert canvas.saved and canvas.holds() and canvas.path.read_bytes() == before
+    threading.Timer(0.05, may_write.set).start()
+    wanted = canvas.pixels.copy()
+    painting.press(PLACE)  # goes on while the file is written: what is written is a copy
+    assert not canvas.saved
+    assert painting.settle() and canvas.saved
+    np.testing.assert_array_equal(read_numbers(canvas.path, canvas.size), canvas.pixels)
+    assert (canvas.pixels != wanted).any()
+    painting.close()
+
+
+def test_what_cannot_be_written_is_said_once_and_tried_again(
+    session: Session, painting: Painting, tmp_path: Path
+) -> None:
+    stroke(painting, PLACE)
+    canvas = painting.canvas
+    assert isinstance(canvas, Sculpture)
+    moved = tmp_path.rename(tmp_path.with_name("moved"))
+    session.notes.clear()
+    stroke(painting, PLACE)
+    for _ in range(3):
+        painting.follow()
+    assert sum("there is no folder" in note for note in session.notes) == 1
+    assert not canvas.saved and painting.canvas is canvas
+    assert len(painting.close()) == 1, "nothing is lost without a word"
+    moved.rename(tmp_path)
+    assert painting.close() == [] and canvas.saved
+    np.testing.assert_array_equal(read_numbers(canvas.path, canvas.size), canvas.pixels)
+
+
+def test_a_capture_waits_for_the_file_that_it_reads(
+    session: Session, painting: Painting, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stroke(painting, PLACE)
+    painting.press(PLACE)
+    captures = Captures(session=session, notices=Notices(), folder=tmp_path, settle=painting.settle)
+    canvas, found = painting.canvas, []
+    assert isinstance(canvas, Sculpture) and not canvas.saved
+
+    def job() -> None:
+        found.append(read_numbers(canvas.path, canvas.size))
+        raise DataError("enough")
+
+    monkeypatch.setattr(captures, "job", job)
+    captures.start()
+    np.testing.assert_array_equal(found[0], canvas.pixels)
+    painting.close()
+
+
+ENDS = """
+import sys
+from pathlib import Path
+import numpy as np
+from playground.workbench.brush import Brush
+from playground.workbench.sculpture import Sculpture
+canvas = Sculpture(Path(sys.argv[1]), np.zeros((2000, 2000), np.float32))
+for _ in range(5):
+    canvas.begin()
+    canvas.paint((0.5, 0.5), (0.5, 0.5), (9.0, 9.0), Brush(radius=9.0, strength=1.0), 1.0)
+    canvas.save()
+raise SystemExit(7)
+"""
+
+
+def test_a_process_that_ends_has_written_the_last_state(tmp_path: Path) -> None:
+    path = tmp_path / "last.tif"
+    done = subprocess.run([sys.executable, "-c", ENDS, str(path)], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (7, "")
+    assert read_numbers(path, (2000, 2000)).max() == pytest.approx(5.0), "a second's raise, five times"
+    assert [file.name for file in tmp_path.iterdir()] == ["last.tif"]
