@@ -15,6 +15,8 @@ import pytest
 from playground.engine.engine import Engine
 from playground.gpu.context import open_context
 
+from .spread import Spread
+
 # Where Mesa puts compiled shaders without this variable, named so that a test or a process of one with
 # a home or caches of its own finds there what is compiled already: that takes most of a cold run.
 MESA_CACHE = os.environ.get("XDG_CACHE_HOME") or str(Path("~/.cache").expanduser())
@@ -46,6 +48,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=[],
         help="below this folder run each test with its first parameters only; may be given several times",
     )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    config.pluginmanager.register(Spread())
 
 
 @pytest.hookimpl(trylast=True)

@@ -38,7 +38,7 @@ uniform float mist_top = 60.0;     //! log_slider(1, 2000) unit("m") group("Mist
 uniform float mist_level = 0.0;    //! slider(-500, 9000) step(1) unit("m") group("Mist")
                                    //! Where it is thickest, over the terrain's height 0
 
-const int PARTS = 2;  // steps a slice
+const int WHOLE = 8;  // slices that are one step each; those farther away are two
 const float LOWEST_SUN_IN_MIST = 0.05;  // its light comes from the side there, not from above
 const float PI = 3.14159265;
 
@@ -75,11 +75,14 @@ void kernel(ivec2 texel, out vec4 scattered, out vec4 left) {
     vec3 found = vec3(0.0);
     float reached = start;
     float mist_depth = 0.0;
-    for (int k = 0; k < PARTS * (slice + 1); k++) {
-        float first = slice_end(k / PARTS - 1);
-        float step_of = (slice_end(k / PARTS) - first) / float(PARTS);
-        float before = 0.001 * (first + step_of * float(k - k / PARTS * PARTS));
-        float after = before + 0.001 * step_of;
+    for (int k = 0; k < min(slice + 1, WHOLE) + 2 * max(slice + 1 - WHOLE, 0); k++) {
+        int within = k < WHOLE ? k : WHOLE + (k - WHOLE) / 2;
+        float first = 0.001 * slice_end(within - 1);
+        float last = 0.001 * slice_end(within);
+        float middle = 0.5 * (first + last);
+        bool second = k >= WHOLE && ((k - WHOLE) & 1) == 1;
+        float before = second ? middle : first;
+        float after = k < WHOLE || second ? last : middle;
         float next = height_along(start, ahead.z, after);
         float drops = 0.0;
         if (mist > 0.0) {

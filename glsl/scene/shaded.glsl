@@ -3,8 +3,8 @@
 //   gives    frame, linear light
 //   needs    scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
 //            lighting/sun.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
-//            view/surface.glsl; seen, ground, albedo and a sky; a daylight, a light, bumps or a
-//            shadow if there are
+//            scene/air_reading.glsl, clouds/shadow.glsl, view/surface.glsl; seen, ground, albedo
+//            and a sky; a daylight, a light, bumps, a shadow, clouds, or the air if there are
 //   units    metres; slopes in metres over metres; light without unit, 1 for white
 //   source   deferred: Saito and Takahashi 1990, "Comprehensible Rendering of 3-D Shapes"
 //            (SIGGRAPH); the light as lighting/shade has it
@@ -15,12 +15,15 @@
 // of gravel; `shadow` is what else keeps the sun from a pixel: clouds, trees. Both are pictures
 // of pixels, made by passes that read `seen`; so is `taken`, of surfaces that are no planes, as
 // leaves: how much of the sun goes with max(0, N L), how much does not, and how much of the sky
-// there is. Where a `light` is wired, and no `visibility`, a
-// technique of lighting/ has lit the terrain already, and that is taken instead.
+// there is. Where a `light` is wired, and no `visibility`, a technique of lighting/ has lit the
+// terrain already, and that is taken instead. Air by scene/air takes the place of the haze, a
+// picture of the sky by scene/sky that of the plain one.
+#include "clouds/shadow.glsl"
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 #include "lighting/sun.glsl"
 #include "maths/number.glsl"
+#include "scene/air_reading.glsl"
 #include "scene/footprint.glsl"
 #include "scene/ground_reading.glsl"
 #include "scene/surfaces.glsl"
@@ -36,6 +39,11 @@ uniform sampler2D visibility;  //! input("white")
 uniform sampler2D bumps;       //! input("zero")
 uniform sampler2D shadow;      //! input("white")
 uniform sampler2D taken;       //! input("zero")
+uniform sampler2D cloud;       //! input("linear", "repeat", "mipmap", "white")
+uniform sampler2D drift;       //! input("black")
+uniform sampler2D scattered;   //! input("linear", "black")
+uniform sampler2D left;        //! input("linear", "black")
+uniform sampler2D sky_picture; //! input("zero")
 #include "lighting/parameters/sun.glsl"
 #include "lighting/parameters/sunlight.glsl"
 #include "lighting/parameters/skylight.glsl"
@@ -65,12 +73,32 @@ vec3 light_at(vec4 at, PixelRay ray, vec2 bump, float sun_share, vec3 takes) {
     if (is_object(at.w)) normal = normal_of(at.w);
     else normal = normal_of_slope(around.slope + bump);
     Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, sky_colour);
+    if (wired_cloud && wired_drift) {
+        vec4 wind = texelFetch(drift, ivec2(0), 0);
+        // A daylight's sun is dimmed by the mean of all clouds already.
+        sun_share *= wired_daylight ? cloud_share(cloud, wind, at.xyz, from.direction)
+                : cloud_transmittance(cloud, wind, at.xyz, from.direction);
+    }
     return received(from, normal, around, sun_share, takes);
+}
+
+vec3 in_air(vec3 shown, vec3 place, ivec2 texel) {
+    float far = distance(eye, place);
+    if (wired_scattered && wired_left) {
+        Aerial air = aerial(scattered, left, (vec2(texel) + 0.5) / vec2(size), far);
+        return shown * air.left + air.scattered;
+    }
+    if (haze <= 0.0) return shown;
+    vec3 air = wired_daylight ? horizon_of(daylight, 0.001 * (base_elevation + eye.z)) : horizon;
+    return through_air(shown, air, haze, far, extent);
 }
 
 vec4 kernel(ivec2 texel) {
     vec4 at = texelFetch(seen, texel, 0);
-    if (is_sky(at.w)) return vec4(texelFetch(sky, texel, 0).rgb, 1.0);
+    if (is_sky(at.w)) {
+        return vec4(wired_sky_picture ? texelFetch(sky_picture, texel, 0).rgb
+                                      : texelFetch(sky, texel, 0).rgb, 1.0);
+    }
     if (is_broken(at.w)) return vec4(NOT_A_NUMBER, 1.0);
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     vec2 bump = wired_bumps ? texelFetch(bumps, texel, 0).xy : vec2(0.0);
@@ -79,8 +107,5 @@ vec4 kernel(ivec2 texel) {
     vec3 light = light_at(at, ray, bump, sun_share, takes);
     vec3 shown = texelFetch(albedo, texel, 0).rgb * light;
     if (!is_number(shown.r + shown.g + shown.b)) return vec4(NOT_A_NUMBER, 1.0);
-    vec3 air = horizon;
-    if (wired_daylight) air = horizon_of(daylight, 0.001 * (base_elevation + eye.z));
-    if (haze > 0.0) shown = through_air(shown, air, haze, distance(eye, at.xyz), extent);
-    return vec4(shown, 1.0);
+    return vec4(in_air(shown, at.xyz, texel), 1.0);
 }

@@ -2,7 +2,8 @@
 //
 //   gives    albedo; taken: of the sun what goes with the facing and what does not, and of the sky
 //            (scene/shaded); shadow: what trees leave of the sun on the ground
-//   needs    lighting/daylight_reading.glsl, scene/surfaces.glsl, terrain/heightfield.glsl,
+//   needs    lighting/daylight_reading.glsl, noise/gradient.glsl, scene/surfaces.glsl,
+//            terrain/heightfield.glsl,
 //            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of the ground,
 //            a height, a density, the table of trees/wood and the shadows of trees/shade
 //   units    metres; colours linear; shares 0..1
@@ -10,9 +11,10 @@
 //   tested   tests/glsl/test_trees_light.py: a stand's mean colour is the same at any distance
 //
 // Farther away fewer trees are drawn, and what these hide less and less of is here, in the ground:
-// so a wood goes on beyond its last tree in its own colour. Ground between trees gets as much less
-// light as they take.
+// so a wood goes on beyond its last tree in its own colour, with light and dark as of crowns.
+// Ground between trees gets as much less light as they take.
 #include "lighting/daylight_reading.glsl"
+#include "noise/gradient.glsl"
 #include "scene/surfaces.glsl"
 #include "terrain/heightfield.glsl"
 #include "trees/light.glsl"
@@ -35,6 +37,24 @@ uniform sampler2D shade;    //! input("black")
 // A texel of a map of the terrain, at a share of its sides.
 float map_of(sampler2D map, vec2 share) {
     return height_at(map, clamp(share, 0.0, 1.0) * vec2(textureSize(map, 0) - 1));
+}
+
+const uint SALT = 0x396fa381u;  // CRC-32 of "trees/cover"
+
+// Light and dark of the crowns of a wood, of mean 1: octaves of noise from a pixel's width up,
+// each as much weaker as its waves are wider. One octave alone looks like camouflage.
+float lumps(vec2 place, float pixel) {
+    float total = 1.0;
+    float wave = 1.3 * cell;
+    float strength = 0.5;
+    for (int k = 0; k < 5; k++) {
+        float shown = clamp(wave / (1.5 * pixel) - 1.0, 0.0, 1.0);
+        vec2 at = place / wave + 0.37 * float(k);
+        if (shown > 0.0) total += shown * strength * perlin(at, SALT + uint(k)).x;
+        wave *= 2.3;
+        strength *= 0.69;  // 2.3^-0.45
+    }
+    return max(total, 0.1);
 }
 
 float brightness(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
@@ -77,7 +97,11 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     // What of the ground all trees leave free, over what those leave free that are drawn.
     float free = reaches(all, 1.0, to_eye) / max(reaches(drawn, 1.0, to_eye), 1e-6);
     float hidden = 1.0 - clamp(free, 0.0, 1.0);
+    // Half the angle of a pixel is one over the lens's scale, times one over the picture's half.
+    float lens = length(transpose(clip_from_world)[1].xyz);
+    float pixel = 2.0 * away / (lens * float(size.y)) / sqrt(max(to_eye.z, 0.05));
     vec3 leaves = mean_leaf_colour(needled, day);
+    if (hidden > 0.01) leaves *= lumps(at.xy, pixel);
     albedo.rgb = mix(albedo.rgb, leaves, hidden);
     // By brightness, what comes from the leaves of the colour that both have together.
     float part = hidden * brightness(leaves) / max(brightness(albedo.rgb), 1e-6);

@@ -1,7 +1,7 @@
 // water/rivers.glsl -- rivers as smooth lines of their own width, drawn at any size.
 //
 //   gives    river, the share of a texel that it covers, 0..1; width of the nearest river there
-//   needs    maths/land.glsl, water/texels.glsl
+//   needs    maths/land.glsl, maths/power.glsl, water/texels.glsl
 //   units    widths in metres, areas in m^2; parameters in km^2
 //   source   widths: Leopold and Maddock 1953, "The hydraulic geometry of stream channels", USGS
 //            Professional Paper 252: about the root of the discharge; the lines made here
@@ -11,6 +11,7 @@
 // its texels instead, bent towards each texel on the way: quadratic Bezier curves, so it has no
 // corner. Wherever it is narrower than a texel of this pass it covers a share of it.
 #include "maths/land.glsl"
+#include "maths/power.glsl"
 #include "water/texels.glsl"
 #pragma kernel(output = "river:r32f, width:r32f")
 
@@ -28,7 +29,7 @@ float area_at(ivec2 node) { return texelFetch(area, node, 0).r; }
 
 // No wider than two spacings: a texel looks no farther than its next nodes.
 float width_of(float drained, vec2 metres) {
-    return min(wide * pow(max(1e-6 * drained, 1e-9), growth), 2.0 * min(metres.x, metres.y));
+    return min(wide * power(max(1e-6 * drained, 1e-9), growth), 2.0 * min(metres.x, metres.y));
 }
 
 ivec2 way_from(ivec2 node) {

@@ -2,7 +2,7 @@
 
 The terrain is what the first draw reads as its input ``height``, if that draw names ``relief``
 and the camera. Its texels are read once for each place of the eye; an eye outside the
-terrain is left where it is.
+terrain is left where it is, and so is any whose sketch says ``above_ground = false``.
 """
 
 from __future__ import annotations
@@ -88,8 +88,11 @@ class EyeHeight:
 
 
 def _place_of(plan: Plan) -> tuple[float, float] | None:
-    """Return where the eye is above the terrain, in shares of its sides; None outside it."""
-    if plan.terrain.extent is None or plan.terrain.relief is None:
+    """Return where the eye is above the terrain, in shares of its sides; None outside it.
+
+    None as well where the sketch lets the eye be under the ground.
+    """
+    if plan.terrain.extent is None or plan.terrain.relief is None or not plan.sketch.above_ground:
         return None
     (east, north, _), (width, height) = plan.eye.position, plan.terrain.extent
     x, y = east / width, north / height

@@ -29,6 +29,7 @@ from playground.sketch.named_numbers import (
     PICTURE,
     SIZE,
     TERRAIN,
+    UNWIRED,
     base_of,
     counting,
     loops_around,
@@ -225,6 +226,8 @@ class PassSizes:
             return self.size_of_source(Fed(path, what))[axis]
         if kind == PICTURE:
             return self._picture_size(path)[axis]
+        if kind == UNWIRED:
+            return 1
         if kind == COMPUTE:
             if not self.request.compute:
                 self.lacking[prefix] = None

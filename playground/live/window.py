@@ -23,6 +23,7 @@ import glfw
 from playground.errors import ContextError
 from playground.gpu.context import abandon, adopt_context
 from playground.gpu.driver_advice import advice
+from playground.live import releases
 from playground.live.double_click import Clicks
 from playground.live.theme import Theme
 
@@ -144,6 +145,7 @@ class Window:
         else:
             glfw.wait_events_timeout(seconds)
         self._clicks.after_poll()
+        releases.after_events()
 
     def begin(self) -> None:
         """Begin a frame of the interface."""
@@ -211,8 +213,10 @@ class Window:
         imgui.backends.glfw_init_for_opengl(address, True)
         imgui.backends.opengl3_init("#version 330 core")
 
-    def _press(self, _: object, button: int, action: int, __: int) -> None:
-        if button == glfw.MOUSE_BUTTON_LEFT and action == glfw.PRESS:
+    def _press(self, handle: Any, button: int, action: int, _: int) -> None:
+        if action == glfw.RELEASE:
+            releases.before_release(glfw.get_cursor_pos(handle))
+        elif button == glfw.MOUSE_BUTTON_LEFT:
             self._clicks.press()
 
     def _start_imgui(self) -> Theme:

@@ -123,6 +123,7 @@ class Sketch:
     camera: Camera = Camera()
     samples: int = 4  # antialiasing of draws
     supersample: int = 1  # times as wide and high as a finished picture is drawn; not live
+    above_ground: bool = True  # an eye under the terrain is raised over it
     shots: tuple[Shot, ...] = ()
     presets: tuple[Preset, ...] = ()
     overrides: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over what the file sets

@@ -14,7 +14,7 @@ from playground.sketch.identity import Identity
 from playground.sketch.model import PassSpec
 
 CLOCK, SIZE, PICTURE, VALUE, COMPUTE = "clock", "size", "picture", "value", "compute"
-COUNTER, FED = "counter", "fed"
+COUNTER, FED, UNWIRED = "counter", "fed", "unwired"
 TERRAIN, FRAME = "#terrain", "#frame"
 """The bases of the sketch's own passes: of the view the picture's size, of the others the terrain's."""
 
@@ -24,7 +24,7 @@ _AXES = {"x": 0, "y": 1}
 class Named(NamedTuple):
     """What a name stands for."""
 
-    kind: str  # SIZE of a pass or a base, PICTURE: an image file's size, or another of the kinds above
+    kind: str  # SIZE of a pass or a base, PICTURE: an image file's size, UNWIRED: 1, or another of the above
     path: str = ""  # of the pass, or TERRAIN or FRAME; of the leaf parameter; of a COUNTER's or FED's loop
     axis: int = 0  # of a size: 0 along x, 1 along y
     name: str = ""  # of a CLOCK or a COUNTER; of FED, whose size is what its loop feeds back
@@ -97,8 +97,8 @@ def _sized(flat: Flat, prefix: str, name: str, axis: int) -> Named:
     source = flat.wires[prefix][name]
     if isinstance(source, Fed):
         return Named(FED, source.loop, axis, source.name)
-    if source is None:
-        raise KeyError(name)
+    if source is None:  # what is read there is one texel
+        return Named(UNWIRED)
     return Named(SIZE, source.path, axis)
 
 

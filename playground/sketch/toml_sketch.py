@@ -33,7 +33,7 @@ SKETCH_KEYS = frozenset({*TERRAIN_KEYS, "main", "view", "shot", "preset", "keyfr
 """What a sketch's TOML may hold and a technique's may not."""
 
 _TOP = ("format", "title", "pass", *sorted(SKETCH_KEYS))
-_VIEW = ("use", "inputs", "set", "camera", "samples", "supersample")
+_VIEW = ("use", "inputs", "set", "camera", "samples", "supersample", "above_ground")
 _SHOT = ("name", "size", "time", "camera", "set", "preset", "samples", "supersample", "steps", "marks")
 _PAIRS = {"size": "a whole number of texels, or [x, y]", "extent": "metres, or [east, north]"}
 _DEFAULT_VIEW = "view/terrain"
@@ -49,9 +49,10 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
     name = file.path.parent.name if file.path.name == "sketch.toml" else file.path.stem
     title = file.take(file.table, "title", str, "")
     terrain = {key: _terrain_value(file, key) for key in TERRAIN_KEYS if key in file.table}
-    supersample = 1
+    supersample, above = 1, True
     if isinstance(table := file.table.get("view"), dict):
         supersample = _supersample(file, table, 1, ("view",))
+        above = file.take(table, "above_ground", bool, True, "view")
     sketch = Sketch(
         name=name,
         file=str(file.path),
@@ -61,6 +62,7 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
         camera=camera,
         samples=samples,
         supersample=supersample,
+        above_ground=above,
         **terrain,
     )
     check_graph(sketch.graph)

@@ -21,6 +21,7 @@ from playground.terrain.delaunay import Rules, tables, triangulate
 from playground.terrain.example import source as example
 from playground.terrain.known import Terrain
 from playground.terrain.masks import read_mask
+from playground.terrain.model_source import make_model, size_of_model
 from playground.terrain.numbers import read_numbers
 from playground.terrain.over_time import (
     LEAD,
@@ -146,6 +147,14 @@ SOURCES: dict[str, SourceKind] = {
         ("vectors", "elevation", "width", "polygons"),
         "the mask of what the file draws",
         notes=vector.notes,
+    ),
+    "model_file": SourceKind(
+        lambda _: Terrain(),
+        make_model,
+        ("model",),
+        ("model",),
+        "the model",
+        size=size_of_model,
     ),
     "video_file": SourceKind(
         lambda _: Terrain(),

@@ -23,6 +23,8 @@ def pass_tree(text: str, flat: Flat, path: str, *, repeat: bool = False) -> Tree
             return what
         if kind == named_numbers.COMPUTE:  # there is none in a page
             return 0
+        if kind == named_numbers.UNWIRED:
+            return 1
         if kind == named_numbers.COUNTER:  # what is in no loop is in iteration 0 of 1
             return [what, where] if where else int(what == ITERATIONS)
         if kind == FED:

@@ -100,6 +100,7 @@ class _Writing:
             "time": plan.time,
             "steps": dict(plan.steps),
             "samples": sketch.samples,
+            "aboveGround": sketch.above_ground,
             "terrain": {
                 "size": list(terrain.size or ()),
                 "extent": list(terrain.extent or ()),

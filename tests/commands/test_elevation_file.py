@@ -14,6 +14,7 @@ from playground import cli
 from ..elevations import write_geotiff
 
 
+@pytest.mark.slow
 def test_a_file_is_rendered_exported_checked_and_packed(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     write_geotiff(tmp_path / "dem.tif")

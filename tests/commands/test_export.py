@@ -179,6 +179,7 @@ def test_what_was_there_stays_when_an_export_fails(folder: Path, capsys: pytest.
     assert (folder / "a.png").read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_every_example_of_the_help_runs(folder: Path, capsys: pytest.CaptureFixture[str]):
     """On a small sketch in the place of those that ship, which take longer."""
     examples = re.findall(r"^  playground (export .*)$", HELP, re.MULTILINE)

@@ -121,7 +121,7 @@ def test_the_same_sketch_gives_the_same_file(folder: Path):
     assert (folder / "a.html").read_bytes() == (folder / "b.html").read_bytes()
 
 
-@pytest.mark.parametrize("wanted", ["height=./flat", "height"])
+@pytest.mark.parametrize("wanted", ["height=./flat", pytest.param("height", marks=pytest.mark.slow)])
 def test_a_menu_of_techniques_has_a_sketch_for_each(folder: Path, wanted: str):
     assert cli.main(["export", "rise", "--technique", wanted, "--to", "a.html"]) == 0
     page = page_in(folder / "a.html")

@@ -131,7 +131,7 @@ OTHERS = [c for c in ALL if is_run(c) and not runs_by_playground(c)]
 SLOW = re.compile(
     r"(playground|\./play) (check|list)$|check (hills|dunes|ridges|--json)|lesson (build|check)|reduce|fly"
     r"|variants verify|mutants"
-    r"|--video|--frames|\.glb|--sweep|20000|--texture"
+    r"|--video|--frames|\.glb|--sweep|20000|--texture|--technique|--profile|\.html"
 )
 
 

@@ -30,8 +30,8 @@ def test_small_results_are_bounded_in_number_too(ctx, monkeypatch):
     monkeypatch.setattr(cache, "MOST", 24)
     sketch = load("diamond_square").with_values({"size": 17, "view.grid": 17})
     with Engine(ctx) as engine:
-        for seed in range(12):
+        for seed in range(5):
             engine.render(sketch.with_values({"height.seed": seed}), size=(16, 9))
             assert len(engine.cache) <= 24
-        engine.render(sketch.with_values({"height.seed": 11}), size=(16, 9))
+        engine.render(sketch.with_values({"height.seed": 4}), size=(16, 9))
         assert engine.ran == [], "the newest are cached"

@@ -164,3 +164,12 @@ def test_a_program_is_warned_once_of_all_frames(sketch):
             for seconds in range(3):
                 engine.render(sketch.with_camera(UNDER), size=(64, 36), time=seconds)
         assert len(reports) == 1
+
+
+def test_a_sketch_may_let_the_eye_be_under_the_ground(any_engine, sketch):
+    text = Path(sketch.file).read_text() + "above_ground = false\n"
+    Path(sketch.file).write_text(text)
+    below = load(Path(sketch.file)).with_camera(UNDER)
+    any_engine.render(below, size=(64, 36))
+    assert any_engine.eye_height.raised_by == 0
+    assert any_engine.plan.eye.position == any_engine.plan_for(below, (64, 36)).eye.position

@@ -186,6 +186,7 @@ def test_east_is_bright_in_the_morning_and_west_in_the_evening(any_engine, day):
         assert light[brighter][0] @ LUMINANCE > 1.4 * (light[darker][0] @ LUMINANCE)
 
 
+@pytest.mark.slow
 def test_it_fades_to_night_and_is_a_number_everywhere(any_engine, day):
     for turbidity in (1.5, 2.5, 10.0):
         for clouds in (0.0, 0.4, 1.0):

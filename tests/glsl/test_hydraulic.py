@@ -210,6 +210,33 @@ def test_outputs_say_what_was_done(engine, eroded):
     np.testing.assert_allclose(read["wetness"], 1 - 2 ** (-read["flow"] / 20), atol=1e-5)
 
 
+@pytest.mark.parametrize("aslant", [False, True])
+def test_a_stream_a_texel_wide_carries_as_much_aslant_as_along_an_axis(engine, eroded, aslant):
+    """It rains on a groove only: through each texel of it, round corners or not, goes what fell above it."""
+    y, x = np.mgrid[:41, :41]
+    groove = (y == x) | (y == x + 1) if aslant else y == 20
+    above = x + y if aslant else x
+    heights = np.where(groove, 0.5 - 0.005 * above, 1.0).astype(np.float32)
+    here = "texel.y == texel.x || texel.y == texel.x + 1" if aslant else "texel.y == 20"
+    text = f'#pragma kernel(output = "r:r32f")\nfloat kernel(ivec2 texel) {{ return {here} ? 1.0 : 0.0; }}\n'
+    still = {"evaporation": 0.0, "capacity": 0.1, "wear": 0.0, "creep": 0.0, "repose": 89.0}
+    extra = '[[pass]]\nname = "map"\nuse = "./groove"\n'
+    sketch = eroded(
+        heights,
+        rain=0.005,
+        extra=extra,
+        inputs='rain = "map"',
+        hours=3000,
+        edges="open",
+        files={"groove": text},
+        **still,
+    )
+    flow = engine.read(sketch, "worn:flow")[groove]
+    fell = 0.005 * 125 * (above[groove] + 0.5)  # a texel's own rain flows from its middle
+    order = np.argsort(fell)[8:32]
+    np.testing.assert_allclose(flow[order], fell[order], rtol=0.01)
+
+
 @pytest.mark.parametrize("spacing", [(20.0, 10.0), (10.0, 20.0), (15.0, 15.0)])
 def test_a_river_of_rain_brings_what_fell_above_it(engine, eroded, spacing):
     """On a slope to the east, where nothing dries, the discharge of a metre of width is rain times length."""

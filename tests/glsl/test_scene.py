@@ -248,6 +248,46 @@ def test_bumps_turn_a_pixel_s_slope_and_a_shadow_hides_the_sun(any_engine, scene
     np.testing.assert_allclose(frame[top], albedo[top] * sky, rtol=2e-3)
 
 
+def test_the_air_lets_through_and_adds(any_engine, scene):
+    """Of air that is alike at all distances, what is left and what is added are its own."""
+    maps = '#pragma kernel(output = "scattered:rgba16f, left:rgba16f")\n'
+    maps += "void kernel(ivec2 t, out vec4 scattered, out vec4 left) "
+    maps += "{ scattered = vec4(0.125, 0.25, 0.5, 0.0); left = vec4(0.75, 0.5, 0.25, 0.0); }\n"
+    passes = '[[pass]]\nname = "air"\nuse = "./air"\nsize = [64, 40]\n'
+    clear = scene(BUMPY, given=LIT)
+    aired = scene(BUMPY, given=f"{LIT}, haze = 0.7", passes=passes, air=maps)
+    before = any_engine.read(clear, "view.shaded", size=SIZE)[..., :3].astype(float)
+    found = any_engine.read(aired, "view.shaded", size=SIZE)[..., :3].astype(float)
+    seen = any_engine.read(aired, "view.where", size=SIZE)
+    land = seen[..., 3] > 0
+    expected = before[land] * [0.75, 0.5, 0.25] + [0.125, 0.25, 0.5]
+    np.testing.assert_allclose(found[land], expected, rtol=3e-3)
+    np.testing.assert_array_equal(found[~land], before[~land])
+
+
+def test_another_picture_of_the_sky_takes_the_plain_one_s_place(any_engine, scene):
+    picture = COLOUR.format("vec4(vec2(texel) / 256.0, 0.5, 1.0)").replace("colour:", "sky_picture:")
+    passes = f'[[pass]]\nname = "sky_picture"\nuse = "./picture"\nsize = [{SIZE[0]}, {SIZE[1]}]\n'
+    sketch = scene(passes=passes, picture=picture).with_camera(replace(LOOK, distance=1500))
+    found = any_engine.read(sketch, "view.shaded", size=SIZE)[..., :3].astype(float)
+    sky = any_engine.read(sketch, "view.where", size=SIZE)[..., 3] == 0
+    expected = np.concatenate([all_pixels() / 256, np.full((*SIZE[::-1], 1), 0.5)], axis=-1)
+    assert sky.sum() > 500
+    np.testing.assert_allclose(found[sky], expected[sky], atol=1e-3)
+    assert any_engine.plan.step("view.sky").size == (1, 1), "which is not made in vain"
+
+
+def test_nothing_lights_up_at_night(any_engine, scene):
+    """An hour after midnight in winter, a white terrain, its cut and the sky are as good as black."""
+    passes = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\n'
+    passes += "set = { latitude = 50, day = 355, hour = 1.0, adaptation = 0 }\n"
+    given = 'sky = "daylight", gain = 1, ambient = 1, haze = 0.3'
+    sketch = scene(BUMPY, "vec4(1.0)", given=given, passes=passes).with_camera(replace(LOOK, distance=1500))
+    night = any_engine.read(sketch, "view.shaded", size=SIZE)[..., :3]
+    noon = any_engine.read(sketch.with_values({"daylight.hour": 12.0}), "view.shaded", size=SIZE)[..., :3]
+    assert night.max() < 1e-3 * noon.mean()
+
+
 def decoded(value):
     """Return the linear value of one encoded as sRGB, both 0..1."""
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4

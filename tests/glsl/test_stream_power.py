@@ -232,6 +232,60 @@ def test_turned_terrain_wears_turned(worn):
     np.testing.assert_allclose(turned[::-1, ::-1], height, atol=0.01)
 
 
+@pytest.mark.parametrize("share", [0.1, 0.5, 3.0])
+def test_a_checkerboard_on_a_hillside_decays_as_theory_says(engine, make_sketch, share):
+    """By hand: of its nine points a step leaves (1 - 2 r) / (1 + 10 r / 3), r = D dt / spacing^2."""
+    passes = """
+[[pass]]
+name = "board"
+use = "./board"
+[[pass]]
+name = "worn"
+use = "erosion/stream_power/hillside"
+inputs = { link = "board" }
+set = { age = 1.0, steps = 1, slides = SLIDES, steepest = 89.0, creep = CREEP }
+"""
+    board = """
+#pragma kernel(output = "link:rgba32f")
+vec4 kernel(ivec2 texel) { return vec4((texel.x + texel.y) % 2 == 0 ? 0.51 : 0.49, 0.0, 0.0, 0.0); }
+"""
+    sign = (-1.0) ** np.add(*np.mgrid[:41, :41])
+    for slides in (1, 4):
+        creep = share * slides * 400.0**2 / 1e6
+        text = passes.replace("SLIDES", str(slides)).replace("CREEP", str(creep))
+        sketch = make_sketch(text, size=41, extent=16000.0, relief=RELIEF, board=board)
+        left = ((engine.read(sketch, "worn").astype(float) - 0.5) * sign)[15:-15, 15:-15] / 0.01
+        np.testing.assert_allclose(left, ((1 - 2 * share) / (1 + 10 * share / 3)) ** slides, atol=2e-5)
+
+
+BOARD = LOW.replace("return 0.1", "return ((texel.x + texel.y) % 2 == 0 ? 20.0 / 1200.0 : 0.0) + 0.1")
+
+
+@pytest.mark.parametrize(
+    ("low", "values"), [(LOW, ONE_LEVEL), (BOARD, {})], ids=["one level", "from a board"]
+)
+def test_rivers_leave_no_checkerboard(engine, make_sketch, low, values):
+    """From noise, or on several levels from one of 20 m: its waves carry as much as waves a little longer.
+
+    Spectra of terrains fall with the wave number. The corner of the spectrum, of the shortest waves
+    both ways, may have twice the power, a wave, of the band before it, for there are few waves in it.
+    """
+
+    def powers(field):
+        window = np.hanning(129)[:, None] * np.hanning(129)
+        power = np.abs(np.fft.fft2((field - field.mean()) * window)) ** 2
+        least = np.minimum(*np.meshgrid(*(np.abs(np.fft.fftfreq(129)),) * 2))
+        return power[least > 0.45].mean(), power[(least > 0.35) & (least <= 0.45)].mean()
+
+    sketch = make_sketch(PASSES, size=129, extent=EXTENT, relief=RELIEF, low=low)
+    sketch = sketch.with_values({f"rivers.{k}": v for k, v in {"keep": 1.0, **values}.items()})
+    begun, worn = (engine.read(sketch, name).astype(float) for name in ("low", "rivers:height"))
+    corner, band = powers(begun)
+    assert (corner > 10 * band) == (low is BOARD)
+    corner, band = powers(worn)
+    assert corner < 2 * band
+
+
 @pytest.mark.parametrize(
     "hostile",
     [

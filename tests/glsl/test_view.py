@@ -236,6 +236,31 @@ def test_a_hill_hides_the_sea_behind_it(any_engine, terrain):
     assert (after[row, column] != before[row, column]).any()
 
 
+SHOWN = 'grid = 33, sea = true, water = "#0000ff", horizon = "#0000ff"'
+
+
+@pytest.mark.parametrize("elevation", [-20.0, 4.0, 30.0])
+def test_a_sea_far_below_the_ground_does_not_float_in_the_air(any_engine, terrain, elevation):
+    """From the side it would show below the terrain's walls; only what the ground does not bury is drawn."""
+    hills = "0.3 + 0.7 * float((texel.x + texel.y) % 16) / 15.0"
+    given = f"{SHOWN}, sea_level = -150"
+    sketch = above(terrain(height=hills, given=given), elevation=elevation)
+    found = any_engine.render(sketch, size=(120, 90)).array
+    without = any_engine.render(sketch.with_values({"view.sea": False}), size=(120, 90)).array
+    np.testing.assert_array_equal(found, without)
+
+
+def test_a_valley_below_height_0_is_filled_by_a_sea_far_below_the_hills(any_engine, terrain):
+    valley = "abs(texel.x - 16) < 6 ? -2.0 : 1.0"
+    sketch = above(terrain(height=valley, given=f"{SHOWN}, sea_level = -150"), elevation=89.0)
+    any_engine.render(sketch, size=(200, 200))
+    before, after = (any_engine.read(sketch, f"view.{p}", size=(200, 200))[::-1] for p in ("land", "sea"))
+    east = np.array([300.0, 400.0, 500.0, 600.0, 700.0])
+    places = pixels_of(any_engine, np.c_[east, np.full(5, 500.0), [100, -150, -150, -150, 100]]).astype(int)
+    filled = (np.abs(after - before) > 0.05).any(axis=-1)[places[:, 1], places[:, 0]]
+    np.testing.assert_array_equal(filled, [False, True, True, True, False])
+
+
 def test_no_sea_costs_nothing(any_engine, terrain):
     any_engine.render(above(terrain()), size=(40, 30))
     assert "view.sea" not in any_engine.ran

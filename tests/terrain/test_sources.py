@@ -158,6 +158,7 @@ def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
         "mask_file",
         "numbers_file",
         "vector_file",
+        "model_file",
         "video_file",
         "sound_file",
         "keyboard",

@@ -81,11 +81,11 @@ class Pipes:
 
         flux = np.pad(self.flux, ((0, 0), (1, 1), (1, 1)))
         west, east, south, north = flux
-        # The mean of what goes east through the western side and through the eastern one; likewise north.
-        x = (east[1:-1, :-2] - west[1:-1, 1:-1] + east[1:-1, 1:-1] - west[1:-1, 2:]) / 2
-        y = (north[:-2, 1:-1] - south[1:-1, 1:-1] + north[1:-1, 1:-1] - south[2:, 1:-1]) / 2
+        # Half of what crosses the western and the eastern side either way; likewise south and north.
+        x = (east[1:-1, :-2] + west[1:-1, 1:-1] + east[1:-1, 1:-1] + west[1:-1, 2:]) / 2
+        y = (north[:-2, 1:-1] + south[1:-1, 1:-1] + north[1:-1, 1:-1] + south[2:, 1:-1]) / 2
         # Depths times the length of a texel that way are water for each metre of width.
-        flow = np.hypot(x * self.spacing[0], y * self.spacing[1]) / min(self.spacing)
+        flow = (x * self.spacing[0] + y * self.spacing[1]) / min(self.spacing)
         fall = np.hypot(
             (surface[1:-1, 2:] - surface[1:-1, :-2]) / (2 * self.spacing[0]),
             (surface[2:, 1:-1] - surface[:-2, 1:-1]) / (2 * self.spacing[1]),

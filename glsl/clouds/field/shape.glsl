@@ -26,7 +26,7 @@ vec4 kernel(ivec2 texel) {
     for (int k = 0; k < 3; k++) {
         int fine = HEAPS << k;
         vec3 cells = cells_periodic(moved * float(fine), period * fine, seed + 7u + uint(k));
-        heaps += strength * (1.0 - min(cells.x, 1.0));
+        heaps += strength * (1.0 - min(cells.x * cells.x, 1.0));
         strength *= 0.5;
     }
     float groups = 0.5 + 0.9 * gradient_fbm_periodic(moved, period, 3, 0.5, seed);

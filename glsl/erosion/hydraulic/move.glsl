@@ -12,7 +12,9 @@
 //
 // What leaves one texel is what another receives, product for product, so water, rock and load
 // are conserved to rounding. Opposite sides are summed first, so that a terrain that is turned or
-// mirrored is worn alike but for what compilers regroup.
+// mirrored is worn alike but for what compilers regroup. By four pipes streams still prefer axes a
+// little: on a cone of noise the mean of cos 4a of their directions is 0.17, of all along axes 1
+// (tests/benchmarks/erosion.py).
 #include "erosion/hydraulic/clock.glsl"
 #pragma kernel(output = "state:rgba32f")
 
@@ -84,10 +86,13 @@ vec4 kernel(ivec2 texel) {
     // end: load
 
     // What it can carry: more, the more water flows and the steeper its surface.
-    vec2 mean = 0.5 * vec2((arrives.x - arrives.y) + (leaves.y - leaves.x),
-                           (arrives.z - arrives.w) + (leaves.w - leaves.z));
-    // For each metre of width: the more, the longer a texel is along the flow.
-    float flow = length(mean * (spacing / min(spacing.x, spacing.y)));
+    // For each metre of width: the more, the longer a texel is along the flow. What goes through
+    // counts, not a vector's length: a stream a texel wide goes aslant from side to side, where
+    // the vector of what comes and goes has 0.71 of the length. So streams would keep to the axes.
+    vec2 through = 0.5 * vec2((arrives.x + arrives.y) + (leaves.x + leaves.y),
+                              (arrives.z + arrives.w) + (leaves.z + leaves.w));
+    through *= spacing / min(spacing.x, spacing.y);
+    float flow = through.x + through.y;
     vec2 fall = (vec2(east.x - west.x, north.x - south.x)
                  + vec2(east.y - west.y, north.y - south.y)) / (2.0 * spacing);
     float squared = dot(fall, fall);

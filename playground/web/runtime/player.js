@@ -129,13 +129,14 @@ export const createPlayer = (engine, sketch, onClose) => {
     const { context, textures } = engine.parts, { gl } = context;
     if (gl.isContextLost()) throw failure("context-lost", "The graphics context was lost.");
     const objects = context.objects, plan = makePlan(sketch, shared, player.state);
-    let camera = player.state.map ? null : eyeHeight.raisedAsBefore(plan, keysFor(plan));
+    const leaves = player.state.map || sketch.aboveGround === false;
+    let camera = leaves ? null : eyeHeight.raisedAsBefore(plan, keysFor(plan));
     /** @type {string[]} */
     let ran = [], found = null;
     if (!camera) {
       found = yield* executed(plan, plan.picture, budget, stop);
       ({ ran } = found.execution);
-      if (!player.state.map) camera = eyeHeight.raised(plan, found.keys, found.execution.known, texelsOf);
+      if (!leaves) camera = eyeHeight.raised(plan, found.keys, found.execution.known, texelsOf);
     }
     if (camera) {
       const raised = makePlan(sketch, shared, { ...player.state, camera });

@@ -158,6 +158,7 @@
  *  @property {number} time
  *  @property {Object<string, number>} steps        repeats that are stopped early, by path
  *  @property {number} samples
+ *  @property {boolean} aboveGround             an eye under the terrain is raised over it
  *  @property {Terrain} terrain
  *  @property {Camera} camera
  *  @property {{path: string, output: string}} picture

@@ -1,0 +1,248 @@
+"""clouds/seen, clouds/layer, scene/sky: as pictures, against their shadows, photons and the dome."""
+
+import numpy as np
+import pytest
+
+from playground.sketch.model import Camera
+
+from .terrains import sun_vector, toml_value
+
+RADIUS = 6360.0
+FLAT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
+SEEN = (96, 64)
+TERRAIN = '[[pass]]\nname = "height"\nuse = "./flat"\n'
+CLOUDS = """
+[[pass]]
+name = "cloud"
+use = "clouds/field"
+size = 256
+[[pass]]
+name = "drift"
+use = "clouds/drift"
+size = 1
+set = { wind = [30.0, -10.0] }
+"""
+SKY = """
+[[pass]]
+name = "air"
+use = "scene/air"
+size = [128, 80]
+[[pass]]
+name = "sky"
+use = "scene/sky"
+size = [96, 64]
+"""
+
+
+def looking(sketch, azimuth, elevation, target=(500.0, 500.0, 300.0), field=40.0):
+    camera = Camera(
+        azimuth=azimuth + 180, elevation=-elevation, distance=50.0, target=target, field_of_view=field
+    )
+    return sketch.with_camera(camera)
+
+
+def rays(eye, size=SEEN):
+    nx, ny = size
+    y, x = (np.mgrid[0:ny, 0:nx] + 0.5) / np.array([ny, nx])[:, None, None] * 2 - 1
+    clip = np.stack([x, y, np.ones_like(x), np.ones_like(x)], axis=-1)
+    away = clip @ np.linalg.inv(eye.clip_from_world.astype(np.float64)).T
+    towards = away[..., :3] / away[..., 3:] - np.asarray(eye.position, np.float64)
+    return towards / np.linalg.norm(towards, axis=-1, keepdims=True)
+
+
+@pytest.fixture
+def outdoors(make_sketch):
+    def make(rest="", files=None, **day):
+        given = {"position": "free", "sun": [150.0, 40.0], "adaptation": 0.0, **day}
+        sets = ", ".join(f"{k} = {toml_value(v)}" for k, v in given.items())
+        light = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {sets} }}\n'
+        return make_sketch(TERRAIN + light + CLOUDS + rest, flat=FLAT, **(files or {}))
+
+    return make
+
+
+def test_a_line_of_sight_is_in_the_layer_where_its_height_is(on_gpu):
+    """From below, within and above; heights along the way are those of plane geometry."""
+    rng = np.random.default_rng(4)
+    height, rise = rng.uniform(0, 6, 3000), rng.uniform(-1, 1, 3000) ** 3
+    found = on_gpu("clouds/crossing.glsl", "layer_crossing(h, u, 2.2, 3.1)", h=height, u=rise)
+    h, u = (np.asarray(v, np.float32).astype(np.float64) for v in (height, rise))
+    first, last = found.T.astype(np.float64)
+
+    def reached(way):
+        return np.hypot(way * np.sqrt(1 - u**2), RADIUS + h + way * u) - RADIUS
+
+    there = last > first
+    nearest = (RADIUS + h) * np.sqrt(1 - u**2) - RADIUS
+    lands = (u < 0) & (nearest < 0)
+    sure = (np.abs(nearest) > 0.01) & (np.abs(nearest - 3.1) > 0.01) & (np.abs(nearest - 2.2) > 0.01)
+    meets = np.where(h < 2.2, ~lands, (h <= 3.1) | ((u < 0) & (nearest < 3.1)))
+    np.testing.assert_array_equal(there[sure], meets[sure])
+    begins = np.where(h < 2.2, 2.2, np.where(h > 3.1, 3.1, h))
+    np.testing.assert_allclose(reached(first)[sure & there], begins[sure & there], atol=2e-3)
+    ends = reached(last)[sure & there]
+    assert (np.minimum(np.abs(ends - 2.2), np.abs(ends - 3.1)) < 2e-3).all()
+    middle = reached((first + last) / 2)[sure & there]
+    assert ((middle > 2.2 - 2e-3) & (middle < 3.1 + 2e-3)).all()
+
+
+def test_smoothing_is_the_mean_of_four_by_four(any_engine, make_sketch):
+    noise = '#include "noise/hash.glsl"\n#pragma kernel(output = "rough:rgba16f")\n'
+    noise += "vec4 kernel(ivec2 texel) { return vec4(random_pair(texel, 1u), random_pair(texel, 2u)); }\n"
+    text = '[[pass]]\nname = "rough"\nuse = "./noise"\nsize = [37, 22]\n'
+    text += '[[pass]]\nname = "smooth"\nuse = "clouds/smoothed"\nsize = [37, 22]\n'
+    sketch = make_sketch(text, noise=noise)
+    rough, found = (any_engine.read(sketch, n).astype(np.float64) for n in ("rough", "smooth"))
+    windows = np.lib.stride_tricks.sliding_window_view(rough, (4, 4), axis=(0, 1)).mean(axis=(-1, -2))
+    np.testing.assert_allclose(found[1:-2, 1:-2], windows, atol=1e-3)
+
+
+def test_flat_clouds_leave_what_their_shadows_leave(any_engine, outdoors):
+    """Where a line of sight meets the layer, it passes as much as the sun's beam does there."""
+    layer = '[[pass]]\nname = "seen"\nuse = "clouds/layer"\nsize = [96, 64]\n'
+    sketch = looking(outdoors(layer, clouds=0.5), 30.0, 60.0)
+    found = any_engine.read(sketch, "seen", size=SEEN, time=40.0).astype(np.float64)[..., 3]
+    tile = any_engine.read(sketch, "cloud", size=SEEN).astype(np.float64)[..., 3]
+    eye = any_engine.plan.eye
+    towards = rays(eye)
+    at = np.asarray(eye.position, np.float64)
+    up = 2200.0 + 270.0 - at[2]
+    place = at[:2] + towards[..., :2] / towards[..., 2:] * up
+    place = (place - np.array([30.0, -10.0]) * 40.0) / 12000.0 % 1.0 * 256
+    x, y = place[..., 0].astype(int) % 256, place[..., 1].astype(int) % 256
+    around = [np.roll(tile, (j, i), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)]
+    low, high = np.min(around, axis=0)[y, x], np.max(around, axis=0)[y, x]
+    assert ((found > low - 0.02) & (found < high + 0.02)).mean() > 0.99
+    assert found.min() < 0.05 and found.max() > 0.95
+
+
+@pytest.mark.parametrize("cover", [0.3, 0.6])
+def test_heaped_clouds_hide_as_much_as_their_shadows_do(any_engine, outdoors, cover):
+    """Straight up from far below, where no sides are seen, they leave what they leave of the sun."""
+    heaped = '[[pass]]\nname = "seen"\nuse = "clouds/seen"\nsize = [32, 32]\nset = { steps = "32" }\n'
+    sketch = outdoors(heaped, clouds=cover).with_values({"drift.base": 11500.0, "drift.wide": 6000.0})
+    left, wanted = [], []
+    tile = any_engine.read(sketch, "cloud").astype(np.float64)[..., 3]
+    for east in np.arange(0.0, 6000.0, 1000.0):
+        for north in np.arange(0.0, 6000.0, 1000.0):
+            now = looking(sketch, 0.0, 89.9, (east, north, 10.0), 5.0)
+            left.append(any_engine.read(now, "seen", size=(32, 32)).astype(np.float64)[..., 3].mean())
+            eye = any_engine.plan.eye
+            towards = rays(eye, (32, 32))
+            place = np.asarray(eye.position)[:2] + towards[..., :2] / towards[..., 2:] * 11_700
+            x, y = ((place / 6000 % 1) * 256).astype(int).transpose(2, 0, 1)
+            wanted.append(tile[y, x].mean())
+    assert np.mean(left) == pytest.approx(np.mean(wanted), abs=0.04)
+    assert np.corrcoef(left, wanted)[0, 1] > 0.97
+
+
+TOLD = """
+#pragma kernel(output = "daylight:rgba32f")
+// A sun of 1 overhead, no sky, no ground.
+vec4 kernel(ivec2 texel) {
+    if (texel.x == 0) return vec4(0.0, 0.0, 1.0, 90.0);
+    if (texel.x == 3) return vec4(0.0, 0.0, 0.0, 1.0);
+    return vec4(0.0, 0.0, 0.0, texel.x == 2 ? 2.0 : 1.0);
+}
+"""
+NONE = '#pragma kernel(output = "none:rgba32f")\nvec4 kernel(ivec2 texel) { return vec4(0.0); }\n'
+EVEN = '#pragma kernel(output = "cloud:rgba16f")\nvec4 kernel(ivec2 texel) { return vec4(1, 0.5, 0.5, 0); }\n'
+
+
+def photons_out(depth, edges, count=60_000):
+    """Return light from an even layer under a unit beam from the zenith, times pi, by cosine: up, down."""
+    rng = np.random.default_rng(3)
+    g = 0.85
+    at, down = np.zeros(count), np.ones(count)
+    out = []
+    while len(at):
+        at = at + down * rng.exponential(size=len(at))
+        gone = (at < 0) | (at > depth)
+        out.append(down[gone])
+        at, down = at[~gone], down[~gone]
+        u = rng.random(len(at))
+        cosine = (1 + g**2 - ((1 - g**2) / (1 - g + 2 * g * u)) ** 2) / (2 * g)
+        side = np.sqrt(np.clip((1 - down**2) * (1 - cosine**2), 0, None))
+        down = np.clip(down * cosine + side * np.cos(rng.uniform(0, 2 * np.pi, len(at))), -1, 1)
+    cosines = np.concatenate(out)
+    solid = np.diff(np.square(edges))
+    return [np.histogram(sign * cosines, edges)[0] / count / solid for sign in (-1, 1)]
+
+
+def test_an_even_layer_sends_back_and_on_what_photons_do(any_engine, make_sketch):
+    """Brightness is by energy: 900 m of cloud under the sun, seen from above and below, to a fifth."""
+    text = TERRAIN + '[[pass]]\nname = "daylight"\nuse = "./told"\nsize = [16, 1]\n'
+    text += '[[pass]]\nname = "none"\nuse = "./none"\nsize = 8\n'
+    text += '[[pass]]\nname = "cloud"\nuse = "./even"\nsize = 16\n'
+    text += '[[pass]]\nname = "drift"\nuse = "clouds/drift"\nsize = 1\nset = { base = 3000.0 }\n'
+    text += (
+        '[[pass]]\nname = "seen"\nuse = "clouds/seen"\nsize = [64, 64]\nset = { steps = "64", wear = 0.0 }\n'
+    )
+    text += 'inputs = { columns = "none", bounced = "none" }\n'
+    sketch = make_sketch(text, flat=FLAT, told=TOLD, none=NONE, even=EVEN)
+    edges = np.array([0.7, 0.8, 0.9, 0.97])
+    # What the ends of the layer lack of full density.
+    above, below = photons_out(0.045 * 900 * (1 - 0.02 - 1 / 24), edges)
+    for height, elevation, truth in ((12000.0, -89.9, above), (50.0, 89.9, below)):
+        now = looking(sketch, 0.0, elevation, (500.0, 500.0, height), 88.0)
+        found = any_engine.read(now, "seen", size=(64, 64)).astype(np.float64)
+        cosine = np.abs(rays(any_engine.plan.eye, (64, 64))[..., 2])
+        for k, wanted in enumerate(truth):
+            ring = (cosine > edges[k]) & (cosine < edges[k + 1])
+            assert found[ring, 1].mean() == pytest.approx(wanted, rel=0.2), (height, edges[k])
+        assert found[..., 3].max() < 0.01
+
+
+LOOK = """
+#include "lighting/daylight_sky.glsl"
+#pragma kernel(output = "dome_seen:rgba32f")
+uniform sampler2D daylight;  //! input
+vec4 kernel(ivec2 texel) {
+    vec4 away = world_from_clip * vec4((vec2(texel) + 0.5) / vec2(size) * 2.0 - 1.0, 1.0, 1.0);
+    return vec4(sky_towards(daylight, normalize(away.xyz / away.w - eye), 0.001 * eye.z), 1.0);
+}
+"""
+
+
+@pytest.mark.parametrize("drawn", ["none", "flat", "heaped"])
+def test_without_clouds_it_is_the_sky_and_the_sun(any_engine, outdoors, drawn):
+    rest = SKY + f'set = {{ clouds = "{drawn}" }}\n[[pass]]\nname = "look"\nuse = "./look"\nsize = [96, 64]\n'
+    sketch = looking(outdoors(rest, {"look": LOOK}, sun=[95.0, 12.0], clouds=0.0), 90.0, 8.0)
+    found = any_engine.read(sketch, "sky", size=SEEN).astype(np.float64)[..., :3]
+    wanted = any_engine.read(sketch, "look", size=SEEN).astype(np.float64)[..., :3]
+    towards = rays(any_engine.plan.eye)
+    sun = np.arccos(np.clip(towards @ sun_vector(95.0, 12.0), -1, 1))
+    above = (towards[..., 2] > 0.01) & (sun > np.radians(1.5))
+    np.testing.assert_allclose(found[above], wanted[above], rtol=0.03)
+    disc = sun == sun.min()  # a pixel is as wide as the sun
+    assert (found[disc] > 3 * wanted[disc]).all()
+    assert (found[sun > np.radians(1.5)] < 2 * wanted[above].max()).all()
+
+
+@pytest.mark.parametrize("drawn", ["flat", "heaped"])
+def test_no_cloud_is_brighter_than_what_it_receives_and_none_lights_up_at_night(any_engine, outdoors, drawn):
+    rest = SKY + f'set = {{ clouds = "{drawn}" }}\n'
+    brightest = []
+    for elevation in (60.0, 20.0, 3.0, -1.0, -4.0, -12.0, -40.0):
+        sketch = outdoors(rest, clouds=0.6, sun=[270.0, elevation], turbidity=2.2)
+        found = any_engine.read(looking(sketch, 90.0, 20.0), "sky", size=SEEN).astype(np.float64)
+        assert np.isfinite(found).all() and (found >= 0).all()
+        row = any_engine.read(sketch, "daylight")[0].astype(np.float64)
+        clear = row[1, :3] / ((1 - 0.75 * 0.6**3.4) * (1 - 0.6**2))
+        # The beam over the clouds has crossed less air than that on the ground.
+        most = np.maximum(1.5 * clear, 0.4 if elevation > 2 else 0.0) + row[2, :3] + 0.2 * row[5, :3]
+        if elevation > 2:
+            assert (found[..., :3].max(axis=(0, 1)) < most).all(), elevation
+        brightest.append(found[..., :3].max())
+    assert (np.diff(brightest[1:]) <= 0).all() and brightest[-1] < 1e-6 * brightest[0]
+
+
+def test_far_clouds_have_the_colour_of_the_air(any_engine, outdoors):
+    """Just over the horizon clouds are gone into the air in front of them, that the farthest slice has."""
+    sketch = looking(outdoors(SKY + 'set = { clouds = "flat" }\n', clouds=0.7), 90.0, 0.0, field=4.0)
+    found = any_engine.read(sketch, "sky", size=SEEN).astype(np.float64)[..., :3]
+    far = any_engine.read(sketch, "air:scattered", size=SEEN).astype(np.float64)[60:, 96:, :3]
+    towards = rays(any_engine.plan.eye)
+    row = int(np.argmin(np.abs(towards[:, 48, 2])))
+    ratio = found[row, 48] / far[10, 16]
+    assert (ratio > 0.9).all() and (ratio[1:] < 1.6).all()

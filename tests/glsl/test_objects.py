@@ -1,0 +1,78 @@
+"""Models at the places of a list: where their points are, and what they are made of."""
+
+import numpy as np
+import pytest
+
+from playground.paths import GLSL
+from playground.terrain.model_files import read_model
+
+LIST = """
+#pragma kernel(output = "tree:rgba32f, total:r32f")
+uniform float total_of = 1.0;  //! slider(0, 4)
+void kernel(ivec2 texel, out vec4 tree, out float total) {
+    tree = texel.x == 0 ? vec4(500.0, 400.0, 20.0, 12.0) : vec4(600.0, 400.0, 20.0, 12.0);
+    total = total_of;
+}
+"""
+PASSES = """
+[[pass]]
+name = "list"
+use = "./list"
+size = [2, 1]
+[[pass]]
+name = "model"
+use = "objects/model"
+set = {{ model = "sketches/data/{name}.glb" }}
+[[pass]]
+name = "seen"
+use = "objects/seen"
+size = [256, 256]
+inputs = {{ tree = "list:tree", total = "list:total" }}
+set = {{ {values} }}
+[[pass]]
+name = "height"
+use = "generation/white_noise"
+[view]
+use = "view/terrain"
+[view.camera]
+azimuth = 160.0
+elevation = 15.0
+distance = 60.0
+target = [500.0, 400.0, 26.0]
+field_of_view = 20.0
+"""
+
+
+@pytest.mark.parametrize(("name", "kind"), [("conifer", "needles"), ("rock", "rock")])
+def test_a_model_stands_on_its_place(kept, ctx, make_sketch, name, kind):
+    text = PASSES.format(name=name, values=f'kind = "{kind}", tall = 1.0')
+    sketch = make_sketch(text, size=33, extent=1000.0, relief=1.0, list=LIST)
+    seen = kept.read(sketch, "seen", size=(256, 256)).copy()
+    drawn = seen[seen[..., 3] >= 4].astype(np.float64)
+    model = read_model(GLSL / "sketches" / "data" / f"{name}.glb").corners.astype(np.float64) * 12.0
+    assert len(drawn) > 1000
+    away = np.hypot(drawn[:, 0] - 500, drawn[:, 1] - 400)
+    assert away.max() <= np.hypot(model[..., 0], model[..., 1]).max() + 1e-3
+    assert abs(drawn[:, 2].max() - (20 + model[..., 2].max())) < 0.3, "a pixel is 0.1 m"
+    # Turned about the upright, every point stays on one of the model's planes at its own height.
+    kinds = (drawn[:, 3] - 4).astype(int) & 63
+    assert set(kinds) <= set(range(32, 48) if kind == "needles" else range(48, 56)) and len(set(kinds)) > 1
+    # Of the turns, one brings all points onto the surface.
+    a, b, c = (model[:, k] for k in range(3))
+    normals = np.cross(b - a, c - a)
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    some = drawn[:: len(drawn) // 60, :3] - [500, 400, 20]
+    best = []
+    for turn in np.linspace(0, 2 * np.pi, 721):
+        back = some @ np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
+        best.append(np.abs(back @ normals.T - (a * normals).sum(1)).min(1).max())
+    assert min(best) < 0.06 < np.median(best)
+
+
+@pytest.mark.parametrize("values", ["nearest = 100", "farthest = 40"])
+def test_only_those_within_its_distances_are_drawn(kept, ctx, make_sketch, values):
+    sketch = make_sketch(
+        PASSES.format(name="rock", values=values), size=33, extent=1000.0, relief=1.0, list=LIST
+    )
+    assert not kept.read(sketch, "seen", size=(256, 256)).any()
+    assert not kept.read(sketch.with_values({"list.total_of": 0.0}), "seen", size=(256, 256)).any()

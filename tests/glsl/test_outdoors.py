@@ -1,0 +1,91 @@
+"""scene/outdoors: what is seen through air and under clouds, against float64 and the clouds' shade."""
+
+import numpy as np
+import pytest
+
+from playground.sketch.model import Camera
+
+from .test_scene_air import FLAT, depth
+
+SIZE = (96, 64)
+COLOUR = """
+#pragma kernel(output = "colour:rgba16f")
+uniform float grey = 0.5;
+vec4 kernel(ivec2 texel) { return vec4(vec3(grey), 1.0); }
+"""
+VIEW = """
+[[pass]]
+name = "height"
+use = "./flat"
+[[pass]]
+name = "colour"
+use = "./grey"
+[[pass]]
+name = "daylight"
+use = "lighting/daylight"
+set = { position = "free", sun = [140.0, 50.0], adaptation = 0.0, turbidity = 3.0, clouds = 0.5 }
+[[pass]]
+name = "cloud"
+use = "clouds/field"
+size = 128
+[[pass]]
+name = "drift"
+use = "clouds/drift"
+size = 1
+[[pass]]
+name = "shade"
+use = "clouds/shade"
+size = 401
+[view]
+use = "scene/outdoors"
+samples = 1
+inputs = { columns = "daylight:columns", bounced = "daylight:bounced", dome = "daylight:dome" }
+"""
+
+
+@pytest.fixture
+def scene(make_sketch):
+    sketch = make_sketch(VIEW, extent=20000.0, flat=FLAT, grey=COLOUR)
+    camera = Camera(
+        azimuth=200.0, elevation=9.0, distance=9000.0, target=(10000.0, 11000.0, 0.0), field_of_view=40.0
+    )
+    return sketch.with_camera(camera)
+
+
+def read(engine, sketch, grey, name="view.scene.shaded"):
+    return engine.read(sketch.with_values({"colour.grey": grey}), name, size=SIZE).astype(np.float64)
+
+
+def test_colours_fade_by_the_air_in_front_of_them(any_engine, scene):
+    """What brighter ground adds has gone through air and mist; black ground shows what they add."""
+    scene = scene.with_values({"view.mist": 0.3, "view.mist_top": 200.0})
+    seen = read(any_engine, scene, 0.5, "view.scene.where")
+    eye = np.asarray(any_engine.plan.eye.position, np.float64)
+    black, grey = read(any_engine, scene, 0.0), read(any_engine, scene, 0.5)
+    row = any_engine.read(scene, "daylight", size=SIZE)[0].astype(np.float64)
+    shade = any_engine.read(scene, "shade", size=SIZE).astype(np.float64)
+    checked = 0
+    for y in range(2, 64, 6):
+        for x in range(3, 96, 9):
+            if seen[y, x, 3] != 1.0:
+                continue
+            way = seen[y, x, :3] - eye
+            far = np.linalg.norm(way) / 1000
+            column, line = np.round(seen[y, x, :2] / 50.0).astype(int)
+            near = shade[line - 1 : line + 2, column - 1 : column + 2]
+            if near.size < 9 or np.ptp(near) > 0.02:
+                continue  # the edge of a shadow
+            light = row[1, :3] * row[0, 2] * near.mean() + row[2, :3]
+            left = np.exp(-depth(eye[2] / 1000, way[2] / 1000 / far, far, 3.0, 0.3, 0.2))
+            np.testing.assert_allclose((grey - black)[y, x, :3] / (0.5 * light), left, atol=0.03)
+            assert (black[y, x, :3] > 0).all()
+            checked += 1
+    assert checked > 25
+
+
+def test_behind_the_terrain_is_the_picture_of_the_sky(any_engine, scene):
+    seen = read(any_engine, scene, 0.5, "view.scene.where")
+    shaded, heaven = read(any_engine, scene, 0.5), read(any_engine, scene, 0.5, "view.heaven")
+    sky = seen[..., 3] == 0.0
+    assert sky.any() and not sky.all()
+    np.testing.assert_array_equal(shaded[sky][:, :3], heaven[sky][:, :3])
