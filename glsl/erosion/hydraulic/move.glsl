@@ -96,13 +96,13 @@ vec4 kernel(ivec2 texel) {
     vec2 fall = (vec2(east.x - west.x, north.x - south.x)
                  + vec2(east.y - west.y, north.y - south.y)) / (2.0 * spacing);
     float squared = dot(fall, fall);
-    // anchor: bed
     float can = capacity * flow * max(sqrt(squared / (1.0 + squared)), LEAST_SLOPE);
 
     // Wear or settling. Wear leaves the bed at least half the drop to its lowest neighbour, or
     // single texels become wells. What the bed really loses, after rounding, is what the load
     // gains: rounded apart, a thousand small steps would make rock out of nothing.
     vec2 given = texelFetch(site, texel, 0).rg;
+    // anchor: bed
     float settled = min(share_in(settling * hours), 0.5);
     float change = (can > load ? given.g : settled) * (can - load);
     float lowest = min(min(west.x, east.x), min(south.x, north.x));
