@@ -197,3 +197,65 @@ def test_what_has_no_number_is_no_data_to_gdal(tmp_path, any_engine):
     made = export(tmp_path / "sketch.toml", tmp_path / "a.tif", texture="height", engine=any_engine)
     with rasterio.open(made.path) as after:
         assert np.isnan(after.nodata) and after.read(1, masked=True).mask[:, 2].all()
+
+
+ERODED = """format = 1
+[[pass]]
+name = "raw"
+use  = "generation/heightmap"
+set  = { elevation = "dem.tif" }
+[[pass]]
+name   = "height"
+use    = "erosion/hydraulic"
+inputs = { height = "raw" }
+set    = { hours = 100, rain = 0.02 }
+[[pass]]
+name   = "streams"
+use    = "texturing/mask"
+inputs = { amount = "height:flow" }
+set    = { from = 20.0, to = 1000.0, by_factors = true }
+[[pass]]
+name = "ground"
+use  = "texturing/height_colour"
+[[pass]]
+name   = "colour"
+use    = "texturing/waters"
+inputs = { colour = "ground", river = "streams", wetness = "height:wetness" }
+[[pass]]
+name = "light"
+use  = "lighting/ray_cast"
+[view]
+use = "view/terrain"
+"""
+
+
+@pytest.mark.slow
+def test_real_terrain_that_is_worn_and_coloured_by_its_water_comes_back_in_its_place(tmp_path, any_engine):
+    """A file is opened, eroded, textured by its streams, exported, and opened again by GDAL."""
+    from playground.paths import SKETCHES
+    from playground.sketch.load import load
+
+    real = np.load(SKETCHES / "data" / "jacksboro_fault_dem.npz")
+    texel = float(real["dx"])
+    place = Affine(texel, 0.0, float(real["xmin"]), 0.0, -texel, float(real["ymin"]))
+    path = dem(tmp_path / "dem.tif", "EPSG:4269", place, heights=real["elevation"].astype(np.float32))
+    (tmp_path / "sketch.toml").write_text(ERODED)
+    sketch = load(tmp_path / "sketch.toml")
+    heights = export(sketch, tmp_path / "worn.tif", engine=any_engine).path
+    colours = export(sketch, tmp_path / "colours.tif", engine=any_engine, texture="colour").path
+    wear, deposit, streams = (
+        any_engine.read(sketch, name)[::-1].astype(float).copy()
+        for name in ("height:wear", "height:deposit", "streams")
+    )
+    with rasterio.open(path) as before, rasterio.open(heights) as after, rasterio.open(colours) as shown:
+        for file in (after, shown):
+            assert file.crs == before.crs and file.shape == before.shape
+            np.testing.assert_allclose(file.transform, before.transform, rtol=4e-16, atol=0)
+        # What is higher or lower than it was is what the water took and laid down: to float32 of 1 km.
+        change = after.read(1).astype(float) - before.read(1)
+        np.testing.assert_allclose(change, deposit - wear, rtol=0, atol=1e-3)
+        assert 0.1 < wear.mean() < 50 and after.read(1).dtype == np.float32
+        assert shown.dtypes[0] == "float32"
+        red, _, blue = (band.astype(float) for band in shown.read()[:3])
+        bluer = (blue - red)[streams > 0.9].mean() - (blue - red)[streams < 0.1].mean()
+        assert bluer > 0.1, "streams are seen, in linear light"

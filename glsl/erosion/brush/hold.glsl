@@ -23,12 +23,12 @@ uniform sampler2D after;   //! input
 uniform sampler2D brush;   //! input("white")
 
 uniform float repose = 40.0;  //! angle(1, 89) Angle of repose: what is steeper slumps
-uniform float creep = 0.005;  //! slider(0, 0.1) step(0.001)
+uniform float creep = 0.005;  //! slider(0, 0.05) step(0.001)
                               //! The share of a difference that creeps downhill in a step
 
-// Share of what is too steep that slides in a step: with the most creep below 1/4, from which on
-// what slides between four neighbours oscillates.
-const float SLUMP = 0.1;
+// Share of what is too steep that slides in a step. From four neighbours it takes, with the most
+// creep, 0.4 of the way to them, and wear half of it: so no step digs below the lowest one.
+const float SLUMP = 0.05;
 
 // What slides here from the neighbour at an offset: antisymmetric, so that no rock is made.
 float slides(ivec2 texel, ivec2 offset, float bed, float share, float most) {
