@@ -60,7 +60,8 @@ def test_a_step_of_the_brush_is_the_step_in_float64(engine: Engine):
                 if 0 <= j < NY and 0 <= i < NX:
                     rise, most = bed[j, i] - bed[y, x], np.tan(np.radians(35.0)) * length
                     over = max(rise - most, 0.0) if rise > 0 else min(rise + most, 0.0)
-                    slid[y, x] += min(w[y, x], w[j, i]) * (0.1 * over + 0.03 * rise)
+                    slides = np.sign(rise) * min(abs(0.1 * over + 0.03 * rise), abs(rise) / 8)
+                    slid[y, x] += min(w[y, x], w[j, i]) * slides
     wanted = bed + w * (after[..., 0] - bed) + slid
     np.testing.assert_allclose(found[..., 0], np.where(w > 0, wanted, bed), atol=1e-4)
     rock = after[..., 0].astype(np.float64) + after[..., 2]  # after the step
