@@ -1,8 +1,8 @@
-"""Spread the many cases of one test over two runs: a third of them every day, the others in the slow run.
+"""Spread the many cases of one test over two runs: a quarter of them every day, the others in the slow run.
 
 Where one function is called with many parameters, as for every size, seed and method, what is wrong with
 the code is wrong in most of its cases. Which are for every day goes by the test's name, not by its place:
-neighbours differ in the parameter that changes fastest, and every third of them could be all of one value.
+neighbours differ in the parameter that changes fastest, and every fourth of them could be all of one value.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 FOLDERS = tuple(Path(__file__).parent / name for name in ("engine", "glsl"))
-MANY = 8  # cases of a function that are all for every day
-SHARE = 3  # of more, one in so many
+MANY = 6  # cases of a function that are all for every day
+SHARE = 4  # of more, one in so many
 
 
 class Spread:

@@ -28,6 +28,7 @@ from playground.engine.check import find_files
 from playground.errors import DataError
 from playground.gpu.doctor import where_to_show
 from playground.images.files import read_png, read_samples
+from playground.images.supersampled import reduced
 from playground.paths import DEFAULT_SKETCH, GLSL
 from playground.sketch.find import shipped_sketches
 
@@ -327,6 +328,15 @@ def test_render_prints_the_path_alone_and_never_overwrites_unasked(run: Run, slo
     done = well(run("render", "slope", "--size", "20x10", "-o", "slope.png"))
     assert (done.stdout, done.stderr) == ("slope.png\n", "")
     assert read_png(tmp_path / "slope.png")[0].shape == (10, 20, 4)
+
+
+def test_a_picture_is_drawn_larger_and_reduced(run: Run, slope: Path, tmp_path: Path):
+    well(run("render", "slope", "-o", "large.png", "--size", "128x72"))
+    well(run("render", "slope", "-o", "fine.png", "--size", "64x36", "--supersample", "2"))
+    large, fine = (read_png(tmp_path / name)[0] for name in ("large.png", "fine.png"))
+    np.testing.assert_array_equal(fine, reduced(large, 2))
+    done = run("render", "slope", "--supersample", "9")
+    assert (done.returncode, done.stderr) == (2, "error: --supersample 9: expected a whole number, 1 to 8\n")
 
 
 def test_settings_presets_and_shots_are_seen_in_the_picture(run: Run, slope: Path, tmp_path: Path):

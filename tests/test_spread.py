@@ -31,10 +31,10 @@ def test_few_cases_and_those_of_other_folders_all_run():
     assert (every_day(few), every_day(many, 1)) == (few, many)
 
 
-def test_of_many_a_third_run_among_them_the_first_and_every_value_of_each_parameter():
-    many = ["-".join(case) for case in product("abcdefgh", "123", "xy")]
+def test_of_many_a_quarter_run_among_them_the_first_and_every_value_of_each_parameter():
+    many = ["-".join(case) for case in product("abcdefgh", "1234", "xyz")]
     left = every_day(many)
-    assert left[0] == many[0] and 0.2 < len(left) / len(many) < 0.5
+    assert left[0] == many[0] and 0.15 < len(left) / len(many) < 0.35
     for at in range(3):
         assert {name.split("-")[at] for name in left} == {name.split("-")[at] for name in many}
 

@@ -42,7 +42,7 @@ def resample(
     if bad:
         raise DataError(f"{bad} are not finite; expected gaps to be filled first", file=name)
     with np.errstate(all="ignore"):
-        values = given.astype(np.float32)
+        values = given.astype(np.float32, copy=False)
         middle = np.float64(values.min()) / 2 + np.float64(values.max()) / 2
         part = values - middle  # float64, and zero for a constant
         # The axis that shrinks most goes first: less to do for the other.

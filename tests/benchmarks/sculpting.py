@@ -4,7 +4,7 @@
 
 Median of many steps, in milliseconds of processor time, all threads together: the tool on the processor,
 the frame after it (upload, the sculpted height, light, the view of 640 x 360), the two together, and
-what pressing and releasing the button costs (the ground read, the file written).
+what pressing and releasing the button costs (the ground read, a copy made that a thread writes).
 """
 
 from __future__ import annotations

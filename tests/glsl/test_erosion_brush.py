@@ -60,8 +60,7 @@ def test_a_step_of_the_brush_is_the_step_in_float64(engine: Engine):
                 if 0 <= j < NY and 0 <= i < NX:
                     rise, most = bed[j, i] - bed[y, x], np.tan(np.radians(35.0)) * length
                     over = max(rise - most, 0.0) if rise > 0 else min(rise + most, 0.0)
-                    slides = np.sign(rise) * min(abs(0.1 * over + 0.03 * rise), abs(rise) / 8)
-                    slid[y, x] += min(w[y, x], w[j, i]) * slides
+                    slid[y, x] += min(w[y, x], w[j, i]) * (0.05 * over + 0.03 * rise)
     wanted = bed + w * (after[..., 0] - bed) + slid
     np.testing.assert_allclose(found[..., 0], np.where(w > 0, wanted, bed), atol=1e-4)
     rock = after[..., 0].astype(np.float64) + after[..., 2]  # after the step
@@ -90,7 +89,8 @@ def test_a_mirrored_terrain_is_eroded_alike(any_engine: Engine, axis: int):
 def test_hostile_parameters_leave_numbers(any_engine: Engine):
     rng = np.random.default_rng(2)
     run, rough = OnArrays(any_engine, "erosion/brush"), rng.normal(0, 2000, (NY, NX)).astype(np.float32)
-    hostile = {"rain": 1.0, "wear": 2.0, "capacity": 100.0, "settling": 2.0, "repose": 1.0, "creep": 0.1}
+    hostile = {"rain": 1.0, "wear": 2.0, "capacity": 100.0, "settling": 2.0, "repose": 1.0, "creep": 0.05}
     after, water = stamped(run, rough, brush(1.0), 60, **hostile)
     assert np.isfinite(after).all() and np.isfinite(water).all()
+    # No step digs below the lowest neighbour; what is laid down comes from what was higher.
     assert rough.min() <= after.min() and after.max() <= rough.max()

@@ -277,6 +277,17 @@ def test_another_picture_of_the_sky_takes_the_plain_one_s_place(any_engine, scen
     assert any_engine.plan.step("view.sky").size == (1, 1), "which is not made in vain"
 
 
+def test_nothing_lights_up_at_night(any_engine, scene):
+    """An hour after midnight in winter, a white terrain, its cut and the sky are as good as black."""
+    passes = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\n'
+    passes += "set = { latitude = 50, day = 355, hour = 1.0, adaptation = 0 }\n"
+    given = 'sky = "daylight", gain = 1, ambient = 1, haze = 0.3'
+    sketch = scene(BUMPY, "vec4(1.0)", given=given, passes=passes).with_camera(replace(LOOK, distance=1500))
+    night = any_engine.read(sketch, "view.shaded", size=SIZE)[..., :3]
+    noon = any_engine.read(sketch.with_values({"daylight.hour": 12.0}), "view.shaded", size=SIZE)[..., :3]
+    assert night.max() < 1e-3 * noon.mean()
+
+
 def decoded(value):
     """Return the linear value of one encoded as sRGB, both 0..1."""
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4

@@ -100,6 +100,8 @@ def test_the_panel_offers_tools_for_heights_and_layers_for_masks(bare: Bare) -> 
         assert (painting.brush.tool == "flatten") == (row == "##tool")
         bare.run_frames(1)
         assert ("##stated" in bare.places) == (row == "##tool")
+        bare.type("7")
+        assert (painting.brush.tool == "erode") == (target == "height.image"), "a factor has no ground"
         bare.type("1")
 
 

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 from playground.engine.engine import Engine
 from playground.engine.on_arrays import OnArrays
@@ -97,6 +98,23 @@ def test_a_window_gives_what_the_whole_terrain_gives(any_engine: Engine, tmp_pat
     wanted = given["height"].astype(np.float64) - (ground - level)
     assert np.abs(wanted).max() > 1
     np.testing.assert_allclose(on.pixels, wanted, atol=1e-3 * np.abs(wanted).max())
+
+
+def test_a_brush_of_as_many_metres_erodes_alike_on_coarse_and_fine_grids(any_engine: Engine, tmp_path: Path):
+    found = []
+    for per in (1, 2):
+        y, x = np.mgrid[0 : 128 * per + 1, 0 : 128 * per + 1] * (20.0 / per)
+        ground = 300 + 120 * np.sin(x / 210) * np.cos(y / 250) + 15 * np.sin(x / 60 + 1) * np.sin(y / 70)
+        on = Sculpture(tmp_path / "x.tif", np.zeros(ground.shape, np.float32))
+        on.lie_on(ground.astype(np.float32))
+        on.eroding = ErodeTool(any_engine, technique_at("erosion/brush", __file__))
+        on.begin()
+        on.paint(HERE, HERE, (2560.0, 2560.0), Brush(tool="erode", radius=320.0, strength=0.9), 0.8)
+        # Without what the coarse grid cannot have.
+        found.append(gaussian_filter(on.pixels.astype(np.float64), 2 * per)[::per, ::per])
+    coarse, fine = found
+    assert abs(coarse.sum() / fine.sum() - 1) < 0.05
+    assert np.sqrt(((coarse - fine) ** 2).mean()) < 0.1 * np.sqrt((fine**2).mean())
 
 
 def test_a_stroke_is_the_same_bits_in_however_many_frames(any_engine: Engine, tmp_path: Path):

@@ -23,22 +23,19 @@ uniform sampler2D after;   //! input
 uniform sampler2D brush;   //! input("white")
 
 uniform float repose = 40.0;  //! angle(1, 89) Angle of repose: what is steeper slumps
-uniform float creep = 0.005;  //! slider(0, 0.1) step(0.001)
+uniform float creep = 0.005;  //! slider(0, 0.05) step(0.001)
                               //! The share of a difference that creeps downhill in a step
 
-const float SLUMP = 0.1;  // share of what is too steep that slides in a step
-// Share of a difference that slides and creeps at most. Water takes up to half the drop to the
-// lowest neighbour in the same step: four times this is the other half, so that no texel falls
-// below all its neighbours.
-const float MOST = 0.125;
+// Share of what is too steep that slides in a step. From four neighbours it takes, with the most
+// creep, 0.4 of the way to them, and wear half of it: so no step digs below the lowest one.
+const float SLUMP = 0.05;
 
 // What slides here from the neighbour at an offset: antisymmetric, so that no rock is made.
 float slides(ivec2 texel, ivec2 offset, float bed, float share, float most) {
     ivec2 there = clamp(texel + offset, ivec2(0), size - 1);
     float rise = texelFetch(before, there, 0).x - bed;
     float over = rise - clamp(rise, -most, most);
-    float slid = clamp(SLUMP * over + creep * rise, -MOST * abs(rise), MOST * abs(rise));
-    return min(share, texelFetch(brush, there, 0).r) * slid;
+    return min(share, texelFetch(brush, there, 0).r) * (SLUMP * over + creep * rise);
 }
 
 vec4 kernel(ivec2 texel) {
