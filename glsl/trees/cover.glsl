@@ -75,11 +75,12 @@ vec2 shade_at(vec2 place) {
 
 // The table is for level ground: on a slope one sees more of the tops in it than there are,
 // so that a wood on a steep slope (0.35) towards the eye is 7 to 11 hundredths brighter far away.
-vec2 wood_on_slope(Stand all, float stands, vec3 to_eye, vec3 to_sun, vec3 through) {
+vec2 wood_on_slope(Stand all, float stands, float only, vec3 to_eye, vec3 to_sun,
+                   vec3 through) {
     float depth = depth_towards(all, to_eye);
     // How many of the crowns are above what one sees, on the mean.
     float share = depth < 0.01 ? 0.5 : 1.0 / depth - 1.0 / (exp(min(depth, 60.0)) - 1.0);
-    vec2 lit = wood_at(table, to_eye, to_sun, stands);
+    vec2 lit = wood_at(table, to_eye, to_sun, stands, only);
     lit.x *= reaches(all, share, through) / max(reaches(all, share, to_sun), 1e-3);
     return lit;
 }
@@ -124,7 +125,8 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     // By brightness, what comes from the leaves of the colour that both have together.
     float part = hidden * brightness(leaves) / max(brightness(albedo.rgb), 1e-6);
     float sun_left = mix(reaches(all, 1.0, through), 1.0, shaded.y);
-    vec2 lit = wood_on_slope(all, stands, to_eye, to_sun, through);
+    float only = needles_only(needles_from, at.z + base_elevation);
+    vec2 lit = wood_on_slope(all, stands, only, to_eye, to_sun, through);
     float sky_left = reaches(all, 1.0, SKY_FROM);
     taken = vec4((1.0 - part) * sun_left, part * lit.x, mix(sky_left, lit.y, part), 1.0);
 }

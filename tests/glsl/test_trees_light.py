@@ -66,12 +66,15 @@ set = {{ most = {most}, slope = {slope} }}
 use = "scene/wooded"
 camera = {{ azimuth = 70.0, elevation = {elevation}, distance = {distance}, target = [8000, 8000, 2000] }}
 inputs = {{ height = "flat:height", density = "flat:density", colour = "flat:colour" }}
-set = {{ sun = {sun}, gain = 2.0, ambient = 0.6, trees = 200000, detail = "full grid", grid = 2 }}
+set = {{ sun = {sun}, gain = 2.0, ambient = 0.6, trees = {trees}, detail = "full grid", grid = 2{given} }}
 """
 
 
-def stand(engine, make_sketch, distance, most=0.7, elevation=8.0, sun="[135, 35]", slope=0.0):
+def stand(
+    engine, make_sketch, distance, most=0.7, elevation=8.0, sun="[135, 35]", slope=0.0, trees=200000, given=""
+):
     """Return what the eye sees of a stand on a plain: about 300 m of it, or 5 degrees."""
+    given = given and f", {given}"
     text = STAND.format(**{k: v for k, v in locals().items() if k not in ("engine", "make_sketch")})
     sketch = make_sketch(text, size=3, extent=16000.0, relief=4000.0, flat=FLAT)
     lens = max(np.degrees(2 * np.arctan(75.0 / distance)), 5.0)
@@ -235,3 +238,12 @@ def test_a_wood_shades_the_meadow_beside_it_and_lights_none(kept, ctx, make_sket
     assert (lit[1][meadow] <= lit[0][meadow]).all() and (lit[1][meadow] < lit[0][meadow]).sum() > 50
     metres = 60.0 * (kept.read(sketch, "canopy:height") - kept.read(sketch, "wood:height"))
     np.testing.assert_allclose(metres, canopy, atol=1e-3)
+
+
+def test_where_all_trees_have_needles_their_wood_has_the_light_of_needles(kept, ctx, make_sketch):
+    """Above `needles_from`, as with needles only; 2000 m above sea level here, far beyond single trees."""
+    high, only = (
+        stand(kept, make_sketch, 6000.0, given=given)
+        for given in ("needles = 0.12, needles_from = 900", "needles = 1.0")
+    )
+    np.testing.assert_allclose(high, only, rtol=2e-3)
