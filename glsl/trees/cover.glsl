@@ -5,7 +5,8 @@
 //   needs    lighting/daylight_reading.glsl, noise/gradient.glsl, scene/ground_reading.glsl,
 //            scene/surfaces.glsl, terrain/heightfield.glsl,
 //            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of the ground,
-//            a height, a density, the table of trees/wood and the shadows of trees/shade
+//            a height, a density, the table of trees/wood and the shadows of trees/shade; of
+//            trees/place the key, for the size of its table
 //   units    metres; colours linear; shares 0..1
 //   source   trees/stand.glsl
 //   tested   tests/glsl/test_trees_light.py: a stand's mean colour is the same at any distance
@@ -29,6 +30,7 @@ uniform sampler2D ground;   //! input("linear", "mipmap")
 uniform sampler2D density;  //! input
 uniform sampler2D table;    //! input
 uniform sampler2D shade;    //! input("black")
+uniform sampler2D key;      //! input("white")
 #include "lighting/parameters/sun.glsl"
 #include "trees/parameters/reach.glsl"
 #include "trees/parameters/stand.glsl"
@@ -102,7 +104,8 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     vec3 through = to_sun.z > 0.0 ? raised(over_ground(to_sun, slope)) : to_sun;
     float needled = needle_share(needles, needles_from, at.z + base_elevation);
     Stand all = stand_of(stands, cell, tallest, shortest, needled);
-    Stand drawn = thinned(all, away, whole, reach);
+    float end = wired_key ? end_of_table(reach, cell, textureSize(key, 0)) : reach;
+    Stand drawn = thinned(all, away, whole, end);
     if (tree) {
         float over = at.z - map_of(height, share) * relief;
         vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun, through);

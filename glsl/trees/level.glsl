@@ -1,6 +1,6 @@
 // trees/level.glsl -- how many trees are drawn at a distance, and how large each then is.
 //
-//   gives    JITTER, GROWTH, kept_share, growth_of_kept, shrunk
+//   gives    JITTER, GROWTH, end_of_table, kept_share, growth_of_kept, shrunk
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    metres; shares 0..1; growth and shrinking are factors of a tree's height
 //   source   Cook, Halstead, Planck and Ryu 2007, "Stochastic Simplification of Aggregate Detail"
@@ -18,6 +18,11 @@
 
 const float JITTER = 0.8;   // of a cell's side: where in its middle its tree may stand
 const float GROWTH = -0.4;  // the power of the share that is kept by which a tree grows
+
+// How far away single trees end: at `reach`, or where the table of cells ends before.
+float end_of_table(float reach, float cell, ivec2 cells) {
+    return min(reach, 0.5 * cell * float(min(cells.x, cells.y) - 2));
+}
 
 // All up to `whole`; farther away, as many a square metre as there are pixels for one; over the
 // last tenth of `reach` fewer and fewer, down to none.

@@ -247,3 +247,14 @@ def test_where_all_trees_have_needles_their_wood_has_the_light_of_needles(kept, 
         for given in ("needles = 0.12, needles_from = 900", "needles = 1.0")
     )
     np.testing.assert_allclose(high, only, rtol=2e-3)
+
+
+def test_single_trees_end_where_their_table_ends(kept, ctx, make_sketch):
+    """The table has no more than 1024 cells each way: what is beyond is in the ground, none is lacking."""
+    found, sides = [], []
+    for reach in (1024, 8000):
+        given = f"cell = 1, tallest = 3, whole = 60, reach = {reach}"
+        found.append(stand(kept, make_sketch, 1100.0, given=given))
+        sides += [max(step.size) for step in kept.plan.walk() if step.path == "view.place.cells"]
+    assert sides == [2050, 2050]
+    np.testing.assert_array_equal(found[0], found[1])

@@ -54,8 +54,7 @@ void kernel(ivec2 texel, out vec4 tree, out float key) {
     if (unit_from_bits(first.z) >= wanted) return;
     float up = height_at(height, share * vec2(textureSize(height, 0) - 1)) * relief;
     float away = distance(eye, vec3(place, up));
-    float half_side = 0.5 * cell * float(min(size.x, size.y) - 2);
-    float kept = kept_share(away, whole, min(reach, half_side));
+    float kept = kept_share(away, whole, end_of_table(reach, cell, size));
     float rank = unit_from_bits(second.x);
     if (rank >= kept) return;
     if (!all_round && !may_be_seen(place, up, up + 2.0 * tallest)) return;
