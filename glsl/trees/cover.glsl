@@ -6,7 +6,7 @@
 //            scene/surfaces.glsl, terrain/heightfield.glsl,
 //            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of the ground,
 //            a height, a density, the table of trees/wood and the shadows of trees/shade; of
-//            trees/place the key, for the size of its table
+//            trees/place the key, for the size of its table, and the limit
 //   units    metres; colours linear; shares 0..1
 //   source   trees/stand.glsl
 //   tested   tests/glsl/test_trees_light.py: a stand's mean colour is the same at any distance
@@ -31,6 +31,7 @@ uniform sampler2D density;  //! input
 uniform sampler2D table;    //! input
 uniform sampler2D shade;    //! input("black")
 uniform sampler2D key;      //! input("white")
+uniform sampler2D limit;    //! input("white")
 #include "lighting/parameters/sun.glsl"
 #include "trees/parameters/reach.glsl"
 #include "trees/parameters/stand.glsl"
@@ -76,7 +77,7 @@ vec2 shade_at(vec2 place) {
 }
 
 // The table is for level ground: on a slope one sees more of the tops in it than there are,
-// so that a wood on a steep slope (0.35) towards the eye is 7 to 11 hundredths brighter far away.
+// so that a wood on a steep slope (0.35) towards the eye is 8 to 12 hundredths brighter far away.
 vec2 wood_on_slope(Stand all, float stands, float only, vec3 to_eye, vec3 to_sun,
                    vec3 through) {
     float depth = depth_towards(all, to_eye);
@@ -105,7 +106,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     float needled = needle_share(needles, needles_from, at.z + base_elevation);
     Stand all = stand_of(stands, cell, tallest, shortest, needled);
     float end = wired_key ? end_of_table(reach, cell, textureSize(key, 0)) : reach;
-    Stand drawn = thinned(all, away, whole, end);
+    Stand drawn = thinned(all, away, whole, end, texelFetch(limit, ivec2(0), 0).r);
     if (tree) {
         float over = at.z - map_of(height, share) * relief;
         vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun, through);
