@@ -5,7 +5,8 @@
 //   needs    lighting/daylight_reading.glsl, noise/gradient.glsl, scene/ground_reading.glsl,
 //            scene/surfaces.glsl, terrain/heightfield.glsl,
 //            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of the ground,
-//            a height, a density, the table of trees/wood and the shadows of trees/shade; of
+//            a height, a density, the table of trees/wood and the shadows of trees/shade; the
+//            sun's visible part with the woods on the terrain (trees/canopy), if any; of
 //            trees/place the key, for the size of its table, and the limit
 //   units    metres; colours linear; shares 0..1
 //   source   trees/stand.glsl
@@ -30,6 +31,7 @@ uniform sampler2D ground;   //! input("linear", "mipmap")
 uniform sampler2D density;  //! input
 uniform sampler2D table;    //! input
 uniform sampler2D shade;    //! input("black")
+uniform sampler2D canopy_visibility;  //! input("white")
 uniform sampler2D key;      //! input("white")
 uniform sampler2D limit;    //! input("white")
 #include "lighting/parameters/sun.glsl"
@@ -76,6 +78,13 @@ vec2 shade_at(vec2 place) {
     return vec2(height_at(shade, on), 1.0 - smoothstep(0.42, 0.49, aside));
 }
 
+// What woods leave of the sun that the bare terrain lets through here. They are opaque there, so
+// where single trees throw their shadows these alone are taken.
+float shadow_of_woods(vec2 share, float bare) {
+    if (!wired_canopy_visibility || bare < 1e-3) return 1.0;
+    return min(map_of(canopy_visibility, share) / bare, 1.0);
+}
+
 // The table is for level ground: on a slope one sees more of the tops in it than there are,
 // so that a wood on a steep slope (0.35) towards the eye is 8 to 12 hundredths brighter far away.
 vec2 wood_on_slope(Stand all, float stands, float only, vec3 to_eye, vec3 to_sun,
@@ -99,7 +108,8 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     float stands = clamp(map_of(density, share), 0.0, 1.0);
     float away = distance(eye, at.xyz);
     vec3 to_eye = eye - at.xyz;
-    vec2 slope = ground_at(ground, at.xy, extent, 2.0 * cell).slope;
+    Ground around = ground_at(ground, at.xy, extent, 2.0 * cell);
+    vec2 slope = around.slope;
     to_eye = raised(over_ground(to_eye, slope));
     vec3 to_sun = sun_direction(wired_daylight, daylight, towards_sun);
     vec3 through = to_sun.z > 0.0 ? raised(over_ground(to_sun, slope)) : to_sun;
@@ -115,7 +125,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
         return;
     }
     vec2 shaded = shade_at(at.xy);
-    shadow = 1.0 - shaded.x * shaded.y;
+    shadow = mix(shadow_of_woods(share, around.sun), 1.0 - shaded.x, shaded.y);
     if (stands <= 0.0) return;
     // What of the ground all trees leave free, over what those leave free that are drawn.
     float free = reaches(all, 1.0, to_eye) / max(reaches(drawn, 1.0, to_eye), 1e-6);
