@@ -2,8 +2,8 @@
 //
 //   gives    albedo; taken: of the sun what goes with the facing and what does not, and of the sky
 //            (scene/shaded); shadow: what trees leave of the sun on the ground
-//   needs    lighting/daylight_reading.glsl, noise/gradient.glsl, scene/ground_reading.glsl,
-//            scene/surfaces.glsl, terrain/heightfield.glsl,
+//   needs    lighting/daylight_date.glsl, lighting/daylight_reading.glsl, noise/gradient.glsl,
+//            scene/ground_reading.glsl, scene/surfaces.glsl, terrain/heightfield.glsl,
 //            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of the ground,
 //            a height, a density, the table of trees/wood and the shadows of trees/shade; the
 //            sun's visible part with the woods on the terrain (trees/canopy), if any; of
@@ -15,6 +15,7 @@
 // Farther away fewer trees are drawn, and what these hide less and less of is here, in the ground:
 // so a wood goes on beyond its last tree in its own colour, with light and dark as of crowns.
 // Ground between trees gets as much less light as they take.
+#include "lighting/daylight_date.glsl"
 #include "lighting/daylight_reading.glsl"
 #include "noise/gradient.glsl"
 #include "scene/ground_reading.glsl"
@@ -114,13 +115,14 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     vec3 to_sun = sun_direction(wired_daylight, daylight, towards_sun);
     vec3 through = to_sun.z > 0.0 ? raised(over_ground(to_sun, slope)) : to_sun;
     float needled = needle_share(needles, needles_from, at.z + base_elevation);
+    float today = day_of_year(wired_daylight, daylight, day);
     Stand all = stand_of(stands, cell, tallest, shortest, needled);
     float end = wired_key ? end_of_table(reach, cell, textureSize(key, 0)) : reach;
     Stand drawn = thinned(all, away, whole, end, texelFetch(limit, ivec2(0), 0).r);
     if (tree) {
         float over = at.z - map_of(height, share) * relief;
         vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun, through);
-        albedo = vec4(colour_of_kind(kind_of(at.w), day), 1.0);
+        albedo = vec4(colour_of_kind(kind_of(at.w), today), 1.0);
         taken = vec4(0.0, light, 1.0);
         return;
     }
@@ -133,7 +135,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     // Half the angle of a pixel is one over the lens's scale, times one over the picture's half.
     float lens = length(transpose(clip_from_world)[1].xyz);
     float pixel = 2.0 * away / (lens * float(size.y)) / sqrt(max(to_eye.z, 0.05));
-    vec3 leaves = mean_leaf_colour(needle_area(needled), day);
+    vec3 leaves = mean_leaf_colour(needle_area(needled), today);
     if (hidden > 0.01) leaves *= lumps(at.xy, pixel);
     albedo.rgb = mix(albedo.rgb, leaves, hidden);
     // By brightness, what comes from the leaves of the colour that both have together.

@@ -71,15 +71,25 @@ set = {{ sun = {sun}, gain = 2.0, ambient = 0.6, trees = {trees}, detail = "full
 
 
 def stand(
-    engine, make_sketch, distance, most=0.7, elevation=8.0, sun="[135, 35]", slope=0.0, trees=200000, given=""
+    engine,
+    make_sketch,
+    distance,
+    most=0.7,
+    elevation=8.0,
+    sun="[135, 35]",
+    slope=0.0,
+    trees=200000,
+    given="",
+    passes="",
+    shown="view.shaded",
 ):
     """Return what the eye sees of a stand on a plain: about 300 m of it, or 5 degrees."""
     given = given and f", {given}"
-    text = STAND.format(**{k: v for k, v in locals().items() if k not in ("engine", "make_sketch")})
-    sketch = make_sketch(text, size=3, extent=16000.0, relief=4000.0, flat=FLAT)
+    text = STAND.format(**{k: v for k, v in locals().items() if k not in ("engine", "make_sketch", "passes")})
+    sketch = make_sketch(passes + text, size=3, extent=16000.0, relief=4000.0, flat=FLAT)
     lens = max(np.degrees(2 * np.arctan(75.0 / distance)), 5.0)
     sketch = sketch.with_camera(replace(sketch.camera, field_of_view=lens))
-    return engine.read(sketch, "view.shaded", size=(320, 180)).copy()
+    return engine.read(sketch, shown, size=(320, 180)).copy()
 
 
 @pytest.mark.slow
@@ -352,3 +362,14 @@ def test_beyond_the_square_of_tree_shadows_the_wood_shades_as_one_body(kept, ctx
     south, north = (a + (b - a) * (x - column) for a, b in corners)
     np.testing.assert_allclose(share[beyond], south + (north - south) * (y - row), atol=0.01)
     assert beyond.sum() > 1000 and (share[beyond] < 0.5).mean() > 0.05
+
+
+@pytest.mark.parametrize(("day", "from_zero"), [(292, 291), (366, 0)])
+def test_leaves_have_the_season_of_the_daylight(kept, ctx, make_sketch, day, from_zero):
+    """One day for sun and leaves: daylight counts from 1, the parameter of trees from 0."""
+    daylight = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ day = {day} }}\n'
+    by_sun, by_hand = (
+        stand(kept, make_sketch, 6000.0, passes=passes, given=given, shown="view.wooded:albedo")
+        for passes, given in ((daylight, ""), ("", f"day = {from_zero}"))
+    )
+    np.testing.assert_array_equal(by_sun, by_hand)

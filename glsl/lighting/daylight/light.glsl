@@ -2,9 +2,9 @@
 //
 //   gives    light, a row of texels: 0 direction to the sun, elevation; 1 its light, azimuth; 2
 //            the sky's light on level ground, turbidity; 3 the zenith, what all is multiplied by
-//            for the eye; 4 the mean horizon; 5 sun and sky on level ground; 6 what clouds send
-//            down, share of open sky; from 7 on the mean horizon as seen from each height of
-//            sky/dome.glsl
+//            for the eye; 4 the mean horizon; 5 sun and sky on level ground,
+//            days from the first of January; 6 what clouds send down, share of open sky; from 7
+//            on the mean horizon as seen from each height of sky/dome.glsl
 //   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place,
 //            the air, the cover and two tables
 //   units    light without unit, 1 that of the sun outside the air on a surface that faces it;
@@ -24,6 +24,7 @@
 #pragma kernel(output = "light:rgba32f")
 
 uniform sampler2D place;           //! input
+uniform sampler2D date;            //! input
 uniform sampler2D columns;         //! input
 uniform sampler2D dome;            //! input
 uniform sampler2D air;             //! input
@@ -80,6 +81,6 @@ vec4 kernel(ivec2 texel) {
     if (texel.x == 4 || texel.x >= 7) {
         found = vec4(eye * (open * horizon + cloud * overcast(HORIZON)), 1.0);
     }
-    if (texel.x == 5) found = vec4(eye * whole, 1.0);
+    if (texel.x == 5) found = vec4(eye * whole, texelFetch(date, ivec2(0), 0).r);
     return found;
 }

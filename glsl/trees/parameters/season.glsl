@@ -1,4 +1,4 @@
-// trees/parameters/season.glsl -- the day of the year, for the colour of leaves.
+// trees/parameters/season.glsl -- the day of the year, for the colour of leaves, unless daylight has it.
 //
 //   gives    day
 //   needs    nothing
@@ -8,5 +8,6 @@
 #ifndef TREES_PARAMETERS_SEASON
 #define TREES_PARAMETERS_SEASON
 uniform float day = 180.0;  //! slider(0, 365) step(1) unit("d") group("Species")
-                            //! Day of the year: spring, summer, autumn, bare
+                            //! Day of the year where no daylight says it: spring, summer,
+                            //! autumn, bare
 #endif
