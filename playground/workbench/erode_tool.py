@@ -6,8 +6,9 @@ input is are given back at the next stamp, shifted with the window: so water goe
 
 A stamp is always of the same seconds, and its window of the same size around the brush, on the terrain's
 own texels. So a stroke is what the brush's path in time makes of it, whatever frames it was painted in,
-and programs, plan and textures are made once. What the window has past the terrain's edges is as high as
-the edge is and lies outside the brush.
+and programs, plan and textures are made once. A side of the window is a multiple of 32 texels, so that
+k steps of 256 / (32 k) hours by the clock of erosion/hydraulic are 8 hours with a brush of any radius. What
+the window has past the terrain's edges is as high as the edge is and lies outside the brush.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 STAMP = 0.05  # [s] of a stroke that each run of the technique makes
 _APART = 0.25  # [radii] from where a stamp is made in parts
 _MOST_PARTS, _MOST_RUNS = 2, 6  # of a stamp, and from one frame to the next: a faster brush leaves gaps
+_HALF = 16  # texels of which half a window has a multiple: a side of 32 k + 1
 _LEAST_SOFTNESS = 0.25  # of the brush, so that its rim is no step
 
 Place = tuple[float, float]
@@ -104,7 +106,8 @@ class ErodeTool:
         """
         shape = terrain[0].shape
         spacing = spacing_of((shape[1], shape[0]), extent)
-        half = np.ceil(brush.radius / spacing).astype(int) + 1
+        reach = np.ceil(brush.radius / spacing).astype(int) + 1
+        half = -(-reach // _HALF) * _HALF
         middle = np.rint(np.array(place) * (np.array(shape[::-1]) - 1)).astype(int)
         first, last = (middle - half)[::-1], (middle + half)[::-1]
         rows, columns = (np.arange(a, b + 1) for a, b in zip(first, last, strict=True))
