@@ -144,6 +144,15 @@ def test_a_stroke_is_the_same_bits_in_however_many_frames(any_engine: Engine, tm
         np.testing.assert_array_equal(other, found[0])
 
 
+def test_a_fast_stroke_is_the_same_bits_in_however_many_frames(any_engine: Engine, tmp_path: Path):
+    """Of 24 radii a second: at each twentieth of a second it erodes once, where the brush then is."""
+    path = (0.05, 0.1), (0.9, 0.93)
+    found = [work(canvas(any_engine, tmp_path), *path, seconds=0.4, frames=frames) for frames in (2, 8, 32)]
+    assert found[0].min() < 0
+    for other in found[1:]:
+        np.testing.assert_array_equal(other, found[0])
+
+
 @pytest.mark.parametrize("place", [(0.0, 0.0), (1.0, 0.4), (0.02, 0.99)])
 def test_at_the_edges_it_wears_what_is_there(any_engine: Engine, tmp_path: Path, place: tuple[float, float]):
     on = canvas(any_engine, tmp_path)
