@@ -59,6 +59,17 @@ def test_an_error_is_of_the_last_write_and_the_next_one_takes_it_away() -> None:
     assert writing.error is None and ended.wait(10)
 
 
+def test_each_write_is_reported_before_a_wait_for_it_ends() -> None:
+    """What is called may be gone afterwards: the window that it wakes."""
+    seen: list[tuple[int, bool]] = []
+    writing = LatestWrite(lambda: seen.append((writing.writes, writing.pending)))
+    for number in (1, 2, 3):
+        writing.give(lambda: None)
+        writing.wait()
+        assert len(seen) == number
+    assert seen == [(1, True), (2, True), (3, True)]
+
+
 def test_a_stroke_s_end_waits_for_no_file(
     session: Session, painting: Painting, monkeypatch: pytest.MonkeyPatch
 ) -> None:
