@@ -22,9 +22,7 @@ uniform sampler2D daylight;  //! input
 uniform sampler2D columns;   //! input
 uniform sampler2D backdrop;  //! input("linear")
 uniform sampler2D in_front;  //! input("linear")
-uniform int clouds = 2;      //! menu("none", "flat", "heaped")
-                             //! What clouds are drawn: none, a flat layer for slow renderers,
-                             //! or heaps
+#include "clouds/parameters/drawn.glsl"
 
 // The sun is 47,000 times as bright as white paper in its light, far past what half floats hold.
 const float BRIGHTEST = 60.0;

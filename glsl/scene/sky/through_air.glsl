@@ -22,9 +22,7 @@ uniform sampler2D daylight;       //! input
 uniform sampler2D scattered;      //! input("linear")
 uniform sampler2D left;           //! input("linear")
 uniform sampler2D drift;          //! input("black")
-uniform int clouds = 2;           //! menu("none", "flat", "heaped")
-                                  //! What clouds are drawn: none, a flat layer for slow
-                                  //! renderers, or heaps
+#include "clouds/parameters/drawn.glsl"
 uniform vec3 beyond = vec3(0.07, 0.10, 0.05);  //! colour
                                   //! Of the flat land beyond the terrain
 
