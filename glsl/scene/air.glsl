@@ -72,7 +72,7 @@ void kernel(ivec2 texel, out vec4 scattered, out vec4 left) {
     vec4 wind = texelFetch(drift, ivec2(0), 0);
     float ground = texelFetch(bounced, ivec2(0), 0).a;
     Air air = air_of(now.turbidity);
-    vec3 kept = vec3(1.0);
+    vec3 transmittance = vec3(1.0);
     vec3 found = vec3(0.0);
     float reached = start;
     float mist_depth = 0.0;
@@ -110,13 +110,13 @@ void kernel(ivec2 texel, out vec4 scattered, out vec4 left) {
                                                 sunlight_here, together, ahead.z, here.sun_rise,
                                                 from.sky, ground * now.level);
         }
-        found += kept * light;
-        kept *= here.left;
+        found += transmittance * light;
+        transmittance *= here.left;
         reached = next;
         mist_depth += drops;
     }
     // Of the mist, its depth up to here and its density here, for what reads between two slices.
     float density = exp(-max(1000.0 * (reached - mist_from), 0.0) / mist_top);
     scattered = vec4(found, mist_depth);
-    left = vec4(kept, mist * density);
+    left = vec4(transmittance, mist * density);
 }
