@@ -27,6 +27,15 @@ def test_clouds_leave_of_the_beam_what_their_cover_leaves(any_engine, make_sketc
         np.testing.assert_allclose(found[..., 3], np.exp(-depth), rtol=0.01, atol=1e-4)
 
 
+@pytest.mark.parametrize("size", ["[48, 33]", "[100, 100]", "[257, 257]"])
+def test_every_row_of_a_tile_counts_as_much(any_engine, make_sketch, size):
+    """As above, where the rows are no multiple of those of the table."""
+    for cover in (0.2, 0.6):
+        found = any_engine.read(field(make_sketch, size=size, clouds=cover, seed=3), "field")
+        beam = (1 - 0.75 * cover**3.4) * (1 - cover**2)
+        assert found[..., 3].astype(np.float64).mean() == pytest.approx(beam, abs=1 / 255), cover
+
+
 def test_their_cover_is_daylight_s(any_engine, make_sketch):
     day = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = { clouds = 0.55 }\n'
     wired = any_engine.read(field(make_sketch, day=day, clouds=0.1), "field")
