@@ -76,3 +76,39 @@ def test_only_those_within_its_distances_are_drawn(kept, ctx, make_sketch, value
     )
     assert not kept.read(sketch, "seen", size=(256, 256)).any()
     assert not kept.read(sketch.with_values({"list.total_of": 0.0}), "seen", size=(256, 256)).any()
+
+
+COVERED = """
+[[pass]]
+name = "red"
+use = "./red"
+[[pass]]
+name = "ground"
+use = "scene/ground"
+size = [33, 33]
+inputs = { height = "height" }
+[[pass]]
+name = "covered"
+use = "scene/cover"
+size = [256, 256]
+inputs = { seen = "seen", ground = "ground", colour = "red" }
+"""
+
+
+@pytest.mark.parametrize("name", ["rock", "conifer"])
+def test_a_model_has_its_own_colour_whatever_the_ground_s_is(kept, ctx, make_sketch, name):
+    """Rocks are as bright as the model's corners, to half a shade of sixteen; trees have the season's."""
+    kind = {"rock": "rock", "conifer": "needles"}[name]
+    text = PASSES.format(name=name, values=f'kind = "{kind}"').replace("[view]", COVERED + "[view]", 1)
+    red = '#pragma kernel(output = "red:rgba16f")\nvec4 kernel(ivec2 t) { return vec4(1, 0, 0, 1); }\n'
+    sketch = make_sketch(text, size=33, extent=1000.0, relief=1.0, list=LIST, red=red)
+    seen = kept.read(sketch, "seen", size=(256, 256)).copy()
+    found = kept.read(sketch, "covered", size=(256, 256))[seen[..., 3] >= 4, :3].astype(np.float64)
+    lit = found @ [0.2126, 0.7152, 0.0722]
+    assert len(found) > 1000 and (found[:, 1] > 0.5 * found[:, 0]).all(), "nothing of the red ground"
+    if name == "rock":
+        model = read_model(GLSL / "sketches" / "data" / "rock.glb").colours.astype(np.float64)
+        shades = model @ [0.2126, 0.7152, 0.0722]
+        assert shades.min() - 1 / 32 <= lit.min() < lit.max() <= shades.max() + 1 / 32
+    else:
+        assert (found[:, 1] > found[:, 0]).all() and 0.02 < lit.mean() < 0.06, "LOPEX93, needles"
