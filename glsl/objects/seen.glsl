@@ -13,15 +13,14 @@
 #include "scene/packing.glsl"
 #include "trees/kinds.glsl"
 #include "trees/quad.glsl"
-#pragma draw(mesh = "triangles", count = "triangles", instances = "min(total.x, objects)", \
-             output = "seen:rgba32f", samples = 1)
+#pragma draw(mesh = "triangles", count = "place.size.x * place.size.y // 3", \
+             instances = "min(total.x, objects)", output = "seen:rgba32f", samples = 1)
 
 uniform sampler2D tree;    //! input
 uniform sampler2D total;   //! input
 uniform sampler2D place;   //! input
 uniform sampler2D facing;  //! input
 uniform sampler2D tint;    //! input
-uniform int triangles = 512;      //! slider(1, 65536) Triangles of the model at most
 uniform int objects = 4096;       //! slider(1, 65536) How many are drawn at most
 uniform float tall = 1.0;         //! log_slider(0.01, 100) unit("m") Height of the model itself
 uniform float sunk = 0.0;         //! slider(0, 1) step(0.01) How deep it stands in the ground

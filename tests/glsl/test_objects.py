@@ -1,10 +1,14 @@
 """Models at the places of a list: where their points are, and what they are made of."""
 
+import json
+
 import numpy as np
 import pytest
 
 from playground.paths import GLSL
 from playground.terrain.model_files import read_model
+
+from ..terrain.test_model_files import PLACES, with_blob
 
 LIST = """
 #pragma kernel(output = "tree:rgba32f, total:r32f")
@@ -112,3 +116,16 @@ def test_a_model_has_its_own_colour_whatever_the_ground_s_is(kept, ctx, make_ske
         assert shades.min() - 1 / 32 <= lit.min() < lit.max() <= shades.max() + 1 / 32
     else:
         assert (found[:, 1] > found[:, 0]).all() and 0.02 < lit.mean() < 0.06, "LOPEX93, needles"
+
+
+def test_all_triangles_of_a_model_are_drawn(kept, ctx, make_sketch, tmp_path):
+    """Of a thousand only the last has an area."""
+    indices = np.zeros(3000, "<u2")
+    indices[-3:] = 0, 1, 2
+    found = with_blob(PLACES.tobytes() + indices.tobytes(), accessors__1__count=3000)
+    found["bufferViews"][1]["byteLength"] = indices.nbytes
+    path = tmp_path / "many.gltf"
+    path.write_text(json.dumps(found))
+    text = PASSES.format(name="rock", values="").replace("sketches/data/rock.glb", "./many.gltf")
+    sketch = make_sketch(text, size=33, extent=1000.0, relief=1.0, list=LIST)
+    assert (kept.read(sketch, "seen", size=(256, 256))[..., 3] >= 4).sum() > 500
