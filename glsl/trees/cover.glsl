@@ -4,7 +4,7 @@
 //            (scene/shaded); shadow: what trees leave of the sun on the ground
 //   needs    lighting/daylight_date.glsl, lighting/daylight_reading.glsl, noise/gradient.glsl,
 //            scene/ground_reading.glsl, scene/surfaces.glsl, terrain/heightfield.glsl,
-//            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of the ground,
+//            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of scene/cover,
 //            a height, a density, the table of trees/wood and the shadows of trees/shade; the
 //            sun's visible part with the woods on the terrain (trees/canopy), if any; of
 //            trees/place the key, for the size of its table, and the limit
@@ -122,7 +122,6 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     if (tree) {
         float over = at.z - map_of(height, share) * relief;
         vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun, through);
-        albedo = vec4(colour_of_kind(kind_of(at.w), today), 1.0);
         taken = vec4(0.0, light, 1.0);
         return;
     }

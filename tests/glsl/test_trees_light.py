@@ -364,12 +364,12 @@ def test_beyond_the_square_of_tree_shadows_the_wood_shades_as_one_body(kept, ctx
     assert beyond.sum() > 1000 and (share[beyond] < 0.5).mean() > 0.05
 
 
-@pytest.mark.parametrize(("day", "from_zero"), [(292, 291), (366, 0)])
-def test_leaves_have_the_season_of_the_daylight(kept, ctx, make_sketch, day, from_zero):
+@pytest.mark.parametrize(("day", "from_zero", "distance"), [(292, 291, 1000.0), (366, 0, 6000.0)])
+def test_leaves_have_the_season_of_the_daylight(kept, ctx, make_sketch, day, from_zero, distance):
     """One day for sun and leaves: daylight counts from 1, the parameter of trees from 0."""
     daylight = f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ day = {day} }}\n'
     by_sun, by_hand = (
-        stand(kept, make_sketch, 6000.0, passes=passes, given=given, shown="view.wooded:albedo")
+        stand(kept, make_sketch, distance, passes=passes, given=given, shown="view.wooded:albedo")
         for passes, given in ((daylight, ""), ("", f"day = {from_zero}"))
     )
     np.testing.assert_array_equal(by_sun, by_hand)

@@ -219,7 +219,11 @@ export function createSession(sketches, first = 0) {
       map = null;
       go({ index, edits, steps: new Map() });
     },
-    /** Stop a repeat early, unless that is locked; null: not at all. @param {string} path @param {number | null} count */
+    /**
+     * Stop a repeat early, unless that is locked; null: not at all.
+     * @param {string} path
+     * @param {number | null} count
+     */
     stop(path, count) {
       if (sketch().passes[path]?.locked) return;
       const steps = new Map(now.steps);
