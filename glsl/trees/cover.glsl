@@ -1,7 +1,7 @@
 // trees/cover.glsl -- what trees make of a pixel's colour and light, single ones and whole woods.
 //
 //   gives    albedo; taken: of the sun what goes with the facing and what does not, and of the sky
-//            (scene/shaded); shadow: what trees leave of the sun on the ground
+//            (scene/shaded); shadow: what trees and another shadow leave of the sun
 //   needs    lighting/daylight_date.glsl, lighting/daylight_reading.glsl, noise/gradient.glsl,
 //            scene/ground_reading.glsl, scene/surfaces.glsl, terrain/heightfield.glsl,
 //            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of scene/cover,
@@ -32,6 +32,7 @@ uniform sampler2D ground;   //! input("linear", "mipmap")
 uniform sampler2D density;  //! input
 uniform sampler2D table;    //! input
 uniform sampler2D shade;    //! input("black")
+uniform sampler2D other_shadow;  //! input("white")
 uniform sampler2D canopy_visibility;  //! input("white")
 uniform sampler2D key;      //! input("white")
 uniform sampler2D limit;    //! input("white")
@@ -102,7 +103,8 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     vec4 at = texelFetch(seen, texel, 0);
     albedo = texelFetch(cover, texel, 0);
     taken = vec4(1.0, 0.0, 1.0, 1.0);
-    shadow = 1.0;
+    float other = wired_other_shadow ? texelFetch(other_shadow, texel, 0).r : 1.0;
+    shadow = other;
     bool tree = is_object(at.w) && is_tree(kind_of(at.w));
     if (!tree && !is_top(at.w)) return;
     vec2 share = at.xy / extent;
@@ -126,7 +128,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
         return;
     }
     vec2 shaded = shade_at(at.xy);
-    shadow = mix(shadow_of_woods(share, around.sun), 1.0 - shaded.x, shaded.y);
+    shadow = other * mix(shadow_of_woods(share, around.sun), 1.0 - shaded.x, shaded.y);
     if (stands <= 0.0) return;
     // What of the ground all trees leave free, over what those leave free that are drawn.
     float free = reaches(all, 1.0, to_eye) / max(reaches(drawn, 1.0, to_eye), 1e-6);

@@ -1,9 +1,12 @@
 """Crowns, stands and woods: by rays through ellipsoids in float64, and by what is drawn of a stand."""
 
+import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
+
+from playground.paths import GLSL
 
 FIELD = np.array([1 / 150.0, 4.5, 7.0, 9.0])  # trees a square metre, half width, half height, middle
 
@@ -82,11 +85,14 @@ def stand(
     given="",
     passes="",
     shown="view.shaded",
+    **files,
 ):
     """Return what the eye sees of a stand on a plain: about 300 m of it, or 5 degrees."""
     given = given and f", {given}"
-    text = STAND.format(**{k: v for k, v in locals().items() if k not in ("engine", "make_sketch", "passes")})
-    sketch = make_sketch(passes + text, size=3, extent=16000.0, relief=4000.0, flat=FLAT)
+    text = STAND.format(
+        **{k: v for k, v in locals().items() if k not in ("engine", "make_sketch", "passes", "files")}
+    )
+    sketch = make_sketch(passes + text, size=3, extent=16000.0, relief=4000.0, flat=FLAT, **files)
     lens = max(np.degrees(2 * np.arctan(75.0 / distance)), 5.0)
     sketch = sketch.with_camera(replace(sketch.camera, field_of_view=lens))
     return engine.read(sketch, shown, size=(320, 180)).copy()
@@ -373,3 +379,35 @@ def test_leaves_have_the_season_of_the_daylight(kept, ctx, make_sketch, day, fro
         for passes, given in ((daylight, ""), ("", f"day = {from_zero}"))
     )
     np.testing.assert_array_equal(by_sun, by_hand)
+
+
+def offered(name):
+    table = tomllib.loads((GLSL / f"{name}.toml").read_text(encoding="utf-8"))
+    return {part: set(table[part]) for part in ("inputs", "parameters")}
+
+
+# What a scene in the air of a daylight makes itself: a plain sun, sky and haze.
+PLAIN = {"light", "scattered", "left", "sky_picture", "sun", "sun_colour", "gain", "sky_colour", "ambient"}
+PLAIN |= {"sky", "zenith", "horizon", "nadir", "haze"}
+
+
+@pytest.mark.parametrize("part", ["inputs", "parameters"])
+def test_a_scene_with_trees_offers_all_that_the_scene_does(part):
+    names = ("terrain", "outdoors", "wooded", "wooded_outdoors")
+    bare, air, wooded, both = (offered(f"scene/{name}")[part] for name in names)
+    assert not bare - wooded
+    assert not air - both
+    assert not wooded - PLAIN - both
+
+
+HALF = '#pragma kernel(output = "dark:r16f")\nfloat kernel(ivec2 at) { return at.x < 160 ? 1.0 : 0.0; }\n'
+
+
+def test_a_shadow_of_the_sketch_falls_on_ground_and_trees(kept, ctx, make_sketch):
+    """Where it takes nothing all stays; where it takes all, only the light of the sky is left."""
+    shadow = '[[pass]]\nname = "shadow"\nuse = "./half"\nsize = [320, 180]\n'
+    halved = stand(kept, make_sketch, 1000.0, passes=shadow, half=HALF)
+    free = stand(kept, make_sketch, 1000.0)
+    sky = stand(kept, make_sketch, 1000.0, given='sun_colour = "#000000"')
+    np.testing.assert_array_equal(halved[:, :160], free[:, :160])
+    np.testing.assert_array_equal(halved[:, 160:], sky[:, 160:])
