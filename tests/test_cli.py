@@ -338,6 +338,9 @@ def test_a_picture_is_drawn_larger_and_reduced(run: Run, slope: Path, tmp_path: 
     np.testing.assert_array_equal(fine, reduced(large, 2))
     done = run("render", "slope", "--supersample", "9")
     assert (done.returncode, done.stderr) == (2, "error: --supersample 9: expected a whole number, 1 to 8\n")
+    done = run("render", "slope", "--texture", "height", "-o", "h.npy", "--supersample", "2")
+    wanted = "error: --supersample is for pictures; --texture writes the values of one pass as they are\n"
+    assert (done.returncode, done.stderr) == (2, wanted)
 
 
 def test_settings_presets_and_shots_are_seen_in_the_picture(run: Run, slope: Path, tmp_path: Path):

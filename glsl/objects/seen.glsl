@@ -13,15 +13,14 @@
 #include "scene/packing.glsl"
 #include "trees/kinds.glsl"
 #include "trees/quad.glsl"
-#pragma draw(mesh = "triangles", count = "triangles", instances = "min(total.x, objects)", \
-             output = "seen:rgba32f", samples = 1)
+#pragma draw(mesh = "triangles", count = "place.size.x * place.size.y // 3", \
+             instances = "min(total.x, objects)", output = "seen:rgba32f", samples = 1)
 
 uniform sampler2D tree;    //! input
 uniform sampler2D total;   //! input
 uniform sampler2D place;   //! input
 uniform sampler2D facing;  //! input
 uniform sampler2D tint;    //! input
-uniform int triangles = 512;      //! slider(1, 65536) Triangles of the model at most
 uniform int objects = 4096;       //! slider(1, 65536) How many are drawn at most
 uniform float tall = 1.0;         //! log_slider(0.01, 100) unit("m") Height of the model itself
 uniform float sunk = 0.0;         //! slider(0, 1) step(0.01) How deep it stands in the ground
@@ -33,9 +32,9 @@ const uint SALT = 0xf4e80b63u;  // CRC-32 of "objects/seen"
 
 // Darker and lighter ones of a kind, by the model's colour at a corner.
 int kind_at(vec3 colour) {
-    float light = clamp(2.0 * dot(colour, vec3(0.2126, 0.7152, 0.0722)), 0.0, 0.999);
-    if (kind == 2) return FIRST_ROCK + int(light * 8.0);
-    return kind_of_tree(kind == 1, int(light * 32.0));
+    float light = dot(colour, vec3(0.2126, 0.7152, 0.0722));
+    if (kind == 2) return kind_of_rock(light);
+    return kind_of_tree(kind == 1, int(clamp(2.0 * light, 0.0, 0.999) * 32.0));
 }
 
 vec4 vertex(vec3 corner, out vec3 position, out vec3 normal, out float material) {

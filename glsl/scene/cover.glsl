@@ -1,21 +1,24 @@
-// scene/cover.glsl -- the colour of the ground at each pixel of the scene.
+// scene/cover.glsl -- the colour of what each pixel sees: the ground and the objects on it.
 //
 //   gives    albedo: what a white light would show, linear
 //   needs    scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
-//            view/surface.glsl, texturing/detail_near.glsl, texturing/splat_weights.glsl; seen and
-//            ground; a colour, or weights and four tiles as for view/splat, if there are
+//            trees/kinds.glsl, view/surface.glsl, texturing/detail_near.glsl,
+//            texturing/splat_weights.glsl; seen and ground; a colour, or weights and four tiles
+//            as for view/splat, if there are
 //   units    metres; colours linear; a tile is so many times side by side from west to east
 //   source   Belaiche 2010, sections 2.5 (splatting) and 2.7 (the detail image)
-//   tested   tests/glsl/test_scene.py, against view/terrain and view/splat
+//   tested   tests/glsl/test_scene.py, against view/terrain and view/splat;
+//            tests/glsl/test_objects.py
 //
 // Any technique of texturing/ gives the colour. What finds a colour in another way, as for trees,
-// is a pass of its own that begins with this one's.
+// is a pass of its own that begins with this one's. Objects have the colour of their kind.
 #include "maths/number.glsl"
 #include "scene/footprint.glsl"
 #include "scene/ground_reading.glsl"
 #include "scene/surfaces.glsl"
 #include "texturing/detail_near.glsl"
 #include "texturing/splat_weights.glsl"
+#include "trees/kinds.glsl"
 #include "view/surface.glsl"
 #pragma kernel(output = "albedo:rgba16f")
 
@@ -30,6 +33,7 @@ uniform sampler2D path;     //! input("linear", "repeat", "mipmap", "white")
 #include "view/parameters/detail_image.glsl"
 #include "view/parameters/layers.glsl"
 #include "view/parameters/earth.glsl"
+#include "trees/parameters/season.glsl"
 
 // A texture that lies over the whole terrain.
 vec4 draped(sampler2D image, vec2 share, Footprint foot) {
@@ -69,6 +73,7 @@ vec4 kernel(ivec2 texel) {
     vec4 at = texelFetch(seen, texel, 0);
     if (is_sky(at.w)) return vec4(0.0);
     if (is_broken(at.w)) return vec4(NOT_A_NUMBER, 1.0);
+    if (is_object(at.w)) return vec4(colour_of_kind(kind_of(at.w), day), 1.0);
     vec2 share = at.xy / extent;
     if (is_cut(at.w)) return vec4(cut_of_land(earth, share, depth_of_cut(at.w)), 1.0);
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));

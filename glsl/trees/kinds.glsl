@@ -1,6 +1,7 @@
 // trees/kinds.glsl -- the kinds of what stands on the terrain, and their colours by the season.
 //
-//   gives    FIRST_NEEDLES, FIRST_ROCK, kind_of_tree, is_tree, colour_of_kind, mean_leaf_colour
+//   gives    FIRST_NEEDLES, FIRST_ROCK, kind_of_tree, kind_of_rock, is_tree, colour_of_kind,
+//            mean_leaf_colour
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    kinds as of scene/packing.glsl; days of the year from 0; colours linear
 //   source   colours made here: albedos of leaves are 0.03 to 0.1 in green light, of autumn leaves
@@ -13,6 +14,7 @@
 
 const int FIRST_NEEDLES = 32;
 const int FIRST_ROCK = 48;
+const int ROCKS = 8;
 
 // `tint`: 0 to 31.
 int kind_of_tree(bool needles, int tint) { return needles ? FIRST_NEEDLES + tint / 2 : tint; }
@@ -39,10 +41,21 @@ vec3 needle_colour(float tint) {
     return mix(vec3(0.020, 0.034, 0.015), vec3(0.030, 0.042, 0.018), tint);
 }
 
+// A rock's kind says how bright it is, from black to half of white; its hue is that of granite.
+int kind_of_rock(float brightness) {
+    return FIRST_ROCK + int(clamp(2.0 * brightness, 0.0, 0.999) * float(ROCKS));
+}
+
+vec3 rock_colour(int shade) {
+    vec3 hue = vec3(0.15, 0.13, 0.11);
+    float wanted = (float(min(shade, ROCKS - 1)) + 0.5) / float(2 * ROCKS);
+    return hue * (wanted / dot(hue, vec3(0.2126, 0.7152, 0.0722)));
+}
+
 vec3 colour_of_kind(int kind, float day) {
     if (kind < FIRST_NEEDLES) return leaf_colour((float(kind) + 0.5) / 32.0, day);
     if (kind < FIRST_ROCK) return needle_colour((float(kind - FIRST_NEEDLES) + 0.5) / 16.0);
-    return vec3(0.15, 0.13, 0.11);
+    return rock_colour(kind - FIRST_ROCK);
 }
 
 // Of a stand of which some trees have needles.

@@ -164,6 +164,10 @@ def render(
     times = read_option(
         "--supersample", supersample, within(1, MOST_SUPERSAMPLE), f"a whole number, 1 to {MOST_SUPERSAMPLE}"
     )
+    if times is not None and texture:
+        raise ParameterError(
+            "--supersample is for pictures; --texture writes the values of one pass as they are"
+        )
     moment = moment_of(
         load(kept(sketch, "render"), dialect=dialect).plainly(plain),
         shot=shot,

@@ -251,7 +251,12 @@ def _mesh_values(job: Job) -> dict[str, Value]:
         return dict(step.values)
     if "count" not in mesh_parameters(kernel.registry):
         raise SketchError(f"mesh '{kernel.registry}' takes no count")
-    return {**step.values, "count": expressions.evaluate(kernel.count, job.numbers())}
+    sizes = {
+        f"{name}.size.{axis}": wired.texture.size[k] if wired.texture else 1
+        for name, wired in job.inputs.items()
+        for k, axis in enumerate("xy")
+    }
+    return {**step.values, "count": expressions.evaluate(kernel.count, job.numbers(**sizes))}
 
 
 def _enable(ctx: Any, depth: str, blend: str) -> None:

@@ -242,7 +242,8 @@ def _draw(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
     if samples not in ("0", "1"):
         raise line.error(f"samples = {samples}: expected 1, or 0 for as many as the view has")
     if count:
-        _check("count", count, (*_SIZE, *_numbers(kernel)), line)
+        sizes = [f"{declared.name}.{axis}" for declared in kernel.inputs for axis in _SIZE]
+        _check("count", count, (*_SIZE, *_numbers(kernel), *sizes), line)
     instances = options.get("instances", "")
     if instances:
         texels = [f"{declared.name}.{component}" for declared in kernel.inputs for component in "xyzw"]

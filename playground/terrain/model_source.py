@@ -7,6 +7,7 @@ on, ``CORNERS`` in a row. The fourth number of a place is 1 where there is a cor
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.sketch.model import Value
-from playground.terrain.model_files import read_model
+from playground.terrain.model_files import Model, read_model
 
 CORNERS = 96
 """Corners in a row of texels."""
@@ -23,7 +24,7 @@ CORNERS = 96
 
 def size_of_model(values: Mapping[str, Value]) -> tuple[int, int]:
     """Return how many texels hold a model's corners."""
-    corners = 3 * len(read_model(Path(str(values["model"]))).corners)
+    corners = 3 * len(_model(values).corners)
     return CORNERS, -(-corners // CORNERS)
 
 
@@ -35,12 +36,12 @@ def make_model(
     Raises:
         DataError: as ``read_model``, or the model has more corners than there are texels.
     """
-    path = Path(str(values["model"]))
-    model = read_model(path)
+    model = _model(values)
     texels, corners = size[0] * size[1], 3 * len(model.corners)
     if corners > texels:
         raise DataError(
-            f"this model has {corners} corners; {texels} texels were expected to hold them", file=path
+            f"this model has {corners} corners; {texels} texels were expected to hold them",
+            file=Path(str(values["model"])),
         )
     found = {}
     for name, numbers in (("place", model.corners), ("facing", model.normals), ("tint", model.colours)):
@@ -49,3 +50,18 @@ def make_model(
         rows[:corners, 3] = 1.0
         found[name] = rows.reshape(size[1], size[0], 4)
     return found
+
+
+def _model(values: Mapping[str, Value]) -> Model:
+    """Return a model, which is not read again while its file stays as it is: every plan needs its size."""
+    path = Path(str(values["model"]))
+    try:
+        now = path.stat()
+    except OSError:
+        return read_model(path)  # says why
+    return _read(path, now.st_mtime_ns, now.st_size)
+
+
+@lru_cache(maxsize=8)
+def _read(path: Path, changed: int, size: int) -> Model:
+    return read_model(path)

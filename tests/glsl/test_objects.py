@@ -1,10 +1,14 @@
 """Models at the places of a list: where their points are, and what they are made of."""
 
+import json
+
 import numpy as np
 import pytest
 
 from playground.paths import GLSL
 from playground.terrain.model_files import read_model
+
+from ..terrain.test_model_files import PLACES, with_blob
 
 LIST = """
 #pragma kernel(output = "tree:rgba32f, total:r32f")
@@ -76,3 +80,52 @@ def test_only_those_within_its_distances_are_drawn(kept, ctx, make_sketch, value
     )
     assert not kept.read(sketch, "seen", size=(256, 256)).any()
     assert not kept.read(sketch.with_values({"list.total_of": 0.0}), "seen", size=(256, 256)).any()
+
+
+COVERED = """
+[[pass]]
+name = "red"
+use = "./red"
+[[pass]]
+name = "ground"
+use = "scene/ground"
+size = [33, 33]
+inputs = { height = "height" }
+[[pass]]
+name = "covered"
+use = "scene/cover"
+size = [256, 256]
+inputs = { seen = "seen", ground = "ground", colour = "red" }
+"""
+
+
+@pytest.mark.parametrize("name", ["rock", "conifer"])
+def test_a_model_has_its_own_colour_whatever_the_ground_s_is(kept, ctx, make_sketch, name):
+    """Rocks are as bright as the model's corners, to half a shade of sixteen; trees have the season's."""
+    kind = {"rock": "rock", "conifer": "needles"}[name]
+    text = PASSES.format(name=name, values=f'kind = "{kind}"').replace("[view]", COVERED + "[view]", 1)
+    red = '#pragma kernel(output = "red:rgba16f")\nvec4 kernel(ivec2 t) { return vec4(1, 0, 0, 1); }\n'
+    sketch = make_sketch(text, size=33, extent=1000.0, relief=1.0, list=LIST, red=red)
+    seen = kept.read(sketch, "seen", size=(256, 256)).copy()
+    found = kept.read(sketch, "covered", size=(256, 256))[seen[..., 3] >= 4, :3].astype(np.float64)
+    lit = found @ [0.2126, 0.7152, 0.0722]
+    assert len(found) > 1000 and (found[:, 1] > 0.5 * found[:, 0]).all(), "nothing of the red ground"
+    if name == "rock":
+        model = read_model(GLSL / "sketches" / "data" / "rock.glb").colours.astype(np.float64)
+        shades = model @ [0.2126, 0.7152, 0.0722]
+        assert shades.min() - 1 / 32 <= lit.min() < lit.max() <= shades.max() + 1 / 32
+    else:
+        assert (found[:, 1] > found[:, 0]).all() and 0.02 < lit.mean() < 0.06, "LOPEX93, needles"
+
+
+def test_all_triangles_of_a_model_are_drawn(kept, ctx, make_sketch, tmp_path):
+    """Of a thousand only the last has an area."""
+    indices = np.zeros(3000, "<u2")
+    indices[-3:] = 0, 1, 2
+    found = with_blob(PLACES.tobytes() + indices.tobytes(), accessors__1__count=3000)
+    found["bufferViews"][1]["byteLength"] = indices.nbytes
+    path = tmp_path / "many.gltf"
+    path.write_text(json.dumps(found))
+    text = PASSES.format(name="rock", values="").replace("sketches/data/rock.glb", "./many.gltf")
+    sketch = make_sketch(text, size=33, extent=1000.0, relief=1.0, list=LIST)
+    assert (kept.read(sketch, "seen", size=(256, 256))[..., 3] >= 4).sum() > 500

@@ -228,6 +228,8 @@ def test_sources_draws_and_compute_variants(parse):
         '#pragma draw(mesh = "triangles", count = "2 * points + size.x", samples = 1)\nuniform int points;\n'
     )
     assert (found.count, found.samples) == ("2 * points + size.x", 1)
+    table = '#pragma draw(mesh = "triangles", count = "t.size.x // 3")\nuniform sampler2D t;  //! input\n'
+    assert parse(table).count == "t.size.x // 3"
     found = parse(
         '#pragma compute(groups = "size.y, 1", local = "256, 1", '
         'buffers = "stack:vec4:size.x * 64; n:uint:1")\n'

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 from playground.errors import DataError
-from playground.terrain.model_files import MOST_TRIANGLES, read_model
+from playground.terrain import model_source
+from playground.terrain.model_document import MOST_NUMBERS, MOST_TRIANGLES
+from playground.terrain.model_files import MOST_PARTS, read_model
 from playground.terrain.model_source import CORNERS, make_model, size_of_model
 
 from ..models import DATA, FILES
@@ -47,6 +49,38 @@ def document(**changes):
             inner, key = inner[key], following
         inner[key] = value
     return found
+
+
+def rough(given):
+    """Return a document whose material has that in place of an object."""
+    return document(meshes__0__primitives__0__material=0, materials=[{"pbrMetallicRoughness": given}])
+
+
+def with_blob(data, **changes):
+    """Return a document whose buffer is that."""
+    text = "data:a/b;base64," + base64.b64encode(data).decode()
+    return document(buffers=[{"byteLength": len(data), "uri": text}], **changes)
+
+
+def indexed(kind, last):
+    """Return a document with indices of a component type, the last of them as given."""
+    numbers = np.array([0, 1, 2, 0, 2, last], {5120: "i1", 5122: "<i2", 5123: "<u2", 5126: "<f4"}[kind])
+    data = PLACES.tobytes() + numbers.tobytes()
+    view = {"buffer": 0, "byteOffset": 48, "byteLength": numbers.nbytes}
+    return with_blob(data, accessors__1__componentType=kind, bufferViews__1=view)
+
+
+def placed_at(number):
+    """Return a document with one number of a place as given."""
+    places = PLACES.copy()
+    places[1, 0] = number
+    return with_blob(places.tobytes() + INDICES.tobytes() + COLOURS.tobytes())
+
+
+def nested(scale, deep):
+    """Return a document whose mesh, with normals, is inside so many nodes of a scale."""
+    nodes = [{"scale": scale, "children": [k + 1]} for k in range(deep)] + [{"mesh": 0, "scale": scale}]
+    return document(nodes=nodes, meshes__0__primitives__0__attributes={"POSITION": 0, "NORMAL": 0})
 
 
 @pytest.fixture
@@ -153,6 +187,43 @@ GLB = struct.pack("<III", 0x46546C67, 2, 24) + struct.pack("<II", 4, 0x4E4F534A)
         (document(buffers__0__uri="model.bin"), "has its data in another file, model.bin; one file, .glb"),
         (document(buffers__0__uri="data:a/b;base64,%"), "has damaged data"),
         (document(nodes=[{"mesh": 0, "matrix": [1, 2]}]), "has a matrix that is not 16 numbers"),
+        (document(nodes=[{"mesh": 0, "scale": [True, 1, 1]}]), "has a scale that is not 3 numbers"),
+        # What is of another kind than it should be.
+        (document(extensionsRequired=None), "has extensionsRequired None; a list was expected"),
+        (document(extensionsRequired=7), "has extensionsRequired 7; a list was expected"),
+        (document(scenes=3), "has scenes 3; a list was expected"),
+        (document(scenes=[{"nodes": None}]), "has nodes None; a list was expected"),
+        (document(scenes=[], nodes={"mesh": 0}), "has nodes {'mesh': 0}; a list was expected"),
+        (document(scenes=[], nodes=[4]), r"names nodes\[0\], which it does not have"),
+        (document(scenes=[], nodes=[{"children": [[]]}]), r"names nodes\[\[\]\], which it does not have"),
+        (document(scenes=[{"nodes": [True]}]), r"names nodes\[True\]"),
+        (document(nodes=[{"children": 5}]), "has children 5; a list was expected"),
+        (document(meshes__0__primitives=None), "has primitives None; a list was expected"),
+        (document(meshes__0__primitives=[9]), "has primitives 9; an object was expected"),
+        (document(meshes__0__primitives__0__attributes=[0]), r"has attributes \[0\]; an object was"),
+        (document(meshes__0__primitives__0__attributes=None), "has attributes None; an object was"),
+        (document(meshes__0__primitives__0__mode=1.0), r"has mode 1.0; triangles \(mode 4\) were"),
+        (document(meshes__0__primitives__0__mode=[]), r"has mode \[\]; triangles \(mode 4\) were"),
+        (document(meshes__0__primitives__0__indices=None), r"names accessors\[None\]"),
+        (rough(None), "has pbrMetallicRoughness None; an object was expected"),
+        (rough("grey"), "has pbrMetallicRoughness grey; an object was expected"),
+        (document(accessors__0__type=["VEC3"]), "POSITION of a form that is not read"),
+        (document(accessors__0__componentType=[5126]), "POSITION of a form that is not read"),
+        (document(accessors__0__count=True), "has True of POSITION"),
+        (document(bufferViews__0__buffer=[0]), r"names buffers\[\[0\]\]"),
+        # Indices are whole numbers from 0; none is no triangle.
+        *((indexed(kind, 0), "indices of a form that is not read") for kind in (5120, 5122, 5126)),
+        (indexed(5123, 4), "6 indices into 4 places"),
+        (document(accessors__1__count=0), "has 0 of indices; 1 to 196608 were expected"),
+        (
+            document(accessors__0__count=0, meshes__0__primitives__0__attributes={"POSITION": 0}),
+            "has 0 of POSITION; 1 to 196608 were expected",
+        ),
+        # Numbers that are none, or too far away to be a place.
+        (placed_at(np.nan), "has POSITION that are no numbers"),
+        (placed_at(np.inf), "has POSITION that are no numbers"),
+        (placed_at(3e38), "has places more than 1e[+]12 m away"),
+        (nested([1e11] * 3, 40), "has a transform whose numbers are 1e[+]12 or more"),
     ],
 )
 def test_what_is_wrong_is_said_in_a_sentence(read, wrong, message):
@@ -174,3 +245,76 @@ def test_a_model_has_a_bound(read, tmp_path):
         read(found)
     with pytest.raises(DataError, match="cannot be read: No such file"):
         read_model(tmp_path / "none.glb")
+
+
+def test_what_nothing_is_left_of_has_its_own_normals(read):
+    """Scaled by so little that a normal's length overflows: a triangle is still lit from somewhere."""
+    model = read(nested([1e-200] * 3, 2))
+    np.testing.assert_allclose(np.linalg.norm(model.normals, axis=-1), 1, atol=1e-6)
+    small = read(nested([1e-9] * 3, 1))
+    wanted = np.where(PLACES.any(1)[:, None], PLACES, [0, 0, 1])[INDICES]
+    wanted = wanted / np.linalg.norm(wanted, axis=1, keepdims=True)
+    corners = np.any(PLACES[INDICES], axis=1)
+    found = small.normals.reshape(-1, 3)
+    np.testing.assert_allclose(found[corners], upright(wanted)[corners], atol=1e-6)
+
+
+PART = {"attributes": {"POSITION": 0, "NORMAL": 0, "COLOR_0": 0}, "indices": 1}
+MANY = np.zeros((3 * MOST_TRIANGLES, 3), "<f4").tobytes()
+
+
+def much(nodes=1, parts=1, **changes):
+    """Return parts of one triangle each out of as many places as a model may have, each used often."""
+    data = MANY + INDICES[:3].tobytes()
+    return with_blob(
+        data,
+        nodes=[{"mesh": 0}] * nodes,
+        scenes=[{"nodes": list(range(nodes))}],
+        meshes=[{"primitives": [PART] * parts}],
+        accessors__0__count=3 * MOST_TRIANGLES,
+        accessors__1__count=3,
+        bufferViews__0__byteLength=len(MANY),
+        bufferViews__1={"buffer": 0, "byteOffset": len(MANY), "byteLength": 6},
+        **changes,
+    )
+
+
+def test_places_are_read_once_however_often_they_are_used(read, monkeypatch):
+    """So that work is bound by triangles, as the file's size does not bound it."""
+    seen = []
+    stride = np.lib.stride_tricks.as_strided
+    monkeypatch.setattr(
+        np.lib.stride_tricks, "as_strided", lambda *given: seen.append(given[1]) or stride(*given)
+    )
+    model = read(much(nodes=20, parts=5))
+    assert len(model.corners) == 100
+    assert sorted(seen) == [(3, 2), (3 * MOST_TRIANGLES, 12)]
+
+
+def test_parts_and_numbers_have_bounds(read):
+    with pytest.raises(DataError, match=f"has more than {MOST_PARTS} parts"):
+        read(much(nodes=MOST_PARTS // 64 + 1, parts=64))
+    # Accessor after accessor over the same bytes, each of which would be read.
+    found = much()
+    found["accessors"] += [found["accessors"][0]] * 64
+    found["meshes"][0]["primitives"] = [
+        {"attributes": {"POSITION": k}, "indices": 1} for k in range(3, 3 + 64)
+    ]
+    with pytest.raises(DataError, match=f"has more than {MOST_NUMBERS} numbers"):
+        read(found)
+
+
+def test_a_file_is_read_again_only_when_it_changes(tmp_path, monkeypatch):
+    path = tmp_path / "a.gltf"
+    path.write_text(json.dumps(document()))
+    read_ = []
+    monkeypatch.setattr(model_source, "read_model", lambda given: read_.append(given) or read_model(given))
+    values = {"model": str(path)}
+    for _ in range(3):
+        make_model(values, size_of_model(values))
+    assert read_ == [path]
+    found = document()
+    found["nodes"][0]["translation"] = [5, 0, 0]
+    path.write_text(json.dumps(found))
+    assert make_model(values, size_of_model(values))["place"][0, 0, 0] == 5
+    assert read_ == [path] * 2

@@ -70,3 +70,37 @@ def test_outputs_instances_and_what_goes_on_are_the_engines(
             assert picture.ran == drawn.ran
     with pytest.raises(PageError, match="instances = -1"):
         pages.picture(sketch.name, values={"list.many": -1.0})
+
+
+ROW = """#pragma draw(mesh = "triangles", count = "list.size.x // 2 + more.size.y", output = "frame:rgba8")
+uniform sampler2D list;  //! input
+uniform sampler2D more;  //! input("zero")
+vec4 vertex(vec3 corner) {
+    vec2 place = vec2(corner.x + mod(corner.y, 2.0), corner.y);
+    return vec4(place / 16.0 - 1.0, 0.0, 1.0);
+}
+vec4 fragment() { return vec4(1.0, 0.5, 0.0, 1.0); }
+"""
+
+
+def test_a_draw_has_as_many_triangles_as_an_input_s_size_says(pages: Pages, drawn: Engine, tmp_path: Path):
+    (tmp_path / "row.glsl").write_text(ROW, "utf-8")
+    (tmp_path / "list.glsl").write_text(LIST, "utf-8")
+    sketches = []
+    for wide in (12, 40):
+        body = passes(
+            list=("./list", f"size = [{wide}, 2]"), row=("./row", 'inputs = { list = "list:list" }')
+        )
+        file = tmp_path / f"wide{wide}.toml"
+        file.write_text(f"format = 1\nsize = 33\n{body}{map_of('row')}", "utf-8")
+        sketches.append(load(file))
+    drawn.cache.clear()
+    data = page_data(sketches, frame=SIZE)
+    pages.begin(data)
+    lit = []
+    for one, sketch in zip(data["sketches"], sketches, strict=True):
+        pages.open(one)
+        frame = drawn.render(sketch, size=SIZE)
+        assert pages.picture(sketch.name).levels_off(frame.array) == 0
+        lit.append((drawn.read(sketch, "row", size=SIZE)[..., 0] > 0).any(0).sum())
+    assert lit[1] > 2 * lit[0] > 0

@@ -19,9 +19,9 @@ uniform float clouds = 0.4;    //! slider(0, 1) step(0.01)
 
 float balance_of(int column) {
     int rows = textureSize(balance, 0).y;
-    float total = 0.0;
-    for (int row = 0; row < rows; row++) total += texelFetch(balance, ivec2(column, row), 0).r;
-    return total / float(rows);
+    vec2 total = vec2(0.0);
+    for (int row = 0; row < rows; row++) total += texelFetch(balance, ivec2(column, row), 0).rg;
+    return total.x / max(total.y, 1.0);
 }
 
 float kernel(ivec2 texel) {

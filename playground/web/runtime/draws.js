@@ -45,10 +45,20 @@ export const createDraws = (context, textures, programs, binder, kernels) => {
     meshes.delete(mesh.key);
   };
 
+  /** A side of an input's texture, of a name as `list.size.x`; 1 where nothing is wired.
+   *  @param {Job} job @param {string} name */
+  const sizeOf = ({ inputs }, name) => {
+    const [declared, , axis] = name.split("."), wired = inputs.get(declared);
+    return BigInt(wired ? wired.texture.size["xy".indexOf(axis)] : 1);
+  };
+
   /** @param {Job} job @returns {Mesh} */
   const meshOf = (job) => {
     const { kernel } = job.step, name = /** @type {string} */ (kernel.mesh), values = { ...job.step.values };
-    if (kernel.count !== undefined) values.count = whole(kernel.count, kernels.namesOf(job));
+    if (kernel.count !== undefined) {
+      const names = kernels.namesOf(job);
+      values.count = whole(kernel.count, { name: (each) => names.name(each) ?? sizeOf(job, each) });
+    }
     const key = meshKey(name, values), known = meshes.get(key);
     meshes.delete(key);
     if (known) {

@@ -64,7 +64,7 @@
  *  @property {string} [accepts]                    as the header has it
  *  @property {Accepted} [accepted]                 the same, to be evaluated
  *  @property {string} [mesh]                       of a draw
- *  @property {Expression} [count]                  of a draw
+ *  @property {Expression} [count]                  of a draw: it may name an input's size, as list.size.x
  *  @property {Expression} [instances]              of a draw: it may name an input's first texel, as list.x
  *  @property {"none" | "add" | "alpha"} [blend]
  *  @property {"none" | "less" | "equal"} [depth]
