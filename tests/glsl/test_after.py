@@ -43,6 +43,15 @@ def test_the_mean_of_logarithms_becomes_the_key(any_engine, picture, key, least,
     np.testing.assert_array_equal(off.ravel(), 0.0)
 
 
+def test_a_pixel_too_bright_for_half_floats_leaves_the_mean_a_number(any_engine, picture):
+    """It counts as the brightest half float, 65504: one of 5917 pixels moves the mean by 16 / 5917 stops."""
+    light = "vec4(vec3(texel == ivec2(20, 31) ? uintBitsToFloat(0x7f800000u) : 1.0), 1.0)"
+    sketch = picture(light, "view/exposure", "adapts = true")
+    assert np.isinf(any_engine.read(sketch, "light")[31, 20, 0])
+    found = any_engine.read(sketch, "view.adapted", size=SIZE).ravel()
+    np.testing.assert_allclose(found, [np.log2(0.18) - np.log2(65504) / (97 * 61), 1.0], atol=2e-4)
+
+
 def test_glow_loses_no_light_and_stays_around_its_source(any_engine, picture):
     sketch = picture(SCENE, "view/bloom", "bloom = 0.1")
     light = any_engine.read(sketch, "light").astype(float)[..., :3]
