@@ -2,7 +2,7 @@
 //
 //   gives    layer_crossing, NO_CROSSING, over_horizon
 //   needs    sky/shell.glsl
-//   units    kilometres; `rise` is the cosine between the way and the vertical at its start
+//   units    kilometres; `rise` is the cosine between the path and the vertical at its start
 //   source   the law of cosines, as in sky/shell.glsl: where nothing cancels
 //   tested   tests/glsl/test_cloud_pictures.py, against float64
 #ifndef CLOUDS_CROSSING
@@ -13,31 +13,32 @@ const vec2 NO_CROSSING = vec2(1.0, 0.0);
 const float HORIZON_MARGIN = 0.02;
 
 // With a = (R + h) rise and x = (H - h) (2R + H + h), height H is reached after -a ± sqrt(a² + x).
-float way_over(float along, float x) {
+float distance_over(float along, float x) {
     float root = sqrt(max(along * along + x, 0.0));
     return along >= 0.0 ? x / max(root + along, 1e-9) : root - along;
 }
 
-float way_under(float along, float x) {
+float distance_under(float along, float x) {
     return -x / max(sqrt(max(along * along + x, 0.0)) - along, 1e-9);
 }
 
-// From where to where a way first is between two heights; NO_CROSSING if the ground comes first.
+// From where to where a path first is between two heights; NO_CROSSING if the ground comes first.
 vec2 layer_crossing(float from, float rise, float base, float top) {
     float along = (EARTH_RADIUS + from) * rise;
     float to_base = (base - from) * (2.0 * EARTH_RADIUS + base + from);
     float to_top = (top - from) * (2.0 * EARTH_RADIUS + top + from);
     bool under_base = rise < 0.0 && along * along + to_base >= 0.0;
     if (from < base) {
-        if (way_to_ground(max(from, 0.0), rise) >= 0.0) return NO_CROSSING;
-        return vec2(way_over(along, to_base), way_over(along, to_top));
+        if (distance_to_ground(max(from, 0.0), rise) >= 0.0) return NO_CROSSING;
+        return vec2(distance_over(along, to_base), distance_over(along, to_top));
     }
     if (from <= top) {
-        return vec2(0.0, under_base ? way_under(along, to_base) : way_over(along, to_top));
+        return vec2(0.0, under_base ? distance_under(along, to_base)
+                                    : distance_over(along, to_top));
     }
     if (rise >= 0.0 || along * along + to_top < 0.0) return NO_CROSSING;
-    return vec2(way_under(along, to_top),
-                under_base ? way_under(along, to_base) : way_over(along, to_top));
+    return vec2(distance_under(along, to_top),
+                under_base ? distance_under(along, to_base) : distance_over(along, to_top));
 }
 
 // A direction from below the layer, and if it is no more than HORIZON_MARGIN under the horizon,

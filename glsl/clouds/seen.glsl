@@ -32,8 +32,7 @@ uniform float wear = 1.0;    //! slider(0, 2) step(0.05)
 const float LONGEST = 6.0;     // [km] what is marched through of the layer
 const float FARTHEST = 300.0;  // [km] past any horizon
 
-// Extinction over the most, at a place of the tile and `up`, 0..1 of the tallest; `fine` is read
-// more often than the tile repeats, for what wears clouds away.
+// Extinction as a share of the most, `up` in a cloud of a thickness, both 0..1 of the tallest.
 float density_at(float thick, float up) {
     return clamp((thick - up) * 12.0, 0.0, 1.0) * smoothstep(0.0, 0.04, up);
 }
@@ -79,13 +78,13 @@ vec4 kernel(ivec2 texel) {
     float per_metre = CLOUD_DEPTH / CLOUD_TALL;
     float sideways = CLOUD_TALL / wind.w;
     float phase = drops_phase_wide(together);
-    float kept = 1.0;
+    float transmittance = 1.0;
     // What the eye receives of the sun, of sky and ground together, and of the ground.
     vec3 part = vec3(0.0);
     for (int k = 0; k < steps; k++) {
-        float way = 1000.0 * span.x + (float(k) + bayer(texel)) * step_of;
-        float up = (1000.0 * (height_along(from, ahead.z, 0.001 * way) - base)) / CLOUD_TALL;
-        vec2 at = tile_of(eye.xy + ahead.xy * way, wind);
+        float path = 1000.0 * span.x + (float(k) + bayer(texel)) * step_of;
+        float up = (1000.0 * (height_along(from, ahead.z, 0.001 * path) - base)) / CLOUD_TALL;
+        vec2 at = tile_of(eye.xy + ahead.xy * path, wind);
         float thick = textureLod(cloud, at, level).r;
         float much = worn_density(at, thick, up, sideways, level);
         if (much < 0.004) continue;
@@ -105,12 +104,12 @@ vec4 kernel(ivec2 texel) {
         float from_below = share_from_below(CLOUD_DEPTH * max(thick - up, 0.0),
                                             CLOUD_DEPTH * max(thick, up));
         float left = exp(-much * per_metre * step_of);
-        part += kept * (1.0 - left) * vec3(3.14159265 * from_sun, 1.0, from_below);
-        kept *= left;
-        if (kept < 0.01) break;
+        part += transmittance * (1.0 - left) * vec3(3.14159265 * from_sun, 1.0, from_below);
+        transmittance *= left;
+        if (transmittance < 0.01) break;
     }
-    if (kept == 1.0) return vec4(0.0, 0.0, 0.0, 1.0);
+    if (transmittance == 1.0) return vec4(0.0, 0.0, 0.0, 1.0);
     CloudLight light = cloud_light(daylight, columns, bounced, from, ahead, span.x, base);
     vec3 found = part.x * light.sun + (part.y - part.z) * light.above + part.z * light.below;
-    return vec4(found + aureole(light.sun, kept, together), kept);
+    return vec4(found + aureole(light.sun, transmittance, together), transmittance);
 }

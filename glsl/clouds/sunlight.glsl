@@ -21,12 +21,12 @@ struct CloudLight {
     vec3 below;  // of the ground
 };
 
-// After a way [km] in a direction from a height [km], to clouds at another.
+// After a path [km] in a direction from a height [km], to clouds at another.
 CloudLight cloud_light(sampler2D daylight, sampler2D columns, sampler2D bounced, float from,
-                       vec3 ahead, float way, float height) {
+                       vec3 ahead, float path, float height) {
     Sunlight day = sunlight(true, daylight, vec3(0.0), vec2(0.0), vec3(0.0), vec3(0.0));
     Weather now = weather(daylight);
-    float rise = ((EARTH_RADIUS + from) * day.direction.z + way * dot(ahead, day.direction))
+    float rise = ((EARTH_RADIUS + from) * day.direction.z + path * dot(ahead, day.direction))
             / (EARTH_RADIUS + height);
     vec3 beam = left_of_sunlight(columns, air_of(now.turbidity), height, rise);
     return CloudLight(day.direction, now.adapted * beam, day.sky,

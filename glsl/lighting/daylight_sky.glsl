@@ -20,7 +20,7 @@ float air_rise(float height) {
     return horizon_rise(height) + 0.03;
 }
 
-// What air far away adds on the way there: the sky just above the horizon on that side.
+// What air far away adds on the path there: the sky just above the horizon on that side.
 vec3 air_towards(sampler2D daylight, vec3 direction, float height) {
     float rise = air_rise(height);
     vec2 level = sqrt(1.0 - rise * rise) * direction.xy / max(length(direction.xy), 1e-6);

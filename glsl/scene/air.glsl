@@ -12,8 +12,8 @@
 //   tested   tests/glsl/test_scene_air.py: what is left against Beer and Lambert's integral in
 //            float64, the farthest slice against the sky
 //
-// Where clouds are wired, each step lies in their shadow or not, which shows shafts of light.
-// Mist is drops that hang low: they scatter sunlight, and the light of sky and ground.
+// Where clouds are wired and drawn, each step lies in their shadow or not, which shows shafts of
+// light. Mist is drops that hang low: they scatter sunlight, and the light of sky and ground.
 #include "clouds/shadow.glsl"
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_weather.glsl"
@@ -30,6 +30,7 @@ uniform sampler2D columns;   //! input
 uniform sampler2D bounced;   //! input
 uniform sampler2D cloud;     //! input("linear", "repeat", "mipmap", "black")
 uniform sampler2D drift;     //! input("black")
+#include "clouds/parameters/drawn.glsl"
 uniform float mist = 0.0;          //! slider(0, 10) step(0.01) unit("1/km") group("Mist")
                                    //! How thick it is at its level: 4 leaves a fiftieth of what is
                                    //! a kilometre away
@@ -71,7 +72,7 @@ void kernel(ivec2 texel, out vec4 scattered, out vec4 left) {
     vec4 wind = texelFetch(drift, ivec2(0), 0);
     float ground = texelFetch(bounced, ivec2(0), 0).a;
     Air air = air_of(now.turbidity);
-    vec3 kept = vec3(1.0);
+    vec3 transmittance = vec3(1.0);
     vec3 found = vec3(0.0);
     float reached = start;
     float mist_depth = 0.0;
@@ -93,7 +94,7 @@ void kernel(ivec2 texel, out vec4 scattered, out vec4 left) {
                                     drops);
         float lit = now.open;
         float beam = beam_through_clouds(1.0 - now.open);
-        if (wired_cloud) {
+        if (wired_cloud && clouds != 0) {
             lit = cloud_transmittance(cloud, wind, eye + ahead * (500.0 * (before + after)), sun);
             beam = lit;
         }
@@ -109,13 +110,13 @@ void kernel(ivec2 texel, out vec4 scattered, out vec4 left) {
                                                 sunlight_here, together, ahead.z, here.sun_rise,
                                                 from.sky, ground * now.level);
         }
-        found += kept * light;
-        kept *= here.left;
+        found += transmittance * light;
+        transmittance *= here.left;
         reached = next;
         mist_depth += drops;
     }
     // Of the mist, its depth up to here and its density here, for what reads between two slices.
     float density = exp(-max(1000.0 * (reached - mist_from), 0.0) / mist_top);
     scattered = vec4(found, mist_depth);
-    left = vec4(kept, mist * density);
+    left = vec4(transmittance, mist * density);
 }

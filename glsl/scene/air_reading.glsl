@@ -58,9 +58,9 @@ Aerial aerial(sampler2D scattered, sampler2D left, vec2 share, float distance_of
             (added.a - before.a) - last.a * step_of, first.a * step_of - (added.a - before.a),
             1.0 - part);
     vec3 lost = log(first.rgb / last.rgb);
-    vec3 kept = first.rgb * exp(-clamp(lost * part + uneven, vec3(0.0), lost));
+    vec3 passed = first.rgb * exp(-clamp(lost * part + uneven, vec3(0.0), lost));
     vec3 gone = max(first.rgb - last.rgb, 1e-6);
-    vec3 grown = mix(vec3(part), (first.rgb - kept) / gone, vec3(greaterThan(gone, vec3(1e-3))));
-    return Aerial(mix(before.rgb, added.rgb, grown), kept);
+    vec3 grown = mix(vec3(part), (first.rgb - passed) / gone, vec3(greaterThan(gone, vec3(1e-3))));
+    return Aerial(mix(before.rgb, added.rgb, grown), passed);
 }
 #endif

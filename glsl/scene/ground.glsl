@@ -1,4 +1,4 @@
-// scene/ground.glsl -- what every pixel asks of the ground that it sees, in one texture.
+// scene/ground.glsl -- what every pixel reads of the ground that it shows, in one texture.
 //
 //   gives    ground: slopes east and north, the share of the sky above, the sun's visible part
 //   needs    terrain/heightfield.glsl, terrain/maps.glsl; a height 0..1; a visibility and a sky

@@ -18,7 +18,9 @@ struct Ground {
 // At a place of a terrain so many metres wide, its mean over a square so many metres wide.
 Ground ground_at(sampler2D ground, vec2 place, vec2 metres, float wide) {
     ivec2 texels = textureSize(ground, 0);
-    float level = log2(max(wide * float(texels.x - 1) / metres.x, 1e-3));
+    // By the finer axis: the other would leave its texels between those that are read.
+    vec2 texels_wide = wide * vec2(texels - 1) / metres;
+    float level = log2(max(max(texels_wide.x, texels_wide.y), 1e-3));
     vec4 found = textureLod(ground, drape_uv(place / metres, texels), level);
     return Ground(found.rg, found.b, found.a);
 }

@@ -17,7 +17,7 @@ float mean_decay(float u) {
     return u < 1e-2 ? 1.0 - u * (0.5 - u / 6.0) : (1.0 - exp(-u)) / u;
 }
 
-// The mean density over a straight way from one height to another, in any order.
+// The mean density over a straight path from one height to another, in any order.
 float mean_mist(float from, float to, float top) {
     float low = min(from, to);
     float high = max(from, to);

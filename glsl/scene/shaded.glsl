@@ -44,6 +44,7 @@ uniform sampler2D drift;       //! input("black")
 uniform sampler2D scattered;   //! input("linear", "black")
 uniform sampler2D left;        //! input("linear", "black")
 uniform sampler2D sky_picture; //! input("zero")
+#include "clouds/parameters/drawn.glsl"
 #include "lighting/parameters/sun.glsl"
 #include "lighting/parameters/sunlight.glsl"
 #include "lighting/parameters/skylight.glsl"
@@ -73,7 +74,7 @@ vec3 light_at(vec4 at, PixelRay ray, vec2 bump, float sun_share, vec3 takes) {
     if (is_object(at.w)) normal = normal_of(at.w);
     else normal = normal_of_slope(around.slope + bump);
     Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, sky_colour);
-    if (wired_cloud && wired_drift) {
+    if (wired_cloud && wired_drift && clouds != 0) {
         vec4 wind = texelFetch(drift, ivec2(0), 0);
         // A daylight's sun is dimmed by the mean of all clouds already.
         sun_share *= wired_daylight ? cloud_share(cloud, wind, at.xyz, from.direction)

@@ -1,4 +1,4 @@
-// sky/columns.glsl -- how much air light crosses on its way in, from a table.
+// sky/columns.glsl -- how much air sunlight crosses, from a table.
 //
 //   gives    column_start, column_at, risen, left_of_sunlight
 //   needs    sky/air.glsl, sky/shell.glsl; a table made by lighting/daylight/columns
@@ -24,20 +24,21 @@ vec2 column_start(vec2 share) {
     float far = share.y * HORIZON_MOST;
     float height = far * far / (sqrt(far * far + EARTH_RADIUS * EARTH_RADIUS) + EARTH_RADIUS);
     float least = AIR_HEIGHT - height;
-    float way = mix(least, far + HORIZON_MOST, share.x);
-    if (way < 1e-3) return vec2(height, 1.0);
-    float rise = (HORIZON_MOST * HORIZON_MOST - far * far - way * way)
-            / (2.0 * (EARTH_RADIUS + height) * way);
+    float path = mix(least, far + HORIZON_MOST, share.x);
+    if (path < 1e-3) return vec2(height, 1.0);
+    float rise = (HORIZON_MOST * HORIZON_MOST - far * far - path * path)
+            / (2.0 * (EARTH_RADIUS + height) * path);
     return vec2(height, clamp(rise, -1.0, 1.0));
 }
 
-// The columns of molecules, aerosol and ozone from a height to the top, along a way that misses
+// The columns of molecules, aerosol and ozone from a height to the top, along a path that misses
 // the ground.
 vec3 column_at(sampler2D columns, float height, float rise) {
     float far = sqrt(max(height * (2.0 * EARTH_RADIUS + height), 0.0));
     float least = AIR_HEIGHT - height;
     float most = far + HORIZON_MOST;
-    vec2 share = vec2((way_to_top(height, rise) - least) / (most - least), far / HORIZON_MOST);
+    vec2 share = vec2((distance_to_top(height, rise) - least) / (most - least),
+                      far / HORIZON_MOST);
     ivec2 last = textureSize(columns, 0) - 1;
     vec2 place = clamp(share, 0.0, 1.0) * vec2(last);
     ivec2 low = ivec2(place);

@@ -14,7 +14,7 @@
 // The left half holds what molecules scatter, and all that was scattered more than once; the
 // right half what aerosol scatters, without its phase, which is too sharp for so few texels.
 // Along x, in each half: from the sun's side round to the other, which is the same on both
-// ways. Along y: from the horizon to the zenith. Both are closest where the sky changes most. One
+// sides. Along y: from the horizon to the zenith. Both are closest where the sky changes most. One
 // such table is over the other for each of several heights, closest near the sea: from 600 m
 // a third more blue comes from the horizon, since half of the haze is below. The horizon lies
 // lower from higher up.

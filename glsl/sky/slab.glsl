@@ -1,4 +1,4 @@
-// sky/slab.glsl -- one step of a way through lit air.
+// sky/slab.glsl -- one step of a path through lit air.
 //
 //   gives    Slab, slab, slab_with_drops
 //   needs    sky/columns.glsl
@@ -24,7 +24,7 @@ struct Slab {
     vec3 left;        // of light from behind
 };
 
-// `before` to `after` along a way from `from`; `together` is the cosine between way and sun.
+// `before` to `after` along a path from `from`; `together` is the cosine between path and sun.
 // Drops of an optical depth `mist` hang in it evenly.
 Slab slab_with_drops(sampler2D columns, Air air, float from, float rise, float sun_rise,
                      float together, float before, float after, float mist) {

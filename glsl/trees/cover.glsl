@@ -4,9 +4,10 @@
 //            (scene/shaded); shadow: what trees leave of the sun on the ground
 //   needs    lighting/daylight_reading.glsl, noise/gradient.glsl, scene/ground_reading.glsl,
 //            scene/surfaces.glsl, terrain/heightfield.glsl,
-//            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of
-//            scene/cover, a height, a density, the table of trees/wood and the shadows of
-//            trees/shade
+//            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of scene/cover,
+//            a height, a density, the table of trees/wood and the shadows of trees/shade; the
+//            sun's visible part with the woods on the terrain (trees/canopy), if any; of
+//            trees/place the key, for the size of its table, and the limit
 //   units    metres; colours linear; shares 0..1
 //   source   trees/stand.glsl
 //   tested   tests/glsl/test_trees_light.py: a stand's mean colour is the same at any distance
@@ -30,6 +31,9 @@ uniform sampler2D ground;   //! input("linear", "mipmap")
 uniform sampler2D density;  //! input
 uniform sampler2D table;    //! input
 uniform sampler2D shade;    //! input("black")
+uniform sampler2D canopy_visibility;  //! input("white")
+uniform sampler2D key;      //! input("white")
+uniform sampler2D limit;    //! input("white")
 #include "lighting/parameters/sun.glsl"
 #include "trees/parameters/reach.glsl"
 #include "trees/parameters/stand.glsl"
@@ -74,13 +78,21 @@ vec2 shade_at(vec2 place) {
     return vec2(height_at(shade, on), 1.0 - smoothstep(0.42, 0.49, aside));
 }
 
+// What woods leave of the sun that the bare terrain lets through here. They are opaque there, so
+// where single trees throw their shadows these alone are taken.
+float shadow_of_woods(vec2 share, float bare) {
+    if (!wired_canopy_visibility || bare < 1e-3) return 1.0;
+    return min(map_of(canopy_visibility, share) / bare, 1.0);
+}
+
 // The table is for level ground: on a slope one sees more of the tops in it than there are,
-// so that a wood on a steep slope (0.35) towards the eye is 7 to 11 hundredths brighter far away.
-vec2 wood_on_slope(Stand all, float stands, vec3 to_eye, vec3 to_sun, vec3 through) {
+// so that a wood on a steep slope (0.35) towards the eye is 8 to 12 hundredths brighter far away.
+vec2 wood_on_slope(Stand all, float stands, float only, vec3 to_eye, vec3 to_sun,
+                   vec3 through) {
     float depth = depth_towards(all, to_eye);
     // How many of the crowns are above what one sees, on the mean.
     float share = depth < 0.01 ? 0.5 : 1.0 / depth - 1.0 / (exp(min(depth, 60.0)) - 1.0);
-    vec2 lit = wood_at(table, to_eye, to_sun, stands);
+    vec2 lit = wood_at(table, to_eye, to_sun, stands, only);
     lit.x *= reaches(all, share, through) / max(reaches(all, share, to_sun), 1e-3);
     return lit;
 }
@@ -96,13 +108,15 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     float stands = clamp(map_of(density, share), 0.0, 1.0);
     float away = distance(eye, at.xyz);
     vec3 to_eye = eye - at.xyz;
-    vec2 slope = ground_at(ground, at.xy, extent, 2.0 * cell).slope;
+    Ground around = ground_at(ground, at.xy, extent, 2.0 * cell);
+    vec2 slope = around.slope;
     to_eye = raised(over_ground(to_eye, slope));
     vec3 to_sun = sun_direction(wired_daylight, daylight, towards_sun);
     vec3 through = to_sun.z > 0.0 ? raised(over_ground(to_sun, slope)) : to_sun;
     float needled = needle_share(needles, needles_from, at.z + base_elevation);
     Stand all = stand_of(stands, cell, tallest, shortest, needled);
-    Stand drawn = thinned(all, away, whole, reach);
+    float end = wired_key ? end_of_table(reach, cell, textureSize(key, 0)) : reach;
+    Stand drawn = thinned(all, away, whole, end, texelFetch(limit, ivec2(0), 0).r);
     if (tree) {
         float over = at.z - map_of(height, share) * relief;
         vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun, through);
@@ -110,7 +124,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
         return;
     }
     vec2 shaded = shade_at(at.xy);
-    shadow = 1.0 - shaded.x * shaded.y;
+    shadow = mix(shadow_of_woods(share, around.sun), 1.0 - shaded.x, shaded.y);
     if (stands <= 0.0) return;
     // What of the ground all trees leave free, over what those leave free that are drawn.
     float free = reaches(all, 1.0, to_eye) / max(reaches(drawn, 1.0, to_eye), 1e-6);
@@ -124,7 +138,8 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     // By brightness, what comes from the leaves of the colour that both have together.
     float part = hidden * brightness(leaves) / max(brightness(albedo.rgb), 1e-6);
     float sun_left = mix(reaches(all, 1.0, through), 1.0, shaded.y);
-    vec2 lit = wood_on_slope(all, stands, to_eye, to_sun, through);
+    float only = needles_only(needles_from, at.z + base_elevation);
+    vec2 lit = wood_on_slope(all, stands, only, to_eye, to_sun, through);
     float sky_left = reaches(all, 1.0, SKY_FROM);
     taken = vec4((1.0 - part) * sun_left, part * lit.x, mix(sky_left, lit.y, part), 1.0);
 }

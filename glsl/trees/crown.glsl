@@ -1,6 +1,6 @@
 // trees/crown.glsl -- the shape of a tree's crown, by its place and height alone.
 //
-//   gives    Crown, crown_of, needle_share, needle_area, visible_place, NARROWEST,
+//   gives    Crown, crown_of, needles_only, needle_share, needle_area, visible_place, NARROWEST,
 //            WIDEST, HALF_HEIGHT, MIDDLE
 //   needs    noise/hash.glsl, trees/kinds.glsl
 //   units    metres; sizes of crowns as shares of the tree's height
@@ -32,9 +32,13 @@ struct Crown {
     uint key;      // random bits of its own
 };
 
-// `metres`: above sea level.
+// How far from the lowland's mix to needles only. `metres`: above sea level.
+float needles_only(float needles_from, float metres) {
+    return smoothstep(needles_from - 150.0, needles_from + 150.0, metres);
+}
+
 float needle_share(float needles, float needles_from, float metres) {
-    return mix(needles, 1.0, smoothstep(needles_from - 150.0, needles_from + 150.0, metres));
+    return mix(needles, 1.0, needles_only(needles_from, metres));
 }
 
 // Of what one sees of them the share that is needles: cones are slim, 2 a b for pi a b.

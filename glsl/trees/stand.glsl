@@ -32,7 +32,6 @@ struct Stand {
 };
 
 const float TREE_PI = 3.14159265;
-const float SHRUNK_AREA = 0.8667;   // mean of shrunk(key)^2 for keys from 0 to 1
 const float WRAP = 0.25;            // leaves let light through: so far round the edge they are lit
 const vec3 SKY_FROM = vec3(0.7071, 0.0, 0.7071);  // where the sky's light comes from on the mean
 const int SIZES = 3;                // of crowns, for sums over them
@@ -40,7 +39,7 @@ const int SIZES = 3;                // of crowns, for sums over them
 // `density`: the share of cells that hold a tree.
 Stand stand_of(float density, float cell, float tallest, float shortest, float needle_share) {
     // The mean of the squared height, since hiding goes by areas.
-    float tall = tallest * sqrt((1.0 + shortest + shortest * shortest) / 3.0 * SHRUNK_AREA);
+    float tall = tallest * sqrt((1.0 + shortest + shortest * shortest) / 3.0);
     float wide = mix(0.5 * (NARROWEST.x + WIDEST.x), CONE_AREA * NARROWEST.y, needle_share);
     float up = mix(HALF_HEIGHT.x, HALF_HEIGHT.y, needle_share);
     float middle = mix(MIDDLE.x, MIDDLE.y, needle_share);
@@ -48,10 +47,10 @@ Stand stand_of(float density, float cell, float tallest, float shortest, float n
                  cell);
 }
 
-// Those of the stand that are drawn as single trees so far away.
-Stand thinned(Stand s, float away, float whole, float reach) {
-    float dense = s.dense * kept_share(away, whole, reach);
-    float growth = growth_of_kept(away, whole);
+// Those of the stand that are drawn as single trees so far away; `limit`: of trees/list.
+Stand thinned(Stand s, float away, float whole, float reach, float limit) {
+    float dense = s.dense * covering_share(kept_share(away, whole, reach), limit);
+    float growth = growth_of_kept(away, whole) * pow(limit, GROWTH);
     return Stand(dense, s.across * growth, s.up * growth, s.middle * growth, s.least, s.cell);
 }
 

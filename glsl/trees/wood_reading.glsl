@@ -1,6 +1,6 @@
 // trees/wood_reading.glsl -- where in the table of a wood's light a direction and a density are.
 //
-//   gives    DENSITIES, LOWEST, axes_of, height_on_axis, direction_of, wood_at
+//   gives    DENSITIES, MIXES, LOWEST, axes_of, height_on_axis, direction_of, wood_at
 //   needs    the table of trees/wood.glsl as an argument
 //   units    unit vectors; density 0..1
 //   source   made here: steps of the root of the sine are finer towards the horizon
@@ -9,10 +9,11 @@
 #define TREES_WOOD_READING
 
 const int DENSITIES = 5;
+const int MIXES = 2;  // of the lowland's mix of species, of needles only
 const float LOWEST = 0.02;  // sine of the lowest elevation
 
 // Elevations, azimuths, densities.
-ivec3 axes_of(ivec2 size) { return ivec3(size.x, max(size.y / DENSITIES, 1), DENSITIES); }
+ivec3 axes_of(ivec2 size) { return ivec3(size.x, max(size.y / (DENSITIES * MIXES), 1), DENSITIES); }
 
 float height_on_axis(vec3 towards) {
     return (sqrt(clamp(towards.z, LOWEST, 1.0)) - sqrt(LOWEST)) / (1.0 - sqrt(LOWEST));
@@ -37,14 +38,20 @@ vec2 texel_between(sampler2D table, vec2 at, int low) {
     return mix(south, north, part.y);
 }
 
-vec2 wood_at(sampler2D table, vec3 to_eye, vec3 to_sun, float density) {
+// `only`: how far from the lowland's mix of species to needles only, 0..1 (needles_only).
+vec2 wood_at(sampler2D table, vec3 to_eye, vec3 to_sun, float density, float only) {
     ivec3 axes = axes_of(textureSize(table, 0));
     float lengths = max(length(to_eye.xy) * length(to_sun.xy), 1e-6);
     float aside = acos(clamp(dot(to_eye.xy, to_sun.xy) / lengths, -1.0, 1.0)) / 3.14159265;
     vec3 at = vec3(height_on_axis(to_eye), aside, clamp(density, 0.0, 1.0)) * vec3(axes - 1);
     int layer = min(int(at.z), axes.z - 2);
-    vec2 thin = texel_between(table, at.xy, layer * axes.y);
-    vec2 thick = texel_between(table, at.xy, (layer + 1) * axes.y);
-    return mix(thin, thick, at.z - float(layer));
+    vec2 lit = vec2(0.0);
+    for (int k = 0; k < MIXES; k++) {
+        int low = (k * axes.z + layer) * axes.y;
+        vec2 thin = texel_between(table, at.xy, low);
+        vec2 thick = texel_between(table, at.xy, low + axes.y);
+        lit += (k == 0 ? 1.0 - only : only) * mix(thin, thick, at.z - float(layer));
+    }
+    return lit;
 }
 #endif

@@ -55,7 +55,7 @@ class Captures:
     session: Session
     notices: Notices
     folder: Path  # where pictures go
-    settle: Callable[[], object]  # has what is painted written, which the other process reads
+    settle: Callable[[], bool]  # has what is painted written, which the other process reads; whether it is
     wish: Wish = field(default_factory=Wish)
     shown: bool = False  # the capture's window is open
     working: JobProcess | None = None
@@ -86,8 +86,9 @@ class Captures:
         if self.working is not None:
             return
         self.failed = ""
-        self.settle()
         try:
+            if not self.settle():
+                raise DataError("no capture was made, for what was painted last could not be written")
             job = self.job()
         except PlaygroundError as error:
             self.failed = str(error)

@@ -34,6 +34,7 @@ class Commands:
     opens: Callable[[Path], None] | None = None  # opens a sketch with its remembered edits
     _visited: list[Path] = field(default_factory=list)  # the sketches that were opened, in order
     _at: int = 0  # which of them is open now
+    _missed: str = ""  # the end of a sentence about what is saved: what is not in it
 
     def open(self, path: Path) -> bool:
         """Open another sketch, with a history of its own; the one that is shown is read again.
@@ -119,10 +120,10 @@ class Commands:
         if draft is None:
             return
         if draft.sketch == draft.file:
-            self.notices.say("nothing differs from the file")
+            self.notices.say(f"nothing differs from the file{self._missed}")
         elif self.file.write(lambda: save(draft.file, draft.sketch)):
             self.undo.history.saved(_values_in_file(draft))
-            self.notices.say(f"saved {_summary(draft)} into {shown(draft.file.file)}")
+            self.notices.say(f"saved {_summary(draft)} into {shown(draft.file.file)}{self._missed}")
 
     @property
     def copy_is(self) -> tuple[str, str]:
@@ -151,7 +152,7 @@ class Commands:
             return
         self.undo.history.saved(_values_in_file(draft))
         what = f"{path.name} in {path.parent}" if saved else f"a copy in {path.parent}"
-        self.notices.say(f"saved {what}; from here on this is the sketch")
+        self.notices.say(f"saved {what}; from here on this is the sketch{self._missed}")
         self._visits(self.session.path, path)
         self.session.open_copy(path, saved)
 
@@ -189,7 +190,8 @@ class Commands:
         if drafts.shown is None:
             self.notices.say("there is no sketch to save yet")
             return None
-        self.undo.painting.settle()
+        written = self.undo.painting.settle()
+        self._missed = "" if written else "; what was painted last could not be written, and is not in it"
         drafts.shorten_values()
         if drafts.shown.edits.camera is not None:
             drafts.set_camera(rounded(drafts.shown.edits.camera))

@@ -6,13 +6,13 @@ input is are given back at the next stamp, shifted with the window: so water goe
 
 A stamp is always of the same seconds, and its window of the same size around the brush, on the terrain's
 own texels. So a stroke is what the brush's path in time makes of it, whatever frames it was painted in,
-and programs, plan and textures are made once. What the window has past the terrain's edges is as high as
-the edge is and lies outside the brush.
+and programs, plan and textures are made once. A side of the window is a multiple of 32 texels, so that
+k steps of 256 / (32 k) hours by the clock of erosion/hydraulic are 8 hours with a brush of any radius. What
+the window has past the terrain's edges is as high as the edge is and lies outside the brush.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -33,8 +33,7 @@ if TYPE_CHECKING:
     from playground.engine.engine import Engine
 
 STAMP = 0.05  # [s] of a stroke that each run of the technique makes
-_APART = 0.25  # [radii] from where a stamp is made in parts
-_MOST_PARTS, _MOST_RUNS = 2, 6  # of a stamp, and from one frame to the next: a faster brush leaves gaps
+_HALF = 16  # texels of which half a window has a multiple: a side of 32 k + 1
 _LEAST_SOFTNESS = 0.25  # of the brush, so that its rim is no step
 
 Place = tuple[float, float]
@@ -75,20 +74,16 @@ class ErodeTool:
         """Begin a stroke, dry; heights [m] are counted from a level near it, for their last bits' sake."""
         self._carried, self._owed, self._level = {}, 0.0, level
 
-    def stamps(
-        self, start: Place, end: Place, extent: tuple[float, float], radius: float, seconds: float
-    ) -> Iterator[tuple[Place, float]]:
-        """Yield the stamps of a part of a stroke: each its place, and its share of the brush's strength."""
+    def stamps(self, start: Place, end: Place, seconds: float) -> Iterator[Place]:
+        """Yield where the stamps of a part of a stroke are, by time alone: those of a fast one lie apart."""
         owed = self._owed
         count = int((owed + seconds) / STAMP + 1e-6)
         self._owed = max(owed + seconds - count * STAMP, 0.0)
         way = np.subtract(end, start)
-        apart = float(np.hypot(*(way * extent))) / max(seconds, 1e-9) * STAMP / (_APART * radius)
-        parts = max(min(math.ceil(apart), _MOST_PARTS, _MOST_RUNS // max(count, 1)), 1)
-        for n in range(count * parts):
-            share = ((n + 1) * STAMP / parts - owed) / max(seconds, 1e-9)
+        for n in range(count):
+            share = ((n + 1) * STAMP - owed) / max(seconds, 1e-9)
             x, y = np.array(start) + way * min(max(share, 0.0), 1.0)
-            yield (float(x), float(y)), 1 / parts
+            yield float(x), float(y)
 
     def change(
         self,
@@ -96,7 +91,6 @@ class ErodeTool:
         place: Place,
         extent: tuple[float, float],
         brush: Brush,
-        share: float,
     ) -> tuple[Part, NDArray[np.float32]]:
         """Return what one stamp adds to the terrain [m], and to which rows and columns.
 
@@ -104,7 +98,8 @@ class ErodeTool:
         """
         shape = terrain[0].shape
         spacing = spacing_of((shape[1], shape[0]), extent)
-        half = np.ceil(brush.radius / spacing).astype(int) + 1
+        reach = np.ceil(brush.radius / spacing).astype(int) + 1
+        half = -(-reach // _HALF) * _HALF
         middle = np.rint(np.array(place) * (np.array(shape[::-1]) - 1)).astype(int)
         first, last = (middle - half)[::-1], (middle + half)[::-1]
         rows, columns = (np.arange(a, b + 1) for a, b in zip(first, last, strict=True))
@@ -116,7 +111,7 @@ class ErodeTool:
         away = np.hypot(columns * spacing[0] - place[0] * extent[0],
                         (rows * spacing[1] - place[1] * extent[1])[:, None])  # fmt: skip
         softness = max(brush.softness, _LEAST_SOFTNESS)
-        weight = brush.strength * share * falloff(away, brush.radius, softness)
+        weight = brush.strength * falloff(away, brush.radius, softness)
         weight[(rows < 0) | (rows >= shape[0])] = 0
         weight[:, (columns < 0) | (columns >= shape[1])] = 0
         weight = weight.astype(np.float32)

@@ -19,7 +19,7 @@ class LatestWrite:
     """Writes one file, one state after another; a state that is replaced before its turn is left out."""
 
     def __init__(self, ended: Callable[[], None] = _nothing) -> None:
-        self.ended = ended  # called on the thread, after each write
+        self.ended = ended  # called on the thread after each write, before ``wait`` returns; raises nothing
         self.writes = 0  # that have ended, well or not
         self.error: PlaygroundError | None = None  # of the last one
         self._condition = threading.Condition()
@@ -57,7 +57,7 @@ class LatestWrite:
                 if write is None:
                     self._works = False
                     self._condition.notify_all()
-                    break
+                    return
             error: PlaygroundError | None = None
             try:
                 write()
@@ -67,4 +67,4 @@ class LatestWrite:
                 error = DataError(f"an image could not be written: {found}")
             self.error = error
             self.writes += 1
-        self.ended()
+            self.ended()

@@ -99,9 +99,9 @@ class Sculpture(Canvas):
     ) -> None:
         if self.eroding is None:
             return
-        for place, share in self.eroding.stamps(start, end, extent, brush.radius, seconds):
+        for place in self.eroding.stamps(start, end, seconds):
             terrain = self.pixels, self.ground
-            part, added = self.eroding.change(terrain, place, extent, brush, share)
+            part, added = self.eroding.change(terrain, place, extent, brush)
             self._remember(part)
             self.pixels[part] += added
             self._change(part)

@@ -88,7 +88,7 @@ def test_ways_end_at_the_top_at_the_ground_and_at_the_horizon(on_gpu):
     height[:300] = 10 ** rng.uniform(-3, 0, 300)
     arrays = {"h": height, "u": rise}
     far, ground, horizon = on_gpu(
-        "sky/shell.glsl", "vec3(way_to_top(h, u), way_to_ground(h, u), horizon_rise(h))", **arrays
+        "sky/shell.glsl", "vec3(distance_to_top(h, u), distance_to_ground(h, u), horizon_rise(h))", **arrays
     ).T.astype(np.float64)
     h, u = height.astype(np.float32).astype(float), rise.astype(np.float32).astype(float)
 

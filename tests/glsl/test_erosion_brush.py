@@ -38,10 +38,12 @@ def test_what_the_terrain_loses_is_carried_or_has_left_with_the_water(engine: En
     run, before, weight = OnArrays(engine, "erosion/brush"), hills(), brush()
     after, water = stamped(run, before, weight, 30)
     change = after.astype(np.float64) - before
-    worn = np.maximum(-change, 0).sum()
+    worn, laid = np.maximum(-change, 0).sum(), np.maximum(change, 0).sum()
     carried, left = water[..., 1].astype(np.float64).sum(), water[..., 2].astype(np.float64).sum()
-    assert worn > 500 and np.maximum(change, 0).sum() > 20 and left > 0.05 * worn
-    assert abs(change.sum() + carried + left) < 1e-6 * (worn + np.maximum(change, 0).sum())
+    # Something happens, or the budget would be of nothing: each part is more than rounding can make.
+    rounding = 30 * (weight > 0).sum() * np.spacing(np.abs(before).max()) / 2
+    assert min(worn, laid, carried, left) > rounding
+    assert abs(change.sum() + carried + left) < 1e-6 * (worn + laid)
     assert (after[weight == 0] == before[weight == 0]).all()
     assert (water[..., :2][weight == 0] == 0).all(), "past the rim there is no water"
 

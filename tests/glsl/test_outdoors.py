@@ -1,5 +1,7 @@
 """scene/outdoors: what is seen through air and under clouds, against float64 and the clouds' shade."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -81,6 +83,30 @@ def test_colours_fade_by_the_air_in_front_of_them(any_engine, scene):
             assert (black[y, x, :3] > 0).all()
             checked += 1
     assert checked > 25
+
+
+def test_where_no_clouds_are_drawn_they_throw_no_shadows(any_engine, scene):
+    """All ground is in the light of daylight's even cover, and so is the air in front of it."""
+    scene = scene.with_values({"view.clouds": "none"})
+    seen = read(any_engine, scene, 0.5, "view.scene.where")
+    eye = np.asarray(any_engine.plan.eye.position, np.float64)
+    added = read(any_engine, scene, 0.5) - read(any_engine, scene, 0.0)
+    row = any_engine.read(scene, "daylight", size=SIZE)[0].astype(np.float64)
+    shade = any_engine.read(scene, "shade", size=SIZE).astype(np.float64)
+    assert shade.min() < 0.1 and shade.max() > 1.3  # of the clouds that are not drawn
+    places = np.argwhere(seen[..., 3] == 1.0)[::150]
+    assert len(places) > 15
+    for y, x in places:
+        way = (seen[y, x, :3] - eye) / 1000
+        far = np.linalg.norm(way)
+        left = np.exp(-depth(eye[2] / 1000, way[2] / far, far, 3.0))
+        light = row[1, :3] * row[0, 2] + row[2, :3]
+        np.testing.assert_allclose(added[y, x, :3] / (0.5 * light), left, atol=0.03)
+    # The air is lit alike on both sides of the sun's plane, which the clouds' shadows are not.
+    towards_sun = scene.with_camera(replace(scene.camera, azimuth=320.0))
+    air = any_engine.read(towards_sun, "view.air:scattered", size=SIZE).astype(np.float64)[..., :3]
+    air = air.reshape(4, 20, 4, 32, 3)
+    np.testing.assert_allclose(air, air[:, :, :, ::-1], rtol=0.01)
 
 
 def test_behind_the_terrain_is_the_picture_of_the_sky(any_engine, scene):

@@ -108,6 +108,30 @@ def test_each_pixel_has_the_point_of_a_plane_that_its_ray_meets(any_engine, scen
     np.testing.assert_allclose(rim, 0.0, atol=1e-2)
 
 
+STRIPES = """
+#pragma kernel(output = "ground:rgba16f")
+vec4 kernel(ivec2 texel) { return vec4(0.0, 0.0, float((size.x > size.y ? texel.x : texel.y) % 2), 1.0); }
+"""
+MEAN = """
+#include "maths/land.glsl"
+#include "scene/ground_reading.glsl"
+#pragma kernel(output = "mean:r32f")
+uniform sampler2D ground;  //! input("linear", "mipmap")
+float kernel(ivec2 texel) {
+    return ground_at(ground, (0.1 + 0.8 * share_of_texel(texel, size)) * extent, extent, 16.0).sky;
+}
+"""
+
+
+@pytest.mark.parametrize("size", [[64, 256], [256, 64]])
+def test_the_ground_is_read_by_its_finer_axis(any_engine, make_sketch, size):
+    """Stripes one texel wide, 4 m along the finer axis: a square of 16 m has as much of either."""
+    passes = f'[[pass]]\nname = "ground"\nuse = "./stripes"\nsize = {size}\n'
+    passes += '[[pass]]\nname = "mean"\nuse = "./reading"\nsize = 33'
+    sketch = make_sketch(passes, size=size, extent=[1024.0, 1024.0], stripes=STRIPES, reading=MEAN)
+    np.testing.assert_allclose(any_engine.read(sketch, "mean"), 0.5, atol=0.02)
+
+
 # ── footprint ───────────────────────────────────────────────────────────────────
 
 

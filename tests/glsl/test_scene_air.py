@@ -18,14 +18,18 @@ REACH, SLICES = 100.0, 16
 
 @pytest.fixture
 def outdoors(make_sketch):
-    """Give a sketch of air over flat ground; ``air`` is what is set of scene/air, ``day`` of daylight."""
+    """Give a sketch of air over flat ground, with passes ``first`` before the air and ``rest`` after it.
 
-    def make(air=None, rest="", files=None, target=(500.0, 500.0, 300.0), look=(40.0, 3.0), **day):
+    ``air`` is what is set of scene/air, ``day`` of daylight.
+    """
+
+    def make(air=None, rest="", files=None, target=(500.0, 500.0, 300.0), look=(40.0, 3.0), first="", **day):
         given = {"position": "free", "sun": [150.0, 40.0], "adaptation": 0.0, **day}
         sets = [", ".join(f"{k} = {toml_value(v)}" for k, v in d.items()) for d in (given, air or {})]
         sketch = make_sketch(
             '[[pass]]\nname = "height"\nuse = "./flat"\n'
             f'[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = {{ {sets[0]} }}\n'
+            f"{first}"
             f'[[pass]]\nname = "air"\nuse = "scene/air"\nsize = [128, 80]\nset = {{ {sets[1]} }}\n{rest}',
             flat=FLAT,
             **(files or {}),
@@ -119,8 +123,11 @@ def test_between_slices_it_is_read_as_even_air(any_engine, outdoors):
 # ── what it adds ─────────────────────────────────────────────────────────────
 
 
-def scattered(start, ray, far, sun, turbidity, table):
-    """Return the light that clear air adds over a ray, times pi; ``table`` as in test_air."""
+def scattered(start, ray, far, sun, turbidity, table, sunny=None):
+    """Return the light that clear air adds over a ray, times pi; ``table`` as in test_air.
+
+    ``sunny`` gives the share of the sun that clouds leave after each distance [km], by default all.
+    """
     share = (np.arange(1500) + 0.5) / 1500
     way, long = far * share**2, 2 * far * share / 1500
     there = heights(start, ray[2], way)
@@ -136,6 +143,8 @@ def scattered(start, ray, far, sun, turbidity, table):
     aerosol = amounts[1][:, None] * extinct[1] * 0.9
     phase = 3 / (8 * np.pi) * 0.36 / 2.64 * (1 + together**2) / (1.64 - 1.6 * together) ** 1.5
     once = lit * (molecules * (3 / (16 * np.pi) * (1 + together**2)) + aerosol * phase)
+    if sunny is not None:
+        once = once * sunny(way)[:, None]
     often = seen * (molecules + aerosol) * _often(table, there, sun_there)
     return np.pi * (once + often).sum(axis=0)
 
@@ -150,6 +159,37 @@ def test_what_is_added_is_what_the_air_on_the_way_scatters(any_engine, outdoors,
         for y, x in ((10, 2), (11, 28), (13, 16), (19, 5)):
             truth = scattered(start, towards[y, x], REACH * ((k + 1) / SLICES) ** 4, sun, 3.0, table)
             np.testing.assert_allclose(found[k, y, x], truth, rtol=0.06, atol=1e-7)
+
+
+HALF = """
+#pragma kernel(output = "cloud:rgba16f")
+// Opaque up to half of the tile eastwards, or from there on.
+uniform float opaque = 0.0;
+vec4 kernel(ivec2 texel) {
+    return vec4(1.0, 0.5, 0.5, (2 * texel.x < size.x) == (opaque < 0.5) ? 0.0 : 1.0);
+}
+"""
+
+
+@pytest.mark.parametrize("opaque", [0.0, 1.0], ids=["cloud first", "cloud behind"])
+@pytest.mark.parametrize("elevation", [50.0, 20.0])
+def test_air_in_the_shadow_of_clouds_scatters_no_beam(any_engine, outdoors, opaque, elevation):
+    """The shadow's edge is across the ray, where a slice ends; the sun is at right angles to the ray."""
+    first = f'[[pass]]\nname = "cloud"\nuse = "./half"\nsize = [512, 4]\nset = {{ opaque = {opaque} }}\n'
+    first += '[[pass]]\nname = "drift"\nuse = "clouds/drift"\nsize = 1\n'
+    first += "set = { base = 2000.0, wide = 50000.0 }\n"
+    edge = REACH * (8 / SLICES) ** 4  # km from the eye
+    eye = (25000.0 - 1000 * edge, 500.0, 300.0)
+    sketch = outdoors(files={"half": HALF}, target=eye, look=(90.0, 0.0), first=first, sun=[0.0, elevation])
+    found, towards, start = slices(any_engine, sketch, "scattered")
+    table = any_engine.read(sketch, "daylight.bounced").astype(np.float64)[..., :3]
+    sun = any_engine.read(sketch, "daylight")[0, 0, :3].astype(np.float64)
+    for k in (5, 7, 8, 9, 10):
+        far = REACH * ((k + 1) / SLICES) ** 4
+        for y, x in ((10, 15), (12, 16)):
+            ray = towards[y, x]
+            truth = scattered(start, ray, far, sun, 2.5, table, lambda way: (way > edge) == (opaque < 0.5))
+            np.testing.assert_allclose(found[k, y, x], truth, rtol=0.06, err_msg=f"{k} {y} {x}")
 
 
 LOOK = """

@@ -41,7 +41,7 @@ def placed(make_sketch, values=EVERY, azimuth=200.0, at=(1300.0, 700.0)):
 def table(engine, sketch, **options):
     """Return the trees of the table that are drawn, (n, 4), and their keys."""
     tree = engine.read(sketch, "trees.cells:tree", **options).reshape(-1, 4).copy()
-    key = engine.read(sketch, "trees.cells:key", **options).ravel()
+    key = engine.read(sketch, "trees.cells:key", **options)[..., 0].ravel()
     return tree[key < 1], key[key < 1]
 
 
@@ -88,7 +88,8 @@ def test_farther_away_fewer_are_kept_by_a_known_share(kept, ctx, make_sketch):
             (x - eye[0]) ** 2 + (y - eye[1]) ** 2 + (120 * (0.2 + 0.5 * x / EXTENT[0]) - eye[2]) ** 2
         )
         end = np.clip((away - 0.9 * 1200) / 120, 0, 1)
-        return np.minimum(150 / away, 1) ** 2 * (1 - end * end * (3 - 2 * end))
+        # Whole up to this rank, then smaller up to a quarter more.
+        return np.minimum(1.25 * np.minimum(150 / away, 1) ** 2 * (1 - end * end * (3 - 2 * end)), 1)
 
     mean, variance = expected(share)
     assert abs(len(tree) - mean) < 4 * np.sqrt(variance)
@@ -131,12 +132,13 @@ def test_what_the_picture_shows_does_not_depend_on_its_size(kept, ctx, make_sket
 
 def test_the_list_is_the_table(kept, ctx, make_sketch):
     sketch = placed(make_sketch)
-    tree, key = table(kept, sketch)
+    tree, _ = table(kept, sketch)
     found = listed(kept, sketch)
-    shrunk = np.clip((1 - key.astype(np.float64)) * 5, 0, 1)
     assert rows(found[:, :3]) == rows(tree[:, :3]) and len(found) == len(tree)
     order = [np.lexsort(t[:, :2].T) for t in (found, tree)]
-    np.testing.assert_allclose(found[order[0], 3], (tree[:, 3] * shrunk)[order[1]], rtol=1e-5)
+    # Where all are kept, all are as tall as they are.
+    np.testing.assert_array_equal(found[order[0], 3], tree[order[1], 3])
+    assert found[:, 3].min() >= 0.55 * 21 - 1e-3
 
 
 def test_where_there_are_too_many_fewer_are_kept_everywhere(kept, ctx, make_sketch):
@@ -152,6 +154,20 @@ def test_where_there_are_too_many_fewer_are_kept_everywhere(kept, ctx, make_sket
         assert (np.abs(counts - share * of) < 4 * np.sqrt(share * of)).all()
     limit = kept.read(placed(make_sketch, EVERY.replace("200000", str(budget))), "trees:limit")[0, 0]
     assert found[:, 3].max() <= 21 * limit**-0.4 + 1e-3
+
+
+@pytest.mark.parametrize("limit", [0.4, 0.9, 1.0])
+def test_what_is_drawn_covers_as_much_as_is_said(on_gpu, limit):
+    """Over many ranks: the mean of the squared sizes of those that are drawn."""
+    rank = (np.arange(100_000) + 0.5) / 100_000
+    for kept in (1.0, 0.95, 0.85, 0.5, 0.01):
+        key = rank / min(1.25 * kept, 1.0)
+        key = key[key < limit].astype(np.float32)
+        sizes = on_gpu("trees/level.glsl", f"shrunk(key, drawn_part({kept}), {limit})", key=key)
+        truth = (sizes.astype(np.float64) ** 2).sum() / len(rank)
+        found = on_gpu("trees/level.glsl", "covering_share(k, l)", k=[kept], l=[limit])[0]
+        assert found == pytest.approx(truth, rel=0.03), kept
+        assert (sizes == 1).all() == (kept == limit == 1), "all are whole where all are kept"
 
 
 PLANE = """

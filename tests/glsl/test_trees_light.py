@@ -66,12 +66,15 @@ set = {{ most = {most}, slope = {slope} }}
 use = "scene/wooded"
 camera = {{ azimuth = 70.0, elevation = {elevation}, distance = {distance}, target = [8000, 8000, 2000] }}
 inputs = {{ height = "flat:height", density = "flat:density", colour = "flat:colour" }}
-set = {{ sun = {sun}, gain = 2.0, ambient = 0.6, trees = 200000, detail = "full grid", grid = 2 }}
+set = {{ sun = {sun}, gain = 2.0, ambient = 0.6, trees = {trees}, detail = "full grid", grid = 2{given} }}
 """
 
 
-def stand(engine, make_sketch, distance, most=0.7, elevation=8.0, sun="[135, 35]", slope=0.0):
+def stand(
+    engine, make_sketch, distance, most=0.7, elevation=8.0, sun="[135, 35]", slope=0.0, trees=200000, given=""
+):
     """Return what the eye sees of a stand on a plain: about 300 m of it, or 5 degrees."""
+    given = given and f", {given}"
     text = STAND.format(**{k: v for k, v in locals().items() if k not in ("engine", "make_sketch")})
     sketch = make_sketch(text, size=3, extent=16000.0, relief=4000.0, flat=FLAT)
     lens = max(np.degrees(2 * np.arctan(75.0 / distance)), 5.0)
@@ -85,7 +88,7 @@ def stand(engine, make_sketch, distance, most=0.7, elevation=8.0, sun="[135, 35]
     [
         (0.7, 8.0, "[135, 35]", 0.0, 0.05),
         (0.25, 12.0, "[200, 20]", 0.0, 0.05),
-        (0.8, 6.0, "[150, 40]", -0.35, 0.12),  # the table of trees/wood is for level ground
+        (0.8, 6.0, "[150, 40]", -0.35, 0.13),  # the table of trees/wood is for level ground
     ],
 )
 def test_a_stand_has_one_mean_colour_at_every_distance(
@@ -96,6 +99,13 @@ def test_a_stand_has_one_mean_colour_at_every_distance(
         lit = stand(kept, make_sketch, distance, most, elevation, sun, slope)
         found.append(lit[..., :3].mean((0, 1), dtype=np.float64))
     np.testing.assert_allclose(found, np.broadcast_to(found[0], (4, 3)), rtol=bound)
+
+
+@pytest.mark.parametrize("trees", [4096, 512])
+def test_a_stand_has_that_colour_whatever_there_is_room_for(kept, ctx, make_sketch, trees):
+    """Of more trees than a list has room for some are drawn, and larger: the ground has the rest."""
+    found = [stand(kept, make_sketch, 1500.0, trees=n)[..., :3].mean((0, 1)) for n in (200000, trees)]
+    np.testing.assert_allclose(found[1], found[0], rtol=0.05)
 
 
 @pytest.mark.slow
@@ -225,7 +235,7 @@ def test_a_wood_shades_the_meadow_beside_it_and_lights_none(kept, ctx, make_sket
     top = np.zeros((600, 600))
     cells = np.argwhere(rng.random((20, 20)) < 0.9)
     for at in (cells + 0.5 + 0.8 * (rng.random(cells.shape) - 0.5)) * 9.0:
-        tall = 21 * rng.uniform(0.55, 1) * min(1.0, 5 * rng.random())
+        tall = 21 * rng.uniform(0.55, 1)
         across = tall * rng.uniform(0.26, 0.36)
         square = ((x[None] - at[0]) ** 2 + (y[:, None] - at[1]) ** 2) / across**2
         crown = tall * (0.56 + 0.44 * np.sqrt(np.maximum(1 - square, 0)))
@@ -235,3 +245,110 @@ def test_a_wood_shades_the_meadow_beside_it_and_lights_none(kept, ctx, make_sket
     assert (lit[1][meadow] <= lit[0][meadow]).all() and (lit[1][meadow] < lit[0][meadow]).sum() > 50
     metres = 60.0 * (kept.read(sketch, "canopy:height") - kept.read(sketch, "wood:height"))
     np.testing.assert_allclose(metres, canopy, atol=1e-3)
+
+
+def test_where_all_trees_have_needles_their_wood_has_the_light_of_needles(kept, ctx, make_sketch):
+    """Above `needles_from`, as with needles only; 2000 m above sea level here, far beyond single trees."""
+    high, only = (
+        stand(kept, make_sketch, 6000.0, given=given)
+        for given in ("needles = 0.12, needles_from = 900", "needles = 1.0")
+    )
+    np.testing.assert_allclose(high, only, rtol=2e-3)
+
+
+def test_single_trees_end_where_their_table_ends(kept, ctx, make_sketch):
+    """The table has no more than 1024 cells each way: what is beyond is in the ground, none is lacking."""
+    found, sides = [], []
+    for reach in (1024, 8000):
+        given = f"cell = 1, tallest = 3, whole = 60, reach = {reach}"
+        found.append(stand(kept, make_sketch, 1100.0, given=given))
+        sides += [max(step.size) for step in kept.plan.walk() if step.path == "view.place.cells"]
+    assert sides == [2050, 2050]
+    np.testing.assert_array_equal(found[0], found[1])
+
+
+EDGE = """
+#include "maths/land.glsl"
+#pragma kernel(output = "height:r32f, density:r32f, colour:rgba16f")
+void kernel(ivec2 texel, out float height, out float density, out vec4 colour) {
+    height = 0.1;
+    density = texel.x > 28 && texel.x <= 32 ? 0.4 : 0.0;
+    colour = vec4(0.5, 0.5, 0.5, 1.0);
+}
+"""
+MEADOW = """
+[[pass]]
+name = "edge"
+use = "./edge"
+[[pass]]
+name = "canopy"
+use = "trees/canopy"
+inputs = {{ bare = "edge:height", density = "edge:density" }}
+[[pass]]
+name = "bare"
+use = "lighting/ray_cast"
+inputs = {{ height = "edge:height" }}
+set = {{ sun = [275, 16] }}
+[[pass]]
+name = "high"
+use = "lighting/ray_cast"
+inputs = {{ height = "canopy:height" }}
+set = {{ sun = [275, 16] }}
+[view]
+use = "scene/wooded"
+samples = 1
+camera = {{ azimuth = 150.0, elevation = 55.0, distance = 100.0, target = [280.0, 190.0, 6.0] }}
+set = {{ sun = [275, 16], gain = 1.0, ambient = 0.0, haze = 0.0, sun_colour = "#ffffff", needles = 0.0, \
+    detail = "full grid", grid = 2, margin = 300.0, shade_wide = {wide} }}
+[view.inputs]
+height = "edge:height"
+density = "edge:density"
+colour = "edge:colour"
+visibility = "bare.visibility"
+canopy_visibility = "high.visibility"
+"""
+
+
+def meadow_sun(engine, make_sketch, wide):
+    """Return places in the meadow beside a wood in the west, (n, 3), and the share of the sun on each."""
+    sketch = make_sketch(
+        MEADOW.format(wide=wide), size=[65, 49], extent=[512.0, 384.0], relief=60.0, edge=EDGE
+    )
+    seen = engine.read(sketch, "view.seen", size=(240, 160)).copy()
+    lit = engine.read(sketch, "view.shaded", size=(240, 160))[..., 1].astype(np.float64)
+    meadow = (seen[..., 3] == 1) & (seen[..., 0] > 264) & (seen[..., 0] < 310)
+    tree = engine.read(sketch, "view.place:tree", size=(240, 160)).reshape(-1, 4).copy()
+    share = lit[meadow] / (0.5 * np.sin(np.radians(16.0)))
+    return seen[meadow][:, :3].astype(np.float64), share, tree[tree[:, 3] > 0]
+
+
+def test_the_sun_beside_a_wood_is_what_its_trees_leave(kept, ctx, on_gpu, make_sketch):
+    """Near the eye, by rays through each crown: a wood as one opaque body would take more than they do."""
+    place, share, tree = meadow_sun(kept, make_sketch, 700.0)
+    crowns = "crown_of(t, 0.0)"
+    form = f"vec3({crowns}.middle.z, {crowns}.across, {crowns}.up)"
+    forms = on_gpu("trees/crown.glsl", form, t=tree).astype(np.float64)
+    turn, rise = np.radians([275.0, 16.0])
+    way = np.array([np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)])
+    hidden = np.zeros(len(place), bool)
+    for (east, north, _, _), (middle, across, up) in zip(tree.astype(float), forms, strict=True):
+        start = (place - [east, north, middle]) / [across, across, up]
+        along = way / [across, across, up]
+        t = -(start @ along) / (along @ along)
+        hidden |= ((start + t[:, None] * along) ** 2).sum(1) < 1
+    assert 0.1 < hidden.mean() < 0.9
+    assert abs(share.mean() - (~hidden).mean()) < 0.005
+    assert ((share < 0.5) != hidden).mean() < 0.01
+
+
+def test_beyond_the_square_of_tree_shadows_the_wood_shades_as_one_body(kept, ctx, make_sketch):
+    place, share, _ = meadow_sun(kept, make_sketch, 100.0)
+    east, north = np.array(kept.plan.eye.position[:2])
+    beyond = np.maximum(abs(place[:, 0] - east), abs(place[:, 1] - north)) > 50.0
+    visibility = kept.read(kept.plan.sketch, "high.visibility").astype(np.float64)
+    x, y = place[beyond, 0] / 8, place[beyond, 1] / 8
+    column, row = x.astype(int), y.astype(int)
+    corners = [[visibility[row + j, column + i] for i in (0, 1)] for j in (0, 1)]
+    south, north = (a + (b - a) * (x - column) for a, b in corners)
+    np.testing.assert_allclose(share[beyond], south + (north - south) * (y - row), atol=0.01)
+    assert beyond.sum() > 1000 and (share[beyond] < 0.5).mean() > 0.05

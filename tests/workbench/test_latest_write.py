@@ -13,13 +13,16 @@ import pytest
 from playground.errors import DataError
 from playground.terrain.numbers import read_numbers
 from playground.workbench.captures import Captures
+from playground.workbench.commands import Commands
 from playground.workbench.latest_write import LatestWrite
 from playground.workbench.notices import Notices
 from playground.workbench.painting import Painting
 from playground.workbench.sculpture import Sculpture
 from playground.workbench.session import Session
+from playground.workbench.sketch_file import SketchFile
+from playground.workbench.undo import Undo
 
-from .test_sculpted_sketch import PLACE, stroke
+from .test_sculpted_sketch import PICTURE, PLACE, stroke
 from .test_sculpted_sketch import painting as painting
 from .test_sculpted_sketch import session as session
 
@@ -57,6 +60,17 @@ def test_an_error_is_of_the_last_write_and_the_next_one_takes_it_away() -> None:
     writing.give(lambda: None)
     writing.wait()
     assert writing.error is None and ended.wait(10)
+
+
+def test_each_write_is_reported_before_a_wait_for_it_ends() -> None:
+    """What is called may be gone afterwards: the window that it wakes."""
+    seen: list[tuple[int, bool]] = []
+    writing = LatestWrite(lambda: seen.append((writing.writes, writing.pending)))
+    for number in (1, 2, 3):
+        writing.give(lambda: None)
+        writing.wait()
+        assert len(seen) == number
+    assert seen == [(1, True), (2, True), (3, True)]
 
 
 def test_a_stroke_s_end_waits_for_no_file(
@@ -124,6 +138,47 @@ def test_a_capture_waits_for_the_file_that_it_reads(
     monkeypatch.setattr(captures, "job", job)
     captures.start()
     np.testing.assert_array_equal(found[0], canvas.pixels)
+    painting.close()
+
+
+def test_what_is_painted_and_cannot_be_written_is_in_no_capture_and_missed_by_what_saves(
+    session: Session, painting: Painting, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stroke(painting, PLACE)
+    write, notices = Sculpture.write, Notices()
+
+    def fail(path: Path, pixels: np.ndarray) -> None:
+        raise DataError("no space left on device")
+
+    monkeypatch.setattr(Sculpture, "write", staticmethod(fail))
+    stroke(painting, PLACE)
+    captures = Captures(session=session, notices=notices, folder=tmp_path, settle=painting.settle)
+    made: list[object] = []
+
+    def job() -> None:
+        made.append(None)
+        raise DataError("enough")
+
+    monkeypatch.setattr(captures, "job", job)
+    session.notes.clear()
+    captures.start()
+    assert not made and captures.working is None
+    assert captures.failed == "no capture was made, for what was painted last could not be written"
+    assert list(session.notes) == ["no space left on device"]
+    file = SketchFile(session, notices)
+    commands = Commands(session, notices, Undo(session, notices, painting, file), file, tmp_path)
+    missed = "; what was painted last could not be written, and is not in it"
+    acts = commands.save_values, commands.save_values, commands.save_a_copy
+    for act, begins in zip(acts, ("saved 1 value into ", "nothing differs ", "saved a copy "), strict=True):
+        act()
+        session.frame(PICTURE)
+        message = notices.items[-1].text
+        assert message.startswith(begins) and message.endswith(missed), message
+    monkeypatch.setattr(Sculpture, "write", staticmethod(write))
+    commands.save_values()
+    assert not notices.items[-1].text.endswith(missed)
+    captures.start()
+    assert made, "what can be written again is captured"
     painting.close()
 
 

@@ -33,15 +33,15 @@ vec4 kernel(ivec2 texel) {
     float sun_level = sqrt(max(1.0 - start.x * start.x, 0.0));
     for (int ray = 0; ray < RISES * SIDES; ray++) {
         int row = ray / SIDES;
-        // Closest around the level ways, which are all that light comes by in twilight.
+        // Closest around the level paths, which are all that light comes by in twilight.
         float step_of = (float(row) + 0.5) / float(RISES) * 2.0 - 1.0;
         float rise = step_of * abs(step_of);
         float weight = 2.0 * abs(step_of);
         // The two halves on both sides of the sun are alike.
         float side = (float(ray - row * SIDES) + 0.5) / float(SIDES) * 3.14159265;
         float together = rise * start.x + sqrt(1.0 - rise * rise) * sun_level * cos(side);
-        float to_ground = way_to_ground(start.y, rise);
-        float whole = to_ground >= 0.0 ? to_ground : way_to_top(start.y, rise);
+        float to_ground = distance_to_ground(start.y, rise);
+        float whole = to_ground >= 0.0 ? to_ground : distance_to_top(start.y, rise);
         vec3 left = vec3(weight);
         for (int k = 0; k < STEPS; k++) {
             float before = float(k) / float(STEPS);

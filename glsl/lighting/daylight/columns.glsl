@@ -14,10 +14,10 @@ const int STEPS = 96;
 
 vec4 kernel(ivec2 texel) {
     vec2 start = column_start(vec2(texel) / vec2(max(size - 1, 1)));
-    float whole = way_to_top(start.x, start.y);
+    float whole = distance_to_top(start.x, start.y);
     vec3 total = vec3(0.0);
     for (int k = 0; k < STEPS; k++) {
-        // Steps grow along the way, since most of the air is near its start.
+        // Steps grow along the path, since most of the air is near its start.
         float share = (float(k) + 0.5) / float(STEPS);
         float height = max(height_along(start.x, start.y, whole * share * share), 0.0);
         total += densities(height) * (2.0 * share * whole / float(STEPS));

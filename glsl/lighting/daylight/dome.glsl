@@ -43,7 +43,7 @@ vec4 kernel(ivec2 texel) {
     vec3 sun = to_sun(texelFetch(place, ivec2(0), 0).rg);
     float together = way.x * sun.z + sqrt((1.0 - way.x * way.x) * dot(sun.xy, sun.xy)) * way.y;
     Air scatters = air_of(texelFetch(air, ivec2(0), 0).r);
-    float whole = way_to_top(height, way.x);
+    float whole = distance_to_top(height, way.x);
     vec3 left = vec3(1.0);
     vec3 molecules = vec3(0.0);
     vec3 aerosol = vec3(0.0);

@@ -15,8 +15,7 @@
 
 uniform sampler2D daylight;  //! input
 uniform sampler2D dome;      //! input
-uniform int clouds = 2;      //! menu("none", "flat", "heaped")
-                             //! Where none are drawn, daylight's own cover is over all of it
+#include "clouds/parameters/drawn.glsl"
 
 vec4 kernel(ivec2 texel) {
     // The first and the last lie on the picture's edges.

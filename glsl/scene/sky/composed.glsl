@@ -3,7 +3,7 @@
 //   gives    sky, linear light
 //   needs    lighting/daylight_weather.glsl, sky/columns.glsl, sky/drops.glsl, maths/drape.glsl;
 //            the camera; scene/sky/backdrop, scene/sky/through_air, a daylight and one of its
-//            tables; what a scene has in front of it, if any
+//            tables
 //   units    light as of lighting/daylight
 //   source   see lighting/daylight/dome and scene/air
 //   tested   tests/glsl/test_cloud_pictures.py: as the sky where there is no cloud; at the horizon
@@ -17,14 +17,11 @@
 #include "sky/drops.glsl"
 #pragma kernel(output = "sky:rgba16f")
 
-uniform sampler2D seen;      //! input("zero")
 uniform sampler2D daylight;  //! input
 uniform sampler2D columns;   //! input
 uniform sampler2D backdrop;  //! input("linear")
 uniform sampler2D in_front;  //! input("linear")
-uniform int clouds = 2;      //! menu("none", "flat", "heaped")
-                             //! What clouds are drawn: none, a flat layer for slow renderers,
-                             //! or heaps
+#include "clouds/parameters/drawn.glsl"
 
 // The sun is 47,000 times as bright as white paper in its light, far past what half floats hold.
 const float BRIGHTEST = 60.0;
@@ -44,8 +41,6 @@ vec3 disc_in(vec3 towards, vec3 sun, float pixel, float height, Weather now) {
 }
 
 vec4 kernel(ivec2 texel) {
-    // Nothing is seen of it where a scene has something else.
-    if (wired_seen && texelFetch(seen, texel, 0).w != 0.0) return vec4(0.0);
     vec2 share = (vec2(texel) + 0.5) / vec2(size);
     vec3 towards = direction_of(vec2(texel) + 0.5);
     float height = 0.001 * max(base_elevation + eye.z, 0.0);

@@ -1,7 +1,7 @@
 // scene/sky/through_air.glsl -- what is in front of the sky, with the air before it.
 //
-//   gives    picture: clouds and the land beyond the terrain as they come to the eye, and in alpha
-//            what they leave of the sky
+//   gives    picture: clouds and the ground beyond the terrain as they come to the eye, and in
+//            alpha what they leave of the sky
 //   needs    clouds/crossing.glsl, clouds/layer_form.glsl, lighting/daylight_weather.glsl,
 //            scene/air_reading.glsl; the camera; clouds, a drift, a daylight, scene/air
 //   units    light as of lighting/daylight
@@ -22,11 +22,9 @@ uniform sampler2D daylight;       //! input
 uniform sampler2D scattered;      //! input("linear")
 uniform sampler2D left;           //! input("linear")
 uniform sampler2D drift;          //! input("black")
-uniform int clouds = 2;           //! menu("none", "flat", "heaped")
-                                  //! What clouds are drawn: none, a flat layer for slow
-                                  //! renderers, or heaps
+#include "clouds/parameters/drawn.glsl"
 uniform vec3 beyond = vec3(0.07, 0.10, 0.05);  //! colour
-                                  //! Of the flat land beyond the terrain
+                                  //! Of the flat ground beyond the terrain
 
 vec4 cloud_at(ivec2 texel) {
     if (clouds == 0) return vec4(0.0, 0.0, 0.0, 1.0);
@@ -41,7 +39,7 @@ vec4 kernel(ivec2 texel) {
     vec3 ahead = normalize(away.xyz / away.w - eye);
     float height = 0.001 * max(base_elevation + eye.z, 0.0);
     float base = 0.001 * (base_elevation + texelFetch(drift, ivec2(0), 0).z);
-    float ground = way_to_ground(height, ahead.z);
+    float ground = distance_to_ground(height, ahead.z);
     vec4 found = vec4(0.0, 0.0, 0.0, 1.0);
     if (ground >= 0.0) {
         Aerial air = aerial(scattered, left, share, 1000.0 * ground);

@@ -40,11 +40,12 @@ vec4 kernel(ivec2 texel) {
     for (int k = 0; k < block.x * block.y; k++) {
         ivec2 from = at * block + ivec2(k % block.x, k / block.x);
         if (any(greaterThanEqual(from, cells))) continue;
-        float found = texelFetch(key, from, 0).r;
-        if (found >= most) continue;
+        vec2 found = texelFetch(key, from, 0).rg;
+        if (found.r >= most) continue;
         if (rest < 0.5) {
             vec4 tree = texelFetch(table, from, 0);
-            return vec4(tree.xyz, tree.w * shrunk(found / most) * pow(most, GROWTH));
+            float tall = tree.w * shrunk(found.r, found.g, most) * pow(most, GROWTH);
+            return vec4(tree.xyz, tall);
         }
         rest -= 1.0;
     }

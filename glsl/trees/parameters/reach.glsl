@@ -10,5 +10,6 @@
 uniform float whole = 1700.0;  //! log_slider(10, 10000) unit("m")
                                //! Nearer than this no tree is left out
 uniform float reach = 4800.0;  //! log_slider(50, 20000) unit("m")
-                               //! Where single trees end: beyond, they colour the ground
+                               //! Where single trees end, no more than 1024 cells away:
+                               //! beyond, they colour the ground
 #endif

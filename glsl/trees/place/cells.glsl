@@ -1,7 +1,8 @@
 // trees/place/cells.glsl -- at most one tree in each cell of a square around the eye.
 //
 //   gives    tree: its foot east, north and up, and how tall it is, 0 for none; key: its rank over
-//            the share of trees that is drawn so far away, below 1 for one that is drawn, else 2
+//            the share of trees that is drawn so far away, below 1 for one that is drawn, else 2;
+//            and how near to its end a tree of key 1 is (drawn_part)
 //   needs    noise/hash.glsl, terrain/heightfield.glsl, trees/level.glsl; a height, a density, the
 //            camera
 //   units    metres; density 0..1
@@ -11,7 +12,7 @@
 #include "noise/hash.glsl"
 #include "terrain/heightfield.glsl"
 #include "trees/level.glsl"
-#pragma kernel(output = "tree:rgba32f, key:r32f")
+#pragma kernel(output = "tree:rgba32f, key:rg32f")
 
 uniform sampler2D height;          //! input
 uniform sampler2D density;         //! input("white")
@@ -36,9 +37,9 @@ bool may_be_seen(vec2 place, float low, float high) {
     return true;
 }
 
-void kernel(ivec2 texel, out vec4 tree, out float key) {
+void kernel(ivec2 texel, out vec4 tree, out vec2 key) {
     tree = vec4(0.0);
-    key = 2.0;
+    key = vec2(2.0, 1.0);
     ivec2 here = ivec2(floor(eye.xy / cell)) + texel - size / 2;
     uvec3 first = hash3(uvec3(uint(here.x), uint(here.y), seed + SALT));
     uvec3 second = hash3(uvec3(uint(here.x), uint(here.y), seed + SALT + 1u));
@@ -54,12 +55,11 @@ void kernel(ivec2 texel, out vec4 tree, out float key) {
     if (unit_from_bits(first.z) >= wanted) return;
     float up = height_at(height, share * vec2(textureSize(height, 0) - 1)) * relief;
     float away = distance(eye, vec3(place, up));
-    float half_side = 0.5 * cell * float(min(size.x, size.y) - 2);
-    float kept = kept_share(away, whole, min(reach, half_side));
+    float kept = kept_share(away, whole, end_of_table(reach, cell, size));
     float rank = unit_from_bits(second.x);
-    if (rank >= kept) return;
+    if (rank >= drawn_share(kept)) return;
     if (!all_round && !may_be_seen(place, up, up + 2.0 * tallest)) return;
     float tall = tallest * mix(shortest, 1.0, unit_from_bits(second.y));
     tree = vec4(place, up, tall * growth_of_kept(away, whole));
-    key = rank / kept;
+    key = vec2(rank / drawn_share(kept), drawn_part(kept));
 }
