@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_objects.py, by where a model's corners are in the picture
 //
 // Each is turned about its upright by a number of its own. Only those between `nearest` and
-// `farthest` from the eye: what is farther away, trees/seen may draw.
+// `farthest` from the eye: what is farther away trees/seen draws, where its `nearest` is the same.
 #include "noise/hash.glsl"
 #include "scene/packing.glsl"
 #include "trees/kinds.glsl"

@@ -4,7 +4,8 @@
 //   needs    scene/packing.glsl, trees/billboard.glsl, trees/quad.glsl; a list of trees
 //   units    metres
 //   source   trees/billboard.glsl
-//   tested   tests/glsl/test_trees_light.py, by the area that they cover
+//   tested   tests/glsl/test_trees_light.py, by the area that they cover; those left to
+//            models: tests/glsl/test_objects.py
 #include "scene/packing.glsl"
 #include "trees/billboard.glsl"
 #include "trees/quad.glsl"
@@ -13,6 +14,8 @@
 
 uniform sampler2D tree;   //! input
 uniform sampler2D total;  //! input
+uniform float nearest = 0.0;  //! slider(0, 10000) unit("m")
+                              //! Nearer than this none is drawn: there objects/seen has models
 #include "trees/parameters/budget.glsl"
 #include "trees/parameters/species.glsl"
 #include "trees/parameters/ragged.glsl"
@@ -21,7 +24,7 @@ const uint SALT = 0xc8c979e4u;  // CRC-32 of "trees/seen"
 
 vec4 vertex(vec3 corner, out vec2 disc, out vec4 middle, out vec4 form) {
     vec4 found = tree_of(tree, gl_InstanceID);
-    if (found.w <= 0.0) return NOWHERE;
+    if (found.w <= 0.0 || distance(eye, found.xyz) < nearest) return NOWHERE;
     float share = needle_share(needles, needles_from, found.z + base_elevation);
     Billboard board = billboard_of(found, square_of(corner), share, eye);
     disc = board.disc;

@@ -83,6 +83,7 @@ def measure(size: int, radius: int) -> None:
             both = statistics.median(map(sum, zip(brush, drawn, strict=True)))
             row = statistics.median(brush), statistics.median(drawn), both, press
             print(f"{tool:<10}" + "".join(f"{value:8.1f}" for value in row) + f"{release:9.1f}")
+        painting.close()  # whose last file is still being written
         session.release()
 
 

@@ -249,6 +249,33 @@ def test_a_river_of_rain_brings_what_fell_above_it(engine, eroded, spacing):
     np.testing.assert_allclose(flow, np.broadcast_to(fell, flow.shape), rtol=0.01)
 
 
+@pytest.mark.parametrize("spacing", [(20.0, 20.0), (20.0, 10.0), (10.0, 20.0)])
+@pytest.mark.parametrize("downhill", [(1.0, 1.0), (2.0, 1.0), (1.0, 2.0)])
+def test_a_sheet_of_rain_brings_what_fell_above_it_aslant_too(engine, eroded, spacing, downhill):
+    """Down a plane, the discharge of a metre of width is rain times the length of the way from the edge."""
+    y, x = np.mgrid[:65, :65] * 1.0
+    way = np.array(downhill) / np.hypot(*downhill)
+    fallen = x * spacing[0] * way[0] + y * spacing[1] * way[1]
+    slope = (1 - fallen / fallen.max()).astype(np.float32)
+    extent = 64 * spacing[0], 64 * spacing[1]
+    still = {"evaporation": 0.0, "capacity": 0.1, "wear": 0.0, "creep": 0.0, "repose": 89.0}
+    sketch = eroded(slope, extent, rain=0.005, hours=1000, **still)
+    flow = engine.read(sketch, "worn:flow")
+    # By the western edge every way begins there, by the southern one there; by the diagonal, where ways
+    # of both kinds meet, the pipes mix them. A texel's rain flows from its middle; but along the edge what
+    # comes has all the rain of the texel before: up to half a texel's too much. Where edges are open, of
+    # 2 cm of water a part leaves uphill, against a fall of 3.7 m or more: less than 1 %.
+    by_west, by_south = np.s_[50:60, 3:9], np.s_[3:9, 50:60]
+    for here, texels, metres in (
+        (by_west, x, spacing[0] / way[0]),
+        (by_south, y, spacing[1] / way[1]),
+    ):
+        each = 0.005 * metres
+        fell = each * (texels[here] + 0.5)
+        assert (flow[here] > 0.99 * fell).all()
+        assert (flow[here] < 1.01 * fell + each / 2).all()
+
+
 def test_hard_rock_wears_less_and_rain_falls_where_the_map_says(engine, eroded):
     text = """#pragma kernel(output = "factor:r32f")
 float kernel(ivec2 texel) {{ return 2 * texel.x < size.x ? {west} : {east}; }}

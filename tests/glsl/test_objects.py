@@ -82,6 +82,30 @@ def test_only_those_within_its_distances_are_drawn(kept, ctx, make_sketch, value
     assert not kept.read(sketch.with_values({"list.total_of": 0.0}), "seen", size=(256, 256)).any()
 
 
+BOTH = """
+[[pass]]
+name = "both"
+use = "trees/seen"
+size = [256, 256]
+inputs = { tree = "list:tree", total = "list:total", initial = "seen" }
+set = { nearest = FROM }
+"""
+
+
+@pytest.mark.parametrize("limit", [100, 40])
+def test_a_tree_is_a_model_or_a_billboard_and_never_both(kept, ctx, make_sketch, limit):
+    """The tree is about 60 m from the eye: as a model nearer than the limit, else as trees/seen has it."""
+    text = PASSES.format(name="conifer", values=f'kind = "needles", farthest = {limit}')
+    text = text.replace("[view]", BOTH.replace("FROM", str(limit)) + "[view]", 1)
+    sketch = make_sketch(text, size=33, extent=1000.0, relief=1.0, list=LIST)
+    model, both = (kept.read(sketch, name, size=(256, 256)).copy() for name in ("seen", "both"))
+    assert (both[..., 3] >= 4).sum() > 500
+    if limit == 100:
+        np.testing.assert_array_equal(both, model)
+    else:
+        assert not model.any()
+
+
 COVERED = """
 [[pass]]
 name = "red"

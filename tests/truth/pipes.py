@@ -79,18 +79,22 @@ class Pipes:
         self.left = self.left + np.array([water.sum() - inner[0], load.sum() - inner[1]])
         self.water, self.load = np.maximum(water[1:-1, 1:-1], 0), load[1:-1, 1:-1]
 
-        flux = np.pad(self.flux, ((0, 0), (1, 1), (1, 1)))
-        west, east, south, north = flux
-        # Half of what crosses the western and the eastern side either way; likewise south and north.
-        x = (east[1:-1, :-2] + west[1:-1, 1:-1] + east[1:-1, 1:-1] + west[1:-1, 2:]) / 2
-        y = (north[:-2, 1:-1] + south[1:-1, 1:-1] + north[1:-1, 1:-1] + south[2:, 1:-1]) / 2
-        # Depths times the length of a texel that way are water for each metre of width.
-        flow = (x * self.spacing[0] + y * self.spacing[1]) / min(self.spacing)
+        # The discharge of a metre of width: the mean of what comes and of what leaves, each a vector.
+        # A side of a texel takes the amount over the texel's area through the length of that side.
+        comes, leaves = np.zeros((2, ny + 2, nx + 2, 2))
+        for k, (dy, dx) in enumerate(SIDES):
+            volume = self.flux[k] * self.spacing[0] * self.spacing[1]
+            along = volume / self.spacing[1 if dx else 0]
+            leaves[1:-1, 1:-1, 0 if dx else 1] += along
+            comes[1 + dy : 1 + dy + ny, 1 + dx : 1 + dx + nx, 0 if dx else 1] += along
+        both = np.stack([comes, leaves])[:, 1:-1, 1:-1] / min(self.spacing)
+        flow = np.linalg.norm(both, axis=3).mean(0)
         fall = np.hypot(
             (surface[1:-1, 2:] - surface[1:-1, :-2]) / (2 * self.spacing[0]),
             (surface[2:, 1:-1] - surface[:-2, 1:-1]) / (2 * self.spacing[1]),
         )
-        can = self.capacity * flow * np.maximum(np.sin(np.arctan(fall)), 0.01)
+        # What it can carry goes by the amounts themselves, whichever way they go.
+        can = self.capacity * both.sum(3).mean(0) * np.maximum(np.sin(np.arctan(fall)), 0.01)
         bed = np.pad(self.bed, 1, mode="edge")
         lowest = np.min([bed[1 + dy : 1 + dy + ny, 1 + dx : 1 + dx + nx] for dy, dx in SIDES], 0)
         taken = -np.expm1(-self.wear * self.hours) * (can - self.load)

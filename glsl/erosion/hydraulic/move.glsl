@@ -85,18 +85,24 @@ vec4 kernel(ivec2 texel) {
                + ((brought.x + brought.y) + (brought.z + brought.w));
     // end: load
 
-    // What it can carry: more, the more water flows and the steeper its surface.
-    // For each metre of width: the more, the longer a texel is along the flow. What goes through
-    // counts, not a vector's length: a stream a texel wide goes aslant from side to side, where
-    // the vector of what comes and goes has 0.71 of the length. So streams would keep to the axes.
-    vec2 through = 0.5 * vec2((arrives.x + arrives.y) + (leaves.x + leaves.y),
-                              (arrives.z + arrives.w) + (leaves.z + leaves.w));
-    through *= spacing / min(spacing.x, spacing.y);
-    float flow = through.x + through.y;
+    // Through a metre of width: the mean of what comes and of what leaves, each the length of a
+    // vector. Of a sheet both are its discharge, whatever its angle. A stream a texel wide that
+    // goes aslant comes through one side and leaves through the next: one vector of all four would
+    // have 0.71 of the length.
+    vec2 wide = 0.5 * spacing / min(spacing.x, spacing.y);
+    vec2 comes = wide * vec2(arrives.x + arrives.y, arrives.z + arrives.w);
+    vec2 goes = wide * vec2(leaves.x + leaves.y, leaves.z + leaves.w);
+    float flow = length(comes) + length(goes);
+
+    // What it can carry: more, the more water goes through and the steeper its surface. Here the
+    // sums of the vectors count, up to 1.41 times their lengths where a sheet goes aslant: pipes
+    // gather water along axes, and by the lengths streams would keep to them (0.40 for the 0.17
+    // above), and a smooth cone would be worn twice as unevenly around.
+    float through = (comes.x + comes.y) + (goes.x + goes.y);
     vec2 fall = (vec2(east.x - west.x, north.x - south.x)
                  + vec2(east.y - west.y, north.y - south.y)) / (2.0 * spacing);
     float squared = dot(fall, fall);
-    float can = capacity * flow * max(sqrt(squared / (1.0 + squared)), LEAST_SLOPE);
+    float can = capacity * through * max(sqrt(squared / (1.0 + squared)), LEAST_SLOPE);
 
     // Wear or settling. Wear leaves the bed at least half the drop to its lowest neighbour, or
     // single texels become wells. What the bed really loses, after rounding, is what the load

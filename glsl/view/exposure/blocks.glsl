@@ -7,13 +7,16 @@
 //            Digital Images" (SIGGRAPH), eq. 1
 //   tested   tests/glsl/test_after.py, against NumPy in float64
 //
-// Each pixel is in one block. What is darker than a moonless night counts as that.
+// Each pixel is in one block. What is darker than a moonless night counts as that, and what is
+// brighter than half floats hold, infinity in a picture of such, as the brightest of them: or one
+// pixel would make the mean infinite.
 #pragma kernel(output = "blocks:rg32f", repeat = "1 if adapts else 0")
 
 uniform sampler2D picture;  //! input
 #include "view/parameters/adapts.glsl"
 
 const float DARKEST = 1e-7;
+const float BRIGHTEST = 65504.0;
 
 vec2 kernel(ivec2 texel) {
     ivec2 pixels = textureSize(picture, 0);
@@ -22,7 +25,8 @@ vec2 kernel(ivec2 texel) {
     for (int y = first.y; y < last.y; y++) {
         for (int x = first.x; x < last.x; x++) {
             vec3 light = texelFetch(picture, ivec2(x, y), 0).rgb;
-            total += log2(max(dot(light, vec3(0.2126, 0.7152, 0.0722)), DARKEST));
+            float luminance = dot(light, vec3(0.2126, 0.7152, 0.0722));
+            total += log2(clamp(luminance, DARKEST, BRIGHTEST));
         }
     }
     return vec2(total, float((last.x - first.x) * (last.y - first.y)));
