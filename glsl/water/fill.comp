@@ -19,8 +19,8 @@
 //
 // After as many steps as the sides have tiles all is still, but in mazes. Those are finished by
 // one thread with one list, in eight steps, so that none is too long for a graphics card; a maze
-// of more than some 200,000 visits stays too high, at 1e30 where no visit came. The last step
-// writes the levels.
+// of more than some 200,000 visits stays too high, but no higher than water that goes straight
+// over its walls: that way is found before. The last step writes the levels.
 #include "water/fill/tile.glsl"
 #include "water/least_fall.glsl"
 #include "water/texels.glsl"

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
+from playground.paths import GLSL
 
+from ..variants import trust
 from .water_truth import edge_of, ends_of, flooded
 
 PASSES = """
@@ -93,6 +95,22 @@ def test_tiles_fall_to_the_bits_of_a_flood_that_falls_step_by_step(ctx, make_ske
         np.testing.assert_array_equal(level, engine.read(sketch, "flood"))
     rounded = 2e-6 if rough == ROUGH else 6e-8 * 1800
     np.testing.assert_allclose(level, flooded(height, (30.0, 30.0), FALL), rtol=0, atol=rounded)
+
+
+def test_a_maze_that_is_too_large_is_full_to_its_walls_at_most(ctx, make_sketch, tmp_path):
+    """As if no visits were left after the steps for all tiles: those reach all, over the walls."""
+    if ctx.version_code < 430:
+        pytest.skip("tiles fall by compute shaders")
+    text = (GLSL / "water/fill.comp").read_text()
+    (tmp_path / "fill.comp").write_text(text.replace("1 << 15", "0"))
+    (tmp_path / "fill.toml").write_text((GLSL / "water/fill.toml").read_text())
+    trust(tmp_path)
+    passes = PASSES.format(steps=16).replace('"water/fill"', '"./fill"')
+    sketch = make_sketch(passes, size=[71, 53], extent=EXTENT, relief=RELIEF, rough=MAZE)
+    with Engine(ctx) as engine:
+        height, level = engine.read(sketch, "height").copy(), engine.read(sketch, "fill").copy()
+    assert (level > flooded(height, SPACING, FALL) - 2e-6).all()
+    assert level.max() < 1 + FALL * np.hypot(*EXTENT), "the walls, and the fall straight over them"
 
 
 @pytest.mark.parametrize("size", [[71, 53], [130, 97]], ids=str)
