@@ -40,8 +40,8 @@ CAMERA_DATA = asdict(CAMERA)
 
 
 @cache
-def page_of(path: Path | str) -> dict[str, Any]:
-    return page_data([load(path)], frame=(160, 90), packed=True)
+def page_of(path: Path | str, engine: Engine | None = None) -> dict[str, Any]:
+    return page_data([load(path)], frame=(160, 90), packed=True, engine=engine)
 
 
 def version(
@@ -90,8 +90,10 @@ def settings(page: dict[str, Any]) -> list[list[Any]]:
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_an_unchanged_version_says_what_the_sketch_says(node: Node, tmp_path: Path, name: str):
-    path, aside = version(node, tmp_path, page_of(name))
+def test_an_unchanged_version_says_what_the_sketch_says(
+    node: Node, tmp_path: Path, exporting: Engine, name: str
+):
+    path, aside = version(node, tmp_path, page_of(name, exporting))
     found, wanted = opened(path, tmp_path), load(name)
     assert not aside
     assert [(s.name, s.use, s.inputs, s.size, s.repeat) for s in found.graph.passes] == [
@@ -103,8 +105,8 @@ def test_an_unchanged_version_says_what_the_sketch_says(node: Node, tmp_path: Pa
 
 
 @pytest.mark.parametrize("name", SHIPPED)
-def test_values_and_the_camera_come_back_exactly(node: Node, tmp_path: Path, name: str):
-    sketch, page = load(name), page_of(name)
+def test_values_and_the_camera_come_back_exactly(node: Node, tmp_path: Path, exporting: Engine, name: str):
+    sketch, page = load(name), page_of(name, exporting)
     values = settings(page)
     path, aside = version(node, tmp_path, page, values=values, camera=CAMERA_DATA)
     found = opened(path, tmp_path)
