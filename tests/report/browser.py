@@ -25,7 +25,6 @@ MISSING = "" if CHROMIUM and DRIVER and os.name == "posix" else "needs Chromium 
 
 _OPTIONS = "--headless --no-sandbox --no-first-run --disable-background-networking"
 _OPTIONS += " --disable-component-update --disable-sync --hide-scrollbars"
-_OPTIONS += " --disable-gpu-watchdog"  # on a busy machine it ends what draws, and another renderer goes on
 
 NO_GPU = ("--disable-gpu",)
 MESA = ("--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist")

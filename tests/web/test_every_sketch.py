@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
@@ -51,10 +51,26 @@ def written(exporting: Engine) -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def every(pages: Pages, drawn: Engine, written: dict[str, Any]) -> Pages:
+def begun(pages: Pages, drawn: Engine, written: dict[str, Any]) -> Callable[..., Pages]:
+    """Give what opens a page of all sketches on a device without some extensions, unless that is open.
+
+    Two processes that share these tests take them in any order.
+    """
+    now: list[tuple[str, ...]] = []
+
+    def begin(*without: str) -> Pages:
+        if now != [without]:
+            pages.begin(written, without=list(without))
+            now[:] = [without]
+        return pages
+
+    return begin
+
+
+@pytest.fixture
+def every(begun: Callable[..., Pages]) -> Pages:
     """Give a page that has all sketches' texts and images."""
-    pages.begin(written)
-    return pages
+    return begun()
 
 
 @pytest.mark.parametrize("name", shipped_sketches())
@@ -75,11 +91,10 @@ def test_a_page_draws_a_sketch_as_the_engine_does(
     every.run("figures[arguments[0]].close()", name)
 
 
-@pytest.fixture(scope="module")
-def unfiltered(pages: Pages, drawn: Engine, written: dict[str, Any]) -> Pages:
+@pytest.fixture
+def unfiltered(begun: Callable[..., Pages]) -> Pages:
     """Give the page on a device that filters no textures of floats, as many phones."""
-    pages.begin(written, without=["OES_texture_float_linear"])
-    return pages
+    return begun("OES_texture_float_linear")
 
 
 @pytest.mark.parametrize("name", shipped_sketches())
