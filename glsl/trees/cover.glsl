@@ -4,7 +4,7 @@
 //            (scene/shaded); shadow: what trees and another shadow leave of the sun
 //   needs    lighting/daylight_date.glsl, lighting/daylight_reading.glsl, noise/gradient.glsl,
 //            scene/ground_reading.glsl, scene/surfaces.glsl, terrain/heightfield.glsl,
-//            trees/light.glsl, trees/wood_reading.glsl; seen with trees, the albedo of scene/cover,
+//            trees/light.glsl, trees/wood_reading.glsl; seen with trees, scene/cover's albedo,
 //            a height, a density, the table of trees/wood and the shadows of trees/shade; the
 //            sun's visible part with the woods on the terrain (trees/canopy), if any; of
 //            trees/place the key, for the size of its table, and the limit

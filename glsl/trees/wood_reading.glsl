@@ -13,7 +13,9 @@ const int MIXES = 2;  // of the lowland's mix of species, of needles only
 const float LOWEST = 0.02;  // sine of the lowest elevation
 
 // Elevations, azimuths, densities.
-ivec3 axes_of(ivec2 size) { return ivec3(size.x, max(size.y / (DENSITIES * MIXES), 1), DENSITIES); }
+ivec3 axes_of(ivec2 size) {
+    return ivec3(size.x, max(size.y / (DENSITIES * MIXES), 1), DENSITIES);
+}
 
 float height_on_axis(vec3 towards) {
     return (sqrt(clamp(towards.z, LOWEST, 1.0)) - sqrt(LOWEST)) / (1.0 - sqrt(LOWEST));

@@ -1,4 +1,4 @@
-// trees/parameters/season.glsl -- the day of the year, for the colour of leaves, unless daylight has it.
+// trees/parameters/season.glsl -- the day of the year for leaves, if no daylight has it.
 //
 //   gives    day
 //   needs    nothing
