@@ -4,7 +4,7 @@
 //   needs    noise/gradient.glsl, trees/crown.glsl, trees/kinds.glsl; the table of trees/leaves as
 //            an argument
 //   units    metres; days; colours linear
-//   source   stands of one valley turn up to three weeks apart, by soil, frost and water: made here
+//   source   made here: stands of one valley turn up to three weeks apart, by soil and frost
 //   tested   tests/glsl/test_trees_species.py
 #ifndef TREES_LEAVES_READING
 #define TREES_LEAVES_READING

@@ -41,7 +41,9 @@ float depth_on_axis(float share) {
     return MIDDLE_DEPTH * END_OF_DEPTHS * share / (1.0 - END_OF_DEPTHS * share);
 }
 
-float axis_of_depth(float depth) { return min(depth / (depth + MIDDLE_DEPTH) / END_OF_DEPTHS, 1.0); }
+float axis_of_depth(float depth) {
+    return min(depth / (depth + MIDDLE_DEPTH) / END_OF_DEPTHS, 1.0);
+}
 
 // Towards the eye, the sun and the sky.
 struct Depths {
