@@ -77,10 +77,12 @@ CrownPoint trunk_point(vec2 disc, vec4 middle, vec4 form, vec3 to_eye) {
 CrownPoint crown_point(vec2 disc, vec4 middle, vec4 form, float ragged, uint seed, vec3 eye) {
     int kind = int(middle.w + 0.5);
     float radius = dot(disc, disc);
+    vec2 around = disc;  // where on the sphere's disc its normal is
     if (species_of(kind) == SPRUCE) {
         // A cone, as wide as the box at its foot.
         float edge = disc.x / clamp(0.5 - 0.5 * disc.y, 0.01, 1.0);
         radius = max(edge * edge, abs(disc.y));
+        around.x = edge * sqrt(max(1.0 - disc.y * disc.y, 0.0));
     }
     vec3 to_eye = normalize(eye - middle.xyz);
     CrownPoint found = trunk_point(disc, middle, form, to_eye);
@@ -92,7 +94,8 @@ CrownPoint crown_point(vec2 disc, vec4 middle, vec4 form, float ragged, uint see
     if (outside > 1.0) return found;
     vec2 held = disc / max(1.02 * length(disc), 1.0);
     // Lumps of leaves lean the normals.
-    vec2 leaning = held - ragged * (0.13 * coarse.yz + 0.12 * fine.yz + 0.11 * leaves.yz);
+    vec2 lumps = 0.13 * coarse.yz + 0.12 * fine.yz + 0.11 * leaves.yz;
+    vec2 leaning = around / max(1.02 * length(around), 1.0) - ragged * lumps;
     leaning /= max(1.02 * length(leaning), 1.0);
     found.hit = true;
     found.kind = kind;

@@ -1,8 +1,8 @@
 // trees/kinds.glsl -- the kinds of what stands on the terrain, and their colours by the season.
 //
 //   gives    OAK, MAPLE, BIRCH, PINE, SPRUCE, SPECIES, TINTS, FIRST_NEEDLES, FIRST_ROCK, GRASS,
-//            BARK, kind_of_tree, species_of, tint_of, kind_of_rock, is_tree, is_grass, tree_colour,
-//            colour_of_kind
+//            BARK, kind_of_tree, species_of, tint_of, kind_of_rock, is_tree, is_grass,
+//            tree_colour, colour_of_kind
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    kinds as of scene/packing.glsl; days of the year from 0; colours linear
 //   source   single leaves: Hosgood and others 1994, LOPEX93 (green ones 0.08 to 0.16 in green

@@ -16,8 +16,8 @@
 //
 // One crown's shadow is an ellipse of the area pi a sqrt(a^2 + (b / tan e)^2) under light from the
 // elevation e, on level ground. Of it, what is higher than a height counts there: the part of the
-// crown's outline above it. The single tree and the mean of a wood are lit by the same functions, so a wood keeps
-// its colour where single trees end.
+// crown's outline above it. The single tree and the mean of a wood are lit by the same functions,
+// so a wood keeps its colour where single trees end.
 #ifndef TREES_STAND
 #define TREES_STAND
 #include "trees/crown.glsl"
