@@ -19,14 +19,14 @@
 #include "trees/near.glsl"
 #include "trees/quad.glsl"
 #include "trees/species_reading.glsl"
-#pragma draw(mesh = "triangles", count = "2 * sprays", instances = "min(total.x, near_trees)", \
+#pragma draw(mesh = "triangles", count = "2 * sprays", instances = "min(total.x, meshes)", \
              output = "seen:rgba32f", samples = 1)
 
 uniform sampler2D tree;     //! input
 uniform sampler2D total;    //! input
 uniform sampler2D species;  //! input("zero")
 uniform int sprays = 170;      //! slider(1, 1024) Sprays of leaves of a tree near the eye
-uniform int near_trees = 4096; //! slider(1, 65536) How many trees are drawn so at most
+uniform int meshes = 4096;     //! slider(1, 65536) How many trees are drawn so at most
 #include "trees/parameters/near.glsl"
 
 const uint SALT = 0x17241a6au;  // CRC-32 of "trees/foliage"
