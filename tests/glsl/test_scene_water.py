@@ -12,46 +12,6 @@ from .test_scene import EXTENT, LOOK, PASSES, PLANE, RELIEF, SIZE, all_pixels, o
 LEVEL = 90.0
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
 COLOUR = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ return {}; }}\n'
-VIEW = """
-[[pass]]
-name = "sky"
-use  = "view/sky"
-[[pass]]
-name = "where"
-use  = "scene/where"
-set  = { grid = 65 }
-[[pass]]
-name = "ground"
-use  = "scene/ground"
-size = ["height.size.x", "height.size.y"]
-[[pass]]
-name   = "cover"
-use    = "scene/cover"
-inputs = { seen = "where" }
-[[pass]]
-name   = "shaded"
-use    = "scene/shaded"
-inputs = { seen = "where", albedo = "cover" }
-[[pass]]
-name   = "lake"
-use    = "scene/water"
-inputs = { picture = "shaded", seen = "where" }
-[inputs]
-height = ["where.height", "ground.height", "lake.height"]
-colour = ["cover.colour", "lake.colour"]
-water = "lake.water"
-[parameters]
-gain = ["shaded.gain", "lake.gain"]
-ambient = ["shaded.ambient", "lake.ambient"]
-sun = ["shaded.sun", "lake.sun"]
-zenith = ["sky.zenith", "lake.zenith"]
-horizon = ["sky.horizon", "shaded.horizon", "lake.horizon"]
-nadir = "sky.nadir"
-wind = "lake.wind"
-deep = "lake.deep"
-clarity = "lake.clarity"
-foam = "lake.foam"
-"""
 WHITE = "zenith = [1.0, 1.0, 1.0], horizon = [1.0, 1.0, 1.0], nadir = [1.0, 1.0, 1.0]"
 BLACK = WHITE.replace("1.0", "0.0")
 CALM = "wind = 0.0, foam = 0.0, gain = 0.0, ambient = 1.0"
@@ -60,13 +20,13 @@ PEAK = """0.9 * max(0.0, 1.0 - 6.0 * distance(vec2(texel) / vec2(size - 1), vec2
 
 
 @pytest.fixture
-def scene(make_sketch, tmp_path):
+def scene(make_sketch):
     """Give a function that makes a scene with a sea at LEVEL."""
 
     def make(height=PLANE, colour="vec4(0.5)", given=CALM, level=LEVEL, water="water/sea", size=(65, 41)):
-        (tmp_path / "wet.toml").write_text(f'title = "A wet scene"\n{VIEW}')
         sea = f'[[pass]]\nname = "water"\nuse = "{water}"\nsize = 1\nset = {{ sea_level = {level} }}\n'
-        text = f'{PASSES}{sea}[view]\nuse = "./wet"\nsamples = 1\nset = {{ {given} }}\n'
+        set_ = f"set = {{ antialias = false, grid = 65, {given} }}"
+        text = f'{PASSES}{sea}[view]\nuse = "scene/terrain"\nsamples = 1\n{set_}\n'
         files = {"terrain": HEIGHT.format(height), "cover": COLOUR.format(colour)}
         sketch = make_sketch(text, size=list(size), extent=list(EXTENT), relief=RELIEF, **files)
         return sketch.with_camera(LOOK)
@@ -82,7 +42,7 @@ def read(engine, sketch, name, size=SIZE):
 
 
 def test_water_is_where_the_rays_meet_its_level_before_the_ground(any_engine, scene):
-    found = read(any_engine, scene(), "lake.where:seen_water")
+    found = read(any_engine, scene(), "watered.where:seen_water")
     eye, ahead = rays(any_engine.plan, all_pixels())
     ground = on_plane(eye, ahead)
     surface = eye + ahead * ((LEVEL - eye[2]) / ahead[..., 2:])
@@ -95,7 +55,7 @@ def test_water_is_where_the_rays_meet_its_level_before_the_ground(any_engine, sc
     np.testing.assert_array_equal(water[on & ~shore], below[on & ~shore])
     wet = water & on & ~shore
     np.testing.assert_allclose(found[wet][:, :3], surface[wet], atol=0.05)
-    depth = read(any_engine, scene(), "lake.where:depth")
+    depth = read(any_engine, scene(), "watered.where:depth")
     np.testing.assert_allclose(depth[on & ~shore], LEVEL - ground[on & ~shore][:, 2], atol=0.05)
 
 
@@ -103,7 +63,7 @@ def test_the_sea_goes_on_to_the_horizon_and_ends_there(any_engine, scene):
     """From 60 m over it the horizon is 0.25 degrees below level, 27.7 km away."""
     low = Camera(azimuth=180, elevation=0.0, distance=300, target=(450, 350, LEVEL + 60.0), field_of_view=20)
     sketch = scene(height="0.05 + 0.0 * float(texel.x)").with_camera(low)
-    found = read(any_engine, sketch, "lake.where:seen_water", (60, 800))
+    found = read(any_engine, sketch, "watered.where:seen_water", (60, 800))
     eye, ahead = rays(any_engine.plan, np.stack(np.indices((60, 800)), axis=-1)[30][:, ::1])
     rise = ahead[:, 2] / np.linalg.norm(ahead[:, :2], axis=1)
     column = found[:, 30]
@@ -117,7 +77,7 @@ def test_the_sea_goes_on_to_the_horizon_and_ends_there(any_engine, scene):
 
 def test_pictures_without_water_in_sight_stay_as_they_are(any_engine, scene):
     sketch = scene(level=-50.0)
-    before, after = (read(any_engine, sketch, name) for name in ("shaded", "lake.surface"))
+    before, after = (read(any_engine, sketch, name) for name in ("shaded", "watered.surface"))
     where = read(any_engine, sketch, "where")
     land = where[..., 3] > 0
     np.testing.assert_array_equal(after[land], before[land])
@@ -134,8 +94,8 @@ def test_calm_water_mirrors_a_peak_within_a_pixel(any_engine, scene):
     look = Camera(azimuth=180, elevation=9, distance=330, target=(450, 330, 10), field_of_view=62)
     size = (241, 240)
     dark = scene(PEAK, "vec4(0.0, 0.0, 0.0, 1.0)", given, level=15.0, size=(181, 141)).with_camera(look)
-    found = read(any_engine, dark, "lake.surface", size)[..., 0]
-    water = read(any_engine, dark, "lake.where:seen_water", size)[..., 3] == 3
+    found = read(any_engine, dark, "watered.surface", size)[..., 0]
+    water = read(any_engine, dark, "watered.where:seen_water", size)[..., 3] == 3
     plan = any_engine.plan
     heights = any_engine.read(dark, "height").astype(float)
     row, column = np.unravel_index(heights.argmax(), heights.shape)
@@ -169,8 +129,8 @@ def test_water_in_an_even_light_adds_none(any_engine, scene, wind):
     """White ground, white sky, white foam and clear water: no pixel is brighter than white."""
     given = f"{WHITE}, wind = {wind}, foam = 1.0, gain = 0.0, ambient = 1.0, deep = [1.0, 1.0, 1.0]"
     sketch = scene(colour="vec4(1.0)", given=given)
-    water = read(any_engine, sketch, "lake.where:seen_water")[..., 3] == 3
-    found = read(any_engine, sketch, "lake.surface")[..., :3]
+    water = read(any_engine, sketch, "watered.where:seen_water")[..., 3] == 3
+    found = read(any_engine, sketch, "watered.surface")[..., :3]
     assert water.sum() > 1000
     assert found[water].max() <= 1.002
     assert found[water].min() > 0.4  # and little is lost: what foam and what goes in and does not return
@@ -179,7 +139,7 @@ def test_water_in_an_even_light_adds_none(any_engine, scene, wind):
 def test_nothing_lights_up_at_night(any_engine, scene):
     given = f"{BLACK}, wind = 8.0, gain = 2.0, ambient = 0.0, sun = [200.0, -12.0]"
     sketch = scene(given=given)
-    found = read(any_engine, sketch, "lake.surface")[..., :3]
+    found = read(any_engine, sketch, "watered.surface")[..., :3]
     shown = read(any_engine, sketch, "where")[..., 3]
     np.testing.assert_array_equal(found[shown < 2], 0.0)  # the cut is in a light of its own
 
@@ -189,9 +149,9 @@ def test_deep_water_is_darker_and_less_red(any_engine, scene):
         f"{CALM}, clarity = 2.0, zenith = [0.0, 0.0, 0.0], horizon = [0.0, 0.0, 0.0], deep = [0.0, 0.0, 0.0]"
     )
     sketch = scene(given=given)
-    depth = read(any_engine, sketch, "lake.where:depth")
-    water = read(any_engine, sketch, "lake.where:seen_water")[..., 3] == 3
-    found = read(any_engine, sketch, "lake.surface")[..., :3]
+    depth = read(any_engine, sketch, "watered.where:depth")
+    water = read(any_engine, sketch, "watered.where:seen_water")[..., 3] == 3
+    found = read(any_engine, sketch, "watered.surface")[..., :3]
     land = read(any_engine, sketch, "where")[..., 3] == 1
     mask = water & land & (depth > 0.3) & (depth < 3.0)
     # From above the level sun's light goes down flat, at Snell's limit; from the eye steeply.
