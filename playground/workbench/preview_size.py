@@ -8,7 +8,8 @@ picture's size, as one that makes terrain, fewer pixels gain nothing, and it sta
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+from typing import Any
 
 from playground.engine.engine import Engine
 from playground.engine.plan import LoopStep, Plan, every_node, walk
@@ -74,25 +75,19 @@ class PreviewSize:
         self.divisor = 1
         self._costs.clear()
 
-    def choose(
-        self,
-        engine: Engine,
-        sketch: Sketch,
-        size: Size,
-        *,
-        time: float,
-        steps: Mapping[str, int],
-        interpolated: bool,
-    ) -> Size:
-        """Return the pixels for the next picture of a sketch; raise as ``Engine.draw`` for mistakes in it."""
+    def choose(self, engine: Engine, sketch: Sketch, size: Size, changed: Collection[str], **at: Any) -> Size:
+        """Return the pixels for the next picture of a sketch, of which ``changed`` passes will run.
+
+        A pass that runs once for another size, and then no more, is not counted. ``at``: the time and
+        what else ``Engine.plan_for`` takes. Raises as that does.
+        """
         self.guessed = False
         possible = [d for d in DIVISORS if d == 1 or size[0] * size[1] >= LEAST * d * d]
         if len(possible) == 1:
             self.divisor = 1
             return size
-        coming = engine.stale(sketch, size=size, time=time, steps=steps, interpolated=interpolated)
-        whole = engine.plan_for(sketch, size, time, steps, interpolated=interpolated)
-        smaller = engine.plan_for(sketch, divided(size, 2), time, steps, interpolated=interpolated)
+        whole = engine.plan_for(sketch, size, **at)
+        smaller = engine.plan_for(sketch, divided(size, 2), **at)
         sizes, halved = _texels(whole), _texels(smaller)
         following = {path for path, texels in sizes.items() if halved.get(path) != texels}
         if not _goes_on(whole).isdisjoint(following):
@@ -101,7 +96,7 @@ class PreviewSize:
         expected: dict[int, float] = {}
         for divisor in possible:
             found = 0.0
-            for path in coming:
+            for path in changed:
                 texels = sizes[path] // (divisor**2 if path in following else 1)
                 spent = self._costs.expected(path, max(texels, 1))
                 if spent is None and path in following:

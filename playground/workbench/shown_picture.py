@@ -8,9 +8,9 @@ the size of the picture. What is read from it, saved or compared at rest is draw
 from __future__ import annotations
 
 import time as clock
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
@@ -93,23 +93,16 @@ class ShownPicture:
         chosen = as_preview(sketch) if hasty else sketch
         pixels = size
         if hasty and not self.needs_all_pixels and view.map is None:
-            pixels = self._sizes.choose(
-                engine,
-                _seen(chosen, view, time, size),
-                size,
-                time=time,
-                steps=view.stops(sketch, time, coming=coming),
-                interpolated=view.interpolated,
-            )
+            at = _at(view, sketch, time, coming=coming)
+            changed = self._changed(engine, sketch, view, size, at)
+            if changed or self.texture is None or self.texture.size != size:
+                pixels = self._sizes.choose(engine, _seen(chosen, view, time, size), size, changed, **at)
+            else:
+                pixels = self._drawn_size
 
         def drawn_at(time: float) -> moderngl.Texture:
-            return engine.draw(
-                _seen(chosen, view, time, size),
-                size=pixels,
-                time=time,
-                steps=view.stops(sketch, time, coming=coming),
-                interpolated=view.interpolated,
-            )
+            at = _at(view, sketch, time, coming=coming)
+            return engine.draw(_seen(chosen, view, time, size), size=pixels, **at)
 
         with _timed(engine), pointed_at(engine.runner, size, pixels):
             texture = catch_up.draw(engine, time, drawn_at, in_full=in_full)
@@ -128,16 +121,22 @@ class ShownPicture:
     def differs(self, engine: Engine, sketch: Sketch, view: View, time: float) -> bool:
         """Return whether a sketch would run a pass if it were drawn as this was; raise as ``Engine.draw``."""
         assert self.texture is not None
+        return bool(self._changed(engine, sketch, view, self.texture.size, _at(view, sketch, time)))
+
+    def _changed(
+        self, engine: Engine, sketch: Sketch, view: View, size: Size, at: Mapping[str, Any]
+    ) -> list[str]:
+        """Return the passes that would run if a sketch were drawn as the last picture was, by path."""
+        pixels = self._drawn_size if self.texture is not None and self.texture.size == size else size
         chosen = as_preview(sketch) if self.is_preview else sketch
-        with pointed_at(engine.runner, self.texture.size, self._drawn_size):
-            stale = engine.stale(
-                _seen(chosen, view, time, self.texture.size),
-                size=self._drawn_size,
-                time=time,
-                steps=view.stops(sketch, time),
-                interpolated=view.interpolated,
-            )
-        return bool(stale)
+        with pointed_at(engine.runner, size, pixels):
+            return engine.stale(_seen(chosen, view, at["time"], size), size=pixels, **at)
+
+
+def _at(view: View, sketch: Sketch, time: float, *, coming: bool = False) -> dict[str, Any]:
+    """Return the time, and where repeats stop, as ``Engine.draw`` takes them."""
+    stops = view.stops(sketch, time, coming=coming)
+    return {"time": time, "steps": stops, "interpolated": view.interpolated}
 
 
 def _seen(sketch: Sketch, view: View, time: float, size: Size) -> Sketch:
