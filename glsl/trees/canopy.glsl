@@ -8,7 +8,7 @@
 //   tested   tests/glsl/test_trees_light.py: by ellipsoids in float64; it takes light from
 //            the ground beside it, and adds none
 //
-// Wire what a method of shadows makes of `height` to canopy_visibility of scene/wooded, and what
+// Wire what a method of shadows makes of `height` to canopy_visibility of scene/terrain, and what
 // it makes of the bare height to visibility: the wood throws its shadow on the meadow beside it,
 // but for where that is known tree by tree, and the ground keeps its slopes.
 #include "terrain/heightfield.glsl"

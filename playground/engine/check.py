@@ -33,6 +33,7 @@ from playground.sketch.dialects import EXPORT, is_export
 from playground.sketch.dialects.shadertoy_folder import is_image, is_of_folder
 from playground.sketch.load import is_technique, load, plain_sketch
 from playground.sketch.model import Graph, Sketch, Technique, kernels_of
+from playground.sketch.presence import deciding_inputs
 from playground.sketch.shadowed import shadowed_by_files
 from playground.sketch.source import read_text
 from playground.sketch.techniques import (
@@ -241,7 +242,13 @@ class _Check:
     def check_standalone(self, technique: Technique) -> None:
         """Try a technique: its own text by both drivers, then its fast variants, verified or not."""
         self.notes = () if self.plain else left_out(self.standalone_sketch(technique))
-        self.attempt(self.request(without_variants(technique), BOTH))
+        plain = without_variants(technique)
+        self.attempt(self.request(plain, BOTH))
+        if deciding := deciding_inputs(plain):
+            whole = self.standalone_sketch(plain)
+            passes = tuple(spec for spec in whole.graph.passes if spec.name not in deciding)
+            least = replace(whole, graph=replace(whole.graph, passes=passes))
+            self.attempt(TrySketch(least, _FRAME, drivers=BOTH, refuses="all"))
         if any_variants(technique) and not self.plain and not self.errors:
             self.attempt(self.request(trusted(technique), (COMPUTE,)))
 

@@ -3,7 +3,8 @@
 The result names no sizes and no pixels: ``engine.plan`` adds those. Wiring follows one
 rule at every level: an input takes what its pass wires, else what the technique's own
 caller wires through ``[inputs]``, else the latest earlier pass of its name, else the
-latest earlier pass with an output of its name. What is wired to a path inside a technique
+latest earlier pass with an output of its name, but for an input that decides which passes
+are there (see ``presence``). What is wired to a path inside a technique
 wins over what is wired to its export.
 
 Where a fast variant replaces a technique (see ``variants``), its own kernel or passes are
@@ -28,6 +29,7 @@ from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Sour
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
+from playground.sketch.presence import decides, why_unfed
 from playground.sketch.variant_check import INSIDE
 from playground.sketch.variants import active_variant
 from playground.sketch.wiring import (
@@ -36,6 +38,7 @@ from playground.sketch.wiring import (
     input_names,
     is_optional,
     output_names,
+    takes_input,
     target_of,
 )
 
@@ -270,6 +273,8 @@ class _Flattener:
         technique = spec.technique
         wires: dict[str, Source | None] = dict(given)
         for name, text in spec.inputs:
+            if not takes_input(technique, name):
+                raise spec.error(f"nothing takes input '{name}': {why_unfed(technique, name)}")
             wires[name] = self._ref(text, name, prefix, spec)
         for name in input_names(technique):
             if name not in wires and not _covered(technique, name, wires):
@@ -373,7 +378,7 @@ class _Flattener:
             if other.name == name:
                 outputs = self.outputs[_join(prefix, other.name)]
                 return outputs.get(name, next(iter(outputs.values())))
-        for other in reversed(earlier):
+        for other in reversed(earlier if not decides(spec.technique, name) else []):
             outputs = self.outputs[_join(prefix, other.name)]
             if name in outputs:
                 return outputs[name]

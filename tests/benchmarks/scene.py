@@ -88,7 +88,7 @@ ROWS = {
     "and vignette": ("", "scene/terrain", 1, PIXELS, f"{OFF}, vignette = 0.3", "the scene, each pixel lit"),
     "and air": (AIR, "scene/terrain", 1, PIXELS, OFF, "the scene, each pixel lit"),
     "and shadows of clouds": (CLOUDS, "scene/terrain", 1, PIXELS, OFF, "the scene, each pixel lit"),
-    "and trees": (DENSITY, "scene/wooded", 1, PIXELS, OFF, "the scene, each pixel lit"),
+    "and trees": (DENSITY, "scene/terrain", 1, PIXELS, OFF, "the scene, each pixel lit"),
 }
 """By name: more passes, the view, samples, inputs, what is set, and the row that it is compared with."""
 

@@ -1,12 +1,9 @@
 """Crowns, stands and woods: by rays through ellipsoids in float64, and by what is drawn of a stand."""
 
-import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from playground.paths import GLSL
 
 FIELD = np.array([1 / 150.0, 4.5, 7.0, 9.0])  # trees a square metre, half width, half height, middle
 
@@ -66,7 +63,7 @@ name = "flat"
 use = "./flat"
 set = {{ most = {most}, slope = {slope} }}
 [view]
-use = "scene/wooded"
+use = "scene/terrain"
 camera = {{ azimuth = 70.0, elevation = {elevation}, distance = {distance}, target = [8000, 8000, 2000] }}
 inputs = {{ height = "flat:height", density = "flat:density", colour = "flat:colour" }}
 set = {{ sun = {sun}, gain = 2.0, ambient = 0.6, trees = {trees}, detail = "full grid", grid = 2{given} }}
@@ -311,7 +308,7 @@ use = "lighting/ray_cast"
 inputs = {{ height = "canopy:height" }}
 set = {{ sun = [275, 16] }}
 [view]
-use = "scene/wooded"
+use = "scene/terrain"
 samples = 1
 camera = {{ azimuth = 150.0, elevation = 55.0, distance = 100.0, target = [280.0, 190.0, 6.0] }}
 set = {{ sun = [275, 16], gain = 1.0, ambient = 0.0, haze = 0.0, sun_colour = "#ffffff", needles = 0.0, \
@@ -379,25 +376,6 @@ def test_leaves_have_the_season_of_the_daylight(kept, ctx, make_sketch, day, fro
         for passes, given in ((daylight, ""), ("", f"day = {from_zero}"))
     )
     np.testing.assert_array_equal(by_sun, by_hand)
-
-
-def offered(name):
-    table = tomllib.loads((GLSL / f"{name}.toml").read_text(encoding="utf-8"))
-    return {part: set(table[part]) for part in ("inputs", "parameters")}
-
-
-# What a scene in the air of a daylight makes itself: a plain sun, sky and haze.
-PLAIN = {"light", "scattered", "left", "sky_picture", "sun", "sun_colour", "gain", "sky_colour", "ambient"}
-PLAIN |= {"sky", "zenith", "horizon", "nadir", "haze"}
-
-
-@pytest.mark.parametrize("part", ["inputs", "parameters"])
-def test_a_scene_with_trees_offers_all_that_the_scene_does(part):
-    names = ("terrain", "outdoors", "wooded", "wooded_outdoors")
-    bare, air, wooded, both = (offered(f"scene/{name}")[part] for name in names)
-    assert not bare - wooded
-    assert not air - both
-    assert not wooded - PLAIN - both
 
 
 HALF = '#pragma kernel(output = "dark:r16f")\nfloat kernel(ivec2 at) { return at.x < 160 ? 1.0 : 0.0; }\n'
