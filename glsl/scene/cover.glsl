@@ -14,7 +14,7 @@
 //
 // Any technique of texturing/ gives the colour. What finds a colour in another way, as for trees,
 // is a pass of its own that begins with this one's. Objects have the colour of their kind.
-// Neither a heightmap nor a colour says anything finer than its texels. Where `near` is on,
+// Neither a heightmap nor a colour says anything finer than its texels. Where `fine_ground` is on,
 // scene/near/ goes on from there, as fine as a pixel.
 #include "lighting/daylight_date.glsl"
 #include "maths/number.glsl"
@@ -77,7 +77,7 @@ vec3 mean_of(sampler2D image) {
 // The tile of rock, of which upright planes show what a plane seen from above draws out.
 vec3 tiled_rock(vec3 at, vec2 slope, Footprint foot) {
     vec3 above = tiled(rock, at.xy, foot, rock_repeats);
-    if (!near || !triplanar) return above;
+    if (!fine_ground || !triplanar) return above;
     vec3 shares = planes_of(normal_of_slope(slope));
     vec2 rise = vec2(dot(slope, foot.right), dot(slope, foot.up));
     Footprint east = Footprint(vec2(foot.right.y, rise.x), vec2(foot.up.y, rise.y));
@@ -132,20 +132,22 @@ vec4 made_near(vec3 at, vec2 slope, Footprint foot, vec4 weight, inout vec3 foun
     if (cliffs) {
         layer = strata_at(at.z, thickness * patches.dry, thickness, max(abs(rise.x), abs(rise.y)));
     }
-    vec3 kinds = wired_weights ? kinds_of_layers(weight)
-            : kinds_of_ground(length(slope), rocky, cliffs, strata * layer.tone, stony, patches.dry,
-                              stands_out);
+    vec3 kinds = kinds_of_layers(weight);
+    if (!wired_weights) {
+        kinds = kinds_of_ground(length(slope), rocky, cliffs, strata * layer.tone, stony,
+                                patches.dry, stands_out);
+    }
     float depth = wired_snow_depth ? max(map_of(snow_depth, at.xy, foot), 0.0) : 0.0;
     vec3 flat_kinds = cliffs ? vec3(kinds.xy, 0.0) : kinds;
-    Bumps bumps = bumps_at(at.xy, flat_kinds, roughness, pixel, spacing, depth);
+    Bumps bumps = bumps_at(at.xy, flat_kinds, bumpiness, pixel, spacing, depth);
     vec3 push = vec3(bumps.slope, 0.0);
     float variance = bumps.variance;
-    patches.dry = clamp(patches.dry + 1.5 * bumps.dry, -1.0, 1.0);
+    patches.dry = clamp(patches.dry + bumps.dry, -1.0, 1.0);
     found = dried(found, patches, variation);
     if (!wired_weights) found = soiled(found, soils * kinds.y);
     found *= max(1.0 + bumps.tone, 0.1);
     if (cliffs) {
-        Cliff cliff = cliff_at(at, kinds.z, roughness, strata, layer, pixel_up, spacing);
+        Cliff cliff = cliff_at(at, kinds.z, bumpiness, strata, layer, pixel_up, spacing);
         push += kinds.z * cliff.push;
         variance += kinds.z * kinds.z * cliff.variance;
         vec3 bare = wired_weights ? found : cliff_colour;
@@ -155,7 +157,7 @@ vec4 made_near(vec3 at, vec2 slope, Footprint foot, vec4 weight, inout vec3 foun
     if (wired_wetness) {
         float soaked = wet * clamp(map_of(wetness, at.xy, foot), 0.0, 1.0);
         found = mix(found, wet_albedo(found), smoothstep(0.1, 0.6, soaked));
-        film = film_of(soaked, bumps.height, bumps.hidden);
+        film = film_of(soaked, bumps.height, bumps.hidden, length(slope));
         push *= 1.0 - film;
         variance *= (1.0 - film) * (1.0 - film);
     }
@@ -197,6 +199,6 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 bumps) {
     Footprint foot = footprint_of(ray, at.xyz - eye, normalize(vec3(-slope, 1.0)));
     vec4 weight = vec4(1.0, 0.0, 0.0, 0.0);
     vec3 found = wired_weights ? splatted(at.xyz, slope, foot, weight) : coloured(at.xyz, foot);
-    if (near) bumps += made_near(at.xyz, slope, foot, weight, found);
+    if (fine_ground) bumps += made_near(at.xyz, slope, foot, weight, found);
     albedo.rgb = found;
 }

@@ -17,9 +17,9 @@
 // share under a film of water, where a wetness is wired; `shadow` is what else keeps the sun from
 // a pixel: clouds, trees. Both are pictures of pixels, made by passes that read `seen`; so is
 // `taken`, of surfaces that are no planes, as leaves: how much of the sun goes with max(0, N L),
-// how much does not, and how much of the sky there is. Where a `light` is wired, and no `visibility`, a technique of lighting/ has lit the
-// terrain already, and that is taken instead. Air by scene/air takes the place of the haze, a
-// picture of the sky by scene/sky that of the plain one.
+// how much does not, and how much of the sky there is. Where a `light` is wired, and no
+// `visibility`, a technique of lighting/ has lit the terrain already, and that is taken instead.
+// Air by scene/air takes the place of the haze.
 #include "clouds/shadow.glsl"
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
@@ -48,7 +48,6 @@ uniform sampler2D cloud;       //! input("linear", "repeat", "mipmap", "white")
 uniform sampler2D drift;       //! input("black")
 uniform sampler2D scattered;   //! input("linear", "black")
 uniform sampler2D left;        //! input("linear", "black")
-uniform sampler2D sky_picture; //! input("zero")
 #include "clouds/parameters/drawn.glsl"
 #include "lighting/parameters/sun.glsl"
 #include "lighting/parameters/sunlight.glsl"
@@ -127,10 +126,7 @@ vec3 in_air(vec3 shown, vec3 place, ivec2 texel) {
 
 vec4 kernel(ivec2 texel) {
     vec4 at = texelFetch(seen, texel, 0);
-    if (is_sky(at.w)) {
-        return vec4(wired_sky_picture ? texelFetch(sky_picture, texel, 0).rgb
-                                      : texelFetch(sky, texel, 0).rgb, 1.0);
-    }
+    if (is_sky(at.w)) return vec4(texelFetch(sky, texel, 0).rgb, 1.0);
     if (is_broken(at.w)) return vec4(NOT_A_NUMBER, 1.0);
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     vec4 bump = wired_bumps ? texelFetch(bumps, texel, 0) : vec4(0.0);

@@ -348,14 +348,14 @@ PASSES = '[[pass]]\nname = "height"\nuse = "./land"\n[[pass]]\nname = "colour"\n
 def from_above(any_engine, make_sketch):
     """Give a function that shades a plane of 2 km seen from a height, and what is set."""
 
-    def read(given, distance=40.0, extra="", wide=2000.0, **files):
+    def read(given, distance=40.0, extra="", wide=2000.0, rise=1.0, **files):
         view = f'[view]\nuse = "scene/terrain"\nset = {{ grid = 33, antialias = false, {given} }}\n'
         sketch = make_sketch(
             PASSES + extra + view,
             size=[33, 21],
             extent=[wide, 0.65 * wide],
             relief=0.1 * wide,
-            land=LAND.format(f"0.3 * {EAST} + 0.2 * {NORTH}"),
+            land=LAND.format(f"{rise} * (0.3 * {EAST} + 0.2 * {NORTH})"),
             plain=COLOUR,
             **files,
         )
@@ -377,7 +377,7 @@ def test_detail_leaves_the_mean_light_and_colour(from_above, elevation, wide):
     distance = 0.4 * wide
     plain, none = from_above(sun, distance, wide=wide)
     assert np.all(none == 0), "switched off it gives no bumps"
-    found, bumps = from_above(f"{sun}, near = true, variation = 0.0, soils = 0.0", distance, wide=wide)
+    found, bumps = from_above(f"{sun}, fine_ground = true, variation = 0.0, soils = 0.0", distance, wide=wide)
     np.testing.assert_allclose(found.mean(axis=(0, 1)), plain.mean(axis=(0, 1)), rtol=0.06)
     assert found[..., 1].std() > 3 * plain[..., 1].std() and bumps[..., 2].min() > 0
 
@@ -385,11 +385,13 @@ def test_detail_leaves_the_mean_light_and_colour(from_above, elevation, wide):
 def test_wetness_darkens_and_shines_and_deep_snow_is_white_and_smooth(from_above):
     field = '#pragma kernel(output = "{0}:r32f")\nfloat kernel(ivec2 t) {{ return {1}; }}\n'
     extra = '[[pass]]\nname = "{0}"\nuse = "./{0}"\n'
-    given = "near = true, gain = 2.0, ambient = 0.4, sun = { azimuth = 250.0, elevation = 40.0 }"
+    given = "fine_ground = true, gain = 2.0, ambient = 0.4, sun = { azimuth = 250.0, elevation = 40.0 }"
     dry, rough = from_above(given, 8.0)
     damp, _ = from_above(given, 8.0, extra.format("wetness"), wetness=field.format("wetness", 0.5))
     assert 0.35 < damp.mean() / dry.mean() < 0.75
-    _, under = from_above(given, 8.0, extra.format("wetness"), wetness=field.format("wetness", 1.5))
+    soaked = {"extra": extra.format("wetness"), "wetness": field.format("wetness", 1.0)}
+    assert from_above(given, 8.0, rise=5.0, **soaked)[1][..., 3].max() == 0, "water runs off a slope"
+    _, under = from_above(given, 8.0, rise=0.0, **soaked)
     assert under[..., 3].mean() > 0.3
     assert abs(under[..., :2]).mean() < 0.8 * abs(rough[..., :2]).mean()
     snow = field.format("snow_depth", 3.0)

@@ -43,16 +43,15 @@ vec3 bumped(vec3 noise, bool round_topped) {
     return (noise.x < 0.0 ? -noise : noise) - vec3(PERLIN_FOLDED, 0.0, 0.0);
 }
 
-// The mean of one octave over a pixel that is `along` long: of four places there, two, or one.
-// `first` and `second` are 0 where the octave needs no mean over halves and quarters of it.
-vec3 octave_over(vec2 place, vec2 along, float first, float second, bool round_topped, uint seed) {
-    int count = second > 0.0 ? 4 : first > 0.0 ? 2 : 1;
+// The mean of one octave over a pixel that is `along` long: of four places there, of two, or one.
+// `halves` are 0 where the octave needs no mean over halves and quarters of it.
+vec3 octave_over(vec2 place, vec2 along, vec2 halves, bool round_topped, uint seed) {
+    int count = halves.y > 0.0 ? 4 : halves.x > 0.0 ? 2 : 1;
+    vec2 apart = halves * vec2(0.25, 0.125);
     vec3 sum = vec3(0.0);
     for (int j = 0; j < count; j++) {
-        float half_of = (j & 1) == 0 ? 0.25 : -0.25;
-        float quarter = (j & 2) == 0 ? 0.125 : -0.125;
-        vec2 moved = (first * half_of + second * quarter) * along;
-        sum += bumped(perlin(place + moved, seed), round_topped);
+        vec2 side = vec2(ivec2(j, j >> 1) & 1) * 2.0 - 1.0;
+        sum += bumped(perlin(place + dot(side, apart) * along, seed), round_topped);
     }
     return sum / float(count);
 }
@@ -68,12 +67,11 @@ Bumps bumps_at(vec2 place, vec3 kinds, float strength, PixelOnGround pixel, floa
         turn *= NEXT_TURN;
         float cell = cell_of(k);
         float part = shown_to(cell, pixel.finest) * beyond_map(cell, spacing);
-        float first = 1.0 - shown_to(cell, pixel.wide);
-        float second = 1.0 - shown_to(cell, 0.5 * pixel.wide);
+        vec2 halves = 1.0 - vec2(shown_to(cell, pixel.wide), shown_to(cell, 0.5 * pixel.wide));
         bool round_topped = cell <= A_TUFT;
         // No lattice point is one of the next lattice's, where both would be flat.
         vec3 noise = octave_over(turn * place / cell + vec2(0.618034, 0.381966) * float(k),
-                                 turn * pixel.along / cell, first, second, round_topped,
+                                 turn * pixel.along / cell, halves, round_topped,
                                  lattice_seed(BUMPS_SALT, k));
         noise.yz = noise.yz * turn;
         float rough = strength * roughness_of(kinds, k);
@@ -83,7 +81,7 @@ Bumps bumps_at(vec2 place, vec3 kinds, float strength, PixelOnGround pixel, floa
         b.slope += slope * noise.yz;
         b.snowy += snow / PERLIN_SLOPE * noise.yz;
         // Means over two places have half the variance.
-        float mean_of = 1.0 / ((1.0 + first) * (1.0 + second));
+        float mean_of = 1.0 / ((1.0 + halves.x) * (1.0 + halves.y));
         b.variance += mean_of * part * part * rough * rough;
         b.snow_variance += mean_of * snow * snow;
         if (cell <= A_STEP) b.height += slope * cell * noise.x;

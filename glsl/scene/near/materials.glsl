@@ -4,8 +4,8 @@
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    shares of grass, stones and rock in x, y and z; rms slopes in metres over metres of
 //            one octave; contrasts as shares of the colour; rungs as in scene/near/ladder.glsl
-//   source   made here, tuned on pictures: tussocks of 5 to 50 cm, gravel of 2 to 10 cm; rock is
-//            as rough at any size (Mandelbrot 1982, "The Fractal Geometry of Nature")
+//   source   made here, tuned on pictures: tussocks of 10 cm to 1 m, gravel of 2 to 20 cm;
+//            rock is as rough at any size (Mandelbrot 1982, "The Fractal Geometry of Nature")
 //   tested   tests/glsl/test_near.py, through the variance of the bumps
 #ifndef SCENE_NEAR_MATERIALS
 #define SCENE_NEAR_MATERIALS
@@ -16,13 +16,13 @@ float around_rung(int rung, float middle, float wide) {
 }
 
 float roughness_of(vec3 kinds, int rung) {
-    return dot(kinds, vec3(0.045 + 0.205 * around_rung(rung, 9.0, 4.0),
-                           0.04 + 0.28 * around_rung(rung, 11.0, 4.0), 0.17));
+    return dot(kinds, vec3(0.05 + 0.13 * around_rung(rung, 8.0, 6.0),
+                           0.045 + 0.17 * around_rung(rung, 10.0, 6.0), 0.17));
 }
 
 float contrast_of(vec3 kinds, int rung) {
-    return dot(kinds, vec3(0.10 + 0.20 * around_rung(rung, 10.0, 5.0),
-                           0.08 + 0.22 * around_rung(rung, 11.0, 4.0), 0.13));
+    return dot(kinds, vec3(0.13 + 0.15 * around_rung(rung, 9.0, 7.0),
+                           0.12 + 0.16 * around_rung(rung, 10.0, 7.0), 0.14));
 }
 
 // Wind packs snow into waves of a metre or so; what is finer melts together.

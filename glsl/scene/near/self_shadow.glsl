@@ -4,8 +4,8 @@
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    unit vectors; variances of slopes along an axis; shares 0..1
 //   source   Smith 1967, "Geometrical Shadowing of a Random Rough Surface" (IEEE Transactions on
-//            Antennas and Propagation 15); the fraction: Walter and others 2007, "Microfacet Models
-//            for Refraction through Rough Surfaces" (EGSR), section 5.3
+//            Antennas and Propagation 15); the fraction: Walter and others 2007, "Microfacet
+//            Models for Refraction through Rough Surfaces" (EGSR), section 5.3
 //   tested   tests/glsl/test_near.py: the mean over many bumps is the light of the smooth ground
 //
 // A rough ground receives what its area receives, whatever its bumps: no more, and no less. Two

@@ -19,12 +19,13 @@ vec3 wet_albedo(vec3 dry) {
     return INTO_WATER * (1.0 - HELD_BACK) * dry / (1.0 - HELD_BACK * dry);
 }
 
-// How much of a pixel stands under water: hollows first. `over` is the height over the mean,
-// `hidden` the rms of what is too small to be seen, in metres.
-float film_of(float wetness, float over, float hidden) {
+// How much of a pixel stands under water: hollows first, and none on a slope, where it runs off.
+// `over` is the height over the mean, `hidden` the rms of what is too small to be seen, in metres.
+float film_of(float wetness, float over, float hidden, float slope) {
     float level = 0.16 * (wetness - 0.75);
     float soft = 0.01 + 2.0 * hidden;
-    return smoothstep(-soft, soft, level - over) * smoothstep(0.45, 0.7, wetness);
+    float stands = smoothstep(0.45, 0.7, wetness) * (1.0 - smoothstep(0.03, 0.2, slope));
+    return stands * smoothstep(-soft, soft, level - over);
 }
 
 // What of the light such a film throws back, by the cosine of the angle.

@@ -1,16 +1,16 @@
 // scene/near/parameters/near.glsl -- the ground near the eye, finer than the heightmap and colour.
 //
-//   gives    near, roughness, variation, soils, stony, triplanar, cliffs, rocky, cliff_colour,
-//            strata, thickness, wet
+//   gives    fine_ground, bumpiness, variation, soils, stony, triplanar, cliffs, rocky,
+//            cliff_colour, strata, thickness, wet
 //   needs    nothing
 //   units    metres; slopes in metres over metres; colours linear; shares 0..1
 //   source   none: parameters
 //   tested   tests/glsl/test_near.py
 #ifndef SCENE_NEAR_PARAMETERS_NEAR
 #define SCENE_NEAR_PARAMETERS_NEAR
-uniform bool near = false;        //! group("Near ground") label("Near ground")
+uniform bool fine_ground = false; //! group("Near ground") label("Fine ground")
                                   //! Bumps and colours finer than the terrain's own
-uniform float roughness = 1.0;    //! slider(0, 2) step(0.01) group("Near ground")
+uniform float bumpiness = 1.0;    //! slider(0, 2) step(0.01) group("Near ground")
                                   //! How strong bumps are, and light and dark with them
 uniform float variation = 0.5;    //! slider(0, 1) step(0.01) group("Near ground")
                                   //! Fresh and dry patches, tens to hundreds of metres wide
