@@ -43,36 +43,50 @@ vec3 random_of(uvec3 bits) {
     return vec3(unit_from_bits(bits.x), unit_from_bits(bits.y), unit_from_bits(bits.z));
 }
 
-vec4 vertex(vec3 corner, out vec3 position, out vec3 normal, out float material) {
-    vec4 found = tree_of(tree, gl_InstanceID);
-    if (found.w <= 0.0) return NOWHERE;
-    vec3 ahead = corner_of(int(corner.x), int(corner.y + 0.5));
-    ivec2 key = ivec2(floor(4.0 * found.xy));
-    uvec3 first = hash3(uvec3(uint(key.x), uint(key.y), SALT));
-    vec3 own = random_of(first);
-    float away = 1.0;
-    normal = ahead;
+// How far from the middle the rock ends, and the plane that it ends at.
+struct Side {
+    float away;
+    vec3 plane;
+};
+
+Side side_of(vec3 ahead, uint key) {
+    Side found = Side(1.0, ahead);
     for (int k = 0; k < PLANES; k++) {
-        vec3 random = random_of(hash3(first + uvec3(0u, 0u, uint(k))));
+        vec3 random = random_of(hash3(uvec3(key, uint(k), SALT + 1u)));
         float level = 2.0 * random.x - 1.0;
         float turn = 6.2831853 * random.y;
         vec3 plane = vec3(sqrt(1.0 - level * level) * vec2(cos(turn), sin(turn)), level);
         float from = (0.55 + 0.35 * random.z) / max(dot(plane, ahead), 1e-3);
-        if (from < away) normal = mix(plane, ahead, 0.25);
-        away = min(away, from);
+        if (from < found.away) found = Side(from, plane);
     }
+    return found;
+}
+
+vec4 vertex(vec3 corner, out vec3 position, out vec3 towards, out vec4 own) {
+    vec4 found = tree_of(tree, gl_InstanceID);
+    if (found.w <= 0.0) return NOWHERE;
+    ivec2 at = ivec2(floor(4.0 * found.xy));
+    uvec3 bits = hash3(uvec3(uint(at.x), uint(at.y), SALT));
+    uint key = bits.x & 4095u;
+    towards = corner_of(int(corner.x), int(corner.y + 0.5));
+    vec3 place = side_of(towards, key).away * towards;
+    vec3 random = random_of(bits);
+    own = vec4(float(key), random.y, 0.8 + 0.4 * random.z, found.w);
     // Flatter than it is wide, and turned.
-    vec3 shape = vec3(1.25, 0.8 + 0.4 * own.x, 0.75) * (0.5 * found.w / 0.75);
+    place *= vec3(1.25, own.z, 0.75) * (0.667 * found.w);
     float turn = 6.2831853 * own.y;
     mat2 turned = mat2(cos(turn), sin(turn), -sin(turn), cos(turn));
-    vec3 place = away * ahead * shape;
-    normal = normalize(normal / shape);
-    normal.xy = turned * normal.xy;
     position = found.xyz + vec3(turned * place.xy, place.z + (0.35 - sunk) * found.w);
-    material = float(kind_of_rock(0.12 + 0.12 * own.z));
     return clip_from_world * vec4(position, 1.0);
 }
 
-vec4 fragment(vec3 position, vec3 normal, float material) {
-    return vec4(position, packed_object(normalize(normal), int(material + 0.5)));
+vec4 fragment(vec3 position, vec3 towards, vec4 own) {
+    uint key = uint(own.x + 0.5);
+    vec3 ahead = normalize(towards);
+    // Broken faces are flat, and worn a little.
+    vec3 normal = mix(side_of(ahead, key).plane, ahead, 0.2) / vec3(1.25, own.z, 0.75);
+    float turn = 6.2831853 * own.y;
+    normal.xy = mat2(cos(turn), sin(turn), -sin(turn), cos(turn)) * normal.xy;
+    float light = 0.12 + 0.03 * float(key & 3u);
+    return vec4(position, packed_object(normalize(normal), kind_of_rock(light)));
 }
