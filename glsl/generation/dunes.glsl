@@ -65,7 +65,7 @@ void kernel(ivec2 texel, out float height, out float sand) {
     vec2 bare = bare_at(texel);
     vec2 place = share_of_texel(texel, size) * extent;
     float large = field_at(place, between, tallest, 1u);
-    float small = field_at(place, 0.25 * between, 0.2 * tallest, 4u);
+    float small = field_at(place, 0.25 * between, 0.2 * tallest, 4u) * (1.0 - large);
     sand = bare.y;
     height = bare.x + sand * tallest * 0.8 * (large + 0.25 * small) / max(relief, 1e-3);
 }

@@ -134,7 +134,8 @@ vec3 terrain_from(vec3 place, float far, float pixel, Sunlight from) {
     if (wired_density) {
         wood = smoothstep(0.1, 0.6, density_at(share));
         float today = day_of_year(wired_daylight, daylight, day);
-        found = mix(found, mean_leaf_colour(0.15, today), wood);
+        vec3 leaves = mix(leaf_colour(OAK, 0.5, 0.0, today), leaf_colour(MAPLE, 0.5, 0.0, today), 0.5);
+        found = mix(found, leaves, wood);
     }
     // Crowns turn all ways: a half of what falls on them, and on the mean half of that is shaded.
     float facing = mix(max(dot(normal, from.direction), 0.0),
