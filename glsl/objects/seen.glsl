@@ -34,7 +34,7 @@ const uint SALT = 0xf4e80b63u;  // CRC-32 of "objects/seen"
 int kind_at(vec3 colour) {
     float light = dot(colour, vec3(0.2126, 0.7152, 0.0722));
     if (kind == 2) return kind_of_rock(light);
-    return kind_of_tree(kind == 1, int(clamp(2.0 * light, 0.0, 0.999) * 32.0));
+    return kind_of_tree(kind == 1 ? SPRUCE : OAK, clamp(2.0 * light, 0.0, 0.999));
 }
 
 vec4 vertex(vec3 corner, out vec3 position, out vec3 normal, out float material) {
