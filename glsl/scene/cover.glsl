@@ -119,8 +119,9 @@ float map_of(sampler2D map, vec2 place, Footprint foot) {
     return draped(map, place / extent, foot).r;
 }
 
-// The ground's colour, finer than it was, and its bumps as this pass gives them.
-vec4 made_near(vec3 at, vec2 slope, Footprint foot, vec4 weight, inout vec3 found) {
+// The ground's colour, finer than it was, and its bumps as this pass gives them. Tufts of grass
+// have the ground's colour, and stand out of the snow.
+vec4 made_near(vec3 at, vec2 slope, Footprint foot, vec4 weight, bool tufts, inout vec3 found) {
     vec2 rise = vec2(dot(slope, foot.right), dot(slope, foot.up));
     PixelOnGround pixel = pixel_on_ground(foot.right, foot.up);
     float pixel_up = max(length(vec3(foot.right, rise.x)), length(vec3(foot.up, rise.y)));
@@ -137,7 +138,8 @@ vec4 made_near(vec3 at, vec2 slope, Footprint foot, vec4 weight, inout vec3 foun
         kinds = kinds_of_ground(length(slope), rocky, cliffs, strata * layer.tone, stony,
                                 patches.dry, stands_out);
     }
-    float depth = wired_snow_depth ? max(map_of(snow_depth, at.xy, foot), 0.0) : 0.0;
+    float depth = 0.0;
+    if (wired_snow_depth && !tufts) depth = max(map_of(snow_depth, at.xy, foot), 0.0);
     vec3 flat_kinds = cliffs ? vec3(kinds.xy, 0.0) : kinds;
     Bumps bumps = bumps_at(at.xy, flat_kinds, bumpiness, pixel, spacing, depth);
     vec3 push = vec3(bumps.slope, 0.0);
@@ -184,7 +186,8 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 bumps) {
         albedo.rgb = NOT_A_NUMBER;
         return;
     }
-    if (is_object(at.w)) {
+    bool tufts = is_object(at.w) && is_grass(kind_of(at.w));
+    if (is_object(at.w) && !tufts) {
         float today = day_of_year(wired_daylight, daylight, day);
         albedo.rgb = colour_of_kind(kind_of(at.w), today);
         return;
@@ -199,6 +202,6 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 bumps) {
     Footprint foot = footprint_of(ray, at.xyz - eye, normalize(vec3(-slope, 1.0)));
     vec4 weight = vec4(1.0, 0.0, 0.0, 0.0);
     vec3 found = wired_weights ? splatted(at.xyz, slope, foot, weight) : coloured(at.xyz, foot);
-    if (fine_ground) bumps += made_near(at.xyz, slope, foot, weight, found);
-    albedo.rgb = found;
+    if (fine_ground) bumps += made_near(at.xyz, slope, foot, weight, tufts, found);
+    albedo.rgb = tufts ? lightness_of_grass(kind_of(at.w)) * found : found;
 }
