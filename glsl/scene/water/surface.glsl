@@ -122,7 +122,8 @@ vec3 terrain_from(vec3 place, vec3 to_ray, float far, float pixel, Sunlight from
         float shown = clamp(14.0 / (far * pixel) - 1.0, 0.0, 1.0);
         float lump = 1.0 + 0.6 * shown * perlin(place.xy / 14.0, SALT + 3u).x
                 + 0.35 * perlin(place.xy / 61.0, SALT + 4u).x;
-        found = mix(found, lump * mean_leaf_colour(0.15, today), wood);
+        vec3 leaves = mix(leaf_colour(OAK, 0.5, 0.0, today), leaf_colour(MAPLE, 0.5, 0.0, today), 0.5);
+        found = mix(found, lump * leaves, wood);
     }
     // Crowns are spheres, of which the ray sees the lit side or the other (Lambert's sphere).
     float away = acos(clamp(dot(to_ray, from.direction), -1.0, 1.0));
