@@ -21,9 +21,8 @@ uniform sampler2D total;   //! input
 uniform sampler2D place;   //! input
 uniform sampler2D facing;  //! input
 uniform sampler2D tint;    //! input
-uniform int objects = 4096;       //! slider(1, 65536) How many are drawn at most
+#include "objects/parameters/rocks.glsl"
 uniform float tall = 1.0;         //! log_slider(0.01, 100) unit("m") Height of the model itself
-uniform float sunk = 0.0;         //! slider(0, 1) step(0.01) How deep it stands in the ground
 uniform float nearest = 0.0;      //! slider(0, 10000) unit("m") Nearer than this none is drawn
 uniform float farthest = 100000.0;  //! log_slider(1, 100000) unit("m") Farther away none is drawn
 uniform int kind = 2;             //! menu("leaves", "needles", "rock") What it is made of

@@ -75,22 +75,24 @@ vec4 kernel(ivec2 texel) {
     vec4 at = texelFetch(seen, texel, 0);
     if (is_sky(at.w)) return vec4(0.0);
     if (is_broken(at.w)) return vec4(NOT_A_NUMBER, 1.0);
-    if (is_object(at.w)) {
+    bool tufts = is_object(at.w) && is_grass(kind_of(at.w));
+    if (is_object(at.w) && !tufts) {
         float today = day_of_year(wired_daylight, daylight, day);
         return vec4(colour_of_kind(kind_of(at.w), today), 1.0);
     }
+    float light = tufts ? lightness_of_grass(kind_of(at.w)) : 1.0;
     vec2 share = at.xy / extent;
     if (is_cut(at.w)) return vec4(cut_of_land(earth, share, depth_of_cut(at.w)), 1.0);
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     float far = distance(eye, at.xyz);
     vec2 slope = ground_at(ground, at.xy, extent, far * length(ray.up) / length(ray.ahead)).slope;
     Footprint foot = footprint_of(ray, at.xyz - eye, normalize(vec3(-slope, 1.0)));
-    if (wired_weights) return vec4(splatted(at.xy, foot), 1.0);
+    if (wired_weights) return vec4(light * splatted(at.xy, foot), 1.0);
     vec3 found = draped(colour, share, foot).rgb;
     if (wired_detail_image) {
         vec3 fine = tiled(detail_image, at.xy, foot, detail_repeats);
         float nearness = detail_nearness(far, detail_max_distance);
         found = with_detail(found, fine, mean_of(detail_image), detail_strength * nearness);
     }
-    return vec4(found, 1.0);
+    return vec4(light * found, 1.0);
 }

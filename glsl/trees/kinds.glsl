@@ -2,7 +2,7 @@
 //
 //   gives    OAK, MAPLE, BIRCH, PINE, SPRUCE, SPECIES, TINTS, FIRST_NEEDLES, FIRST_ROCK, GRASS,
 //            BARK, kind_of_tree, species_of, tint_of, kind_of_rock, is_tree, is_grass,
-//            tree_colour, colour_of_kind
+//            kind_of_grass, lightness_of_grass, tree_colour, colour_of_kind
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    kinds as of scene/packing.glsl; days of the year from 0; colours linear
 //   source   single leaves: Hosgood and others 1994, LOPEX93 (green ones 0.08 to 0.16 in green
@@ -13,7 +13,7 @@
 //            0.25 in any light in autumn. Days: temperate lowland, northern hemisphere
 //   tested   tests/glsl/test_trees_species.py
 //
-// 0 to 31 are broad leaves, 32 to 47 needles, 48 to 55 rocks, 56 is grass, 57 bark;
+// 0 to 31 are broad leaves, 32 to 47 needles, 48 to 55 rocks, 56 to 59 grass, 60 bark;
 // the rest is free. Of
 // each species there are eight tints, which differ in brightness, in hue and by a few days.
 #ifndef TREES_KINDS
@@ -30,7 +30,7 @@ const int FIRST_NEEDLES = PINE * TINTS;
 const int FIRST_ROCK = 48;
 const int ROCKS = 8;
 const int GRASS = 56;
-const int BARK = 57;
+const int BARK = 60;
 
 // `tint`: 0 to 1.
 int kind_of_tree(int species, float tint) {
@@ -43,7 +43,16 @@ float tint_of(int kind) { return (float(kind % TINTS) + 0.5) / float(TINTS); }
 
 bool is_tree(int kind) { return kind < FIRST_ROCK; }
 
-bool is_grass(int kind) { return kind == GRASS; }
+bool is_grass(int kind) { return kind >= GRASS && kind < BARK; }
+
+// By how far along a blade: of four kinds, each is on as much of a triangle as any other.
+int kind_of_grass(float along) {
+    float rest = 1.0 - clamp(along, 0.0, 1.0);
+    return GRASS + int(min(4.0 * (1.0 - rest * rest), 3.5));
+}
+
+// How light grass is, of the ground's colour: 1 on the mean of a blade.
+float lightness_of_grass(int kind) { return 0.64 + 0.24 * float(kind - GRASS); }
 
 // What leaves are one after the other, and the days between which each comes.
 struct Course {
