@@ -48,7 +48,8 @@ Mirrors mirrors_of(vec3 to_eye, vec2 slope, float variance) {
         float facing = max(dot(to_eye, normal), 1e-3);
         float weight = NODE_WEIGHTS[k] * facing / normal.z;
         vec3 away = reflect(-to_eye, normal);
-        found.to[k] = normalize(vec3(away.xy, max(away.z, 1e-3)));
+        // What goes on down meets water again, and leaves that upwards.
+        found.to[k] = normalize(vec3(away.xy, max(abs(away.z), 1e-3)));
         found.share[k] = weight * fresnel_of_water(facing);
         area += weight;
     }

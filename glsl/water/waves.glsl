@@ -13,8 +13,9 @@
 //   tested   tests/glsl/test_water_surface.py: slopes as finite differences of a sum of waves in
 //            float64; variance and drawn slopes together are the same at any distance
 //
-// A sum of WAVES sines, from the longest down to SHORTEST, all of the same share of the variance:
-// in the equilibrium range slopes have as much of it in every octave. Each moves by the dispersion
+// A sum of WAVES sines, from the longest down to SHORTEST, each pair of the same share of the
+// variance: in the equilibrium range slopes have as much of it in every octave. Of a pair one is
+// the stronger, and turns slowly from pair to pair: so at every size there is a main direction. Each moves by the dispersion
 // of deep water, w^2 = g k. Seen with fewer than SHARP pixels to a wave it fades, and with BLURRED
 // it is gone; what a wave loses of its mean square goes to `variance`:
 //
@@ -76,7 +77,6 @@ vec2 bent(Sea sea, vec2 place, float seconds) {
 Waves waves_at(Sea sea, vec2 place, float seconds, Footprint foot) {
     float ratio = pow(SHORTEST / sea.longest, 1.0 / float(WAVES - 1));
     float one = sea.drawn / float(WAVES);
-    float strength = sqrt(2.0 * one);
     // The shorter side of the footprint decides when no shorter wave can be seen.
     float least = sqrt(min(dot(foot.right, foot.right), dot(foot.up, foot.up)));
     Waves found = Waves(vec2(0.0), sea.variance - sea.drawn);
@@ -86,6 +86,7 @@ Waves waves_at(Sea sea, vec2 place, float seconds, Footprint foot) {
     while (k < WAVES && wave > BLURRED * least) {
         // Directions by the golden ratio: even over any run of waves; long ones keep to the wind.
         vec2 mixed = random_pair(ivec2(k, 0), WAVES_SALT);
+        float part = one * ((k & 1) == 0 ? 1.5 : 0.5);
         float off = 2.0 * fract(float(k) * 0.6180340 + 0.25) - 1.0;
         float angle = off * (0.55 + 0.45 * abs(off)) * mix(0.9, 1.7, float(k) / float(WAVES));
         vec2 ahead = mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * sea.towards;
@@ -96,12 +97,12 @@ Waves waves_at(Sea sea, vec2 place, float seconds, Footprint foot) {
         // In turns, whose whole part is dropped: kilometres from the corner floats stay exact.
         float turns = fract(dot(ahead, there) / longer) - fract(sqrt(GRAVITY / (TURN * longer))
                 * seconds) + mixed.y;
-        found.slope += ahead * (shown * strength * cos(TURN * turns));
-        found.variance += one * (1.0 - shown * shown);
+        found.slope += ahead * (shown * sqrt(2.0 * part) * cos(TURN * turns));
+        found.variance += part * (1.0 - shown * shown);
         wave *= ratio;
         k++;
     }
-    found.variance += one * float(WAVES - k);
+    found.variance += one * (float(WAVES - k) - 0.5 * float(k & 1));
     return found;
 }
 #endif

@@ -99,6 +99,7 @@ class ShownPicture:
                 pixels = self._sizes.choose(engine, _seen(chosen, view, time, size), size, changed, **at)
             else:
                 pixels = self._drawn_size
+            chosen = as_preview(sketch, size, pixels)
 
         def drawn_at(time: float) -> moderngl.Texture:
             at = _at(view, sketch, time, coming=coming)
@@ -128,7 +129,7 @@ class ShownPicture:
     ) -> list[str]:
         """Return the passes that would run if a sketch were drawn as the last picture was, by path."""
         pixels = self._drawn_size if self.texture is not None and self.texture.size == size else size
-        chosen = as_preview(sketch) if self.is_preview else sketch
+        chosen = as_preview(sketch, size, pixels) if self.is_preview else sketch
         with pointed_at(engine.runner, size, pixels):
             return engine.stale(_seen(chosen, view, at["time"], size), size=pixels, **at)
 

@@ -4,7 +4,7 @@
 //   needs    clouds/shadow.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
 //            lighting/daylight_date.glsl, noise/gradient.glsl, scene/air_reading.glsl,
 //            scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
-//            scene/water/heaven_reading.glsl, scene/water/mirrored.glsl, trees/kinds.glsl,
+//            scene/water/mirrored.glsl, scene/water/mirrored_sky.glsl, trees/kinds.glsl,
 //            water/body.glsl, water/foam.glsl, water/rough_mirror.glsl, water/sheet_reading.glsl,
 //            water/waves.glsl, view/surface.glsl; the picture without water, what it shows, what
 //            scene/water/where gives, the ground and the maps that scene/shaded has
@@ -28,8 +28,8 @@
 #include "scene/footprint.glsl"
 #include "scene/ground_reading.glsl"
 #include "scene/surfaces.glsl"
-#include "scene/water/heaven_reading.glsl"
 #include "scene/water/mirrored.glsl"
+#include "scene/water/mirrored_sky.glsl"
 #include "trees/kinds.glsl"
 #include "view/surface.glsl"
 #include "water/body.glsl"
@@ -107,23 +107,8 @@ Aerial air_before(vec2 share, float far) {
     return Aerial(air * (1.0 - clean), vec3(clean));
 }
 
-// The sky in a direction from a place, with the clouds of the tile.
-vec3 sky_from(vec3 place, vec3 to) {
-    vec2 at = heaven_place(to, textureSize(clear, 0));
-    vec3 found = textureLod(clear, at, 0.0).rgb;
-    if (!wired_cloud || !wired_drift || clouds == 0) return found;
-    vec4 wind_of = texelFetch(drift, ivec2(0), 0);
-    float way = (wind_of.z + CLOUD_MIDDLE - place.z) / max(to.z, 0.02);
-    float texel = wind_of.w / float(textureSize(cloud, 0).x);
-    float blur = max(2.0 * distance(eye, place) + 3.0 * way, 1.0) * 1e-3 / texel;
-    vec4 tile = textureLod(cloud, tile_of(place.xy + to.xy * way, wind_of), max(log2(blur), 0.0));
-    float thickness = clamp((tile.r - THIN_CLOUD) / (THICK_CLOUD - THIN_CLOUD), 0.0, 1.0);
-    vec3 lit = mix(textureLod(thin, at, 0.0).rgb, textureLod(thick, at, 0.0).rgb, thickness);
-    return mix(lit, found, clamp(tile.a, 0.0, 1.0));
-}
-
 // Light of the terrain that a mirrored ray meets, seen from as far as the ray has come.
-vec3 terrain_from(vec3 place, float far, float pixel, Sunlight from) {
+vec3 terrain_from(vec3 place, vec3 to_ray, float far, float pixel, Sunlight from) {
     vec2 share = place.xy / extent;
     Ground around = ground_at(ground, place.xy, extent, far * pixel);
     ivec2 texels = textureSize(colour, 0);
@@ -134,11 +119,16 @@ vec3 terrain_from(vec3 place, float far, float pixel, Sunlight from) {
     if (wired_density) {
         wood = smoothstep(0.1, 0.6, density_at(share));
         float today = day_of_year(wired_daylight, daylight, day);
-        found = mix(found, mean_leaf_colour(0.15, today), wood);
+        float shown = clamp(14.0 / (far * pixel) - 1.0, 0.0, 1.0);
+        float lump = 1.0 + 0.6 * shown * perlin(place.xy / 14.0, SALT + 3u).x
+                + 0.35 * perlin(place.xy / 61.0, SALT + 4u).x;
+        vec3 leaves = mix(leaf_colour(OAK, 0.5, 0.0, today), leaf_colour(MAPLE, 0.5, 0.0, today), 0.5);
+        found = mix(found, lump * leaves, wood);
     }
-    // Crowns turn all ways: a half of what falls on them, and on the mean half of that is shaded.
-    float facing = mix(max(dot(normal, from.direction), 0.0),
-                       0.3 + 0.2 * dot(normal, from.direction), wood);
+    // Crowns are spheres, of which the ray sees the lit side or the other (Lambert's sphere).
+    float away = acos(clamp(dot(to_ray, from.direction), -1.0, 1.0));
+    float crown = 2.0 / 3.0 * (sin(away) + (3.14159265 - away) * cos(away)) / 3.14159265;
+    float facing = mix(max(dot(normal, from.direction), 0.0), 0.85 * crown, wood);
     if (from.direction.z < 0.0) facing = 0.0;
     float lit = gain * around.sun * facing * cloud_shade(place, from.direction);
     return found * (from.sun * lit + from.sky * (ambient * around.sky * mix(1.0, 0.6, wood)));
@@ -174,19 +164,25 @@ Lit light_on(vec3 place, Ground around) {
                from.sky * (ambient * around.sky));
 }
 
-vec3 mirrored_light(Mirrors mirrors, vec3 place, float far, float pixel, Aerial air, Lit lit) {
+vec3 mirrored_light(Mirrors mirrors, vec3 place, float far, float pixel, float rough, Aerial air,
+                    Lit lit) {
     vec3 total = vec3(0.0);
     vec3 mean = vec3(0.0);
     for (int k = 0; k < MIRRORS; k++) {
-        total += mirrors.share[k] * sky_from(place, mirrors.to[k]);
+        total += mirrors.share[k] * clear_sky(clear, mirrors.to[k]);
         mean += mirrors.share[k] * mirrors.to[k];
     }
     vec3 to = normalize(mean);
     float way = meets_terrain(height, block_maxima, place, to, extent, relief,
                               wired_density ? tallest : 0.0);
+    if (way < 0.0 && clouds != 0 && wired_cloud && wired_drift) {
+        vec4 found = clouds_towards(cloud, thin, thick, texelFetch(drift, ivec2(0), 0), place, to,
+                                    rough + pixel, clouds == 2);
+        return total * found.a + mirrors.mirrored * found.rgb;
+    }
     if (way < 0.0) return total;
     vec3 hit = place + way * to;
-    vec3 found = terrain_from(hit, far + way, pixel, lit.from);
+    vec3 found = terrain_from(hit, -to, far + way, pixel, lit.from);
     // Seen straight from the eye the air before it is about that along the mirrored path.
     vec4 clip = clip_from_world * vec4(hit, 1.0);
     vec2 share = clip.w > 0.0 ? clip.xy / clip.w * 0.5 + 0.5 : vec2(0.5);
@@ -243,7 +239,8 @@ vec4 kernel(ivec2 texel) {
     Waves waves = runs ? river_waves(sheet, place.xy, foot) : waves_at(sea, place.xy, time, foot);
     if (!runs) waves = Waves(waves.slope * sqrt(gust), waves.variance * gust);
     Mirrors mirrors = mirrors_of(to_eye, waves.slope, waves.variance);
-    vec3 above = mirrored_light(mirrors, place, far, pixel, air, lit);
+    float rough = sqrt(waves.variance);
+    vec3 above = mirrored_light(mirrors, place, far, pixel, rough, air, lit);
 
     float glint = sun_glint(to_eye, lit.from.direction, waves.slope, waves.variance, mirrors.area);
     if (glint > 1e-3) {
@@ -264,8 +261,11 @@ vec4 kernel(ivec2 texel) {
 
     float cover = shore_cover(deep_here, sea.high, time, gust) + whitecap_cover(wind * gust)
             + max(sheet.white, 0.0);
-    float white = foam_of(clamp(foam * cover, 0.0, 1.0), place.xy - time * sheet.current,
-                          runs ? 0.7 : clamp(0.06 * sea.longest, 0.5, 4.0), far * pixel);
+    // Whitecaps lie across the wind, and are drawn out along it.
+    vec2 along = place.xy - time * sheet.current;
+    along -= sea.towards * (0.6 * dot(along, sea.towards) + 0.5 * wind * time);
+    float white = foam_of(clamp(foam * cover, 0.0, 1.0), along,
+                          runs ? 0.7 : clamp(0.1 * sea.longest, 0.6, 8.0), far * pixel);
     vec3 found = above + (1.0 - mirrors.mirrored) * below;
     found = mix(found, FOAM_ALBEDO * (lit.level + lit.sky), white);
     return vec4(found * air.left + air.scattered, 1.0);

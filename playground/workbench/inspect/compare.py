@@ -236,7 +236,7 @@ class Compare:
         assert self._picture is not None
         session, engine = self.session, self.session.engine
         sketch = self._seen_as(stored.draft.sketch, plan)
-        chosen = as_preview(sketch) if preview else sketch
+        chosen = as_preview(sketch, size, plan.frame_size) if preview else sketch
         changed = [path for path, before in stored.files.items() if hash_of(path) != before]
         try:
             if changed:
