@@ -1,7 +1,7 @@
 // trees/stand.glsl -- what a stand of trees hides, and the light on what one sees of it.
 //
-//   gives    Stand, stand_of, thinned, share_above, share_in, depth_towards, over_ground,
-//            reaches, crown_light, wood_light
+//   gives    Stand, stand_of, thinned, share_above, share_in, hiding_towards, depth_of,
+//            depth_towards, over_ground, reaches, crown_light, wood_light
 //   needs    trees/crown.glsl, trees/level.glsl
 //   units    metres; trees a square metre; shares 0..1; light as a share of that on a surface
 //            that faces the sun, and of that of the whole sky on open level ground
@@ -79,19 +79,28 @@ float overlap(float along, float side) {
     return whole < 1.0 ? whole * (1.0 - whole / 3.0) : 1.0 - 1.0 / (3.0 * whole);
 }
 
-// Minus the logarithm of what no crown is in the way of, along `towards` from the ground up.
-// For trees anywhere that is n A. Where a cell holds one tree with the probability p, and the
+// What hides along `towards` from the ground up: the area of all shadows over that of the ground,
+// and the share of a cell that a shadow takes. Both are as the density is.
+//
+// For trees anywhere the depth is n A. Where a cell holds one tree with the probability p, and the
 // part f of it is in the way, what is free is (1 - p f), less than exp(-p f).
-float depth_towards(Stand s, vec3 towards) {
+vec2 hiding_towards(Stand s, vec3 towards) {
     float run = length(towards.xy) / max(towards.z, 1e-4);
     float shadow = TREE_PI * s.across * length(vec2(s.across, s.up * run));
     // A band as wide as a crown, and as long as makes the same area, anywhere over the cells.
     float wide = 2.0 * s.across;
     float side = max(JITTER * s.cell, 1e-3);
     float part = overlap(wide, side) * overlap(shadow / wide, side);
-    float hit = min(s.dense * s.cell * s.cell * part, 0.95);
-    return s.dense * shadow * (hit > 1e-3 ? -log(1.0 - hit) / hit : 1.0);
+    return vec2(s.dense * shadow, s.dense * s.cell * s.cell * part);
 }
+
+// Minus the logarithm of what no crown is in the way of.
+float depth_of(vec2 hiding) {
+    float hit = min(hiding.y, 0.95);
+    return hiding.x * (hit > 1e-3 ? -log(1.0 - hit) / hit : 1.0);
+}
+
+float depth_towards(Stand s, vec3 towards) { return depth_of(hiding_towards(s, towards)); }
 
 // A direction as it rises over ground of a slope, which is as level ground under a leaning sky.
 vec3 over_ground(vec3 towards, vec2 slope) {

@@ -49,10 +49,12 @@ vec2 wood_at(sampler2D table, vec3 to_eye, vec3 to_sun, float density, float onl
     int layer = min(int(at.z), axes.z - 2);
     vec2 lit = vec2(0.0);
     for (int k = 0; k < MIXES; k++) {
+        float weight = k == 0 ? 1.0 - only : only;
+        if (weight <= 0.0) continue;
         int low = (k * axes.z + layer) * axes.y;
         vec2 thin = texel_between(table, at.xy, low);
         vec2 thick = texel_between(table, at.xy, low + axes.y);
-        lit += (k == 0 ? 1.0 - only : only) * mix(thin, thick, at.z - float(layer));
+        lit += weight * mix(thin, thick, at.z - float(layer));
     }
     return lit;
 }
