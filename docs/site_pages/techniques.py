@@ -11,6 +11,7 @@ from playground.paths import GLSL
 from playground.sketch.catalogue import Choice, Entry
 from playground.sketch.catalogue import techniques as listed
 from playground.sketch.model import Kernel, Technique, Variant, kernels_of
+from playground.sketch.presence import deciding_inputs
 from playground.sketch.techniques import Techniques
 
 from .markdown import code, escaped, fenced, folded, table
@@ -175,6 +176,8 @@ def _wiring(entry: Entry, technique: Technique) -> str:
     rows = []
     for name in entry.inputs:
         notes = f"may stay unwired; it then reads {fallbacks[name]}" if fallbacks.get(name) else ""
+        if name in deciding_inputs(technique):
+            notes = "where it is wired there are passes, and their parameters, that else are not there"
         rows.append(("input", code(name), notes))
     rows += [("output", code(name), code(formats.get(name, ""))) for name in entry.outputs]
     return "## Inputs and outputs\n\n" + table(("", "Name", ""), rows)

@@ -31,8 +31,10 @@ from playground.sketch.allowed_files import TEXTS, is_elevation, is_variant, roo
 from playground.sketch.assign import values_of
 from playground.sketch.dialects import EXPORT, is_export
 from playground.sketch.dialects.shadertoy_folder import is_image, is_of_folder
+from playground.sketch.flatten import withheld
 from playground.sketch.load import is_technique, load, plain_sketch
-from playground.sketch.model import Graph, Sketch, Technique, kernels_of
+from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, kernels_of
+from playground.sketch.presence import deciding_inputs
 from playground.sketch.shadowed import shadowed_by_files
 from playground.sketch.source import read_text
 from playground.sketch.techniques import (
@@ -215,7 +217,7 @@ class _Check:
 
     def sketch(self) -> None:
         sketch = load(self.path).plainly(self.plain)
-        self.notes = left_out(sketch)
+        self.notes = (*left_out(sketch), *withheld(sketch, VARIANTS))
         self.warnings |= dict.fromkeys(former_names_used(sketch))
         request = TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any")
         if reads := _names_files(sketch):  # a plan asks its files for their size: the child reads them first
@@ -241,7 +243,13 @@ class _Check:
     def check_standalone(self, technique: Technique) -> None:
         """Try a technique: its own text by both drivers, then its fast variants, verified or not."""
         self.notes = () if self.plain else left_out(self.standalone_sketch(technique))
-        self.attempt(self.request(without_variants(technique), BOTH))
+        plain = without_variants(technique)
+        self.attempt(self.request(plain, BOTH))
+        if deciding := deciding_inputs(plain):
+            whole = self.standalone_sketch(plain)
+            passes = tuple(spec for spec in whole.graph.passes if spec.name not in deciding)
+            least = replace(whole, graph=replace(whole.graph, passes=passes))
+            self.attempt(TrySketch(least, _FRAME, drivers=BOTH, refuses="all"))
         if any_variants(technique) and not self.plain and not self.errors:
             self.attempt(self.request(trusted(technique), (COMPUTE,)))
 

@@ -33,6 +33,7 @@ from playground.sketch.model import (
     Value,
     Variant,
     kernels_of,
+    with_inner,
 )
 from playground.sketch.variant_check import check_shape
 from playground.sketch.variants import without_variants
@@ -305,8 +306,8 @@ def _has_run(engine: Engine, place: Place) -> bool:
 
 def _with_one(technique: Graph, variant: Variant, contents: tuple[str, str]) -> Graph:
     """Return a graph in which one fast variant runs, verified or not, and no other."""
-    passes = tuple(replace(p, technique=_only(p.technique, variant, contents)) for p in technique.passes)
-    return replace(technique, passes=passes, variants=())
+    changed = with_inner(technique, lambda inside: _only(inside, variant, contents))
+    return replace(changed, variants=())
 
 
 def _only(technique: Technique, variant: Variant, contents: tuple[str, str]) -> Technique:

@@ -28,7 +28,7 @@ _HEIGHT, _COLOUR, LIGHT, DAYLIGHT = "height", "colour", "light", "daylight"
 DENSITY, VISIBILITY = "density", f"{LIGHT}.visibility"
 _TREES = ("cell", "tallest", "shortest", "seed", "needles", "needles_from", "ragged")
 """The view's parameters of trees, which are those of ``_TREES_USE``."""
-_TREES_USE = ("trees/place", "trees/seen")
+_TREES_USE = ("trees/place", "trees/seen", "trees/species")
 _TABLES = {"columns", "bounced", "dome"}
 """What a daylight gives besides, for air and sky."""
 _OUTDOORS = ("mist", "mist_top", "mist_level", "beyond", "clouds", "steps", "wear")

@@ -30,7 +30,7 @@ CACHE_BYTES = 32 * 2**20
 NO_CLOUDS = 0
 """Of the parameter that says which are drawn (clouds/parameters/drawn.glsl)."""
 
-_WOOD, _WOOD_USE, _WOOD_SIZE = "wood_light", "trees/wood", ("24", "90")
+_WOOD, _WOOD_USE, _WOOD_SIZE = "wood_light", "trees/wood", ("24", "216")
 _PASS, _USE = "outdoors", "flight/outdoors"
 _TABLES = ("columns", "bounced", "dome")  # of the daylight
 _CLOUDS = {"cloud": ("clouds/field", "4"), "drift": ("clouds/drift", "1")}  # where a sketch has none
@@ -111,7 +111,7 @@ class Outdoors:
         if self._table is not None:
             self._table.release()
         found = self._engine.texture(sketch, _WOOD)
-        self._table = make_texture(self._engine.ctx, found.size, "rg32f", found.read(alignment=1))
+        self._table = make_texture(self._engine.ctx, found.size, "rgba32f", found.read(alignment=1))
         self._table_hour = hour
 
     def release(self) -> None:

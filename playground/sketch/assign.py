@@ -6,7 +6,7 @@ targets inside; every inner parameter can be reached as well.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Protocol
@@ -14,7 +14,7 @@ from typing import Protocol
 from playground.errors import ParameterError, nearest
 from playground.sketch.identity import Identity
 from playground.sketch.parameter import LARGEST_SIDE, Parameter, Value
-from playground.sketch.technique import Export, Graph, Kernel, Technique
+from playground.sketch.technique import NOT, Export, Graph, Kernel, Technique
 from playground.sketch.values import coerce, spell
 
 # How many numbers at most, which, and what a message expects.
@@ -72,6 +72,8 @@ def resolve(technique: Technique, path: str) -> tuple[Target, ...]:
     """
     found = find_targets(technique, path)
     if not found:
+        if why := why_absent(technique, path):
+            raise ParameterError(f"{path}: {why}")
         raise ParameterError(f"no parameter '{path}'{nearest(path, all_paths(technique))}")
     return found
 
@@ -90,6 +92,34 @@ def find_targets(technique: Technique, path: str) -> tuple[Target, ...]:
     # A target is a path inside: one without a dot would be another export, perhaps this one.
     targets = [target for target in export.targets if "." in target] if export else []
     return tuple([found for target in targets for found in find_targets(technique, target)])
+
+
+def why_absent(technique: Technique, path: str) -> str:
+    """Return why a parameter that the technique's file has is not there now; "" where it has none such."""
+    if isinstance(technique, Kernel):
+        return ""
+    head, _, rest = path.partition(".")
+    if not rest:
+        export = _export(technique.written, head)
+        is_there = export is None or _export(technique, head) is not None
+        return "" if is_there or export is None else why_absent(technique, export.targets[0])
+    spec, whole = technique.find(head), technique.written.find(head)
+    if spec is not None:
+        return why_absent(spec.technique, rest)
+    if whole is None or not find_targets(whole.technique, rest):
+        return ""
+    return unmet(whole.when, technique.wired)
+
+
+def unmet(when: Iterable[str], wired: Collection[str]) -> str:
+    """Return what keeps a pass from being there, by the inputs that are wired; "" where nothing does."""
+    for term in when:
+        name = term.removeprefix(NOT)
+        if term != name and name in wired:
+            return f"has no effect where '{name}' is wired"
+        if term == name and name not in wired:
+            return f"needs a {name}, and none is wired"
+    return ""
 
 
 def current_path(technique: Technique, path: str) -> str:
@@ -186,7 +216,8 @@ def flat_values(technique: Technique, given: Mapping[str, object], prefix: str =
     for key, value in given.items():
         path = f"{prefix}{key}"
         new = {path: value}
-        if isinstance(value, Mapping) and not find_targets(technique, path):
+        is_known = find_targets(technique, path) or why_absent(technique, path)
+        if isinstance(value, Mapping) and not is_known:
             new = flat_values(technique, value, f"{path}.")
         for name in new.keys() & found.keys():
             raise ParameterError(f"'{name}' is set twice")
@@ -201,6 +232,8 @@ def check_value(sketch: Settable, path: str, given: object) -> Value:
     path = current_path(sketch.graph, path)
     targets = find_targets(sketch.graph, path)
     if not targets:
+        if why := why_absent(sketch.graph, path):
+            raise ParameterError(f"{path}: {why}")
         valid = [*TERRAIN_KEYS, *all_paths(sketch.graph)]
         raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, valid)}")
     return coerce(targets[0].parameter, given, path)

@@ -37,12 +37,15 @@ def _content_of(key: Identity[Technique]) -> str:
 
 
 def _of_graph(graph: Graph) -> list[Any]:
+    graph = graph.written
     exports = [[(e.name, e.targets) for e in some] for some in (graph.parameters, graph.inputs)]
     passes = [
         (p.name, content_of(p.technique), p.inputs, p.values, p.size, p.repeat, p.feedback)
         for p in graph.passes
     ]
-    return [*exports, graph.outputs, passes, graph.agrees]
+    # Only where it is there: hashes of others in records stay valid.
+    more = [[p.when, p.choices] for p in graph.passes if p.when or p.choices]
+    return [*exports, graph.outputs, passes, graph.agrees, *more]
 
 
 def _of_kernel(kernel: Kernel) -> list[Any]:
@@ -53,7 +56,7 @@ def _of_kernel(kernel: Kernel) -> list[Any]:
     header += [(o.name, o.format) for o in kernel.outputs]
     header += [(i.name, _sampling(i), i.fallback) for i in kernel.inputs]
     header += [_parameter(p) for p in kernel.parameters]
-    # Only where it is there: hashes of others in records stay valid.
+    # Only where it is there, as in ``_of_graph``.
     more = [kernel.own_accepts] if kernel.own_accepts else []
     more += [kernel.instances] if kernel.instances else []
     return [header, kernel.agrees, compiled_text(kernel.source.code), *more]

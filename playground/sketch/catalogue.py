@@ -11,7 +11,14 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, SKETCHES
-from playground.sketch.assign import TERRAIN_KEYS, Shown, shown_parameters, value_of, values_of
+from playground.sketch.assign import (
+    TERRAIN_KEYS,
+    Settable,
+    Shown,
+    shown_parameters,
+    value_of,
+    values_of,
+)
 from playground.sketch.find import is_part, shipped_names, shipped_sketches
 from playground.sketch.load import load, load_with
 from playground.sketch.model import Graph, Kernel, Parameter, PassSpec, Sketch, Technique, Value
@@ -160,8 +167,7 @@ def _of_sketch(name: str, sketch: Sketch) -> Entry:
 
 
 def _of_technique(name: str, technique: Technique) -> Entry:
-    # A sketch of this one pass lists its parameters.
-    alone = Sketch(name, technique.path, "", Graph(name, "", (PassSpec("it", name, technique),)))
+    alone = _Alone(name, Graph(name, "", (PassSpec("it", name, technique),)))
     values = values_of(alone)
     choices = [_choice(alone, shown, values) for shown in shown_parameters(alone)]
     return Entry(
@@ -175,7 +181,16 @@ def _of_technique(name: str, technique: Technique) -> Entry:
     )
 
 
-def _choice(sketch: Sketch, shown: Shown, values: dict[str, Value]) -> Choice:
+@dataclass(frozen=True)
+class _Alone:
+    """A technique as its file has it, with the passes that are there only where something is wired."""
+
+    name: str
+    graph: Graph
+    overrides: tuple[tuple[str, Value], ...] = ()
+
+
+def _choice(sketch: Settable, shown: Shown, values: dict[str, Value]) -> Choice:
     return Choice(shown.path, shown.parameter, value_of(sketch, shown.path, values), shown.exported)
 
 

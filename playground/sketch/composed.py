@@ -87,7 +87,7 @@ def _composed(use: str, outer_key: Identity[Technique], inner_key: Identity[Tech
 
 def _passes(technique: Technique, use: str) -> tuple[PassSpec, ...]:
     if isinstance(technique, Graph) and not technique.variants:
-        return technique.passes
+        return technique.written.passes
     return (PassSpec(_free(_short(use), set()), use, technique, file=technique.path),)
 
 
@@ -96,8 +96,8 @@ def _exact(technique: Technique) -> Technique:
     if isinstance(technique, Kernel):
         outputs = tuple(Output(o.name, _KEPT.get(o.format, o.format)) for o in technique.outputs)
         return replaced(technique, outputs=outputs)
-    *others, last = technique.passes
-    return replace(technique, passes=(*others, replace(last, technique=_exact(last.technique))))
+    *others, last = technique.written.passes
+    return replace(technique.written, passes=(*others, replace(last, technique=_exact(last.technique))))
 
 
 def _exports(technique: Technique, name: str, what: str) -> list[Export]:

@@ -19,7 +19,7 @@ from functools import lru_cache
 from typing import cast
 
 from playground.errors import nearest
-from playground.sketch.model import LARGEST_SIDE
+from playground.sketch.parameter import LARGEST_SIDE
 
 Number = int | float | Fraction
 _LIMIT = 2**62

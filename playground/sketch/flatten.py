@@ -3,7 +3,8 @@
 The result names no sizes and no pixels: ``engine.plan`` adds those. Wiring follows one
 rule at every level: an input takes what its pass wires, else what the technique's own
 caller wires through ``[inputs]``, else the latest earlier pass of its name, else the
-latest earlier pass with an output of its name. What is wired to a path inside a technique
+latest earlier pass with an output of its name, but for an input that decides which passes
+are there (see ``presence``). What is wired to a path inside a technique
 wins over what is wired to its export.
 
 Where a fast variant replaces a technique (see ``variants``), its own kernel or passes are
@@ -18,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 from playground.errors import SketchError, nearest
@@ -28,6 +30,7 @@ from playground.sketch.flat import Fed, Flat, Leaf, Loop, Node, Ref, Shape, Sour
 from playground.sketch.follows import follow, rules_of
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, PassSpec, Sketch, Technique, Value, Variant
+from playground.sketch.presence import decides, why_unfed
 from playground.sketch.variant_check import INSIDE
 from playground.sketch.variants import active_variant
 from playground.sketch.wiring import (
@@ -36,6 +39,7 @@ from playground.sketch.wiring import (
     input_names,
     is_optional,
     output_names,
+    takes_input,
     target_of,
 )
 
@@ -87,6 +91,11 @@ def flatten(
     )
 
 
+def withheld(sketch: Sketch, variants: Collection[str]) -> tuple[str, ...]:
+    """Return a sentence for each fast variant that lacks an input that its sketch wires."""
+    return flatten(sketch, variants=variants).shape.withheld
+
+
 @lru_cache(maxsize=32)
 def _shape(
     key: Identity[Graph],
@@ -124,6 +133,7 @@ def _shape(
         copied=maker.copied,
         rules=rules,
         readers=readers,
+        withheld=tuple(maker.withheld.values()),
     )
 
 
@@ -175,6 +185,7 @@ class _Flattener:
         self.copied: dict[str, str] = {}
         # Pass → what gives its outputs: the passes of its fast variant, or its own where that steps back.
         self.inside: dict[str, dict[str, Ref]] = {}
+        self.withheld: dict[str, str] = {}
         self.opened: set[str] = set()
         if kinds:
             for path in (*opened, *stopped):
@@ -270,6 +281,8 @@ class _Flattener:
         technique = spec.technique
         wires: dict[str, Source | None] = dict(given)
         for name, text in spec.inputs:
+            if not takes_input(technique, name):
+                raise spec.error(f"nothing takes input '{name}': {why_unfed(technique, name)}")
             wires[name] = self._ref(text, name, prefix, spec)
         for name in input_names(technique):
             if name not in wires and not _covered(technique, name, wires):
@@ -292,7 +305,11 @@ class _Flattener:
         variant = self._active(technique, path)
         if isinstance(technique, Kernel) and any(wires.get(name) for name in initial_names(technique)):
             variant = None  # only the canonical form takes an initial state
-        if variant and any(wires.get(name) for name in _lacking(technique, variant)):
+        lacking = sorted(name for name in _lacking(technique, variant) if wires.get(name)) if variant else []
+        if variant and lacking:
+            what = f"it does not read what is wired to {' and '.join(lacking)}"
+            name = Path(variant.path).name
+            self.withheld[path] = f"{path}: {name} is left out, the plain form runs: {what}"
             variant = None
             if isinstance(technique, Graph):
                 self.opened.add(path)
@@ -373,7 +390,7 @@ class _Flattener:
             if other.name == name:
                 outputs = self.outputs[_join(prefix, other.name)]
                 return outputs.get(name, next(iter(outputs.values())))
-        for other in reversed(earlier):
+        for other in reversed(earlier if not decides(spec.technique, name) else []):
             outputs = self.outputs[_join(prefix, other.name)]
             if name in outputs:
                 return outputs[name]

@@ -13,6 +13,7 @@ from playground.errors import Diagnostic, ParameterError, SketchError, nearest
 from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed
 from playground.sketch.keyframes import Keyframe, at
 from playground.sketch.parameter import LARGEST_SIDE, Follows, Parameter, Sampling, Value, Widget
+from playground.sketch.presence import as_wired
 from playground.sketch.technique import (
     SHAPES,
     VARIANTS,
@@ -26,6 +27,7 @@ from playground.sketch.technique import (
     Technique,
     Variant,
     kernels_of,
+    with_inner,
 )
 
 __all__ = [
@@ -56,6 +58,7 @@ __all__ = [
     "Variant",
     "Widget",
     "kernels_of",
+    "with_inner",
 ]
 
 LARGEST_PICTURE = 65_536
@@ -114,7 +117,7 @@ class Sketch:
     name: str
     file: str  # absolute path of the TOML, or of the kernel opened alone
     folder: str  # absolute path; its own files stay inside
-    graph: Graph  # the passes; the view is the last of them, named "view"
+    graph: Graph  # the passes that are there; the view is the last of them, named "view"
     title: str = ""
     size: tuple[int, int] | None = None  # texels, x and y; None: from the terrain's file
     extent: tuple[float, float] | None = None  # [m]
@@ -131,6 +134,10 @@ class Sketch:
     plain: bool = False  # every technique in its canonical form: no fast variant runs
     main: tuple[str, ...] = ()  # paths of the parameters that it is about: a panel shows them first
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # of former names that are used
+
+    def __post_init__(self) -> None:
+        """Leave out the passes whose condition does not hold for what is wired."""
+        object.__setattr__(self, "graph", as_wired(self.graph))
 
     @property
     def files(self) -> tuple[str, ...]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -15,6 +16,9 @@ from playground.sketch.source import Line, SourceText
 VARIANTS = ("compute", "passes")
 """The kinds of fast variants: a ``.comp`` needs compute shaders, a ``.fast.toml`` does not."""
 
+
+NOT = "not "
+"""Begins a condition of a pass that an input is not wired."""
 
 SHAPES = {
     "sampler2D": "",
@@ -204,6 +208,8 @@ class PassSpec:
     size: tuple[str, str] | None = None  # expressions; None: the size of what it is in
     repeat: str = ""
     feedback: tuple[tuple[str, str], ...] = ()  # input → own output
+    when: tuple[str, ...] = ()  # inputs of the technique it is in, "dome" or "not dome"; () always
+    choices: tuple[tuple[str, tuple[str, ...]], ...] = ()  # input → its sources: the first that is there
     file: str = ""
     line: int = 0
     set_lines: tuple[tuple[str, int], ...] = ()  # parameter path of ``values`` → line of the file
@@ -229,10 +235,19 @@ class Graph:
     line: int = 0  # of its outputs
     warnings: tuple[Diagnostic, ...] = field(default=(), compare=False)  # former names that its file uses
     parts: tuple[Technique, ...] = ()  # of "A(B)": A and B; see sketch/composed.py
+    whole: Graph | None = field(default=None, compare=False)  # of one form of it: all of it; see presence.py
+    wired: frozenset[str] = field(default=frozenset(), compare=False)  # likewise: the inputs that are wired
+
+    @property
+    def written(self) -> Graph:
+        """All of it as its file has it, where this is one form of it: with passes that are not there."""
+        return self.whole or self
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Absolute paths of every file the technique is made of."""
+        """Absolute paths of every file the technique is made of, those of passes that are not there too."""
+        if self.whole is not None:
+            return self.whole.files
         parts = (*(spec.technique for spec in self.passes), *self.variants, *self.parts)
         return tuple(dict.fromkeys([self.path, *(file for part in parts for file in part.files)]))
 
@@ -293,6 +308,12 @@ class Variant:
     def files(self) -> tuple[str, ...]:
         """Absolute paths of every file that it is made of."""
         return (*self.technique.files, *filter(None, [self.record]))
+
+
+def with_inner(graph: Graph, change: Callable[[Technique], Technique]) -> Graph:
+    """Return a technique as its file has it, with the technique of each of its passes changed."""
+    passes = tuple(replace(spec, technique=change(spec.technique)) for spec in graph.written.passes)
+    return replace(graph.written, passes=passes)
 
 
 def kernels_of(technique: Technique) -> tuple[tuple[str, Kernel], ...]:

@@ -15,7 +15,7 @@ from playground.paths import GLSL
 from playground.sketch.composed import composed
 from playground.sketch.dialects import read_foreign
 from playground.sketch.header import parse_kernel
-from playground.sketch.model import Graph, Kernel, Sketch, Technique
+from playground.sketch.model import Graph, Kernel, Sketch, Technique, with_inner
 from playground.sketch.source import read_source
 from playground.sketch.techniques import Techniques
 
@@ -46,8 +46,7 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
                 if technique is sketch.graph:  # of a sketch all are at view
                     known[id(technique)] = replace(known[id(technique)], inputs=(), parameters=())
             elif isinstance(technique, Graph):
-                passes = tuple(replace(p, technique=reread(p.technique)) for p in technique.passes)
-                known[id(technique)] = replace(technique, passes=passes, variants=variants)
+                known[id(technique)] = replace(with_inner(technique, reread), variants=variants)
             else:
                 kernel = _parsed_again(technique, texts, Path(sketch.folder))
                 known[id(technique)] = replace(kernel, variants=variants)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,12 +17,16 @@ from playground.sketch.allowed_files import is_variant, leads_outside
 from playground.sketch.assign import (
     check_value,
     current_paths,
+    effective_values,
     find_targets,
     flat_values,
     renamed,
     resolve,
+    why_absent,
 )
 from playground.sketch.model import Export, Graph, PassSpec, Sketch, Technique, Value
+from playground.sketch.presence import check_forms, is_conditional
+from playground.sketch.technique import NOT
 from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import coerce, spell
@@ -33,7 +37,10 @@ TECHNIQUE_KEYS = ("parameters", "inputs", "outputs")
 Read = Callable[[str, Path, Path], Technique]
 """Returns the technique that ``use`` names, from a folder inside a root."""
 
-_PASS_KEYS = ("name", "use", "inputs", "set", "size", "repeat", "feedback")
+_PASS_KEYS = ("name", "use", "inputs", "set", "size", "repeat", "feedback", "when")
+
+_ALL = "*"
+"""Exports every parameter of every pass by its own name: ``"*" = "*"``."""
 
 
 def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
@@ -46,12 +53,14 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
         agrees = read_agreement(stated) if stated else ()
     except ValueError as error:
         raise file.error(f"agrees: {error}", "agrees") from None
+    inputs = _exports(file, "inputs")
+    passes = read_passes(file, read, [export.name for export in inputs])
     graph = Graph(
         use,
         str(file.path),
-        read_passes(file, read),
-        _exports(file, "parameters"),
-        _exports(file, "inputs"),
+        passes,
+        _with_all(file, passes, _exports(file, "parameters")),
+        inputs,
         file.texts(file.table, "outputs"),
         file.take(file.table, "title", str, ""),
         agrees,
@@ -63,6 +72,8 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
         if not name.isidentifier():
             raise file.error(f"'{name}': expected a name of letters, digits and _", key, name)
     wiring.check_graph(graph)
+    if is_conditional(graph):
+        check_forms(graph)
     for export in graph.parameters:
         for target in export.targets:
             if sentence := renamed(graph, target, None):
@@ -70,8 +81,8 @@ def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
     return replace(graph, warnings=tuple(file.warnings))
 
 
-def read_passes(file: TomlFile, read: Read) -> tuple[PassSpec, ...]:
-    """Return what the ``[[pass]]`` tables say."""
+def read_passes(file: TomlFile, read: Read, inside: Sequence[str] | None = None) -> tuple[PassSpec, ...]:
+    """Return what the ``[[pass]]`` tables say: of a sketch, or of a technique with some inputs."""
     tables, view = file.tables("pass"), file.table.get("view")
     own = str(view.get("use", "")) if isinstance(view, dict) else ""
     if not tables and not own.startswith("./"):  # a shader of the sketch's own may be the whole picture
@@ -90,12 +101,19 @@ def read_passes(file: TomlFile, read: Read) -> tuple[PassSpec, ...]:
             wrong = "a pass may not be named 'view'; that is the [view] table's name"
         if wrong:
             raise file.error(wrong, *place, "name")
-        found[name] = read_pass(file, table, place, name, read)
+        found[name] = read_pass(file, table, place, name, read, inside)
     return tuple(found.values())
 
 
-def read_pass(file: TomlFile, table: Mapping[str, Any], place: Place, name: str, read: Read) -> PassSpec:
-    """Return what one table, a pass's or the view's, says of a pass."""
+def read_pass(
+    file: TomlFile,
+    table: Mapping[str, Any],
+    place: Place,
+    name: str,
+    read: Read,
+    inside: Sequence[str] | None = None,
+) -> PassSpec:
+    """Return what one table, a pass's or the view's, says of a pass; ``inside`` as in ``read_passes``."""
     use = file.take(table, "use", str, "", *place)
     if not use:
         raise file.error(f"pass '{name}' needs use = \"…\", the technique that fills it", *place, "use")
@@ -113,7 +131,12 @@ def read_pass(file: TomlFile, table: Mapping[str, Any], place: Place, name: str,
         example = ', as feedback = { water = "water" }'
         message = f"pass '{name}': repeat needs feedback{example}: without, each step gives the same"
         raise file.error(message, *place, "repeat")
-    inputs = file.texts(table, "inputs", *place)
+    sources = file.sources(table, "inputs", *place)
+    choices = tuple(pair for pair in sources if len(pair[1]) > 1)
+    if choices and inside is None:
+        message = "one source each: all passes of a sketch are there, so none is needed in place of another"
+        raise file.error(f"pass '{name}': {choices[0][0]}: {message}", *place, "inputs", choices[0][0])
+    inputs = tuple((wanted, texts[0]) for wanted, texts in sources)
     for key, pairs in (("inputs", inputs), ("feedback", feedback)):
         for wanted, _ in pairs:
             if not wiring.takes_input(technique, wanted):
@@ -138,10 +161,33 @@ def read_pass(file: TomlFile, table: Mapping[str, Any], place: Place, name: str,
         size=_size(file, table, place),
         repeat=repeat,
         feedback=feedback,
+        when=_when(file, table, place, inside),
+        choices=choices,
         file=shown(file.path),
         line=file.line(*place),
         set_lines=_set_lines(file, place, table.get("set", {}), technique),
     )
+
+
+def _when(
+    file: TomlFile, table: Mapping[str, Any], place: Place, inputs: Sequence[str] | None
+) -> tuple[str, ...]:
+    """Return the conditions of a pass: inputs of the technique it is in, or "not " and such an input."""
+    given = table.get("when", [])
+    terms = given if isinstance(given, list) else [given]
+    if not all(isinstance(term, str) for term in terms) or given == []:
+        if "when" in table:
+            message = f'when = {spell(given)}: expected an input, as "density" or "not density"'
+            raise file.error(f"{message}, or a list of them", *place, "when")
+        return ()
+    if inputs is None:
+        message = 'a sketch has no inputs; "when" is for the passes of a technique'
+        raise file.error(f"when = {spell(given)}: {message}", *place, "when")
+    for term in terms:
+        if term.removeprefix(NOT) not in inputs:
+            hint = nearest(term.removeprefix(NOT), inputs)
+            raise file.error(f"when = {spell(given)}: this technique has no such input{hint}", *place, "when")
+    return tuple(terms)
 
 
 def _read_values(
@@ -160,6 +206,9 @@ def _read_values(
         raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set") from None
     found = []
     for path, raw in given.items():
+        if why := why_absent(technique, path):
+            file.warn(f"{who}: {path}: {why}", *place, "set", path)
+            continue
         try:
             value = read_value(path, raw)
         except ParameterError as error:
@@ -225,11 +274,49 @@ def _axis(expression: str, axis: str) -> str:
 def _exports(file: TomlFile, key: str) -> tuple[Export, ...]:
     found = []
     for name, given in file.take(file.table, key, dict, {}).items():
+        if key == "parameters" and name == _ALL:
+            if given != _ALL:
+                raise file.error(f'"*" = {spell(given)}: expected "*", for all passes', key, name)
+            found.append(Export(_ALL, (), file.line(key, name)))
+            continue
         targets = given if isinstance(given, list) else [given]
         if not targets or not all(isinstance(t, str) for t in targets):
             raise file.error(f"{name} = {spell(given)}: expected a path inside, or a list of them", key, name)
         found.append(Export(name, tuple(targets), file.line(key, name)))
     return tuple(found)
+
+
+def _with_all(file: TomlFile, passes: Sequence[PassSpec], exports: tuple[Export, ...]) -> tuple[Export, ...]:
+    """Return exports with ``"*"`` replaced by what no other export has, each name for all that have it.
+
+    Passes that share a name must agree on type, default and choices: else the first one's default would be
+    every other one's, and nobody would have written so.
+    """
+    place = next((i for i, export in enumerate(exports) if export.name == _ALL), None)
+    if place is None:
+        return exports
+    others = exports[:place] + exports[place + 1 :]
+    bare = Graph("", str(file.path), tuple(passes))
+    taken = {t.path for export in others for target in export.targets for t in find_targets(bare, target)}
+    values, found = effective_values(bare), dict[str, list[str]]()
+    kinds: dict[str, tuple[str, object]] = {}
+    for spec in passes:
+        for parameter in spec.technique.parameters:
+            path, name = f"{spec.name}.{parameter.name}", parameter.name
+            targets = resolve(bare, path)
+            if any(target.path in taken for target in targets):
+                continue
+            first = targets[0]
+            kind = (path, (first.parameter.type, first.parameter.widget.choices, values[first.path]))
+            other, same = kinds.setdefault(name, kind)
+            if any(export.name == name for export in others) or same != kind[1]:
+                who = "an export of that name is written" if same == kind[1] else f"it is not that of {other}"
+                message = f"\"*\" cannot export {path} as '{name}': {who}; export it by a name of its own"
+                raise file.error(message, "parameters", _ALL)
+            found.setdefault(name, []).append(path)
+    line = exports[place].line
+    every = tuple(Export(name, tuple(paths), line) for name, paths in found.items())
+    return exports[:place] + every + exports[place + 1 :]
 
 
 def _inner_inputs(technique: Technique) -> Iterable[str]:

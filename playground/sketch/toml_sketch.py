@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL, shown
-from playground.sketch.assign import TERRAIN_KEYS, check_value, current_paths, renamed, resolve
+from playground.sketch.assign import (
+    TERRAIN_KEYS,
+    check_value,
+    current_paths,
+    renamed,
+    resolve,
+    why_absent,
+)
 from playground.sketch.flat import repeated_path, repeated_paths
 from playground.sketch.flatten import flatten
 from playground.sketch.model import (
@@ -65,6 +72,7 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
         above_ground=above,
         **terrain,
     )
+    _warn_of_absent(file, sketch, (*passes, view))
     check_graph(sketch.graph)
     flatten(sketch)
     sketch = replace(sketch, main=_main(file, sketch))
@@ -72,6 +80,17 @@ def read_sketch(file: TomlFile, read: Read) -> Sketch:
     sketch = replace(sketch, shots=_shots(file, sketch))
     sketch = replace(sketch, keyframes=read_keyframes(file, sketch))
     return replace(sketch, warnings=tuple(file.warnings))
+
+
+def _warn_of_absent(file: TomlFile, sketch: Sketch, written: Sequence[PassSpec]) -> None:
+    """Warn of what passes set that is not there by their wiring."""
+    for index, (spec, own) in enumerate(zip(written, sketch.graph.passes, strict=True)):
+        there = dict(own.values)
+        place = ("view",) if spec.name == "view" else ("pass", index)
+        for path, _ in spec.values:
+            if path not in there:
+                why = why_absent(own.technique, path)
+                file.warn(f"pass '{spec.name}': {path}: {why}", *place, "set", path)
 
 
 def _terrain_value(file: TomlFile, key: str) -> Any:
@@ -100,10 +119,15 @@ def _view(file: TomlFile, passes: tuple[PassSpec, ...], read: Read) -> tuple[Pas
 def _main(file: TomlFile, sketch: Sketch) -> tuple[str, ...]:
     """Return the paths of the parameters that the sketch is about, checked."""
     paths = file.take(file.table, "main", list, [])
+    there = []
     for path in paths:
         if not isinstance(path, str):
             message = f'main: {spell(path)}: expected paths of parameters, as ["height.seed", "light.sun"]'
             raise file.error(message, "main")
+        if why := why_absent(sketch.graph, path):
+            file.warn(f"main: {path}: {why}", "main")
+            continue
+        there.append(path)
         try:
             resolve(sketch.graph, path)
         except ParameterError as error:
@@ -113,7 +137,7 @@ def _main(file: TomlFile, sketch: Sketch) -> tuple[str, ...]:
         if sentence := renamed(sketch.graph, path, None):
             file.warn(f"main: {sentence}", "main")
     try:
-        return tuple(current_paths(sketch.graph, paths).values())
+        return tuple(current_paths(sketch.graph, there).values())
     except ParameterError as error:
         raise file.error(f"main: {error.diagnostics[0].message}", "main") from None
 

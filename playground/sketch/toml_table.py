@@ -137,6 +137,18 @@ class TomlFile:
         """Return the pairs of a table whose values are texts; dotted keys need no quotes."""
         return self._pairs(table, key, place, _NOUNS[str], lambda value: isinstance(value, str))
 
+    def sources(
+        self, table: Mapping[str, Any], key: str, *place: str | int
+    ) -> tuple[tuple[str, tuple[str, ...]], ...]:
+        """Return the pairs of a table whose values are texts or lists of texts, each as a tuple."""
+
+        def fits(value: object) -> bool:
+            texts = value if isinstance(value, list) else [value]
+            return bool(texts) and all(isinstance(text, str) for text in texts)
+
+        pairs = self._pairs(table, key, place, f"{_NOUNS[str]}, or a list of such", fits)
+        return tuple((name, tuple(v) if isinstance(v, list) else (v,)) for name, v in pairs)
+
     def whole_numbers(
         self, table: Mapping[str, Any], key: str, *place: str | int
     ) -> tuple[tuple[str, int], ...]:

@@ -17,7 +17,7 @@ from shlex import quote
 from playground.paths import shown
 from playground.sketch.canonical import content_of
 from playground.sketch.identity import Identity
-from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, Variant
+from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, Variant, with_inner
 
 
 def active_variant(technique: Technique, kinds: Collection[str]) -> Variant | None:
@@ -71,8 +71,7 @@ def why_not(technique: Technique, variant: Variant) -> str:
 def trusted(technique: Technique) -> Technique:
     """Return a technique whose fast variants count as verified, those of its passes included."""
     if isinstance(technique, Graph):
-        passes = tuple(replace(p, technique=trusted(p.technique)) for p in technique.passes)
-        technique = replace(technique, passes=passes)
+        technique = with_inner(technique, trusted)
     variants = tuple(
         replace(v, verified=(content_of(technique), content_of(v.technique))) for v in technique.variants
     )
@@ -84,8 +83,7 @@ def without_variants(technique: Technique) -> Technique:
     if not any_variants(technique):
         return technique
     if isinstance(technique, Graph):
-        passes = tuple(replace(p, technique=without_variants(p.technique)) for p in technique.passes)
-        return replace(technique, passes=passes, variants=())
+        return replace(with_inner(technique, without_variants), variants=())
     return replace(technique, variants=())
 
 

@@ -8,7 +8,7 @@ from playground.errors import SketchError, nearest
 from playground.sketch import expressions
 from playground.sketch.assign import find_targets, resolve
 from playground.sketch.expressions import ExpressionError
-from playground.sketch.model import Export, Graph, Kernel, Output, PassSpec, Technique
+from playground.sketch.technique import Export, Graph, Kernel, Output, PassSpec, Technique
 from playground.sketch.widgets import SCALARS
 
 _GIVEN = (*expressions.CLOCKS, *expressions.COUNTERS, "compute", "size.x", "size.y")
@@ -62,7 +62,7 @@ def is_optional(technique: Technique, name: str) -> bool:
     head, _, rest = name.partition(".")
     if rest:
         spec = technique.find(head)
-        return spec is not None and is_optional(spec.technique, rest)
+        return spec is not None and (rest in dict(spec.inputs) or is_optional(spec.technique, rest))
     export = next((e for e in technique.inputs if e.name == name), None)
     return export is not None and all(is_optional(technique, target) for target in export.targets)
 

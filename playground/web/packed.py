@@ -121,5 +121,5 @@ def _graphs(technique: Technique) -> Iterator[Graph]:
             continue
         if one.path.endswith(".toml") and one.path not in known and not one.parts:
             known.add(one.path)
-            yield one
-        waiting += [*(spec.technique for spec in one.passes), *one.parts]
+            yield one.written
+        waiting += [*(spec.technique for spec in one.written.passes), *one.parts]

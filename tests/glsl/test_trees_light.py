@@ -1,12 +1,10 @@
 """Crowns, stands and woods: by rays through ellipsoids in float64, and by what is drawn of a stand."""
 
-import tomllib
 from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from playground.paths import GLSL
+from scipy.ndimage import map_coordinates
 
 FIELD = np.array([1 / 150.0, 4.5, 7.0, 9.0])  # trees a square metre, half width, half height, middle
 
@@ -38,7 +36,7 @@ def test_what_reaches_the_ground_is_what_no_crown_is_in_the_way_of(on_gpu, eleva
     towards = np.array([[np.cos(angle) * 0.6, np.cos(angle) * 0.8, np.sin(angle)]], np.float32)
     for height, bound in ((0.0, 0.012), (9.0, 0.06), (13.0, 0.06)):
         found = on_gpu(
-            "trees/stand.glsl", f"reaches({stand}, share_above({stand}, h), d)", h=[height], d=towards
+            "trees/stand.glsl", f"reaches({stand}, share_above({stand}, h), d, d.z)", h=[height], d=towards
         )[0]
         # At half a crown's height a ray that starts inside a crown counts as hidden; not so in the model,
         # which counts what is above: so much more open it may be.
@@ -66,7 +64,7 @@ name = "flat"
 use = "./flat"
 set = {{ most = {most}, slope = {slope} }}
 [view]
-use = "scene/wooded"
+use = "scene/terrain"
 camera = {{ azimuth = 70.0, elevation = {elevation}, distance = {distance}, target = [8000, 8000, 2000] }}
 inputs = {{ height = "flat:height", density = "flat:density", colour = "flat:colour" }}
 set = {{ sun = {sun}, gain = 2.0, ambient = 0.6, trees = {trees}, detail = "full grid", grid = 2{given} }}
@@ -104,7 +102,7 @@ def stand(
     [
         (0.7, 8.0, "[135, 35]", 0.0, 0.05),
         (0.25, 12.0, "[200, 20]", 0.0, 0.05),
-        (0.8, 6.0, "[150, 40]", -0.35, 0.13),  # the table of trees/wood is for level ground
+        (0.8, 6.0, "[150, 40]", -0.35, 0.05),
     ],
 )
 def test_a_stand_has_one_mean_colour_at_every_distance(
@@ -149,7 +147,7 @@ name = "shade"
 use = "trees/shade"
 size = 512
 inputs = {{ tree = "list:tree", total = "list:total" }}
-set = {{ sun = [{azimuth}, {elevation}], needles = 0, shade_wide = 256 }}
+set = {{ sun = [{azimuth}, {elevation}], shade_wide = 256 }}
 [[pass]]
 name = "height"
 use = "generation/white_noise"
@@ -172,7 +170,7 @@ def test_a_shadow_lies_where_rays_to_the_sun_meet_the_crown(
         return
     k = np.arange(3)
     tree = np.stack([1000 + 60.0 * k, 990 + 11.0 * k, 5.0 + 0 * k, 14 + 3.0 * k], 1).astype(np.float32)
-    crowns = "crown_of(t, 0.0)"
+    crowns = "crown_of(t, vec4(0.0))"
     forms = on_gpu("trees/crown.glsl", f"vec3({crowns}.middle.z, {crowns}.across, {crowns}.up)", t=tree)
     turn, rise = np.radians([azimuth, elevation])
     way = np.array([np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)])
@@ -198,13 +196,13 @@ def test_leaves_throw_back_no_more_light_than_falls_on_them(on_gpu):
     rng = np.random.default_rng(5)
     normals = rng.normal(size=(200_000, 3))
     normals = (normals / np.linalg.norm(normals, axis=1, keepdims=True)).astype(np.float32)
-    light = on_gpu("trees/stand.glsl", "crown_light(Stand(0.0, 4.0, 6.0, 8.0, 0.5, 9.0), n, 0.0, s, s)",
+    light = on_gpu("trees/stand.glsl", "crown_light(Stand(0.0, 4.0, 6.0, 8.0, 0.5, 9.0), n, 0.0, s, s.z)",
                    n=normals, s=np.array([[0.6, 0.0, 0.8]], np.float32))  # fmt: skip
     np.testing.assert_allclose(light.mean(0, dtype=np.float64), [0.25, 0.5], atol=0.004)
     # In a stand there is less, and the less the deeper.
     stand = "Stand(0.01, 4.0, 6.0, 8.0, 0.5, 9.0)"
     deep = [
-        on_gpu("trees/stand.glsl", f"crown_light({stand}, n, h, n, n)", n=normals[:9], h=[h])
+        on_gpu("trees/stand.glsl", f"crown_light({stand}, n, h, n, n.z)", n=normals[:9], h=[h])
         for h in (0, 0.5, 1.0)
     ]
     assert (deep[1] <= deep[0]).all() and (deep[2] <= deep[1]).all()
@@ -311,7 +309,7 @@ use = "lighting/ray_cast"
 inputs = {{ height = "canopy:height" }}
 set = {{ sun = [275, 16] }}
 [view]
-use = "scene/wooded"
+use = "scene/terrain"
 samples = 1
 camera = {{ azimuth = 150.0, elevation = 55.0, distance = 100.0, target = [280.0, 190.0, 6.0] }}
 set = {{ sun = [275, 16], gain = 1.0, ambient = 0.0, haze = 0.0, sun_colour = "#ffffff", needles = 0.0, \
@@ -341,9 +339,13 @@ def meadow_sun(engine, make_sketch, wide):
 def test_the_sun_beside_a_wood_is_what_its_trees_leave(kept, ctx, on_gpu, make_sketch):
     """Near the eye, by rays through each crown: a wood as one opaque body would take more than they do."""
     place, share, tree = meadow_sun(kept, make_sketch, 700.0)
-    crowns = "crown_of(t, 0.0)"
+    crowns = "crown_of(t, s)"
     form = f"vec3({crowns}.middle.z, {crowns}.across, {crowns}.up)"
-    forms = on_gpu("trees/crown.glsl", form, t=tree).astype(np.float64)
+    species = kept.read(kept.plan.sketch, "view.species").astype(np.float64)
+    at = tree[:, 1::-1].T / [[8.0], [8.0]]
+    shares = [map_coordinates(species[..., k], at, order=1, mode="nearest") for k in range(4)]
+    shares = np.stack(shares, 1).astype(np.float32)
+    forms = on_gpu("trees/crown.glsl", form, t=tree, s=shares).astype(np.float64)
     turn, rise = np.radians([275.0, 16.0])
     way = np.array([np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)])
     hidden = np.zeros(len(place), bool)
@@ -379,25 +381,6 @@ def test_leaves_have_the_season_of_the_daylight(kept, ctx, make_sketch, day, fro
         for passes, given in ((daylight, ""), ("", f"day = {from_zero}"))
     )
     np.testing.assert_array_equal(by_sun, by_hand)
-
-
-def offered(name):
-    table = tomllib.loads((GLSL / f"{name}.toml").read_text(encoding="utf-8"))
-    return {part: set(table[part]) for part in ("inputs", "parameters")}
-
-
-# What a scene in the air of a daylight makes itself: a plain sun, sky and haze.
-PLAIN = {"light", "scattered", "left", "sky_picture", "sun", "sun_colour", "gain", "sky_colour", "ambient"}
-PLAIN |= {"sky", "zenith", "horizon", "nadir", "haze"}
-
-
-@pytest.mark.parametrize("part", ["inputs", "parameters"])
-def test_a_scene_with_trees_offers_all_that_the_scene_does(part):
-    names = ("terrain", "outdoors", "wooded", "wooded_outdoors")
-    bare, air, wooded, both = (offered(f"scene/{name}")[part] for name in names)
-    assert not bare - wooded
-    assert not air - both
-    assert not wooded - PLAIN - both
 
 
 HALF = '#pragma kernel(output = "dark:r16f")\nfloat kernel(ivec2 at) { return at.x < 160 ? 1.0 : 0.0; }\n'

@@ -4,7 +4,7 @@
 //   needs    nothing
 //   units    see there
 //   source   none: a parameter
-//   tested   tests/glsl/test_cloud_pictures.py, tests/glsl/test_outdoors.py
+//   tested   tests/glsl/test_cloud_pictures.py, tests/glsl/test_scene_sky.py
 //
 // Where none are, daylight's own cover is over all of the sky evenly.
 #ifndef CLOUDS_PARAMETERS_DRAWN

@@ -3,6 +3,7 @@
 #include "outdoors.glsl"
 #include "trees.glsl"
 #include "trees/billboard.glsl"
+#include "trees/wood_reading.glsl"
 #include "view.glsl"
 
 in vec2 disc;
@@ -13,6 +14,7 @@ flat in vec4 middle;
 flat in vec4 form;
 flat in vec3 local_eye;
 flat in vec4 stand;
+flat in vec3 leaves;
 flat in vec2 lit;
 uniform float ragged;
 out vec4 frame;
@@ -23,10 +25,13 @@ void main() {
     CrownPoint point = crown_point(disc, middle, form, ragged, SALT, local_eye);
     if (!point.hit) discard;
     Stand all = stand_at(stand.x, stand.y);
-    vec3 towards_eye = over_ground(-away, vec2(0.0));
+    vec3 towards_eye = -normalize(away);
+    vec2 rises = vec2(max(towards_eye.z, LOWEST), to_sun.z > 0.0 ? max(to_sun.z, LOWEST) : 0.0);
     vec2 taken = tree_light(all, drawn_of(all, stand.z), point.normal, point.place.z - stand.w,
-                            towards_eye, to_sun, to_sun);
-    vec3 light = sun_light * (taken.x * lit.x * lit.y) + sky_light * taken.y;
-    vec3 shown = colour_of_kind(point.kind, day) * light * air_left + air_added;
+                            towards_eye, to_sun, rises);
+    vec3 light = sun_light * (leaf_phase(towards_eye, to_sun) * taken.x * lit.x * lit.y)
+            + sky_light * taken.y;
+    vec3 colour = point.kind == BARK ? colour_of_kind(BARK, day) : leaves;
+    vec3 shown = colour * light * air_left + air_added;
     frame = vec4(before_sky(shown, away), 1.0);
 }

@@ -15,8 +15,10 @@ uniform vec3 sun_light;      // on what faces it, nothing in the way; none by ni
 uniform vec3 sky_light;      // on open level ground
 uniform vec3 level_eye;      // the eye, from where distances say how many trees are drawn
 
+vec4 species_at(float metres) { return shares_with(needle_share(needles, needles_from, metres)); }
+
 Stand stand_at(float density, float metres) {
-    return stand_of(density, cell, tallest, shortest, needle_share(needles, needles_from, metres));
+    return stand_of(density, cell, tallest, shortest, species_at(metres));
 }
 
 Stand drawn_of(Stand all, float away) { return thinned(all, away, whole, reach, room); }

@@ -17,6 +17,7 @@ flat out vec4 middle;
 flat out vec4 form;
 flat out vec3 local_eye;
 flat out vec4 stand;      // density, metres above the sea, distance of the level, the foot's height
+flat out vec3 leaves;
 flat out vec2 lit;        // what terrain and clouds leave of the sun
 void main() {
     gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
@@ -29,8 +30,9 @@ void main() {
     float tall = tree.w * growth_of_kept(far, whole) * small * pow(room, GROWTH);
     float above_sea = tree.z + base;
     Billboard board = billboard_of(vec4(tree.xyz, tall), corner,
-                                   needle_share(needles, needles_from, above_sea), local_eye);
+                                   species_at(above_sea), local_eye, 1.0 / pixel);
     disc = board.disc;
+    leaves = colour_of_kind(int(board.middle.w + 0.5), day);
     middle = board.middle;
     form = board.form;
     away = board.place - local_eye;

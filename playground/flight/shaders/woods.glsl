@@ -14,20 +14,20 @@ struct Wood {
 
 const float THINNEST = 0.05;  // where there are no trees, it hides as where there are a few
 
-vec3 raised(vec3 towards) { return normalize(vec3(towards.xy, max(towards.z, LOWEST))); }
-
 // `here`: density, what the terrain leaves of the sun; `open`: what clouds leave of it.
 Wood wood_from(vec3 away, float metres, vec2 here, float open) {
-    vec3 towards_eye = raised(-away / max(length(away), 1e-3));
+    vec3 towards_eye = -away / max(length(away), 1e-3);
+    float rise = max(towards_eye.z, LOWEST);
     float density = max(here.x, THINNEST);
     Stand all = stand_at(density, metres);
     Stand drawn = drawn_of(all, length(away + level_eye));
-    float depth = max(depth_towards(all, towards_eye) - depth_towards(drawn, towards_eye), 0.0);
-    float sunward = to_sun.z > 0.0 ? depth_towards(all, raised(to_sun)) : 0.0;
-    vec2 below = exp(-vec2(sunward, depth_towards(all, SKY_FROM)) * (here.x / density));
-    vec2 light = wood_at(table, towards_eye, to_sun, density, needles_only(needles_from, metres));
-    vec3 leaves = mix(leaf_colours[0], leaf_colours[1],
-                      needle_area(needle_share(needles, needles_from, metres)));
-    vec3 lit = sun_light * (here.y * open * light.x) + sky_light * light.y;
-    return Wood(depth / density, below, leaves * lit);
+    Depths depths = Depths(depth_towards(all, towards_eye, rise),
+                           depth_towards(all, to_sun, max(to_sun.z, LOWEST)),
+                           depth_towards(all, SKY_FROM, SKY_FROM.z));
+    float hides = max(depths.eye - depth_towards(drawn, towards_eye, rise), 0.0) / density;
+    vec2 below = exp(-vec2(depths.sun, depths.sky) * (here.x / density));
+    vec4 others = species_at(metres);
+    vec2 light = wood_at(table, towards_eye, to_sun, depths, needles_in_sight(others));
+    vec3 lit = sun_light * (here.y * open * leaf_phase(towards_eye, to_sun) * light.x) + sky_light * light.y;
+    return Wood(hides, below, mix(leaf_colours[0], leaf_colours[1], needles_in_sight(others)) * lit);
 }

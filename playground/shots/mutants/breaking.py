@@ -80,7 +80,8 @@ def _rewired(technique: Technique, path: str, source: str, whole: str) -> Any:
         raise DoesNotApply(f"there is no input '{whole}', or no pass '{source}'")
     else:
         changed = replace(spec, inputs=tuple((dict(spec.inputs) | {rest: source}).items()))
-    return replace(technique, passes=tuple(changed if p is spec else p for p in technique.passes))
+    passes = tuple(changed if p is spec else p for p in technique.passes)
+    return replace(technique, passes=passes, whole=None)
 
 
 def _reads_time(graph: Graph) -> bool:
@@ -124,7 +125,7 @@ def _with_more_steps(technique: Technique, more: int) -> Technique:
         )
         for spec in technique.passes
     )
-    return technique if passes == technique.passes else replace(technique, passes=passes)
+    return technique if passes == technique.passes else replace(technique, passes=passes, whole=None)
 
 
 def _changed(sketch: Sketch, path: str, factor: float = 1.0, more: object = 0.0) -> Sketch:

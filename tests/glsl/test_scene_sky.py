@@ -1,4 +1,4 @@
-"""scene/outdoors: what is seen through air and under clouds, against float64 and the clouds' shade."""
+"""The scene under a daylight's sky, through air and under clouds: against float64 and the clouds' shade."""
 
 from dataclasses import replace
 
@@ -39,7 +39,8 @@ name = "shade"
 use = "clouds/shade"
 size = 401
 [view]
-use = "scene/outdoors"
+use = "scene/terrain"
+set = { gain = 1.0, ambient = 1.0 }
 samples = 1
 inputs = { columns = "daylight:columns", bounced = "daylight:bounced", dome = "daylight:dome" }
 """
@@ -54,14 +55,14 @@ def scene(make_sketch):
     return sketch.with_camera(camera)
 
 
-def read(engine, sketch, grey, name="view.scene.shaded"):
+def read(engine, sketch, grey, name="view.shaded"):
     return engine.read(sketch.with_values({"colour.grey": grey}), name, size=SIZE).astype(np.float64)
 
 
 def test_colours_fade_by_the_air_in_front_of_them(any_engine, scene):
     """What brighter ground adds has gone through air and mist; black ground shows what they add."""
     scene = scene.with_values({"view.mist": 0.3, "view.mist_top": 200.0})
-    seen = read(any_engine, scene, 0.5, "view.scene.where")
+    seen = read(any_engine, scene, 0.5, "view.where")
     eye = np.asarray(any_engine.plan.eye.position, np.float64)
     black, grey = read(any_engine, scene, 0.0), read(any_engine, scene, 0.5)
     row = any_engine.read(scene, "daylight", size=SIZE)[0].astype(np.float64)
@@ -88,7 +89,7 @@ def test_colours_fade_by_the_air_in_front_of_them(any_engine, scene):
 def test_where_no_clouds_are_drawn_they_throw_no_shadows(any_engine, scene):
     """All ground is in the light of daylight's even cover, and so is the air in front of it."""
     scene = scene.with_values({"view.clouds": "none"})
-    seen = read(any_engine, scene, 0.5, "view.scene.where")
+    seen = read(any_engine, scene, 0.5, "view.where")
     eye = np.asarray(any_engine.plan.eye.position, np.float64)
     added = read(any_engine, scene, 0.5) - read(any_engine, scene, 0.0)
     row = any_engine.read(scene, "daylight", size=SIZE)[0].astype(np.float64)
@@ -110,7 +111,7 @@ def test_where_no_clouds_are_drawn_they_throw_no_shadows(any_engine, scene):
 
 
 def test_behind_the_terrain_is_the_picture_of_the_sky(any_engine, scene):
-    seen = read(any_engine, scene, 0.5, "view.scene.where")
+    seen = read(any_engine, scene, 0.5, "view.where")
     shaded, heaven = read(any_engine, scene, 0.5), read(any_engine, scene, 0.5, "view.heaven")
     sky = seen[..., 3] == 0.0
     assert sky.any() and not sky.all()

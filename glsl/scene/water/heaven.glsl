@@ -1,0 +1,65 @@
+// scene/water/heaven.glsl -- the sky over the water in all directions, for what it mirrors.
+//
+//   gives    clear: the sky without sun and clouds; thin, thick: what clouds of two thicknesses
+//            show there; by azimuth along x and the root of the sine of the elevation along y
+//   needs    clouds/crossing.glsl, clouds/layer_form.glsl, clouds/sunlight.glsl,
+//            lighting/daylight_sky.glsl, scene/water/heaven_reading.glsl; a daylight and its
+//            tables, a drift, if there are
+//   units    light as of lighting/daylight
+//   source   see scene/sky and clouds/layer
+//   tested   tests/glsl/test_scene_water.py: as the dome of daylight
+//
+// A picture of the sky has only what is in front of the camera, and a part of a picture less: the
+// water mirrors what is over it and behind. The sky is smooth, so few texels do; where the clouds
+// are, the tile of clouds says to each pixel.
+#include "clouds/crossing.glsl"
+#include "clouds/layer_form.glsl"
+#include "clouds/sunlight.glsl"
+#include "lighting/daylight_sky.glsl"
+#include "scene/water/heaven_reading.glsl"
+#pragma kernel(output = "clear:rgba16f, thin:rgba16f, thick:rgba16f")
+
+uniform sampler2D daylight;  //! input("black")
+uniform sampler2D dome;      //! input("black")
+uniform sampler2D columns;   //! input("black")
+uniform sampler2D bounced;   //! input("black")
+uniform sampler2D drift;     //! input("black")
+#include "clouds/parameters/drawn.glsl"
+uniform vec3 zenith = vec3(0.105, 0.245, 0.56);  //! colour group("Sky") Where no daylight says it
+uniform vec3 horizon = vec3(0.60, 0.70, 0.80);   //! colour group("Sky") Likewise
+
+const float LOWEST_SUN = 0.1;
+
+vec3 clear_towards(vec3 towards, float height) {
+    if (!wired_daylight) return mix(horizon, zenith, 1.0 - exp(-3.0 * towards.z));
+    if (clouds == 0 || !wired_dome) return sky_towards(daylight, towards, height);
+    vec3 sun = texelFetch(daylight, ivec2(0), 0).rgb;
+    return weather(daylight).adapted * dome_at(dome, 0, towards, sun, height);
+}
+
+// From below, over the share of the sky that it hides.
+vec3 cloud_of(float thickness, CloudLight light) {
+    float whole = CLOUD_DEPTH * thickness;
+    float sine = max(light.to_sun.z, LOWEST_SUN);
+    float straight = exp(-min(whole / sine, 80.0));
+    float hides = max(1.0 - straight, 1e-3);
+    return light.sun * (sine * (crossing(whole, sine).through - straight) / hides)
+            + diffuse_between(light.above, light.below, whole, whole);
+}
+
+void kernel(ivec2 texel, out vec4 clear, out vec4 thin, out vec4 thick) {
+    vec3 towards = heaven_direction(texel, size);
+    float from = 0.001 * max(base_elevation, 0.0);
+    clear = vec4(clear_towards(towards, from), 1.0);
+    thin = clear;
+    thick = clear;
+    if (clouds == 0 || !wired_drift || !wired_columns || !wired_daylight) return;
+    float height = 0.001 * (base_elevation + texelFetch(drift, ivec2(0), 0).z + CLOUD_MIDDLE);
+    vec2 span = layer_crossing(from, max(towards.z, 1e-4), height, height + 1e-3);
+    if (span.y <= span.x) return;
+    CloudLight light = cloud_light(daylight, columns, bounced, from, towards, span.x, height);
+    // Far clouds fade into the air before them, the sooner the hazier it is.
+    float left = exp(-span.x * weather(daylight).turbidity / 110.0);
+    thin.rgb = mix(clear.rgb, cloud_of(THIN_CLOUD, light), left);
+    thick.rgb = mix(clear.rgb, cloud_of(THICK_CLOUD, light), left);
+}

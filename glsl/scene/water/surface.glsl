@@ -1,0 +1,272 @@
+// scene/water/surface.glsl -- the picture with its water: mirrored, seen through, glittering.
+//
+//   gives    frame, linear light
+//   needs    clouds/shadow.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
+//            lighting/daylight_date.glsl, noise/gradient.glsl, scene/air_reading.glsl,
+//            scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
+//            scene/water/mirrored.glsl, scene/water/mirrored_sky.glsl, trees/kinds.glsl,
+//            water/body.glsl, water/foam.glsl, water/rough_mirror.glsl, water/sheet_reading.glsl,
+//            water/waves.glsl, view/surface.glsl; the picture without water, what it shows, what
+//            scene/water/where gives, the ground and the maps that scene/shaded has
+//   units    metres; light without unit, 1 for white
+//   source   each part in its own file; wet ground is darker: Lekner and Dorf 1988, "Why some
+//            things are darker when wet", Applied Optics 27
+//   tested   tests/glsl/test_scene_water.py
+//
+//     frame = air(sum over mirrors of F L  +  (1 - F) (bed e^-c path + sent back)  +  glint)
+//
+// What the bed shows is in the picture already; the rest of it goes on as it is. What is mirrored
+// is chosen first and lit once: the sky of scene/water/heaven with clouds, or the terrain, by the
+// maps of its colour and of its light. All is read at the pixel's own place.
+#include "clouds/shadow.glsl"
+#include "lighting/daylight_date.glsl"
+#include "lighting/daylight_reading.glsl"
+#include "lighting/daylight_sky.glsl"
+#include "lighting/sun.glsl"
+#include "noise/gradient.glsl"
+#include "scene/air_reading.glsl"
+#include "scene/footprint.glsl"
+#include "scene/ground_reading.glsl"
+#include "scene/surfaces.glsl"
+#include "scene/water/mirrored.glsl"
+#include "scene/water/mirrored_sky.glsl"
+#include "trees/kinds.glsl"
+#include "view/surface.glsl"
+#include "water/body.glsl"
+#include "water/foam.glsl"
+#include "water/rough_mirror.glsl"
+#include "water/sheet_reading.glsl"
+#include "water/waves.glsl"
+#pragma kernel(output = "frame:rgba16f")
+
+uniform sampler2D picture;       //! input
+uniform sampler2D seen;          //! input
+uniform sampler2D seen_water;    //! input
+uniform sampler2D depth;         //! input
+uniform sampler2D water;         //! input
+uniform sampler2D height;        //! input
+uniform sampler2D block_maxima;  //! input
+uniform sampler2D ground;        //! input("linear", "mipmap")
+uniform sampler2D colour;        //! input("linear", "mipmap", "white")
+uniform sampler2D density;       //! input("zero")
+uniform sampler2D clear;         //! input("linear", "repeat")
+uniform sampler2D thin;          //! input("linear", "repeat")
+uniform sampler2D thick;         //! input("linear", "repeat")
+uniform sampler2D cloud;         //! input("linear", "repeat", "mipmap", "white")
+uniform sampler2D drift;         //! input("black")
+uniform sampler2D scattered;     //! input("linear", "black")
+uniform sampler2D left;          //! input("linear", "black")
+#include "clouds/parameters/drawn.glsl"
+#include "lighting/parameters/sun.glsl"
+#include "lighting/parameters/sunlight.glsl"
+#include "lighting/parameters/skylight.glsl"
+#include "trees/parameters/season.glsl"
+#include "view/parameters/haze.glsl"
+
+uniform float wind = 3.0;         //! slider(0, 25) step(0.1) unit("m/s") group("Water")
+                                  //! Wind over the water: the more, the rougher; 0 is a mirror
+uniform float wind_to = 60.0;     //! angle group("Water") Where it blows, clockwise from north
+uniform float fetch = 4000.0;     //! log_slider(10, 1000000) unit("m") group("Water")
+                                  //! How far it blows over water: the farther, the longer waves
+uniform float gusts = 0.5;        //! slider(0, 1) step(0.01) group("Water")
+                                  //! How unevenly it blows, in patches
+uniform float clarity = 3.0;      //! log_slider(0.05, 18) unit("m") group("Water")
+                                  //! Depth at which a third of the green light is left
+uniform vec3 deep = vec3(0.008, 0.018, 0.016);  //! colour group("Water")
+                                  //! What deep water sends back of white light
+uniform float foam = 1.0;         //! slider(0, 2) step(0.01) group("Water")
+                                  //! Foam at the shore, on crests and in rapids
+uniform float tallest = 21.0;     //! slider(1, 100) unit("m") group("Water")
+                                  //! Trees that it mirrors, where a density is wired
+
+const uint SALT = 0xaa77626du;    // CRC-32 of "scene/water/surface"
+const float BRIGHTEST = 60.0;     // of the sun's image, as in scene/sky
+const float MOVING = 0.05;        // [m/s] slower water has the waves of a lake
+const float REPEATS = 3.0;        // [s] after which what a current carries begins again
+
+float density_at(vec2 share) {
+    return height_at(density, clamp(share, 0.0, 1.0) * vec2(textureSize(density, 0) - 1));
+}
+
+float wood_height(vec2 share) {
+    return tallest * 0.85 * smoothstep(0.1, 0.6, density_at(share));
+}
+
+float cloud_shade(vec3 place, vec3 to_light) {
+    if (!wired_cloud || !wired_drift || clouds == 0) return 1.0;
+    vec4 wind_of = texelFetch(drift, ivec2(0), 0);
+    return wired_daylight ? cloud_share(cloud, wind_of, place, to_light)
+            : cloud_transmittance(cloud, wind_of, place, to_light);
+}
+
+// The air between the eye and what lies so far away at a place of the picture.
+Aerial air_before(vec2 share, float far) {
+    if (wired_scattered && wired_left) return aerial(scattered, left, share, far);
+    vec3 air = wired_daylight ? horizon_of(daylight, 0.001 * (base_elevation + eye.z)) : horizon;
+    float clean = exp(-haze * far / max(extent.x, extent.y));
+    return Aerial(air * (1.0 - clean), vec3(clean));
+}
+
+// Light of the terrain that a mirrored ray meets, seen from as far as the ray has come.
+vec3 terrain_from(vec3 place, vec3 to_ray, float far, float pixel, Sunlight from) {
+    vec2 share = place.xy / extent;
+    Ground around = ground_at(ground, place.xy, extent, far * pixel);
+    ivec2 texels = textureSize(colour, 0);
+    float level = log2(max(far * pixel * float(texels.x - 1) / extent.x, 1e-3));
+    vec3 found = wired_colour ? textureLod(colour, drape_uv(share, texels), level).rgb : vec3(0.4);
+    vec3 normal = normal_of_slope(around.slope);
+    float wood = 0.0;
+    if (wired_density) {
+        wood = smoothstep(0.1, 0.6, density_at(share));
+        float today = day_of_year(wired_daylight, daylight, day);
+        float shown = clamp(14.0 / (far * pixel) - 1.0, 0.0, 1.0);
+        float lump = 1.0 + 0.6 * shown * perlin(place.xy / 14.0, SALT + 3u).x
+                + 0.35 * perlin(place.xy / 61.0, SALT + 4u).x;
+        vec3 leaves = mix(leaf_colour(OAK, 0.5, 0.0, today), leaf_colour(MAPLE, 0.5, 0.0, today), 0.5);
+        found = mix(found, lump * leaves, wood);
+    }
+    // Crowns are spheres, of which the ray sees the lit side or the other (Lambert's sphere).
+    float away = acos(clamp(dot(to_ray, from.direction), -1.0, 1.0));
+    float crown = 2.0 / 3.0 * (sin(away) + (3.14159265 - away) * cos(away)) / 3.14159265;
+    float facing = mix(max(dot(normal, from.direction), 0.0), 0.85 * crown, wood);
+    if (from.direction.z < 0.0) facing = 0.0;
+    float lit = gain * around.sun * facing * cloud_shade(place, from.direction);
+    return found * (from.sun * lit + from.sky * (ambient * around.sky * mix(1.0, 0.6, wood)));
+}
+
+// What the current carries begins again every few seconds, in two layers that take turns.
+Waves river_waves(Sheet sheet, vec2 place, Footprint foot) {
+    float speed = length(sheet.current);
+    Sea river = Sea(sheet.current / speed, clamp(0.8 * speed, 0.5, 3.0), 0.0,
+                    0.004 + 0.006 * speed * speed + 0.04 * max(sheet.white, 0.0), 0.0);
+    river.drawn = 0.75 * river.variance;
+    vec2 turn = fract(vec2(0.0, 0.5) + time / REPEATS);
+    vec2 weight = 1.0 - abs(2.0 * turn - 1.0);
+    weight /= length(weight);
+    Waves one = waves_at(river, place - sheet.current * (turn.x * REPEATS), time, foot);
+    Waves other = waves_at(river, place.yx - sheet.current.yx * (turn.y * REPEATS) + 71.3, time,
+                           Footprint(foot.right.yx, foot.up.yx));
+    return Waves(weight.x * one.slope + weight.y * other.slope.yx, one.variance);
+}
+
+struct Lit {
+    Sunlight from;
+    vec3 beam;   // of the sun on what faces it, under the clouds and the terrain's shadow
+    vec3 level;  // of the sun on the level surface
+    vec3 sky;
+};
+
+Lit light_on(vec3 place, Ground around) {
+    Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, sky_colour);
+    vec3 beam = from.sun * (gain * cloud_shade(place, from.direction));
+    if (from.direction.z <= 0.0) beam = vec3(0.0);
+    return Lit(from, beam, beam * (around.sun * max(from.direction.z, 0.0)),
+               from.sky * (ambient * around.sky));
+}
+
+vec3 mirrored_light(Mirrors mirrors, vec3 place, float far, float pixel, float rough, Aerial air,
+                    Lit lit) {
+    vec3 total = vec3(0.0);
+    vec3 mean = vec3(0.0);
+    for (int k = 0; k < MIRRORS; k++) {
+        total += mirrors.share[k] * clear_sky(clear, mirrors.to[k]);
+        mean += mirrors.share[k] * mirrors.to[k];
+    }
+    vec3 to = normalize(mean);
+    float way = meets_terrain(height, block_maxima, place, to, extent, relief,
+                              wired_density ? tallest : 0.0);
+    if (way < 0.0 && clouds != 0 && wired_cloud && wired_drift) {
+        vec4 found = clouds_towards(cloud, thin, thick, texelFetch(drift, ivec2(0), 0), place, to,
+                                    rough + pixel, clouds == 2);
+        return total * found.a + mirrors.mirrored * found.rgb;
+    }
+    if (way < 0.0) return total;
+    vec3 hit = place + way * to;
+    vec3 found = terrain_from(hit, -to, far + way, pixel, lit.from);
+    // Seen straight from the eye the air before it is about that along the mirrored path.
+    vec4 clip = clip_from_world * vec4(hit, 1.0);
+    vec2 share = clip.w > 0.0 ? clip.xy / clip.w * 0.5 + 0.5 : vec2(0.5);
+    Aerial there = air_before(clamp(share, 0.0, 1.0), far + way);
+    vec3 added = max(there.scattered - air.scattered, 0.0);
+    return mirrors.mirrored * (found * there.left + added) / max(air.left, 1e-3);
+}
+
+// The wind over its mean, in patches and in groups of waves.
+float gust_at(vec2 place, float pixel, float longest) {
+    vec2 run = time * wind * vec2(sin(radians(wind_to)), cos(radians(wind_to)));
+    float wide = clamp(170.0 / max(pixel, 1.0) - 1.0, 0.0, 1.0);
+    float found = wide * perlin((place - run) / 370.0, SALT).x
+            + wide * 0.7 * perlin((place - 0.8 * run) / 90.0, SALT + 1u).x;
+    float group = 5.0 * longest;
+    float near = clamp(0.5 * group / pixel - 1.0, 0.0, 1.0);
+    if (near > 0.0) found += near * 0.8 * perlin((place - 0.3 * run) / group, SALT + 2u).x;
+    return clamp(1.0 + 1.5 * gusts * found, 0.05, 2.5);
+}
+
+vec4 dry(ivec2 texel, vec4 shown, vec4 at, float over) {
+    // Ground that waves have reached is wet, and darker.
+    float reach = 0.15 + 0.5 * sea_of(wind, fetch, vec2(0.0)).high;
+    if (!is_top(at.w) || over > reach) return shown;
+    Aerial air = air_before((vec2(texel) + 0.5) / vec2(size), distance(eye, at.xyz));
+    PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
+    float wide = distance(eye, at.xyz) * length(ray.up) / length(ray.ahead);
+    float slope = length(ground_at(ground, at.xy, extent, wide).slope);
+    // A band that is narrower than a pixel darkens it by no more than its share.
+    float shown_of = clamp(0.5 * reach / (max(slope, 0.02) * wide), 0.0, 1.0);
+    float wet = 0.5 * shown_of * (1.0 - smoothstep(0.4 * reach, reach, over));
+    return vec4(shown.rgb - wet * max(shown.rgb - air.scattered, 0.0), shown.a);
+}
+
+vec4 kernel(ivec2 texel) {
+    vec4 shown = texelFetch(picture, texel, 0);
+    vec4 at = texelFetch(seen_water, texel, 0);
+    float deep_here = texelFetch(depth, texel, 0).r;
+    if (!is_water(at.w)) return dry(texel, shown, at, -deep_here);
+    vec3 place = at.xyz;
+    float far = distance(eye, place);
+    vec3 to_eye = (eye - place) / far;
+    PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
+    Footprint foot = footprint_of(ray, place - eye, vec3(0.0, 0.0, 1.0));
+    float pixel = length(ray.up) / length(ray.ahead);
+    Sheet sheet = sheet_at(water, place.xy / extent);
+    Ground around = ground_at(ground, place.xy, extent, far * pixel);
+    Lit lit = light_on(place, around);
+    Aerial air = air_before((vec2(texel) + 0.5) / vec2(size), far);
+
+    Sea sea = sea_of(wind, fetch, vec2(sin(radians(wind_to)), cos(radians(wind_to))));
+    float gust = gust_at(place.xy, far * pixel, sea.longest);
+    bool runs = length(sheet.current) > MOVING;
+    Waves waves = runs ? river_waves(sheet, place.xy, foot) : waves_at(sea, place.xy, time, foot);
+    if (!runs) waves = Waves(waves.slope * sqrt(gust), waves.variance * gust);
+    Mirrors mirrors = mirrors_of(to_eye, waves.slope, waves.variance);
+    float rough = sqrt(waves.variance);
+    vec3 above = mirrored_light(mirrors, place, far, pixel, rough, air, lit);
+
+    float glint = sun_glint(to_eye, lit.from.direction, waves.slope, waves.variance, mirrors.area);
+    if (glint > 1e-3) {
+        float shaded = meets_terrain(height, block_maxima, place, lit.from.direction, extent,
+                                     relief, wired_density ? tallest : 0.0);
+        glint = shaded < 0.0 ? glint : 0.0;
+        float bright = dot(lit.beam, vec3(0.2126, 0.7152, 0.0722));
+        above += lit.beam * min(glint, BRIGHTEST / max(bright, 1e-6));
+    }
+
+    vec3 bed = is_sky(texelFetch(seen, texel, 0).w) ? vec3(0.0)
+            : max(shown.rgb - air.scattered, 0.0) / max(air.left, 1e-3);
+    float path = path_in_water(deep_here, lit.from.direction.z, to_eye.z);
+    vec3 kept = light_left(attenuation_of(clarity), path);
+    vec3 down = light_down(lit.level, lit.sky, lit.from.direction.z);
+    vec3 in_air = max(lit.level + lit.sky, 1e-6);
+    vec3 below = bed * (down / in_air) * kept + deep * down * (1.0 - kept);
+
+    float cover = shore_cover(deep_here, sea.high, time, gust) + whitecap_cover(wind * gust)
+            + max(sheet.white, 0.0);
+    // Whitecaps lie across the wind, and are drawn out along it.
+    vec2 along = place.xy - time * sheet.current;
+    along -= sea.towards * (0.6 * dot(along, sea.towards) + 0.5 * wind * time);
+    float white = foam_of(clamp(foam * cover, 0.0, 1.0), along,
+                          runs ? 0.7 : clamp(0.1 * sea.longest, 0.6, 8.0), far * pixel);
+    vec3 found = above + (1.0 - mirrors.mirrored) * below;
+    found = mix(found, FOAM_ALBEDO * (lit.level + lit.sky), white);
+    return vec4(found * air.left + air.scattered, 1.0);
+}

@@ -1,0 +1,160 @@
+"""scene/water: where water is seen, what it mirrors, and that it makes no light, against float64."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from playground.sketch.model import Camera
+
+from .test_scene import EXTENT, LOOK, PASSES, PLANE, RELIEF, SIZE, all_pixels, on_plane, rays
+
+LEVEL = 90.0
+HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
+COLOUR = '#pragma kernel(output = "colour:rgba16f")\nvec4 kernel(ivec2 texel) {{ return {}; }}\n'
+WHITE = "zenith = [1.0, 1.0, 1.0], horizon = [1.0, 1.0, 1.0], nadir = [1.0, 1.0, 1.0]"
+BLACK = WHITE.replace("1.0", "0.0")
+CALM = "wind = 0.0, foam = 0.0, gain = 0.0, ambient = 1.0"
+PEAK = """0.9 * max(0.0, 1.0 - 6.0 * distance(vec2(texel) / vec2(size - 1), vec2(0.5, 0.72)))
+    + 0.1 * step(0.6, float(texel.y) / float(size.y - 1))"""
+
+
+@pytest.fixture
+def scene(make_sketch):
+    """Give a function that makes a scene with a sea at LEVEL."""
+
+    def make(height=PLANE, colour="vec4(0.5)", given=CALM, level=LEVEL, water="water/sea", size=(65, 41)):
+        sea = f'[[pass]]\nname = "water"\nuse = "{water}"\nsize = 1\nset = {{ sea_level = {level} }}\n'
+        set_ = f"set = {{ antialias = false, grid = 65, {given} }}"
+        text = f'{PASSES}{sea}[view]\nuse = "scene/terrain"\nsamples = 1\n{set_}\n'
+        files = {"terrain": HEIGHT.format(height), "cover": COLOUR.format(colour)}
+        sketch = make_sketch(text, size=list(size), extent=list(EXTENT), relief=RELIEF, **files)
+        return sketch.with_camera(LOOK)
+
+    return make
+
+
+def read(engine, sketch, name, size=SIZE):
+    return engine.read(sketch, f"view.{name}", size=size).astype(float)
+
+
+# ── where ───────────────────────────────────────────────────────────────────────
+
+
+def test_water_is_where_the_rays_meet_its_level_before_the_ground(any_engine, scene):
+    found = read(any_engine, scene(), "watered.where:seen_water")
+    eye, ahead = rays(any_engine.plan, all_pixels())
+    ground = on_plane(eye, ahead)
+    surface = eye + ahead * ((LEVEL - eye[2]) / ahead[..., 2:])
+    below = ground[..., 2] < LEVEL
+    on = np.all((ground[..., :2] > 2) & (ground[..., :2] < np.array(EXTENT) - 2), axis=-1)
+    water = found[..., 3] == 3
+    assert (on & below).sum() > 500 and (on & ~below).sum() > 500
+    # Within a pixel of the shore either is right.
+    shore = np.abs(ground[..., 2] - LEVEL) < 0.6 * np.abs(np.gradient(ground[..., 2], axis=0)) + 0.1
+    np.testing.assert_array_equal(water[on & ~shore], below[on & ~shore])
+    wet = water & on & ~shore
+    np.testing.assert_allclose(found[wet][:, :3], surface[wet], atol=0.05)
+    depth = read(any_engine, scene(), "watered.where:depth")
+    np.testing.assert_allclose(depth[on & ~shore], LEVEL - ground[on & ~shore][:, 2], atol=0.05)
+
+
+def test_the_sea_goes_on_to_the_horizon_and_ends_there(any_engine, scene):
+    """From 60 m over it the horizon is 0.25 degrees below level, 27.7 km away."""
+    low = Camera(azimuth=180, elevation=0.0, distance=300, target=(450, 350, LEVEL + 60.0), field_of_view=20)
+    sketch = scene(height="0.05 + 0.0 * float(texel.x)").with_camera(low)
+    found = read(any_engine, sketch, "watered.where:seen_water", (60, 800))
+    eye, ahead = rays(any_engine.plan, np.stack(np.indices((60, 800)), axis=-1)[30][:, ::1])
+    rise = ahead[:, 2] / np.linalg.norm(ahead[:, :2], axis=1)
+    column = found[:, 30]
+    water = column[:, 3] == 3
+    sea = eye[2] - LEVEL
+    edge = np.sqrt(2 * sea / 6360e3)
+    assert water[rise < -edge - 5e-4].all() and not water[rise > -edge + 5e-4].any()
+    far = np.linalg.norm(column[water][:, :3] - eye, axis=1)
+    assert np.all(np.diff(far) > 0) and 15_000 < far[-1] < 30_000  # of rows 0.025 degrees apart
+
+
+def test_pictures_without_water_in_sight_stay_as_they_are(any_engine, scene):
+    sketch = scene(level=-50.0)
+    before, after = (read(any_engine, sketch, name) for name in ("shaded", "watered.surface"))
+    where = read(any_engine, sketch, "where")
+    land = where[..., 3] > 0
+    np.testing.assert_array_equal(after[land], before[land])
+
+
+# ── what is mirrored ────────────────────────────────────────────────────────────
+
+
+def test_calm_water_mirrors_a_peak_within_a_pixel(any_engine, scene):
+    """A dark peak before a white sky: its image is where that of the peak below the surface would be."""
+    given = (
+        f"{CALM}, zenith = [1.0, 1.0, 1.0], horizon = [1.0, 1.0, 1.0], deep = [0.0, 0.0, 0.0], clarity = 0.05"
+    )
+    look = Camera(azimuth=180, elevation=9, distance=330, target=(450, 330, 10), field_of_view=62)
+    size = (241, 240)
+    dark = scene(PEAK, "vec4(0.0, 0.0, 0.0, 1.0)", given, level=15.0, size=(181, 141)).with_camera(look)
+    found = read(any_engine, dark, "watered.surface", size)[..., 0]
+    water = read(any_engine, dark, "watered.where:seen_water", size)[..., 3] == 3
+    plan = any_engine.plan
+    heights = any_engine.read(dark, "height").astype(float)
+    row, column = np.unravel_index(heights.argmax(), heights.shape)
+    top = np.array([column / 180 * EXTENT[0], row / 140 * EXTENT[1], 2 * 15.0 - heights.max() * RELIEF, 1.0])
+    clip = plan.eye.clip_from_world.astype(float) @ top
+    x, y = (clip[:2] / clip[3] * 0.5 + 0.5) * np.array(size) - 0.5
+    line = found[:, round(x)]
+    lit = water[:, round(x)] & (line > 1e-3)
+    first_dark = np.flatnonzero(lit)[-1] + 0.5  # the sky is mirrored below, the peak above
+    assert first_dark == pytest.approx(y, abs=1.0)
+    # And to the sides: the image ends where the mirrored slopes do, as wide as the peak itself.
+    across = water[round(y) + 6] & (found[round(y) + 6] < 1e-3)
+    middle = np.flatnonzero(across).mean()
+    assert middle == pytest.approx(x, abs=1.0)
+
+
+def test_the_table_of_the_sky_knows_its_directions(on_gpu):
+    file = "scene/water/heaven_reading.glsl"
+    texel = np.stack(np.meshgrid(np.arange(96), np.arange(48)), axis=-1).reshape(-1, 2).astype(np.int32)
+    to = on_gpu(file, "heaven_direction(t, ivec2(96, 48))", t=texel)
+    np.testing.assert_allclose(np.linalg.norm(to, axis=1), 1.0, atol=1e-6)
+    back = on_gpu(file, "heaven_place(to, ivec2(96, 48))", to=to) % 1.0
+    np.testing.assert_allclose(back, (texel + 0.5) / [96, 48], atol=1e-5)
+
+
+# ── light ───────────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize("wind", [0.0, 6.0, 20.0])
+def test_water_in_an_even_light_adds_none(any_engine, scene, wind):
+    """White ground, white sky, white foam and clear water: no pixel is brighter than white."""
+    given = f"{WHITE}, wind = {wind}, foam = 1.0, gain = 0.0, ambient = 1.0, deep = [1.0, 1.0, 1.0]"
+    sketch = scene(colour="vec4(1.0)", given=given)
+    water = read(any_engine, sketch, "watered.where:seen_water")[..., 3] == 3
+    found = read(any_engine, sketch, "watered.surface")[..., :3]
+    assert water.sum() > 1000
+    assert found[water].max() <= 1.002
+    assert found[water].min() > 0.4  # and little is lost: what foam and what goes in and does not return
+
+
+def test_nothing_lights_up_at_night(any_engine, scene):
+    given = f"{BLACK}, wind = 8.0, gain = 2.0, ambient = 0.0, sun = [200.0, -12.0]"
+    sketch = scene(given=given)
+    found = read(any_engine, sketch, "watered.surface")[..., :3]
+    shown = read(any_engine, sketch, "where")[..., 3]
+    np.testing.assert_array_equal(found[shown < 2], 0.0)  # the cut is in a light of its own
+
+
+def test_deep_water_is_darker_and_less_red(any_engine, scene):
+    given = (
+        f"{CALM}, clarity = 2.0, zenith = [0.0, 0.0, 0.0], horizon = [0.0, 0.0, 0.0], deep = [0.0, 0.0, 0.0]"
+    )
+    sketch = scene(given=given)
+    depth = read(any_engine, sketch, "watered.where:depth")
+    water = read(any_engine, sketch, "watered.where:seen_water")[..., 3] == 3
+    found = read(any_engine, sketch, "watered.surface")[..., :3]
+    land = read(any_engine, sketch, "where")[..., 3] == 1
+    mask = water & land & (depth > 0.3) & (depth < 3.0)
+    # From above the level sun's light goes down flat, at Snell's limit; from the eye steeply.
+    loss = -np.diff(np.log(found[mask]), axis=1)
+    assert mask.sum() > 20 and np.all(found[mask][:, 0] < found[mask][:, 1])
+    assert np.corrcoef(depth[mask], loss[:, 0])[0, 1] < -0.98

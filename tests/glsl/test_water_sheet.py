@@ -1,0 +1,121 @@
+"""water/sea and water/sheet: one surface of sea, lakes and rivers, against shapes with known shores."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+BOWL = """
+#include "maths/land.glsl"
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) {
+    vec2 off = share_of_texel(texel, size) * extent - vec2(480.0, 310.0);
+    return 0.1 + dot(off, off) / 160000.0;
+}
+"""
+LAKE = """
+#pragma kernel(output = "depth:r32f")
+uniform sampler2D height;  //! input
+float kernel(ivec2 texel) { return max(relief * (0.35 - texelFetch(height, texel, 0).r), 0.0); }
+"""
+SLANT = """
+#include "maths/land.glsl"
+#pragma kernel(output = "height:r32f")
+float kernel(ivec2 texel) { return 0.5 - 0.4 * share_of_texel(texel, size).x; }
+"""
+STRIP = """
+#include "maths/land.glsl"
+#pragma kernel(output = "river:r32f, width:r32f")
+void kernel(ivec2 texel, out float river, out float width) {
+    float away = abs(share_of_texel(texel, size).y * extent.y - 400.0);
+    river = clamp((30.0 - away) / spacing.y + 0.5, 0.0, 1.0);
+    width = 60.0;
+}
+"""
+READ = """
+#include "maths/land.glsl"
+#include "terrain/heightfield.glsl"
+#include "water/sheet_reading.glsl"
+#pragma kernel(output = "depth:r32f")
+uniform sampler2D height;  //! input
+uniform sampler2D water;   //! input
+float kernel(ivec2 texel) {
+    vec2 share = share_of_texel(texel, size);
+    return sheet_at(water, share).level
+            - relief * height_at(height, share * vec2(textureSize(height, 0) - 1));
+}
+"""
+EXTENT = (1000.0, 800.0)
+
+
+def sketch_of(make_sketch, terrain, passes, size, **files):
+    text = f'[[pass]]\nname = "height"\nuse = "./terrain"\n{passes}'
+    text += '[[pass]]\nname = "over"\nuse = "./read"\nsize = [801, 641]\ninputs = { water = "water" }\n'
+    return make_sketch(text, size=size, extent=list(EXTENT), terrain=terrain, read=READ, **files)
+
+
+def places():
+    """Return the places of the texels of `over` east and north [m]."""
+    return np.meshgrid(np.linspace(0, EXTENT[0], 801), np.linspace(0, EXTENT[1], 641))
+
+
+def test_the_sea_is_level_everywhere(any_engine, make_sketch):
+    text = '[[pass]]\nname = "water"\nuse = "water/sea"\nsize = 1\nset = { sea_level = 37.5 }\n'
+    sketch = sketch_of(make_sketch, BOWL, text, [41, 33])
+    np.testing.assert_array_equal(any_engine.read(sketch, "water")[0, 0], [37.5, 0, 0, -1])
+    east, north = places()
+    depth = any_engine.read(sketch, "over").astype(float)
+    away = np.hypot(east - 480, north - 310)
+    true = 37.5 - 100 * (0.1 + away**2 / 160000)
+    np.testing.assert_allclose(depth, true, atol=0.25)  # squares bend 25^2 / 8 / 800 m between texels
+
+
+@pytest.mark.parametrize("size", [[41, 33], [83, 71]])
+def test_a_lake_ends_where_its_depth_does(any_engine, make_sketch, size):
+    """The shore is a circle of 200 m: between texels, and not at them."""
+    text = '[[pass]]\nname = "depth"\nuse = "./lake"\n[[pass]]\nname = "water"\nuse = "water/sheet"\n'
+    sketch = sketch_of(make_sketch, BOWL, text, size, lake=LAKE)
+    wet = any_engine.read(sketch, "over") > 0
+    east, north = places()
+    away = np.hypot(east - 480, north - 310)
+    # A parabola between two texels is off by an eighth of the squared spacing over its width.
+    spacing = max(EXTENT[0] / (size[0] - 1), EXTENT[1] / (size[1] - 1))
+    band = 1.0 + 2 * spacing**2 / (8 * 200)
+    assert wet[away < 200 - band].all() and not wet[away > 200 + band].any()
+    level = any_engine.read(sketch, "water")[..., 0]
+    column, row = round(480 / EXTENT[0] * (size[0] - 1)), round(310 / EXTENT[1] * (size[1] - 1))
+    reach = int(190 / spacing)
+    inside = level[row - reach // 2 : row + reach // 2, column - reach // 2 : column + reach // 2]
+    np.testing.assert_allclose(inside, 35.0, atol=1e-3)
+
+
+def test_a_lake_does_not_go_on_over_its_outlet(any_engine, make_sketch):
+    """On a slope that falls to the east, dry ground that lies lower stays dry."""
+    lake = '#pragma kernel(output = "depth:r32f")\nfloat kernel(ivec2 t) { return t.x < 20 ? 5.0 : 0.0; }\n'
+    text = '[[pass]]\nname = "depth"\nuse = "./lake"\n[[pass]]\nname = "water"\nuse = "water/sheet"\n'
+    wet = any_engine.read(sketch_of(make_sketch, SLANT, text, [41, 33], lake=lake), "over") > 0
+    east, _ = places()
+    assert wet[east < 474].all() and not wet[east > 501].any()
+
+
+def test_a_river_is_as_wide_as_it_is_and_runs_downhill(any_engine, make_sketch):
+    text = '[[pass]]\nname = "river"\nuse = "./strip"\n[[pass]]\nname = "water"\nuse = "water/sheet"\n'
+    text += 'inputs = { river = "river:river", width = "river:width" }\n'
+    sketch = sketch_of(make_sketch, SLANT, text, [101, 81], strip=STRIP)
+    wet = any_engine.read(sketch, "over") > 0
+    _, north = places()
+    assert wet[abs(north - 400) < 28.5].all() and not wet[abs(north - 400) > 31.5].any()
+    water = any_engine.read(sketch, "water")
+    middle = water[40, 50]
+    # Manning: depth 0.06 * 60^0.8 = 1.59 m on a slope of 0.04: 6.8 m/s, no more than 4 are given.
+    np.testing.assert_allclose(middle[1:3], [4.0, 0.0], atol=1e-3)
+    assert 0.0 < middle[3] < 0.2
+    np.testing.assert_array_equal(water[5, :, 1:], 0.0)
+
+
+def test_the_sea_meets_a_river(any_engine, make_sketch):
+    text = '[[pass]]\nname = "river"\nuse = "./strip"\n[[pass]]\nname = "water"\nuse = "water/sheet"\n'
+    text += 'inputs = { river = "river:river" }\nset = { sea = true, sea_level = 22.0 }\n'
+    water = any_engine.read(sketch_of(make_sketch, SLANT, text, [101, 81], strip=STRIP), "water")
+    assert np.all(water[40, 75:, 3] == -1) and np.all(water[40, 75:, 0] == 22.0)
+    assert np.all(water[40, :60, 3] >= 0) and np.all(water[5, :, 3] == -1)

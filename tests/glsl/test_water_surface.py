@@ -1,0 +1,222 @@
+"""water/: what a water surface mirrors, lets through and scatters, against float64."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+INDEX = 1.333
+DISSOLVED = np.array([0.95, 1.0, 1.35])
+
+
+def fresnel(cosine):
+    """Return the mean of both polarisations' reflectance, by angles."""
+    into = np.arccos(np.clip(cosine, -1.0, 1.0))
+    below = np.arcsin(np.sin(into) / INDEX)
+    across = np.sin(into - below) / np.maximum(np.sin(into + below), 1e-12)
+    along = np.tan(into - below) / np.tan(into + below)
+    head_on = ((INDEX - 1) / (INDEX + 1)) ** 2
+    return np.where(into < 1e-6, head_on, 0.5 * (across**2 + along**2))
+
+
+def towards(azimuth, elevation):
+    """Return unit vectors, in degrees."""
+    a, e = np.radians(azimuth), np.radians(elevation)
+    return np.stack(
+        [np.sin(a) * np.cos(e), np.cos(a) * np.cos(e), np.broadcast_to(np.sin(e), a.shape)], axis=-1
+    )
+
+
+# ── Fresnel ──────────────────────────────────────────────────────────────────────
+
+
+def test_water_mirrors_the_mean_of_both_polarisations(on_gpu):
+    cosine = np.linspace(0.001, 0.9999, 400)
+    found = on_gpu("water/fresnel.glsl", "fresnel_of_water(c)", c=cosine.astype(np.float32))
+    np.testing.assert_allclose(found, fresnel(cosine), rtol=2e-4, atol=1e-6)
+    assert on_gpu("water/fresnel.glsl", "fresnel_of_water(c)", c=np.float32([0.0]))[0] == 1.0
+
+
+def test_what_it_mirrors_of_an_even_sky_is_the_integral(on_gpu):
+    cosine = (np.arange(100_000) + 0.5) / 100_000
+    whole = np.mean(2 * cosine * fresnel(cosine))
+    assert on_gpu("water/fresnel.glsl", "DIFFUSE_MIRRORED")[0] == pytest.approx(whole, abs=2e-4)
+
+
+# ── waves ────────────────────────────────────────────────────────────────────────
+
+SEA = "sea_of(wind, fetch, vec2(0.6, 0.8))"
+FOOT = "Footprint(vec2(pixel, 0.0), vec2(0.0, 3.0 * pixel))"
+
+
+@pytest.mark.parametrize(("wind", "fetch"), [(2.0, 1500.0), (9.0, 60000.0)])
+def test_drawn_slopes_and_variance_are_those_of_the_wind_at_any_distance(on_gpu, wind, fetch):
+    """By Cox and Munk 0.003 + 0.00512 U; 6000 places, many waves apart: their mean is off by 2 % or so."""
+    place = np.random.default_rng(5).uniform(0, 20000, (6000, 2)).astype(np.float32)
+    drawn, whole = [], []
+    for pixel in [0.005, 0.05, 0.2, 0.7, 2.0, 6.0, 40.0]:
+        given = {"wind": np.float32(wind), "fetch": np.float32(fetch), "pixel": np.float32(pixel)}
+        waves = f"waves_at({SEA}, place, 12.5, {FOOT})"
+        found = on_gpu("water/waves.glsl", f"vec3({waves}.slope, {waves}.variance)", place=place, **given)
+        square = (found[:, :2].astype(float) ** 2).sum(axis=1).mean()
+        drawn.append(square)
+        whole.append(square + found[:, 2].mean())
+    np.testing.assert_allclose(whole, 0.003 + 0.00512 * wind, rtol=0.05)
+    assert drawn[0] > 0.25 * whole[0] and drawn[-1] == 0.0
+    assert np.all(np.diff(drawn) <= 0.03 * whole[0])
+
+
+def test_waves_are_as_long_and_as_high_as_the_fetch_lets_them_grow(on_gpu):
+    """A fully grown sea by Pierson and Moskowitz: its peak at 0.88 g / U, 0.21 U^2 / g high."""
+    wind = np.float32([5.0, 10.0, 10.0])
+    fetch = np.float32([1e6, 5e6, 2000.0])
+    found = on_gpu("water/waves.glsl", f"vec2({SEA}.longest, {SEA}.high)", wind=wind, fetch=fetch)
+    np.testing.assert_allclose(found[1], [2 * np.pi * 100 / (9.81 * 0.88**2), 0.21 * 100 / 9.81], rtol=1e-3)
+    # JONSWAP, 10 m/s over 2 km: a peak frequency of 3.5 g/U (g F / U^2)^-0.33 = 0.567 Hz, 0.23 m high.
+    peak = 3.5 * 9.81 / 10 * (9.81 * 2000 / 100) ** -0.33
+    assert found[2, 0] == pytest.approx(9.81 / (2 * np.pi * peak**2), rel=0.05)
+    assert found[2, 1] == pytest.approx(0.0016 * np.sqrt(9.81 * 2000 / 100) * 100 / 9.81, rel=1e-3)
+    assert np.all(found[0] < found[1]) and np.all(found[2] < found[0])
+
+
+def test_without_wind_there_is_no_wave(on_gpu):
+    given = {"wind": np.float32(0), "fetch": np.float32(500), "pixel": np.float32(0.01)}
+    waves = f"waves_at({SEA}, place, 3.0, {FOOT})"
+    place = np.float32([[3.0, 4.0], [100.0, 7.0]])
+    found = on_gpu("water/waves.glsl", f"vec3({waves}.slope, {waves}.variance)", place=place, **given)
+    np.testing.assert_array_equal(found, 0.0)
+
+
+# ── the rough mirror ─────────────────────────────────────────────────────────────
+
+
+def mirrored_by_slopes(to_eye, slope, variance, steps=801):
+    """Return what a surface mirrors of an even sky, and its visible area, by a sum over its slopes."""
+    spread = np.sqrt(variance / 2)
+    s = np.linspace(-6, 6, steps) * spread
+    x, y = np.meshgrid(s, s)
+    weight = np.exp(-(x**2 + y**2) / variance)
+    x, y = x + slope[0], y + slope[1]
+    area = np.maximum(to_eye[2] - x * to_eye[0] - y * to_eye[1], 0.0)
+    facing = area / np.sqrt(1 + x**2 + y**2)
+    weight /= weight.sum()
+    return (weight * area * fresnel(facing)).sum() / (weight * area).sum(), (weight * area).sum()
+
+
+def test_a_rough_surface_mirrors_what_its_visible_slopes_do(on_gpu):
+    """From straight above down to 3 degrees, up to a gale."""
+    for elevation, bound in [
+        (90.0, 0.03),
+        (45.0, 0.03),
+        (20.0, 0.03),
+        (10.0, 0.03),
+        (6.0, 0.06),
+        (3.0, 0.06),
+    ]:
+        for variance in [1e-4, 0.01, 0.03, 0.06]:
+            to_eye = towards(np.float64(70.0), elevation)
+            mirrors = "mirrors_of(v, s, variance)"
+            found = on_gpu(
+                "water/rough_mirror.glsl",
+                f"vec2({mirrors}.mirrored, {mirrors}.area)",
+                v=tuple(map(float, to_eye)),
+                s=(0.03, -0.02),
+                variance=np.float32(variance),
+            )[0]
+            share, area = mirrored_by_slopes(to_eye, (0.03, -0.02), variance)
+            assert found[0] == pytest.approx(share, abs=bound), (elevation, variance)
+            assert found[1] == pytest.approx(area, abs=0.012), (elevation, variance)
+
+
+def test_calm_water_is_a_mirror(on_gpu):
+    to_eye = towards(np.linspace(0, 300, 20), 17.0)
+    found = on_gpu(
+        "water/rough_mirror.glsl", "mirrors_of(v, vec2(0.0), 0.0).to[1]", v=to_eye.astype(np.float32)
+    )
+    np.testing.assert_allclose(found, to_eye * [-1, -1, 1], atol=1e-5)
+    share = on_gpu(
+        "water/rough_mirror.glsl", "mirrors_of(v, vec2(0.0), 0.0).mirrored", v=to_eye.astype(np.float32)
+    )
+    np.testing.assert_allclose(share, fresnel(np.sin(np.radians(17.0))), rtol=1e-3)
+
+
+@pytest.mark.parametrize(("elevation", "variance"), [(60.0, 0.02), (35.0, 0.01), (25.0, 0.005)])
+def test_all_of_the_glint_is_what_the_surface_mirrors(on_gpu, elevation, variance):
+    """Over all places of the sun: the integral of glint / pi is F within 5 %."""
+    to_eye = towards(np.float64(200.0), elevation)
+    rise = (np.arange(400) + 0.5) / 400
+    turn = (np.arange(800) + 0.5) / 800 * 360
+    turn, rise = (a.ravel() for a in np.meshgrid(turn, rise))
+    sun = towards(turn, np.degrees(np.arcsin(rise))).astype(np.float32)
+    area = on_gpu(
+        "water/rough_mirror.glsl",
+        "mirrors_of(v, vec2(0.0), w).area",
+        v=tuple(map(float, to_eye)),
+        w=np.float32(variance),
+    )
+    glint = on_gpu(
+        "water/rough_mirror.glsl",
+        "sun_glint(v, sun, vec2(0.0), w, area)",
+        v=tuple(map(float, to_eye)),
+        sun=sun,
+        w=np.float32(variance),
+        area=np.float32(area[0]),
+    )
+    whole = glint.astype(float).mean() * 2 * np.pi / np.pi
+    share, _ = mirrored_by_slopes(to_eye, (0.0, 0.0), variance)
+    assert whole == pytest.approx(share, rel=0.05)
+
+
+# ── in the water ─────────────────────────────────────────────────────────────────
+
+
+def test_light_is_lost_along_both_bent_paths(on_gpu):
+    """Step by step down from the sun and up to the eye, by Snell's angles, in float64."""
+    depth, sun, view = 2.7, np.radians(31.0), np.radians(12.0)
+    kept = on_gpu(
+        "water/body.glsl",
+        "light_left(attenuation_of(2.0), path_in_water(d, s, v))",
+        d=np.float32(depth),
+        s=np.float32(np.sin(sun)),
+        v=np.float32(np.sin(view)),
+    )[0]
+    pure = np.array([0.2755, 0.0565, 0.00922])
+    loss = pure + DISSOLVED * (1 / 2.0 - pure[1])
+    left = np.ones(3)
+    for angle in (sun, view):
+        bent = np.arcsin(np.cos(angle) / INDEX)  # to the vertical
+        step = depth / np.cos(bent) / 10_000
+        for _ in range(10_000):
+            left = left * (1 - loss * step)
+    np.testing.assert_allclose(kept, left, rtol=2e-3)
+    green = on_gpu("water/body.glsl", "light_left(attenuation_of(2.0), 2.0).g")
+    assert green[0] == pytest.approx(np.exp(-1), rel=1e-5)
+
+
+def test_red_goes_first_and_no_more_goes_in_than_falls_on_it(on_gpu):
+    clarity = np.float32([0.2, 1.0, 5.0, 15.0])
+    kept = on_gpu("water/body.glsl", "light_left(attenuation_of(c), 3.0)", c=clarity)
+    assert np.all(kept[2:, 0] < kept[2:, 1]) and np.all(np.diff(kept, axis=0) >= 0)
+    rise = np.linspace(0.01, 0.999, 30).astype(np.float32)
+    down = on_gpu("water/body.glsl", "light_down(vec3(1.0), vec3(0.0), s).r", s=rise)
+    np.testing.assert_allclose(down, 1 - fresnel(rise), atol=1e-4)
+
+
+# ── foam ─────────────────────────────────────────────────────────────────────────
+
+
+def test_the_pattern_of_foam_has_its_cover(on_gpu):
+    place = np.random.default_rng(2).uniform(0, 5000, (20_000, 2)).astype(np.float32)
+    for cover in (0.05, 0.3, 0.6):
+        for pixel in (0.05, 1.2, 30.0):
+            given = {"cover": np.float32(cover), "pixel": np.float32(pixel)}
+            found = on_gpu("water/foam.glsl", "foam_of(cover, place, 2.0, pixel)", place=place, **given)
+            assert found.mean() == pytest.approx(cover, abs=0.06), (cover, pixel)
+            assert found.min() >= 0 and found.max() <= 1
+
+
+def test_waves_break_where_it_is_shallow(on_gpu):
+    depth = np.float32([0.0, 0.3, 1.0, 1.3, 3.0])
+    found = on_gpu("water/foam.glsl", "shore_cover(d, 1.0, 2.0, 0.3)", d=depth)
+    assert np.all(found[:3] > 0.01) and np.all(found[3:] == 0)
+    assert on_gpu("water/foam.glsl", "shore_cover(0.001, 0.0, 2.0, 0.3)")[0] == 0
