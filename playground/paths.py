@@ -55,5 +55,7 @@ def current_folder() -> Path:
     return _current
 
 
-DEFAULT_SKETCH = "jacksboro"
+DEFAULT_SKETCH = "october"
 """What opens when no sketch is named."""
+PLAIN_SKETCH = "jacksboro"
+"""In which a technique is shown that is opened alone: a height, a colour and a light, little else."""

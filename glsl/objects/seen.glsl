@@ -21,9 +21,8 @@ uniform sampler2D total;   //! input
 uniform sampler2D place;   //! input
 uniform sampler2D facing;  //! input
 uniform sampler2D tint;    //! input
-uniform int objects = 4096;       //! slider(1, 65536) How many are drawn at most
+#include "objects/parameters/rocks.glsl"
 uniform float tall = 1.0;         //! log_slider(0.01, 100) unit("m") Height of the model itself
-uniform float sunk = 0.0;         //! slider(0, 1) step(0.01) How deep it stands in the ground
 uniform float nearest = 0.0;      //! slider(0, 10000) unit("m") Nearer than this none is drawn
 uniform float farthest = 100000.0;  //! log_slider(1, 100000) unit("m") Farther away none is drawn
 uniform int kind = 2;             //! menu("leaves", "needles", "rock") What it is made of
@@ -34,7 +33,7 @@ const uint SALT = 0xf4e80b63u;  // CRC-32 of "objects/seen"
 int kind_at(vec3 colour) {
     float light = dot(colour, vec3(0.2126, 0.7152, 0.0722));
     if (kind == 2) return kind_of_rock(light);
-    return kind_of_tree(kind == 1, int(clamp(2.0 * light, 0.0, 0.999) * 32.0));
+    return kind_of_tree(kind == 1 ? SPRUCE : OAK, clamp(2.0 * light, 0.0, 0.999));
 }
 
 vec4 vertex(vec3 corner, out vec3 position, out vec3 normal, out float material) {

@@ -1,16 +1,16 @@
 // texturing/snow_cover.glsl -- where snow lies: above a line, off cliffs, in the lee.
 //
 //   gives    cover, 0..1
-//   needs    terrain/heightfield.glsl; a height
+//   needs    terrain/heightfield.glsl, terrain/shelter.glsl; a height
 //   units    heights as they are, 0..1 where normalised; metres, degrees
-//   source   the shelter: Winstral, Elder and Davis 2002, "Spatial Snow Modeling of
-//            Wind-Redistributed Snow Using Terrain-Based Parameters", Journal of
-//            Hydrometeorology 3, eq. 1: the steepest way up against the wind; the rest made here
+//   source   the shelter: Winstral, Elder and Davis 2002 (terrain/shelter.glsl); the rest made
+//            here
 //   tested   tests/glsl/test_masks.py, on planes and in the lee of a ridge
 //
 // The line of the snow lies lower where the ground upwind is higher, for the wind drops there what
 // it takes from where it falls away upwind.
 #include "terrain/heightfield.glsl"
+#include "terrain/shelter.glsl"
 #pragma kernel(output = "cover:r16f")
 
 uniform sampler2D height;     //! input
@@ -27,27 +27,15 @@ uniform float drift = 0.25;   //! slider(0, 2) step(0.01)
 uniform float wind_distance = 600.0;  //! log_slider(1, 20000) unit("m")
                                       //! How far upwind it looks for shelter
 
-const int LOOKS = 12;
-const float SHELTERED = 0.35;  // the slope up against the wind at which the shelter is half
-
-// -1 where the ground falls away upwind, 1 below a wall.
-float shelter(vec2 place, vec2 metres, float here) {
-    vec2 upwind = vec2(sin(radians(wind)), cos(radians(wind)));
-    float steepest = -1e30;
-    for (int k = 1; k <= LOOKS; k++) {
-        float away = wind_distance * float(k) / float(LOOKS);
-        float level = relief * height_at(height, place + away * upwind / metres);
-        steepest = max(steepest, (level - here) / away);
-    }
-    return steepest / (abs(steepest) + SHELTERED);
-}
-
 float kernel(ivec2 texel) {
     ivec2 grid = textureSize(height, 0);
     vec2 metres = spacing_of(grid, extent);
     vec2 place = place_on(grid, texel, size);
     float level = height_at(height, place);
-    float lower = drift > 0.0 ? drift * shelter(place, metres, relief * level) : 0.0;
+    float lower = 0.0;
+    if (drift > 0.0) {
+        lower = drift * shelter_at(height, place, metres, relief, wind, wind_distance);
+    }
     float above = clamp((level + lower - line) / fade + 0.5, 0.0, 1.0);
     float incline = degrees(atan(relief * length(slope_at(height, place, metres,
                                                           CENTRAL_DIFFERENCES))));

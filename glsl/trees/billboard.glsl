@@ -8,7 +8,8 @@
 //   tested   tests/glsl/test_trees_light.py, by the area that crowns cover
 //
 // Noise is added to the square of the radius, so that the mean area of a ragged crown is that of
-// the smooth one. Normals are the sphere's that was stretched: leaves look outwards.
+// the smooth one; waves that a pixel is too wide for are left out. Normals are the sphere's that
+// was stretched: leaves look outwards.
 #ifndef TREES_BILLBOARD
 #define TREES_BILLBOARD
 #include "noise/gradient.glsl"
@@ -17,17 +18,20 @@
 // Waves across a crown's half width, and how much each moves its outline.
 const vec3 CROWN_WAVES = vec3(2.3, 6.1, 15.0);
 const vec3 CROWN_LUMPS = vec3(0.34, 0.24, 0.12);
-const float CROWN_ROOM = 1.3;  // of the square around a crown of 1
+const float CROWN_ROOM = 1.4;  // of the square around a crown of 1
+const float TRUNK = 0.07;      // half the width of a trunk, of a crown of 1
+const float TRUNK_LOW = 0.44;  // how much longer than the crown's half it goes down
 
 struct Billboard {
     vec3 place;    // of the square's corner
     vec2 disc;     // the same on the square
     vec4 middle;   // of the crown, and its kind
-    vec4 form;     // half its width and height, a number of its own, the foot's height
+    vec4 form;     // half its width and height, a number of its own, half its width in pixels
 };
 
-Billboard billboard_of(vec4 tree, vec2 corner, float needle_share, vec3 eye) {
-    Crown crown = crown_of(tree, needle_share);
+// `focal`: how many pixels wide is what is as wide as far away.
+Billboard billboard_of(vec4 tree, vec2 corner, vec4 others, vec3 eye, float focal) {
+    Crown crown = crown_of(tree, others);
     vec3 to_eye = normalize(eye - crown.middle);
     vec3 right = normalize(vec3(-to_eye.y, to_eye.x, 0.0) + vec3(1e-9, 0.0, 0.0));
     vec3 over = cross(to_eye, right);
@@ -35,7 +39,8 @@ Billboard billboard_of(vec4 tree, vec2 corner, float needle_share, vec3 eye) {
     float tall = length(vec2(crown.up * length(to_eye.xy), crown.across * to_eye.z));
     vec2 disc = CROWN_ROOM * corner;
     vec3 place = crown.middle + right * (disc.x * crown.across) + over * (disc.y * tall);
-    vec4 form = vec4(crown.across, crown.up, float(crown.key & 1023u), tree.z);
+    float pixels = focal * crown.across / max(distance(eye, crown.middle), 1e-3);
+    vec4 form = vec4(crown.across, crown.up, float(crown.key & 1023u), pixels);
     return Billboard(place, disc, vec4(crown.middle, float(crown.kind)), form);
 }
 
@@ -46,24 +51,56 @@ struct CrownPoint {
     int kind;
 };
 
+// One octave and its slopes, if a third of a wave or more is as wide as a pixel.
+vec3 lump(vec2 disc, vec4 form, int octave, uint seed) {
+    float shown = clamp(1.5 * form.w / CROWN_WAVES[octave] - 0.5, 0.0, 1.0);
+    if (shown <= 0.0) return vec3(0.0);
+    vec2 own = vec2(form.z * (7.31 - 2.0 * float(octave)));
+    return shown * perlin(disc * CROWN_WAVES[octave] + own, seed + uint(octave));
+}
+
+// What of the square is the trunk below the crown, and as much of that as a pixel shows.
+CrownPoint trunk_point(vec2 disc, vec4 middle, vec4 form, vec3 to_eye) {
+    float aside = disc.x / TRUNK;
+    float level = length(to_eye.xy);
+    float tall = length(vec2(form.y * level, form.x * to_eye.z));
+    float up = disc.y * tall / max(level, 0.05);
+    bool hit = abs(aside) < 1.0 && form.w > 6.0 && disc.y < 0.0
+            && up > -(1.0 + TRUNK_LOW) * form.y;
+    vec3 right = vec3(-to_eye.y, to_eye.x, 0.0) / max(level, 1e-3);
+    vec3 front = vec3(to_eye.xy, 0.0) / max(level, 1e-3);
+    vec3 normal = right * aside + front * sqrt(max(1.0 - aside * aside, 0.0));
+    vec3 place = middle.xyz + vec3(0.0, 0.0, up) + normal * (TRUNK * form.x);
+    return CrownPoint(hit, place, normalize(normal + vec3(0.0, 0.0, 1e-3)), BARK);
+}
+
 CrownPoint crown_point(vec2 disc, vec4 middle, vec4 form, float ragged, uint seed, vec3 eye) {
     int kind = int(middle.w + 0.5);
-    vec3 coarse = perlin(disc * CROWN_WAVES.x + form.z * 7.31, seed);
-    vec3 fine = perlin(disc * CROWN_WAVES.y + form.z * 3.17, seed + 1u);
-    vec3 leaves = perlin(disc * CROWN_WAVES.z + form.z * 1.73, seed + 2u);
     float radius = dot(disc, disc);
-    if (kind >= FIRST_NEEDLES) {
+    vec2 around = disc;  // where on the sphere's disc its normal is
+    if (species_of(kind) == SPRUCE) {
         // A cone, as wide as the box at its foot.
         float edge = disc.x / clamp(0.5 - 0.5 * disc.y, 0.01, 1.0);
         radius = max(edge * edge, abs(disc.y));
+        around.x = edge * sqrt(max(1.0 - disc.y * disc.y, 0.0));
     }
-    float outside = radius + ragged * dot(CROWN_LUMPS, vec3(coarse.x, fine.x, leaves.x));
     vec3 to_eye = normalize(eye - middle.xyz);
+    CrownPoint found = trunk_point(disc, middle, form, to_eye);
+    if (radius > 1.0 + ragged * dot(CROWN_LUMPS, vec3(1.0))) return found;
+    vec3 coarse = lump(disc, form, 0, seed);
+    vec3 fine = lump(disc, form, 1, seed);
+    vec3 leaves = lump(disc, form, 2, seed);
+    float outside = radius + ragged * dot(CROWN_LUMPS, vec3(coarse.x, fine.x, leaves.x));
+    if (outside > 1.0) return found;
     vec2 held = disc / max(1.02 * length(disc), 1.0);
     // Lumps of leaves lean the normals.
-    vec2 leaning = held - ragged * (0.13 * coarse.yz + 0.12 * fine.yz + 0.11 * leaves.yz);
+    vec2 lumps = 0.13 * coarse.yz + 0.12 * fine.yz + 0.11 * leaves.yz;
+    vec2 leaning = around / max(1.02 * length(around), 1.0) - ragged * lumps;
     leaning /= max(1.02 * length(leaning), 1.0);
-    vec3 place = middle.xyz + visible_place(held, to_eye, form.xy) * form.xxy;
-    return CrownPoint(outside <= 1.0, place, visible_place(leaning, to_eye, form.xy), kind);
+    found.hit = true;
+    found.kind = kind;
+    found.place = middle.xyz + visible_place(held, to_eye, form.xy) * form.xxy;
+    found.normal = visible_place(leaning, to_eye, form.xy);
+    return found;
 }
 #endif

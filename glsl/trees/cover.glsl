@@ -15,13 +15,14 @@
 // Farther away fewer trees are drawn, and what these hide less and less of is here, in the ground:
 // so a wood goes on beyond its last tree in its own colour, with light and dark as of crowns.
 // Ground between trees gets as much less light as they take.
-#include "lighting/daylight_date.glsl"
 #include "lighting/daylight_reading.glsl"
 #include "noise/gradient.glsl"
 #include "scene/ground_reading.glsl"
 #include "scene/surfaces.glsl"
 #include "terrain/heightfield.glsl"
+#include "trees/leaves_reading.glsl"
 #include "trees/light.glsl"
+#include "trees/species_reading.glsl"
 #include "trees/wood_reading.glsl"
 #pragma kernel(output = "albedo:rgba16f, taken:rgba16f, shadow:r16f")
 
@@ -31,6 +32,8 @@ uniform sampler2D height;   //! input
 uniform sampler2D ground;   //! input("linear", "mipmap")
 uniform sampler2D density;  //! input
 uniform sampler2D table;    //! input
+uniform sampler2D leaves;   //! input
+uniform sampler2D species;  //! input("zero")
 uniform sampler2D shade;    //! input("black")
 uniform sampler2D other_shadow;  //! input("white")
 uniform sampler2D canopy_visibility;  //! input("white")
@@ -39,8 +42,6 @@ uniform sampler2D limit;    //! input("white")
 #include "lighting/parameters/sun.glsl"
 #include "trees/parameters/reach.glsl"
 #include "trees/parameters/stand.glsl"
-#include "trees/parameters/species.glsl"
-#include "trees/parameters/season.glsl"
 #include "trees/parameters/shade.glsl"
 
 // A texel of a map of the terrain, at a share of its sides.
@@ -68,9 +69,6 @@ float lumps(vec2 place, float pixel) {
 
 float brightness(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
 
-// No lower than where the table of trees/wood ends.
-vec3 raised(vec3 towards) { return normalize(vec3(towards.xy, max(towards.z, LOWEST))); }
-
 // How much of the sun is taken away here, and 1 in the square where that is known, else 0.
 vec2 shade_at(vec2 place) {
     vec2 at = (place - eye.xy) / shade_wide;
@@ -87,18 +85,6 @@ float shadow_of_woods(vec2 share, float bare) {
     return min(map_of(canopy_visibility, share) / bare, 1.0);
 }
 
-// The table is for level ground: on a slope one sees more of the tops in it than there are,
-// so that a wood on a steep slope (0.35) towards the eye is 8 to 12 hundredths brighter far away.
-vec2 wood_on_slope(Stand all, float stands, float only, vec3 to_eye, vec3 to_sun,
-                   vec3 through) {
-    float depth = depth_towards(all, to_eye);
-    // How many of the crowns are above what one sees, on the mean.
-    float share = depth < 0.01 ? 0.5 : 1.0 / depth - 1.0 / (exp(min(depth, 60.0)) - 1.0);
-    vec2 lit = wood_at(table, to_eye, to_sun, stands, only);
-    lit.x *= reaches(all, share, through) / max(reaches(all, share, to_sun), 1e-3);
-    return lit;
-}
-
 void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     vec4 at = texelFetch(seen, texel, 0);
     albedo = texelFetch(cover, texel, 0);
@@ -106,44 +92,49 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     float other = wired_other_shadow ? texelFetch(other_shadow, texel, 0).r : 1.0;
     shadow = other;
     bool tree = is_object(at.w) && is_tree(kind_of(at.w));
-    if (!tree && !is_top(at.w)) return;
+    if (!is_object(at.w) && !is_top(at.w)) return;
     vec2 share = at.xy / extent;
     float stands = clamp(map_of(density, share), 0.0, 1.0);
     float away = distance(eye, at.xyz);
-    vec3 to_eye = eye - at.xyz;
+    vec3 to_eye = normalize(eye - at.xyz);
     Ground around = ground_at(ground, at.xy, extent, 2.0 * cell);
-    vec2 slope = around.slope;
-    to_eye = raised(over_ground(to_eye, slope));
     vec3 to_sun = sun_direction(wired_daylight, daylight, towards_sun);
-    vec3 through = to_sun.z > 0.0 ? raised(over_ground(to_sun, slope)) : to_sun;
-    float needled = needle_share(needles, needles_from, at.z + base_elevation);
-    float today = day_of_year(wired_daylight, daylight, day);
-    Stand all = stand_of(stands, cell, tallest, shortest, needled);
+    // No lower than where the table of trees/wood ends; by night there is no sun.
+    vec2 rises = max(vec2(rise_of(to_eye, around.slope), rise_of(to_sun, around.slope)), LOWEST);
+    if (to_sun.z <= 0.0) rises.y = 0.0;
+    vec4 others = species_at(species, share);
+    Stand all = stand_of(stands, cell, tallest, shortest, others);
     float end = wired_key ? end_of_table(reach, cell, textureSize(key, 0)) : reach;
     Stand drawn = thinned(all, away, whole, end, texelFetch(limit, ivec2(0), 0).r);
+    float phase = leaf_phase(to_eye, to_sun);
     if (tree) {
         float over = at.z - map_of(height, share) * relief;
-        vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun, through);
-        taken = vec4(0.0, light, 1.0);
+        vec2 light = tree_light(all, drawn, normal_of(at.w), over, to_eye, to_sun, rises);
+        albedo.rgb = colour_of_tree(leaves, kind_of(at.w), late_at(at.xy));
+        taken = vec4(0.0, phase * light.x, light.y, 1.0);
         return;
     }
     vec2 shaded = shade_at(at.xy);
     shadow = other * mix(shadow_of_woods(share, around.sun), 1.0 - shaded.x, shaded.y);
     if (stands <= 0.0) return;
+    float sun_left = mix(reaches(all, 1.0, to_sun, rises.y), 1.0, shaded.y);
+    float sky_left = reaches(all, 1.0, SKY_FROM, SKY_FROM.z);
+    taken = vec4(sun_left, 0.0, sky_left, 1.0);
+    if (is_object(at.w)) return;
     // What of the ground all trees leave free, over what those leave free that are drawn.
-    float free = reaches(all, 1.0, to_eye) / max(reaches(drawn, 1.0, to_eye), 1e-6);
-    float hidden = 1.0 - clamp(free, 0.0, 1.0);
+    float free = reaches(all, 1.0, to_eye, rises.x);
+    float hidden = 1.0 - clamp(free / max(reaches(drawn, 1.0, to_eye, rises.x), 1e-6), 0.0, 1.0);
+    if (hidden < 0.002) return;
     // Half the angle of a pixel is one over the lens's scale, times one over the picture's half.
     float lens = length(transpose(clip_from_world)[1].xyz);
-    float pixel = 2.0 * away / (lens * float(size.y)) / sqrt(max(to_eye.z, 0.05));
-    vec3 leaves = mean_leaf_colour(needle_area(needled), today);
-    if (hidden > 0.01) leaves *= lumps(at.xy, pixel);
-    albedo.rgb = mix(albedo.rgb, leaves, hidden);
+    float pixel = 2.0 * away / (lens * float(size.y)) / sqrt(max(rises.x, 0.05));
+    vec3 crowns = colour_of_wood(leaves, others, late_at(at.xy)) * lumps(at.xy, pixel);
+    albedo.rgb = mix(albedo.rgb, crowns, hidden);
     // By brightness, what comes from the leaves of the colour that both have together.
-    float part = hidden * brightness(leaves) / max(brightness(albedo.rgb), 1e-6);
-    float sun_left = mix(reaches(all, 1.0, through), 1.0, shaded.y);
-    float only = needles_only(needles_from, at.z + base_elevation);
-    vec2 lit = wood_on_slope(all, stands, only, to_eye, to_sun, through);
-    float sky_left = reaches(all, 1.0, SKY_FROM);
-    taken = vec4((1.0 - part) * sun_left, part * lit.x, mix(sky_left, lit.y, part), 1.0);
+    float part = hidden * brightness(crowns) / max(brightness(albedo.rgb), 1e-6);
+    Depths depths = Depths(depth_towards(all, to_eye, rises.x),
+                           depth_towards(all, to_sun, max(rises.y, LOWEST)),
+                           depth_towards(all, SKY_FROM, SKY_FROM.z));
+    vec2 lit = wood_at(table, to_eye, to_sun, depths, needles_in_sight(others));
+    taken = mix(taken, vec4(0.0, phase * lit.x, lit.y, 1.0), part);
 }

@@ -1,36 +1,82 @@
-// trees/crown.glsl -- the shape of a tree's crown, by its place and height alone.
+// trees/crown.glsl -- the shape of a tree's crown, by its place, its height and the species there.
 //
-//   gives    Crown, crown_of, needles_only, needle_share, needle_area, visible_place, NARROWEST,
-//            WIDEST, HALF_HEIGHT, MIDDLE
+//   gives    Form, form_of, share_of, mean_body, share_in_sight, needles_in_sight, shares_with,
+//            needles_only, needle_share, Crown, crown_of, visible_place
 //   needs    noise/hash.glsl, trees/kinds.glsl
 //   units    metres; sizes of crowns as shares of the tree's height
 //   source   ellipsoids, as in Max 1996, "Hierarchical Rendering of Trees from Precomputed
 //            Multi-Layer Z-Buffers" (Eurographics workshop on rendering); proportions made here
-//   tested   tests/glsl/test_trees_light.py
+//   tested   tests/glsl/test_trees_light.py, tests/glsl/test_trees_species.py
 //
-// Broad leaves are an ellipsoid, needles a cone in the same box. An ellipsoid is a sphere that was
-// stretched, so what an eye far away sees of it is a hemisphere of that sphere, stretched as well.
+// All crowns are ellipsoids but the spruces', which are cones in the same box. An ellipsoid is a
+// sphere that was stretched, so what an eye far away sees of it is a hemisphere of that sphere,
+// stretched as well. Shares of species are four numbers, as of trees/species: of maples, birches,
+// pines and spruces; the rest are oaks.
 #ifndef TREES_CROWN
 #define TREES_CROWN
 #include "noise/hash.glsl"
 #include "trees/kinds.glsl"
 
 const uint CROWN_SALT = 0xe41e98a0u;  // CRC-32 of "trees/crown"
-
-// Half widths, half heights and middles over the foot; x of broad leaves, y of needles.
-const vec2 NARROWEST = vec2(0.26, 0.19);
-const vec2 WIDEST = vec2(0.36, 0.19);
-const vec2 HALF_HEIGHT = vec2(0.44, 0.475);
-const vec2 MIDDLE = vec2(0.56, 0.525);
 const float CONE_AREA = 0.6366;  // of the ellipse around it: 2 a b / (pi a b)
 
-struct Crown {
-    vec3 middle;
-    float across;  // half of its width
-    float up;      // half of its height
-    int kind;      // trees/kinds.glsl
-    uint key;      // random bits of its own
+struct Form {
+    vec2 across;   // half the width of the narrowest and of the widest
+    float up;      // half the height
+    float middle;  // over the foot
 };
+
+Form form_of(int species) {
+    if (species == OAK) return Form(vec2(0.29, 0.39), 0.41, 0.59);
+    if (species == MAPLE) return Form(vec2(0.26, 0.34), 0.42, 0.58);
+    if (species == BIRCH) return Form(vec2(0.18, 0.25), 0.41, 0.59);
+    if (species == PINE) return Form(vec2(0.18, 0.25), 0.37, 0.63);
+    return Form(vec2(0.16, 0.20), 0.475, 0.525);
+}
+
+// The share of one species.
+float share_of(vec4 others, int species) {
+    if (species == OAK) return max(1.0 - others.x - others.y - others.z - others.w, 0.0);
+    if (species == MAPLE) return others.x;
+    if (species == BIRCH) return others.y;
+    return species == PINE ? others.z : species == SPRUCE ? others.w : 0.0;
+}
+
+// Half the width of the ellipse that hides as much, half the height, and the middle.
+vec3 body_of(int species) {
+    Form form = form_of(species);
+    float mean = 0.5 * (form.across.x + form.across.y);
+    return vec3(species == SPRUCE ? CONE_AREA * mean : mean, form.up, form.middle);
+}
+
+// Of what one sees of the trees of a place, the share that is of a species: by areas.
+float share_in_sight(vec4 others, int species) {
+    float total = 0.0;
+    for (int k = 0; k < SPECIES; k++) {
+        vec3 body = body_of(k);
+        total += share_of(others, k) * body.x * body.y;
+    }
+    vec3 own = body_of(species);
+    return share_of(others, species) * own.x * own.y / total;
+}
+
+vec3 mean_body(vec4 others) {
+    vec3 total = vec3(0.0);
+    for (int k = 0; k < SPECIES; k++) total += share_of(others, k) * body_of(k);
+    return total;
+}
+
+// What one sees of needles, of all trees.
+float needles_in_sight(vec4 others) {
+    return share_in_sight(others, PINE) + share_in_sight(others, SPRUCE);
+}
+
+// Where all have broad leaves, and where none has: what trees/wood has a table for.
+const vec4 ALL_LEAVES = vec4(0.30, 0.20, 0.0, 0.0);
+const vec4 ALL_NEEDLES = vec4(0.0, 0.0, 0.45, 0.55);
+
+// With so many needles, as of a place that nothing else is known of.
+vec4 shares_with(float needle_share) { return mix(ALL_LEAVES, ALL_NEEDLES, needle_share); }
 
 // How far from the lowland's mix to needles only. `metres`: above sea level.
 float needles_only(float needles_from, float metres) {
@@ -41,21 +87,31 @@ float needle_share(float needles, float needles_from, float metres) {
     return mix(needles, 1.0, needles_only(needles_from, metres));
 }
 
-// Of what one sees of them the share that is needles: cones are slim, 2 a b for pi a b.
-float needle_area(float share) {
-    float slim = share * CONE_AREA * NARROWEST.y * HALF_HEIGHT.y;
-    return slim / (slim + (1.0 - share) * 0.5 * (NARROWEST.x + WIDEST.x) * HALF_HEIGHT.x);
+struct Crown {
+    vec3 middle;
+    float across;  // half of its width
+    float up;      // half of its height
+    int kind;      // trees/kinds.glsl
+    uint key;      // random bits of its own
+};
+
+int species_by(float random, vec4 others) {
+    vec4 end = vec4(others.x, others.x + others.y, others.x + others.y + others.z, 0.0);
+    if (random < end.x) return MAPLE;
+    if (random < end.y) return BIRCH;
+    if (random < end.z) return PINE;
+    return random < end.z + others.w ? SPRUCE : OAK;
 }
 
-Crown crown_of(vec4 tree, float needle_share) {
+Crown crown_of(vec4 tree, vec4 others) {
     ivec2 place = ivec2(floor(4.0 * tree.xy));
     uvec3 bits = hash3(uvec3(uint(place.x), uint(place.y), CROWN_SALT));
-    bool slim = unit_from_bits(bits.x) < needle_share;
-    float wide = slim ? NARROWEST.y : mix(NARROWEST.x, WIDEST.x, unit_from_bits(bits.y));
-    float up = tree.w * (slim ? HALF_HEIGHT.y : HALF_HEIGHT.x);
-    float middle = tree.z + tree.w * (slim ? MIDDLE.y : MIDDLE.x);
-    int tint = int(bits.z >> 27u);
-    return Crown(vec3(tree.xy, middle), tree.w * wide, up, kind_of_tree(slim, tint), bits.z);
+    int species = species_by(unit_from_bits(bits.x), others);
+    Form form = form_of(species);
+    float wide = mix(form.across.x, form.across.y, unit_from_bits(bits.y));
+    vec3 middle = vec3(tree.xy, tree.z + tree.w * form.middle);
+    int kind = kind_of_tree(species, unit_from_bits(bits.z));
+    return Crown(middle, tree.w * wide, tree.w * form.up, kind, bits.z);
 }
 
 // The unit sphere's point that is seen at a place of its disc, x to the right and y up as

@@ -13,11 +13,11 @@
 #include "trees/stand.glsl"
 
 // Shares of the sun, as of what faces it, and of the sky. `all`, `drawn`: the stand around, and
-// what of it is drawn so far away (`thinned`); `height`: over the ground; `to_eye` and `through`,
-// towards the eye and the sun, as over_ground has them.
+// what of it is drawn so far away (`thinned`); `height`: over the ground; `rises`: of the ways to
+// the eye and to the sun (rise_of).
 vec2 tree_light(Stand all, Stand drawn, vec3 normal, float height, vec3 to_eye, vec3 to_sun,
-                vec3 through) {
-    float share = share_in(all, drawn, share_above(drawn, height), to_eye);
-    return crown_light(all, normal, share, to_sun, through);
+                vec2 rises) {
+    float share = share_in(all, drawn, share_above(drawn, height), to_eye, rises.x);
+    return crown_light(all, normal, share, to_sun, rises.y);
 }
 #endif

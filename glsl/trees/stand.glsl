@@ -1,7 +1,7 @@
 // trees/stand.glsl -- what a stand of trees hides, and the light on what one sees of it.
 //
-//   gives    Stand, stand_of, thinned, share_above, share_in, depth_towards, over_ground,
-//            reaches, crown_light, wood_light
+//   gives    Stand, stand_of, thinned, share_above, share_in, rise_of, depth_towards, reaches,
+//            facing_sun, facing_sky, leaf_phase, crown_light, wood_sums
 //   needs    trees/crown.glsl, trees/level.glsl
 //   units    metres; trees a square metre; shares 0..1; light as a share of that on a surface
 //            that faces the sun, and of that of the whole sky on open level ground
@@ -9,14 +9,15 @@
 //            shadows have the area A on a level plane, the share exp(-n A) of it is free (Serra
 //            1982, "Image Analysis and Mathematical Morphology", chapter XIII; for woods Li and
 //            Strahler 1992, "Geometric-Optical Bidirectional Reflectance Modeling of the Discrete
-//            Crown Vegetation Canopy", IEEE TGRS 30(2))
+//            Crown Vegetation Canopy", IEEE TGRS 30(2)); leaves that face all ways: Ross 1981,
+//            "The Radiation Regime and Architecture of Plant Stands", II.4
 //   tested   tests/glsl/test_trees_light.py, by rays through ellipsoids in float64, and
 //            by what trees/seen draws
 //
 // One crown's shadow is an ellipse of the area pi a sqrt(a^2 + (b / tan e)^2) under light from the
-// elevation e. Of it, what is higher than a height counts there: the part of the crown's outline
-// above it. The single tree and the mean of a wood are lit by the same functions, so a wood keeps
-// its colour where single trees end.
+// elevation e, on level ground. Of it, what is higher than a height counts there: the part of the
+// crown's outline above it. The single tree and the mean of a wood are lit by the same functions,
+// so a wood keeps its colour where single trees end.
 #ifndef TREES_STAND
 #define TREES_STAND
 #include "trees/crown.glsl"
@@ -32,19 +33,17 @@ struct Stand {
 };
 
 const float TREE_PI = 3.14159265;
-const float WRAP = 0.25;            // leaves let light through: so far round the edge they are lit
-const vec3 SKY_FROM = vec3(0.7071, 0.0, 0.7071);  // where the sky's light comes from on the mean
+const float WRAP = 0.2;  // leaves let light through: so far round the edge they are lit
+const float THROUGH = 0.2;  // of the light on a crown, what leaves it on the far side of it
+const vec3 SKY_FROM = vec3(0.7071, 0.0, 0.7071);  // where the sky's light comes from, mean
 const int SIZES = 3;                // of crowns, for sums over them
 
-// `density`: the share of cells that hold a tree.
-Stand stand_of(float density, float cell, float tallest, float shortest, float needle_share) {
+// `density`: the share of cells that hold a tree; `others`: the shares of species.
+Stand stand_of(float density, float cell, float tallest, float shortest, vec4 others) {
     // The mean of the squared height, since hiding goes by areas.
     float tall = tallest * sqrt((1.0 + shortest + shortest * shortest) / 3.0);
-    float wide = mix(0.5 * (NARROWEST.x + WIDEST.x), CONE_AREA * NARROWEST.y, needle_share);
-    float up = mix(HALF_HEIGHT.x, HALF_HEIGHT.y, needle_share);
-    float middle = mix(MIDDLE.x, MIDDLE.y, needle_share);
-    return Stand(density / (cell * cell), wide * tall, up * tall, middle * tall, shortest,
-                 cell);
+    vec3 body = tall * mean_body(others);
+    return Stand(density / (cell * cell), body.x, body.y, body.z, shortest, cell);
 }
 
 // Those of the stand that are drawn as single trees so far away; `limit`: of trees/list.
@@ -79,12 +78,16 @@ float overlap(float along, float side) {
     return whole < 1.0 ? whole * (1.0 - whole / 3.0) : 1.0 - 1.0 / (3.0 * whole);
 }
 
+// How fast a ray leaves ground of a slope: how much higher over it a metre farther on.
+float rise_of(vec3 towards, vec2 slope) { return towards.z - dot(slope, towards.xy); }
+
 // Minus the logarithm of what no crown is in the way of, along `towards` from the ground up.
 // For trees anywhere that is n A. Where a cell holds one tree with the probability p, and the
-// part f of it is in the way, what is free is (1 - p f), less than exp(-p f).
-float depth_towards(Stand s, vec3 towards) {
-    float run = length(towards.xy) / max(towards.z, 1e-4);
-    float shadow = TREE_PI * s.across * length(vec2(s.across, s.up * run));
+// part f of it is in the way, what is free is (1 - p f), less than exp(-p f). Trees are upright on
+// a slope as well, but the lower a ray goes over the ground, the longer it stays among them.
+float depth_towards(Stand s, vec3 towards, float rise) {
+    float outline = length(vec2(s.across * towards.z, s.up * length(towards.xy)));
+    float shadow = TREE_PI * s.across * outline / max(rise, 1e-4);
     // A band as wide as a crown, and as long as makes the same area, anywhere over the cells.
     float wide = 2.0 * s.across;
     float side = max(JITTER * s.cell, 1e-3);
@@ -93,32 +96,44 @@ float depth_towards(Stand s, vec3 towards) {
     return s.dense * shadow * (hit > 1e-3 ? -log(1.0 - hit) / hit : 1.0);
 }
 
-// A direction as it rises over ground of a slope, which is as level ground under a leaning sky.
-vec3 over_ground(vec3 towards, vec2 slope) {
-    return normalize(vec3(towards.xy, towards.z - dot(slope, towards.xy)));
+// What of light along `towards` no crown is in the way of, where such a share of them is above.
+float reaches(Stand s, float share, vec3 towards, float rise) {
+    return rise <= 0.0 ? 0.0 : exp(-depth_towards(s, towards, rise) * share);
 }
 
-// What of light along `towards` no crown is in the way of, where such a share of them is above.
-float reaches(Stand s, float share, vec3 towards) {
-    return towards.z <= 0.0 ? 0.0 : exp(-depth_towards(s, towards) * share);
+// How much of the sun is on a crown's place: all over the sphere as much as without leaves that
+// let light through.
+float facing_sun(vec3 normal, vec3 to_sun) {
+    float facing = dot(normal, to_sun);
+    float lit = mix(max(WRAP + facing, 0.0), max(WRAP - facing, 0.0), THROUGH);
+    return lit / ((1.0 + WRAP) * (1.0 + WRAP));
+}
+
+float facing_sky(vec3 normal) { return 0.5 + 0.5 * normal.z; }
+
+// By where one stands, leaves that let through as much as they throw back and face everywhere are
+// brighter along the light and against it than from the side; 1 on the mean over all sides.
+float leaf_phase(vec3 to_eye, vec3 to_sun) {
+    float cosine = clamp(-dot(to_eye, to_sun), -1.0, 1.0);
+    float angle = acos(cosine);
+    float back = (sqrt(1.0 - cosine * cosine) - angle * cosine) / (3.0 * TREE_PI);
+    return 8.0 * (back + cosine / 6.0);
 }
 
 // Sun (x) and sky (y) on a crown where such a share of the others is above; `normal`: its
-// sphere's. All over the sphere it is as much sun as without leaves that let light through.
-//
-// `through`: to_sun, as over_ground has it.
-vec2 crown_light(Stand s, vec3 normal, float share, vec3 to_sun, vec3 through) {
-    float facing = max(dot(normal, to_sun) + WRAP, 0.0) / ((1.0 + WRAP) * (1.0 + WRAP));
-    float open = reaches(s, share, SKY_FROM);
-    return vec2(facing * reaches(s, share, through), (0.5 + 0.5 * normal.z) * open);
+// sphere's; `rise`: of the way to the sun.
+vec2 crown_light(Stand s, vec3 normal, float share, vec3 to_sun, float rise) {
+    float open = reaches(s, share, SKY_FROM, SKY_FROM.z);
+    return vec2(facing_sun(normal, to_sun) * reaches(s, share, to_sun, rise),
+                facing_sky(normal) * open);
 }
 
 // The share above in the stand `all` of what is as deep in it as a share above is in the stand
 // `thin`: one sees as much deeper into a thin stand. Of what one sees in a stand of depth d the
 // part (1 - exp(-d share)) / (1 - exp(-d)) lies higher.
-float share_in(Stand all, Stand thin, float share, vec3 to_eye) {
-    float d = depth_towards(all, to_eye);
-    float t = depth_towards(thin, to_eye);
+float share_in(Stand all, Stand thin, float share, vec3 to_eye, float rise) {
+    float d = depth_towards(all, to_eye, rise);
+    float t = depth_towards(thin, to_eye, rise);
     if (d < 1e-3) return share;
     float higher = t < 1e-3 ? share : (1.0 - exp(-t * share)) / (1.0 - exp(-t));
     return -log(max(1.0 - higher * (1.0 - exp(-d)), 1e-6)) / d;
@@ -127,8 +142,9 @@ float share_in(Stand all, Stand thin, float share, vec3 to_eye) {
 const int SPOKES = 12;
 const int RINGS = 5;
 
-// The mean over the disc of a crown of each size, each place as often as one sees it.
-vec2 wood_light(Stand s, vec3 to_eye, vec3 to_sun) {
+// Sums over the disc of a crown of each size: of sun, of sky and of 1, each place with
+// exp(-depth share), where `share` of the crowns is above it.
+vec3 wood_sums(Stand s, vec3 to_eye, vec3 to_sun, float depth) {
     vec3 total = vec3(0.0);
     for (int k = 0; k < SIZES * RINGS * SPOKES; k++) {
         vec2 of = size_of(s, k / (RINGS * SPOKES));
@@ -138,9 +154,9 @@ vec2 wood_light(Stand s, vec3 to_eye, vec3 to_sun) {
         vec2 disc = away * vec2(cos(turn), sin(turn));
         vec3 place = visible_place(disc, to_eye, vec2(s.across, s.up));
         float share = share_above(s, of.x * (s.middle + s.up * place.z));
-        float seen = of.y * reaches(s, share, to_eye) + 1e-6;
-        total += seen * vec3(crown_light(s, place, share, to_sun, to_sun), 1.0);
+        float left = of.y * exp(-depth * share);
+        total += left * vec3(facing_sun(place, to_sun), facing_sky(place), 1.0);
     }
-    return total.xy / total.z;
+    return total / float(RINGS * SPOKES);
 }
 #endif

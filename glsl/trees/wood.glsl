@@ -1,30 +1,30 @@
 // trees/wood.glsl -- the light on what one sees of a wood, from every side, for one sun.
 //
-//   gives    table: sun and sky on the crowns in sight, as of wood_light; by how high the eye
-//            stands, and by how far its azimuth is off the sun's, for each density; all that once
-//            for the lowland's mix of species and once for needles only
-//   needs    trees/stand.glsl, trees/wood_reading.glsl, lighting/parameters/sun.glsl
+//   gives    table: sums over the crowns in sight of sun, of sky and of 1, as of wood_sums; by how
+//            high the eye stands, how far its azimuth is off the sun's, and how deep the wood is;
+//            all that once for broad leaves and once for needles
+//   needs    lighting/daylight_reading.glsl, lighting/parameters/sun.glsl, trees/stand.glsl,
+//            trees/wood_reading.glsl
 //   units    as trees/stand.glsl
 //   source   trees/stand.glsl
 //   tested   tests/glsl/test_trees_light.py
 #include "lighting/daylight_reading.glsl"
 #include "trees/stand.glsl"
 #include "trees/wood_reading.glsl"
-#pragma kernel(output = "table:rg32f")
+#pragma kernel(output = "table:rgba32f")
 
 #include "lighting/parameters/sun.glsl"
 #include "trees/parameters/stand.glsl"
-#include "trees/parameters/needles.glsl"
 
-vec2 kernel(ivec2 texel) {
+vec4 kernel(ivec2 texel) {
     ivec3 axes = axes_of(size);
-    vec3 node = vec3(texel.x, texel.y % axes.y, (texel.y / axes.y) % axes.z);
-    node /= vec3(max(axes - 1, ivec3(1)));
-    vec3 to_eye = direction_of(node.x, node.y);
+    int layer = texel.y / axes.y;
+    vec2 node = vec2(texel.x, texel.y % axes.y) / vec2(max(axes.xy - 1, ivec2(1)));
+    float depth = depth_on_axis(float(layer % axes.z) / float(axes.z - 1));
     vec3 to_sun = sun_direction(wired_daylight, daylight, towards_sun);
-    to_sun = direction_of(height_on_axis(to_sun), 0.0);
-    float density = max(node.z, 0.02);
-    bool only = texel.y / axes.y >= axes.z;
-    Stand all = stand_of(density, cell, tallest, shortest, only ? 1.0 : needles);
-    return wood_light(all, to_eye, to_sun);
+    to_sun = vec3(length(to_sun.xy), 0.0, to_sun.z);
+    vec4 others = layer < axes.z ? ALL_LEAVES : ALL_NEEDLES;
+    Stand all = stand_of(1.0, cell, tallest, shortest, others);
+    vec3 sums = wood_sums(all, direction_of(node.x, node.y), to_sun, depth);
+    return vec4((1.0 + depth) * sums, 1.0);
 }

@@ -15,9 +15,9 @@
 //
 // A sum of WAVES sines, from the longest down to SHORTEST, each pair of the same share of the
 // variance: in the equilibrium range slopes have as much of it in every octave. Of a pair one is
-// the stronger, and turns slowly from pair to pair: so at every size there is a main direction. Each moves by the dispersion
-// of deep water, w^2 = g k. Seen with fewer than SHARP pixels to a wave it fades, and with BLURRED
-// it is gone; what a wave loses of its mean square goes to `variance`:
+// the stronger, and turns slowly from pair to pair: so at every size there is a main direction.
+// Each moves by the dispersion of deep water, w^2 = g k. Seen with fewer than SHARP pixels to a
+// wave it fades, and with BLURRED it is gone; what it loses of its mean square goes to `variance`:
 //
 //     sum of (shown_i s_i)^2 / 2 + variance = 0.003 + 0.00512 U      wherever one stands.
 //

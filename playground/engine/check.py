@@ -31,8 +31,9 @@ from playground.sketch.allowed_files import TEXTS, is_elevation, is_variant, roo
 from playground.sketch.assign import values_of
 from playground.sketch.dialects import EXPORT, is_export
 from playground.sketch.dialects.shadertoy_folder import is_image, is_of_folder
+from playground.sketch.flatten import withheld
 from playground.sketch.load import is_technique, load, plain_sketch
-from playground.sketch.model import Graph, Sketch, Technique, kernels_of
+from playground.sketch.model import VARIANTS, Graph, Sketch, Technique, kernels_of
 from playground.sketch.presence import deciding_inputs
 from playground.sketch.shadowed import shadowed_by_files
 from playground.sketch.source import read_text
@@ -216,7 +217,7 @@ class _Check:
 
     def sketch(self) -> None:
         sketch = load(self.path).plainly(self.plain)
-        self.notes = left_out(sketch)
+        self.notes = (*left_out(sketch), *withheld(sketch, VARIANTS))
         self.warnings |= dict.fromkeys(former_names_used(sketch))
         request = TrySketch(sketch, _FRAME, drivers=_drivers(sketch), refuses="any")
         if reads := _names_files(sketch):  # a plan asks its files for their size: the child reads them first

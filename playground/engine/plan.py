@@ -95,7 +95,7 @@ class Plan:
     time: float
     steps: Mapping[str, int] = field(default_factory=dict)
     interpolated: bool = False  # what stopped passes have not reached is filled
-    lacking: tuple[str, ...] = ()  # a sentence for each technique that does without compute shaders
+    lacking: tuple[str, ...] = ()  # a sentence for each technique that does without its fast variant
 
     def walk(self) -> list[Step]:
         """Return every step, those inside loops included."""

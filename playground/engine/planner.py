@@ -246,7 +246,7 @@ class _Planning:
             time=self.time,
             steps=dict(self.request.stopped),
             interpolated=self.request.fills,
-            lacking=(*lacking, *refused.values()),
+            lacking=(*lacking, *refused.values(), *self.flat.shape.withheld),
         )
         sizes = self.sizes
         named = frozenset(sizes.named & self.flat.values.keys())

@@ -61,7 +61,7 @@ from playground.workbench.memory import Remembered
 from playground.workbench.non_finite import FiniteWatch
 from playground.workbench.problems import Warnings
 from playground.workbench.reload import Follower
-from playground.workbench.session import REST, Session
+from playground.workbench.session import Session
 from playground.workbench.terminal_errors import TerminalErrors, to_log
 from playground.workbench.text_file import unsaved
 from playground.workbench.watcher import Watcher
@@ -295,7 +295,7 @@ class Live:
         if self.warnings.waiting:
             return 0.0
         if self.session.is_preview:
-            return REST / 2
+            return self.session.picture.rest / 2
         if self.finite.patience is not None:
             return self.finite.patience
         if self.caching.patience is not None:

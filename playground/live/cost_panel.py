@@ -40,6 +40,10 @@ def draw_costs(sketch: Sketch, session: Session, inspection: Inspection, look: T
     imgui.set_item_tooltip(
         "By the wall clock each pass waits for the one before, so pictures take a little longer"
     )
+    if session.is_preview:
+        across, down = session.picture.drawn_size
+        imgui.text_disabled(f"a preview of {across} x {down} pixels")
+        imgui.set_item_tooltip("While something changes; at rest it is drawn in full")
     if record.pictures:
         _plots(record, look)
     if any_variants(sketch.graph):

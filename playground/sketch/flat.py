@@ -116,6 +116,7 @@ class Shape:
     copied: dict[str, str]  # of the same: path → that of the technique's value, which it has as well
     rules: tuple[Rule, ...]  # of parameters that follow others until they are set
     readers: dict[str, set[str]]  # path of a value → the leaves that have it
+    withheld: tuple[str, ...]  # a sentence for each fast variant that lacks an input that is wired
     targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override so far
 
 

@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from functools import lru_cache
+from pathlib import Path
 from typing import Any
 
 from playground.errors import SketchError, nearest
@@ -90,6 +91,11 @@ def flatten(
     )
 
 
+def withheld(sketch: Sketch, variants: Collection[str]) -> tuple[str, ...]:
+    """Return a sentence for each fast variant that lacks an input that its sketch wires."""
+    return flatten(sketch, variants=variants).shape.withheld
+
+
 @lru_cache(maxsize=32)
 def _shape(
     key: Identity[Graph],
@@ -127,6 +133,7 @@ def _shape(
         copied=maker.copied,
         rules=rules,
         readers=readers,
+        withheld=tuple(maker.withheld.values()),
     )
 
 
@@ -178,6 +185,7 @@ class _Flattener:
         self.copied: dict[str, str] = {}
         # Pass → what gives its outputs: the passes of its fast variant, or its own where that steps back.
         self.inside: dict[str, dict[str, Ref]] = {}
+        self.withheld: dict[str, str] = {}
         self.opened: set[str] = set()
         if kinds:
             for path in (*opened, *stopped):
@@ -297,7 +305,11 @@ class _Flattener:
         variant = self._active(technique, path)
         if isinstance(technique, Kernel) and any(wires.get(name) for name in initial_names(technique)):
             variant = None  # only the canonical form takes an initial state
-        if variant and any(wires.get(name) for name in _lacking(technique, variant)):
+        lacking = sorted(name for name in _lacking(technique, variant) if wires.get(name)) if variant else []
+        if variant and lacking:
+            what = f"it does not read what is wired to {' and '.join(lacking)}"
+            name = Path(variant.path).name
+            self.withheld[path] = f"{path}: {name} is left out, the plain form runs: {what}"
             variant = None
             if isinstance(technique, Graph):
                 self.opened.add(path)

@@ -10,7 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from playground.errors import SketchError
-from playground.paths import DEFAULT_SKETCH, GLSL, SKETCHES, shown
+from playground.paths import DEFAULT_SKETCH, GLSL, PLAIN_SKETCH, SKETCHES, shown
 from playground.sketch.allowed_files import (
     SHADERS,
     is_absolute,
@@ -46,7 +46,7 @@ def load(name: str | Path = "", *, dialect: str = "") -> Sketch:
     A path is a TOML, a folder that holds ``sketch.toml``, a shader, or an elevation file, around which a
     sketch is made. A technique alone, a
     kernel or a TOML of several passes, takes the place of the pass with its outputs in the
-    default sketch; a plain shader is the whole picture, and so is another tool's shader, whose
+    sketch ``jacksboro``; a plain shader is the whole picture, and so is another tool's shader, whose
     ``dialect`` goes by its text unless it is named.
 
     Raises ``SketchError`` or ``ShaderError`` naming file, line, what was found and expected.
@@ -75,7 +75,7 @@ def load_with(techniques: Techniques, name: str | Path = "", text: str | None = 
         if is_variant(path):
             raise lonely_variant(path)
         if _holds_technique(file):
-            return _in_default_sketch(path, techniques.graph(path, f"./{path.stem}", root_of(path)))
+            return _in_plain_sketch(path, techniques.graph(path, f"./{path.stem}", root_of(path)))
         sketch = read_sketch(file, techniques.read)
         check_kernel_count(sketch.graph)
         return sketch
@@ -108,7 +108,7 @@ def _shader_alone(path: Path, techniques: Techniques) -> Sketch:
     if isinstance(found, Kernel) and found.kind == "compute":
         raise lonely_variant(path)
     if isinstance(found, Kernel) and not found.kind.startswith("plain"):
-        return _in_default_sketch(path, found)
+        return _in_plain_sketch(path, found)
     return plain_sketch(path, found, _folder_of(path))
 
 
@@ -130,11 +130,11 @@ def _folder_of(path: Path) -> Path:
     return path.parent if root == GLSL else root
 
 
-def _in_default_sketch(path: Path, technique: Technique) -> Sketch:
-    """Return the default sketch with a technique in the place of the pass that has its outputs."""
-    default = load(DEFAULT_SKETCH)
+def _in_plain_sketch(path: Path, technique: Technique) -> Sketch:
+    """Return ``jacksboro`` with a technique in the place of the pass that has its outputs."""
+    plain = load(PLAIN_SKETCH)
     outputs = set(output_names(technique))
-    passes = list(default.graph.passes)
+    passes = list(plain.graph.passes)
     place = next((i for i, p in enumerate(passes) if outputs & set(output_names(p.technique))), None)
     folder = _folder_of(path)
     use = f"./{path.relative_to(folder).with_suffix('').as_posix()}"
@@ -150,7 +150,7 @@ def _in_default_sketch(path: Path, technique: Technique) -> Sketch:
         passes = [*passes[:-1], replace(spec, name=name), view]
     graph = Graph(path.stem, str(path), tuple(passes), title=technique.title)
     sketch = replace(
-        default,
+        plain,
         name=path.stem,
         file=str(path),
         folder=str(folder),
@@ -159,7 +159,7 @@ def _in_default_sketch(path: Path, technique: Technique) -> Sketch:
         presets=(),
         shots=(),
         keyframes=(),
-        overrides=_default_files(graph, default),
+        overrides=_default_files(graph, plain),
     )
     own = next(p.name for p in passes if p.technique is technique)
     shown_first = (s.path for s in shown_parameters(sketch) if s.exported)
@@ -168,16 +168,16 @@ def _in_default_sketch(path: Path, technique: Technique) -> Sketch:
     return sketch
 
 
-def _default_files(graph: Graph, default: Sketch) -> tuple[tuple[str, Value], ...]:
-    """Return the data files of the default sketch's own passes by absolute path: they are in its folder."""
+def _default_files(graph: Graph, plain: Sketch) -> tuple[tuple[str, Value], ...]:
+    """Return the data files of that sketch's own passes by absolute path: they are in its folder."""
     values = effective_values(graph)
-    remaining = {spec.name for spec in graph.passes if spec in default.graph.passes}
+    remaining = {spec.name for spec in graph.passes if spec in plain.graph.passes}
     found: list[tuple[str, Value]] = []
     for path, parameter in graph.leaf_parameters.items():
         text = str(values[path])
         if parameter.widget.kind != "file" or path.partition(".")[0] not in remaining or is_absolute(text):
             continue
-        file = Path(default.folder) / text
+        file = Path(plain.folder) / text
         if text and is_file(file):
             found.append((path, str(file)))
     return tuple(found)

@@ -43,6 +43,19 @@ def choices(sketch: Sketch, pass_name: str) -> list[str]:
     return [use for use in uses if use == spec.use or _fits(sketch, spec, use, outputs, read)]
 
 
+@looking_once()
+def fits(sketch: Sketch, pass_name: str, use: str) -> bool:
+    """Return whether a technique is one of ``choices``; most are found out without reading the others.
+
+    Raises ``SketchError`` if there is no such pass.
+    """
+    spec = _pass(sketch, pass_name)
+    named = (name for name in shipped_names() if not is_part(name))
+    if use == spec.use or use not in {*named, *_own_names(sketch)}:
+        return use in choices(sketch, pass_name)
+    return _fits(sketch, spec, use, set(output_names(spec.technique)), _reader(sketch))
+
+
 def with_technique(sketch: Sketch, pass_name: str, use: str) -> Sketch:
     """Return the sketch with a pass filled by ``use``, as ``choices`` names it.
 

@@ -12,7 +12,7 @@ from playground.errors import ParameterError, PlaygroundError, SketchError, near
 from playground.sketch.allowed_files import looking_once
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 from playground.sketch.parameter import label_of
-from playground.sketch.replace_technique import choices, with_technique
+from playground.sketch.replace_technique import choices, fits, with_technique
 from playground.web.plan import KINDS
 
 MOST = 24
@@ -60,13 +60,13 @@ def technique_menus(
 
 def _fitting(sketch: Sketch, name: str, uses: Sequence[str]) -> list[str]:
     """Return what fills a pass, and what else is wanted there."""
-    spec = sketch.graph.find(name)
-    known = choices(sketch, name)
-    assert spec is not None  # or ``choices`` has said so
+    found = uses or [use for use in choices(sketch, name) if _is_planned(sketch, name, use)]
     for use in uses:
-        if use not in known:
-            raise SketchError(f"no technique '{use}' fits pass '{name}'{nearest(use, known)}")
-    found = uses or [use for use in known if _is_planned(sketch, name, use)]
+        if not fits(sketch, name, use):
+            hint = nearest(use, choices(sketch, name))
+            raise SketchError(f"no technique '{use}' fits pass '{name}'{hint}")
+    spec = sketch.graph.find(name)
+    assert spec is not None  # or ``choices`` has said so
     return list(dict.fromkeys([spec.use, *found]))
 
 

@@ -128,8 +128,8 @@ class Captures:
 
     def size(self) -> tuple[int, int]:
         """Return the size in pixels that is wished for; raise ``ParameterError``."""
-        wish, plan = self.wish, self.session.plan
-        width, height = plan.frame_size if plan is not None else (0, 0)
+        wish, picture = self.wish, self.session.picture.texture
+        width, height = picture.size if picture is not None else (0, 0)
         if wish.kind == SHEET and wish.multiple:
             scale = USUAL_SIZE[0] * wish.multiple / max(width, 1)
             return max(round(width * scale), 1), max(round(height * scale), 1)

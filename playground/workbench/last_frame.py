@@ -12,6 +12,7 @@ import numpy as np
 from playground.engine.frame import Frame
 from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer, make_texture
+from playground.workbench.enlarged import Enlarger
 from playground.workbench.full_screen import FullScreen
 
 if TYPE_CHECKING:
@@ -45,21 +46,26 @@ class Picture:
         self._painter = painter
         self.texture: moderngl.Texture | None = None  # rgba8; None before the first picture
         self._surface: moderngl.Framebuffer | None = None
+        self._enlarger: Enlarger | None = None
 
-    def copy(self, texture: moderngl.Texture) -> None:
-        """Take a copy of a texture."""
-        if self.texture is None or self._surface is None or self.texture.size != texture.size:
-            self.release()
-            self.texture = make_texture(self._painter.ctx, texture.size, "rgba8")
+    def copy(self, texture: moderngl.Texture, size: tuple[int, int] | None = None) -> None:
+        """Take a copy of a texture; of a preview with fewer pixels, enlarged to ``size``."""
+        size = size or texture.size
+        if self.texture is None or self._surface is None or self.texture.size != size:
+            self._release_texture()
+            self.texture = make_texture(self._painter.ctx, size, "rgba8")
             self.texture.filter = (self._painter.ctx.NEAREST, self._painter.ctx.NEAREST)
             self._surface = self._painter.ctx.framebuffer([self.texture])
-        if (texture.components, texture.dtype, texture.samples) == (4, "f1", 0):
+        if texture.size != size:
+            self._enlarger = self._enlarger or Enlarger(self._painter.ctx)
+            self._enlarger.draw(texture, self._surface)
+        elif (texture.components, texture.dtype, texture.samples) == (4, "f1", 0):
             # Copied, not painted: on a software renderer that takes a tenth of the time.
             source = make_framebuffer(self._painter.ctx, [texture])
             self._painter.ctx.copy_framebuffer(self._surface, source)
             source.release()
         else:
-            self._painter.paint(texture, self._surface, (0, 0, *texture.size))
+            self._painter.paint(texture, self._surface, (0, 0, *size))
 
     def frame(self, sketch: str = "", time: float = 0.0) -> Frame | None:
         """Read it back, as what can be saved; None before the first picture."""
@@ -72,7 +78,13 @@ class Picture:
         return Frame(rows, sketch, time)
 
     def release(self) -> None:
-        """Release the texture."""
+        """Release what was made."""
+        self._release_texture()
+        if self._enlarger is not None:
+            self._enlarger.release()
+        self._enlarger = None
+
+    def _release_texture(self) -> None:
         for made in (self._surface, self.texture):
             if made is not None:
                 made.release()

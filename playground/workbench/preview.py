@@ -1,8 +1,9 @@
 """Draw a preview on a software renderer: what is being changed shows at once, and in full when it rests.
 
 One sample a pixel instead of several, and a mesh of a quarter of the vertices where the user
-set no number of them. Each pass before the draw, and the picture's size, stay as they
-are, so that the full picture differs from the preview along edges alone.
+set no number of them. Each pass before the draw stays as it is, so that the full picture differs
+from the preview along edges alone. A picture with few pixels, to be enlarged, keeps its samples:
+its edges would become stairs.
 """
 
 from __future__ import annotations
@@ -14,12 +15,18 @@ from playground.sketch.model import Sketch
 from playground.sketch.traits import traits_of
 from playground.terrain.meshes import mesh_parameters
 
+Size = tuple[int, int]
+
 GRID = 129  # vertices a side
+_FEW = 2.5  # times fewer pixels a side
 _RESOLUTION = "grid"  # the draw's parameter that sets the resolution of its mesh
 
 
-def as_preview(sketch: Sketch) -> Sketch:
-    """Return a sketch to draw as a preview; the same object where that would make no difference."""
+def as_preview(sketch: Sketch, size: Size = (1, 1), pixels: Size = (1, 1)) -> Sketch:
+    """Return a sketch to draw as a preview; the same object where that would make no difference.
+
+    ``pixels`` are drawn of a picture of a ``size``, and enlarged.
+    """
     draws = [(path, k) for path, k in traits_of(sketch).draws if _RESOLUTION in mesh_parameters(k.registry)]
     values = values_of(sketch) if draws else {}
     coarse = []
@@ -28,6 +35,7 @@ def as_preview(sketch: Sketch) -> Sketch:
         name = f"{path}.{_RESOLUTION}"
         if found is not None and values[name] == found.default and int(found.default) > GRID:  # type: ignore[arg-type]
             coarse.append((name, GRID))
-    if not traits_of(sketch).draws or (sketch.samples == 1 and not coarse):
+    samples = sketch.samples if _FEW * pixels[0] <= size[0] else 1
+    if not traits_of(sketch).draws or (sketch.samples == samples and not coarse):
         return sketch
-    return replace(sketch, samples=1, overrides=(*sketch.overrides, *coarse))
+    return replace(sketch, samples=samples, overrides=(*sketch.overrides, *coarse))

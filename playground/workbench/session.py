@@ -34,12 +34,10 @@ from playground.workbench.clock import Clock
 from playground.workbench.data_files import DataFiles
 from playground.workbench.drafts import Drafts
 from playground.workbench.edits import Draft
-from playground.workbench.framing import framed
-from playground.workbench.last_frame import Painter, Picture
 from playground.workbench.maps import fitted, in_view
-from playground.workbench.preview import as_preview
 from playground.workbench.reload_stages import Reload, ReloadStage, Sandbox
 from playground.workbench.resume import StoredEdits
+from playground.workbench.shown_picture import ShownPicture
 from playground.workbench.sun_arc import sun_off_arc
 from playground.workbench.view import View, steps_of_repeats
 
@@ -47,8 +45,6 @@ if TYPE_CHECKING:
     import moderngl
     import numpy as np
     from numpy.typing import NDArray
-
-REST = 0.2  # [s] without a change after which a preview is drawn again in full
 
 
 class Session:
@@ -87,18 +83,15 @@ class Session:
         self.last_reload: Reload | None = None
         self.times: dict[str, float] = {}  # [ms] the last time each pass ran while profiling, by path
         self.draws = 0  # pictures drawn so far
-        self.is_preview = False  # the picture is a preview, and will be drawn again in full
         self.before_switch: Callable[[], None] = lambda: None  # called before another sketch is shown
         self._now = now
         self.catch_up = CatchUp(now)
         self._is_lost = is_lost  # says whether the engine's context is lost
         self._pressed: frozenset[str] = frozenset()  # buttons pressed since the last frame, by leaf
         self._lost_over: object = None  # what was shown when a context was lost last
-        self._painter = Painter(engine.ctx)
-        self._picture = Picture(self._painter)
+        self.picture = ShownPicture(engine.ctx, now)
         self._repeats: tuple[Sketch | None, float, dict[str, int]] = (None, 0.0, {})
         self._drawn: object = None  # what the picture shows
-        self._drawn_at = 0.0
         self._size: tuple[int, int] | None = None  # of the latest frame
         self._data_of: Sketch | None = None  # the sketch whose data files were noted last
         self._reported: set[str] = set()  # kinds of notes that are given once a sketch
@@ -160,10 +153,15 @@ class Session:
         return self.drafts.sandboxed and self.sketch is not None and self.reads_new_data(self.sketch)
 
     @property
+    def is_preview(self) -> bool:
+        """Whether the picture is a preview, and will be drawn again in full."""
+        return self.picture.is_preview
+
+    @property
     def rests(self) -> bool:
         """Whether there is a picture, and nothing is coming that may replace it."""
         coming = self.drafts.stage is not ReloadStage.NONE or self.catch_up.behind is not None
-        return self.plan is not None and not coming and not self.awaits_data
+        return self.plan is not None and not (coming or self.is_preview or self.awaits_data)
 
     def can_show(self, ref: str) -> bool:
         """Say whether a map can show a texture: one of ``refs``, or one of the view itself."""
@@ -346,6 +344,7 @@ class Session:
         for a mistake in the sketch: it is in ``error``, and the last good picture stays.
         """
         drafts, self._size = self.drafts, size
+        due = self.picture.is_due  # not one that this very frame draws: it is shown first
         self._press()
         if drafts.stage is ReloadStage.SANDBOX:
             drafts.take_report()
@@ -353,25 +352,23 @@ class Session:
             self._draw_coming(size)
         if drafts.shown is not None:
             wanted = self._wanted(size)
-            in_full = self.is_preview and self._now() - self._drawn_at >= REST
             if wanted != self._drawn or self.catch_up.behind is not None:
                 self._draw_shown(drafts.shown.sketch, wanted, size)
-            elif in_full:
+            elif due:
                 self._draw_shown(drafts.shown.sketch, wanted, size, in_full=True)
-        return self._picture.texture
+        return self.picture.texture
 
     def read(self) -> Frame | None:
         """Read the picture back, in full; None before the first."""
-        texture = self._picture.texture
+        texture = self.picture.texture
         unfinished = self.is_preview or self.catch_up.behind is not None
         if unfinished and texture is not None and self.sketch is not None:
             self._draw_shown(self.sketch, self._wanted(texture.size), texture.size, in_full=True)
-        return self._picture.frame(self.sketch.name if self.sketch else "", self.clock.time)
+        return self.picture.frame(self.sketch.name if self.sketch else "", self.clock.time)
 
     def release(self) -> None:
         """Release the picture; the engine belongs to its owner."""
-        self._picture.release()
-        self._painter.release()
+        self.picture.release()
 
     def rebuild(self, engine: Engine) -> None:
         """Go on with another engine: the context of the one before is lost, and all that was in it.
@@ -384,9 +381,8 @@ class Session:
         engine.runner.hover, engine.runner.drag = self.engine.runner.hover, self.engine.runner.drag
         engine.plain_forms.notice = silent
         engine.painted.update(self.engine.painted)
-        self.engine, self.plan, self.is_preview = engine, None, False
-        self._painter = Painter(engine.ctx)
-        self._picture = Picture(self._painter)
+        self.engine, self.plan = engine, None
+        self.picture = ShownPicture(engine.ctx, self._now)
         self._drawn, shown = None, (self.shown, self.drafts.revision, self.view.revision)
         if self._lost_over == shown and self._size is not None:
             self._drawn = self._wanted(self._size)
@@ -401,17 +397,12 @@ class Session:
         Another comment, label, range, preset or shot gives it nothing, and needs no sandbox.
         Other values do: they say how often a loop runs.
         """
-        texture, now = self._picture.texture, self.clock.time
-        if self.shown is None or texture is None or self.drafts.opening or self.reads_new_data(sketch):
+        if self.shown is None or self.picture.texture is None or self.drafts.opening:
             return True
-        chosen = as_preview(sketch) if self.is_preview else sketch
-        if traits_of(sketch).camera:
-            chosen = framed(chosen, now, self.view.framed_for, texture.size)
-        stops, fills = self.view.stops(sketch, now), self.view.interpolated
+        if self.reads_new_data(sketch):
+            return True
         try:
-            return bool(
-                self.engine.stale(chosen, size=texture.size, time=now, steps=stops, interpolated=fills)
-            )
+            return self.picture.differs(self.engine, sketch, self.view, self.clock.time)
         except PlaygroundError:
             return True
 
@@ -462,30 +453,27 @@ class Session:
     def _draw(
         self, sketch: Sketch, size: tuple[int, int], *, in_full: bool = False, coming: bool = False
     ) -> None:
-        """Draw; on a software renderer a preview first: see ``workbench.preview``."""
-        engine, now, view, traits = self.engine, self.clock.time, self.view, traits_of(sketch)
-        chosen = as_preview(sketch) if engine.info.software and traits.draws and not in_full else sketch
-
-        def drawn_at(time: float) -> moderngl.Texture:
-            return engine.draw(
-                framed(chosen, time, view.framed_for, size) if traits.camera else chosen,
-                size=size,
-                time=time,
-                steps=view.stops(sketch, time, coming=coming),
-                interpolated=view.interpolated,
-            )
-
-        texture = self.catch_up.draw(engine, now, drawn_at, in_full=in_full)
+        engine, traits = self.engine, traits_of(sketch)
+        if self.drafts.opening:
+            self.picture.forget()
+        drawn = self.picture.draw(
+            engine,
+            sketch,
+            self.view,
+            self.catch_up,
+            size=size,
+            time=self.clock.time,
+            in_full=in_full,
+            coming=coming,
+        )
         if traits.files and self._data_of is not sketch:
             self.data.take(sketch)
             self._data_of = sketch
-        if texture is None:
+        if not drawn:
             return
-        self._picture.copy(texture)
-        self.is_preview = chosen is not sketch
-        self._drawn_at = self._now()
         self.draws += 1
-        self.times |= engine.times
+        if engine.profiling:
+            self.times |= engine.times
         self.plan = engine.plan
         if engine.eye_height.message:
             self._note_once("ground", engine.eye_height.message)

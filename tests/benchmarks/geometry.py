@@ -71,7 +71,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7, help="frames to time (default 7)")
     options = parser.parse_args()
     console = Console(width=None if sys.stdout.isatty() else 130)
-    lands = [("default sketch", playground.load())]
+    lands = [("jacksboro", playground.load("jacksboro"))]
     lands += [
         (f"diamond-square, {n} x {n}", playground.load("diamond_square").with_values({"size": n}))
         for n in options.sizes

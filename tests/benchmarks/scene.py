@@ -12,17 +12,15 @@ from __future__ import annotations
 
 import argparse
 import os
-import statistics
 import sys
 import tempfile
-import time
 from pathlib import Path
 
+from moving_frames import measure
 from rich.console import Console
 from rich.table import Table
 
 import playground
-from playground.engine.engine import Engine
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch
 
@@ -47,7 +45,7 @@ use = "lighting/soft_cone"
 use = "{view}"
 samples = {samples}
 inputs = {{ {inputs} }}
-set = {{ sky = "daylight", tone = "film", haze = 0.3{given} }}
+set = {{ {sky}, tone = "film"{given} }}
 """
 AIR = """[[pass]]
 name = "air"
@@ -70,6 +68,8 @@ use = "trees/density"
 """
 PIXELS = 'visibility = "light.visibility"'
 OFF = ", antialias = false"
+DOME = f'{PIXELS}, dome = "daylight:dome"'
+LOOK = Camera(azimuth=200.0, elevation=12.0, distance=6000.0, target=(4300.0, 4300.0, 500.0))
 ROWS = {
     "view/terrain, 1 sample": ("", "view/terrain", 1, "", "", ""),
     "view/terrain, 4 samples": ("", "view/terrain", 4, "", "", ""),
@@ -88,6 +88,7 @@ ROWS = {
     "and vignette": ("", "scene/terrain", 1, PIXELS, f"{OFF}, vignette = 0.3", "the scene, each pixel lit"),
     "and air": (AIR, "scene/terrain", 1, PIXELS, OFF, "the scene, each pixel lit"),
     "and shadows of clouds": (CLOUDS, "scene/terrain", 1, PIXELS, OFF, "the scene, each pixel lit"),
+    "and sky, clouds and air": (CLOUDS, "scene/terrain", 1, DOME, OFF, "the scene, each pixel lit"),
     "and trees": (DENSITY, "scene/terrain", 1, PIXELS, OFF, "the scene, each pixel lit"),
 }
 """By name: more passes, the view, samples, inputs, what is set, and the row that it is compared with."""
@@ -105,8 +106,8 @@ def main() -> None:
     width, _, height = options.size.partition("x")
     size = int(width), int(height)
     with tempfile.TemporaryDirectory() as folder, playground.headless() as engine:
-        sketches = {name: made(Path(folder), index, options.land) for index, name in enumerate(ROWS)}
-        times = measure(engine, sketches, size, options.frames)
+        sketches = {name: (made(Path(folder), index, options.land), "") for index, name in enumerate(ROWS)}
+        times = measure(engine, sketches, LOOK, size, options.frames)
         renderer, software = engine.info.renderer, engine.info.software
     kind = 1 if software else 0
     table = Table(title=f"The scene on {renderer}, {os.cpu_count()} processors, {options.size}")
@@ -123,33 +124,12 @@ def made(folder: Path, index: int, size: int) -> Sketch:
     """Write and load the sketch of a row."""
     passes, view, samples, inputs, given, _ = [*ROWS.values()][index]
     path = folder / f"row_{index}.toml"
-    text = TERRAIN.format(size=size, passes=passes, view=view, samples=samples, inputs=inputs, given=given)
+    sky = "gain = 1.0, ambient = 1.0" if "dome" in inputs else 'sky = "daylight", haze = 0.3'
+    text = TERRAIN.format(
+        size=size, passes=passes, view=view, samples=samples, inputs=inputs, given=given, sky=sky
+    )
     path.write_text(text, encoding="utf-8")
     return load(path)
-
-
-def measure(
-    engine: Engine, sketches: dict[str, Sketch], size: tuple[int, int], frames: int
-) -> dict[str, tuple[float, float]]:
-    """Return the median milliseconds of a frame of each sketch: on the clock, and of all cores."""
-    times: dict[str, list[tuple[float, float]]] = {name: [] for name in sketches}
-    azimuth = 200.0
-    for number in range(frames + 2):
-        for name, sketch in sketches.items():
-            azimuth += 0.1
-            look = Camera(azimuth=azimuth, elevation=12.0, distance=6000.0, target=(4300.0, 4300.0, 500.0))
-            moved = sketch.with_camera(look)
-            engine.ctx.finish()
-            start, busy = time.perf_counter(), time.process_time()
-            engine.draw(moved, size=size)
-            engine.ctx.finish()
-            if number >= 2:  # the first runs make the terrain and compile
-                spent = time.perf_counter() - start, time.process_time() - busy
-                times[name].append((spent[0] * 1e3, spent[1] * 1e3))
-    return {
-        name: (statistics.median(w for w, _ in found), statistics.median(c for _, c in found))
-        for name, found in times.items()
-    }
 
 
 if __name__ == "__main__":

@@ -91,8 +91,8 @@ def render_times() -> tuple[float, float]:
 
 
 def sun() -> tuple[list[str], float]:
-    """Return what a moved sun runs again in the default sketch, and the milliseconds."""
-    sketch = playground.load()
+    """Return what a moved sun runs again in jacksboro, and the milliseconds."""
+    sketch = playground.load("jacksboro")
     with playground.headless() as engine:
         engine.draw(sketch, size=SIZE)
         times = []
@@ -193,7 +193,7 @@ def _texturing_sketch(folder: Path, name: str) -> tuple[Path, Path]:
 
 
 def memory(side: int) -> float:
-    """Return the most memory, in GiB, that a process takes to render the default sketch so large."""
+    """Return the most memory, in GiB, that a process takes to render jacksboro so large."""
     code = (
         "import resource, playground\n"
         f"frame = playground.render(size={SIZE}, values={{'size': {side}}})\n"

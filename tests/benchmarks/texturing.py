@@ -13,21 +13,20 @@ from __future__ import annotations
 
 import argparse
 import os
-import statistics
 import sys
 import tempfile
-import time
 from pathlib import Path
 
+from moving_frames import measure
 from rich.console import Console
 from rich.table import Table
 
 import playground
-from playground.engine.engine import Engine
 from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch
 
 SIZE = (1280, 720)
+LOOK = Camera(azimuth=70.0, elevation=22.0, distance=2100.0, target=(1280.0, 1280.0, 150.0))
 
 TERRAIN = """format = 1
 size = {size}
@@ -88,7 +87,7 @@ def main() -> None:
     options = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder, playground.headless() as engine:
         rows = sketches(Path(folder), options.land)
-        times = measure(engine, rows, options.frames)
+        times = measure(engine, rows, LOOK, SIZE, options.frames, before="view.sky")
         renderer = engine.info.renderer
         software = engine.info.software
     kind = 1 if software else 0
@@ -144,35 +143,6 @@ def sketches(folder: Path, size: int) -> dict[str, tuple[Sketch, str]]:
         "tiled": (tiled, ""),
         "multipass": (many, ""),
         "baked": (baked, ""),
-    }
-
-
-def measure(
-    engine: Engine, rows: dict[str, tuple[Sketch, str]], frames: int
-) -> dict[str, tuple[float, float]]:
-    """Return the median milliseconds of a frame, or of a pass, of each row: on the clock, of all cores."""
-    times: dict[str, list[tuple[float, float]]] = {name: [] for name in rows}
-    azimuth = 70.0
-    for number in range(frames + 2):
-        for name, (sketch, path) in rows.items():
-            azimuth += 0.1
-            look = Camera(azimuth=azimuth, elevation=22.0, distance=2100.0, target=(1280.0, 1280.0, 150.0))
-            moved = sketch.with_camera(look)
-            if path:
-                engine.texture(moved, "view.sky", size=SIZE)  # what the draw begins with is not its own
-            engine.ctx.finish()
-            start, busy = time.perf_counter(), time.process_time()
-            if path:
-                engine.texture(moved, path, size=SIZE)
-            else:
-                engine.draw(moved, size=SIZE)
-            engine.ctx.finish()
-            if number >= 2:  # the first runs make the terrain and compile
-                spent = time.perf_counter() - start, time.process_time() - busy
-                times[name].append((spent[0] * 1e3, spent[1] * 1e3))
-    return {
-        name: (statistics.median(w for w, _ in found), statistics.median(c for _, c in found))
-        for name, found in times.items()
     }
 
 

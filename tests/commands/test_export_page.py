@@ -89,7 +89,7 @@ def test_one_file_is_written_and_a_line_says_what_it_holds(folder: Path, capfd: 
 def test_a_page_has_its_language(folder: Path):
     """Its data are the same: names and notes are the sketch's."""
     for name, more in (("a.html", []), ("b.html", ["--lang", "en"]), ("c.html", ["--lang", "fr"])):
-        assert cli.main(["export", "rise", *more, "--to", name]) == 0
+        assert cli.main(["export", "rise", "--shot", "quarter", *more, "--to", name]) == 0
     usual, english, french = (folder / name for name in ("a.html", "b.html", "c.html"))
     assert usual.read_bytes() == english.read_bytes()
     assert page_in(french) == page_in(usual)
@@ -117,7 +117,7 @@ def test_values_presets_and_steps_go_into_the_page(folder: Path):
 
 def test_the_same_sketch_gives_the_same_file(folder: Path):
     for name in ("a.html", "b.html"):
-        assert cli.main(["export", "rise", "--to", name]) == 0
+        assert cli.main(["export", "rise", "--shot", "quarter", "--to", name]) == 0
     assert (folder / "a.html").read_bytes() == (folder / "b.html").read_bytes()
 
 

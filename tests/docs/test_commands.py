@@ -87,7 +87,7 @@ def quoted() -> list[str]:
             if path in LESSONS:  # exercises lie in TOML blocks
                 found |= dict.fromkeys(INLINE.findall(block.text))
         found |= dict.fromkeys(INLINE.findall(outside_of_blocks(path)))
-    once = {re.sub(r"^\./play (?!test)", "playground ", command): command for command in reversed(found)}
+    once = {re.sub(r"^\./play\b(?! test)", "playground", command): command for command in reversed(found)}
     return [command for command in reversed(once.values()) if not FORM.search(command)]
 
 

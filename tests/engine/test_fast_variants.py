@@ -12,6 +12,7 @@ from playground.engine.engine import Engine
 from playground.engine.verify import verify
 from playground.engine.verify_targets import recorded, subjects
 from playground.errors import PlainFormWarning, PlaygroundError, SketchError
+from playground.sketch.flatten import withheld
 from playground.sketch.load import load
 from playground.sketch.model import VARIANTS, Sketch
 from playground.sketch.variant_record import NAME
@@ -117,8 +118,15 @@ def test_an_input_that_a_variant_does_not_have_has_the_plain_form_run(drawing, h
     np.testing.assert_array_equal(engine.read(plain, "h"), slopes())
     assert ran_fast(engine)
     wired = hill.sketch(body + 'inputs = { more = "one" }\n')
-    np.testing.assert_array_equal(engine.read(wired, "h"), slopes() + 8.0)
-    assert not ran_fast(engine) and sentences == []
+    for scale in (1.0, 2.0):  # the second plan is the first with another value
+        found = engine.read(wired.with_values({"h.hill.scale" if around else "h.scale": scale}), "h")
+        np.testing.assert_array_equal(found, scale * slopes() + 8.0)
+    assert not ran_fast(engine)
+    name, path = f"both{ending}", "h.hill" if around else "h"
+    assert sentences == [
+        f"{path}: {name} is left out, the plain form runs: it does not read what is wired to more"
+    ]
+    assert list(withheld(wired, (kind,))) == sentences
 
 
 def test_a_renamed_parameter_of_the_plain_text_leaves_the_variant_out(drawing, hill):

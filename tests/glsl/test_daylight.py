@@ -471,3 +471,11 @@ def test_there_is_no_sun_at_night(any_engine, outdoors):
     assert np.isfinite(found).all()
     rows = found[SEEN[1] // 2 :, :, 0]
     assert rows.max() < 8 * np.median(rows)
+
+
+def test_a_camera_that_moves_lights_nothing_anew(any_engine, outdoors):
+    """A name that the engine gives, as `eye`, makes a pass follow it: even one that is a local variable."""
+    sketch = outdoors((180.0, 40.0))
+    any_engine.draw(looking(sketch, 180.0), size=(32, 24))
+    any_engine.draw(looking(sketch, 190.0), size=(32, 24))
+    assert any_engine.ran and all(path.startswith("view.") for path in any_engine.ran), any_engine.ran

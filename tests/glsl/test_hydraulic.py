@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
+from scipy.stats import gamma
 
 from ..sketch_texts import passes
 from ..truth.pipes import Pipes
@@ -175,21 +176,31 @@ def test_a_checkerboard_in_a_lake_decays(engine, eroded):
     assert swings[3] < 1e-3
 
 
-def test_the_finest_waves_of_a_worn_terrain_carry_no_more_than_longer_ones(engine, eroded):
-    """Spectra of terrains fall with the wave number; a checkerboard would stand out at the end of it.
+def test_a_worn_terrain_has_no_checkerboard(engine, eroded):
+    """Spectra of terrains fall with the wave number: waves of the grid's size carry no more than longer ones.
 
-    The corner of the spectrum is of waves shorter than two texels both ways; it may have twice the
-    power, a wave, of the band before it, for there are few waves in it.
+    A checkerboard is at the corner of the spectrum, in the main lobe of the window: 2 bins, 3 with an odd
+    side. Waves twice as long bound its power: the mean of n powers of random phases is less than
+    gamma(0.999, n) / n times theirs. Of the lobe's bins n is half, for conjugates, and less by 1.5 each way,
+    the window's noise bandwidth (Harris 1978, "On the Use of Windows", table 1).
     """
     sketch = eroded(hills((129, 129), 2), 5120.0, 900.0, hours=600)
     bed, water, *_ = state(engine, sketch, 300)
     window = np.hanning(129)[:, None] * np.hanning(129)
-    for field in (bed, bed + water):
+    x, y = np.meshgrid(*(np.abs(np.fft.fftfreq(129)),) * 2)
+    lobe = np.minimum(x, y) > 0.5 - 3 / 129
+    modes = lobe.sum() / 2 / 1.5**2
+    most = gamma.isf(1e-3, modes) / modes
+
+    def stands_out(field):
         power = np.abs(np.fft.fft2((field - field.mean()) * window)) ** 2
-        wave = np.hypot(*np.meshgrid(*(np.fft.fftfreq(129),) * 2))
-        band = [power[(wave > low) & (wave <= low + 0.1)].mean() for low in (0.2, 0.3, 0.4, 0.5, 0.6)]
-        assert band[1] < band[0] and band[4] < 2 * band[3] < 2 * band[1], band
-        assert power[wave > 0.5].sum() < 1e-4 * power.sum()
+        wave = np.hypot(x, y)
+        longer, twice = (power[(wave > low) & (wave <= low + 0.1)].mean() for low in (0.2, 0.3))
+        assert twice < longer
+        return power[lobe].mean() > most * twice
+
+    assert not stands_out(bed) and not stands_out(bed + water)
+    assert stands_out(bed + 0.3 * (-1.0) ** np.add.outer(np.arange(129), np.arange(129)))
 
 
 def test_outputs_say_what_was_done(engine, eroded):

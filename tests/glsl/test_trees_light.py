@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.ndimage import map_coordinates
 
 FIELD = np.array([1 / 150.0, 4.5, 7.0, 9.0])  # trees a square metre, half width, half height, middle
 
@@ -35,7 +36,7 @@ def test_what_reaches_the_ground_is_what_no_crown_is_in_the_way_of(on_gpu, eleva
     towards = np.array([[np.cos(angle) * 0.6, np.cos(angle) * 0.8, np.sin(angle)]], np.float32)
     for height, bound in ((0.0, 0.012), (9.0, 0.06), (13.0, 0.06)):
         found = on_gpu(
-            "trees/stand.glsl", f"reaches({stand}, share_above({stand}, h), d)", h=[height], d=towards
+            "trees/stand.glsl", f"reaches({stand}, share_above({stand}, h), d, d.z)", h=[height], d=towards
         )[0]
         # At half a crown's height a ray that starts inside a crown counts as hidden; not so in the model,
         # which counts what is above: so much more open it may be.
@@ -101,7 +102,7 @@ def stand(
     [
         (0.7, 8.0, "[135, 35]", 0.0, 0.05),
         (0.25, 12.0, "[200, 20]", 0.0, 0.05),
-        (0.8, 6.0, "[150, 40]", -0.35, 0.13),  # the table of trees/wood is for level ground
+        (0.8, 6.0, "[150, 40]", -0.35, 0.05),
     ],
 )
 def test_a_stand_has_one_mean_colour_at_every_distance(
@@ -146,7 +147,7 @@ name = "shade"
 use = "trees/shade"
 size = 512
 inputs = {{ tree = "list:tree", total = "list:total" }}
-set = {{ sun = [{azimuth}, {elevation}], needles = 0, shade_wide = 256 }}
+set = {{ sun = [{azimuth}, {elevation}], shade_wide = 256 }}
 [[pass]]
 name = "height"
 use = "generation/white_noise"
@@ -169,7 +170,7 @@ def test_a_shadow_lies_where_rays_to_the_sun_meet_the_crown(
         return
     k = np.arange(3)
     tree = np.stack([1000 + 60.0 * k, 990 + 11.0 * k, 5.0 + 0 * k, 14 + 3.0 * k], 1).astype(np.float32)
-    crowns = "crown_of(t, 0.0)"
+    crowns = "crown_of(t, vec4(0.0))"
     forms = on_gpu("trees/crown.glsl", f"vec3({crowns}.middle.z, {crowns}.across, {crowns}.up)", t=tree)
     turn, rise = np.radians([azimuth, elevation])
     way = np.array([np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)])
@@ -195,13 +196,13 @@ def test_leaves_throw_back_no_more_light_than_falls_on_them(on_gpu):
     rng = np.random.default_rng(5)
     normals = rng.normal(size=(200_000, 3))
     normals = (normals / np.linalg.norm(normals, axis=1, keepdims=True)).astype(np.float32)
-    light = on_gpu("trees/stand.glsl", "crown_light(Stand(0.0, 4.0, 6.0, 8.0, 0.5, 9.0), n, 0.0, s, s)",
+    light = on_gpu("trees/stand.glsl", "crown_light(Stand(0.0, 4.0, 6.0, 8.0, 0.5, 9.0), n, 0.0, s, s.z)",
                    n=normals, s=np.array([[0.6, 0.0, 0.8]], np.float32))  # fmt: skip
     np.testing.assert_allclose(light.mean(0, dtype=np.float64), [0.25, 0.5], atol=0.004)
     # In a stand there is less, and the less the deeper.
     stand = "Stand(0.01, 4.0, 6.0, 8.0, 0.5, 9.0)"
     deep = [
-        on_gpu("trees/stand.glsl", f"crown_light({stand}, n, h, n, n)", n=normals[:9], h=[h])
+        on_gpu("trees/stand.glsl", f"crown_light({stand}, n, h, n, n.z)", n=normals[:9], h=[h])
         for h in (0, 0.5, 1.0)
     ]
     assert (deep[1] <= deep[0]).all() and (deep[2] <= deep[1]).all()
@@ -338,9 +339,13 @@ def meadow_sun(engine, make_sketch, wide):
 def test_the_sun_beside_a_wood_is_what_its_trees_leave(kept, ctx, on_gpu, make_sketch):
     """Near the eye, by rays through each crown: a wood as one opaque body would take more than they do."""
     place, share, tree = meadow_sun(kept, make_sketch, 700.0)
-    crowns = "crown_of(t, 0.0)"
+    crowns = "crown_of(t, s)"
     form = f"vec3({crowns}.middle.z, {crowns}.across, {crowns}.up)"
-    forms = on_gpu("trees/crown.glsl", form, t=tree).astype(np.float64)
+    species = kept.read(kept.plan.sketch, "view.species").astype(np.float64)
+    at = tree[:, 1::-1].T / [[8.0], [8.0]]
+    shares = [map_coordinates(species[..., k], at, order=1, mode="nearest") for k in range(4)]
+    shares = np.stack(shares, 1).astype(np.float32)
+    forms = on_gpu("trees/crown.glsl", form, t=tree, s=shares).astype(np.float64)
     turn, rise = np.radians([275.0, 16.0])
     way = np.array([np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)])
     hidden = np.zeros(len(place), bool)

@@ -1,4 +1,4 @@
-"""The must-fail suite: no mutant of the default sketch passes, and nothing harmless is refused."""
+"""The must-fail suite: no mutant of a real terrain passes, and nothing harmless is refused."""
 
 from __future__ import annotations
 

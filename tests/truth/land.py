@@ -92,7 +92,7 @@ def valley(size: int = 97, extent: float = 2400.0, slope: float = 35.0) -> Land:
 
 
 def real(size: int = 97) -> Land:
-    """Return a piece of the default sketch's real terrain, where ridges are steep; not exaggerated."""
+    """Return a piece of the Jacksboro fault, where ridges are steep; not exaggerated."""
     elevation = read_elevation(SKETCHES / "data" / "jacksboro_fault_dem.npz")
     assert elevation.spacing is not None
     piece = elevation.heights[192 : 192 + size, :size].astype(np.float64)

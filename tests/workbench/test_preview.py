@@ -37,6 +37,11 @@ def test_it_has_one_sample_and_a_coarser_mesh(terrain: Sketch):
     assert chosen.size == terrain.size
 
 
+def test_few_pixels_that_are_enlarged_keep_their_samples(terrain: Sketch):
+    assert as_preview(terrain, (600, 400), (300, 200)).samples == 1
+    assert as_preview(terrain, (600, 400), (200, 133)).samples == terrain.samples > 1
+
+
 @pytest.mark.parametrize("grid", [2, 100, 256, 1025])
 def test_a_mesh_that_somebody_set_stays(terrain: Sketch, grid: int):
     chosen = terrain.with_values({"view.grid": grid})

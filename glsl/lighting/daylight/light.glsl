@@ -72,15 +72,15 @@ vec4 kernel(ivec2 texel) {
     beam *= beam_through_clouds(clouds);
     // What clouds take from the sun and hide of the sky, less what they hold back, they send down.
     vec3 cloud = max(whole - beam * level - open * sky, 0.0);
-    float eye = pow(max(dot(whole, LUMINANCE), 1e-12), -adaptation);
-    vec4 found = vec4(eye * cloud, open);
+    float adapted = pow(max(dot(whole, LUMINANCE), 1e-12), -adaptation);
+    vec4 found = vec4(adapted * cloud, open);
     if (texel.x == 0) found = vec4(sun, at.y);
-    if (texel.x == 1) found = vec4(eye * beam, at.x);
-    if (texel.x == 2) found = vec4(eye * (open * sky + cloud), turbidity);
-    if (texel.x == 3) found = vec4(eye * (open * zenith + cloud * overcast(1.0)), eye);
+    if (texel.x == 1) found = vec4(adapted * beam, at.x);
+    if (texel.x == 2) found = vec4(adapted * (open * sky + cloud), turbidity);
+    if (texel.x == 3) found = vec4(adapted * (open * zenith + cloud * overcast(1.0)), adapted);
     if (texel.x == 4 || texel.x >= 7) {
-        found = vec4(eye * (open * horizon + cloud * overcast(HORIZON)), 1.0);
+        found = vec4(adapted * (open * horizon + cloud * overcast(HORIZON)), 1.0);
     }
-    if (texel.x == 5) found = vec4(eye * whole, texelFetch(date, ivec2(0), 0).r);
+    if (texel.x == 5) found = vec4(adapted * whole, texelFetch(date, ivec2(0), 0).r);
     return found;
 }

@@ -19,9 +19,10 @@ vec4 kernel(ivec2 texel) {
         return texel.x > last.x ? vec4(0.0) : texelFetch(light, ivec2(texel.x, 0), 0);
     }
     vec4 cloud = texelFetch(light, ivec2(min(6, last.x), 0), 0);
-    float eye = texelFetch(light, ivec2(min(3, last.x), 0), 0).a;
+    float adapted = texelFetch(light, ivec2(min(3, last.x), 0), 0).a;
     ivec2 from = texel - ivec2(0, 1);
-    vec3 found = texelFetch(dome, min(from, textureSize(dome, 0) - 1), 0).rgb * (cloud.a * eye);
+    vec3 found = texelFetch(dome, min(from, textureSize(dome, 0) - 1), 0).rgb;
+    found *= cloud.a * adapted;
     int rows = max((size.y - 1) / DOMES, 1);
     int table = min(from.y / rows, DOMES - 1);
     float rise = dome_start(vec2(0.0, float(from.y - table * rows) / float(max(rows - 1, 1))),

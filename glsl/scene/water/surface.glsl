@@ -2,10 +2,10 @@
 //
 //   gives    frame, linear light
 //   needs    clouds/shadow.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
-//            noise/gradient.glsl, scene/air_reading.glsl,
-//            scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
-//            scene/water/mirrored.glsl, scene/water/mirrored_sky.glsl,
-//            water/body.glsl, water/foam.glsl, water/rough_mirror.glsl, water/sheet_reading.glsl,
+//            noise/gradient.glsl, scene/air_reading.glsl, scene/footprint.glsl,
+//            scene/ground_reading.glsl, scene/surfaces.glsl, scene/water/mirrored.glsl,
+//            scene/water/mirrored_sky.glsl, trees/leaves_reading.glsl, water/body.glsl,
+//            water/foam.glsl, water/rough_mirror.glsl, water/sheet_reading.glsl,
 //            water/waves.glsl, view/surface.glsl; the picture without water, what it shows, what
 //            scene/water/where gives, the ground and the maps that scene/shaded has
 //   units    metres; light without unit, 1 for white
@@ -29,6 +29,7 @@
 #include "scene/surfaces.glsl"
 #include "scene/water/mirrored.glsl"
 #include "scene/water/mirrored_sky.glsl"
+#include "trees/leaves_reading.glsl"
 #include "view/surface.glsl"
 #include "water/body.glsl"
 #include "water/foam.glsl"
@@ -48,7 +49,7 @@ uniform sampler2D ground;        //! input("linear", "mipmap")
 uniform sampler2D colour;        //! input("linear", "mipmap", "white")
 uniform sampler2D density;       //! input("zero")
 uniform sampler2D waves;         //! input
-uniform sampler2D leaves;        //! input
+uniform sampler2D leaves;        //! input("white")
 uniform sampler2D clear;         //! input("linear", "repeat")
 uniform sampler2D thin;          //! input("linear", "repeat")
 uniform sampler2D thick;         //! input("linear", "repeat")
@@ -111,12 +112,14 @@ vec3 terrain_from(vec3 place, vec3 to_ray, float far, float pixel, Sunlight from
     vec3 found = wired_colour ? textureLod(colour, drape_uv(share, texels), level).rgb : vec3(0.4);
     vec3 normal = normal_of_slope(around.slope);
     float wood = 0.0;
-    if (wired_density) {
+    if (wired_density && wired_leaves) {
         wood = smoothstep(0.1, 0.6, density_at(share));
         float shown = clamp(14.0 / (far * pixel) - 1.0, 0.0, 1.0);
-        float lump = 1.0 + 0.6 * shown * perlin(place.xy / 14.0, SALT + 3u).x
-                + 0.35 * perlin(place.xy / 61.0, SALT + 4u).x;
-        found = mix(found, lump * texelFetch(leaves, ivec2(0), 0).rgb, wood);
+        float lump = 1.0 + 0.6 * shown * perlin(place.xy / 14.0, SALT + 3u).x;
+        float late = late_at(place.xy);
+        vec3 crowns = mix(leaves_in_row(leaves, FIRST_ROCK + OAK, late),
+                          leaves_in_row(leaves, FIRST_ROCK + MAPLE, late), 0.5);
+        found = mix(found, lump * crowns, wood);
     }
     // Crowns are spheres, of which the ray sees the lit side or the other (Lambert's sphere).
     float away = acos(clamp(dot(to_ray, from.direction), -1.0, 1.0));

@@ -28,6 +28,7 @@ from playground.workbench.memory import Compared
 from playground.workbench.preview import as_preview
 from playground.workbench.resume import StoredEdits, first_draft
 from playground.workbench.session import Session
+from playground.workbench.shown_picture import pointed_at
 
 if TYPE_CHECKING:
     import moderngl
@@ -206,16 +207,16 @@ class Compare:
         if self._picture is None:
             self._painter = Painter(session.engine.ctx)
             self._picture = Picture(self._painter)
-        wanted = self._wanted(stored, plan)
+        wanted = self._wanted(stored, plan, picture.size)
         if self._drawn is None and stored.draft is session.shown and stored.steps == session.view.steps:
             with session.engine.borrowed():
                 self._picture.copy(picture)
             self._drawn, self._is_preview = wanted, session.is_preview
         elif wanted != self._drawn:
-            self._draw(stored, plan, preview=session.engine.info.software)
+            self._draw(stored, plan, picture.size, preview=session.engine.info.software)
             self._drawn = wanted
         elif self._is_preview and not session.is_preview:
-            self._draw(stored, plan, preview=False)
+            self._draw(stored, plan, picture.size, preview=False)
 
     def release(self) -> None:
         """Release what was made in the engine's context; it is drawn again where it is needed."""
@@ -224,17 +225,18 @@ class Compare:
                 made.release()
         self._picture = self._painter = self.blend = self._drawn = None
 
-    def _wanted(self, stored: Stored, plan: Plan) -> object:
+    def _wanted(self, stored: Stored, plan: Plan, size: tuple[int, int]) -> object:
         shown = self.session.view.map
         time = plan.time if is_animated(stored.draft.sketch) else 0.0
-        seen = plan.frame_size, plan.sketch.camera, plan.interpolated
+        seen = size, plan.sketch.camera, plan.interpolated
         return stored.draft, seen, time, shown, self.session.engine
 
-    def _draw(self, stored: Stored, plan: Plan, *, preview: bool) -> None:
+    def _draw(self, stored: Stored, plan: Plan, size: tuple[int, int], *, preview: bool) -> None:
+        """Draw A with as many pixels as B was drawn with, and at the size that B is shown at."""
         assert self._picture is not None
         session, engine = self.session, self.session.engine
         sketch = self._seen_as(stored.draft.sketch, plan)
-        chosen = as_preview(sketch) if preview else sketch
+        chosen = as_preview(sketch, size, plan.frame_size) if preview else sketch
         changed = [path for path, before in stored.files.items() if hash_of(path) != before]
         try:
             if changed:
@@ -243,15 +245,17 @@ class Compare:
                 repeats = repeats_of(chosen, time=plan.time)
                 # A save may have left fewer steps than it stopped at.
                 steps = {path: step for path, step in stored.steps.items() if step < repeats.get(path, 0)}
-                texture = _drawn(engine, chosen, plan, steps)
-                self._picture.copy(texture)
+                with pointed_at(engine.runner, size, plan.frame_size):
+                    texture = _drawn(engine, chosen, plan, steps)
+                with engine.borrowed():
+                    self._picture.copy(texture, size)
         except Exception as error:
             if not self._reported:
                 session.notes.append(f"A stays as it was drawn last: {error}")
             self._reported, self._is_preview = True, False
             return
         self.draws += 1
-        self._is_preview = chosen is not sketch
+        self._is_preview = chosen is not sketch or plan.frame_size != size
 
     def _seen_as(self, sketch: Sketch, plan: Plan) -> Sketch:
         """Return a sketch as B is shown: by its camera, and the same texture if one is shown."""

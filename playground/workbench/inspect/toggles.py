@@ -89,6 +89,7 @@ class Inspection:
     def begin(self) -> None:
         """Begin a frame: nothing is on the screen yet."""
         self.costs_shown = self.spread_shown = False
+        self.session.picture.needs_all_pixels = self.inspector.on
 
     def update(self) -> None:
         """Record the costs of the last picture; passes are timed only while their times are shown."""

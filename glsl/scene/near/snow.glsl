@@ -1,0 +1,22 @@
+// scene/near/snow.glsl -- how much of a pixel snow covers, by its depth and the bumps under it.
+//
+//   gives    SNOW_COLOUR, snow_share
+//   needs    nothing: pure functions, no uniforms, no textures
+//   units    metres; share 0..1; colour linear
+//   source   fresh snow reflects 0.8 to 0.9, old snow 0.5 to 0.7: Wiscombe and Warren 1980, "A
+//            Model for the Spectral Albedo of Snow" (Journal of the Atmospheric Sciences 37)
+//   tested   tests/glsl/test_near.py: none at depth 0, more where it is deeper, all where it is
+//            deeper than every bump
+#ifndef SCENE_NEAR_SNOW
+#define SCENE_NEAR_SNOW
+const vec3 SNOW_COLOUR = vec3(0.80, 0.83, 0.87);
+
+// `over` is the height of the bumps over their mean, `hidden` the rms of those too small to be
+// seen, `patchy` from -1 to 1 where wind has left more or less, over tens of metres.
+float snow_share(float depth, float over, float hidden, float patchy) {
+    float soft = 0.02 + 2.0 * hidden;
+    float lies = depth * (1.0 + 0.6 * patchy);
+    // Snow lies in hollows first: none at depth 0, whatever they are.
+    return smoothstep(-soft, soft, lies - max(over + 0.04, 0.0) - soft);
+}
+#endif

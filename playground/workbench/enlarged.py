@@ -1,0 +1,45 @@
+"""Enlarge a picture smoothly to the size of another: along its rows, then along its columns."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from playground.gpu.own_shaders import own_shader
+from playground.gpu.textures import make_texture
+from playground.workbench.full_screen import FullScreen
+
+if TYPE_CHECKING:
+    import moderngl
+
+
+class Enlarger:
+    """Enlarges pictures in one context, which is its caller's to make current."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        self.ctx = ctx
+        self._shader = FullScreen(ctx, own_shader("enlarged.frag"))
+        self._wide: moderngl.Texture | None = None  # enlarged along its rows
+        self._surface: moderngl.Framebuffer | None = None
+
+    def draw(self, picture: moderngl.Texture, target: moderngl.Framebuffer) -> None:
+        """Fill a target with a display-encoded picture; alpha becomes 1."""
+        size = target.width, picture.height
+        if self._wide is None or self._surface is None or self._wide.size != size:
+            self._release_surface()
+            self._wide = make_texture(self.ctx, size, "rgba8")
+            self._surface = self.ctx.framebuffer([self._wide])
+        rows, columns = size[0] / picture.width, target.height / picture.height
+        grey = picture.components == 1
+        self._shader.draw(self._surface, {"picture": picture}, way=(1, 0), times=rows, grey=grey)
+        self._shader.draw(target, {"picture": self._wide}, way=(0, 1), times=columns, grey=False)
+
+    def release(self) -> None:
+        """Release what was made."""
+        self._release_surface()
+        self._shader.release()
+
+    def _release_surface(self) -> None:
+        for made in (self._surface, self._wide):
+            if made is not None:
+                made.release()
+        self._surface = self._wide = None

@@ -1,0 +1,171 @@
+"""Draw the picture that a session shows: a preview while something changes, and in full when it rests.
+
+On a software renderer what changes is drawn with one sample a pixel and a coarser mesh (see
+``preview``), and with as few pixels as it takes to follow the hand (see ``preview_size``), enlarged to
+the size of the picture. What is read from it, saved or compared at rest is drawn in full.
+"""
+
+from __future__ import annotations
+
+import time as clock
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from playground.engine.engine import Engine
+from playground.engine.frame import Frame
+from playground.engine.runner import Runner
+from playground.sketch.model import Sketch
+from playground.sketch.traits import traits_of
+from playground.workbench.catch_up import CatchUp
+from playground.workbench.framing import framed
+from playground.workbench.last_frame import Painter, Picture
+from playground.workbench.preview import as_preview
+from playground.workbench.preview_size import PreviewSize, Size
+from playground.workbench.view import View
+
+if TYPE_CHECKING:
+    import moderngl
+
+REST = 0.2  # [s] without a change after which a preview is drawn again in full
+
+
+class ShownPicture:
+    """The last good picture of one session, in one context."""
+
+    def __init__(self, ctx: moderngl.Context, now: Callable[[], float] = clock.perf_counter) -> None:
+        self.is_preview = False  # it will be drawn again in full
+        self.needs_all_pixels = False  # somebody reads pixels while it moves
+        self.rest = REST  # [s] after which a preview is due
+        self._now = now
+        self._painter = Painter(ctx)
+        self._picture = Picture(self._painter)
+        self._sizes = PreviewSize()
+        self._drawn_size: Size = (0, 0)  # before it was enlarged
+        self._drawn_at = 0.0
+
+    @property
+    def texture(self) -> moderngl.Texture | None:
+        """The picture, enlarged if need be; None before the first."""
+        return self._picture.texture
+
+    @property
+    def is_due(self) -> bool:
+        """Whether it is a preview that has rested, so that it is to be drawn in full."""
+        return self.is_preview and self._now() - self._drawn_at >= self.rest
+
+    @property
+    def drawn_size(self) -> Size:
+        """The pixels that were drawn; fewer than those of ``texture`` in a preview."""
+        return self._drawn_size
+
+    def frame(self, sketch: str, time: float) -> Frame | None:
+        """Read the picture back, as what can be saved; None before the first."""
+        return self._picture.frame(sketch, time)
+
+    def forget(self) -> None:
+        """Forget what passes took: another sketch is opened."""
+        self._sizes.forget()
+
+    def release(self) -> None:
+        """Release the picture."""
+        self._picture.release()
+        self._painter.release()
+
+    def draw(
+        self,
+        engine: Engine,
+        sketch: Sketch,
+        view: View,
+        catch_up: CatchUp,
+        *,
+        size: Size,
+        time: float,
+        in_full: bool,
+        coming: bool,
+    ) -> bool:
+        """Draw a sketch, on a software renderer as a preview unless ``in_full``; return whether that is done.
+
+        ``coming``: it is opened or read again, and the view is the one that it will have.
+        Raises as ``Engine.draw``.
+        """
+        hasty = engine.info.software and not in_full
+        chosen = as_preview(sketch) if hasty else sketch
+        pixels = size
+        if hasty and not self.needs_all_pixels and view.map is None:
+            at = _at(view, sketch, time, coming=coming)
+            changed = self._changed(engine, sketch, view, size, at)
+            if changed or self.texture is None or self.texture.size != size:
+                pixels = self._sizes.choose(engine, _seen(chosen, view, time, size), size, changed, **at)
+            else:
+                pixels = self._drawn_size
+            chosen = as_preview(sketch, size, pixels)
+
+        def drawn_at(time: float) -> moderngl.Texture:
+            at = _at(view, sketch, time, coming=coming)
+            return engine.draw(_seen(chosen, view, time, size), size=pixels, **at)
+
+        with _timed(engine), pointed_at(engine.runner, size, pixels):
+            texture = catch_up.draw(engine, time, drawn_at, in_full=in_full)
+        if engine.info.software and engine.plan is not None:
+            self._sizes.take(engine.plan, engine.times, in_full=in_full and as_preview(sketch) is not sketch)
+        if texture is None:
+            return False
+        with engine.borrowed():
+            self._picture.copy(texture, size)
+        self.is_preview = chosen is not sketch or pixels != size
+        # Nobody waits for what was drawn small because its cost was not known.
+        self.rest = 0.0 if pixels != size and self._sizes.guessed else REST
+        self._drawn_size, self._drawn_at = pixels, self._now()
+        return True
+
+    def differs(self, engine: Engine, sketch: Sketch, view: View, time: float) -> bool:
+        """Return whether a sketch would run a pass if it were drawn as this was; raise as ``Engine.draw``."""
+        assert self.texture is not None
+        return bool(self._changed(engine, sketch, view, self.texture.size, _at(view, sketch, time)))
+
+    def _changed(
+        self, engine: Engine, sketch: Sketch, view: View, size: Size, at: Mapping[str, Any]
+    ) -> list[str]:
+        """Return the passes that would run if a sketch were drawn as the last picture was, by path."""
+        pixels = self._drawn_size if self.texture is not None and self.texture.size == size else size
+        chosen = as_preview(sketch, size, pixels) if self.is_preview else sketch
+        with pointed_at(engine.runner, size, pixels):
+            return engine.stale(_seen(chosen, view, at["time"], size), size=pixels, **at)
+
+
+def _at(view: View, sketch: Sketch, time: float, *, coming: bool = False) -> dict[str, Any]:
+    """Return the time, and where repeats stop, as ``Engine.draw`` takes them."""
+    stops = view.stops(sketch, time, coming=coming)
+    return {"time": time, "steps": stops, "interpolated": view.interpolated}
+
+
+def _seen(sketch: Sketch, view: View, time: float, size: Size) -> Sketch:
+    """Return a sketch at a time as it is shown in a picture of a size."""
+    return framed(sketch, time, view.framed_for, size) if traits_of(sketch).camera else sketch
+
+
+@contextmanager
+def _timed(engine: Engine) -> Iterator[None]:
+    """Have passes timed on a software renderer, where that costs next to nothing."""
+    before = engine.profiling
+    engine.profiling = before or engine.info.software
+    try:
+        yield
+    finally:
+        engine.profiling = before
+
+
+@contextmanager
+def pointed_at(runner: Runner, size: Size, drawn: Size) -> Iterator[None]:
+    """Move the mouse, given over a picture of a size, to the same place of the one that is drawn."""
+    before = runner.mouse, runner.hover, runner.drag
+    if drawn != size:
+        x, y = drawn[0] / size[0], drawn[1] / size[1]
+        (a, b, c, d), (e, f), (g, h, i, j) = before
+        runner.mouse, runner.hover = (a * x, b * y, c * x, d * y), (e * x, f * y)
+        runner.drag = g * x, h * y, i * x, j * y
+    try:
+        yield
+    finally:
+        runner.mouse, runner.hover, runner.drag = before
