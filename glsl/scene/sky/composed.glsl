@@ -13,6 +13,7 @@
 // they are, it is the clear sky, and the clouds make the cover.
 #include "lighting/daylight_weather.glsl"
 #include "maths/drape.glsl"
+#include "scene/surfaces.glsl"
 #include "sky/columns.glsl"
 #include "sky/drops.glsl"
 #pragma kernel(output = "sky:rgba16f")
@@ -21,6 +22,7 @@ uniform sampler2D daylight;  //! input
 uniform sampler2D columns;   //! input
 uniform sampler2D backdrop;  //! input("linear")
 uniform sampler2D in_front;  //! input("linear")
+uniform sampler2D seen;      //! input("black")
 #include "clouds/parameters/drawn.glsl"
 
 // The sun is 47,000 times as bright as white paper in its light, far past what half floats hold.
@@ -41,6 +43,7 @@ vec3 disc_in(vec3 towards, vec3 sun, float pixel, float height, Weather now) {
 }
 
 vec4 kernel(ivec2 texel) {
+    if (wired_seen && !is_sky(texelFetch(seen, texel, 0).a)) return vec4(0.0, 0.0, 0.0, 1.0);
     vec2 share = (vec2(texel) + 0.5) / vec2(size);
     vec3 towards = direction_of(vec2(texel) + 0.5);
     float height = 0.001 * max(base_elevation + eye.z, 0.0);
