@@ -57,14 +57,15 @@ vec3 octave_over(vec2 place, vec2 along, vec2 halves, bool round_topped, uint se
 }
 
 // `kinds` are shares of grass, stones and rock, `pixel` what a pixel covers there, `spacing`
-// that of the heightmap, `depth` how deep snow is; all in metres.
-Bumps bumps_at(vec2 place, vec3 kinds, float strength, PixelOnGround pixel, float spacing,
-               float depth) {
+// that of the heightmap, `depth` how deep snow is; all in metres. `grain` draws places together
+// along which bumps are long, as ripples of sand are.
+Bumps bumps_at(vec2 place, mat2 grain, vec3 kinds, float strength, PixelOnGround pixel,
+               float spacing, float depth) {
     Bumps b = Bumps(vec2(0.0), vec2(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     int end = last_rung(pixel.finest);
-    mat2 turn = mat2(1.0);
+    mat2 turn = grain;
     for (int k = first_rung(spacing); k < end; k++) {
-        turn *= NEXT_TURN;
+        turn = NEXT_TURN * turn;
         float cell = cell_of(k);
         float part = shown_to(cell, pixel.finest) * beyond_map(cell, spacing);
         vec2 halves = 1.0 - vec2(shown_to(cell, pixel.wide), shown_to(cell, 0.5 * pixel.wide));
@@ -80,8 +81,9 @@ Bumps bumps_at(vec2 place, vec3 kinds, float strength, PixelOnGround pixel, floa
         float snow = part * strength * mix(snow_roughness(k), roughness_of(kinds, k), buried);
         b.slope += slope * noise.yz;
         b.snowy += snow / PERLIN_SLOPE * noise.yz;
-        // Means over two places have half the variance.
-        float mean_of = 1.0 / ((1.0 + halves.x) * (1.0 + halves.y));
+        // Means over two places have half the variance; along a grain there is less.
+        float mean_of = 0.5 * (dot(grain[0], grain[0]) + dot(grain[1], grain[1]))
+                / ((1.0 + halves.x) * (1.0 + halves.y));
         b.variance += mean_of * part * part * rough * rough;
         b.snow_variance += mean_of * snow * snow;
         if (cell <= A_STEP) b.height += slope * cell * noise.x;

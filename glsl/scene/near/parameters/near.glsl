@@ -1,7 +1,7 @@
 // scene/near/parameters/near.glsl -- the ground near the eye, finer than the heightmap and colour.
 //
-//   gives    fine_ground, bumpiness, variation, soils, stony, sandy, triplanar, cliffs, rocky,
-//            cliff_colour, coloured_rock, strata, thickness, wet
+//   gives    fine_ground, bumpiness, variation, soils, stony, sandy, ripples_from, triplanar,
+//            cliffs, rocky, cliff_colour, coloured_rock, strata, thickness, wet
 //   needs    nothing
 //   units    metres; slopes in metres over metres; colours linear; shares 0..1
 //   source   none: parameters
@@ -17,7 +17,9 @@ uniform float variation = 0.5;    //! slider(0, 1) step(0.01) group("Near ground
 uniform float stony = 0.2;        //! slider(0, 1) step(0.01) group("Near ground")
                                   //! How much of the ground is stones and no grass
 uniform float sandy = 0.0;        //! slider(0, 1) step(0.01) group("Near ground")
-                                  //! How smooth it is, as sand is
+                                  //! How smooth it is, as sand is, but for ripples
+uniform float ripples_from = 270.0;  //! angle(0, 360) group("Near ground")
+                                  //! Where the wind comes from that ripples sand
 uniform float soils = 0.5;        //! slider(0, 1) step(0.01) group("Near ground")
                                   //! How much stony ground takes the hue of bare soil
 uniform bool triplanar = false;   //! group("Near ground") label("Rock from the sides")
