@@ -171,9 +171,7 @@ vec4 made_near(vec3 at, vec2 slope, Footprint foot, vec4 weight, bool tufts, ino
         variance *= (1.0 - film) * (1.0 - film);
     }
     if (wired_snow_depth) {
-        // A wide pixel has hollows and tops of more than a step, which part with snow gradually.
-        float hidden = bumps.hidden + 0.008 * min(pixel.finest, 25.0);
-        float snowy = snow_share(depth, bumps.height, hidden, patches.dry);
+        float snowy = snow_share(depth, bumps.height, bumps.whole, bumps.hidden, patches.dry);
         found = mix(found, SNOW_COLOUR, snowy);
         push = mix(push, vec3(bumps.snowy, 0.0), snowy);
         variance = mix(variance, bumps.snow_variance, snowy);

@@ -267,13 +267,30 @@ def test_wet_ground_gives_back_what_its_film_lets_out(on_gpu):
 def test_snow_covers_hollows_first_and_everything_at_last(on_gpu):
     file = "scene/near/snow.glsl"
     over = np.linspace(-0.6, 0.4, 41).astype(np.float32)
-    call = "snow_share(d, o, h, p)"
+    call = "snow_share(d, o, 0.1, h, p)"
     for hidden, patchy in product((0.0, 0.02, 0.1), (-0.9, 0.0, 0.9)):
         given = {"o": over, "h": hidden, "p": patchy}
         assert np.all(on_gpu(file, call, d=0.0, **given) == 0), "no snow, no white"
         depths = [on_gpu(file, call, d=float(d), **given) for d in np.linspace(0, 3, 30)]
         assert np.all(np.diff(depths, axis=0) >= 0) and np.all(depths[-1] == 1)
         assert np.all(np.diff(depths, axis=1) <= 0), "what stands higher is bare longer"
+
+
+def test_as_much_snow_lies_on_bumps_that_are_seen_as_on_those_that_are_not(on_gpu):
+    """Near by, the mean over places; far away, the share of a pixel that shows none of its bumps."""
+    places = RNG.uniform(0, 5000, (20000, 2)).astype(np.float32)
+    files = {name: f"scene/near/{name}.glsl" for name in ("bumps", "snow")}
+    call = f"bumps_at(p, mat2(1.0), vec3(1.0, 0.0, 0.0), 1.0, {FINE}, 24.0, 0.0)"
+    over, whole, hidden = (
+        on_gpu(files["bumps"], f"{call}.{n}", p=places) for n in ("height", "whole", "hidden")
+    )
+    np.testing.assert_allclose(over.std(), whole[0], rtol=0.1)
+    assert hidden.max() < 0.1 * whole[0]
+    for depth in (0.06, 0.1, 0.14, 0.2):
+        given = {"d": depth, "w": float(whole[0])}
+        near = on_gpu(files["snow"], "snow_share(d, o, w, h, 0.0)", o=over, h=hidden, **given).mean()
+        far = on_gpu(files["snow"], "snow_share(d, 0.0, w, w, 0.0)", **given)[0]
+        assert abs(near - far) < 0.1, depth
 
 
 LAND = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 t) {{ return {}; }}\n'
