@@ -27,7 +27,14 @@ const vec3 CROWN_WAVES = vec3(2.3, 6.1, 15.0);
 const vec3 CROWN_LUMPS = vec3(0.34, 0.24, 0.12);
 const float CROWN_ROOM = 1.4;  // of the square around a crown of 1
 const float TRUNK = 0.07;      // half the width of a trunk, of a crown of 1
+const float TRUNK_FROM = 6.0;  // pixels of half a crown
 const float TRUNK_LOW = 0.44;  // how much longer than the crown's half it goes down
+
+// How much of an octave a crown shows, of which half is so many pixels wide: all, if a wave is as
+// wide as a pixel; nothing, if it is a third of that.
+float shown(float pixels, int octave) {
+    return clamp(1.5 * pixels / CROWN_WAVES[octave] - 0.5, 0.0, 1.0);
+}
 
 struct Billboard {
     vec3 place;    // of the square's corner
@@ -44,10 +51,14 @@ Billboard billboard_of(vec4 tree, vec2 corner, vec4 others, vec3 eye, mat4 to_cl
     vec3 over = cross(to_eye, right);
     // Half the height of the outline, between that from the side and that from above.
     float tall = length(vec2(crown.up * length(to_eye.xy), crown.across * to_eye.z));
-    vec2 on = CROWN_ROOM * corner * vec2(crown.across, tall);
-    vec3 place = crown.middle + right * on.x + over * on.y;
     float away = distance(eye, crown.middle);
     float pixels = focal * crown.across / max(away, 1e-3);
+    // As much room as the waves need that are shown, and the trunk.
+    float lumps = CROWN_LUMPS.x * shown(pixels, 0) + CROWN_LUMPS.y * shown(pixels, 1)
+            + CROWN_LUMPS.z * shown(pixels, 2);
+    float room = pixels > TRUNK_FROM ? CROWN_ROOM : min(sqrt(1.0 + 1.5 * lumps), CROWN_ROOM);
+    vec2 on = room * corner * vec2(crown.across, tall);
+    vec3 place = crown.middle + right * on.x + over * on.y;
     mat4 rows = transpose(to_clip);
     mat3 rays = mat3(cross(rows[1].xyz, rows[3].xyz), cross(rows[3].xyz, rows[0].xyz),
                      cross(rows[0].xyz, rows[1].xyz));
@@ -68,12 +79,12 @@ struct CrownPoint {
     int kind;
 };
 
-// One octave and its slopes, if a third of a wave or more is as wide as a pixel.
+// One octave and its slopes.
 vec3 lump(vec2 disc, vec4 form, int octave, uint seed) {
-    float shown = clamp(1.5 * form.w / CROWN_WAVES[octave] - 0.5, 0.0, 1.0);
-    if (shown <= 0.0) return vec3(0.0);
+    float part = shown(form.w, octave);
+    if (part <= 0.0) return vec3(0.0);
     vec2 own = vec2(form.z * (7.31 - 2.0 * float(octave)));
-    return shown * perlin(disc * CROWN_WAVES[octave] + own, seed + uint(octave));
+    return part * perlin(disc * CROWN_WAVES[octave] + own, seed + uint(octave));
 }
 
 // What of the square is the trunk below the crown, and as much of that as a pixel shows.
@@ -82,7 +93,7 @@ CrownPoint trunk_point(vec2 disc, vec4 middle, vec4 form, vec3 to_eye) {
     float level = length(to_eye.xy);
     float tall = length(vec2(form.y * level, form.x * to_eye.z));
     float up = disc.y * tall / max(level, 0.05);
-    bool hit = abs(aside) < 1.0 && form.w > 6.0 && disc.y < 0.0
+    bool hit = abs(aside) < 1.0 && form.w > TRUNK_FROM && disc.y < 0.0
             && up > -(1.0 + TRUNK_LOW) * form.y;
     vec3 right = vec3(-to_eye.y, to_eye.x, 0.0) / max(level, 1e-3);
     vec3 front = vec3(to_eye.xy, 0.0) / max(level, 1e-3);
