@@ -25,6 +25,7 @@
 // Waves across a crown's half width, and how much each moves its outline.
 const vec3 CROWN_WAVES = vec3(2.3, 6.1, 15.0);
 const vec3 CROWN_LUMPS = vec3(0.34, 0.24, 0.12);
+const vec3 CROWN_LEANS = vec3(0.13, 0.12, 0.11);  // and its normals
 const float CROWN_ROOM = 1.4;  // of the square around a crown of 1
 const float TRUNK = 0.07;      // half the width of a trunk, of a crown of 1
 const float TRUNK_FROM = 6.0;  // pixels of half a crown
@@ -79,12 +80,17 @@ struct CrownPoint {
     int kind;
 };
 
-// One octave and its slopes.
-vec3 lump(vec2 disc, vec4 form, int octave, uint seed) {
-    float part = shown(form.w, octave);
-    if (part <= 0.0) return vec3(0.0);
-    vec2 own = vec2(form.z * (7.31 - 2.0 * float(octave)));
-    return part * perlin(disc * CROWN_WAVES[octave] + own, seed + uint(octave));
+// How much the outline moves in, and how much the normal leans: sums over the octaves that are
+// shown. A software renderer runs what an `if` skips; the steps of a loop that are left out are.
+vec3 lumps_at(vec2 disc, vec4 form, uint seed) {
+    vec3 total = vec3(0.0);
+    int octaves = form.w > CROWN_WAVES.z / 3.0 ? 3 : form.w > CROWN_WAVES.y / 3.0 ? 2 : 1;
+    for (int k = 0; k < octaves; k++) {
+        vec2 own = vec2(form.z * (7.31 - 2.0 * float(k)));
+        vec3 noise = perlin(disc * CROWN_WAVES[k] + own, seed + uint(k));
+        total += shown(form.w, k) * vec3(CROWN_LUMPS[k], CROWN_LEANS[k], CROWN_LEANS[k]) * noise;
+    }
+    return total;
 }
 
 // What of the square is the trunk below the crown, and as much of that as a pixel shows.
@@ -109,21 +115,17 @@ CrownPoint crown_point(vec2 disc, vec4 middle, vec4 form, float ragged, uint see
     if (species_of(kind) == SPRUCE) {
         // A cone, as wide as the box at its foot.
         float edge = disc.x / clamp(0.5 - 0.5 * disc.y, 0.01, 1.0);
-        radius = max(edge * edge, abs(disc.y));
+        float level = disc.y * disc.y * disc.y;
+        radius = max(edge * edge, level * level);
         around.x = edge * sqrt(max(1.0 - disc.y * disc.y, 0.0));
     }
     vec3 to_eye = normalize(eye - middle.xyz);
     CrownPoint found = trunk_point(disc, middle, form, to_eye);
-    if (radius > 1.0 + ragged * dot(CROWN_LUMPS, vec3(1.0))) return found;
-    vec3 coarse = lump(disc, form, 0, seed);
-    vec3 fine = lump(disc, form, 1, seed);
-    vec3 leaves = lump(disc, form, 2, seed);
-    float outside = radius + ragged * dot(CROWN_LUMPS, vec3(coarse.x, fine.x, leaves.x));
-    if (outside > 1.0) return found;
+    vec3 lumps = ragged * lumps_at(disc, form, seed);
+    if (radius + lumps.x > 1.0) return found;
     vec2 held = disc / max(1.02 * length(disc), 1.0);
     // Lumps of leaves lean the normals.
-    vec2 lumps = 0.13 * coarse.yz + 0.12 * fine.yz + 0.11 * leaves.yz;
-    vec2 leaning = around / max(1.02 * length(around), 1.0) - ragged * lumps;
+    vec2 leaning = around / max(1.02 * length(around), 1.0) - lumps.yz;
     leaning /= max(1.02 * length(leaning), 1.0);
     found.hit = true;
     found.kind = kind;
