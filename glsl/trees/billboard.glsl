@@ -1,6 +1,6 @@
 // trees/billboard.glsl -- a crown as a square turned to the eye, and what each point of it shows.
 //
-//   gives    Billboard, billboard_of, CrownPoint, crown_point
+//   gives    Billboard, billboard_of, disc_of, CrownPoint, crown_point
 //   needs    noise/gradient.glsl, trees/crown.glsl
 //   units    metres; places on the square from -1 to 1 where the smooth crown ends
 //   source   an ellipsoid's outline is an ellipse; normals and places of its front: Max 1996,
@@ -10,6 +10,13 @@
 // Noise is added to the square of the radius, so that the mean area of a ragged crown is that of
 // the smooth one; waves that a pixel is too wide for are left out. Normals are the sphere's that
 // was stretched: leaves look outwards.
+//
+// A pixel works out where on the square it is (disc_of) from numbers that all of the square has:
+// what is interpolated between corners has other bits in each part of a picture drawn in parts,
+// which shows at the edges of leaves. Through the place (x, y) of clip space the ray from the eye
+// is along A x B + x B x W + y W x A, with A, B and W the matrix's rows of x, y and w; where it
+// meets the square is -d (ray u, ray v) / (ray n), with n towards the eye, d away, and u and v
+// the sides, each over half its length.
 #ifndef TREES_BILLBOARD
 #define TREES_BILLBOARD
 #include "noise/gradient.glsl"
@@ -32,28 +39,38 @@ float shown(float pixels, int octave) {
 
 struct Billboard {
     vec3 place;    // of the square's corner
-    vec2 disc;     // the same on the square
+    mat3 disc;     // of a place of clip space, (x, y, 1), the place on the square, times its third
     vec4 middle;   // of the crown, and its kind
     vec4 form;     // half its width and height, a number of its own, half its width in pixels
 };
 
 // `focal`: how many pixels wide is what is as wide as far away.
-Billboard billboard_of(vec4 tree, vec2 corner, vec4 others, vec3 eye, float focal) {
+Billboard billboard_of(vec4 tree, vec2 corner, vec4 others, vec3 eye, mat4 to_clip, float focal) {
     Crown crown = crown_of(tree, others);
     vec3 to_eye = normalize(eye - crown.middle);
     vec3 right = normalize(vec3(-to_eye.y, to_eye.x, 0.0) + vec3(1e-9, 0.0, 0.0));
     vec3 over = cross(to_eye, right);
     // Half the height of the outline, between that from the side and that from above.
     float tall = length(vec2(crown.up * length(to_eye.xy), crown.across * to_eye.z));
-    float pixels = focal * crown.across / max(distance(eye, crown.middle), 1e-3);
+    float away = distance(eye, crown.middle);
+    float pixels = focal * crown.across / max(away, 1e-3);
     // As much room as the waves need that are shown, and the trunk.
     float lumps = CROWN_LUMPS.x * shown(pixels, 0) + CROWN_LUMPS.y * shown(pixels, 1)
             + CROWN_LUMPS.z * shown(pixels, 2);
     float room = pixels > TRUNK_FROM ? CROWN_ROOM : min(sqrt(1.0 + 1.5 * lumps), CROWN_ROOM);
-    vec2 disc = room * corner;
-    vec3 place = crown.middle + right * (disc.x * crown.across) + over * (disc.y * tall);
+    vec2 on = room * corner * vec2(crown.across, tall);
+    vec3 place = crown.middle + right * on.x + over * on.y;
+    mat4 rows = transpose(to_clip);
+    mat3 rays = mat3(cross(rows[1].xyz, rows[3].xyz), cross(rows[3].xyz, rows[0].xyz),
+                     cross(rows[0].xyz, rows[1].xyz));
+    mat3 sides = mat3(-away / crown.across * right, -away / tall * over, to_eye);
     vec4 form = vec4(crown.across, crown.up, float(crown.key & 1023u), pixels);
-    return Billboard(place, disc, vec4(crown.middle, float(crown.kind)), form);
+    return Billboard(place, transpose(sides) * rays, vec4(crown.middle, float(crown.kind)), form);
+}
+
+vec2 disc_of(mat3 disc, vec2 share) {
+    vec3 found = disc * vec3(2.0 * share - 1.0, 1.0);
+    return found.xy / found.z;
 }
 
 struct CrownPoint {
