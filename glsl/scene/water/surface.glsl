@@ -197,6 +197,11 @@ float gust_at(vec2 place, float pixel, float longest) {
     return clamp(1.0 + 1.5 * gusts * found, 0.05, 2.5);
 }
 
+// A band along the shore, so high, that is narrower than a pixel has no more of it than its share.
+float band_share(float high, float slope, float pixel_wide) {
+    return clamp(0.5 * high / (max(slope, 0.02) * pixel_wide), 0.0, 1.0);
+}
+
 vec4 dry(ivec2 texel, vec4 shown, vec4 at, float over) {
     // Ground that waves have reached is wet, and darker.
     float reach = 0.15 + 0.5 * sea_of(wind, fetch, vec2(0.0)).high;
@@ -205,9 +210,7 @@ vec4 dry(ivec2 texel, vec4 shown, vec4 at, float over) {
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     float wide = distance(eye, at.xyz) * length(ray.up) / length(ray.ahead);
     float slope = length(ground_at(ground, at.xy, extent, wide).slope);
-    // A band that is narrower than a pixel darkens it by no more than its share.
-    float shown_of = clamp(0.5 * reach / (max(slope, 0.02) * wide), 0.0, 1.0);
-    float wet = 0.5 * shown_of * (1.0 - smoothstep(0.4 * reach, reach, over));
+    float wet = 0.4 * band_share(reach, slope, wide) * (1.0 - smoothstep(0.0, reach, over));
     return vec4(shown.rgb - wet * max(shown.rgb - air.scattered, 0.0), shown.a);
 }
 
@@ -255,8 +258,9 @@ vec4 kernel(ivec2 texel) {
     vec3 in_air = max(lit.level + lit.sky, 1e-6);
     vec3 below = bed * (down / in_air) * kept + deep * down * (1.0 - kept);
 
-    float cover = shore_cover(deep_here, sea.high, time, gust) + whitecap_cover(wind * gust)
-            + max(sheet.white, 0.0);
+    float cover = shore_cover(deep_here, sea.high, time, gust)
+            * band_share(BREAKER * sea.high, length(around.slope), far * pixel);
+    cover += whitecap_cover(wind * gust) + max(sheet.white, 0.0);
     // Whitecaps lie across the wind, and are drawn out along it.
     vec2 along = place.xy - time * sheet.current;
     along -= sea.towards * (0.6 * dot(along, sea.towards) + 0.5 * wind * time);
