@@ -11,9 +11,9 @@
 //   tested   tests/glsl/test_water_sheet.py: shores lie where the depth of a lake is 0
 //
 // A lake's level is known where it is wet. On dry texels around it, it goes on as the mean of the
-// wet ones nearby, but not over ground that lies much lower, at the outlet. So between a wet texel and
-// a dry one the surface meets the ground where it would in nature. A river lies on the ground as
-// a film, of which more than a half of the share of a texel is wet: narrower ones than that are
+// wet ones nearby, but not over ground that lies much lower, at the outlet. So between a wet texel
+// and a dry one the surface meets the ground where it would in nature. A river lies on the ground
+// as a film, of which more than a half of the share of a texel is wet: narrower ones than that are
 // for texturing/waters.
 #include "maths/nodes.glsl"
 #include "terrain/heightfield.glsl"
