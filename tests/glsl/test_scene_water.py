@@ -122,7 +122,7 @@ def test_the_table_of_the_sky_knows_its_directions(on_gpu):
     to = on_gpu(file, "heaven_direction(t, ivec2(96, 48))", t=texel)
     np.testing.assert_allclose(np.linalg.norm(to, axis=1), 1.0, atol=1e-6)
     back = on_gpu(file, "heaven_place(to, THIN_SKY, ivec2(96, 144))", to=to) % 1.0
-    np.testing.assert_allclose(back, (texel + [0.5, 48.5]) / [96, 144], atol=1e-5)
+    np.testing.assert_allclose(back, (texel + np.array([0.5, 48.5])) / [96, 144], atol=1e-5)
 
 
 def test_no_shader_takes_more_textures_than_every_device_has():

@@ -1,8 +1,8 @@
 // scene/water/moment.glsl -- what is the same for all pixels of the water, in one small table.
 //
 //   gives    moment: rows 0 and 1 the waves of water/wave_table, row 2 the texels below
-//   needs    scene/water/moment_texels.glsl, trees/leaves_reading.glsl; waves; a drift, the leaves of
-//            trees/leaves and the tiles of scene/cover, if there are
+//   needs    scene/water/moment_texels.glsl, trees/leaves_reading.glsl; waves; a drift, the leaves
+//            of trees/leaves and the tiles of scene/cover, if there are
 //   units    as of what it copies; colours linear
 //   source   none: a copy, since a shader has 16 textures at most in WebGL2 and on macOS
 //   tested   tests/glsl/test_scene_water.py

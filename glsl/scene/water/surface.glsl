@@ -5,8 +5,9 @@
 //            noise/gradient.glsl, scene/air_reading.glsl, scene/footprint.glsl,
 //            scene/ground_reading.glsl, scene/surfaces.glsl, scene/water/mirrored.glsl,
 //            scene/water/mirrored_sky.glsl, scene/water/moment_texels.glsl, water/body.glsl,
-//            water/foam.glsl, water/rough_mirror.glsl, water/waves.glsl, view/surface.glsl; the picture without water, what it shows, what
-//            scene/water/where gives, the ground and the maps that scene/shaded has
+//            water/foam.glsl, water/rough_mirror.glsl, water/waves.glsl, view/surface.glsl;
+//            the picture without water, what scene/water/where gives, the ground and the maps
+//            that scene/shaded has
 //   units    metres; light without unit, 1 for white
 //   source   each part in its own file; wet ground is darker: Lekner and Dorf 1988, "Why some
 //            things are darker when wet", Applied Optics 27
@@ -117,13 +118,12 @@ vec3 terrain_from(vec3 place, vec3 to_ray, float far, float pixel, Sunlight from
     Ground around = ground_at(ground, place.xy, extent, far * pixel);
     vec3 found = colour_from(share, far * pixel);
     vec3 normal = normal_of_slope(around.slope);
-    float wood = 0.0;
-    if (wired_density) {
-        wood = smoothstep(0.1, 0.6, density_at(share));
-        float shown = clamp(14.0 / (far * pixel) - 1.0, 0.0, 1.0);
-        float lump = 1.0 + 0.6 * shown * perlin(place.xy / 14.0, SALT + 3u).x;
-        found = mix(found, lump * texelFetch(moment, WOOD, 0).rgb, wood);
-    }
+    // Rocks and crowns are lighter and darker than their mean.
+    float shown = clamp(14.0 / (far * pixel) - 1.0, 0.0, 1.0);
+    float lump = shown * perlin(place.xy / 14.0 + place.z / 9.0, SALT + 3u).x;
+    float wood = wired_density ? smoothstep(0.1, 0.6, density_at(share)) : 0.0;
+    found = mix((1.0 + 0.35 * lump) * found,
+                (1.0 + 0.6 * lump) * texelFetch(moment, WOOD, 0).rgb, wood);
     // Crowns are spheres, of which the ray sees the lit side or the other (Lambert's sphere).
     float away = acos(clamp(dot(to_ray, from.direction), -1.0, 1.0));
     float crown = 2.0 / 3.0 * (sin(away) + (3.14159265 - away) * cos(away)) / 3.14159265;
