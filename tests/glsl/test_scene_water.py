@@ -7,6 +7,8 @@ import re
 import numpy as np
 import pytest
 
+from playground.engine.plan import Window
+from playground.gpu.textures import read_picture
 from playground.paths import GLSL
 from playground.sketch.model import Camera
 from playground.sketch.source import read_source
@@ -123,6 +125,18 @@ def test_the_table_of_the_sky_knows_its_directions(on_gpu):
     np.testing.assert_allclose(np.linalg.norm(to, axis=1), 1.0, atol=1e-6)
     back = on_gpu(file, "heaven_place(to, THIN_SKY, ivec2(96, 144))", to=to) % 1.0
     np.testing.assert_allclose(back, (texel + np.array([0.5, 48.5])) / [96, 144], atol=1e-5)
+
+
+def test_a_picture_in_parts_is_the_whole_picture(any_engine, scene):
+    sketch = scene(given="wind = 5.0, foam = 1.0")
+    whole = any_engine.render(sketch, size=SIZE).array
+    part = Window((40, 20), (80, 47), SIZE)
+    found = read_picture(any_engine.draw_window(sketch, part))
+    (x, y), (width, height) = part.origin, part.size
+    there = whole[SIZE[1] - y - height : SIZE[1] - y, x : x + width]
+    # A corner of the mesh is rounded otherwise from another corner of the picture.
+    off = np.abs(found.astype(int) - there)
+    assert off.max() <= 2 and (off > 0).mean() < 0.001
 
 
 def test_no_shader_takes_more_textures_than_every_device_has():
