@@ -203,10 +203,12 @@ float gust_at(vec2 place, float pixel, float longest) {
     return clamp(1.0 + 1.5 * gusts * found, 0.05, 2.5);
 }
 
+// How high waves reach over the water.
+float reach_of_waves() { return 0.15 + 0.5 * sea_of(wind, fetch, vec2(0.0)).high; }
+
 vec4 dry(ivec2 texel, vec4 shown, vec4 at, float over) {
     // Ground that waves have reached is wet, and darker.
-    float reach = 0.15 + 0.5 * sea_of(wind, fetch, vec2(0.0)).high;
-    if (!is_top(at.w) || over > reach) return shown;
+    float reach = reach_of_waves();
     Aerial air = air_before((vec2(texel) + 0.5) / vec2(size), distance(eye, at.xyz));
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     float wide = distance(eye, at.xyz) * length(ray.up) / length(ray.ahead);
@@ -221,6 +223,9 @@ vec4 kernel(ivec2 texel) {
     vec4 shown = texelFetch(picture, texel, 0);
     vec4 at = texelFetch(seen_water, texel, 0);
     float deep_here = texelFetch(depth, texel, 0).r;
+    bool wet = is_water(at.w) || (is_top(at.w) && -deep_here <= reach_of_waves());
+    if (!wet) return shown;
+    if (skips_rest()) return vec4(0.0);
     if (!is_water(at.w)) return dry(texel, shown, at, -deep_here);
     vec3 place = at.xyz;
     float far = distance(eye, place);
