@@ -24,15 +24,20 @@ vec2 tile_of(vec2 metres, vec4 drift) {
     return (metres - drift.xy) / drift.w;
 }
 
-float cloud_transmittance(sampler2D cloud, vec4 drift, vec3 point, vec3 sun) {
+// `apart`: as far as points are apart that are looked at [m], no finer detail is read.
+float cloud_transmittance(sampler2D cloud, vec4 drift, vec3 point, vec3 sun, float apart) {
     float sine = max(sun.z, 1e-3);
     float up = max(drift.z + CLOUD_MIDDLE - point.z, 0.0);
     vec2 there = point.xy + sun.xy / sine * up;
     float texel = drift.w / float(textureSize(cloud, 0).x);
-    float blur = max(SUN_WIDTH * up / (sine * sqrt(sine) * texel), 1.0);
+    float blur = max(max(SUN_WIDTH * up / (sine * sqrt(sine)), apart) / texel, 1.0);
     float left = textureLod(cloud, tile_of(there, drift), log2(blur)).a;
     // Within the layer, what is above a point thins out.
     return mix(1.0, left, clamp(up / CLOUD_MIDDLE, 0.0, 1.0));
+}
+
+float cloud_transmittance(sampler2D cloud, vec4 drift, vec3 point, vec3 sun) {
+    return cloud_transmittance(cloud, drift, point, sun, 0.0);
 }
 
 // The mean over the tile: what all of the terrain receives.

@@ -1,9 +1,8 @@
-// flight/scene.glsl -- what is seen from the air: sky, haze, water, and the last curve.
+// flight/scene.glsl -- what is seen from the air: haze, water, the terrain's end, the last curve.
 //
-//   gives    Backdrop, eased, air_between, backdrop_towards, air_share, under_water, close_ground,
-//            presented
-//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, colour/tone.glsl,
-//            colour/encode.glsl
+//   gives    Backdrop, eased, air_between, backdrop_towards, end_share, air_share, under_water,
+//            close_ground, presented
+//   needs    lighting/daylight_sky.glsl, colour/tone.glsl, colour/encode.glsl
 //   units    directions are unit vectors, x east, y north, z up; metres; colours linear
 //   source   Fresnel's reflection by Schlick 1994, "An Inexpensive BRDF Model for
 //            Physically-based Rendering", with 0.02 for water; light lost exponentially with depth
@@ -11,12 +10,12 @@
 //            hides the ground; and tests/flight/test_flight.py, in pictures
 //
 // Where the terrain ends, the air in front of it has taken all of it away, and what is left is the
-// backdrop's own colour on the horizon: so no end is seen.
+// backdrop's own colour there: so no end is seen. Under the sky of a daylight the air is that of
+// scene/air, and the terrain ends in the picture of the sky.
 #ifndef FLIGHT_SCENE
 #define FLIGHT_SCENE
 #include "colour/encode.glsl"
 #include "colour/tone.glsl"
-#include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 
 struct Backdrop {
@@ -32,32 +31,23 @@ vec3 eased(vec3 light) {
     return light / (1.0 + dot(light, vec3(0.2126, 0.7152, 0.0722)) / 4.0);
 }
 
-// What air far away adds on the way there.
+// What air far away adds on the way there, and level water mirrors.
 vec3 air_between(sampler2D daylight, Backdrop sky, vec3 towards) {
     return sky.natural ? eased(air_towards(daylight, towards, sky.height)) : sky.horizon;
 }
 
-// The sky, with the sun in it where there is daylight; below the horizon, the air there. A
-// pixel is so many radians high.
-vec3 backdrop_towards(sampler2D daylight, Backdrop sky, vec3 towards, float pixel) {
-    if (!sky.natural) {
-        return mix(sky.horizon, sky.zenith, 1.0 - exp(-3.0 * max(towards.z, 0.0)));
-    }
-    // A little above the horizon is what the air is taken from: there they meet.
-    vec3 seen = towards.z < air_rise(sky.height) ? air_towards(daylight, towards, sky.height)
-            : sky_towards(daylight, towards, sky.height);
-    Sunlight from = sunlight(true, daylight, vec3(0.0), vec2(0.0), vec3(0.0), vec3(0.0));
-    float disc = clamp((radians(0.2665) - distance(towards, from.direction)) / pixel + 0.5, 0.0,
-                       1.0);
-    float lit = dot(from.sun, vec3(0.2126, 0.7152, 0.0722));
-    vec3 sun = max(from.sun * min(46750.0, 60.0 / max(lit, 1e-9)), seen);
-    return mix(eased(seen), sun, towards.z < horizon_rise(sky.height) ? 0.0 : disc);
+// The sky of two colours; below the horizon, the air there.
+vec3 backdrop_towards(Backdrop sky, vec3 towards) {
+    return mix(sky.horizon, sky.zenith, 1.0 - exp(-3.0 * max(towards.z, 0.0)));
 }
 
-// How much of what lies so far away the air hides; all of it from `end` on.
+// How much the backdrop takes the place of what lies so far away: of all from `end` on.
+float end_share(float far, float end) { return smoothstep(0.72, 0.98, far / end); }
+
+// How much of what lies so far away air of one colour hides.
 float air_share(float far, float end) {
     float t = clamp(far / end, 0.0, 1.0);
-    return 1.0 - exp(-1.1 * t * t) * (1.0 - smoothstep(0.72, 0.98, t));
+    return 1.0 - exp(-1.1 * t * t) * (1.0 - end_share(far, end));
 }
 
 // The ground through so many metres of water, and what the water mirrors; above water, the ground.

@@ -12,13 +12,16 @@ if TYPE_CHECKING:
     import moderngl
 
 
+PROGRAMS = ("part_heights", "part_ground", "part_map")
+
+
 class Cutter:
     """Fills a slot's textures; the light is multiplied into the colour that is there."""
 
     def __init__(self, ctx: moderngl.Context, plot: Plot) -> None:
         self.ctx: Any = ctx
         self.plot = plot
-        self._programs = [screen_program(ctx, name) for name in ("part_heights", "part_ground")]
+        self._programs = [screen_program(ctx, name) for name in PROGRAMS]
         self._arrays = [ctx.vertex_array(program, []) for program in self._programs]
         self._surfaces: dict[int, moderngl.Framebuffer] = {}  # by the texture's own number
 
@@ -26,15 +29,36 @@ class Cutter:
         """Cut the heights of the part's own nodes."""
         self._draw(0, target, source, apron=self.plot.apron)
 
-    def ground(self, target: moderngl.Texture, name: str, source: moderngl.Texture, *, first: bool) -> None:
-        """Cut the part's own texels, over what is there or times it."""
+    def ground(
+        self,
+        target: moderngl.Texture,
+        name: str,
+        source: moderngl.Texture,
+        *,
+        first: bool,
+        sky: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    ) -> None:
+        """Cut the part's own texels, over what is there or times it; ``sky``: its light in the source."""
         start, rise = self.plot.shares[name]
         if not first:
             self.ctx.enable_only(self.ctx.BLEND)
             self.ctx.blend_func = self.ctx.DST_COLOR, self.ctx.ZERO
-        self._draw(1, target, source, first=start, rise=rise)
+        self._draw(1, target, source, first=start, rise=rise, sky=sky)
         self.ctx.enable_only(0)
         self.ctx.blend_func = self.ctx.DEFAULT_BLENDING
+
+    def woods(self, target: moderngl.Texture, source: moderngl.Texture, channel: int) -> None:
+        """Cut one number of the part's own texels into a channel."""
+        plot, surface = self.plot, self._surface(target)
+        each = (source.width - 1) / (plot.intervals + 2 * plot.apron)
+        rise = each * plot.intervals / (target.width - 1)
+        surface.color_mask = channel == 0, channel == 1, False, False
+        self._draw(2, target, source, first=plot.apron * each, rise=rise)
+        surface.color_mask = True, True, True, True
+
+    def sunny(self, target: moderngl.Texture) -> None:
+        """Leave all of the sun to woods: the sketch does not say what of it is visible."""
+        self._surface(target).clear(0.0, 1.0, 0.0, 0.0)
 
     def bare(self, target: moderngl.Texture) -> None:
         """Fill with grey: the sketch has neither colour nor light."""

@@ -15,10 +15,10 @@ from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.flight.craft import CLEARANCE, LEVEL, Controls, Craft, stepped
 from playground.flight.layout import Plot, plot_of
-from playground.flight.lens import through
+from playground.flight.lens import through, turned
 from playground.flight.parts import Parts
 from playground.flight.record import Moment
-from playground.flight.scene import Scene
+from playground.flight.scene import Before, Scene
 from playground.gpu.textures import read_picture
 from playground.sketch.model import Sketch
 
@@ -29,6 +29,14 @@ RADIUS = 5.0  # [parts] visible
 PARTS_A_STEP = 1  # of a flight without a window
 START_ABOVE = 450.0  # [m] over the ground
 CACHE_BYTES = 192 * 2**20  # of the engine, besides the flight's own textures
+
+SKY_STEPS = 8
+"""Steps for which sky and air are those of one moment: they are soft, and far away."""
+WIDER_VIEW = 84.0
+"""[degrees] upright, of sky and air."""
+TURNED = 0.22
+"""[radians] the margin of that: a craft that has turned by more has sky and air of its own."""
+_FAR_SKY = 20_000.0  # [m] nothing of the sky is nearer
 
 Start = tuple[float, float, float, float]
 """Metres east, north and up, degrees from north."""
@@ -51,8 +59,9 @@ class Flight:
         self.plot: Plot = plot_of(sketch, engine)
         self.parts = Parts(engine, self.plot, radius)
         wanted = sketch.samples if samples is None else samples
-        self.scene = Scene(engine.ctx, self.plot, max(min(wanted, engine.info.max_samples), 1))
+        self.scene = Scene(engine, self.plot, max(min(wanted, engine.info.max_samples), 1))
         self.craft = self._placed(start)
+        self._earlier = self.craft  # whose sky and air are shown
         self._first, self._first_hour = self.craft, self.parts.hour
         self._next: _Next | None = None
         self._look()
@@ -108,6 +117,8 @@ class Flight:
         if moment.hour is not None:
             self.set_hour(moment.hour)
         self.craft = stepped(self.craft, moment.controls, self.floor)
+        if moment.reset or self.craft.steps % SKY_STEPS == 0:
+            self._earlier = self.craft
         self._look()
         self.parts.tend(parts)
 
@@ -138,7 +149,7 @@ class Flight:
         plot = plot_of(sketch, self.engine)
         parts = Parts(self.engine, plot, self.parts.radius)
         try:
-            scene = Scene(self.engine.ctx, plot, self.scene.samples)
+            scene = Scene(self.engine, plot, self.scene.samples)
         except Exception:
             parts.release()
             raise
@@ -185,9 +196,13 @@ class Flight:
         craft = self.craft
         lens = through(craft, size, (self.parts.radius + 1.5) * self.plot.width)
         eye = (craft.east, craft.north, craft.up)
+        old = self._earlier if turned(self._earlier, craft) < TURNED else craft
+        wide = through(old, size, _FAR_SKY, WIDER_VIEW)
+        before = Before((old.east, old.north, old.up), wide, old.seconds)
         bound = self.engine.ctx.fbo
         try:
-            return self.scene.draw(self.parts, eye, lens, size, bare=bare)
+            seconds = craft.seconds
+            return self.scene.draw(self.parts, eye, lens, size, seconds=seconds, before=before, bare=bare)
         finally:
             if bound is not None and _is_alive(bound):
                 bound.use()

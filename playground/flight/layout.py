@@ -5,7 +5,8 @@ A flight requires of a sketch no more than this: a pass ``height`` whose techniq
 ``apron`` as well, so many texels on each side belong to the neighbours, and are cut off once
 the light is computed. Every other pass with a parameter ``part`` receives it too. The passes
 ``colour``, ``light`` and ``daylight`` are used where they are there, and so are the colours
-of the view. A parameter ``daylight.hour`` makes the time of day the pilot's.
+of the view. A parameter ``daylight.hour`` makes the time of day the pilot's. Under the sky of a
+daylight, passes ``cloud`` and ``drift`` give it clouds, and a pass ``density`` trees.
 """
 
 from __future__ import annotations
@@ -14,13 +15,24 @@ from dataclasses import dataclass, field, replace
 
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError, SketchError
+from playground.paths import GLSL
 from playground.sketch.assign import resolve, value_of, values_of
-from playground.sketch.model import Sketch, Value
+from playground.sketch.model import Graph, Parameter, Sketch, Technique, Value
+from playground.sketch.techniques import read_technique
+from playground.sketch.wiring import output_names
 
 PartName = tuple[int, int]
 """Which part of the terrain, counted east and north."""
 
-_HEIGHT, _COLOUR, _LIGHT, _DAYLIGHT = "height", "colour", "light", "daylight"
+_HEIGHT, _COLOUR, LIGHT, DAYLIGHT = "height", "colour", "light", "daylight"
+DENSITY, VISIBILITY = "density", f"{LIGHT}.visibility"
+_TREES = ("cell", "tallest", "shortest", "seed", "needles", "needles_from", "ragged")
+"""The view's parameters of trees, which are those of ``_TREES_USE``."""
+_TREES_USE = ("trees/place", "trees/seen", "trees/species")
+_TABLES = {"columns", "bounced", "dome"}
+"""What a daylight gives besides, for air and sky."""
+_OUTDOORS = ("mist", "mist_top", "mist_level", "beyond", "clouds", "steps", "wear")
+"""The view's parameters of air and sky."""
 _PART, _APRON, _HOUR, _MAX_DISTANCE = "part", "apron", "hour", "max_distance"
 _FINEST = 1024  # intervals of a part, and texels of its ground
 FARTHEST = 2**20
@@ -40,7 +52,6 @@ class View:
     sea_level: float = 0.0  # [m] above the zero of elevations
     water: tuple[float, float, float] = (0.015, 0.075, 0.11)
     clarity: float = 12.0  # [m]
-    sky: int = 0  # 1: that of the daylight
 
 
 @dataclass(frozen=True)
@@ -61,6 +72,14 @@ class Plot:
     view: View = View()
     hour: str = ""  # path of the time of day; empty: the sketch has none
     has_daylight: bool = False
+    gain: float = 0.0  # of the light: what the sun's light is multiplied by
+    ambient: float = 0.0  # the same of the sky's light
+    outdoors: dict[str, Value] | None = field(default=None, hash=False)
+    """What the view sets of air and sky; None where they are not a daylight's."""
+    trees: dict[str, float] | None = field(default=None, hash=False)
+    """What the view sets of trees, or how they are; None where there are none."""
+    density: int = 1  # [texels] to an interval
+    has_visibility: bool = False  # whether the light says what of the sun is visible
 
     @property
     def width(self) -> float:
@@ -97,12 +116,15 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
     ground = engine.plan_for(sketch, (1, 1)).terrain
     extent, relief = ground.extent, ground.relief
     assert extent is not None and relief is not None
-    sizes = {name: _size(sketch, engine, name) for name in (_HEIGHT, _COLOUR, _LIGHT) if name in names}
+    used = (_HEIGHT, _COLOUR, LIGHT, DENSITY)
+    sizes = {name: _size(sketch, engine, name) for name in used if name in names}
     side, intervals = _intervals(sketch, sizes[_HEIGHT], extent, apron)
-    lit = {name: _finer(sketch, name, size, side, apron) for name, size in sizes.items() if name != _HEIGHT}
+    finer = {name: _finer(sketch, name, size, side, apron) for name, size in sizes.items() if name != _HEIGHT}
+    lit = {name: times for name, times in finer.items() if name != DENSITY}
+    outdoors = _outdoors(sketch, leaves)
     finest = max(lit.values(), default=1)
     parts = [f"{name}.{_PART}" for name in names]
-    hour = f"{_DAYLIGHT}.{_HOUR}"
+    hour = f"{DAYLIGHT}.{_HOUR}"
     return Plot(
         sketch=sketch,
         part_paths=tuple(path for path in parts if _value(sketch, path, leaves) is not None),
@@ -115,7 +137,13 @@ def plot_of(sketch: Sketch, engine: Engine) -> Plot:
         shares={name: (float(apron * times), times / finest) for name, times in lit.items()},
         view=_view(sketch, leaves),
         hour=hour if _value(sketch, hour, leaves) is not None else "",
-        has_daylight=_DAYLIGHT in names,
+        has_daylight=DAYLIGHT in names,
+        gain=_number(sketch, f"{LIGHT}.gain", leaves),
+        ambient=_number(sketch, f"{LIGHT}.ambient", leaves),
+        outdoors=outdoors,
+        trees=_trees(sketch, leaves, outdoors) if DENSITY in names else None,
+        density=finer.get(DENSITY, 1),
+        has_visibility=_has_visibility(sketch),
     )
 
 
@@ -134,12 +162,12 @@ def _apron(sketch: Sketch, leaves: dict[str, Value]) -> int:
     """Return the apron of the height [texels]; raise ``SketchError`` where shadows reach beyond it."""
     found = _value(sketch, f"{_HEIGHT}.{_APRON}", leaves)
     apron = found if isinstance(found, int) else 0
-    distance = _value(sketch, f"{_LIGHT}.{_MAX_DISTANCE}", leaves)
+    distance = _value(sketch, f"{LIGHT}.{_MAX_DISTANCE}", leaves)
     if isinstance(distance, int | float) and distance > apron > 0:
         raise _refused(
             sketch,
-            f"shadows reach {distance:g} texels ({_LIGHT}.{_MAX_DISTANCE}), and there are only {apron} "
-            f"around a part ({_HEIGHT}.{_APRON}); set {_LIGHT}.{_MAX_DISTANCE}={apron}",
+            f"shadows reach {distance:g} texels ({LIGHT}.{_MAX_DISTANCE}), and there are only {apron} "
+            f"around a part ({_HEIGHT}.{_APRON}); set {LIGHT}.{_MAX_DISTANCE}={apron}",
         )
     return apron
 
@@ -180,6 +208,12 @@ def _value(sketch: Sketch, path: str, leaves: dict[str, Value]) -> Value | None:
     return value_of(sketch, path, leaves)
 
 
+def _number(sketch: Sketch, path: str, leaves: dict[str, Value]) -> float:
+    """Return a parameter's value; 0 where there is none."""
+    found = _value(sketch, path, leaves)
+    return float(found) if isinstance(found, int | float) else 0.0
+
+
 def _size(sketch: Sketch, engine: Engine, name: str) -> tuple[int, int]:
     plan = engine.plan_for(sketch, (1, 1), wanted=name)
     try:
@@ -212,3 +246,47 @@ def _view(sketch: Sketch, leaves: dict[str, Value]) -> View:
         if value is not None:
             found[name] = value
     return replace(View(), **found)  # type: ignore[arg-type]
+
+
+def _outdoors(sketch: Sketch, leaves: dict[str, Value]) -> dict[str, Value] | None:
+    """Return what the view sets of air and sky; None unless they are those of a daylight."""
+    daylight = sketch.graph.find(DAYLIGHT)
+    if daylight is None or not _TABLES <= {*output_names(daylight.technique)}:
+        return None
+    # A view outdoors has no other sky.
+    if _value(sketch, "view.sky", leaves) == 0 and _value(sketch, "view.mist", leaves) is None:
+        return None
+    found = {name: _value(sketch, f"view.{name}", leaves) for name in _OUTDOORS}
+    return {name: value for name, value in found.items() if value is not None}
+
+
+def _trees(sketch: Sketch, leaves: dict[str, Value], outdoors: dict[str, Value] | None) -> dict[str, float]:
+    """Return what the view sets of trees, or how they are; raise ``SketchError`` where they have no light."""
+    if outdoors is None:
+        raise _refused(
+            sketch,
+            f"its pass '{DENSITY}' has trees, which are lit by a pass '{DAYLIGHT}' of lighting/daylight "
+            'under its own sky; add both, as view.sky = "daylight", or take out the trees',
+        )
+    usual: dict[str, Value] = {}
+    for use in _TREES_USE:
+        technique = read_technique(use, GLSL, GLSL)
+        usual |= {path.rpartition(".")[2]: p.default for path, p in _parameters(technique).items()}
+    found = {name: _value(sketch, f"view.{name}", leaves) for name in _TREES}
+    chosen = {name: usual[name] if value is None else value for name, value in found.items()}
+    return {name: float(value) for name, value in chosen.items() if isinstance(value, int | float)}
+
+
+def _parameters(technique: Technique) -> dict[str, Parameter]:
+    if isinstance(technique, Graph):
+        return technique.leaf_parameters
+    return {parameter.name: parameter for parameter in technique.parameters}
+
+
+def _has_visibility(sketch: Sketch) -> bool:
+    """Return whether the light's technique has a pass that says what of the sun is visible."""
+    light = sketch.graph.find(LIGHT)
+    inner = VISIBILITY.partition(".")[2]
+    return (
+        light is not None and isinstance(light.technique, Graph) and light.technique.find(inner) is not None
+    )

@@ -31,12 +31,14 @@ class Lens:
         return inside
 
 
-def through(craft: Craft, size: tuple[int, int], farthest: float) -> Lens:
+def through(
+    craft: Craft, size: tuple[int, int], farthest: float, field_of_view: float = FIELD_OF_VIEW
+) -> Lens:
     """Return the view ahead of a craft in a picture of that size [pixels], as far as that [m]."""
     ahead, right, up = axes(craft)
     rotation = np.eye(4)
     rotation[:3, :3] = [right, up, -ahead]
-    tall = 1 / math.tan(math.radians(FIELD_OF_VIEW) / 2)
+    tall = 1 / math.tan(math.radians(field_of_view) / 2)
     near, far = NEAREST, farthest
     lens = np.zeros((4, 4))
     lens[0, 0], lens[1, 1] = tall * size[1] / size[0], tall
@@ -45,7 +47,7 @@ def through(craft: Craft, size: tuple[int, int], farthest: float) -> Lens:
     matrix = lens @ rotation
     rows = [matrix[3] + matrix[0], matrix[3] - matrix[0], matrix[3] + matrix[1], matrix[3] - matrix[1]]
     rows.append(matrix[3] + matrix[2])
-    pixel = math.radians(FIELD_OF_VIEW) / size[1]
+    pixel = math.radians(field_of_view) / size[1]
     inverse = np.linalg.inv(matrix)
     with np.errstate(under="ignore"):  # a right angle's cosine is 0, or nearly
         return Lens(matrix.astype(np.float32), inverse.astype(np.float32), np.array(rows), pixel)
@@ -61,3 +63,9 @@ def axes(craft: Craft) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArra
     cr, sr = math.cos(craft.roll), math.sin(craft.roll)
     # Right wing down: the craft's right goes below the horizon.
     return ahead, cr * level - sr * above, sr * level + cr * above
+
+
+def turned(before: Craft, after: Craft) -> float:
+    """Return the angle between two attitudes [radians]."""
+    cosine = (np.sum(np.array(axes(before)) * np.array(axes(after))) - 1) / 2
+    return math.acos(min(max(float(cosine), -1.0), 1.0))

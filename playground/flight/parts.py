@@ -24,8 +24,11 @@ from numpy.typing import NDArray
 from playground.engine.engine import Engine
 from playground.errors import SketchError
 from playground.flight.cutter import Cutter
-from playground.flight.layout import FARTHEST, PartName, Plot
+from playground.flight.daylight import daylight_of
+from playground.flight.groves import Grove
+from playground.flight.layout import DAYLIGHT, DENSITY, FARTHEST, LIGHT, VISIBILITY, PartName, Plot
 from playground.gpu.textures import bytes_of, make_texture, read_texture
+from playground.sketch.model import Sketch
 
 if TYPE_CHECKING:
     import moderngl
@@ -45,12 +48,14 @@ class Slot:
 
     heights: moderngl.Texture  # r32f, a texel a node, 0..1 times relief
     ground: moderngl.Texture  # rgba16f with mipmaps, colour times light
+    woods: moderngl.Texture | None  # rg8: how densely trees stand, what of the sun is visible
     nodes: NDArray[np.float32]  # the heights again, for the CPU: row 0 south
     hour: float = 0.0
     lowest: float = 0.0
     highest: float = 0.0
     mean: tuple[float, ...] = (0.1, 0.1, 0.1, 1.0)  # of its ground
     used: int = 0  # when it was last wanted
+    grove: Grove | None = None  # its trees, once they are near
 
     @property
     def bytes(self) -> int:
@@ -62,6 +67,8 @@ class Slot:
         """Release the textures."""
         self.heights.release()
         self.ground.release()
+        if self.woods is not None:
+            self.woods.release()
 
 
 class Parts:
@@ -81,6 +88,7 @@ class Parts:
         self._spare: list[Slot] = []
         self._all: list[Slot] = []  # those being filled included
         self._clock = 0
+        self._sky_at: tuple[float, tuple[float, float, float]] | None = None  # the sky's light at an hour
         self._chosen: tuple[int, int, int] | None = None
         self._wanted: list[PartName] = []
         self._open: tuple[PartName, Generator[None, None, None]] | None = None  # the part being made
@@ -192,10 +200,16 @@ class Parts:
         self._cutter.heights(slot.heights, self.engine.texture(sketch, "height"))
         yield
         for index, name in enumerate(self.plot.shares):
-            self._cutter.ground(slot.ground, name, self.engine.texture(sketch, name), first=index == 0)
+            sky = self._sky(sketch, hour) if name == LIGHT else (0.0, 0.0, 0.0)
+            texture = self.engine.texture(sketch, name)
+            self._cutter.ground(slot.ground, name, texture, first=index == 0, sky=sky)
             yield
         if not self.plot.shares:
             self._cutter.bare(slot.ground)
+        if slot.woods is not None:
+            self._cut_woods(slot.woods, sketch)
+            slot.grove = None
+            yield
         slot.ground.build_mipmaps()
         last = slot.ground.read(level=self.plot.ground.bit_length() - 1, alignment=1)
         slot.mean = tuple(float(n) for n in np.frombuffer(last, np.float16))
@@ -208,6 +222,24 @@ class Parts:
             self._spare.append(before)
         self.slots[part] = slot
         self.made += 1
+
+    def _cut_woods(self, woods: moderngl.Texture, sketch: Sketch) -> None:
+        """Cut how densely trees stand, and what of the sun is visible there."""
+        self._cutter.sunny(woods)
+        self._cutter.woods(woods, self.engine.texture(sketch, DENSITY), 0)
+        if self.plot.has_visibility:
+            self._cutter.woods(woods, self.engine.texture(sketch, VISIBILITY), 1)
+        woods.build_mipmaps()
+
+    def _sky(self, sketch: Sketch, hour: float) -> tuple[float, float, float]:
+        """Return the sky's light in the light of a time of day; none where it is not known."""
+        if self.plot.outdoors is None:
+            return 0.0, 0.0, 0.0
+        if self._sky_at is None or self._sky_at[0] != hour:
+            red, green, blue = daylight_of(self.engine.read(sketch, DAYLIGHT)).sky
+            times = self.plot.ambient
+            self._sky_at = hour, (times * red, times * green, times * blue)
+        return self._sky_at[1]
 
     def _next(self) -> PartName | None:
         return next(self._lacking(), None)
@@ -238,9 +270,14 @@ class Parts:
         ground = make_texture(ctx, (self.plot.ground, self.plot.ground), "rgba16f")
         ground.filter = (ctx.LINEAR_MIPMAP_LINEAR, ctx.LINEAR)
         ground.anisotropy = 1.0 if self.engine.info.software else 8.0
-        for texture in (heights, ground):
+        woods = None
+        if self.plot.trees is not None:
+            side = self.plot.intervals * self.plot.density + 1
+            woods = make_texture(ctx, (side, side), "rg8")
+            woods.filter = (ctx.LINEAR_MIPMAP_LINEAR, ctx.LINEAR)
+        for texture in filter(None, (heights, ground, woods)):
             texture.repeat_x = texture.repeat_y = False
-        self._all.append(Slot(heights, ground, np.zeros((n, n), np.float32)))
+        self._all.append(Slot(heights, ground, woods, np.zeros((n, n), np.float32)))
         return self._all[-1]
 
     def release(self) -> None:

@@ -23,6 +23,11 @@ def terrain_program(ctx: moderngl.Context) -> moderngl.Program:
     return ctx.program(vertex_shader=_read("terrain.vert"), fragment_shader=_read("terrain.frag"))
 
 
+def trees_program(ctx: moderngl.Context) -> moderngl.Program:
+    """Compile the program that draws trees."""
+    return ctx.program(vertex_shader=_read("trees.vert"), fragment_shader=_read("trees.frag"))
+
+
 def screen_program(ctx: moderngl.Context, name: str) -> moderngl.Program:
     """Compile a program that fills its target, by the name of its fragment shader."""
     return ctx.program(vertex_shader=_read("screen.vert"), fragment_shader=_read(f"{name}.frag"))

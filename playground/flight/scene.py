@@ -6,16 +6,20 @@ is drawn as a plain of the terrain's mean height and colour, mostly within the h
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from playground.engine.engine import Engine
+from playground.flight.daylight import daylight_of
 from playground.flight.layout import Plot
 from playground.flight.lens import Lens
-from playground.flight.meshes import part_mesh, steps_of
+from playground.flight.meshes import Block, part_mesh, steps_of
+from playground.flight.outdoors import Around, Outdoors
 from playground.flight.parts import Parts, Slot
 from playground.flight.programs import AIR_DIRECTIONS, screen_program, terrain_program
-from playground.gpu.textures import make_framebuffer, make_texture
+from playground.flight.woods import Woods
+from playground.gpu.textures import make_framebuffer, make_texture, read_texture
 
 if TYPE_CHECKING:
     import moderngl
@@ -26,6 +30,8 @@ SKIRT = 2.0
 """Depth of a part's skirt over a triangle's side: at most that much is cut from an edge."""
 GRAIN = 700.0
 """[m] period of the ground's fine grain, about."""
+UNITS = 12
+"""Of textures: heights, ground, daylight, grain, air; sky, scattered, left, cloud; woods, their light."""
 MAGENTA = (1.0, 0.0, 1.0)
 
 
@@ -37,14 +43,24 @@ def visibility_range(radius: float) -> float:
     return max(radius - 0.89, 0.5)
 
 
+class Before(NamedTuple):
+    """When and from where sky and air were looked at."""
+
+    eye: tuple[float, float, float]  # [m]
+    lens: Lens
+    seconds: float
+
+
 class Scene:
     """Draws on one context, into textures of its own."""
 
-    def __init__(self, ctx: moderngl.Context, plot: Plot, samples: int) -> None:
-        self.ctx = ctx
+    def __init__(self, engine: Engine, plot: Plot, samples: int) -> None:
+        self.ctx = ctx = engine.ctx
         self.plot = plot
         self.samples = samples
         self.drawn = 0  # parts drawn last
+        self._end = 0.0  # of the terrain [m]
+        self._shown: tuple[tuple[Any, ...], Around] | None = None
         self.triangles = 0  # of the last picture
         self._terrain = terrain_program(ctx)
         self._sky = screen_program(ctx, "sky")
@@ -60,26 +76,28 @@ class Scene:
         self._mean = make_texture(
             ctx, (1, 1), "rgba16f", np.array([0.1, 0.11, 0.07, 1], np.float16).tobytes()
         )
-        self._form: type = np.float32
         self._grain = _grain(ctx)
         self._air = make_texture(ctx, (AIR_DIRECTIONS, 1), "rgba16f")
         self._air.filter = (ctx.LINEAR, ctx.LINEAR)
         self._air.repeat_x = self._air.repeat_y = False
         self._ring = make_framebuffer(ctx, [self._air])
+        self._smooth = ctx.sampler(False, False, False, (ctx.LINEAR, ctx.LINEAR))
+        self._tiled = ctx.sampler(True, True, False, (ctx.LINEAR_MIPMAP_LINEAR, ctx.LINEAR))
         self._towards_sun = (0.0, 1.0)
         self._take_air()
         self._surface: Surface | None = None
+        self._outdoors = Outdoors(engine, plot) if self._natural else None
+        self.woods = Woods(engine, plot) if plot.trees is not None else None
 
     @property
     def _natural(self) -> bool:
-        """Whether sky and air are those of a daylight: the view asks for it, and there is one."""
-        return self.plot.view.sky == 1 and self._daylight.width > 1
+        """Whether sky and air are those of a daylight."""
+        return self.plot.outdoors is not None
 
     def take_daylight(self, texture: moderngl.Texture) -> None:
         """Copy the small texture of ``daylight``; another kind of texture of that name is ignored."""
         if texture.components != 4 or texture.dtype not in ("f2", "f4") or texture.width < 2:
             return
-        self._form = np.float16 if texture.dtype == "f2" else np.float32
         self._daylight.release()
         form = "rgba16f" if texture.dtype == "f2" else "rgba32f"
         self._daylight = make_texture(self.ctx, texture.size, form, texture.read(alignment=1))
@@ -87,8 +105,9 @@ class Scene:
         self._take_air()
 
     def _take_air(self) -> None:
-        """Find the sun's direction: the air's colour depends on the angle from it alone."""
-        east, north = (float(n) for n in np.frombuffer(self._daylight.read(alignment=1), self._form)[:2])
+        """Find the sun's direction: the colour of the horizon depends on the angle from it alone."""
+        self._light = daylight_of(read_texture(self._daylight))
+        east, north, _ = self._light.to_sun
         level = float(np.hypot(east, north))
         self._towards_sun = (east / level, north / level) if level > 1e-9 else (0.0, 1.0)
 
@@ -101,7 +120,7 @@ class Scene:
         self._ring.use()
         self._ring.viewport = (0, 0, AIR_DIRECTIONS, 1)
         self.ctx.enable_only(0)
-        self.ctx.clear_samplers(0, 3)
+        self.ctx.clear_samplers(0, UNITS)
         self._daylight.use(2)
         view = self.plot.view
         _set(self._horizon, daylight=2, natural=self._natural, zenith=view.zenith, horizon=view.horizon)
@@ -115,31 +134,43 @@ class Scene:
         lens: Lens,
         size: tuple[int, int],
         *,
+        seconds: float = 0.0,
+        before: Before | None = None,
         bare: bool = False,
     ) -> moderngl.Texture:
         """Draw a picture and return its texture, rgba8, encoded, valid until the next draw.
 
-        ``bare`` leaves out sky, air and the replacement of missing parts, and shows magenta
-        there, to find holes.
+        Clouds are where the wind has carried them after so many seconds. Sky and air are those of
+        ``before``, a little earlier, None: of now. ``bare`` leaves out sky, air, trees and the
+        replacement of missing parts, and shows magenta there, to find holes.
         """
+        self._end = visibility_range(parts.radius) * self.plot.width
         self._draw_air(eye)
+        values = self._view_values(lens, eye)
+        around = self._around(before or Before(eye, lens, seconds), size, parts.hour)
+        if self._outdoors is not None and around is not None:
+            values |= _values_of(around) | {"to_sun": self._light.to_sun}
+            values["over_tile"] = self._outdoors.over_tile(eye, seconds)
+        if self.woods is not None:
+            values |= self.woods.values(parts, eye, lens, self._light)
         surface = self._surface_of(size)
         surface.many.use()
         surface.many.viewport = (0, 0, *size)
         surface.many.clear(*MAGENTA, 1.0, depth=1.0)
-        self.ctx.clear_samplers(0, 5)
-        self._grain.use(3)
-        self._air.use(4)
-        self._daylight.use(2)
+        self._bind(around)
         self.ctx.enable_only(self.ctx.DEPTH_TEST)
+        _set(self._terrain, **values)
         self._draw_terrain(parts, eye, lens, bare=bare)
         if not bare:
+            if self.woods is not None:
+                self.woods.draw(values)
             # After the terrain: the sky is computed where it is visible only.
             self.ctx.depth_func = "<="
-            self._set_sky(self._sky, lens, eye)
+            _set(self._sky, **values)
             self._arrays[self._sky.glo].render(self.ctx.TRIANGLES, vertices=3)
             self.ctx.depth_func = "<"
         self.ctx.enable_only(0)
+        self.ctx.clear_samplers(0, UNITS)
         if surface.single is not None:
             self.ctx.copy_framebuffer(surface.single, surface.many)
         surface.shown.use()
@@ -152,12 +183,17 @@ class Scene:
 
     def release(self) -> None:
         """Release everything."""
+        if self._outdoors is not None:
+            self._outdoors.release()
+        if self.woods is not None:
+            self.woods.release()
         if self._surface is not None:
             self._surface.release()
         owned: list[Any] = [array for array, _ in (*self._meshes, self._plain)]
         owned += [*self._arrays.values(), *self._buffers, self._ring]
         owned += [self._terrain, self._sky, self._present, self._horizon]
         owned += [self._daylight, self._flat, self._mean, self._grain, self._air]
+        owned += [self._smooth, self._tiled]
         for item in owned:
             item.release()
 
@@ -165,10 +201,9 @@ class Scene:
 
     def _draw_terrain(self, parts: Parts, eye: tuple[float, float, float], lens: Lens, *, bare: bool) -> None:
         plot, program = self.plot, self._terrain
-        self._set_sky(program, lens, eye)
         view = plot.view
-        _set(program, heights=0, ground=1, spacing=plot.spacing, relief=plot.relief)
-        _set(program, width=plot.width, end=visibility_range(parts.radius) * plot.width, clear=bare)
+        _set(program, heights=0, ground=1, woods=10, spacing=plot.spacing, relief=plot.relief)
+        _set(program, width=plot.width, clear=bare)
         _set(program, sea=view.sea, sea_level=view.sea_level - plot.base, eye_up=eye[2])
         _set(program, air_table=4, towards_sun=self._towards_sun, grain=3)
         _set(program, grain_times=max(round(plot.width / GRAIN), 1))
@@ -198,39 +233,86 @@ class Scene:
                 slot = found[index]
                 if slot is None and bare:
                     continue
-                self._draw_part(slot, corner[index], eye[2], float(far[index]))
+                ups = float(boxes_low[index, 2]), float(boxes_high[index, 2])
+                self._draw_part(slot, corner[index], eye[2], float(far[index]), lens, ups)
 
-    def _draw_part(self, slot: Slot | None, corner: Any, eye_up: float, far: float) -> None:
+    def _draw_part(
+        self,
+        slot: Slot | None,
+        corner: Any,
+        eye_up: float,
+        far: float,
+        lens: Lens,
+        heights_of: tuple[float, float],
+    ) -> None:
+        """Draw a part whose corner is there from the eye, so far away; ``heights_of``: from the eye [m]."""
         if slot is None:
-            array, step = self._plain[0], self.plot.intervals
-            heights, ground, count = self._flat, self._mean, self._plain[1]
+            (array, blocks), step, level = self._plain, self.plot.intervals, len(self._levels)
+            heights, ground = self._flat, self._mean
         else:
             level = min(sum(far >= start for start in LEVEL_AT), len(self._levels) - 1)
-            (array, count), step = self._meshes[level], self._levels[level]
+            (array, blocks), step = self._meshes[level], self._levels[level]
             heights, ground = slot.heights, slot.ground
         heights.use(0)
         ground.use(1)
+        if slot is not None and slot.woods is not None:
+            slot.woods.use(10)
+        _set(self._terrain, wooded=slot is not None and slot.woods is not None)
         _set(self._terrain, corner=(float(corner[0]), float(corner[1]), -eye_up), is_flat=slot is None)
         _set(self._terrain, skirt=SKIRT * self.plot.spacing * step)
-        array.render(self.ctx.TRIANGLES)
         self.drawn += 1
-        self.triangles += count
+        if level > 0:
+            array.render(self.ctx.TRIANGLES)
+            self.triangles += sum(block.indices for block in blocks) // 3
+            return
+        # So large that much of it is beside the picture.
+        nodes = np.array([block.nodes for block in blocks], np.float64) * self.plot.spacing
+        ups = np.broadcast_to(heights_of, (len(blocks), 2))
+        low = np.column_stack([nodes[:, :2] + corner[:2], ups[:, 0]])
+        high = np.column_stack([nodes[:, 2:] + corner[:2], ups[:, 1]])
+        for index in np.nonzero(lens.sees(low, high))[0]:
+            array.render(self.ctx.TRIANGLES, vertices=blocks[index].indices, first=blocks[index].first)
+            self.triangles += blocks[index].indices // 3
 
-    def _mesh(self, step: int) -> tuple[moderngl.VertexArray, int]:
-        vertices, indices = part_mesh(self.plot.intervals, step)
+    def _mesh(self, step: int) -> tuple[moderngl.VertexArray, list[Block]]:
+        vertices, indices, blocks = part_mesh(self.plot.intervals, step)
         buffers = self.ctx.buffer(vertices.tobytes()), self.ctx.buffer(indices.tobytes())
         self._buffers += buffers
         array = self.ctx.vertex_array(
             self._terrain, [(buffers[0], "3f", "node")], index_buffer=buffers[1], index_element_size=4
         )
-        return array, len(indices) // 3
+        return array, blocks
 
-    def _set_sky(self, program: moderngl.Program, lens: Lens, eye: tuple[float, float, float]) -> None:
+    def _around(self, before: Before, size: tuple[int, int], hour: float) -> Around | None:
+        """Return air and sky of a moment; computed once for all pictures that take them."""
+        if self._outdoors is None:
+            return None
+        if self._shown is None or self._shown[0] != (before.eye, before.seconds, size, hour):
+            found = self._outdoors.draw(before.eye, before.lens, size, before.seconds, hour)
+            self._shown = (before.eye, before.seconds, size, hour), found
+        return self._shown[1]
+
+    def _view_values(self, lens: Lens, eye: tuple[float, float, float]) -> dict[str, Any]:
+        """Return what all programs are given."""
         view = self.plot.view
-        _set(program, daylight=2, natural=self._natural, zenith=view.zenith, horizon=view.horizon)
-        _set(program, altitude=self._altitude(eye))
-        _set(program, pixel=lens.pixel, clip_from_near=lens.clip_from_near.T.ravel().tolist())
-        _set(program, near_from_clip=lens.near_from_clip.T.ravel().tolist())
+        found: dict[str, Any] = {"daylight": 2, "natural": self._natural, "zenith": view.zenith}
+        found |= {"horizon": view.horizon, "altitude": self._altitude(eye), "eye_up": eye[2]}
+        found |= {"pixel": lens.pixel, "clip_from_near": lens.clip_from_near.T.ravel().tolist()}
+        return found | {"near_from_clip": lens.near_from_clip.T.ravel().tolist(), "end": self._end}
+
+    def _bind(self, around: Around | None) -> None:
+        """Bind what all programs read."""
+        self.ctx.clear_samplers(0, UNITS)
+        self._daylight.use(2)
+        self._grain.use(3)
+        self._air.use(4)
+        if around is not None:
+            textures = (around.sky, around.scattered, around.left, around.cloud)
+            for unit, texture in enumerate(textures, 5):
+                texture.use(unit)
+                (self._tiled if texture is around.cloud else self._smooth).use(unit)
+            if around.table is not None:
+                around.table.use(11)
 
     def _surface_of(self, size: tuple[int, int]) -> Surface:
         if self._surface is None or self._surface.size != size:
@@ -269,6 +351,12 @@ class Surface:
                 framebuffer.release()
         for item in self._owned:
             item.release()
+
+
+def _values_of(around: Around) -> dict[str, Any]:
+    """Return what programs are given of what is around the craft."""
+    found = {"sky_picture": 5, "scattered": 6, "left": 7, "cloud": 8, "table": 11, "clouded": around.clouded}
+    return {**found, "wind": around.wind, "open_mean": around.mean, "outdoors_clip": around.clip}
 
 
 def _set(program: moderngl.Program, **values: Any) -> None:

@@ -3,15 +3,14 @@
 //   gives    tree: its foot east, north and up, and how tall it is, 0 for none; key: its rank over
 //            the share of trees that is drawn so far away, below 1 for one that is drawn, else 2;
 //            and how near to its end a tree of key 1 is (drawn_part)
-//   needs    noise/hash.glsl, terrain/heightfield.glsl, trees/level.glsl; a height, a density, the
-//            camera
+//   needs    terrain/heightfield.glsl, trees/level.glsl, trees/place/cell.glsl; a height, a
+//            density, the camera
 //   units    metres; density 0..1
-//   source   a cell is a whole number of the world, hashed, so where a tree stands depends neither
-//            on the eye nor on the picture; by level: Cook and others 2007 (trees/level.glsl)
+//   source   trees/place/cell.glsl; by level: Cook and others 2007 (trees/level.glsl)
 //   tested   tests/glsl/test_trees.py, by counts against the density's integral
-#include "noise/hash.glsl"
 #include "terrain/heightfield.glsl"
 #include "trees/level.glsl"
+#include "trees/place/cell.glsl"
 #pragma kernel(output = "tree:rgba32f, key:rg32f")
 
 uniform sampler2D height;          //! input
@@ -22,8 +21,6 @@ uniform bool all_round = false;    //! Those outside the picture as well
 uniform float margin = 60.0;       //! slider(0, 500) unit("m")
                                    //! How far outside the picture trees are drawn: shadows come in
 uniform uint seed = 5u;            //! slider(0, 9999) Which trees
-
-const uint SALT = 0xc07a7689u;  // CRC-32 of "trees/place"
 
 // Whether a place, anywhere between two heights, may be in the picture or `margin` beside it.
 bool may_be_seen(vec2 place, float low, float high) {
@@ -41,10 +38,8 @@ void kernel(ivec2 texel, out vec4 tree, out vec2 key) {
     tree = vec4(0.0);
     key = vec2(2.0, 1.0);
     ivec2 here = ivec2(floor(eye.xy / cell)) + texel - size / 2;
-    uvec3 first = hash3(uvec3(uint(here.x), uint(here.y), seed + SALT));
-    uvec3 second = hash3(uvec3(uint(here.x), uint(here.y), seed + SALT + 1u));
-    vec2 jitter = vec2(unit_from_bits(first.x), unit_from_bits(first.y)) - 0.5;
-    vec2 place = (vec2(here) + 0.5 + JITTER * jitter) * cell;
+    Rooted own = tree_in(here, seed);
+    vec2 place = (vec2(here) + 0.5 + own.off) * cell;
     vec2 share = place / extent;
     if (any(lessThan(share, vec2(0.0))) || any(greaterThan(share, vec2(1.0)))) return;
     // Nearly all of the cells end here, and their neighbours with them.
@@ -52,14 +47,13 @@ void kernel(ivec2 texel, out vec4 tree, out vec2 key) {
     if (!all_round && !may_be_seen(place, min(relief, 0.0), max(top, 0.0))) return;
     float wanted = 1.0;
     if (wired_density) wanted = height_at(density, share * vec2(textureSize(density, 0) - 1));
-    if (unit_from_bits(first.z) >= wanted) return;
+    if (own.chance >= wanted) return;
     float up = height_at(height, share * vec2(textureSize(height, 0) - 1)) * relief;
     float away = distance(eye, vec3(place, up));
     float kept = kept_share(away, whole, end_of_table(reach, cell, size));
-    float rank = unit_from_bits(second.x);
-    if (rank >= drawn_share(kept)) return;
+    if (own.rank >= drawn_share(kept)) return;
     if (!all_round && !may_be_seen(place, up, up + 2.0 * tallest)) return;
-    float tall = tallest * mix(shortest, 1.0, unit_from_bits(second.y));
+    float tall = tallest * mix(shortest, 1.0, own.size);
     tree = vec4(place, up, tall * growth_of_kept(away, whole));
-    key = vec2(rank / drawn_share(kept), drawn_part(kept));
+    key = vec2(own.rank / drawn_share(kept), drawn_part(kept));
 }

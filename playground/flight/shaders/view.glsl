@@ -7,3 +7,4 @@ uniform float altitude;  // of the eye over the sea [km]
 uniform float pixel;
 uniform mat4 clip_from_near;
 uniform mat4 near_from_clip;
+uniform float eye_up;    // above height 0 [m]

@@ -1,0 +1,8 @@
+// Which share of all trees is drawn at a distance: from 0 to `reach`, a texel each.
+#include "trees/level.glsl"
+
+uniform float whole;
+uniform float reach;
+uniform float texels;
+out float share;
+void main() { share = drawn_share(kept_share(floor(gl_FragCoord.x) / (texels - 1.0) * reach, whole, reach)); }
