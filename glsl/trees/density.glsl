@@ -26,8 +26,8 @@ uniform float band = 60.0;         //! log_slider(1, 1000) unit("m")
                                    //! How gradually both ends come
 uniform float wet = 0.0;           //! slider(-1, 1) step(0.01)
                                    //! 1: only on wet ground, -1: only on dry ground, 0: on either
-uniform vec4 bears = vec4(1.0, 0.15, 0.0, 0.0);
-                                   //! slider(0, 1) parts("grass", "rock", "snow", "path")
+uniform vec4 bears = vec4(1.0, 0.15, 0.0, 0.0);  //! slider(0, 1)
+                                   //! parts("grass", "rock", "snow", "path")
                                    //! How well trees grow on each layer of the weights
 uniform float clearings = 0.0;     //! slider(0, 1) step(0.01) Share of the ground that is meadow
 uniform float clearing = 600.0;    //! log_slider(10, 10000) unit("m") How wide a clearing is
