@@ -49,22 +49,25 @@ float map_of(sampler2D map, vec2 share) {
     return height_at(map, clamp(share, 0.0, 1.0) * vec2(textureSize(map, 0) - 1));
 }
 
+const float LATER = 7.0;  // days that crowns in a lump are before others
 const uint SALT = 0x396fa381u;  // CRC-32 of "trees/cover"
 
-// Light and dark of the crowns of a wood, of mean 1: octaves of noise from a pixel's width up,
-// each as much weaker as its waves are wider. One octave alone looks like camouflage.
-float lumps(vec2 place, float pixel) {
-    float total = 1.0;
+// Light and dark of the crowns of a wood, of mean 1; and by how much they have turned more or less
+// than their neighbours, of mean 0: octaves of noise from a pixel's width up, each as much weaker
+// as its waves are wider. One octave alone looks like camouflage. A slope of noise knows nothing
+// of its height, so that the lighter ones have not turned more, which would change the mean.
+vec2 lumps(vec2 place, float pixel) {
+    vec2 total = vec2(1.0, 0.0);
     float wave = 1.3 * cell;
-    float strength = 0.5;
+    float strength = 1.0;
     for (int k = 0; k < 5; k++) {
-        float shown = clamp(wave / (1.5 * pixel) - 1.0, 0.0, 1.0);
-        vec2 at = place / wave + 0.37 * float(k);
-        if (shown > 0.0) total += shown * strength * perlin(at, SALT + uint(k)).x;
+        float shown = clamp(wave / pixel - 1.0, 0.0, 1.0);
+        vec3 noise = perlin(place / wave + 0.37 * float(k), SALT + uint(k));
+        total += shown * strength * noise.xy;
         wave *= 2.3;
         strength *= 0.69;  // 2.3^-0.45
     }
-    return max(total, 0.1);
+    return vec2(max(total.x, 0.1), total.y);
 }
 
 float brightness(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
@@ -130,7 +133,9 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     float lens = length(transpose(clip_from_world)[1].xyz);
     float pixel = 2.0 * away / (lens * float(size.y)) / sqrt(max(rises.x, 0.05));
     vec4 in_sight = others_in_sight(others);
-    vec3 crowns = colour_of_wood(leaves, in_sight, late_at(at.xy)) * lumps(at.xy, pixel);
+    vec2 dapples = lumps(at.xy, pixel);
+    float late = late_at(at.xy) + LATER * dapples.y;
+    vec3 crowns = colour_of_wood(leaves, in_sight, late) * dapples.x;
     albedo.rgb = mix(albedo.rgb, crowns, hidden);
     // By brightness, what comes from the leaves of the colour that both have together.
     float part = hidden * brightness(crowns) / max(brightness(albedo.rgb), 1e-6);
