@@ -12,6 +12,6 @@
 
 vec4 kernel(ivec2 texel) {
     vec2 towards = vec2(sin(radians(wind_to)), cos(radians(wind_to)));
-    return wave_row(texel.y == 0 ? sea_of(wind, fetch, towards) : river_of(1.0, 0.0), texel.x,
-                    time);
+    if (texel.y == 0) return wave_row(sea_of(wind, fetch, towards), texel.x, time);
+    return wave_row(river_of(1.0, 0.0), texel.x, time);
 }

@@ -235,9 +235,13 @@ vec4 kernel(ivec2 texel) {
     Sea sea = sea_of(wind, fetch, vec2(sin(radians(wind_to)), cos(radians(wind_to))));
     float gust = gust_at(place.xy, far * pixel, sea.longest);
     bool runs = length(here.yz) > MOVING;
-    Waves seen_waves = runs ? river_waves(here.yz, here.w, place.xy, foot)
-            : waves_at(moment, 0, sea, place.xy, time, foot);
-    if (!runs) seen_waves = Waves(seen_waves.slope * sqrt(gust), seen_waves.variance * gust);
+    Waves seen_waves;
+    if (runs) {
+        seen_waves = river_waves(here.yz, here.w, place.xy, foot);
+    } else {
+        Waves even = waves_at(moment, 0, sea, place.xy, time, foot);
+        seen_waves = Waves(even.slope * sqrt(gust), even.variance * gust);
+    }
     Mirrors mirrors = mirrors_of(to_eye, seen_waves.slope, seen_waves.variance);
     float rough = sqrt(seen_waves.variance);
     vec3 above = mirrored_light(mirrors, place, far, pixel, rough, air, lit);
