@@ -144,6 +144,7 @@ float cloud_after(Layer layer, float path, float end, float long_, float short_)
 
 vec4 kernel(ivec2 texel) {
     if (wired_seen && sky_hidden(seen, texel, size)) return vec4(0.0, 0.0, 0.0, 1.0);
+    if (skips_rest()) return vec4(0.0);
     vec3 ahead = direction_of(vec2(texel) + 0.5);
     float angle = distance(ahead, direction_of(vec2(texel) + vec2(0.5, 1.5)));
     vec4 wind = texelFetch(drift, ivec2(0), 0);

@@ -203,6 +203,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 bumps) {
         albedo.rgb = cut_of_land(earth, at.xy / extent, depth_of_cut(at.w));
         return;
     }
+    if (skips_rest()) return;
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     float far = distance(eye, at.xyz);
     vec2 slope = ground_at(ground, at.xy, extent, far * length(ray.up) / length(ray.ahead)).slope;

@@ -93,6 +93,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     shadow = other;
     bool tree = is_object(at.w) && is_tree(kind_of(at.w));
     if (!is_object(at.w) && !is_top(at.w)) return;
+    if (skips_rest()) return;
     vec2 share = at.xy / extent;
     float stands = clamp(map_of(density, share), 0.0, 1.0);
     float away = distance(eye, at.xyz);
