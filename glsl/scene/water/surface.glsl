@@ -200,6 +200,9 @@ float gust_at(vec2 place, float pixel, float longest) {
     return clamp(1.0 + 1.5 * gusts * found, 0.05, 2.5);
 }
 
+// How high waves reach over the water.
+float reach_of_waves() { return 0.15 + 0.5 * sea_of(wind, fetch, vec2(0.0)).high; }
+
 // A band along the shore, so high, that is narrower than a pixel has no more of it than its share.
 float band_share(float high, float slope, float pixel_wide) {
     return clamp(0.5 * high / (max(slope, 0.02) * pixel_wide), 0.0, 1.0);
@@ -207,8 +210,7 @@ float band_share(float high, float slope, float pixel_wide) {
 
 vec4 dry(ivec2 texel, vec4 shown, vec4 at, float over) {
     // Ground that waves have reached is wet, and darker.
-    float reach = 0.15 + 0.5 * sea_of(wind, fetch, vec2(0.0)).high;
-    if (!is_top(at.w) || over > reach) return shown;
+    float reach = reach_of_waves();
     Aerial air = air_before((vec2(texel) + 0.5) / vec2(size), distance(eye, at.xyz));
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     float wide = distance(eye, at.xyz) * length(ray.up) / length(ray.ahead);
@@ -221,6 +223,9 @@ vec4 kernel(ivec2 texel) {
     vec4 shown = texelFetch(picture, texel, 0);
     vec4 at = texelFetch(seen_water, texel, 0);
     vec4 here = texelFetch(state, texel, 0);
+    bool wet = is_water(at.w) || (is_top(at.w) && -here.x <= reach_of_waves());
+    if (!wet) return shown;
+    if (skips_rest()) return vec4(0.0);
     if (!is_water(at.w)) return dry(texel, shown, at, -here.x);
     vec3 place = at.xyz;
     float far = distance(eye, place);
