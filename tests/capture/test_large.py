@@ -120,7 +120,7 @@ def test_a_mesh_differs_in_few_pixels_and_at_no_seam(any_engine: Engine, name: s
 
 
 def test_crowns_have_the_same_bits_in_every_part(any_engine: Engine):
-    """But where two are equally far: which one is nearer is left to the rounding of interpolated depths."""
+    """But where another one is seen: depths and edges of squares are rounded as those of any mesh."""
     size, ref = (320, 180), "view.crowns"
     sketch = load("trees").with_values({"view.antialias": False})
     whole = any_engine.read(sketch, ref, size=size).copy()
@@ -134,7 +134,7 @@ def test_crowns_have_the_same_bits_in_every_part(any_engine: Engine):
     other = (whole.view(np.uint32) != parts.view(np.uint32)).any(axis=2) & crowns
     swapped = np.abs(whole[..., :3] - parts[..., :3]).max(axis=2) > 0.1
     assert crowns.sum() > 20_000 and not (other & ~swapped).any()
-    assert np.count_nonzero(other) < 1e-4 * other.size
+    assert np.count_nonzero(other) < 0.002 * other.size
 
 
 @pytest.mark.slow
