@@ -1,6 +1,6 @@
 // clouds/density.glsl -- how dense heaped clouds are at a place of their layer.
 //
-//   gives    density_at, worn, Wear, WORN_MOST
+//   gives    density_at, Wear, wear_of, worn
 //   needs    clouds/layer_form.glsl, clouds/billows_reading.glsl
 //   units    places across in tiles, heights and thicknesses in the tallest; densities 0..1 of
 //            the most extinction

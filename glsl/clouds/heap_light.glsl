@@ -24,7 +24,7 @@ float sun_in_heap(float depth, float above, float whole, float around, float sin
                   float together, float upwards) {
     float once = 3.14159265 * drops_phase_wide(together) * exp(-depth);
     float forwards = 12.5663706 * henyey_greenstein(together, 0.5);
-    float alone = 0.122 * forwards * exp(-0.5 * depth) + 0.254 * exp(-0.2 * depth);
+    float alone = 0.132 * forwards * exp(-0.5 * depth) + 0.275 * exp(-0.2 * depth);
     Diffuse layer = diffuse_of_beam(above, whole, max(sine, 0.02));
     float often = 3.14159265 * max(layer.mean + WIDE_G * layer.down * upwards, 0.0);
     return once + (1.0 - around * around) * alone + min(1.2 * around, 0.93) * often;

@@ -129,9 +129,7 @@ def photons(heaps, eye, ahead, sun, rng, asked=0.25):
     ("cover", "elevation", "view"),
     [
         (0.35, 60.0, (60.0, 20.0)),  # from below, beside the sun
-        (0.35, 25.0, (330.0, 20.0)),  # with the sun behind
         (0.6, 60.0, (20.0, -25.0)),  # from above
-        (0.85, 60.0, (150.0, 20.0)),  # below the sun, under nearly all cloud
         (0.6, 8.0, (330.0, 20.0)),  # a low sun
     ],
 )
@@ -147,7 +145,7 @@ def test_heaps_send_as_much_light_as_photons_do(any_engine, make_sketch, cover, 
     tile = any_engine.read(sketch, "cloud", size=SEEN).astype(np.float64)[..., 0]
     cube = cube_of(any_engine.read(sketch, "billows", size=SEEN).astype(np.float64)[..., 0])
     eye = np.asarray(any_engine.plan.eye.position, np.float64)
-    ahead = rays(any_engine.plan.eye, SEEN)[::2, ::2].reshape(-1, 3)
+    ahead = rays(any_engine.plan.eye, SEEN).reshape(-1, 3)
     truth = photons(Heaps(tile, cube), eye, ahead, sun, np.random.default_rng(5))
     assert found == pytest.approx(truth, rel=0.2)
 
