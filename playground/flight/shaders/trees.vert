@@ -27,7 +27,7 @@ void main() {
     float kept = kept_share(far, whole, reach);
     if (own.x >= room * drawn_share(kept)) return;
     float small = shrunk(own.x / drawn_share(kept), drawn_part(kept), room);
-    float tall = tree.w * growth_of_kept(far, whole) * small * pow(room, GROWTH);
+    float tall = tree.w * growth_of_kept(far, whole, reach) * small * pow(room, GROWTH);
     float above_sea = tree.z + base;
     Billboard board = billboard_of(vec4(tree.xyz, tall), corner,
                                    species_at(above_sea), local_eye, 1.0 / pixel);
