@@ -10,8 +10,9 @@ from pathlib import Path
 from playground.paths import GLSL
 from playground.sketch.catalogue import Choice, Entry
 from playground.sketch.catalogue import techniques as listed
-from playground.sketch.model import Kernel, Technique, Variant, kernels_of
+from playground.sketch.model import Graph, Kernel, Technique, Variant, kernels_of
 from playground.sketch.presence import deciding_inputs
+from playground.sketch.technique import NOT
 from playground.sketch.techniques import Techniques
 
 from .markdown import code, escaped, fenced, folded, table
@@ -176,11 +177,20 @@ def _wiring(entry: Entry, technique: Technique) -> str:
     rows = []
     for name in entry.inputs:
         notes = f"may stay unwired; it then reads {fallbacks[name]}" if fallbacks.get(name) else ""
-        if name in deciding_inputs(technique):
-            notes = "where it is wired there are passes, and their parameters, that else are not there"
+        if isinstance(technique, Graph) and name in deciding_inputs(technique):
+            notes = _deciding(technique, name)
         rows.append(("input", code(name), notes))
     rows += [("output", code(name), code(formats.get(name, ""))) for name in entry.outputs]
     return "## Inputs and outputs\n\n" + table(("", "Name", ""), rows)
+
+
+def _deciding(graph: Graph, name: str) -> str:
+    """Return which passes of a technique are there by one of its inputs."""
+    there = [code(spec.name) for spec in graph.passes if name in spec.when]
+    gone = [code(spec.name) for spec in graph.passes if f"{NOT}{name}" in spec.when]
+    parts = [f"only where it is wired: {', '.join(there)}"] if there else []
+    parts += [f"only where it is not: {', '.join(gone)}"] if gone else []
+    return "; ".join(parts) or "passes inside are there only where it is wired"
 
 
 def _parameters(entry: Entry) -> str:

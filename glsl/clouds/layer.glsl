@@ -12,6 +12,7 @@
 #include "clouds/crossing.glsl"
 #include "clouds/shadow.glsl"
 #include "clouds/sunlight.glsl"
+#include "scene/sky/hidden.glsl"
 #pragma kernel(output = "clouds:rgba16f")
 
 uniform sampler2D daylight;  //! input
@@ -19,6 +20,7 @@ uniform sampler2D columns;   //! input
 uniform sampler2D bounced;   //! input
 uniform sampler2D cloud;     //! input("linear", "repeat", "mipmap")
 uniform sampler2D drift;     //! input
+uniform sampler2D seen;      //! input("black")
 
 const float LOWEST_SUN = 0.1;  // below it clouds are lit from the side, which a flat layer has not
 const float FARTHEST = 300.0;  // [km] past any horizon
@@ -29,6 +31,7 @@ vec3 direction_of(vec2 pixel) {
 }
 
 vec4 kernel(ivec2 texel) {
+    if (wired_seen && sky_hidden(seen, texel, size)) return vec4(0.0, 0.0, 0.0, 1.0);
     vec3 ahead = direction_of(vec2(texel) + 0.5);
     float angle = distance(ahead, direction_of(vec2(texel) + vec2(0.5, 1.5)));
     vec4 wind = texelFetch(drift, ivec2(0), 0);
@@ -45,7 +48,7 @@ vec4 kernel(ivec2 texel) {
     vec4 here = textureLod(cloud, tile_of(eye.xy + ahead.xy * (1000.0 * span.x), wind), level);
     if (here.a > 0.9995) return vec4(0.0, 0.0, 0.0, 1.0);
     CloudLight light = cloud_light(daylight, columns, bounced, from, ahead, span.x, height);
-    float whole = CLOUD_DEPTH * here.r;
+    float whole = depth_straight_up(here.r);
     float sine = max(light.to_sun.z, LOWEST_SUN);
     Crossing crossed = crossing(whole, sine);
     float scattered = from < height ? crossed.through - exp(-min(whole / sine, 80.0))

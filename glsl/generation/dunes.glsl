@@ -9,7 +9,8 @@
 //
 // One wave whose phase runs with the wind, bent by noise so that crests wander and end. It rises
 // over `back` of its length and falls over the rest, which is as long as the angle of repose asks
-// for where the dune is highest. Small ones, a fourth as long, ride on the backs of large ones.
+// for where the dune is highest. Small ones, a fourth as long, ride on the backs of large ones;
+// their slopes and those of the large ones together are no steeper than sand can be.
 #include "noise/periodic.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "height:r32f, sand:r16f")
@@ -67,5 +68,5 @@ void kernel(ivec2 texel, out float height, out float sand) {
     float large = field_at(place, between, tallest, 1u);
     float small = field_at(place, 0.25 * between, 0.2 * tallest, 4u) * (1.0 - large);
     sand = bare.y;
-    height = bare.x + sand * tallest * 0.8 * (large + 0.25 * small) / max(relief, 1e-3);
+    height = bare.x + sand * tallest * (0.75 * large + 0.04 * small) / max(relief, 1e-3);
 }

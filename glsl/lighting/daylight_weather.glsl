@@ -16,12 +16,16 @@ struct Weather {
     float adapted;    // what all light is multiplied by for the eye
     vec3 overcast;    // light that clouds send down on level ground
     vec3 level;       // light of sun and sky on level ground
+    float latitude;   // of the place [degrees]
+    float sidereal;   // how far the sky of stars has turned [degrees]
 };
 
 Weather weather(sampler2D daylight) {
     vec4 cloud = texelFetch(daylight, ivec2(6, 0), 0);
     return Weather(texelFetch(daylight, ivec2(2, 0), 0).a, cloud.a,
                    texelFetch(daylight, ivec2(3, 0), 0).a, cloud.rgb,
-                   texelFetch(daylight, ivec2(5, 0), 0).rgb);
+                   texelFetch(daylight, ivec2(5, 0), 0).rgb,
+                   texelFetch(daylight, ivec2(4, 0), 0).a,
+                   texelFetch(daylight, ivec2(7, 0), 0).a);
 }
 #endif

@@ -1,6 +1,7 @@
 // lighting/sun_position.glsl -- where the sun is over a place on Earth, by day and hour.
 //
-//   gives    days_from_2000, sun_course, sun_over, refraction, sun_position, sun_position_solar
+//   gives    days_from_2000, sun_course, sun_over, refraction, sidereal_angle,
+//            sidereal_angle_solar, sun_position, sun_position_solar
 //   needs    maths/angle.glsl
 //   units    degrees; latitude north and longitude east of Greenwich positive; hours from
 //            midnight, of any number; azimuth clockwise from north; elevation of the disc's middle
@@ -87,6 +88,21 @@ float refraction(float elevation) {
         seconds = inverse * (58.1 + inverse * inverse * (-0.07 + inverse * inverse * 0.000086));
     }
     return seconds / 3600.0;
+}
+
+// How far the sky of stars has turned over a longitude, at so many hours of universal time: the
+// right ascension that is on the meridian.
+float sidereal_angle(float longitude, int year, int day, float hours) {
+    float part = hours / 24.0 - 0.5;
+    return turned_since_2000(280.46062, 0.01435263, days_from_2000(year, day), part)
+            + 15.0 * (hours - 12.0) + longitude;
+}
+
+// The same by the sun's own time.
+float sidereal_angle_solar(float longitude, int year, int day, float hours) {
+    float universal = hours - longitude / 15.0;
+    return sidereal_angle(longitude, year, day, universal)
+            - sun_course(days_from_2000(year, day), universal).y;
 }
 
 // Azimuth and elevation as seen through the air, by universal time; `place` is latitude and

@@ -128,13 +128,14 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     // Half the angle of a pixel is one over the lens's scale, times one over the picture's half.
     float lens = length(transpose(clip_from_world)[1].xyz);
     float pixel = 2.0 * away / (lens * float(size.y)) / sqrt(max(rises.x, 0.05));
-    vec3 crowns = colour_of_wood(leaves, others, late_at(at.xy)) * lumps(at.xy, pixel);
+    vec4 in_sight = others_in_sight(others);
+    vec3 crowns = colour_of_wood(leaves, in_sight, late_at(at.xy)) * lumps(at.xy, pixel);
     albedo.rgb = mix(albedo.rgb, crowns, hidden);
     // By brightness, what comes from the leaves of the colour that both have together.
     float part = hidden * brightness(crowns) / max(brightness(albedo.rgb), 1e-6);
     Depths depths = Depths(depth_towards(all, to_eye, rises.x),
                            depth_towards(all, to_sun, max(rises.y, LOWEST)),
                            depth_towards(all, SKY_FROM, SKY_FROM.z));
-    vec2 lit = wood_at(table, to_eye, to_sun, depths, needles_in_sight(others));
+    vec2 lit = wood_at(table, to_eye, to_sun, depths, in_sight.z + in_sight.w);
     taken = mix(taken, vec4(0.0, phase * lit.x, lit.y, 1.0), part);
 }

@@ -1,6 +1,6 @@
 // trees/crown.glsl -- the shape of a tree's crown, by its place, its height and the species there.
 //
-//   gives    Form, form_of, share_of, mean_body, share_in_sight, needles_in_sight, shares_with,
+//   gives    Form, form_of, share_of_oaks, body_of, others_in_sight, mean_body, shares_with,
 //            needles_only, needle_share, Crown, crown_of, visible_place
 //   needs    noise/hash.glsl, trees/kinds.glsl
 //   units    metres; sizes of crowns as shares of the tree's height
@@ -34,12 +34,8 @@ Form form_of(int species) {
     return Form(vec2(0.16, 0.20), 0.475, 0.525);
 }
 
-// The share of one species.
-float share_of(vec4 others, int species) {
-    if (species == OAK) return max(1.0 - others.x - others.y - others.z - others.w, 0.0);
-    if (species == MAPLE) return others.x;
-    if (species == BIRCH) return others.y;
-    return species == PINE ? others.z : species == SPRUCE ? others.w : 0.0;
+float share_of_oaks(vec4 others) {
+    return max(1.0 - others.x - others.y - others.z - others.w, 0.0);
 }
 
 // Half the width of the ellipse that hides as much, half the height, and the middle.
@@ -49,26 +45,20 @@ vec3 body_of(int species) {
     return vec3(species == SPRUCE ? CONE_AREA * mean : mean, form.up, form.middle);
 }
 
-// Of what one sees of the trees of a place, the share that is of a species: by areas.
-float share_in_sight(vec4 others, int species) {
-    float total = 0.0;
-    for (int k = 0; k < SPECIES; k++) {
-        vec3 body = body_of(k);
-        total += share_of(others, k) * body.x * body.y;
-    }
-    vec3 own = body_of(species);
-    return share_of(others, species) * own.x * own.y / total;
+float area_of(int species) {
+    vec3 body = body_of(species);
+    return body.x * body.y;
+}
+
+// How much of what one sees of a place is of each of the others, by areas, oaks being the rest.
+vec4 others_in_sight(vec4 others) {
+    vec4 seen = others * vec4(area_of(MAPLE), area_of(BIRCH), area_of(PINE), area_of(SPRUCE));
+    return seen / (seen.x + seen.y + seen.z + seen.w + share_of_oaks(others) * area_of(OAK));
 }
 
 vec3 mean_body(vec4 others) {
-    vec3 total = vec3(0.0);
-    for (int k = 0; k < SPECIES; k++) total += share_of(others, k) * body_of(k);
-    return total;
-}
-
-// What one sees of needles, of all trees.
-float needles_in_sight(vec4 others) {
-    return share_in_sight(others, PINE) + share_in_sight(others, SPRUCE);
+    return share_of_oaks(others) * body_of(OAK) + others.x * body_of(MAPLE)
+            + others.y * body_of(BIRCH) + others.z * body_of(PINE) + others.w * body_of(SPRUCE);
 }
 
 // Where all have broad leaves, and where none has: what trees/wood has a table for.

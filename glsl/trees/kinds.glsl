@@ -97,7 +97,7 @@ vec3 leaf_colour(int species, float tint, float late, float day) {
 
 vec3 needle_colour(int species, float tint) {
     if (species == PINE) return mix(vec3(0.027, 0.043, 0.020), vec3(0.040, 0.054, 0.022), tint);
-    return mix(vec3(0.018, 0.031, 0.016), vec3(0.026, 0.038, 0.017), tint);
+    return mix(vec3(0.022, 0.038, 0.021), vec3(0.031, 0.046, 0.023), tint);
 }
 
 // Of a tree of a species; its tints differ by up to 0.16 in brightness, and by nothing on the

@@ -17,9 +17,7 @@ const uint LATE_SALT = 0x121d5919u;  // CRC-32 of "trees/leaves_reading"
 
 // By how many days leaves at a place are behind those of others.
 float late_at(vec2 place) {
-    float wide = perlin(place / 530.0, LATE_SALT).x;
-    float narrow = perlin(place / 170.0, LATE_SALT + 1u).x;
-    return clamp(14.0 * (wide + 0.6 * narrow), -MOST_LATE, MOST_LATE);
+    return clamp(18.0 * perlin(place / 310.0, LATE_SALT).x, -MOST_LATE, MOST_LATE);
 }
 
 vec3 leaves_in_row(sampler2D leaves, int row, float late) {
@@ -34,14 +32,12 @@ vec3 colour_of_tree(sampler2D leaves, int kind, float late) {
     return leaves_in_row(leaves, kind, late);
 }
 
-// By how much of each species one sees; `others` as of trees/species.
-vec3 colour_of_wood(sampler2D leaves, vec4 others, float late) {
-    vec4 total = vec4(0.0);
-    for (int k = 0; k < SPECIES; k++) {
-        vec3 body = body_of(k);
-        float seen = share_of(others, k) * body.x * body.y;
-        if (seen > 0.0) total += seen * vec4(leaves_in_row(leaves, FIRST_ROCK + k, late), 1.0);
-    }
-    return total.rgb / total.a;
+// `seen`: how much of what one sees is of each species but oaks (others_in_sight).
+vec3 colour_of_wood(sampler2D leaves, vec4 seen, float late) {
+    return share_of_oaks(seen) * leaves_in_row(leaves, FIRST_ROCK + OAK, late)
+            + seen.x * leaves_in_row(leaves, FIRST_ROCK + MAPLE, late)
+            + seen.y * leaves_in_row(leaves, FIRST_ROCK + BIRCH, late)
+            + seen.z * leaves_in_row(leaves, FIRST_ROCK + PINE, late)
+            + seen.w * leaves_in_row(leaves, FIRST_ROCK + SPRUCE, late);
 }
 #endif

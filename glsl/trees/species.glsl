@@ -43,7 +43,7 @@ vec4 kernel(ivec2 texel) {
     vec2 place = share_of_texel(texel, size) * extent;
     // Ground that rises to the north faces the noon's sun.
     float moist = clamp(-1.5 * slope.y, -0.6, 0.6);
-    if (wired_wetness) moist += 2.0 * clamp(map_at(wetness, texel, size).r, 0.0, 1.0) - 1.0;
+    if (wired_wetness) moist += 1.5 * clamp(map_at(wetness, texel, size).r, 0.0, 1.0) - 0.2;
     float needled = needle_share(needles, needles_from, metres);
     // Its mean stays, wherever it is.
     needled += needled * (1.0 - needled) * patches(place, 0u);

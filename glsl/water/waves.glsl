@@ -1,8 +1,8 @@
 // water/waves.glsl -- waves that the wind makes on deep water: slopes as seen, and the rest.
 //
-//   gives    Sea, sea_of, Waves, waves_at
-//   needs    noise/gradient.glsl, noise/hash.glsl, scene/footprint.glsl: pure functions, no
-//            uniforms, no textures
+//   gives    WAVES, Sea, sea_of, river_of, wave_row, Waves, waves_at
+//   needs    noise/gradient.glsl, noise/hash.glsl, scene/footprint.glsl; a table by
+//            water/wave_table comes as an argument
 //   units    metres, seconds, metres a second; slopes in metres over metres, east and north;
 //            variance: mean of squared slopes, both axes together
 //   source   variance by wind: Cox and Munk 1954, "Measurement of the Roughness of the Sea Surface
@@ -15,9 +15,9 @@
 //
 // A sum of WAVES sines, from the longest down to SHORTEST, each pair of the same share of the
 // variance: in the equilibrium range slopes have as much of it in every octave. Of a pair one is
-// the stronger, and turns slowly from pair to pair: so at every size there is a main direction. Each moves by the dispersion
-// of deep water, w^2 = g k. Seen with fewer than SHARP pixels to a wave it fades, and with BLURRED
-// it is gone; what a wave loses of its mean square goes to `variance`:
+// the stronger, and turns slowly from pair to pair: so at every size there is a main direction.
+// Each moves by the dispersion of deep water, w^2 = g k. Seen with fewer than SHARP pixels to a
+// wave it fades, and with BLURRED it is gone; what it loses of its mean square goes to `variance`:
 //
 //     sum of (shown_i s_i)^2 / 2 + variance = 0.003 + 0.00512 U      wherever one stands.
 //
@@ -60,6 +60,29 @@ Sea sea_of(float wind, float fetch, vec2 towards) {
     return Sea(towards, longest, high, variance, octaves * variance);
 }
 
+// Running water, by its speed and how white it is: short waves that go all ways.
+Sea river_of(float speed, float white) {
+    float variance = 0.004 + 0.006 * speed * speed + 0.04 * white;
+    return Sea(vec2(0.0), 1.6, 0.0, variance, 0.75 * variance);
+}
+
+// One row of the table: waves a metre east and north [1/m], where it is in its turn now, and its
+// length [m]. Around the wind, or all ways where it has no direction.
+vec4 wave_row(Sea sea, int k, float seconds) {
+    vec2 mixed = random_pair(ivec2(k, 0), WAVES_SALT);
+    float longer = sea.longest * pow(SHORTEST / sea.longest, float(k) / float(WAVES - 1))
+            * (0.9 + 0.2 * mixed.x);
+    // Directions by the golden ratio: even over any run of waves; long ones keep to the wind.
+    float off = 2.0 * fract(float(k) * 0.6180340 + 0.25) - 1.0;
+    float angle = off * (0.55 + 0.45 * abs(off)) * mix(0.9, 1.7, float(k) / float(WAVES));
+    bool blown = dot(sea.towards, sea.towards) > 0.0;
+    if (!blown) angle = 0.5 * TURN * off;
+    vec2 along = blown ? sea.towards : vec2(1.0, 0.0);
+    vec2 ahead = mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * along;
+    float turns = fract(mixed.y - fract(sqrt(GRAVITY / (TURN * longer)) * seconds));
+    return vec4(ahead / longer, turns, longer);
+}
+
 struct Waves {
     vec2 slope;      // of the waves that are seen as waves
     float variance;  // of those that are not
@@ -73,33 +96,25 @@ vec2 bent(Sea sea, vec2 place, float seconds) {
                                              perlin(at + 0.5, WAVES_SALT + 1u).x);
 }
 
-// At a place and a time; `foot` is what a pixel covers there.
-Waves waves_at(Sea sea, vec2 place, float seconds, Footprint foot) {
-    float ratio = pow(SHORTEST / sea.longest, 1.0 / float(WAVES - 1));
+// At a place, by a row of the table of its sea; `foot` is what a pixel covers there.
+Waves waves_at(sampler2D table, int row, Sea sea, vec2 place, float seconds, Footprint foot) {
     float one = sea.drawn / float(WAVES);
     // The shorter side of the footprint decides when no shorter wave can be seen.
-    float least = sqrt(min(dot(foot.right, foot.right), dot(foot.up, foot.up)));
+    float least = BLURRED * sqrt(min(dot(foot.right, foot.right), dot(foot.up, foot.up)));
     Waves found = Waves(vec2(0.0), sea.variance - sea.drawn);
-    float wave = sea.longest;
-    vec2 there = wave > BLURRED * least ? bent(sea, place, seconds) : place;
+    vec2 there = bent(sea, place, seconds);
     int k = 0;
-    while (k < WAVES && wave > BLURRED * least) {
-        // Directions by the golden ratio: even over any run of waves; long ones keep to the wind.
-        vec2 mixed = random_pair(ivec2(k, 0), WAVES_SALT);
+    while (k < WAVES) {
+        vec4 wave = texelFetch(table, ivec2(k, row), 0);
+        // Rows are as long as each other by a fifth or so: the next may still be longer.
+        if (wave.w < 0.8 * least) break;
         float part = one * ((k & 1) == 0 ? 1.5 : 0.5);
-        float off = 2.0 * fract(float(k) * 0.6180340 + 0.25) - 1.0;
-        float angle = off * (0.55 + 0.45 * abs(off)) * mix(0.9, 1.7, float(k) / float(WAVES));
-        vec2 ahead = mat2(cos(angle), sin(angle), -sin(angle), cos(angle)) * sea.towards;
-        float longer = wave * (0.9 + 0.2 * mixed.x);
-        float pixels = longer / max(max(abs(dot(ahead, foot.right)), abs(dot(ahead, foot.up))),
-                                    1e-9);
-        float shown = clamp((pixels - BLURRED) / (SHARP - BLURRED), 0.0, 1.0);
+        float passed = max(abs(dot(wave.xy, foot.right)), abs(dot(wave.xy, foot.up)));
+        float shown = clamp((1.0 / max(passed, 1e-6) - BLURRED) / (SHARP - BLURRED), 0.0, 1.0);
         // In turns, whose whole part is dropped: kilometres from the corner floats stay exact.
-        float turns = fract(dot(ahead, there) / longer) - fract(sqrt(GRAVITY / (TURN * longer))
-                * seconds) + mixed.y;
-        found.slope += ahead * (shown * sqrt(2.0 * part) * cos(TURN * turns));
+        float turns = fract(dot(wave.xy, there)) + wave.z;
+        found.slope += wave.xy * (wave.w * shown * sqrt(2.0 * part) * cos(TURN * turns));
         found.variance += part * (1.0 - shown * shown);
-        wave *= ratio;
         k++;
     }
     found.variance += one * (float(WAVES - k) - 0.5 * float(k & 1));

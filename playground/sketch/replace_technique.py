@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from difflib import get_close_matches
 from pathlib import Path
 
 from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
@@ -50,10 +51,22 @@ def fits(sketch: Sketch, pass_name: str, use: str) -> bool:
     Raises ``SketchError`` if there is no such pass.
     """
     spec = _pass(sketch, pass_name)
-    named = (name for name in shipped_names() if not is_part(name))
-    if use == spec.use or use not in {*named, *_own_names(sketch)}:
+    if use == spec.use:
+        return True
+    if parts_of(use):
         return use in choices(sketch, pass_name)
-    return _fits(sketch, spec, use, set(output_names(spec.technique)), _reader(sketch))
+    named = use in _own_names(sketch) or (use in shipped_names() and not is_part(use))
+    return named and _fits(sketch, spec, use, set(output_names(spec.technique)), _reader(sketch))
+
+
+@looking_once()
+def nearest_fitting(sketch: Sketch, pass_name: str, use: str) -> str:
+    """Suggest the one of ``choices`` that was probably meant, as ``errors.nearest`` does."""
+    names = sorted({*_own_names(sketch), *(name for name in shipped_names() if not is_part(name))})
+    for close in get_close_matches(use, names, n=len(names), cutoff=0.55):
+        if fits(sketch, pass_name, close):
+            return nearest(use, [close])
+    return nearest(use, choices(sketch, pass_name))
 
 
 def with_technique(sketch: Sketch, pass_name: str, use: str) -> Sketch:

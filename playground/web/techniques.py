@@ -8,11 +8,11 @@ from math import prod
 from typing import Any
 
 from playground.engine.planner import Planner
-from playground.errors import ParameterError, PlaygroundError, SketchError, nearest
+from playground.errors import ParameterError, PlaygroundError, SketchError
 from playground.sketch.allowed_files import looking_once
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 from playground.sketch.parameter import label_of
-from playground.sketch.replace_technique import choices, fits, with_technique
+from playground.sketch.replace_technique import choices, fits, nearest_fitting, with_technique
 from playground.web.plan import KINDS
 
 MOST = 24
@@ -63,7 +63,7 @@ def _fitting(sketch: Sketch, name: str, uses: Sequence[str]) -> list[str]:
     found = uses or [use for use in choices(sketch, name) if _is_planned(sketch, name, use)]
     for use in uses:
         if not fits(sketch, name, use):
-            hint = nearest(use, choices(sketch, name))
+            hint = nearest_fitting(sketch, name, use)
             raise SketchError(f"no technique '{use}' fits pass '{name}'{hint}")
     spec = sketch.graph.find(name)
     assert spec is not None  # or ``choices`` has said so

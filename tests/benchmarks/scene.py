@@ -66,9 +66,25 @@ DENSITY = """[[pass]]
 name = "density"
 use = "trees/density"
 """
+FIELD = """[[pass]]
+name = "{0}"
+use = "{1}"
+"""
+WET = """[[pass]]
+name = "ways"
+use = "water/directions"
+[[pass]]
+name = "area"
+use = "water/accumulation"
+inputs = { receiver = "ways" }
+[[pass]]
+name = "wetness"
+use = "water/wetness"
+"""
 PIXELS = 'visibility = "light.visibility"'
 OFF = ", antialias = false"
 DOME = f'{PIXELS}, dome = "daylight:dome"'
+FINE = f"{OFF}, fine_ground = true"
 LOOK = Camera(azimuth=200.0, elevation=12.0, distance=6000.0, target=(4300.0, 4300.0, 500.0))
 ROWS = {
     "view/terrain, 1 sample": ("", "view/terrain", 1, "", "", ""),
@@ -89,6 +105,25 @@ ROWS = {
     "and air": (AIR, "scene/terrain", 1, PIXELS, OFF, "the scene, each pixel lit"),
     "and shadows of clouds": (CLOUDS, "scene/terrain", 1, PIXELS, OFF, "the scene, each pixel lit"),
     "and sky, clouds and air": (CLOUDS, "scene/terrain", 1, DOME, OFF, "the scene, each pixel lit"),
+    "and fine ground": ("", "scene/terrain", 1, PIXELS, FINE, "the scene, each pixel lit"),
+    "fine, with cliffs": ("", "scene/terrain", 1, PIXELS, f"{FINE}, cliffs = true", "and fine ground"),
+    "fine, exposed or not": (
+        FIELD.format("exposed", "texturing/exposed"),
+        "scene/terrain",
+        1,
+        PIXELS,
+        FINE,
+        "and fine ground",
+    ),
+    "fine, under snow": (
+        FIELD.format("snow_depth", "texturing/snow_depth"),
+        "scene/terrain",
+        1,
+        PIXELS,
+        FINE,
+        "and fine ground",
+    ),
+    "fine, wet": (WET, "scene/terrain", 1, PIXELS, FINE, "and fine ground"),
     "and trees": (DENSITY, "scene/terrain", 1, PIXELS, OFF, "the scene, each pixel lit"),
 }
 """By name: more passes, the view, samples, inputs, what is set, and the row that it is compared with."""

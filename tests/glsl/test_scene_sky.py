@@ -116,3 +116,20 @@ def test_behind_the_terrain_is_the_picture_of_the_sky(any_engine, scene):
     sky = seen[..., 3] == 0.0
     assert sky.any() and not sky.all()
     np.testing.assert_array_equal(shaded[sky][:, :3], heaven[sky][:, :3])
+
+
+@pytest.mark.parametrize("drawn", ["flat", "heaped"])
+def test_the_sky_is_made_where_it_is_seen_and_as_if_it_were_made_everywhere(
+    any_engine, make_sketch, scene, drawn
+):
+    whole = '[[pass]]\nname = "air"\nuse = "scene/air"\nsize = [128, 80]\n'
+    whole += f'[[pass]]\nname = "whole"\nuse = "scene/sky"\nsize = [96, 64]\nset = {{ clouds = "{drawn}" }}\n'
+    whole += 'inputs = { scattered = "air:scattered", left = "air:left", columns = "daylight:columns", '
+    whole += 'bounced = "daylight:bounced", dome = "daylight:dome" }\n'
+    sketch = make_sketch(VIEW.replace("[view]", whole + "[view]"), extent=20000.0, flat=FLAT, grey=COLOUR)
+    sketch = sketch.with_camera(scene.camera).with_values({"view.clouds": drawn})
+    sky = read(any_engine, sketch, 0.5, "view.where")[..., 3] == 0.0
+    parts, whole = (read(any_engine, sketch, 0.5, name) for name in ("view.heaven", "whole"))
+    assert sky.any() and not sky.all()
+    np.testing.assert_array_equal(parts[sky], whole[sky])
+    assert (parts[~sky][:, :3] == 0).all()

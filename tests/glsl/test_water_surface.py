@@ -46,24 +46,82 @@ def test_what_it_mirrors_of_an_even_sky_is_the_integral(on_gpu):
 # ── waves ────────────────────────────────────────────────────────────────────────
 
 SEA = "sea_of(wind, fetch, vec2(0.6, 0.8))"
-FOOT = "Footprint(vec2(pixel, 0.0), vec2(0.0, 3.0 * pixel))"
+PROBE = """
+#include "noise/hash.glsl"
+#include "water/waves.glsl"
+#pragma kernel(output = "slopes:rgba32f")
+uniform sampler2D waves;    //! input
+uniform int row = 0;        //! slider(0, 1)
+uniform float pixel = 1.0;  //! log_slider(0.001, 100)
+#include "water/parameters/wind.glsl"
+vec4 kernel(ivec2 texel) {
+    Footprint foot = Footprint(vec2(pixel, 0.0), vec2(0.0, 3.0 * pixel));
+    Sea sea = row == 0 ? sea_of(wind, fetch, vec2(0.6, 0.8)) : river_of(1.5, 0.2);
+    vec2 place = 20000.0 * random_pair(texel, 9u);
+    Waves found = waves_at(waves, row, sea, place, time, foot);
+    return vec4(found.slope, found.variance, sea.variance);
+}
+"""
+PASSES = """
+[[pass]]
+name = "waves"
+use = "water/wave_table"
+size = [26, 2]
+[[pass]]
+name = "slopes"
+use = "./probe"
+size = 78
+"""
 
 
-@pytest.mark.parametrize(("wind", "fetch"), [(2.0, 1500.0), (9.0, 60000.0)])
-def test_drawn_slopes_and_variance_are_those_of_the_wind_at_any_distance(on_gpu, wind, fetch):
-    """By Cox and Munk 0.003 + 0.00512 U; 6000 places, many waves apart: their mean is off by 2 % or so."""
-    place = np.random.default_rng(5).uniform(0, 20000, (6000, 2)).astype(np.float32)
+@pytest.fixture
+def waves(make_sketch, any_engine):
+    """Give a function: values → the slopes east and north, the variance left, all of it; at 6084 places."""
+    sketch = make_sketch(PASSES, probe=PROBE)
+
+    def read(name="slopes", time=12.5, **values):
+        by = {}
+        for key, value in values.items():
+            by |= {
+                f"{one}.{key}": value
+                for one in ("waves", "slopes")
+                if one == "slopes" or key in ("wind", "fetch")
+            }
+        return any_engine.read(sketch.with_values(by), name, time=time).astype(float)
+
+    return read
+
+
+@pytest.mark.parametrize(("wind", "fetch", "row"), [(2.0, 1500.0, 0), (9.0, 60000.0, 0), (3.0, 1500.0, 1)])
+def test_drawn_slopes_and_variance_are_the_same_at_any_distance(waves, wind, fetch, row):
+    """By Cox and Munk 0.003 + 0.00512 U; 6084 places, many waves apart: their mean is off by 2 % or so."""
     drawn, whole = [], []
     for pixel in [0.005, 0.05, 0.2, 0.7, 2.0, 6.0, 40.0]:
-        given = {"wind": np.float32(wind), "fetch": np.float32(fetch), "pixel": np.float32(pixel)}
-        waves = f"waves_at({SEA}, place, 12.5, {FOOT})"
-        found = on_gpu("water/waves.glsl", f"vec3({waves}.slope, {waves}.variance)", place=place, **given)
-        square = (found[:, :2].astype(float) ** 2).sum(axis=1).mean()
+        found = waves(wind=wind, fetch=fetch, row=row, pixel=pixel).reshape(-1, 4)
+        square = (found[:, :2] ** 2).sum(axis=1).mean()
         drawn.append(square)
         whole.append(square + found[:, 2].mean())
-    np.testing.assert_allclose(whole, 0.003 + 0.00512 * wind, rtol=0.05)
+    np.testing.assert_allclose(whole, found[0, 3], rtol=0.05)
+    if row == 0:
+        assert found[0, 3] == pytest.approx(0.003 + 0.00512 * wind)
     assert drawn[0] > 0.25 * whole[0] and drawn[-1] == 0.0
     assert np.all(np.diff(drawn) <= 0.03 * whole[0])
+
+
+def test_waves_move_as_on_deep_water(waves):
+    """A wave of length L takes sqrt(2 pi L / g) for its own length."""
+    before, after = waves("waves", 0.0), waves("waves", 0.2)
+    length = 1 / np.hypot(before[..., 0], before[..., 1])
+    np.testing.assert_allclose(length, before[..., 3], rtol=1e-5)
+    turned = (before[..., 2] - after[..., 2]) % 1.0
+    np.testing.assert_allclose(turned, 0.2 / np.sqrt(2 * np.pi * length / 9.81) % 1.0, atol=1e-4)
+    ahead = before[..., :2] * length[..., None]
+    wind = [np.sin(np.radians(60)), np.cos(np.radians(60))]
+    assert (ahead[0] @ wind).mean() > 0.5 and abs((ahead[1] @ wind).mean()) < 0.2
+
+
+def test_without_wind_there_is_no_wave(waves):
+    np.testing.assert_array_equal(waves(wind=0.0, fetch=500.0, pixel=0.01), 0.0)
 
 
 def test_waves_are_as_long_and_as_high_as_the_fetch_lets_them_grow(on_gpu):
@@ -77,14 +135,6 @@ def test_waves_are_as_long_and_as_high_as_the_fetch_lets_them_grow(on_gpu):
     assert found[2, 0] == pytest.approx(9.81 / (2 * np.pi * peak**2), rel=0.05)
     assert found[2, 1] == pytest.approx(0.0016 * np.sqrt(9.81 * 2000 / 100) * 100 / 9.81, rel=1e-3)
     assert np.all(found[0] < found[1]) and np.all(found[2] < found[0])
-
-
-def test_without_wind_there_is_no_wave(on_gpu):
-    given = {"wind": np.float32(0), "fetch": np.float32(500), "pixel": np.float32(0.01)}
-    waves = f"waves_at({SEA}, place, 3.0, {FOOT})"
-    place = np.float32([[3.0, 4.0], [100.0, 7.0]])
-    found = on_gpu("water/waves.glsl", f"vec3({waves}.slope, {waves}.variance)", place=place, **given)
-    np.testing.assert_array_equal(found, 0.0)
 
 
 # ── the rough mirror ─────────────────────────────────────────────────────────────

@@ -219,16 +219,16 @@ def test_a_file_of_another_kind_or_an_empty_folder_is_refused(tmp_path):
 # One technique alone
 
 
-def test_a_kernel_alone_takes_its_place_in_the_default_sketch(folder):
+def test_a_kernel_alone_takes_its_place_in_jacksboro(folder):
     found = load(folder.path / "terrain.glsl")
-    stage = load()
+    stage = load("jacksboro")
     assert [p.name for p in found.graph.passes] == [p.name for p in stage.graph.passes]
     height = found.graph.find("height")
     assert height is not None and isinstance(height.technique, Kernel) and height.technique.title == "A slope"
     assert (found.name, found.title, found.camera) == ("terrain", "A slope", stage.camera)
 
 
-def test_what_stays_of_the_default_sketch_keeps_its_files(folder):
+def test_what_stays_of_jacksboro_keeps_its_files(folder):
     folder.write("light.glsl", TERRAIN.replace("height:r32f", "light:r16f"))
     found = load(folder.path / "light.glsl")
     paths = [str(v) for _, v in found.overrides]

@@ -8,7 +8,7 @@ from playground.paths import GLSL
 from playground.sketch.assign import shown_parameters
 from playground.sketch.catalogue import one
 from playground.sketch.flatten import flatten
-from playground.sketch.presence import as_wired, deciding_inputs, form_of
+from playground.sketch.presence import as_wired, check_forms, deciding_inputs, form_of
 from playground.sketch.techniques import read_technique
 from playground.sketch.wiring import input_names
 
@@ -253,9 +253,12 @@ def test_the_catalogue_lists_what_any_form_has():
     assert {"trees", "mist", "zenith", "exposure"} <= listed
 
 
-def test_the_scene_offers_every_parameter_of_every_pass_once():
+def test_the_scene_offers_every_parameter_of_every_pass_once(monkeypatch):
+    """In each of its forms; all combinations of what may be wired are whole."""
     scene = read_technique("scene/terrain", GLSL, GLSL)
     deciding = deciding_inputs(scene)
+    monkeypatch.setattr("playground.sketch.presence._ALL_FORMS", len(deciding))
+    check_forms(scene)
     assert {"dome", "density"} <= set(deciding)
     others = set(input_names(scene)) - set(deciding)
     for wired in (deciding, (), *((name,) for name in deciding)):

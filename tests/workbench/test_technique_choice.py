@@ -9,7 +9,7 @@ import pytest
 from playground.errors import SketchError
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.load import load
-from playground.sketch.replace_technique import choices, with_technique
+from playground.sketch.replace_technique import choices, fits, nearest_fitting, with_technique
 
 from ..sketch_texts import map_of, passes
 
@@ -124,3 +124,14 @@ def test_a_view_is_not_replaced_by_linear_light() -> None:
     assert "view/terrain" in offered
     # A frame of linear light would be shown as if it were encoded.
     assert not {"view/land", "view/sky", "view/sea"} & set(offered)
+
+
+def test_one_technique_is_known_to_fit_without_the_others(folder: Path) -> None:
+    sketch = load(folder)
+    offered = choices(sketch, "height")
+    parts = ("generation/diamond_square/raw", "generation/fbm(./flat)", "foreign/height(./flat)")
+    for use in ("./flat", "./raised", "./paint", "./nowhere", "generation/fbm", "view/map", *parts):
+        assert fits(sketch, "height", use) is (use in offered), use
+    assert nearest_fitting(sketch, "height", "generation/fmb") == "; did you mean 'generation/fbm'?"
+    with pytest.raises(SketchError, match="did you mean 'height'"):
+        fits(sketch, "hieght", "./flat")

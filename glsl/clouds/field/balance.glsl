@@ -29,7 +29,7 @@ vec2 kernel(ivec2 texel) {
             // Every row begins elsewhere, so that no column of the tile is left out.
             int column = (x + 3 * row) % whole.x;
             float thick = thickness_of(texelFetch(shape, ivec2(column, row), 0).r, edge);
-            total += exp(-CLOUD_DEPTH * thick);
+            total += exp(-depth_straight_up(thick));
             count++;
         }
     }

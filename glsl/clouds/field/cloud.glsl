@@ -18,5 +18,5 @@ uniform sampler2D edge;   //! input
 vec4 kernel(ivec2 texel) {
     vec4 found = texelFetch(shape, min(texel, textureSize(shape, 0) - 1), 0);
     float thick = thickness_of(found.r, texelFetch(edge, ivec2(0), 0).r);
-    return vec4(thick, found.g, found.b, exp(-CLOUD_DEPTH * thick));
+    return vec4(thick, found.g, found.b, exp(-depth_straight_up(thick)));
 }

@@ -24,8 +24,8 @@ vec4 kernel(ivec2 texel) {
     vec2 moved = at + 0.15 * bend;
     // Round tops where cells have their points.
     float heaps = 0.0;
-    float strength = 4.0 / 7.0;
-    for (int k = 0; k < 3; k++) {
+    float strength = 2.0 / 3.0;
+    for (int k = 0; k < 2; k++) {
         int fine = HEAPS << k;
         vec3 cells = cells_periodic(moved * float(fine), period * fine, first + 7u + uint(k));
         heaps += strength * (1.0 - min(cells.x * cells.x, 1.0));

@@ -2,9 +2,10 @@
 //
 //   gives    light, a row of texels: 0 direction to the sun, elevation; 1 its light, azimuth; 2
 //            the sky's light on level ground, turbidity; 3 the zenith, what all is multiplied by
-//            for the eye; 4 the mean horizon; 5 sun and sky on level ground,
+//            for the eye; 4 the mean horizon, latitude; 5 sun and sky on level ground,
 //            days from the first of January; 6 what clouds send down, share of open sky; from 7
-//            on the mean horizon as seen from each height of sky/dome.glsl
+//            on the mean horizon as seen from each height of sky/dome.glsl, with the first how far the
+//            sky of stars has turned
 //   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place,
 //            the air, the cover and two tables
 //   units    light without unit, 1 that of the sun outside the air on a surface that faces it;
@@ -81,6 +82,8 @@ vec4 kernel(ivec2 texel) {
     if (texel.x == 4 || texel.x >= 7) {
         found = vec4(adapted * (open * horizon + cloud * overcast(HORIZON)), 1.0);
     }
+    if (texel.x == 4) found.a = texelFetch(date, ivec2(0), 0).g;
+    if (texel.x == 7) found.a = texelFetch(date, ivec2(0), 0).b;
     if (texel.x == 5) found = vec4(adapted * whole, texelFetch(date, ivec2(0), 0).r);
     return found;
 }

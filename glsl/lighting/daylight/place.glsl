@@ -1,14 +1,14 @@
 // lighting/daylight/place.glsl -- the sun's place in the sky, by place and hour or free.
 //
 //   gives    place: azimuth and elevation, as seen through the air; date: days from the first of
-//            January, whole, below 365
+//            January, whole, below 365, the latitude, how far the sky of stars has turned
 //   needs    lighting/sun_position.glsl; the hours that have elapsed since the hour that is set,
 //            if any
 //   units    degrees, azimuth clockwise from north; hours
 //   source   see lighting/sun_position.glsl
 //   tested   tests/glsl/test_daylight.py, against lighting/sun_position.glsl over days and zones
 #include "lighting/sun_position.glsl"
-#pragma kernel(output = "place:rg32f, date:r32f")
+#pragma kernel(output = "place:rg32f, date:rgba32f")
 
 uniform int position = 0;             //! menu("date and hour", "free") group("Sun")
                                       //! Whether the sun follows place, date and hour
@@ -31,7 +31,7 @@ uniform float zone = 0.0;             //! slider(-12, 14) step(0.25) unit("h") g
                                       //! How far that zone's clocks are ahead of universal time
 uniform sampler2D elapsed;            //! input("black")
 
-void kernel(ivec2 texel, out vec2 place, out float date) {
+void kernel(ivec2 texel, out vec2 place, out vec4 date) {
     float hours = hour + texelFetch(elapsed, ivec2(0), 0).r;
     int days = int(floor(hours / 24.0));
     hours -= 24.0 * float(days);
@@ -39,5 +39,7 @@ void kernel(ivec2 texel, out vec2 place, out float date) {
     vec2 by_sun = sun_position_solar(here, year, day + days, hours);
     vec2 by_zone = sun_position(here, year, day + days, hours - zone);
     place = position == 1 ? sun : clock == 1 ? by_zone : by_sun;
-    date = mod(float(day - 1 + days), 365.0);
+    float turned = clock == 1 ? sidereal_angle(longitude, year, day + days, hours - zone)
+            : sidereal_angle_solar(longitude, year, day + days, hours);
+    date = vec4(mod(float(day - 1 + days), 365.0), latitude, mod(turned, 360.0), 0.0);
 }

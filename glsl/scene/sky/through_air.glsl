@@ -14,6 +14,7 @@
 #include "clouds/layer_form.glsl"
 #include "lighting/daylight_weather.glsl"
 #include "scene/air_reading.glsl"
+#include "scene/sky/hidden.glsl"
 #pragma kernel(output = "picture:rgba16f")
 
 uniform sampler2D flat_clouds;    //! input
@@ -22,6 +23,7 @@ uniform sampler2D daylight;       //! input
 uniform sampler2D scattered;      //! input("linear")
 uniform sampler2D left;           //! input("linear")
 uniform sampler2D drift;          //! input("black")
+uniform sampler2D seen;           //! input("black")
 #include "clouds/parameters/drawn.glsl"
 uniform vec3 beyond = vec3(0.07, 0.10, 0.05);  //! colour
                                   //! Of the flat ground beyond the terrain
@@ -34,6 +36,7 @@ vec4 cloud_at(ivec2 texel) {
 }
 
 vec4 kernel(ivec2 texel) {
+    if (wired_seen && sky_hidden(seen, texel, size)) return vec4(0.0, 0.0, 0.0, 1.0);
     vec2 share = (vec2(texel) + 0.5) / vec2(size);
     vec4 away = world_from_clip * vec4(share * 2.0 - 1.0, 1.0, 1.0);
     vec3 ahead = normalize(away.xyz / away.w - eye);

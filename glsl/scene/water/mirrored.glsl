@@ -38,7 +38,8 @@ float meets_terrain(sampler2D field, sampler2D block_maxima, vec3 from, vec3 to,
     if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, last_texel))) return MISSES;
     March march = march_from(field, place, false, to, metres, metres_of_relief, 1.0);
     march.foot = from.z - tallest;
-    float found = marched(march, field, block_maxima, INTERPOLATED, march.climb, 0.0);
+    float found = marched_on(false, march.count, march, field, block_maxima, INTERPOLATED,
+                             march.climb, 0.0);
     if (found <= 0.0) return MISSES;
     // Between the last step over the ground and the first under it, as along a straight line.
     vec2 at = march.start + found * march.ahead;

@@ -1,8 +1,8 @@
 // scene/water/mirrored_sky.glsl -- the sky in a direction from the water, with its clouds.
 //
 //   gives    clear_sky, clouds_towards
-//   needs    clouds/shadow.glsl, scene/water/heaven_reading.glsl; the tables of scene/water/heaven,
-//            a tile by clouds/field and a drift come as arguments
+//   needs    clouds/shadow.glsl, scene/water/heaven_reading.glsl; the tables of
+//            scene/water/heaven, a tile by clouds/field and a drift come as arguments
 //   units    metres; light as of lighting/daylight
 //   source   the heaps of clouds/seen, by few steps: what is mirrored is never as sharp
 //   tested   tests/glsl/test_scene_water.py: mirrored clouds have the cover of those above

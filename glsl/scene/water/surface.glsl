@@ -2,10 +2,10 @@
 //
 //   gives    frame, linear light
 //   needs    clouds/shadow.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
-//            lighting/daylight_date.glsl, noise/gradient.glsl, scene/air_reading.glsl,
-//            scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
-//            scene/water/mirrored.glsl, scene/water/mirrored_sky.glsl, trees/kinds.glsl,
-//            water/body.glsl, water/foam.glsl, water/rough_mirror.glsl, water/sheet_reading.glsl,
+//            noise/gradient.glsl, scene/air_reading.glsl, scene/footprint.glsl,
+//            scene/ground_reading.glsl, scene/surfaces.glsl, scene/water/mirrored.glsl,
+//            scene/water/mirrored_sky.glsl, trees/leaves_reading.glsl, water/body.glsl,
+//            water/foam.glsl, water/rough_mirror.glsl, water/sheet_reading.glsl,
 //            water/waves.glsl, view/surface.glsl; the picture without water, what it shows, what
 //            scene/water/where gives, the ground and the maps that scene/shaded has
 //   units    metres; light without unit, 1 for white
@@ -19,7 +19,6 @@
 // is chosen first and lit once: the sky of scene/water/heaven with clouds, or the terrain, by the
 // maps of its colour and of its light. All is read at the pixel's own place.
 #include "clouds/shadow.glsl"
-#include "lighting/daylight_date.glsl"
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 #include "lighting/sun.glsl"
@@ -30,7 +29,7 @@
 #include "scene/surfaces.glsl"
 #include "scene/water/mirrored.glsl"
 #include "scene/water/mirrored_sky.glsl"
-#include "trees/kinds.glsl"
+#include "trees/leaves_reading.glsl"
 #include "view/surface.glsl"
 #include "water/body.glsl"
 #include "water/foam.glsl"
@@ -49,6 +48,8 @@ uniform sampler2D block_maxima;  //! input
 uniform sampler2D ground;        //! input("linear", "mipmap")
 uniform sampler2D colour;        //! input("linear", "mipmap", "white")
 uniform sampler2D density;       //! input("zero")
+uniform sampler2D waves;         //! input
+uniform sampler2D leaves;        //! input("white")
 uniform sampler2D clear;         //! input("linear", "repeat")
 uniform sampler2D thin;          //! input("linear", "repeat")
 uniform sampler2D thick;         //! input("linear", "repeat")
@@ -60,14 +61,9 @@ uniform sampler2D left;          //! input("linear", "black")
 #include "lighting/parameters/sun.glsl"
 #include "lighting/parameters/sunlight.glsl"
 #include "lighting/parameters/skylight.glsl"
-#include "trees/parameters/season.glsl"
 #include "view/parameters/haze.glsl"
+#include "water/parameters/wind.glsl"
 
-uniform float wind = 3.0;         //! slider(0, 25) step(0.1) unit("m/s") group("Water")
-                                  //! Wind over the water: the more, the rougher; 0 is a mirror
-uniform float wind_to = 60.0;     //! angle group("Water") Where it blows, clockwise from north
-uniform float fetch = 4000.0;     //! log_slider(10, 1000000) unit("m") group("Water")
-                                  //! How far it blows over water: the farther, the longer waves
 uniform float gusts = 0.5;        //! slider(0, 1) step(0.01) group("Water")
                                   //! How unevenly it blows, in patches
 uniform float clarity = 3.0;      //! log_slider(0.05, 18) unit("m") group("Water")
@@ -116,14 +112,14 @@ vec3 terrain_from(vec3 place, vec3 to_ray, float far, float pixel, Sunlight from
     vec3 found = wired_colour ? textureLod(colour, drape_uv(share, texels), level).rgb : vec3(0.4);
     vec3 normal = normal_of_slope(around.slope);
     float wood = 0.0;
-    if (wired_density) {
+    if (wired_density && wired_leaves) {
         wood = smoothstep(0.1, 0.6, density_at(share));
-        float today = day_of_year(wired_daylight, daylight, day);
         float shown = clamp(14.0 / (far * pixel) - 1.0, 0.0, 1.0);
-        float lump = 1.0 + 0.6 * shown * perlin(place.xy / 14.0, SALT + 3u).x
-                + 0.35 * perlin(place.xy / 61.0, SALT + 4u).x;
-        vec3 leaves = mix(leaf_colour(OAK, 0.5, 0.0, today), leaf_colour(MAPLE, 0.5, 0.0, today), 0.5);
-        found = mix(found, lump * leaves, wood);
+        float lump = 1.0 + 0.6 * shown * perlin(place.xy / 14.0, SALT + 3u).x;
+        float late = late_at(place.xy);
+        vec3 crowns = mix(leaves_in_row(leaves, FIRST_ROCK + OAK, late),
+                          leaves_in_row(leaves, FIRST_ROCK + MAPLE, late), 0.5);
+        found = mix(found, lump * crowns, wood);
     }
     // Crowns are spheres, of which the ray sees the lit side or the other (Lambert's sphere).
     float away = acos(clamp(dot(to_ray, from.direction), -1.0, 1.0));
@@ -136,17 +132,15 @@ vec3 terrain_from(vec3 place, vec3 to_ray, float far, float pixel, Sunlight from
 
 // What the current carries begins again every few seconds, in two layers that take turns.
 Waves river_waves(Sheet sheet, vec2 place, Footprint foot) {
-    float speed = length(sheet.current);
-    Sea river = Sea(sheet.current / speed, clamp(0.8 * speed, 0.5, 3.0), 0.0,
-                    0.004 + 0.006 * speed * speed + 0.04 * max(sheet.white, 0.0), 0.0);
-    river.drawn = 0.75 * river.variance;
+    Sea river = river_of(length(sheet.current), max(sheet.white, 0.0));
     vec2 turn = fract(vec2(0.0, 0.5) + time / REPEATS);
     vec2 weight = 1.0 - abs(2.0 * turn - 1.0);
     weight /= length(weight);
-    Waves one = waves_at(river, place - sheet.current * (turn.x * REPEATS), time, foot);
-    Waves other = waves_at(river, place.yx - sheet.current.yx * (turn.y * REPEATS) + 71.3, time,
-                           Footprint(foot.right.yx, foot.up.yx));
-    return Waves(weight.x * one.slope + weight.y * other.slope.yx, one.variance);
+    vec2 first = place - sheet.current * (turn.x * REPEATS);
+    vec2 second = place - sheet.current * (turn.y * REPEATS) + 71.3;
+    Waves one = waves_at(waves, 1, river, first, time, foot);
+    Waves other = waves_at(waves, 1, river, second, time, foot);
+    return Waves(weight.x * one.slope + weight.y * other.slope, one.variance);
 }
 
 struct Lit {
@@ -236,13 +230,15 @@ vec4 kernel(ivec2 texel) {
     Sea sea = sea_of(wind, fetch, vec2(sin(radians(wind_to)), cos(radians(wind_to))));
     float gust = gust_at(place.xy, far * pixel, sea.longest);
     bool runs = length(sheet.current) > MOVING;
-    Waves waves = runs ? river_waves(sheet, place.xy, foot) : waves_at(sea, place.xy, time, foot);
-    if (!runs) waves = Waves(waves.slope * sqrt(gust), waves.variance * gust);
-    Mirrors mirrors = mirrors_of(to_eye, waves.slope, waves.variance);
-    float rough = sqrt(waves.variance);
+    Waves seen_waves = runs ? river_waves(sheet, place.xy, foot)
+            : waves_at(waves, 0, sea, place.xy, time, foot);
+    if (!runs) seen_waves = Waves(seen_waves.slope * sqrt(gust), seen_waves.variance * gust);
+    Mirrors mirrors = mirrors_of(to_eye, seen_waves.slope, seen_waves.variance);
+    float rough = sqrt(seen_waves.variance);
     vec3 above = mirrored_light(mirrors, place, far, pixel, rough, air, lit);
 
-    float glint = sun_glint(to_eye, lit.from.direction, waves.slope, waves.variance, mirrors.area);
+    float glint = sun_glint(to_eye, lit.from.direction, seen_waves.slope, seen_waves.variance,
+                            mirrors.area);
     if (glint > 1e-3) {
         float shaded = meets_terrain(height, block_maxima, place, lit.from.direction, extent,
                                      relief, wired_density ? tallest : 0.0);
