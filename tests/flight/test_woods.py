@@ -167,5 +167,5 @@ def test_without_the_fade_trees_would_pop(ctx: moderngl.Context, monkeypatch: py
     read = programs._read
     monkeypatch.setattr(programs, "_read", lambda name: read(name).replace("* small *", "*"))
     with Engine(ctx, cache_bytes=128 * 2**20) as engine:
-        most, _, bound = pops(engine, 40)
+        most, _, bound = pops(engine, 160)
     assert max(most) > bound
