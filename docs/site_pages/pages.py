@@ -22,7 +22,7 @@ ELSEWHERE = {
 """Pages whose one home is another place of the checkout."""
 
 PICTURES = {
-    "assets/first.webp": "screenshots/jacksboro/llvmpipe/morning.png",
+    "assets/first.webp": "screenshots/october/llvmpipe/morning.png",
     "assets/flight.webp": "tests/flight/pictures/llvmpipe/tour-450.png",
 }
 """Pictures that written pages show, and where they come from."""

@@ -144,6 +144,7 @@ float cloud_after(Layer layer, float path, float end, float long_, float short_)
 
 vec4 kernel(ivec2 texel) {
     if (wired_seen && sky_hidden(seen, texel, size)) return vec4(0.0, 0.0, 0.0, 1.0);
+    if (skips_rest()) return vec4(0.0);
     vec3 ahead = direction_of(vec2(texel) + 0.5);
     float angle = distance(ahead, direction_of(vec2(texel) + vec2(0.5, 1.5)));
     vec4 wind = texelFetch(drift, ivec2(0), 0);
@@ -156,11 +157,12 @@ vec4 kernel(ivec2 texel) {
     float together = dot(ahead, to_sun);
     float texel_wide = wind.w / float(textureSize(cloud, 0).x);
     float pixel = 1000.0 * span.x * angle;
-    float level = max(log2(max(pixel, 1e-3) / texel_wide), 0.0);
+    float end = 1000.0 * min(span.y, span.x + LONGEST);
+    float search = clamp((end - 1000.0 * span.x) / float(steps), 50.0, 100.0 + 8.0 * span.x);
+    // No cloud is so small that long steps now meet it and now do not.
+    float level = max(log2(max(pixel, 0.3 * search) / texel_wide), 0.0);
     Layer layer = Layer(ahead, wind, from, base, level, floor(level + 0.5), texel_wide,
                         wear_of(wind.w, wear, pixel));
-    float end = 1000.0 * min(span.y, span.x + LONGEST);
-    float search = clamp((end - 1000.0 * span.x) / float(steps), 50.0, 100.0 + 10.0 * span.x);
     float short_ = max(28.0, pixel);
     float per_metre = CLOUD_DEPTH / CLOUD_TALL;
     float transmittance = 1.0;

@@ -131,7 +131,8 @@ vec4 made_near(vec3 at, vec2 slope, Footprint foot, vec4 weight, bool tufts, ino
     float stands_out = wired_exposed ? map_of(exposed, at.xy, foot) : 0.0;
     Layer layer = Layer(0.0, 0.0, 0.0);
     if (cliffs) {
-        layer = strata_at(at.z, thickness * patches.dry, thickness, max(abs(rise.x), abs(rise.y)));
+        float tall = max(abs(rise.x), abs(rise.y));
+        layer = strata_at(at.z, thickness * patches.broad, thickness, tall);
     }
     vec3 kinds = kinds_of_layers(weight);
     if (!wired_weights) {
@@ -140,8 +141,10 @@ vec4 made_near(vec3 at, vec2 slope, Footprint foot, vec4 weight, bool tufts, ino
     }
     float depth = 0.0;
     if (wired_snow_depth && !tufts) depth = max(map_of(snow_depth, at.xy, foot), 0.0);
-    vec3 flat_kinds = cliffs ? vec3(kinds.xy, 0.0) : kinds;
-    Bumps bumps = bumps_at(at.xy, flat_kinds, bumpiness, pixel, spacing, depth);
+    // Where there are cliffs, rock has bumps of its own; sand has few.
+    vec3 bumpy = vec3((1.0 - 0.8 * sandy) * kinds.xy, cliffs ? 0.0 : kinds.z);
+    mat2 grain = grain_of_sand(sandy, ripples_from);
+    Bumps bumps = bumps_at(at.xy, grain, bumpy, bumpiness, pixel, spacing, depth);
     vec3 push = vec3(bumps.slope, 0.0);
     float variance = bumps.variance;
     patches.dry = clamp(patches.dry + bumps.dry, -1.0, 1.0);
@@ -149,10 +152,14 @@ vec4 made_near(vec3 at, vec2 slope, Footprint foot, vec4 weight, bool tufts, ino
     if (!wired_weights) found = soiled(found, soils * kinds.y);
     found *= max(1.0 + bumps.tone, 0.1);
     if (cliffs) {
-        Cliff cliff = cliff_at(at, kinds.z, bumpiness, strata, layer, pixel_up, spacing);
+        // Here it is smooth and massive, there it crumbles and shows its layers.
+        float broken = smoothstep(-0.5, 0.4, patches.light);
+        float rugged = bumpiness * mix(0.4, 1.3, broken);
+        float layered = strata * mix(0.3, 1.0, broken);
+        Cliff cliff = cliff_at(at, kinds.z, rugged, layered, layer, pixel_up, spacing);
         push += kinds.z * cliff.push;
         variance += kinds.z * kinds.z * cliff.variance;
-        vec3 bare = wired_weights ? found : cliff_colour;
+        vec3 bare = wired_weights ? found : mix(found, cliff_colour, coloured_rock);
         found = mix(found, bare * max(1.0 + cliff.tone * LAYER_HUE, 0.1), kinds.z);
     }
     float film = 0.0;
@@ -164,7 +171,7 @@ vec4 made_near(vec3 at, vec2 slope, Footprint foot, vec4 weight, bool tufts, ino
         variance *= (1.0 - film) * (1.0 - film);
     }
     if (wired_snow_depth) {
-        float snowy = snow_share(depth, bumps.height, bumps.hidden, patches.dry);
+        float snowy = snow_share(depth, bumps.height, bumps.whole, bumps.hidden, patches.dry);
         found = mix(found, SNOW_COLOUR, snowy);
         push = mix(push, vec3(bumps.snowy, 0.0), snowy);
         variance = mix(variance, bumps.snow_variance, snowy);
@@ -196,6 +203,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 bumps) {
         albedo.rgb = cut_of_land(earth, at.xy / extent, depth_of_cut(at.w));
         return;
     }
+    if (skips_rest()) return;
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     float far = distance(eye, at.xyz);
     vec2 slope = ground_at(ground, at.xy, extent, far * length(ray.up) / length(ray.ahead)).slope;

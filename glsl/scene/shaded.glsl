@@ -128,6 +128,7 @@ vec4 kernel(ivec2 texel) {
     vec4 at = texelFetch(seen, texel, 0);
     if (is_sky(at.w)) return vec4(texelFetch(sky, texel, 0).rgb, 1.0);
     if (is_broken(at.w)) return vec4(NOT_A_NUMBER, 1.0);
+    if (skips_rest()) return vec4(0.0);
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     vec4 bump = wired_bumps ? texelFetch(bumps, texel, 0) : vec4(0.0);
     float sun_share = wired_shadow ? texelFetch(shadow, texel, 0).r : 1.0;

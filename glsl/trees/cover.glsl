@@ -93,6 +93,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     shadow = other;
     bool tree = is_object(at.w) && is_tree(kind_of(at.w));
     if (!is_object(at.w) && !is_top(at.w)) return;
+    if (skips_rest()) return;
     vec2 share = at.xy / extent;
     float stands = clamp(map_of(density, share), 0.0, 1.0);
     float away = distance(eye, at.xyz);
@@ -118,7 +119,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     shadow = other * mix(shadow_of_woods(share, around.sun), 1.0 - shaded.x, shaded.y);
     if (stands <= 0.0) return;
     float sun_left = mix(reaches(all, 1.0, to_sun, rises.y), 1.0, shaded.y);
-    float sky_left = reaches(all, 1.0, SKY_FROM, SKY_FROM.z);
+    float sky_left = exp(-depth_of_sky(all));
     taken = vec4(sun_left, 0.0, sky_left, 1.0);
     if (is_object(at.w)) return;
     // What of the ground all trees leave free, over what those leave free that are drawn.
@@ -135,7 +136,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     float part = hidden * brightness(crowns) / max(brightness(albedo.rgb), 1e-6);
     Depths depths = Depths(depth_towards(all, to_eye, rises.x),
                            depth_towards(all, to_sun, max(rises.y, LOWEST)),
-                           depth_towards(all, SKY_FROM, SKY_FROM.z));
+                           depth_of_sky(all));
     vec2 lit = wood_at(table, to_eye, to_sun, depths, in_sight.z + in_sight.w);
     taken = mix(taken, vec4(0.0, phase * lit.x, lit.y, 1.0), part);
 }

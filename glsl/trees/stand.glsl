@@ -1,7 +1,7 @@
 // trees/stand.glsl -- what a stand of trees hides, and the light on what one sees of it.
 //
 //   gives    Stand, stand_of, thinned, share_above, share_in, rise_of, depth_towards, reaches,
-//            facing_sun, facing_sky, leaf_phase, crown_light, wood_sums
+//            depth_of_sky, facing_sun, facing_sky, leaf_phase, crown_light, wood_sums
 //   needs    trees/crown.glsl, trees/level.glsl
 //   units    metres; trees a square metre; shares 0..1; light as a share of that on a surface
 //            that faces the sun, and of that of the whole sky on open level ground
@@ -36,6 +36,10 @@ const float TREE_PI = 3.14159265;
 const float WRAP = 0.2;  // leaves let light through: so far round the edge they are lit
 const float THROUGH = 0.2;  // of the light on a crown, what leaves it on the far side of it
 const vec3 SKY_FROM = vec3(0.7071, 0.0, 0.7071);  // where the sky's light comes from, mean
+// Of the sky's light, what comes through a crown: exp(-G L) of leaves that face all ways (G 0.5)
+// and are four square metres on one of ground (Campbell and Norman 1998, "An Introduction to
+// Environmental Biophysics", chapter 15).
+const float CLEAR = 0.135;
 const int SIZES = 3;                // of crowns, for sums over them
 
 // `density`: the share of cells that hold a tree; `others`: the shares of species.
@@ -101,6 +105,11 @@ float reaches(Stand s, float share, vec3 towards, float rise) {
     return rise <= 0.0 ? 0.0 : exp(-depth_towards(s, towards, rise) * share);
 }
 
+// The same of the sky's light, as its depth.
+float depth_of_sky(Stand s) {
+    return (1.0 - CLEAR) * depth_towards(s, SKY_FROM, SKY_FROM.z);
+}
+
 // How much of the sun is on a crown's place: all over the sphere as much as without leaves that
 // let light through.
 float facing_sun(vec3 normal, vec3 to_sun) {
@@ -123,7 +132,7 @@ float leaf_phase(vec3 to_eye, vec3 to_sun) {
 // Sun (x) and sky (y) on a crown where such a share of the others is above; `normal`: its
 // sphere's; `rise`: of the way to the sun.
 vec2 crown_light(Stand s, vec3 normal, float share, vec3 to_sun, float rise) {
-    float open = reaches(s, share, SKY_FROM, SKY_FROM.z);
+    float open = exp(-depth_of_sky(s) * share);
     return vec2(facing_sun(normal, to_sun) * reaches(s, share, to_sun, rise),
                 facing_sky(normal) * open);
 }

@@ -45,9 +45,9 @@ float axis_of_depth(float depth) {
     return min(depth / (depth + MIDDLE_DEPTH) / END_OF_DEPTHS, 1.0);
 }
 
-// Towards the eye, the sun and the sky.
+// Towards the eye, the sun and the sky. (Not named eye: what names the camera follows it.)
 struct Depths {
-    float eye;
+    float sight;
     float sun;
     float sky;
 };
@@ -86,9 +86,9 @@ vec2 wood_at(sampler2D table, vec3 to_eye, vec3 to_sun, Depths depths, float nee
         float part = k == 0 ? 1.0 - needled : needled;
         if (part <= 0.0) continue;
         // Neither the sky nor how often a place is seen knows of the sun's side.
-        total += part * vec3(sums_at(table, k, at, depths.eye + depths.sun).x,
-                             sums_at(table, k, vec2(at.x, 0.0), depths.eye + depths.sky).y,
-                             sums_at(table, k, vec2(at.x, 0.0), depths.eye).z);
+        total += part * vec3(sums_at(table, k, at, depths.sight + depths.sun).x,
+                             sums_at(table, k, vec2(at.x, 0.0), depths.sight + depths.sky).y,
+                             sums_at(table, k, vec2(at.x, 0.0), depths.sight).z);
     }
     return total.xy / total.z;
 }

@@ -11,9 +11,9 @@
 //   tested   tests/glsl/test_water_sheet.py: shores lie where the depth of a lake is 0
 //
 // A lake's level is known where it is wet. On dry texels around it, it goes on as the mean of the
-// wet ones nearby, but not over ground that lies lower, at the outlet. So between a wet texel and
-// a dry one the surface meets the ground where it would in nature. A river lies on the ground as
-// a film, of which more than a half of the share of a texel is wet: narrower ones than that are
+// wet ones nearby, but not over ground that lies much lower, at the outlet. So between a wet texel
+// and a dry one the surface meets the ground where it would in nature. A river lies on the ground
+// as a film, of which more than a half of the share of a texel is wet: narrower ones than that are
 // for texturing/waters.
 #include "maths/nodes.glsl"
 #include "terrain/heightfield.glsl"
@@ -35,6 +35,7 @@ uniform float sea_level = 0.0;    //! slider(-500, 9000) step(0.1) unit("m") gro
 
 const float DRY = 1e3;       // [m] below the ground: there is no water
 const float EDGE = 0.3;      // [m] below the ground: no river, but one may be near
+const float SPILL = 0.6;     // [m] below a lake's level ground still belongs to it
 const int AROUND = 2;       // texels that a lake's level goes on
 const float MANNING = 0.04;
 const float WHITE_FROM = 0.02;  // slopes at which a river begins to run white, and all does
@@ -61,7 +62,9 @@ float level_of_node(ivec2 node) {
             total += vec2(level, 1.0) / float(x * x + y * y);
         }
     }
-    return total.y > 0.0 ? min(total.x / total.y, ground - 0.5 * shallowest) : ground - DRY;
+    if (total.y <= 0.0) return ground - DRY;
+    float level = total.x / total.y;
+    return ground > level - SPILL ? level : ground - 0.5 * shallowest;
 }
 
 float lake_level(ivec2 texel) {

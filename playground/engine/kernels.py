@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.binder import Binder, has_unwired, wires_of
+from playground.engine.costly_rest import CostlyRest
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
@@ -30,6 +31,7 @@ from playground.sketch.reserved_names import (
     PART,
     PRESSED,
     SIZES,
+    SKIPS,
     UNWIRED,
     VALUE,
     WINDOW,
@@ -91,6 +93,7 @@ class Kernels:
         self.programs = programs
         self.binder = binder
         self.pool = pool
+        self.costly_rest = CostlyRest(ctx)
         self.settling = Settling(ctx, programs, binder, pool, software=software)
         # Programs of this frame's steps, by the step's identity; the step is held with it.
         self._known: dict[tuple[int, str, tuple[int, ...]], tuple[Step, Program]] = {}
@@ -107,6 +110,8 @@ class Kernels:
         state = self._initial(job)
         if step.repeat == 0:
             return self._untouched(step, state)
+        if driver == FRAGMENT and self.software and self.costly_rest.has(step):
+            return self._in_two_parts(job, program, state, wires)
         unit = self.binder.bind(program, step, job.given, job.inputs, wires)
         if driver == COMPUTE and step.kernel.visits:
             return self._in_place(job, program, state)
@@ -284,6 +289,21 @@ class Kernels:
             self.pool.give(close)
         before.iterations = step.repeat
         return before
+
+    def _in_two_parts(
+        self, job: Job, program: Program, state: Mapping[str, moderngl.Texture], wires: tuple[int, ...]
+    ) -> Result:
+        """Run a kernel once: first the part of it that ends early, then the rest where it did not."""
+        step = job.step
+        result = self.pool.take(step.size, step.kernel.outputs)
+        with self.costly_rest.target(result):
+            for part in (self.program(job, FRAGMENT, (SKIPS, 1)), program):
+                unit = self.binder.bind(part, step, job.given, job.inputs, wires)
+                self.binder.previous(part, step.kernel, state, unit)
+                job.count(part, 0, step.kernel.repeat, step.whole)
+                self._fill(part)
+        result.iterations = step.repeat
+        return result
 
     def _shift(self, job: Job, iteration: int) -> int:
         """Return the power of two that texels known after an iteration lie apart."""

@@ -107,6 +107,7 @@ class Runner:
         self.paint.release()
         self.draws.release()
         self.compute_variants.release()
+        self.kernels.costly_rest.release()
         self.binder.release()
         self.programs.release()
 

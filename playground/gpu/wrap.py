@@ -20,6 +20,7 @@ from playground.sketch.reserved_names import (
     GIVEN,
     MATCHES,
     PART,
+    SKIPS,
     TOWARDS,
     UNWIRED,
     WINDOW,
@@ -35,6 +36,7 @@ LOCAL = 8
 CORNER = "k_corner"
 """What a vertex shader is handed where its version has no numbers of vertices: a vec2 in clip space."""
 
+_NOTHING_SKIPPED = f"bool {SKIPS}() {{ return false; }}"
 _NUMBER = re.compile(r"#\s*version\s+(\d+)\s*(\w*)")
 _PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
 _PROTOTYPE = re.compile(r"^(\w+)\s+(\w+)\s*\(([^()]*)\)\s*;", re.MULTILINE)
@@ -103,7 +105,8 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
     """Write checkboxes and menus into a wrapped text as constants, which changes no line and no column.
 
     A software renderer goes both ways of every ``if``: what was not chosen costs as much
-    as what was, unless the compiler can see that it never happens.
+    as what was, unless the compiler can see that it never happens. With the choice ``SKIPS`` the text is
+    that of the part of a kernel that ends before its costly rest: see ``engine.costly_rest``.
     """
     stages = {}
     for name, stage in wrapped.stages.items():
@@ -116,6 +119,8 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
                 return f"{match.group(1)}const  {match.group(2)} = {literal};"
 
             text = re.sub(pattern, constant, text, flags=re.MULTILINE)
+            if choice == SKIPS:
+                text = text.replace(_NOTHING_SKIPPED, f"bool {SKIPS}() {{ discard; return true; }}")
         stages[name] = replace(stage, text=text)
     return replace(wrapped, stages=stages)
 
@@ -237,7 +242,8 @@ def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[Part]:
     found += [("bool", f"{begins}{i.name}") for i in kernel.inputs for begins in (WIRED, MATCHES)]
     found += [("vec3", f"{TOWARDS}{p.name}") for p in kernel.parameters if p.widget.kind == "direction"]
     found.append(("ivec2", WINDOW))
-    return [Part(f"uniform {kind} {name};", () if name in always else (name,)) for kind, name in found]
+    parts = [Part(f"uniform {kind} {name};", () if name in always else (name,)) for kind, name in found]
+    return [*parts, Part(_NOTHING_SKIPPED, (SKIPS,))]
 
 
 def _fragment(kernel: Kernel) -> Recipe:

@@ -27,7 +27,9 @@ GIVEN: dict[str, tuple[str, str]] = {
 }
 """Name → (GLSL type, meaning) of what every kernel and draw is given; declared where its text names it."""
 
-RESERVED: frozenset[str] = frozenset({"previous", "kernel", "visit", "vertex", "fragment"})
+SKIPS = "skips_rest"
+"""A function that is true in what a software renderer draws first of a kernel: see ``engine.costly_rest``."""
+RESERVED: frozenset[str] = frozenset({"previous", "kernel", "visit", "vertex", "fragment", SKIPS})
 """Functions that the engine gives or calls; ``previous_`` begins more of them."""
 
 OF_THE_TERRAIN = ("spacing", "relief")

@@ -127,3 +127,16 @@ def test_a_driver_takes_what_this_asks_of_it(ctx):
             vertex_shader="#version 330\nfloat f() { return g(); }\nvoid main() { gl_Position = vec4(f()); }"
         )
     _ = ctx.error
+
+
+def test_what_makes_and_lights_the_terrain_does_not_follow_the_camera():
+    """A name that the engine gives makes a pass follow it, even where it names a variable or a field."""
+    folders = ("generation/", "erosion/", "texturing/", "lighting/")
+    follows = "texturing/alpha_map/distance.glsl"  # by its purpose
+    maps = [n for n in NAMES if n.startswith(folders) and "/diagram/" not in n and n != follows]
+    found = []
+    for name in (*maps, "trees/wood.glsl", "trees/density.glsl", "trees/canopy.glsl"):
+        kernel = parse_kernel(name, read_source(GLSL / name, (GLSL,)))
+        if kernel is not None and kernel.kind != "draw":
+            found += [(name, given) for given in ("eye", "clip_from_world") if kernel.reads(given)]
+    assert not found

@@ -73,12 +73,12 @@ def test_no_octave_is_shown_below_two_pixels_nor_above_two_spacings(on_gpu):
         assert np.all(part[cells <= spacing] == 1)
 
 
-def octaves(on_gpu, places, kinds, spacing):
+def octaves(on_gpu, places, kinds, spacing, grain):
     """Return the height [m] of all octaves at places, worked out octave by octave in float64."""
-    total, turn = np.zeros(len(places)), np.eye(2)
+    total, turn = np.zeros(len(places)), np.diag([1.0, grain])
     begin = on_gpu("scene/near/ladder.glsl", "first_rung(s)", s=[spacing])[0]
     for k in range(begin, RUNGS):
-        turn = turn @ TURN
+        turn = TURN @ turn
         cell = COARSEST / 2.0**k
         rough = on_gpu("scene/near/materials.glsl", "roughness_of(m, k)", m=kinds[None], k=np.int32([k]))[0]
         at = places @ turn.T / cell + np.array([0.618034, 0.381966]) * k
@@ -88,19 +88,20 @@ def octaves(on_gpu, places, kinds, spacing):
     return total
 
 
-@pytest.mark.parametrize("kinds", [GRASS, STONES, ROCK])
-def test_slopes_of_the_bumps_are_their_heights_derivatives(on_gpu, kinds):
+@pytest.mark.parametrize(("kinds", "grain"), [(GRASS, 1.0), (STONES, 0.25), (ROCK, 1.0)])
+def test_slopes_of_the_bumps_are_their_heights_derivatives(on_gpu, kinds, grain):
     places = RNG.uniform(-20, 20, (300, 2)).astype(np.float32)
-    call = f"bumps_at(p, m, 1.0, {FINE}, 24.0, 0.0)"
+    call = f"bumps_at(p, mat2(1.0, 0.0, 0.0, {grain}), m, 1.0, {FINE}, 24.0, 0.0)"
     found = on_gpu("scene/near/bumps.glsl", f"{call}.slope", p=places, m=kinds[None]).astype(float)
     exact, step = places.astype(float), 1e-6
     for axis in range(2):
         away = step * np.eye(2)[axis]
-        rise = octaves(on_gpu, exact + away, kinds, 24.0) - octaves(on_gpu, exact - away, kinds, 24.0)
+        high, low = (octaves(on_gpu, exact + side * away, kinds, 24.0, grain) for side in (1, -1))
+        rise = high - low
         # A place in the bottom of a furrow has two slopes.
         wrong = abs(found[:, axis] - rise / (2 * step)) > 4e-3
         assert wrong.mean() < 0.02, wrong.mean()
-        assert abs(found[:, axis]).std() > 0.1
+        assert abs(found[:, axis]).std() > 0.1 * grain
 
 
 @pytest.mark.parametrize("pixel", [FINE, "PixelOnGround(vec2(0.3, 0.1), 0.316, 0.08)"])
@@ -108,7 +109,10 @@ def test_slopes_of_the_bumps_are_their_heights_derivatives(on_gpu, kinds):
 def test_bumps_are_none_on_the_mean_and_as_rough_as_they_say(on_gpu, pixel, kinds):
     places = RNG.uniform(0, 9000, (60000, 2)).astype(np.float32)
     read = lambda name: on_gpu(  # noqa: E731
-        "scene/near/bumps.glsl", f"bumps_at(p, m, 1.0, {pixel}, 90.0, 0.2).{name}", p=places, m=kinds[None]
+        "scene/near/bumps.glsl",
+        f"bumps_at(p, mat2(1.0), m, 1.0, {pixel}, 90.0, 0.2).{name}",
+        p=places,
+        m=kinds[None],
     ).astype(float)
     for name in ("slope", "snowy", "tone", "dry", "height"):
         found = read(name)
@@ -135,7 +139,7 @@ def test_nothing_pops_while_the_eye_comes_nearer(on_gpu):
     bound = 3 * contrast * change * (2 * 0.74 + 0.375 * 3 * 0.5 * 4)
     pixel = "PixelOnGround(vec2(2.2 * w, w), 2.42 * w, w)"
     for p in place:
-        call = f"bumps_at(p, vec3(1.0, 0.0, 0.0), 1.0, {pixel}, 90.0, 0.0).tone"
+        call = f"bumps_at(p, mat2(1.0), vec3(1.0, 0.0, 0.0), 1.0, {pixel}, 90.0, 0.0).tone"
         found = on_gpu("scene/near/bumps.glsl", call, p=tuple(map(float, p)), w=wide)
         assert abs(np.diff(found)).max() < bound
         assert found.std() > 0.01
@@ -152,7 +156,7 @@ def test_rock_is_pushed_by_the_slopes_of_its_heights(on_gpu):
         total = 0.0
         for k in range(2, RUNGS):
             cell = COARSEST / 2.0**k
-            at = (place * [1, 1, 2.0] / cell) @ turn.T + 0.618034 * k
+            at = (place * [1, 1, 2.0 if cell < 4 else 0.45] / cell) @ turn.T + 0.618034 * k
             noise = solid(at, lattice_seed(0x4F396EA5, k))
             rough = 0.24 + (0.12 - 0.24) * k / RUNGS
             part = np.clip(2 - cell / 10.0, 0, 1)
@@ -191,6 +195,16 @@ def test_rock_is_more_where_it_is_steeper_and_kinds_are_all_there_is(on_gpu):
     np.testing.assert_allclose(found.sum(axis=1), 1.0, atol=1e-6)
     rock = found[:, 2].reshape(5, 200)
     assert np.all(np.diff(rock, axis=1) >= 0) and np.all(rock[:, 0] == 0) and np.all(rock[:, -1] == 1)
+
+
+def test_ripples_of_sand_are_long_across_the_wind(on_gpu):
+    for wind in (0.0, 250.0):
+        towards = np.array([np.sin(np.radians(wind)), np.cos(np.radians(wind))])
+        across = np.array([-towards[1], towards[0]])
+        for way, share in ((towards, 1.0), (across, 0.2)):
+            call = "grain_of_sand(1.0, w) * d"
+            found = on_gpu("scene/near/kinds.glsl", call, w=[wind], d=way[None].astype(np.float32))[0]
+            np.testing.assert_allclose(found, share * way, atol=1e-5)
 
 
 def test_layers_follow_the_height(on_gpu):
@@ -253,13 +267,30 @@ def test_wet_ground_gives_back_what_its_film_lets_out(on_gpu):
 def test_snow_covers_hollows_first_and_everything_at_last(on_gpu):
     file = "scene/near/snow.glsl"
     over = np.linspace(-0.6, 0.4, 41).astype(np.float32)
-    call = "snow_share(d, o, h, p)"
+    call = "snow_share(d, o, 0.1, h, p)"
     for hidden, patchy in product((0.0, 0.02, 0.1), (-0.9, 0.0, 0.9)):
         given = {"o": over, "h": hidden, "p": patchy}
         assert np.all(on_gpu(file, call, d=0.0, **given) == 0), "no snow, no white"
         depths = [on_gpu(file, call, d=float(d), **given) for d in np.linspace(0, 3, 30)]
         assert np.all(np.diff(depths, axis=0) >= 0) and np.all(depths[-1] == 1)
         assert np.all(np.diff(depths, axis=1) <= 0), "what stands higher is bare longer"
+
+
+def test_as_much_snow_lies_on_bumps_that_are_seen_as_on_those_that_are_not(on_gpu):
+    """Near by, the mean over places; far away, the share of a pixel that shows none of its bumps."""
+    places = RNG.uniform(0, 5000, (20000, 2)).astype(np.float32)
+    files = {name: f"scene/near/{name}.glsl" for name in ("bumps", "snow")}
+    call = f"bumps_at(p, mat2(1.0), vec3(1.0, 0.0, 0.0), 1.0, {FINE}, 24.0, 0.0)"
+    over, whole, hidden = (
+        on_gpu(files["bumps"], f"{call}.{n}", p=places) for n in ("height", "whole", "hidden")
+    )
+    np.testing.assert_allclose(over.std(), whole[0], rtol=0.1)
+    assert hidden.max() < 0.1 * whole[0]
+    for depth in (0.06, 0.1, 0.14, 0.2):
+        given = {"d": depth, "w": float(whole[0])}
+        near = on_gpu(files["snow"], "snow_share(d, o, w, h, 0.0)", o=over, h=hidden, **given).mean()
+        far = on_gpu(files["snow"], "snow_share(d, 0.0, w, w, 0.0)", **given)[0]
+        assert abs(near - far) < 0.1, depth
 
 
 LAND = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 t) {{ return {}; }}\n'

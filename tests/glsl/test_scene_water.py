@@ -2,10 +2,16 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
+from playground.engine.plan import Window
+from playground.gpu.textures import read_picture
+from playground.paths import GLSL
 from playground.sketch.model import Camera
+from playground.sketch.source import read_source
 
 from .test_scene import EXTENT, LOOK, PASSES, PLANE, RELIEF, SIZE, all_pixels, on_plane, rays
 
@@ -55,7 +61,7 @@ def test_water_is_where_the_rays_meet_its_level_before_the_ground(any_engine, sc
     np.testing.assert_array_equal(water[on & ~shore], below[on & ~shore])
     wet = water & on & ~shore
     np.testing.assert_allclose(found[wet][:, :3], surface[wet], atol=0.05)
-    depth = read(any_engine, scene(), "watered.where:depth")
+    depth = read(any_engine, scene(), "watered.where:state")[..., 0]
     np.testing.assert_allclose(depth[on & ~shore], LEVEL - ground[on & ~shore][:, 2], atol=0.05)
 
 
@@ -117,8 +123,26 @@ def test_the_table_of_the_sky_knows_its_directions(on_gpu):
     texel = np.stack(np.meshgrid(np.arange(96), np.arange(48)), axis=-1).reshape(-1, 2).astype(np.int32)
     to = on_gpu(file, "heaven_direction(t, ivec2(96, 48))", t=texel)
     np.testing.assert_allclose(np.linalg.norm(to, axis=1), 1.0, atol=1e-6)
-    back = on_gpu(file, "heaven_place(to, ivec2(96, 48))", to=to) % 1.0
-    np.testing.assert_allclose(back, (texel + 0.5) / [96, 48], atol=1e-5)
+    back = on_gpu(file, "heaven_place(to, THIN_SKY, ivec2(96, 144))", to=to) % 1.0
+    np.testing.assert_allclose(back, (texel + np.array([0.5, 48.5])) / [96, 144], atol=1e-5)
+
+
+def test_a_picture_in_parts_is_the_whole_picture(any_engine, scene):
+    sketch = scene(given="wind = 5.0, foam = 1.0")
+    whole = any_engine.render(sketch, size=SIZE).array
+    part = Window((40, 20), (80, 47), SIZE)
+    found = read_picture(any_engine.draw_window(sketch, part))
+    (x, y), (width, height) = part.origin, part.size
+    there = whole[SIZE[1] - y - height : SIZE[1] - y, x : x + width]
+    # A corner of the mesh is rounded otherwise from another corner of the picture.
+    off = np.abs(found.astype(int) - there)
+    assert off.max() <= 2 and (off > 0).mean() < 0.001
+
+
+def test_no_shader_takes_more_textures_than_every_device_has():
+    for path in sorted((GLSL / "scene" / "water").glob("*.glsl")):
+        code = read_source(path, (GLSL,)).code
+        assert len(set(re.findall(r"^uniform sampler2D (\w+)", code, re.MULTILINE))) <= 16, path.name
 
 
 # ── light ───────────────────────────────────────────────────────────────────────
@@ -149,7 +173,7 @@ def test_deep_water_is_darker_and_less_red(any_engine, scene):
         f"{CALM}, clarity = 2.0, zenith = [0.0, 0.0, 0.0], horizon = [0.0, 0.0, 0.0], deep = [0.0, 0.0, 0.0]"
     )
     sketch = scene(given=given)
-    depth = read(any_engine, sketch, "watered.where:depth")
+    depth = read(any_engine, sketch, "watered.where:state")[..., 0]
     water = read(any_engine, sketch, "watered.where:seen_water")[..., 3] == 3
     found = read(any_engine, sketch, "watered.surface")[..., :3]
     land = read(any_engine, sketch, "where")[..., 3] == 1

@@ -10,6 +10,6 @@
 #ifndef CLOUDS_PARAMETERS_DRAWN
 #define CLOUDS_PARAMETERS_DRAWN
 uniform int clouds = 2;  //! menu("none", "flat", "heaped")
-                         //! What clouds are drawn: none, a flat layer for slow renderers, or
+                         //! What clouds are drawn: none, flatter ones for slow renderers, or
                          //! heaps
 #endif

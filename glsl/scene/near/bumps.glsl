@@ -20,7 +20,8 @@ struct Bumps {
     vec2 slope;        // of the bare ground's bumps, east and north
     vec2 snowy;        // of the same under snow: small ones are buried
     float height;      // of what is smaller than a step, over its mean  [m]
-    float hidden;      // rms of what of that is too small for the pixel  [m]
+    float whole;       // its rms  [m]
+    float hidden;      // and that of what of it is too small for the pixel  [m]
     float variance;    // of `slope` along an axis, its mean over places
     float snow_variance;
     float tone;        // lighter or darker, of mean 0
@@ -28,9 +29,10 @@ struct Bumps {
 };
 
 const float PERLIN_SLOPE = 0.94501;  // root of the mean square of a slope along an axis
-const float PERLIN_VALUE = 0.32637;  // and of the noise
-const float PERLIN_FOLDED = 0.26663; // and the mean of the noise without its sign
+const float PERLIN_FOLDED = 0.26663; // mean of the noise without its sign
+const float FOLDED_RMS = 0.18822;    // root of the mean square of what that is from its mean
 const float A_STEP = 1.0;            // [m]
+const int STEP_RUNG = 6;             // the rung of that
 const float A_TUFT = 1.0;            // [m] cells of the widest tufts
 // Each lattice is turned against the last: rows of one are seen where one looks along them.
 const mat2 NEXT_TURN = mat2(0.8, 0.6, -0.6, 0.8);
@@ -57,14 +59,15 @@ vec3 octave_over(vec2 place, vec2 along, vec2 halves, bool round_topped, uint se
 }
 
 // `kinds` are shares of grass, stones and rock, `pixel` what a pixel covers there, `spacing`
-// that of the heightmap, `depth` how deep snow is; all in metres.
-Bumps bumps_at(vec2 place, vec3 kinds, float strength, PixelOnGround pixel, float spacing,
-               float depth) {
-    Bumps b = Bumps(vec2(0.0), vec2(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+// that of the heightmap, `depth` how deep snow is; all in metres. `grain` draws places together
+// along which bumps are long, as ripples of sand are.
+Bumps bumps_at(vec2 place, mat2 grain, vec3 kinds, float strength, PixelOnGround pixel,
+               float spacing, float depth) {
+    Bumps b = Bumps(vec2(0.0), vec2(0.0), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     int end = last_rung(pixel.finest);
-    mat2 turn = mat2(1.0);
+    mat2 turn = grain;
     for (int k = first_rung(spacing); k < end; k++) {
-        turn *= NEXT_TURN;
+        turn = NEXT_TURN * turn;
         float cell = cell_of(k);
         float part = shown_to(cell, pixel.finest) * beyond_map(cell, spacing);
         vec2 halves = 1.0 - vec2(shown_to(cell, pixel.wide), shown_to(cell, 0.5 * pixel.wide));
@@ -80,8 +83,9 @@ Bumps bumps_at(vec2 place, vec3 kinds, float strength, PixelOnGround pixel, floa
         float snow = part * strength * mix(snow_roughness(k), roughness_of(kinds, k), buried);
         b.slope += slope * noise.yz;
         b.snowy += snow / PERLIN_SLOPE * noise.yz;
-        // Means over two places have half the variance.
-        float mean_of = 1.0 / ((1.0 + halves.x) * (1.0 + halves.y));
+        // Means over two places have half the variance; along a grain there is less.
+        float mean_of = 0.5 * (dot(grain[0], grain[0]) + dot(grain[1], grain[1]))
+                / ((1.0 + halves.x) * (1.0 + halves.y));
         b.variance += mean_of * part * part * rough * rough;
         b.snow_variance += mean_of * snow * snow;
         if (cell <= A_STEP) b.height += slope * cell * noise.x;
@@ -89,10 +93,11 @@ Bumps bumps_at(vec2 place, vec3 kinds, float strength, PixelOnGround pixel, floa
         b.tone += (round_topped ? 1.8 : 1.0) * contrast * noise.x;
         b.dry += contrast * noise.y;
     }
-    // The first rung left out, and about as much again below it.
+    // The first rung of them, and what is below it: a fifth more.
+    float tall = 1.2 * strength * FOLDED_RMS / PERLIN_SLOPE;
+    b.whole = tall * roughness_of(kinds, STEP_RUNG) * A_STEP;
     float left = min(2.0 * pixel.finest, A_STEP);
-    b.hidden = 1.15 * strength * roughness_of(kinds, min(end, RUNGS - 1)) * left * PERLIN_VALUE
-            / PERLIN_SLOPE;
+    b.hidden = min(tall * roughness_of(kinds, clamp(end, STEP_RUNG, RUNGS - 1)) * left, b.whole);
     return b;
 }
 #endif

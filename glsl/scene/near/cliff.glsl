@@ -29,8 +29,11 @@ const float SOLID_FOLDED = 0.17883;   // mean of the noise without its sign
 // Turned, since the noise's gradients lie along a cube's diagonals.
 const mat3 CLIFF_TURN = mat3(0.36, 0.48, -0.8, -0.8, 0.6, 0.0, 0.48, 0.64, 0.6);
 
-// Places are flattened by that much: rock breaks along its layers.
+// Small blocks break along their layers, large ones make ribs that run down the slope: places are
+// flattened, or drawn out, by that much.
 const float BEDDING = 2.0;
+const float RIBS = 0.45;
+const float A_RIB = 4.0;  // [m] cells of the smallest
 
 // No octave is added where `share` of rock is 0.
 Cliff cliff_at(vec3 place, float share, float strength, float layers, Layer layer, float pixel,
@@ -38,9 +41,9 @@ Cliff cliff_at(vec3 place, float share, float strength, float layers, Layer laye
     Cliff c = Cliff(vec3(0.0), 0.0, 0.0);
     int end = share > 0.0 ? last_rung(pixel) : 0;
     strength *= 1.0 - 0.8 * layers * clamp(layer.tone, -0.6, 0.6);
-    vec3 stretch = vec3(1.0, 1.0, BEDDING);
     for (int k = first_rung(spacing); k < end; k++) {
         float cell = cell_of(k);
+        vec3 stretch = vec3(1.0, 1.0, cell < A_RIB ? BEDDING : RIBS);
         float part = shown_to(cell, pixel) * beyond_map(cell, spacing);
         vec4 noise = solid(CLIFF_TURN * (place * stretch / cell) + 0.618034 * float(k),
                            lattice_seed(CLIFF_SALT, k));

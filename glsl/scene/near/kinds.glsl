@@ -1,6 +1,6 @@
 // scene/near/kinds.glsl -- what the ground consists of: grass, stones, rock.
 //
-//   gives    rock_share, kinds_of_ground, kinds_of_layers, SOIL_HUE, soiled
+//   gives    rock_share, kinds_of_ground, grain_of_sand, kinds_of_layers, SOIL_HUE, soiled
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    shares that sum to 1, of grass, stones and rock; slopes in metres over metres;
 //            exposed from -1 in hollows to 1 on ridges; colours linear
@@ -11,6 +11,7 @@
 #ifndef SCENE_NEAR_KINDS
 #define SCENE_NEAR_KINDS
 const vec3 SOIL_HUE = vec3(0.215, 0.165, 0.115);
+const float RIPPLE = 0.2;  // how much narrower than long ripples of sand are
 const vec3 LUMA = vec3(0.2126, 0.7152, 0.0722);
 
 // Within the two slopes, patches decide what is rock.
@@ -26,6 +27,13 @@ vec3 kinds_of_ground(float slope, vec2 rocky, bool cliffs, float layer, float st
     float stones = 1.2 * stony + 0.3 * patchy + 0.35 * exposed + 0.15 * slope;
     float bare = smoothstep(0.35, 0.85, stones);
     return vec3((1.0 - rock) * vec2(1.0 - bare, bare), rock);
+}
+
+// What draws places together along ripples of a sand that is so pure, across a wind from there.
+mat2 grain_of_sand(float pure, float from) {
+    vec2 wind = vec2(sin(radians(from)), cos(radians(from)));
+    vec2 along = vec2(-wind.y, wind.x);
+    return mat2(1.0) + (mix(1.0, RIPPLE, pure) - 1.0) * outerProduct(along, along);
 }
 
 // Of the four layers of texture splatting: grass, rock, snow and a path.

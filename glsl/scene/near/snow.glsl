@@ -11,12 +11,15 @@
 #define SCENE_NEAR_SNOW
 const vec3 SNOW_COLOUR = vec3(0.80, 0.83, 0.87);
 
-// `over` is the height of the bumps over their mean, `hidden` the rms of those too small to be
-// seen, `patchy` from -1 to 1 where wind has left more or less, over tens of metres.
-float snow_share(float depth, float over, float hidden, float patchy) {
-    float soft = 0.02 + 2.0 * hidden;
+// `over` is the height of the bumps over their mean, `whole` its rms, `hidden` that of those too
+// small to be seen; `patchy` from -1 to 1 where wind has left more or less, over tens of metres.
+// A depth that covers half does so from near by and from afar.
+float snow_share(float depth, float over, float whole, float hidden, float patchy) {
     float lies = depth * (1.0 + 0.6 * patchy);
-    // Snow lies in hollows first: none at depth 0, whatever they are.
-    return smoothstep(-soft, soft, lies - max(over + 0.04, 0.0) - soft);
+    float half_covered = 0.03 + 2.0 * whole;
+    float soft = 0.02 + 2.0 * hidden;
+    // None where there is none, however deep the hollow.
+    float some = smoothstep(0.0, 0.5 * half_covered, lies);
+    return some * smoothstep(half_covered - soft, half_covered + soft, lies - over);
 }
 #endif

@@ -24,12 +24,14 @@ const uint STRATA_SALT = 0x701b7413u;  // CRC-32 of "scene/near/strata"
 const float LEDGE = 0.12;
 
 // One set of banks, each with a tone of its own; between two the tone changes over a third of one.
+// The border of two lies up to a third off its place: banks of one thickness look like corduroy.
 Layer banks(float height, float thick, int set) {
     float at = height / thick;
-    float bank = floor(at);
-    float t = clamp((at - bank) * 3.0 - 1.0, 0.0, 1.0);
-    float low = random_signed(ivec2(int(bank), set), STRATA_SALT);
-    float high = random_signed(ivec2(int(bank) + 1, set), STRATA_SALT);
+    int bank = int(floor(at + 0.5));
+    float border = float(bank) + 0.33 * random_signed(ivec2(bank, set + 8), STRATA_SALT);
+    float t = clamp((at - border) * 3.0 + 0.5, 0.0, 1.0);
+    float low = random_signed(ivec2(bank - 1, set), STRATA_SALT);
+    float high = random_signed(ivec2(bank, set), STRATA_SALT);
     float rise = (high - low) * 18.0 * t * (1.0 - t) / thick;
     return Layer(low + (high - low) * t * t * (3.0 - 2.0 * t), rise, LEDGE * thick * rise);
 }

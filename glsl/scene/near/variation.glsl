@@ -16,6 +16,7 @@
 struct Variation {
     float dry;    // straw where above 0, fresh green where below
     float light;
+    float broad;  // of the widest patches alone
 };
 
 const uint VARIATION_SALT = 0x72263dffu;  // CRC-32 of "scene/near/variation"
@@ -23,18 +24,19 @@ const float WIDEST = 420.0;               // [m] cells of the widest patches
 const int PATCHES = 5;
 
 Variation variation_at(vec2 place, float pixel) {
-    Variation v = Variation(0.0, 0.0);
+    Variation v = Variation(0.0, 0.0, 0.0);
     float cell = WIDEST;
     float strength = 0.9;
     for (int k = 0; k < PATCHES; k++) {
         vec3 noise = perlin(place / cell + 0.37 * float(k), lattice_seed(VARIATION_SALT, k));
         float part = strength * shown_to(cell, pixel);
+        if (k == 0) v.broad = noise.x;
         v.dry += part * noise.x;
         v.light += 0.3 * part * noise.y;
         cell *= 0.39;
         strength *= 0.75;
     }
-    return Variation(clamp(v.dry, -1.0, 1.0), clamp(v.light, -1.0, 1.0));
+    return Variation(clamp(v.dry, -1.0, 1.0), clamp(v.light, -1.0, 1.0), v.broad);
 }
 
 // Dry grass has more red and less blue than fresh grass of the same brightness. Each channel is

@@ -47,6 +47,7 @@ vec3 disc_in(vec3 towards, vec3 sun, float pixel, float height, Weather now) {
 
 vec4 kernel(ivec2 texel) {
     if (wired_seen && !is_sky(texelFetch(seen, texel, 0).a)) return vec4(0.0, 0.0, 0.0, 1.0);
+    if (skips_rest()) return vec4(0.0);
     vec2 share = (vec2(texel) + 0.5) / vec2(size);
     vec3 towards = direction_of(vec2(texel) + 0.5);
     float height = 0.001 * max(base_elevation + eye.z, 0.0);

@@ -37,6 +37,7 @@ vec4 cloud_at(ivec2 texel) {
 
 vec4 kernel(ivec2 texel) {
     if (wired_seen && sky_hidden(seen, texel, size)) return vec4(0.0, 0.0, 0.0, 1.0);
+    if (skips_rest()) return vec4(0.0);
     vec2 share = (vec2(texel) + 0.5) / vec2(size);
     vec4 away = world_from_clip * vec4(share * 2.0 - 1.0, 1.0, 1.0);
     vec3 ahead = normalize(away.xyz / away.w - eye);

@@ -1,7 +1,7 @@
 // scene/water/heaven.glsl -- the sky over the water in all directions, for what it mirrors.
 //
-//   gives    clear: the sky without sun and clouds; thin, thick: what clouds of two thicknesses
-//            show there; by azimuth along x and the root of the sine of the elevation along y
+//   gives    heaven: the sky without sun and clouds, over it what clouds of two thicknesses show
+//            there; each by azimuth along x and the root of the sine of the elevation along y
 //   needs    clouds/crossing.glsl, clouds/layer_form.glsl, clouds/sunlight.glsl,
 //            lighting/daylight_sky.glsl, scene/water/heaven_reading.glsl; a daylight and its
 //            tables, a drift, if there are
@@ -17,7 +17,7 @@
 #include "clouds/sunlight.glsl"
 #include "lighting/daylight_sky.glsl"
 #include "scene/water/heaven_reading.glsl"
-#pragma kernel(output = "clear:rgba16f, thin:rgba16f, thick:rgba16f")
+#pragma kernel(output = "heaven:rgba16f")
 
 uniform sampler2D daylight;  //! input("black")
 uniform sampler2D dome;      //! input("black")
@@ -47,19 +47,20 @@ vec3 cloud_of(float thickness, CloudLight light) {
             + diffuse_between(light.above, light.below, whole, whole);
 }
 
-void kernel(ivec2 texel, out vec4 clear, out vec4 thin, out vec4 thick) {
-    vec3 towards = heaven_direction(texel, size);
+vec4 kernel(ivec2 texel) {
+    ivec2 part = ivec2(size.x, size.y / SKIES);
+    int which = texel.y / part.y;
+    vec3 towards = heaven_direction(ivec2(texel.x, texel.y - which * part.y), part);
     float from = 0.001 * max(base_elevation, 0.0);
-    clear = vec4(clear_towards(towards, from), 1.0);
-    thin = clear;
-    thick = clear;
-    if (clouds == 0 || !wired_drift || !wired_columns || !wired_daylight) return;
+    vec3 clear = clear_towards(towards, from);
+    bool drawn = clouds != 0 && wired_drift && wired_columns && wired_daylight;
+    if (which == CLEAR_SKY || !drawn) return vec4(clear, 1.0);
     float height = 0.001 * (base_elevation + texelFetch(drift, ivec2(0), 0).z + CLOUD_MIDDLE);
     vec2 span = layer_crossing(from, max(towards.z, 1e-4), height, height + 1e-3);
-    if (span.y <= span.x) return;
+    if (span.y <= span.x) return vec4(clear, 1.0);
     CloudLight light = cloud_light(daylight, columns, bounced, from, towards, span.x, height);
     // Far clouds fade into the air before them, the sooner the hazier it is.
     float left = exp(-span.x * weather(daylight).turbidity / 110.0);
-    thin.rgb = mix(clear.rgb, cloud_of(THIN_CLOUD, light), left);
-    thick.rgb = mix(clear.rgb, cloud_of(THICK_CLOUD, light), left);
+    float thickness = which == THIN_SKY ? THIN_CLOUD : THICK_CLOUD;
+    return vec4(mix(clear, cloud_of(thickness, light), left), 1.0);
 }

@@ -1,7 +1,8 @@
 // scene/water/heaven_reading.glsl -- where in the table of scene/water/heaven a direction is.
 //
-//   gives    THIN_CLOUD, THICK_CLOUD, heaven_direction, heaven_place
-//   needs    nothing: pure functions; the tables are read "linear", "repeat"
+//   gives    THIN_CLOUD, THICK_CLOUD, SKIES, CLEAR_SKY, THIN_SKY, THICK_SKY, heaven_direction,
+//            heaven_place
+//   needs    nothing: pure functions; the table is read "linear", "repeat"
 //   units    unit vectors, x east, y north, z up; thickness of clouds as a share of the thickest
 //   source   none: made here
 //   tested   tests/glsl/test_scene_water.py: there and back
@@ -11,6 +12,13 @@
 const float THIN_CLOUD = 0.08;
 const float THICK_CLOUD = 0.6;
 
+// Three skies, one over the other in the table.
+const int SKIES = 3;
+const int CLEAR_SKY = 0;
+const int THIN_SKY = 1;
+const int THICK_SKY = 2;
+
+// Of a texel of one of them, so many texels wide and high.
 vec3 heaven_direction(ivec2 texel, ivec2 table) {
     float turn = 6.2831853 * (float(texel.x) + 0.5) / float(table.x);
     float root = (float(texel.y) + 0.5) / float(table.y);
@@ -18,9 +26,11 @@ vec3 heaven_direction(ivec2 texel, ivec2 table) {
     return vec3(sqrt(1.0 - up * up) * vec2(sin(turn), cos(turn)), up);
 }
 
-vec2 heaven_place(vec3 towards, ivec2 table) {
+// The place of a direction in the texture, in one of its skies.
+vec2 heaven_place(vec3 towards, int which, ivec2 texture_texels) {
     float turn = atan(towards.x, towards.y) / 6.2831853;
-    float half_row = 0.5 / float(table.y);
-    return vec2(turn, clamp(sqrt(max(towards.z, 0.0)), half_row, 1.0 - half_row));
+    float half_row = 0.5 * float(SKIES) / float(texture_texels.y);
+    float row = clamp(sqrt(max(towards.z, 0.0)), half_row, 1.0 - half_row);
+    return vec2(turn, (float(which) + row) / float(SKIES));
 }
 #endif

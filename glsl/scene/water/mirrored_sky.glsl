@@ -1,7 +1,7 @@
 // scene/water/mirrored_sky.glsl -- the sky in a direction from the water, with its clouds.
 //
-//   gives    clear_sky, clouds_towards
-//   needs    clouds/shadow.glsl, scene/water/heaven_reading.glsl; the tables of
+//   gives    sky_of, clouds_towards
+//   needs    clouds/shadow.glsl, scene/water/heaven_reading.glsl; the table of
 //            scene/water/heaven, a tile by clouds/field and a drift come as arguments
 //   units    metres; light as of lighting/daylight
 //   source   the heaps of clouds/seen, by few steps: what is mirrored is never as sharp
@@ -14,17 +14,16 @@
 const int CLOUD_STEPS = 8;
 const float LONGEST_STEP = 500.0;  // [m]
 
-vec3 clear_sky(sampler2D clear, vec3 to) {
-    return textureLod(clear, heaven_place(to, textureSize(clear, 0)), 0.0).rgb;
+vec3 sky_of(sampler2D heaven, int which, vec3 to) {
+    return textureLod(heaven, heaven_place(to, which, textureSize(heaven, 0)), 0.0).rgb;
 }
 
 // The light of the clouds that a ray from a place meets, and in alpha what they leave of the sky
 // behind; `blur` is how wide what is mirrored blurs [radians]. Heaped, or as a flat layer.
-vec4 clouds_towards(sampler2D cloud, sampler2D thin, sampler2D thick, vec4 drift, vec3 place,
-                    vec3 to, float blur, bool heaped) {
-    vec2 at = heaven_place(to, textureSize(thin, 0));
-    vec3 bright = textureLod(thin, at, 0.0).rgb;
-    vec3 dark = textureLod(thick, at, 0.0).rgb;
+vec4 clouds_towards(sampler2D cloud, sampler2D heaven, vec4 drift, vec3 place, vec3 to,
+                    float blur, bool heaped) {
+    vec3 bright = sky_of(heaven, THIN_SKY, to);
+    vec3 dark = sky_of(heaven, THICK_SKY, to);
     float rise = max(to.z, 0.03);
     float way = max(drift.z - place.z, 0.0) / rise;
     float texel = drift.w / float(textureSize(cloud, 0).x);

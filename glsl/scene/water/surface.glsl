@@ -4,10 +4,10 @@
 //   needs    clouds/shadow.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
 //            noise/gradient.glsl, scene/air_reading.glsl, scene/footprint.glsl,
 //            scene/ground_reading.glsl, scene/surfaces.glsl, scene/water/mirrored.glsl,
-//            scene/water/mirrored_sky.glsl, trees/leaves_reading.glsl, water/body.glsl,
-//            water/foam.glsl, water/rough_mirror.glsl, water/sheet_reading.glsl,
-//            water/waves.glsl, view/surface.glsl; the picture without water, what it shows, what
-//            scene/water/where gives, the ground and the maps that scene/shaded has
+//            scene/water/mirrored_sky.glsl, scene/water/moment_texels.glsl, water/body.glsl,
+//            water/foam.glsl, water/rough_mirror.glsl, water/waves.glsl, view/surface.glsl;
+//            the picture without water, what scene/water/where gives, the ground and the maps
+//            that scene/shaded has
 //   units    metres; light without unit, 1 for white
 //   source   each part in its own file; wet ground is darker: Lekner and Dorf 1988, "Why some
 //            things are darker when wet", Applied Optics 27
@@ -29,32 +29,26 @@
 #include "scene/surfaces.glsl"
 #include "scene/water/mirrored.glsl"
 #include "scene/water/mirrored_sky.glsl"
-#include "trees/leaves_reading.glsl"
+#include "scene/water/moment_texels.glsl"
 #include "view/surface.glsl"
 #include "water/body.glsl"
 #include "water/foam.glsl"
 #include "water/rough_mirror.glsl"
-#include "water/sheet_reading.glsl"
 #include "water/waves.glsl"
 #pragma kernel(output = "frame:rgba16f")
 
 uniform sampler2D picture;       //! input
-uniform sampler2D seen;          //! input
 uniform sampler2D seen_water;    //! input
-uniform sampler2D depth;         //! input
-uniform sampler2D water;         //! input
+uniform sampler2D state;         //! input
 uniform sampler2D height;        //! input
 uniform sampler2D block_maxima;  //! input
 uniform sampler2D ground;        //! input("linear", "mipmap")
 uniform sampler2D colour;        //! input("linear", "mipmap", "white")
+uniform sampler2D weights;       //! input("linear", "mipmap", "white")
 uniform sampler2D density;       //! input("zero")
-uniform sampler2D waves;         //! input
-uniform sampler2D leaves;        //! input("white")
-uniform sampler2D clear;         //! input("linear", "repeat")
-uniform sampler2D thin;          //! input("linear", "repeat")
-uniform sampler2D thick;         //! input("linear", "repeat")
+uniform sampler2D moment;        //! input
+uniform sampler2D heaven;        //! input("linear", "repeat")
 uniform sampler2D cloud;         //! input("linear", "repeat", "mipmap", "white")
-uniform sampler2D drift;         //! input("black")
 uniform sampler2D scattered;     //! input("linear", "black")
 uniform sampler2D left;          //! input("linear", "black")
 #include "clouds/parameters/drawn.glsl"
@@ -89,8 +83,8 @@ float wood_height(vec2 share) {
 }
 
 float cloud_shade(vec3 place, vec3 to_light) {
-    if (!wired_cloud || !wired_drift || clouds == 0) return 1.0;
-    vec4 wind_of = texelFetch(drift, ivec2(0), 0);
+    if (!wired_cloud || clouds == 0) return 1.0;
+    vec4 wind_of = texelFetch(moment, DRIFT, 0);
     return wired_daylight ? cloud_share(cloud, wind_of, place, to_light)
             : cloud_transmittance(cloud, wind_of, place, to_light);
 }
@@ -103,24 +97,33 @@ Aerial air_before(vec2 share, float far) {
     return Aerial(air * (1.0 - clean), vec3(clean));
 }
 
+// The terrain's own colour there, of a texture or of four tiles by their means.
+vec3 colour_from(vec2 share, float wide) {
+    if (!wired_colour && !wired_weights) return vec3(0.4);
+    ivec2 texels = wired_weights ? textureSize(weights, 0) : textureSize(colour, 0);
+    float level = log2(max(wide * float(texels.x - 1) / extent.x, 1e-3));
+    vec2 at = drape_uv(share, texels);
+    if (!wired_weights) return textureLod(colour, at, level).rgb;
+    vec4 weight = textureLod(weights, at, level);
+    vec3 total = vec3(0.0);
+    for (int k = 0; k < 4; k++) {
+        total += weight[k] * texelFetch(moment, TILES + ivec2(k, 0), 0).rgb;
+    }
+    return total / max(weight.x + weight.y + weight.z + weight.w, 1e-3);
+}
+
 // Light of the terrain that a mirrored ray meets, seen from as far as the ray has come.
 vec3 terrain_from(vec3 place, vec3 to_ray, float far, float pixel, Sunlight from) {
     vec2 share = place.xy / extent;
     Ground around = ground_at(ground, place.xy, extent, far * pixel);
-    ivec2 texels = textureSize(colour, 0);
-    float level = log2(max(far * pixel * float(texels.x - 1) / extent.x, 1e-3));
-    vec3 found = wired_colour ? textureLod(colour, drape_uv(share, texels), level).rgb : vec3(0.4);
+    vec3 found = colour_from(share, far * pixel);
     vec3 normal = normal_of_slope(around.slope);
-    float wood = 0.0;
-    if (wired_density && wired_leaves) {
-        wood = smoothstep(0.1, 0.6, density_at(share));
-        float shown = clamp(14.0 / (far * pixel) - 1.0, 0.0, 1.0);
-        float lump = 1.0 + 0.6 * shown * perlin(place.xy / 14.0, SALT + 3u).x;
-        float late = late_at(place.xy);
-        vec3 crowns = mix(leaves_in_row(leaves, FIRST_ROCK + OAK, late),
-                          leaves_in_row(leaves, FIRST_ROCK + MAPLE, late), 0.5);
-        found = mix(found, lump * crowns, wood);
-    }
+    // Rocks and crowns are lighter and darker than their mean.
+    float shown = clamp(14.0 / (far * pixel) - 1.0, 0.0, 1.0);
+    float lump = shown * perlin(place.xy / 14.0 + place.z / 9.0, SALT + 3u).x;
+    float wood = wired_density ? smoothstep(0.1, 0.6, density_at(share)) : 0.0;
+    found = mix((1.0 + 0.35 * lump) * found,
+                (1.0 + 0.6 * lump) * texelFetch(moment, WOOD, 0).rgb, wood);
     // Crowns are spheres, of which the ray sees the lit side or the other (Lambert's sphere).
     float away = acos(clamp(dot(to_ray, from.direction), -1.0, 1.0));
     float crown = 2.0 / 3.0 * (sin(away) + (3.14159265 - away) * cos(away)) / 3.14159265;
@@ -131,15 +134,15 @@ vec3 terrain_from(vec3 place, vec3 to_ray, float far, float pixel, Sunlight from
 }
 
 // What the current carries begins again every few seconds, in two layers that take turns.
-Waves river_waves(Sheet sheet, vec2 place, Footprint foot) {
-    Sea river = river_of(length(sheet.current), max(sheet.white, 0.0));
+Waves river_waves(vec2 current, float white, vec2 place, Footprint foot) {
+    Sea river = river_of(length(current), white);
     vec2 turn = fract(vec2(0.0, 0.5) + time / REPEATS);
     vec2 weight = 1.0 - abs(2.0 * turn - 1.0);
     weight /= length(weight);
-    vec2 first = place - sheet.current * (turn.x * REPEATS);
-    vec2 second = place - sheet.current * (turn.y * REPEATS) + 71.3;
-    Waves one = waves_at(waves, 1, river, first, time, foot);
-    Waves other = waves_at(waves, 1, river, second, time, foot);
+    vec2 first = place - current * (turn.x * REPEATS);
+    vec2 second = place - current * (turn.y * REPEATS) + 71.3;
+    Waves one = waves_at(moment, 1, river, first, time, foot);
+    Waves other = waves_at(moment, 1, river, second, time, foot);
     return Waves(weight.x * one.slope + weight.y * other.slope, one.variance);
 }
 
@@ -163,14 +166,14 @@ vec3 mirrored_light(Mirrors mirrors, vec3 place, float far, float pixel, float r
     vec3 total = vec3(0.0);
     vec3 mean = vec3(0.0);
     for (int k = 0; k < MIRRORS; k++) {
-        total += mirrors.share[k] * clear_sky(clear, mirrors.to[k]);
+        total += mirrors.share[k] * sky_of(heaven, CLEAR_SKY, mirrors.to[k]);
         mean += mirrors.share[k] * mirrors.to[k];
     }
     vec3 to = normalize(mean);
     float way = meets_terrain(height, block_maxima, place, to, extent, relief,
                               wired_density ? tallest : 0.0);
-    if (way < 0.0 && clouds != 0 && wired_cloud && wired_drift) {
-        vec4 found = clouds_towards(cloud, thin, thick, texelFetch(drift, ivec2(0), 0), place, to,
+    if (way < 0.0 && clouds != 0 && wired_cloud) {
+        vec4 found = clouds_towards(cloud, heaven, texelFetch(moment, DRIFT, 0), place, to,
                                     rough + pixel, clouds == 2);
         return total * found.a + mirrors.mirrored * found.rgb;
     }
@@ -197,6 +200,11 @@ float gust_at(vec2 place, float pixel, float longest) {
     return clamp(1.0 + 1.5 * gusts * found, 0.05, 2.5);
 }
 
+// A band along the shore, so high, that is narrower than a pixel has no more of it than its share.
+float band_share(float high, float slope, float pixel_wide) {
+    return clamp(0.5 * high / (max(slope, 0.02) * pixel_wide), 0.0, 1.0);
+}
+
 vec4 dry(ivec2 texel, vec4 shown, vec4 at, float over) {
     // Ground that waves have reached is wet, and darker.
     float reach = 0.15 + 0.5 * sea_of(wind, fetch, vec2(0.0)).high;
@@ -205,33 +213,30 @@ vec4 dry(ivec2 texel, vec4 shown, vec4 at, float over) {
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     float wide = distance(eye, at.xyz) * length(ray.up) / length(ray.ahead);
     float slope = length(ground_at(ground, at.xy, extent, wide).slope);
-    // A band that is narrower than a pixel darkens it by no more than its share.
-    float shown_of = clamp(0.5 * reach / (max(slope, 0.02) * wide), 0.0, 1.0);
-    float wet = 0.5 * shown_of * (1.0 - smoothstep(0.4 * reach, reach, over));
+    float wet = 0.4 * band_share(reach, slope, wide) * (1.0 - smoothstep(0.0, reach, over));
     return vec4(shown.rgb - wet * max(shown.rgb - air.scattered, 0.0), shown.a);
 }
 
 vec4 kernel(ivec2 texel) {
     vec4 shown = texelFetch(picture, texel, 0);
     vec4 at = texelFetch(seen_water, texel, 0);
-    float deep_here = texelFetch(depth, texel, 0).r;
-    if (!is_water(at.w)) return dry(texel, shown, at, -deep_here);
+    vec4 here = texelFetch(state, texel, 0);
+    if (!is_water(at.w)) return dry(texel, shown, at, -here.x);
     vec3 place = at.xyz;
     float far = distance(eye, place);
     vec3 to_eye = (eye - place) / far;
     PixelRay ray = pixel_ray(world_from_clip, eye, vec2(texel) + 0.5, vec2(size));
     Footprint foot = footprint_of(ray, place - eye, vec3(0.0, 0.0, 1.0));
     float pixel = length(ray.up) / length(ray.ahead);
-    Sheet sheet = sheet_at(water, place.xy / extent);
     Ground around = ground_at(ground, place.xy, extent, far * pixel);
     Lit lit = light_on(place, around);
     Aerial air = air_before((vec2(texel) + 0.5) / vec2(size), far);
 
     Sea sea = sea_of(wind, fetch, vec2(sin(radians(wind_to)), cos(radians(wind_to))));
     float gust = gust_at(place.xy, far * pixel, sea.longest);
-    bool runs = length(sheet.current) > MOVING;
-    Waves seen_waves = runs ? river_waves(sheet, place.xy, foot)
-            : waves_at(waves, 0, sea, place.xy, time, foot);
+    bool runs = length(here.yz) > MOVING;
+    Waves seen_waves = runs ? river_waves(here.yz, here.w, place.xy, foot)
+            : waves_at(moment, 0, sea, place.xy, time, foot);
     if (!runs) seen_waves = Waves(seen_waves.slope * sqrt(gust), seen_waves.variance * gust);
     Mirrors mirrors = mirrors_of(to_eye, seen_waves.slope, seen_waves.variance);
     float rough = sqrt(seen_waves.variance);
@@ -247,18 +252,19 @@ vec4 kernel(ivec2 texel) {
         above += lit.beam * min(glint, BRIGHTEST / max(bright, 1e-6));
     }
 
-    vec3 bed = is_sky(texelFetch(seen, texel, 0).w) ? vec3(0.0)
-            : max(shown.rgb - air.scattered, 0.0) / max(air.left, 1e-3);
-    float path = path_in_water(deep_here, lit.from.direction.z, to_eye.z);
+    // Where there is no bed it is too deep for any of what is shown there.
+    vec3 bed = max(shown.rgb - air.scattered, 0.0) / max(air.left, 1e-3);
+    float path = path_in_water(here.x, lit.from.direction.z, to_eye.z);
     vec3 kept = light_left(attenuation_of(clarity), path);
     vec3 down = light_down(lit.level, lit.sky, lit.from.direction.z);
     vec3 in_air = max(lit.level + lit.sky, 1e-6);
     vec3 below = bed * (down / in_air) * kept + deep * down * (1.0 - kept);
 
-    float cover = shore_cover(deep_here, sea.high, time, gust) + whitecap_cover(wind * gust)
-            + max(sheet.white, 0.0);
+    float cover = shore_cover(here.x, sea.high, time, gust)
+            * band_share(BREAKER * sea.high, length(around.slope), far * pixel);
+    cover += whitecap_cover(wind * gust) + here.w;
     // Whitecaps lie across the wind, and are drawn out along it.
-    vec2 along = place.xy - time * sheet.current;
+    vec2 along = place.xy - time * here.yz;
     along -= sea.towards * (0.6 * dot(along, sea.towards) + 0.5 * wind * time);
     float white = foam_of(clamp(foam * cover, 0.0, 1.0), along,
                           runs ? 0.7 : clamp(0.1 * sea.longest, 0.6, 8.0), far * pixel);

@@ -1,8 +1,9 @@
 // scene/water/where.glsl -- which point of the water each pixel sees.
 //
 //   gives    seen_water: the point on the water and WATER as scene/surfaces.glsl has it;
-//            elsewhere what the pixel sees without water; depth of the water over what is
-//            seen through it, below 0 how far dry ground is above it
+//            elsewhere what the pixel sees without water; state: depth of the water over what
+//            is seen through it, below 0 how far dry ground is above it; its current east and
+//            north, and how white it runs
 //   needs    scene/surfaces.glsl, terrain/heightfield.glsl, water/sheet_reading.glsl; seen, a
 //            height 0..1, water by water/sea or water/sheet
 //   units    metres
@@ -19,7 +20,7 @@
 #include "scene/surfaces.glsl"
 #include "terrain/heightfield.glsl"
 #include "water/sheet_reading.glsl"
-#pragma kernel(output = "seen_water:rgba32f, depth:r32f")
+#pragma kernel(output = "seen_water:rgba32f, state:rgba32f")
 
 uniform sampler2D seen;    //! input
 uniform sampler2D height;  //! input
@@ -58,20 +59,21 @@ vec3 at_level(vec3 point, float level) {
 }
 
 // The terrain, or what stands on it: in or under water?
-vec4 over_ground(vec4 at, out float depth) {
+vec4 over_ground(vec4 at, out vec4 state) {
     vec2 share = at.xy / extent;
     Sheet here = sheet_at(water, share);
     vec2 last = vec2(textureSize(height, 0) - 1);
     // On the terrain the heights decide, not the mesh's; what stands on it, by itself.
-    depth = here.level - (is_top(at.w) ? relief * height_at(height, share * last) : at.z);
+    float depth = here.level - (is_top(at.w) ? relief * height_at(height, share * last) : at.z);
     if (depth <= 0.0 || here.level >= eye.z || is_cut(at.w) && !is_open(here)) {
-        depth = min(depth, -1e-4);
+        state = vec4(min(depth, -1e-4), 0.0, 0.0, 0.0);
         return at;
     }
+    state = vec4(depth, here.current, max(here.white, 0.0));
     vec3 point = at_level(at.xyz, here.level);
     // In front of the terrain there is no water but the sea.
     if (on_terrain(point.xy) || is_open(here)) return vec4(point, WATER);
-    depth = DRY;
+    state = vec4(DRY, 0.0, 0.0, 0.0);
     return at;
 }
 
@@ -98,16 +100,16 @@ vec4 past_ground(vec4 at, vec3 ahead, out float depth) {
     return vec4(point, WATER);
 }
 
-void kernel(ivec2 texel, out vec4 seen_water, out float depth) {
+void kernel(ivec2 texel, out vec4 seen_water, out vec4 state) {
     vec4 at = texelFetch(seen, texel, 0);
-    depth = DRY;
+    state = vec4(DRY, 0.0, 0.0, 0.0);
     seen_water = at;
     if (is_broken(at.w)) return;
     if (!is_sky(at.w)) {
-        seen_water = over_ground(at, depth);
+        seen_water = over_ground(at, state);
         return;
     }
     vec2 clip = (vec2(texel) + 0.5) / vec2(size) * 2.0 - 1.0;
     vec4 far = world_from_clip * vec4(clip, 1.0, 1.0);
-    seen_water = past_ground(at, normalize(far.xyz / far.w - eye), depth);
+    seen_water = past_ground(at, normalize(far.xyz / far.w - eye), state.x);
 }
