@@ -23,8 +23,8 @@ Wood wood_from(vec3 away, float metres, vec2 here, float open) {
     Stand drawn = drawn_of(all, length(away + level_eye));
     Depths depths = Depths(depth_towards(all, towards_eye, rise),
                            depth_towards(all, to_sun, max(to_sun.z, LOWEST)),
-                           depth_towards(all, SKY_FROM, SKY_FROM.z));
-    float hides = max(depths.eye - depth_towards(drawn, towards_eye, rise), 0.0) / density;
+                           depth_of_sky(all));
+    float hides = max(depths.sight - depth_towards(drawn, towards_eye, rise), 0.0) / density;
     vec2 below = exp(-vec2(depths.sun, depths.sky) * (here.x / density));
     vec4 in_sight = others_in_sight(species_at(metres));
     float needled = in_sight.z + in_sight.w;
