@@ -14,7 +14,7 @@
 //
 // Each tree has a rank, 0..1, of its own, and is whole where its rank is below the share that is
 // kept there. From there it shrinks to nothing, at a rank a quarter above that share, so none ever
-// pops, and none is smaller than it is where all are kept.
+// pops; none is smaller than it is where all are kept, but near the end of all.
 #ifndef TREES_LEVEL
 #define TREES_LEVEL
 
@@ -28,16 +28,18 @@ float end_of_table(float reach, float cell, ivec2 cells) {
     return min(reach, 0.5 * cell * float(min(cells.x, cells.y) - 2));
 }
 
-// All up to `whole`; farther away, as many a square metre as there are pixels for one; over the
-// last tenth of `reach` fewer and fewer, down to none.
+// All up to `whole`; farther away, as many a square metre as there are pixels for one; none from
+// `reach` on.
 float kept_share(float away, float whole, float reach) {
     float near = min(whole / max(away, 1e-3), 1.0);
-    return near * near * (1.0 - smoothstep(0.9 * reach, reach, away));
+    return away < reach ? near * near : 0.0;
 }
 
-// A tree's growth where only distance thins the others, not the end of what is drawn.
-float growth_of_kept(float away, float whole) {
-    return pow(max(away / max(whole, 1e-3), 1.0), -2.0 * GROWTH);
+// A tree's growth. Over the last tenth of `reach` all of them shrink to nothing: were fewer kept
+// there instead, the last would go within a metre of the eye's way, and pop.
+float growth_of_kept(float away, float whole, float reach) {
+    float left = clamp((reach - away) / max(0.1 * reach, 1e-3), 0.0, 1.0);
+    return left * pow(max(away / max(whole, 1e-3), 1.0), -2.0 * GROWTH);
 }
 
 // Those that are drawn, whole or shrunk.

@@ -53,7 +53,7 @@ Stand stand_of(float density, float cell, float tallest, float shortest, vec4 ot
 // Those of the stand that are drawn as single trees so far away; `limit`: of trees/list.
 Stand thinned(Stand s, float away, float whole, float reach, float limit) {
     float dense = s.dense * covering_share(kept_share(away, whole, reach), limit);
-    float growth = growth_of_kept(away, whole) * pow(limit, GROWTH);
+    float growth = growth_of_kept(away, whole, reach) * pow(limit, GROWTH);
     return Stand(dense, s.across * growth, s.up * growth, s.middle * growth, s.least, s.cell);
 }
 

@@ -152,7 +152,7 @@ class Scene:
             values |= _values_of(around) | {"to_sun": self._light.to_sun}
             values["over_tile"] = self._outdoors.over_tile(eye, seconds)
         if self.woods is not None:
-            values |= self.woods.values(parts, eye, lens, self._light)
+            values |= self.woods.values(parts, eye, lens, self._light) | {"picture": size}
         surface = self._surface_of(size)
         surface.many.use()
         surface.many.viewport = (0, 0, *size)

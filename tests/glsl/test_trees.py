@@ -251,6 +251,6 @@ def test_nothing_pops_as_the_eye_comes_nearer(kept, ctx, make_sketch):
         assert abs(areas[1] / areas[0] - 1) < 0.02 or distance > 0.9 * 1200 - 120
         jumps = [abs(one.get(at, 0.0) - other.get(at, 0.0)) for at in one.keys() | other.keys()]
         # The share that is kept changes by twice a step, so a key by no more, and a height by five of these.
-        # In the last tenth of the reach all go, by up to 1.5 / 0.1 of that share a step.
-        steepest = 2.0 if distance < 0.9 * 1200 - 120 else 2.0 + 2.0 * 1.5 / 0.1
-        assert max(jumps) / max(other.values()) < 1.2 * 5.0 * steepest * (1 - nearer), distance
+        # In the last tenth of the reach all shrink to nothing, evenly with the distance.
+        end = (distance + 120) * (1 - nearer) / (0.1 * 1200) if distance > 0.9 * 1200 - 120 else 0.0
+        assert max(jumps) / max(*one.values(), *other.values()) < 1.2 * (10.0 * (1 - nearer) + end), distance

@@ -50,10 +50,11 @@ void kernel(ivec2 texel, out vec4 tree, out vec2 key) {
     if (own.chance >= wanted) return;
     float up = height_at(height, share * vec2(textureSize(height, 0) - 1)) * relief;
     float away = distance(eye, vec3(place, up));
-    float kept = kept_share(away, whole, end_of_table(reach, cell, size));
+    float end = end_of_table(reach, cell, size);
+    float kept = kept_share(away, whole, end);
     if (own.rank >= drawn_share(kept)) return;
     if (!all_round && !may_be_seen(place, up, up + 2.0 * tallest)) return;
     float tall = tallest * mix(shortest, 1.0, own.size);
-    tree = vec4(place, up, tall * growth_of_kept(away, whole));
+    tree = vec4(place, up, tall * growth_of_kept(away, whole, end));
     key = vec2(own.rank / drawn_share(kept), drawn_part(kept));
 }

@@ -6,7 +6,7 @@
 #include "trees/wood_reading.glsl"
 #include "view.glsl"
 
-in vec2 disc;
+flat in mat3 on_disc;
 in vec3 air_added;
 in vec3 air_left;
 in vec3 away;
@@ -17,11 +17,13 @@ flat in vec4 stand;
 flat in vec3 leaves;
 flat in vec2 lit;
 uniform float ragged;
+uniform vec2 picture;  // [pixels]
 out vec4 frame;
 
 const uint SALT = 0xc8c979e4u;  // CRC-32 of "trees/seen": the same crowns as there
 
 void main() {
+    vec2 disc = disc_of(on_disc, gl_FragCoord.xy / picture);
     CrownPoint point = crown_point(disc, middle, form, ragged, SALT, local_eye);
     if (!point.hit) discard;
     Stand all = stand_at(stand.x, stand.y);

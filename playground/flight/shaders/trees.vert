@@ -9,7 +9,8 @@ in vec2 corner;
 in vec4 tree;
 in vec3 own;
 in vec2 part;             // its corner, from the eye [m]
-out vec2 disc;
+uniform vec2 picture;     // [pixels]
+flat out mat3 on_disc;    // trees/billboard: disc_of
 out vec3 air_added;
 out vec3 air_left;
 out vec3 away;
@@ -27,11 +28,12 @@ void main() {
     float kept = kept_share(far, whole, reach);
     if (own.x >= room * drawn_share(kept)) return;
     float small = shrunk(own.x / drawn_share(kept), drawn_part(kept), room);
-    float tall = tree.w * growth_of_kept(far, whole) * small * pow(room, GROWTH);
+    float tall = tree.w * growth_of_kept(far, whole, reach) * small * pow(room, GROWTH);
     float above_sea = tree.z + base;
+    float focal = 0.5 * picture.y * length(transpose(clip_from_near)[1].xyz);
     Billboard board = billboard_of(vec4(tree.xyz, tall), corner,
-                                   species_at(above_sea), local_eye, 1.0 / pixel);
-    disc = board.disc;
+                                   species_at(above_sea), local_eye, clip_from_near, focal);
+    on_disc = board.disc;
     leaves = colour_of_kind(int(board.middle.w + 0.5), day);
     middle = board.middle;
     form = board.form;

@@ -23,11 +23,12 @@ Wood wood_from(vec3 away, float metres, vec2 here, float open) {
     Stand drawn = drawn_of(all, length(away + level_eye));
     Depths depths = Depths(depth_towards(all, towards_eye, rise),
                            depth_towards(all, to_sun, max(to_sun.z, LOWEST)),
-                           depth_towards(all, SKY_FROM, SKY_FROM.z));
-    float hides = max(depths.eye - depth_towards(drawn, towards_eye, rise), 0.0) / density;
+                           depth_of_sky(all));
+    float hides = max(depths.sight - depth_towards(drawn, towards_eye, rise), 0.0) / density;
     vec2 below = exp(-vec2(depths.sun, depths.sky) * (here.x / density));
-    vec4 others = species_at(metres);
-    vec2 light = wood_at(table, towards_eye, to_sun, depths, needles_in_sight(others));
+    vec4 in_sight = others_in_sight(species_at(metres));
+    float needled = in_sight.z + in_sight.w;
+    vec2 light = wood_at(table, towards_eye, to_sun, depths, needled);
     vec3 lit = sun_light * (here.y * open * leaf_phase(towards_eye, to_sun) * light.x) + sky_light * light.y;
-    return Wood(hides, below, mix(leaf_colours[0], leaf_colours[1], needles_in_sight(others)) * lit);
+    return Wood(hides, below, mix(leaf_colours[0], leaf_colours[1], needled) * lit);
 }
