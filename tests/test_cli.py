@@ -313,6 +313,7 @@ def test_a_pipe_gets_no_colour_and_one_line_a_row(capsys: pytest.CaptureFixture[
 # ── render ───────────────────────────────────────────────────────────────────
 
 
+@pytest.mark.slow  # ./play does so every day, in tests/docs/test_commands.py
 def test_no_arguments_and_no_display_renders_the_default_sketch_under_a_free_name(run: Run, tmp_path: Path):
     taken = tmp_path / f"{DEFAULT_SKETCH}.png"
     taken.write_text("mine")
