@@ -2,8 +2,9 @@
 //
 //   gives    frame, linear light
 //   needs    clouds/shadow.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
-//            noise/gradient.glsl, scene/air_reading.glsl, scene/footprint.glsl,
-//            scene/ground_reading.glsl, scene/surfaces.glsl, scene/water/mirrored.glsl,
+//            lighting/sun_image.glsl, noise/gradient.glsl, scene/air_reading.glsl,
+//            scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
+//            scene/water/mirrored.glsl,
 //            scene/water/mirrored_sky.glsl, scene/water/moment_texels.glsl, water/body.glsl,
 //            water/foam.glsl, water/rough_mirror.glsl, water/waves.glsl, view/surface.glsl;
 //            the picture without water, what scene/water/where gives, the ground and the maps
@@ -22,6 +23,7 @@
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 #include "lighting/sun.glsl"
+#include "lighting/sun_image.glsl"
 #include "noise/gradient.glsl"
 #include "scene/air_reading.glsl"
 #include "scene/footprint.glsl"
@@ -70,7 +72,6 @@ uniform float tallest = 21.0;     //! slider(1, 100) unit("m") group("Water")
                                   //! Trees that it mirrors, where a density is wired
 
 const uint SALT = 0xaa77626du;    // CRC-32 of "scene/water/surface"
-const float BRIGHTEST = 60.0;     // of the sun's image, as in scene/sky
 const float MOVING = 0.05;        // [m/s] slower water has the waves of a lake
 const float WASH = 0.25;          // longest waves that foam is wide at a wall
 const float HIDDEN = 0.35;        // of the slopes' deviation: flatter rays meet another wave
@@ -283,8 +284,7 @@ vec4 kernel(ivec2 texel) {
         float shaded = meets_terrain(height, block_maxima, place, lit.from.direction, extent,
                                      relief, wired_density ? tallest : 0.0);
         glint = shaded < 0.0 ? glint : 0.0;
-        float bright = dot(lit.beam, vec3(0.2126, 0.7152, 0.0722));
-        above += lit.beam * min(glint, BRIGHTEST / max(bright, 1e-6));
+        above += sun_image(lit.beam, glint);
     }
 
     // Where there is no bed it is too deep for any of what is shown there.
