@@ -8,8 +8,8 @@
 //   source   speed by slope and depth: Manning 1891, with 0.04 of natural streams; depth by width:
 //            Leopold and Maddock 1953, USGS Professional Paper 252, figures 5 and 8: about a
 //            twentieth, and less of wide rivers; the rest made here
-//   tested   tests/glsl/test_water_sheet.py: shores lie where the depth of a lake is 0, and a river
-//            is as wide beside them and over a sea
+//   tested   tests/glsl/test_water_sheet.py: shores lie where the depth of a lake is 0, and a
+//            river is as wide over a sea as without one
 //
 // A lake's level is known where it is wet. On dry texels around it, it goes on as the mean of the
 // wet ones nearby, but not over ground that lies much lower, at the outlet. So between a wet texel
