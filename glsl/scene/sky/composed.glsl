@@ -2,8 +2,8 @@
 //
 //   gives    sky, linear light
 //   needs    lighting/daylight_weather.glsl, sky/columns.glsl, sky/drops.glsl, sky/stars.glsl,
-//            scene/surfaces.glsl, maths/drape.glsl; the camera; scene/sky/backdrop, scene/sky/through_air, a daylight and one of its
-//            tables
+//            scene/surfaces.glsl, maths/drape.glsl; the camera;
+//            scene/sky/backdrop, scene/sky/through_air, a daylight and one of its tables
 //   units    light as of lighting/daylight
 //   source   see lighting/daylight/dome and scene/air
 //   tested   tests/glsl/test_cloud_pictures.py: as the sky where there is no cloud; at the horizon
