@@ -104,6 +104,14 @@ def test_pictures_without_water_in_sight_stay_as_they_are(any_engine, scene, lev
     np.testing.assert_array_equal(after[land], before[land])
 
 
+def test_clouds_that_no_drift_places_are_none(any_engine, scene):
+    given = "wind = 2.0, gain = 1.0, ambient = 0.5, clouds = 1"
+    grey = '[[pass]]\nname = "grey"\nuse = "./grey"\n'
+    sketch, clear = scene(given=given, passes=grey, wired='cloud = "grey"'), scene(given=given)
+    found, expected = (read(any_engine, one, "watered.surface") for one in (sketch, clear))
+    np.testing.assert_array_equal(found, expected)
+
+
 # ── what is mirrored ────────────────────────────────────────────────────────────
 
 
@@ -164,14 +172,6 @@ def test_no_shader_takes_more_textures_than_every_device_has():
     for path in sorted((GLSL / "scene" / "water").glob("*.glsl")):
         code = read_source(path, (GLSL,)).code
         assert len(set(re.findall(r"^uniform sampler2D (\w+)", code, re.MULTILINE))) <= 16, path.name
-
-
-def test_clouds_that_no_drift_places_are_none(any_engine, scene):
-    given = "wind = 2.0, gain = 1.0, ambient = 0.5, clouds = 1"
-    grey = '[[pass]]\nname = "grey"\nuse = "./grey"\n'
-    sketch, clear = scene(given=given, passes=grey, wired='cloud = "grey"'), scene(given=given)
-    found, expected = (read(any_engine, one, "watered.surface") for one in (sketch, clear))
-    np.testing.assert_array_equal(found, expected)
 
 
 # ── light ───────────────────────────────────────────────────────────────────────
