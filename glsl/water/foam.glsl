@@ -45,12 +45,12 @@ float whitecap_cover(float wind) {
 
 // Of a mean cover, what is foam at a place: where noise is high. `pixel` is how wide one is there.
 float foam_of(float cover, vec2 place, float lump, float pixel) {
-    if (cover <= 0.001) return 0.0;
+    if (cover <= 1e-4) return 0.0;
     float shown = clamp(0.5 * lump / pixel - 1.0, 0.0, 1.0);
     float high = perlin(place / lump, FOAM_SALT).x + 0.5 * perlin(place / (0.37 * lump),
             FOAM_SALT + 1u).x;
-    // The noise is about normal, with a deviation of 0.37: its share over a threshold.
-    float over = log(cover / max(1.0 - cover, 1e-3)) * 0.37 / 1.702;
+    // Fitted to the quantiles of that noise, through the smoothstep.
+    float over = 0.9945 * atan(log(cover / max(1.0 - cover, 1e-3)) / 4.198);
     float pattern = smoothstep(-0.10, 0.10, high + over);
     return mix(min(cover, 1.0), pattern, shown);
 }

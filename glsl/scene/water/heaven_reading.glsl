@@ -35,7 +35,9 @@ vec3 heaven_direction(ivec2 texel, ivec2 table) {
 
 // The place of a direction in the texture, in one of its skies.
 vec2 heaven_place(vec3 towards, int which, ivec2 texture_texels) {
-    float turn = atan(towards.x, towards.y) / 6.2831853;
+    // Straight up has no azimuth: any will do.
+    bool upright = towards.x == 0.0 && towards.y == 0.0;
+    float turn = upright ? 0.0 : atan(towards.x, towards.y) / 6.2831853;
     float half_row = 0.5 * float(SKIES) / float(texture_texels.y);
     float row = clamp(sqrt(max(towards.z, 0.0)), half_row, 1.0 - half_row);
     return vec2(turn, (float(which) + row) / float(SKIES));

@@ -68,7 +68,7 @@ uniform vec3 deep = vec3(0.008, 0.018, 0.016);  //! colour group("Water")
                                   //! What deep water sends back of white light
 uniform float foam = 1.0;         //! slider(0, 2) step(0.01) group("Water")
                                   //! Foam at the shore, on crests and in rapids
-uniform float tallest = 21.0;     //! slider(1, 100) unit("m") group("Water")
+uniform float tallest = 21.0;     //! log_slider(0.1, 100) unit("m") group("Water")
                                   //! Trees that it mirrors, where a density is wired
 
 const uint SALT = 0xaa77626du;    // CRC-32 of "scene/water/surface"
@@ -86,8 +86,8 @@ float wood_height(vec2 share) {
 }
 
 float cloud_shade(vec3 place, vec3 to_light) {
-    if (!wired_cloud || clouds == 0) return 1.0;
     vec4 wind_of = texelFetch(moment, DRIFT, 0);
+    if (!wired_cloud || clouds == 0 || wind_of.w <= 0.0) return 1.0;
     return wired_daylight ? cloud_share(cloud, wind_of, place, to_light)
             : cloud_transmittance(cloud, wind_of, place, to_light);
 }
@@ -104,7 +104,8 @@ Aerial air_before(vec2 share, float far) {
 vec3 colour_from(vec2 share, float wide) {
     if (!wired_colour && !wired_weights) return vec3(0.4);
     ivec2 texels = wired_weights ? textureSize(weights, 0) : textureSize(colour, 0);
-    float level = log2(max(wide * float(texels.x - 1) / extent.x, 1e-3));
+    vec2 many = wide * vec2(texels - 1) / extent;
+    float level = log2(max(max(many.x, many.y), 1e-3));
     vec2 at = drape_uv(share, texels);
     if (!wired_weights) return textureLod(colour, at, level).rgb;
     vec4 weight = textureLod(weights, at, level);
@@ -181,9 +182,10 @@ vec3 mirrored_light(Mirrors mirrors, vec3 place, float far, float pixel, float r
         if (way < 0.0) total += mirrors.share[k] * sky_of(heaven, CLEAR_SKY, to);
         else met += mirrors.share[k] * vec4(way * risen, 1.0);
     }
-    if (clouds != 0 && wired_cloud) {
-        vec4 found = clouds_towards(cloud, heaven, texelFetch(moment, DRIFT, 0), place,
-                                    normalize(mean), LOBE * rough + pixel, clouds == 2);
+    vec4 wind_of = texelFetch(moment, DRIFT, 0);
+    if (clouds != 0 && wired_cloud && wind_of.w > 0.0) {
+        vec4 found = clouds_towards(cloud, heaven, wind_of, place, normalize(mean),
+                                    LOBE * rough + pixel, clouds == 2);
         total = total * found.a + max(mirrors.mirrored - met.w, 0.0) * found.rgb;
     }
     if (met.w <= 0.0) return total;
