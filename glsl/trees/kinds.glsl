@@ -14,8 +14,8 @@
 //   tested   tests/glsl/test_trees_species.py
 //
 // 0 to 31 are broad leaves, 32 to 47 needles, 48 to 55 rocks, 56 to 59 grass, 60 bark;
-// the rest is free. Of
-// each species there are eight tints, which differ in brightness, in hue and by a few days.
+// the rest is free. Of each species there are eight tints, which differ in brightness, in hue and
+// by a few days.
 #ifndef TREES_KINDS
 #define TREES_KINDS
 #include "colour/luminance.glsl"
