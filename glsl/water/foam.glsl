@@ -11,8 +11,8 @@
 //   tested   tests/glsl/test_water_surface.py: the mean of the pattern is the cover; pixels of any
 //            width have as much of the wash
 //
-// A cover is a mean. The pattern has it where it can be seen, and goes over to it where its lumps
-// are narrower than two pixels.
+// A cover is a mean. The pattern has it where it can be seen, and goes over to it where its
+// patches are narrower than two pixels.
 #ifndef WATER_FOAM
 #define WATER_FOAM
 #include "noise/gradient.glsl"
@@ -46,7 +46,9 @@ float whitecap_cover(float wind) {
 // Of a mean cover, what is foam at a place: where noise is high. `pixel` is how wide one is there.
 float foam_of(float cover, vec2 place, float lump, float pixel) {
     if (cover <= 1e-4) return 0.0;
-    float shown = clamp(0.5 * lump / pixel - 1.0, 0.0, 1.0);
+    // Only the tips of lumps are left of sparse foam: as specks of a pixel they would flicker.
+    float patch_wide = lump * min(2.0 * sqrt(cover), 1.0);
+    float shown = clamp(0.5 * patch_wide / pixel - 1.0, 0.0, 1.0);
     float high = perlin(place / lump, FOAM_SALT).x + 0.5 * perlin(place / (0.37 * lump),
             FOAM_SALT + 1u).x;
     // Fitted to the quantiles of that noise, through the smoothstep.

@@ -266,6 +266,17 @@ def test_the_pattern_of_foam_has_its_cover(on_gpu):
             assert found.min() >= 0 and found.max() <= 1
 
 
+def test_sparse_foam_is_no_specks_of_a_pixel(on_gpu):
+    """Of a cover of 0.005 patches are about 0.28 m wide in lumps of 2 m: seen by less than 0.14 m."""
+    place = np.random.default_rng(3).uniform(0, 20_000, (20_000, 2)).astype(np.float32)
+    near, far = (
+        on_gpu("water/foam.glsl", "foam_of(0.005, place, 2.0, pixel)", place=place, pixel=np.float32(pixel))
+        for pixel in (0.05, 0.15)
+    )
+    assert near.max() > 0.9
+    np.testing.assert_allclose(far, 0.005, rtol=1e-5)
+
+
 def test_waves_break_where_it_is_shallow(on_gpu):
     depth = np.float32([0.0, 0.3, 1.0, 1.3, 3.0])
     found = on_gpu("water/foam.glsl", "shore_cover(d, 1.0, 2.0, 0.3)", d=depth)
