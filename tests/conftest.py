@@ -130,6 +130,7 @@ def any_engine(ctx: moderngl.Context) -> Iterator[Engine]:
 @pytest.fixture
 def alive(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
     """Count moderngl objects that are made and not yet released."""
+    gc.freeze()  # what thousands of tests before have left is not searched again and again
     count: Counter[str] = Counter()
     names = {"texture": "Texture", "framebuffer": "Framebuffer", "renderbuffer": "Renderbuffer"}
     names |= {"depth_renderbuffer": "Renderbuffer", "buffer": "Buffer", "vertex_array": "VertexArray"}

@@ -189,7 +189,7 @@ def test_completion_offers_the_shipped_sketches(run: Run, monkeypatch: pytest.Mo
         (["render", "--time", "nan"], "--time nan: expected a number of seconds"),
         (["render", "--set", "seed"], "--set seed: expected PATH=VALUE"),
         (["render", "--set", "=3"], "--set =3: expected PATH=VALUE"),
-        (["render", "--set", "light.sum=1,2"], "no parameter 'light.sum' in sketch jacksboro; did you mean"),
+        (["render", "--set", "light.sum=1,2"], "no parameter 'light.sum' in sketch october; did you mean"),
         (["render", "--set", "light.sun=noon"], "light.sun = 'noon': expected azimuth and elevation"),
         (["render", "--set", "size=0"], "size = '0': expected 1 to 16384 texels a side"),
         (["render", "--driver", "metal"], "--driver metal: expected auto, fragment or compute"),
@@ -197,8 +197,8 @@ def test_completion_offers_the_shipped_sketches(run: Run, monkeypatch: pytest.Mo
         (["--device", "-1", "render"], "--device -1: expected the number of an EGL device"),
         (["render", "--steps", "height"], "--steps height: expected a pass and a whole number, as height=9"),
         (["render", "diamond_square", "--steps", "height=99"], "steps: 'height.raw' stops after 99 steps"),
-        (["render", "--steps", "height=3"], "steps: no repeated pass 'height' in sketch jacksboro"),
-        (["render", "--shot", "nigth"], "no shot 'nigth' in sketch jacksboro"),
+        (["render", "--steps", "height=3"], "steps: no repeated pass 'height' in sketch october"),
+        (["render", "--shot", "nigth"], "no shot 'nigth' in sketch october"),
         (["render", "--preset", "nigth"], "no preset 'nigth'"),
         (["render", "-o", "land.gif"], "land.gif: a picture is written to a name ending in .png, .jpg"),
         (["render", "-o", "no/land.png"], "no/land.png: there is no folder 'no' to write into"),
@@ -252,7 +252,7 @@ def test_a_mistake_in_a_shader_names_its_line(run: Run, slope: Path):
 
 
 def test_a_file_that_is_not_there_is_one_sentence(run: Run):
-    done = run("render", "--set", "height.elevation=nowhere.npz")
+    done = run("render", "jacksboro", "--set", "height.elevation=nowhere.npz")
     assert (done.returncode, done.stdout) == (2, "")
     assert re.fullmatch(r"error: nowhere\.npz: .*there is no such file.*\n", done.stderr)
 
@@ -313,6 +313,7 @@ def test_a_pipe_gets_no_colour_and_one_line_a_row(capsys: pytest.CaptureFixture[
 # ── render ───────────────────────────────────────────────────────────────────
 
 
+@pytest.mark.slow  # ./play does so every day, in tests/docs/test_commands.py
 def test_no_arguments_and_no_display_renders_the_default_sketch_under_a_free_name(run: Run, tmp_path: Path):
     taken = tmp_path / f"{DEFAULT_SKETCH}.png"
     taken.write_text("mine")

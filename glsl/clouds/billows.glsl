@@ -1,11 +1,12 @@
 // clouds/billows.glsl -- the small round heaps of clouds, in three dimensions, on one texture.
 //
-//   gives    billows: in r how far a place is within a heap, 0..1, in g the same of the slice above
+//   gives    billows: in r how far a place is within a heap, 0..1, in g the same of the slice
+//            above
 //   needs    noise/hash.glsl
 //   units    without unit
-//   source   cells: Worley 1996, "A Cellular Texture Basis Function" (SIGGRAPH); what wears clouds:
-//            Schneider 2015, "The Real-Time Volumetric Cloudscapes of Horizon Zero Dawn" (SIGGRAPH
-//            course)
+//   source   cells: Worley 1996, "A Cellular Texture Basis Function" (SIGGRAPH); what wears
+//            clouds: Schneider 2015, "The Real-Time Volumetric Cloudscapes of Horizon Zero Dawn"
+//            (SIGGRAPH course)
 //   tested   tests/glsl/test_cloud_light.py: it fits beside its copy; its mean
 //
 // A cube that repeats is cut into slices, which lie side by side with a border of one texel each.

@@ -7,8 +7,8 @@
 //            a daylight and two of its tables
 //   units    metres; light as of lighting/daylight
 //   source   as clouds/seen, with one look towards the sun, whose depth is tuned for it
-//   tested   tests/glsl/test_cloud_pictures.py: the cover is that of the shadows; they hide as much
-//            and are as bright as heaped ones
+//   tested   tests/glsl/test_cloud_pictures.py: the cover is that of the shadows; they hide as
+//            much and are as bright as heaped ones
 //
 // Each look is at a fourth of the layer, so clouds have sides and hide the more of the sky the
 // lower one looks; it is as wide as the looks are apart, so they do not show as sheets.

@@ -1,4 +1,4 @@
-// erosion/terraces.glsl -- mesas, steps and sea cliffs: hard layers stand as walls, soft ones lie flat.
+// erosion/terraces.glsl -- mesas, steps, sea cliffs: hard layers are walls, soft ones lie flat.
 //
 //   gives    height
 //   needs    noise/hash.glsl, noise/periodic.glsl, terrain/heightfield.glsl; a height
@@ -7,9 +7,9 @@
 //            (a curve over the heights); the layers of uneven thickness: made here
 //   tested   tests/glsl/test_terraces.py, against numpy.interp through the layers' edges
 //
-// A curve over the heights that goes through the edge of each layer, so that no height moves by more
-// than a layer. Within a layer the lower part, a slope of debris, keeps the share `bench` of the
-// layer's height, and the rest of it is a wall that takes `wall` of what the height was there.
+// A curve over the heights that goes through the edge of each layer, so that no height moves by
+// more than a layer. Within a layer the lower part, a slope of debris, keeps the share `bench` of
+// the layer's height, and the rest of it is a wall that takes `wall` of what the height was there.
 #include "noise/hash.glsl"
 #include "noise/periodic.glsl"
 #include "terrain/heightfield.glsl"

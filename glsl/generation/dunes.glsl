@@ -1,4 +1,4 @@
-// generation/dunes.glsl -- dunes on a terrain's low ground: long backs to the wind, steep lee sides.
+// generation/dunes.glsl -- dunes on a terrain's low ground: long backs to the wind, steep lees.
 //
 //   gives    height; sand: 0 where none lies, towards 1 where it is deep
 //   needs    noise/periodic.glsl, terrain/heightfield.glsl; a height
@@ -48,7 +48,8 @@ float dune(float phase, float lee) {
 // Dunes so long from crest to crest, in shares of the tallest.
 float field_at(vec2 place, float wave, float tall, uint which) {
     vec2 to = vec2(-sin(radians(wind)), -cos(radians(wind)));
-    float bend = noise_at(place, 2.2 * wave, which) + 0.4 * noise_at(place, 0.9 * wave, which + 1u);
+    float bend = noise_at(place, 2.2 * wave, which);
+    bend += 0.4 * noise_at(place, 0.9 * wave, which + 1u);
     float lee = clamp(tall / (REPOSE * wave), 0.05, 0.5);
     float stands = smoothstep(-0.6, 0.5, noise_at(place, 2.8 * wave, which + 2u));
     return (0.15 + 0.85 * stands) * dune(dot(place, to) / wave + bends * bend, lee);

@@ -5,10 +5,11 @@
 //   units    heights without unit
 //   source   Keys 1981, "Cubic Convolution Interpolation for Digital Image Processing" (IEEE
 //            Transactions on Acoustics, Speech and Signal Processing 29), with a = -1/2
-//   tested   tests/glsl/test_finer.py, by parabolas, which it keeps, and by the texels it goes through
+//   tested   tests/glsl/test_finer.py, by parabolas, which it keeps, and by the texels it goes
+//            through
 //
-// Heights between four texels are those of two planes' edges, and light shows the edges. Here slopes
-// are continuous too. What is finer, gullies or noise, is for the next pass.
+// Heights between four texels are those of two planes' edges, and light shows the edges. Here
+// slopes are continuous too. What is finer, gullies or noise, is for the next pass.
 #include "maths/land.glsl"
 #pragma kernel(output = "height:r32f")
 
@@ -17,7 +18,8 @@ uniform sampler2D coarse;  //! input
 // Weights of the four nodes around a place that is so far after the second.
 vec4 weights_of(float t) {
     float s = 1.0 - t;
-    return 0.5 * vec4(-t * s * s, 2.0 - t * t * (5.0 - 3.0 * t), 2.0 - s * s * (5.0 - 3.0 * s), -s * t * t);
+    vec2 inner = 2.0 - vec2(t * t, s * s) * (5.0 - 3.0 * vec2(t, s));
+    return 0.5 * vec4(-t * s * s, inner, -s * t * t);
 }
 
 float row_of(ivec2 node, vec4 weights, ivec2 last) {

@@ -1,6 +1,6 @@
 // water/foam.glsl -- how much of a water surface is foam: at shores, on crests and in rapids.
 //
-//   gives    FOAM_ALBEDO, shore_cover, whitecap_cover, foam_of
+//   gives    FOAM_ALBEDO, shore_cover, wash_cover, whitecap_cover, foam_of
 //   needs    noise/gradient.glsl: pure functions, no uniforms, no textures
 //   units    metres, seconds; metres a second; shares 0..1
 //   source   waves break where the water is 1 / 0.78 as deep as they are high: McCowan 1894; cover
@@ -8,7 +8,8 @@
 //            Description of Oceanic Whitecap Coverage", J. Phys. Oceanogr. 10; albedo: Koepke
 //            1984, "Effective reflectance of oceanic whitecaps", Applied Optics 23(11), of fresh
 //            foam; its pattern made here
-//   tested   tests/glsl/test_water_surface.py: the mean of the pattern is the cover
+//   tested   tests/glsl/test_water_surface.py: the mean of the pattern is the cover; pixels of any
+//            width have as much of the wash
 //
 // A cover is a mean. The pattern has it where it can be seen, and goes over to it where its lumps
 // are narrower than two pixels.
@@ -28,6 +29,14 @@ float shore_cover(float depth, float high, float seconds, float uneven) {
     float period = 5.0 * sqrt(max(high, 0.04));
     float run = fract(2.5 * depth / breaks + seconds / period + uneven);
     return near * mix(0.12, 0.85, run * run) * min(high / 0.15, 1.0);
+}
+
+// The part of a pixel of a width that is under the wash of a shore so far from its middle: most at
+// the shore, none from `wide` on, where waves meet a wall as well as where they run out.
+float wash_cover(float away, float wide, float pixel) {
+    vec2 span = clamp(vec2(away - 0.5 * pixel, away + 0.5 * pixel), 0.0, wide);
+    vec2 within = span * (1.0 - 0.5 * span / max(wide, 1e-6));
+    return clamp((within.y - within.x) / max(pixel, 1e-6), 0.0, 1.0);
 }
 
 float whitecap_cover(float wind) {

@@ -14,9 +14,9 @@ import typer
 
 from playground.commands import options
 from playground.commands.arguments import FAILED, Renderer, help_text, read_pixels
-from playground.commands.options import value
+from playground.commands.options import positional, value
 from playground.errors import counted
-from playground.paths import shown
+from playground.paths import PLAIN_SKETCH, shown
 from playground.terminal import note, painted, print_json, print_table, progress
 
 if TYPE_CHECKING:
@@ -42,7 +42,14 @@ HELP = help_text(
 
 def mutants(
     ctx: typer.Context,
-    sketch: options.Sketch = "",
+    sketch: Annotated[
+        str,
+        positional(
+            "SKETCH",
+            f"A sketch, as for render. Without it, {PLAIN_SKETCH}, for which the defects were made.",
+            options.complete_sketch,
+        ),
+    ] = PLAIN_SKETCH,
     shot: Annotated[
         str,
         value("--shot NAME", "The shot to break; without it, of each mutant the one that shows it."),

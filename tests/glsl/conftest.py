@@ -75,6 +75,7 @@ def on_gpu(ctx: moderngl.Context) -> Iterator[Callable[..., np.ndarray]]:
         return found[:, 0].copy() if width == 1 else found.copy()
 
     yield evaluate
+    ctx.detect_framebuffer(0).use()  # what is read next binds again what was bound before, which goes here
     for attachment in (*surface.color_attachments, surface.depth_attachment):
         attachment.release()
     for item in (*kept, surface):

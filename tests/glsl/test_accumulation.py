@@ -70,6 +70,7 @@ def test_equal_to_serial_counting(engine, make_sketch, tree, size):
     assert (folded[..., 1:3] == -1).all(), "nothing is left to be added"
 
 
+@pytest.mark.filterwarnings("ignore:.*accumulation.comp is left out:playground.errors.PlainFormWarning")
 def test_rain_weighs_what_falls(engine, make_sketch):
     rain = """
 #include "noise/hash.glsl"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ from playground.sketch.model import Camera
 from playground.sketch.source import read_source
 
 from .test_scene import EXTENT, LOOK, PASSES, PLANE, RELIEF, SIZE, all_pixels, on_plane, rays
+from .test_water_surface import fresnel
 
 LEVEL = 90.0
 HEIGHT = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) {{ return {}; }}\n'
@@ -118,6 +120,34 @@ def test_calm_water_mirrors_a_peak_within_a_pixel(any_engine, scene):
     assert middle == pytest.approx(x, abs=1.0)
 
 
+def test_what_is_mirrored_is_lit_as_it_is_seen(any_engine, scene):
+    """The image of each point that the eye sees is Fresnel's share of its light, where still water has it."""
+    given = "wind = 0.0, foam = 0.0, gain = 0.7, ambient = 0.4, haze = 0.0, sun = [200.0, 35.0]"
+    given += ", deep = [0.0, 0.0, 0.0], clarity = 0.05"
+    look = Camera(azimuth=180, elevation=9, distance=330, target=(450, 330, 10), field_of_view=62)
+    size = (241, 240)
+    lit = scene(PEAK, "vec4(0.8, 0.5, 0.2, 1.0)", given, level=15.0, size=(181, 141)).with_camera(look)
+    shown, mirrored, seen, water = (
+        read(any_engine, lit, name, size)
+        for name in ("shaded", "watered.surface", "where", "watered.where:seen_water")
+    )
+    eye = any_engine.plan.eye
+    high = (seen[..., 3] == 1) & (seen[..., 2] > 25.0)
+    points, light = seen[high][:, :3], shown[high][:, :3]
+    image = np.column_stack([points[:, :2], 30.0 - points[:, 2], np.ones(len(points))])
+    clip = image @ eye.clip_from_world.astype(float).T
+    x, y = ((clip[:, :2] / clip[:, 3:] * 0.5 + 0.5) * size).astype(int).T
+    inside = (x >= 0) & (x < size[0]) & (y >= 0) & (y < size[1])
+    x, y, light, points = x[inside], y[inside], light[inside], points[inside]
+    wet = water[y, x, 3] == 3
+    to_eye = np.array(eye.position) - water[y, x][wet][:, :3]
+    cosine = to_eye[:, 2] / np.linalg.norm(to_eye, axis=1)
+    expected = light[wet] * fresnel(cosine)[:, None]
+    assert wet.sum() > 200
+    share = mirrored[y, x][wet][:, :3] / expected
+    assert np.median(share, axis=0) == pytest.approx(1.0, abs=0.1)  # rock is lumpy there
+
+
 def test_the_table_of_the_sky_knows_its_directions(on_gpu):
     file = "scene/water/heaven_reading.glsl"
     texel = np.stack(np.meshgrid(np.arange(96), np.arange(48)), axis=-1).reshape(-1, 2).astype(np.int32)
@@ -143,6 +173,63 @@ def test_no_shader_takes_more_textures_than_every_device_has():
     for path in sorted((GLSL / "scene" / "water").glob("*.glsl")):
         code = read_source(path, (GLSL,)).code
         assert len(set(re.findall(r"^uniform sampler2D (\w+)", code, re.MULTILINE))) <= 16, path.name
+
+
+OUTDOORS = """
+[[pass]]
+name = "height"
+use = "./flat"
+[[pass]]
+name = "daylight"
+use = "lighting/daylight"
+set = { position = "free", sun = [150.0, 40.0], adaptation = 0.0, clouds = COVER }
+[[pass]]
+name = "cloud"
+use = "clouds/field"
+size = 256
+[[pass]]
+name = "drift"
+use = "clouds/drift"
+size = 1
+[[pass]]
+name = "water"
+use = "water/sea"
+size = 1
+set = { sea_level = 50.0 }
+[view]
+use = "scene/terrain"
+samples = 1
+inputs = { dome = "daylight:dome" }
+set = { wind = 0.0, gain = 1.0, ambient = 1.0, foam = 0.0, deep = [0.0, 0.0, 0.0], clarity = 0.05 }
+"""
+
+
+def mirrored_and_above(engine, make_sketch, cover):
+    """Return what a still sea mirrors over Fresnel's share, and the sky, of the same strips of sky."""
+    text = OUTDOORS.replace("COVER", str(cover))
+    sketch = make_sketch(text, extent=[4000.0, 4000.0], flat=HEIGHT.format("0.0"))
+    size = (96, 64)
+    pairs = []
+    for azimuth in range(0, 360, 60):
+        look = Camera(azimuth=azimuth, distance=50.0, target=(2000.0, 2000.0, 80.0), field_of_view=24)
+        below = read(engine, sketch.with_camera(replace(look, elevation=18.0)), "watered.surface", size)
+        _, ahead = rays(engine.plan, all_pixels(size))
+        rise = ahead[..., 2] / np.linalg.norm(ahead, axis=-1)
+        below = below[..., :3] / fresnel(-rise)[..., None]
+        up = replace(look, elevation=-18.0)
+        pairs.append((below, read(engine, sketch.with_camera(up), "heaven", size)[::-1, :, :3]))
+    return (np.stack(each) for each in zip(*pairs, strict=True))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("cover", [0.4, 0.7])
+def test_mirrored_clouds_have_the_light_and_colour_of_those_above(any_engine, make_sketch, cover):
+    """On the mean to a tenth of the light; the air before the water makes it a little bluer."""
+    below, above = mirrored_and_above(any_engine, make_sketch, cover)
+    below, above = below.mean(axis=(0, 1, 2)), above.mean(axis=(0, 1, 2))
+    luminance = np.array([0.2126, 0.7152, 0.0722])
+    assert below @ luminance == pytest.approx(above @ luminance, rel=0.1)
+    np.testing.assert_allclose(below, above, rtol=0.17)
 
 
 # ── light ───────────────────────────────────────────────────────────────────────

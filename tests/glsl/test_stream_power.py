@@ -87,6 +87,7 @@ float kernel(ivec2 texel) { return 2 * texel.x < size.x ? 0.125 : 1.5; }
 """
 
 
+@pytest.mark.filterwarnings("ignore:.*accumulation.comp is left out:playground.errors.PlainFormWarning")
 def test_rain_makes_a_steady_state_of_discharges(engine, make_sketch):
     """S = (U / K) Q^-m where Q is the rain above; where it is even, that is another K: within 1 % both."""
     values = {**BARE, "age": 100.0, "steps": 80, "keep": 1.0}

@@ -270,3 +270,12 @@ def test_waves_break_where_it_is_shallow(on_gpu):
     found = on_gpu("water/foam.glsl", "shore_cover(d, 1.0, 2.0, 0.3)", d=depth)
     assert np.all(found[:3] > 0.01) and np.all(found[3:] == 0)
     assert on_gpu("water/foam.glsl", "shore_cover(0.001, 0.0, 2.0, 0.3)")[0] == 0
+
+
+@pytest.mark.parametrize("pixel", [0.1, 0.7, 3.0, 40.0])
+def test_pixels_of_any_width_have_as_much_of_the_wash(on_gpu, pixel):
+    """A ramp from 1 at the shore to 0 at 4 m has the area 2 m, however it is cut into pixels."""
+    away = (np.arange(-50, 1000) * pixel + 0.3 * pixel).astype(np.float32)
+    found = on_gpu("water/foam.glsl", "wash_cover(away, 4.0, pixel)", away=away, pixel=np.float32(pixel))
+    assert found.sum() * pixel == pytest.approx(2.0, rel=1e-3)
+    assert found.min() >= 0 and found.max() <= 1 and np.all(found[away > 4.0 + pixel] == 0)

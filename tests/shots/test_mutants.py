@@ -15,6 +15,7 @@ from playground import cli
 from playground.engine.engine import Engine
 from playground.errors import DataError
 from playground.images.files import read_png
+from playground.paths import PLAIN_SKETCH
 from playground.shots import judge
 from playground.shots.compare import compare
 from playground.shots.mutants import repeatability as repeatability_module
@@ -78,14 +79,14 @@ def mine(tmp_path: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def default_sketch() -> Sketch:
-    return load().with_values(SMALLER)
+def jacksboro() -> Sketch:
+    return load(PLAIN_SKETCH).with_values(SMALLER)
 
 
 @pytest.fixture(scope="module")
-def bench(shared_context: moderngl.Context, default_sketch: Sketch) -> Iterator[Bench]:
+def bench(shared_context: moderngl.Context, jacksboro: Sketch) -> Iterator[Bench]:
     with Engine(shared_context) as engine:
-        yield Bench(engine, default_sketch, size=SIZE)
+        yield Bench(engine, jacksboro, size=SIZE)
 
 
 @pytest.fixture(scope="module")
@@ -102,14 +103,14 @@ def noise_like(shape: tuple[int, int] = (90, 160)) -> Picture:
 # ── what the suite is there for ──────────────────────────────────────────────
 
 
-def test_the_same_build_catches_every_defect_of_the_default_sketch(results: list[Result]):
+def test_the_same_build_catches_every_defect_of_jacksboro(results: list[Result]):
     assert survivors(results, 0) == []
     caught, of = kill_rate(results, 0)
     assert caught == of >= 60
     assert sum(r.counts and r.mutant.kind == "rendering" for r in results) >= 40
 
 
-def test_every_mutant_of_the_default_sketch_is_seen_or_says_why_not(results: list[Result]):
+def test_every_mutant_of_jacksboro_is_seen_or_says_why_not(results: list[Result]):
     assert [r.mutant.name for r in results if r.unseen] == []
     assert {r.mutant.name: r.why_not for r in results if not r.applies} == {
         "one-turn-fewer": "nothing in the sketch repeats",
@@ -189,8 +190,8 @@ def test_values_that_are_no_numbers_have_their_own_word_in_every_tier(results: l
     assert [judgement.word for judgement in result.tiers] == ["nan"] * len(TIERS)
 
 
-def test_values_are_changed_from_what_the_shot_has(default_sketch: Sketch):
-    evening = default_sketch.for_shot(default_sketch.shot("evening"))
+def test_values_are_changed_from_what_the_shot_has(jacksboro: Sketch):
+    evening = jacksboro.for_shot(jacksboro.shot("evening"))
     turned = dict(broken(mutant("sun-from-behind"), evening).overrides)
     assert turned["light.sun"] == (70.0, 9.0)  # 250 + 180 degrees, round the compass
     assert dict(broken(mutant("haze-twice"), evening).overrides)["view.haze"] == pytest.approx(0.24)
@@ -199,8 +200,8 @@ def test_values_are_changed_from_what_the_shot_has(default_sketch: Sketch):
     assert broken(mutant("no-antialiasing"), evening).samples == 1
 
 
-def test_wires_are_exchanged(default_sketch: Sketch):
-    colour = broken(mutant("layers-swapped"), default_sketch).graph.find("colour")
+def test_wires_are_exchanged(jacksboro: Sketch):
+    colour = broken(mutant("layers-swapped"), jacksboro).graph.find("colour")
     assert colour is not None
     mix = colour.technique.find("mix")
     assert dict(mix.inputs) == {"height": "ragged", "grass": "rock", "rock": "grass"}
@@ -214,10 +215,10 @@ def test_wires_are_exchanged(default_sketch: Sketch):
     ],
 )
 def test_an_anchor_that_is_not_there_once_is_a_mistake_of_the_mutant(
-    edit: Edit, message: str, default_sketch: Sketch
+    edit: Edit, message: str, jacksboro: Sketch
 ):
     with pytest.raises(DataError, match=message) as caught:
-        broken(Rendering(name="old", broke="It is old.", edits=(edit,)), default_sketch)
+        broken(Rendering(name="old", broke="It is old.", edits=(edit,)), jacksboro)
     assert "present.glsl" in str(caught.value) and "'old'" in str(caught.value)
 
 
@@ -331,11 +332,9 @@ def test_what_must_not_matter_does_not(mine: Path, any_engine: Engine, monkeypat
 
 
 @pytest.mark.slow
-def test_nor_does_it_to_the_default_sketch(
-    bench: Bench, default_sketch: Sketch, monkeypatch: pytest.MonkeyPatch
-):
+def test_nor_does_it_to_jacksboro(bench: Bench, jacksboro: Sketch, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(repeatability_module, "processes", lambda count, drivers: [HARMLESS])
-    found = redrawn(bench, default_sketch, 2)
+    found = redrawn(bench, jacksboro, 2)
     assert [(one.refused, one.identical) for one in found] == [("", True), ("", True)]
 
 
@@ -379,8 +378,8 @@ def test_two_hundred_drawings_have_every_condition():
 
 
 @pytest.mark.slow
-def test_no_false_alarm_in_two_hundred_drawings(bench: Bench, default_sketch: Sketch):
-    refused = [f"{one.words}: {one.refused}" for one in redrawn(bench, default_sketch, 200) if one.refused]
+def test_no_false_alarm_in_two_hundred_drawings(bench: Bench, jacksboro: Sketch):
+    refused = [f"{one.words}: {one.refused}" for one in redrawn(bench, jacksboro, 200) if one.refused]
     assert refused == []
 
 
@@ -437,4 +436,4 @@ def test_every_mutant_can_be_chosen_by_name():
     (one,) = named(["seam"])
     assert isinstance(one, Rendering) and isinstance(named(["grey"])[0], Finished)
     with pytest.raises(DoesNotApply):
-        broken(Rendering(name="x", broke="X.", wires=(("colour.mix.grass", "nowhere"),)), load())
+        broken(Rendering(name="x", broke="X.", wires=(("colour.mix.grass", "nowhere"),)), load(PLAIN_SKETCH))

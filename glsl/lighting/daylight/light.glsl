@@ -4,8 +4,8 @@
 //            the sky's light on level ground, turbidity; 3 the zenith, what all is multiplied by
 //            for the eye; 4 the mean horizon, latitude; 5 sun and sky on level ground,
 //            days from the first of January; 6 what clouds send down, share of open sky; from 7
-//            on the mean horizon as seen from each height of sky/dome.glsl, with the first how far the
-//            sky of stars has turned
+//            on the mean horizon as seen from each height of sky/dome.glsl, with the first how far
+//            the sky of stars has turned
 //   needs    colour/luminance.glsl, sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl,
 //            lighting/sun.glsl; the sun's place, the air, the cover and two tables
 //   units    light without unit, 1 that of the sun outside the air on a surface that faces it;

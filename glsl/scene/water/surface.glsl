@@ -73,6 +73,8 @@ uniform float tallest = 21.0;     //! slider(1, 100) unit("m") group("Water")
 
 const uint SALT = 0xaa77626du;    // CRC-32 of "scene/water/surface"
 const float MOVING = 0.05;        // [m/s] slower water has the waves of a lake
+const float WASH = 0.25;          // longest waves that foam is wide at a wall
+const float HIDDEN = 0.35;        // of the slopes' deviation: flatter rays meet another wave
 const float REPEATS = 3.0;        // [s] after which what a current carries begins again
 
 float density_at(vec2 share) {
@@ -162,31 +164,38 @@ Lit light_on(vec3 place, Ground around) {
                from.sky * (ambient * around.sky));
 }
 
-vec3 mirrored_light(Mirrors mirrors, vec3 place, float far, float pixel, float rough, Aerial air,
-                    Lit lit) {
+// `rough`: the deviation of the slopes that a pixel does not show, `lowest` how steeply the lowest
+// of the mirrored rays rise that no other wave is in the way of.
+vec3 mirrored_light(Mirrors mirrors, vec3 place, float far, float pixel, float rough,
+                    float lowest, Aerial air, Lit lit) {
+    // What of the mirrors has the sky, and what the terrain, where on the mean.
     vec3 total = vec3(0.0);
     vec3 mean = vec3(0.0);
+    vec4 met = vec4(0.0);
     for (int k = 0; k < MIRRORS; k++) {
-        total += mirrors.share[k] * sky_of(heaven, CLEAR_SKY, mirrors.to[k]);
-        mean += mirrors.share[k] * mirrors.to[k];
+        vec3 to = mirrors.to[k];
+        mean += mirrors.share[k] * to;
+        vec3 risen = normalize(vec3(to.xy, length(vec2(to.z, lowest))));
+        float way = meets_terrain(height, block_maxima, place, risen, extent, relief,
+                                  wired_density ? tallest : 0.0);
+        if (way < 0.0) total += mirrors.share[k] * sky_of(heaven, CLEAR_SKY, to);
+        else met += mirrors.share[k] * vec4(way * risen, 1.0);
     }
-    vec3 to = normalize(mean);
-    float way = meets_terrain(height, block_maxima, place, to, extent, relief,
-                              wired_density ? tallest : 0.0);
-    if (way < 0.0 && clouds != 0 && wired_cloud) {
-        vec4 found = clouds_towards(cloud, heaven, texelFetch(moment, DRIFT, 0), place, to,
-                                    rough + pixel, clouds == 2);
-        return total * found.a + mirrors.mirrored * found.rgb;
+    if (clouds != 0 && wired_cloud) {
+        vec4 found = clouds_towards(cloud, heaven, texelFetch(moment, DRIFT, 0), place,
+                                    normalize(mean), LOBE * rough + pixel, clouds == 2);
+        total = total * found.a + max(mirrors.mirrored - met.w, 0.0) * found.rgb;
     }
-    if (way < 0.0) return total;
-    vec3 hit = place + way * to;
-    vec3 found = terrain_from(hit, -to, far + way, pixel, lit.from);
+    if (met.w <= 0.0) return total;
+    vec3 hit = place + met.xyz / met.w;
+    float way = distance(place, hit);
+    vec3 found = terrain_from(hit, (place - hit) / max(way, 1e-3), far + way, pixel, lit.from);
     // Seen straight from the eye the air before it is about that along the mirrored path.
     vec4 clip = clip_from_world * vec4(hit, 1.0);
     vec2 share = clip.w > 0.0 ? clip.xy / clip.w * 0.5 + 0.5 : vec2(0.5);
     Aerial there = air_before(clamp(share, 0.0, 1.0), far + way);
     vec3 added = max(there.scattered - air.scattered, 0.0);
-    return mirrors.mirrored * (found * there.left + added) / max(air.left, 1e-3);
+    return total + met.w * (found * there.left + added) / max(air.left, 1e-3);
 }
 
 // The wind over its mean, in patches and in groups of waves.
@@ -207,6 +216,22 @@ float reach_of_waves() { return 0.15 + 0.5 * sea_of(wind, fetch, vec2(0.0)).high
 // A band along the shore, so high, that is narrower than a pixel has no more of it than its share.
 float band_share(float high, float slope, float pixel_wide) {
     return clamp(0.5 * high / (max(slope, 0.02) * pixel_wide), 0.0, 1.0);
+}
+
+// Where waves run up a shore, and where they wash against a wall, in pieces along it.
+float foam_at_shore(vec3 place, Ground around, Footprint foot, float pixel, Sea sea, float gust) {
+    if (any(greaterThan(abs(place.xy / extent - 0.5), vec2(0.5)))) return 0.0;
+    vec2 at = place.xy / extent * vec2(textureSize(height, 0) - 1);
+    float deep_here = max(place.z - relief * height_at(height, at), 0.0);
+    float steep = length(around.slope);
+    float shore = shore_cover(deep_here, sea.high, time, gust)
+            * band_share(BREAKER * sea.high, steep, pixel);
+    vec2 off = around.slope / max(steep, 1e-6);
+    float across = abs(dot(off, foot.right)) + abs(dot(off, foot.up));
+    float wash = wash_cover(deep_here / max(steep, 0.05), WASH * sea.longest, across);
+    float lump = perlin(place.xy / (3.0 * sea.longest), SALT + 4u).x;
+    float broken = clamp(0.6 + 1.6 * lump, 0.0, 1.0);
+    return max(shore, wash * broken * min(sea.high / 0.4, 1.0));
 }
 
 vec4 dry(ivec2 texel, vec4 shown, vec4 at, float over) {
@@ -249,8 +274,9 @@ vec4 kernel(ivec2 texel) {
         seen_waves = Waves(even.slope * sqrt(gust), even.variance * gust);
     }
     Mirrors mirrors = mirrors_of(to_eye, seen_waves.slope, seen_waves.variance);
-    float rough = sqrt(seen_waves.variance);
-    vec3 above = mirrored_light(mirrors, place, far, pixel, rough, air, lit);
+    float lowest = HIDDEN * sqrt(runs ? seen_waves.variance : sea.variance * gust);
+    vec3 above = mirrored_light(mirrors, place, far, pixel, sqrt(seen_waves.variance), lowest,
+                                air, lit);
 
     float glint = sun_glint(to_eye, lit.from.direction, seen_waves.slope, seen_waves.variance,
                             mirrors.area);
@@ -269,14 +295,13 @@ vec4 kernel(ivec2 texel) {
     vec3 in_air = max(lit.level + lit.sky, 1e-6);
     vec3 below = bed * (down / in_air) * kept + deep * down * (1.0 - kept);
 
-    float cover = shore_cover(here.x, sea.high, time, gust)
-            * band_share(BREAKER * sea.high, length(around.slope), far * pixel);
-    cover += whitecap_cover(wind * gust) + here.w;
+    float cover = foam_at_shore(place, around, foot, far * pixel, sea, gust);
+    cover += whitecap_cover(wind * sqrt(gust)) + here.w;
     // Whitecaps lie across the wind, and are drawn out along it.
     vec2 along = place.xy - time * here.yz;
     along -= sea.towards * (0.6 * dot(along, sea.towards) + 0.5 * wind * time);
     float white = foam_of(clamp(foam * cover, 0.0, 1.0), along,
-                          runs ? 0.7 : clamp(0.1 * sea.longest, 0.6, 8.0), far * pixel);
+                          runs ? 0.7 : clamp(0.1 * sea.longest, 0.6, 3.0), far * pixel);
     vec3 found = above + (1.0 - mirrors.mirrored) * below;
     found = mix(found, FOAM_ALBEDO * (lit.level + lit.sky), white);
     return vec4(found * air.left + air.scattered, 1.0);
