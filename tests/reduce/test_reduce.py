@@ -486,8 +486,10 @@ def test_ctrl_c_from_a_terminal_keeps_the_smallest(sketch, tmp_path):
 
 WITH_VARIANTS = ("soft_cone", "fault_formation", "splat")
 NOT_INLINED = {
-    **dict.fromkeys(("fluid", "hydraulic"), "a loop of several passes"),
-    **dict.fromkeys(("eroded_mountains", "rivers", "stream_power", "thermal"), "has a size for each step"),
+    **dict.fromkeys(("desert", "fluid", "hydraulic"), "a loop of several passes"),
+    **dict.fromkeys(
+        ("alpine", "eroded_mountains", "rivers", "stream_power", "thermal"), "has a size for each step"
+    ),
     **dict.fromkeys(("channels", "flood", "from_elsewhere"), "another tool's shader among other passes"),
 }
 
