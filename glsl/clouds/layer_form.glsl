@@ -8,7 +8,8 @@
 //            Water Clouds II", J. Atmos. Sci. 35; W = 0.26 g/m³ of water in drops of r = 5.8
 //            micrometres, as of the continental cumulus of Hess, Koepke and Schult 1998, "Optical
 //            Properties of Aerosols and Clouds", Bull. Amer. Meteor. Soc. 79
-//   tested   tests/glsl/test_clouds.py: the mean of their shadows is the cover's
+//   tested   tests/glsl/test_clouds.py: the mean of their shadows is the cover's;
+//            depths, against the sum of densities in float64
 #ifndef CLOUDS_LAYER_FORM
 #define CLOUDS_LAYER_FORM
 #include "sky/drops.glsl"
@@ -27,12 +28,19 @@ float thickness_of(float shape, float edge) {
     return 1.0 - exp(-2.0 * over);
 }
 
-// The optical depth from base to top of a cloud of a thickness: what is missing of full density at
-// both ends is half of each, and in a thin one nearly all.
+// The density over the base, 3 x² - 2 x³ with x = up / CLOUD_FOOT and then 1, summed over the
+// height, and that sum summed again.
+float twice_summed(float up) {
+    float x = max(up, 0.0) / CLOUD_FOOT;
+    float part = x < 1.0 ? x * x * x * x * (0.25 - 0.1 * x) : 0.15 + 0.5 * x * (x - 1.0);
+    return CLOUD_FOOT * CLOUD_FOOT * part;
+}
+
+// The optical depth from base to top of a cloud of a thickness. Below the top density is the
+// lesser of 1 and CLOUD_STEEP (thick - up), the difference of two ramps; the integral of a ramp
+// times the density over the base is that summed twice.
 float depth_straight_up(float thick) {
-    const float MISSING = 0.5 * CLOUD_FOOT + 0.5 / CLOUD_STEEP;
-    const float SOFT = 0.015;
-    float over = SOFT * log((1.0 + exp((thick - MISSING) / SOFT)) / (1.0 + exp(-MISSING / SOFT)));
-    return CLOUD_DEPTH * over;
+    float under_ramps = twice_summed(thick) - twice_summed(thick - 1.0 / CLOUD_STEEP);
+    return CLOUD_DEPTH * CLOUD_STEEP * under_ramps;
 }
 #endif

@@ -1,7 +1,7 @@
 // colour/tone.glsl -- curves that bring bright light into a screen's range.
 //
 //   gives    tone_reinhard, tone_film
-//   needs    nothing: pure functions, no uniforms, no textures
+//   needs    colour/luminance.glsl
 //   units    linear light in, 0 and up; linear light out, 0..1
 //   source   tone_reinhard: Reinhard, Stark, Shirley and Ferwerda 2002, "Photographic Tone
 //            Reproduction for Digital Images" (SIGGRAPH), eq. 4, on luminance (Rec. 709
@@ -10,10 +10,11 @@
 //   tested   tests/glsl/test_colour.py: ends, order, and eq. 4 in float64
 #ifndef COLOUR_TONE
 #define COLOUR_TONE
+#include "colour/luminance.glsl"
 
 // Keeps hues; `white` is the luminance that becomes 1.
 vec3 tone_reinhard(vec3 light, float white) {
-    float before = dot(light, vec3(0.2126, 0.7152, 0.0722));
+    float before = luminance(light);
     return light * ((1.0 + before / (white * white)) / (1.0 + before));
 }
 

@@ -2,7 +2,8 @@
 //
 //   gives    Backdrop, eased, air_between, backdrop_towards, end_share, air_share, under_water,
 //            close_ground, presented
-//   needs    lighting/daylight_sky.glsl, colour/tone.glsl, colour/encode.glsl
+//   needs    lighting/daylight_sky.glsl, colour/luminance.glsl, colour/tone.glsl,
+//            colour/encode.glsl
 //   units    directions are unit vectors, x east, y north, z up; metres; colours linear
 //   source   Fresnel's reflection by Schlick 1994, "An Inexpensive BRDF Model for
 //            Physically-based Rendering", with 0.02 for water; light lost exponentially with depth
@@ -15,6 +16,7 @@
 #ifndef FLIGHT_SCENE
 #define FLIGHT_SCENE
 #include "colour/encode.glsl"
+#include "colour/luminance.glsl"
 #include "colour/tone.glsl"
 #include "lighting/daylight_sky.glsl"
 
@@ -28,7 +30,7 @@ struct Backdrop {
 // Around the sun the sky is ten times as bright as elsewhere, and would wash out all terrain below
 // it. An eye gets used to it, a picture does not: the brightest parts are brought down to 4.
 vec3 eased(vec3 light) {
-    return light / (1.0 + dot(light, vec3(0.2126, 0.7152, 0.0722)) / 4.0);
+    return light / (1.0 + luminance(light) / 4.0);
 }
 
 // What air far away adds on the way there, and level water mirrors.

@@ -1,13 +1,14 @@
 // foreign/height.glsl -- another tool's picture as heights: a channel, or its brightness.
 //
 //   gives    height, as the picture has it
-//   needs    nothing
+//   needs    colour/luminance.glsl
 //   units    height without unit, usually 0..1
 //   source   brightness: ITU-R BT.709-6, table 3, item 3.2
 //   tested   tests/glsl/test_foreign_terrain.py, against the picture's own numbers
 //
 // A picture that fills a pass by foreign/height(./picture) keeps 32-bit floats, so that slopes
 // have no steps. Where it has another size, each texel takes the nearest one.
+#include "colour/luminance.glsl"
 #pragma kernel(output = "height:r32f")
 
 uniform sampler2D picture;  //! input
@@ -21,6 +22,6 @@ float kernel(ivec2 texel) {
     vec2 place = (vec2(texel) + 0.5) * vec2(shown) / vec2(size);
     vec4 found = texelFetch(picture, min(ivec2(place), shown - 1), 0);
     float height = channel == 0 ? found.r : channel == 1 ? found.g : channel == 2 ? found.b
-                 : channel == 3 ? found.a : dot(found.rgb, vec3(0.2126, 0.7152, 0.0722));
+                 : channel == 3 ? found.a : luminance(found.rgb);
     return gain * height + offset;
 }

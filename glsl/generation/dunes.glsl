@@ -1,16 +1,17 @@
 // generation/dunes.glsl -- dunes on a terrain's low ground: long backs to the wind, steep lees.
 //
 //   gives    height; sand: 0 where none lies, towards 1 where it is deep
-//   needs    noise/hash.glsl, noise/periodic.glsl, terrain/heightfield.glsl; a height
+//   needs    noise/periodic.glsl, terrain/heightfield.glsl; a height
 //   units    metres inside, heights without unit outside
 //   source   the shape of transverse dunes: Bagnold 1941, "The Physics of Blown Sand and Desert
 //            Dunes", chapter 13 (lee sides at the angle of repose); the formula: made here
-//   tested   tests/glsl/test_dunes.py: the lee's slope, where sand lies, the mean
+//   tested   tests/glsl/test_dunes.py: the lee's slope, where sand lies
 //
 // One wave whose phase runs with the wind, bent by noise so that crests wander and end. It rises
-// over `back` of its length and falls over the rest, which is as long as the angle of repose asks
-// for where the dune is highest. Small ones, a fourth as long, ride on the backs of large ones;
-// their slopes and those of the large ones together are no steeper than sand can be.
+// slowly and falls over the rest of its length, which is as long as the angle of repose asks for,
+// half of it at most: taller dunes than can stand so close are lowered to that. Small ones, a
+// fourth as long, ride on the backs of large ones. Where crests are straight, the slopes of both
+// together are no steeper than sand can be; where noise draws crests together they may be.
 #include "noise/periodic.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "height:r32f, sand:r16f")
@@ -18,7 +19,9 @@
 uniform sampler2D height;  //! input("zero")
 
 uniform float between = 500.0;   //! log_slider(10, 10000) unit("m") From crest to crest
-uniform float tallest = 45.0;    //! log_slider(0.1, 500) unit("m") Of the highest dune
+uniform float tallest = 45.0;    //! log_slider(0.1, 500) unit("m")
+                                 //! Of the highest dune, and at most 0.325 of the way from crest
+                                 //! to crest: steeper sand slides
 uniform float wind = 250.0;      //! angle(0, 360) Where the wind comes from
 uniform float bends = 0.9;       //! slider(0, 3) step(0.05)
                                  //! How far crests wander, in lengths from crest to crest
@@ -66,8 +69,9 @@ vec2 bare_at(ivec2 texel) {
 void kernel(ivec2 texel, out float height, out float sand) {
     vec2 bare = bare_at(texel);
     vec2 place = share_of_texel(texel, size) * extent;
-    float large = field_at(place, between, tallest, 1u);
-    float small = field_at(place, 0.25 * between, 0.2 * tallest, 4u) * (1.0 - large);
+    float highest = min(tallest, 0.5 * REPOSE * between);
+    float large = field_at(place, between, highest, 1u);
+    float small = field_at(place, 0.25 * between, 0.2 * highest, 4u) * (1.0 - large);
     sand = bare.y;
-    height = bare.x + sand * tallest * (0.75 * large + 0.04 * small) / max(relief, 1e-3);
+    height = bare.x + sand * highest * (0.75 * large + 0.04 * small) / max(relief, 1e-3);
 }

@@ -1,14 +1,15 @@
 // objects/seen.glsl -- a model at every place of a list, as trees/place gives it.
 //
 //   gives    seen, over an earlier one: the point, and its normal and kind in one number
-//   needs    noise/hash.glsl, scene/packing.glsl, trees/kinds.glsl, trees/quad.glsl; a list and
-//            its length; a model of objects/model
+//   needs    colour/luminance.glsl, noise/hash.glsl, scene/packing.glsl, trees/kinds.glsl,
+//            trees/quad.glsl; a list and its length; a model of objects/model
 //   units    metres; the model is made as tall as the list says, from its own height
 //   source   none
 //   tested   tests/glsl/test_objects.py, by where a model's corners are in the picture
 //
 // Each is turned about its upright by a number of its own. Only those between `nearest` and
 // `farthest` from the eye: what is farther away trees/seen draws, where its `nearest` is the same.
+#include "colour/luminance.glsl"
 #include "noise/hash.glsl"
 #include "scene/packing.glsl"
 #include "trees/kinds.glsl"
@@ -31,7 +32,7 @@ const uint SALT = 0xf4e80b63u;  // CRC-32 of "objects/seen"
 
 // Darker and lighter ones of a kind, by the model's colour at a corner.
 int kind_at(vec3 colour) {
-    float light = dot(colour, vec3(0.2126, 0.7152, 0.0722));
+    float light = luminance(colour);
     if (kind == 2) return kind_of_rock(light);
     return kind_of_tree(kind == 1 ? SPRUCE : OAK, clamp(2.0 * light, 0.0, 0.999));
 }

@@ -2,11 +2,12 @@
 //
 //   gives    albedo: what a white light would show, linear; bumps: slopes added to the ground's in
 //            x and y, their variance in z, and in w the share under a film of water
-//   needs    lighting/daylight_date.glsl, scene/footprint.glsl, scene/ground_reading.glsl,
-//            scene/surfaces.glsl, trees/kinds.glsl, view/surface.glsl, texturing/detail_near.glsl,
-//            texturing/splat_weights.glsl, scene/near/; seen and ground; a colour, or weights and
-//            four tiles as for view/splat, a wetness, a depth of snow, how exposed the ground is,
-//            and other bumps, if there are
+//   needs    lighting/daylight_date.glsl, lighting/sun.glsl, maths/number.glsl,
+//            scene/footprint.glsl, scene/ground_reading.glsl, scene/near/, scene/surfaces.glsl,
+//            texturing/detail_near.glsl, texturing/kept_contrast.glsl, texturing/planes.glsl,
+//            texturing/splat_weights.glsl, trees/kinds.glsl, view/surface.glsl; seen and
+//            ground; a colour, or weights and four tiles as for view/splat, a wetness, a depth of
+//            snow, how exposed the ground is, and other bumps, if there are
 //   units    metres; colours linear; a tile is so many times side by side from west to east
 //   source   Belaiche 2010, sections 2.5 (splatting) and 2.7 (the detail image)
 //   tested   tests/glsl/test_scene.py, against view/terrain and view/splat;
@@ -24,13 +25,13 @@
 #include "scene/near/cliff.glsl"
 #include "scene/near/kinds.glsl"
 #include "scene/near/snow.glsl"
-#include "scene/near/triplanar.glsl"
 #include "scene/near/variation.glsl"
 #include "scene/near/wet.glsl"
 #include "scene/surfaces.glsl"
 #include "lighting/sun.glsl"
 #include "texturing/kept_contrast.glsl"
 #include "texturing/detail_near.glsl"
+#include "texturing/planes.glsl"
 #include "texturing/splat_weights.glsl"
 #include "trees/kinds.glsl"
 #include "view/surface.glsl"
@@ -78,7 +79,7 @@ vec3 mean_of(sampler2D image) {
 vec3 tiled_rock(vec3 at, vec2 slope, Footprint foot) {
     vec3 above = tiled(rock, at.xy, foot, rock_repeats);
     if (!fine_ground || !triplanar) return above;
-    vec3 shares = planes_of(normal_of_slope(slope));
+    vec3 shares = planes_of(normal_of_slope(slope), vec2(30.0, 45.0), 4.0);
     vec2 rise = vec2(dot(slope, foot.right), dot(slope, foot.up));
     Footprint east = Footprint(vec2(foot.right.y, rise.x), vec2(foot.up.y, rise.y));
     Footprint north = Footprint(vec2(foot.right.x, rise.x), vec2(foot.up.x, rise.y));

@@ -4,8 +4,9 @@
 //   needs    scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
 //            scene/near/self_shadow.glsl, scene/near/wet.glsl, lighting/sun.glsl,
 //            lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
-//            scene/air_reading.glsl, clouds/shadow.glsl, view/surface.glsl; seen, ground, albedo
-//            and a sky; a daylight, a light, bumps, a shadow, clouds, or the air if there are
+//            scene/air_reading.glsl, clouds/shadow.glsl, view/surface.glsl,
+//            water/fresnel.glsl; seen, ground, albedo and a sky; a daylight, a light, bumps, a
+//            shadow, clouds, or the air if there are
 //   units    metres; slopes in metres over metres; light without unit, 1 for white
 //   source   deferred: Saito and Takahashi 1990, "Comprehensible Rendering of 3-D Shapes"
 //            (SIGGRAPH); the light as lighting/shade has it
@@ -32,6 +33,7 @@
 #include "scene/near/wet.glsl"
 #include "scene/surfaces.glsl"
 #include "view/surface.glsl"
+#include "water/fresnel.glsl"
 #pragma kernel(output = "frame:rgba16f")
 
 uniform sampler2D seen;        //! input
@@ -70,7 +72,7 @@ vec4 mirrored(vec4 at, vec3 normal, float film, Ground around, Sunlight from) {
     way = normalize(vec3(way.xy, max(way.z, 0.02)));
     vec3 sky_there = wired_daylight
             ? sky_towards(daylight, way, 0.001 * (base_elevation + at.z)) : from.sky;
-    return vec4(ambient * around.sky * sky_there, film * film_reflects(dot(normal, to_eye)));
+    return vec4(ambient * around.sky * sky_there, film * fresnel_of_water(dot(normal, to_eye)));
 }
 
 // What the pixel shows of a surface of that colour. `bump` is what its slope has beyond the

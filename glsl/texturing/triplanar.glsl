@@ -2,7 +2,8 @@
 //
 //   gives    colour, linear light
 //   needs    lighting/sun.glsl, maths/land.glsl, terrain/heightfield.glsl,
-//            texturing/kept_contrast.glsl; an image that repeats, and a height 0..1
+//            texturing/kept_contrast.glsl, texturing/planes.glsl; an image that repeats,
+//            and a height 0..1
 //   units    the image is `repeats` times side by side from west to east, and is as large
 //            upwards; slopes in degrees from the level
 //   source   three planes weighted by the normal: Geiss 2007, "Generating Complex Procedural
@@ -22,6 +23,7 @@
 #include "maths/land.glsl"
 #include "terrain/heightfield.glsl"
 #include "texturing/kept_contrast.glsl"
+#include "texturing/planes.glsl"
 #pragma kernel(output = "colour:rgba16f")
 
 uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
@@ -56,16 +58,12 @@ vec4 kernel(ivec2 texel) {
     vec3 normal = normal_of_slope(slope);
 
     // The three planes' shares; on terrain that is not steep, the level plane's alone.
-    vec3 weights = pow(max(abs(normal), vec3(1e-4)), vec3(sharpness));
-    weights /= weights.x + weights.y + weights.z;
-    float angle = degrees(acos(clamp(normal.z, 0.0, 1.0)));
-    float steep = clamp((angle - cliffs.x) / max(cliffs.y - cliffs.x, 1e-3), 0.0, 1.0);
-    weights = mix(vec3(0.0, 0.0, 1.0), weights, steep);
+    vec3 weights = planes_of(normal, cliffs, sharpness);
 
     vec3 above = read_at(at.xy, vec2(pitch.x, 0.0), vec2(0.0, pitch.y));
     vec3 shown = above;
     vec3 mean = textureLod(colour, vec2(0.5), 99.0).rgb;
-    if (steep > 0.0) {
+    if (weights.z < 1.0) {
         vec2 rise = pitch * slope;
         // Moved, or all three would show the same piece along the lines where they meet.
         vec3 facing_east = read_at(at.yz + vec2(0.37, 0.0), vec2(0.0, rise.x),

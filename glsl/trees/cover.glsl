@@ -2,12 +2,13 @@
 //
 //   gives    albedo; taken: of the sun what goes with the facing and what does not, and of the sky
 //            (scene/shaded); shadow: what trees and another shadow leave of the sun
-//   needs    lighting/daylight_date.glsl, lighting/daylight_reading.glsl, noise/gradient.glsl,
-//            scene/ground_reading.glsl, scene/surfaces.glsl, terrain/heightfield.glsl,
-//            trees/light.glsl, trees/wood_reading.glsl; seen with trees, scene/cover's albedo,
-//            a height, a density, the table of trees/wood and the shadows of trees/shade; the
-//            sun's visible part with the woods on the terrain (trees/canopy), if any; of
-//            trees/place the key, for the size of its table, and the limit
+//   needs    colour/luminance.glsl, lighting/daylight_date.glsl, lighting/daylight_reading.glsl,
+//            noise/gradient.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
+//            terrain/heightfield.glsl, trees/light.glsl, trees/wood_reading.glsl; seen with
+//            trees, scene/cover's albedo, a height, a density, the table of trees/wood and the
+//            shadows of trees/shade; the sun's visible part with the woods on the terrain
+//            (trees/canopy), if any; of trees/place the key, for the size of its table, and the
+//            limit
 //   units    metres; colours linear; shares 0..1
 //   source   trees/stand.glsl
 //   tested   tests/glsl/test_trees_light.py: a stand's mean colour is the same at any distance
@@ -15,6 +16,7 @@
 // Farther away fewer trees are drawn, and what these hide less and less of is here, in the ground:
 // so a wood goes on beyond its last tree in its own colour, with light and dark as of crowns.
 // Ground between trees gets as much less light as they take.
+#include "colour/luminance.glsl"
 #include "lighting/daylight_reading.glsl"
 #include "noise/gradient.glsl"
 #include "scene/ground_reading.glsl"
@@ -69,8 +71,6 @@ vec2 lumps(vec2 place, float pixel) {
     }
     return vec2(max(total.x, 0.1), total.y);
 }
-
-float brightness(vec3 light) { return dot(light, vec3(0.2126, 0.7152, 0.0722)); }
 
 // How much of the sun is taken away here, and 1 in the square where that is known, else 0.
 vec2 shade_at(vec2 place) {
@@ -138,7 +138,7 @@ void kernel(ivec2 texel, out vec4 albedo, out vec4 taken, out float shadow) {
     vec3 crowns = colour_of_wood(leaves, in_sight, late) * dapples.x;
     albedo.rgb = mix(albedo.rgb, crowns, hidden);
     // By brightness, what comes from the leaves of the colour that both have together.
-    float part = hidden * brightness(crowns) / max(brightness(albedo.rgb), 1e-6);
+    float part = hidden * luminance(crowns) / max(luminance(albedo.rgb), 1e-6);
     Depths depths = Depths(depth_towards(all, to_eye, rises.x),
                            depth_towards(all, to_sun, max(rises.y, LOWEST)),
                            depth_of_sky(all));

@@ -3,7 +3,7 @@
 //   gives    OAK, MAPLE, BIRCH, PINE, SPRUCE, SPECIES, TINTS, FIRST_NEEDLES, FIRST_ROCK, GRASS,
 //            BARK, kind_of_tree, species_of, tint_of, kind_of_rock, is_tree, is_grass,
 //            kind_of_grass, lightness_of_grass, tree_colour, colour_of_kind
-//   needs    nothing: pure functions, no uniforms, no textures
+//   needs    colour/luminance.glsl
 //   units    kinds as of scene/packing.glsl; days of the year from 0; colours linear
 //   source   single leaves: Hosgood and others 1994, LOPEX93 (green ones 0.08 to 0.16 in green
 //            light, needles half of that), and Feret and others 2008, "PROSPECT-4 and 5", Remote
@@ -14,10 +14,11 @@
 //   tested   tests/glsl/test_trees_species.py
 //
 // 0 to 31 are broad leaves, 32 to 47 needles, 48 to 55 rocks, 56 to 59 grass, 60 bark;
-// the rest is free. Of
-// each species there are eight tints, which differ in brightness, in hue and by a few days.
+// the rest is free. Of each species there are eight tints, which differ in brightness, in hue and
+// by a few days.
 #ifndef TREES_KINDS
 #define TREES_KINDS
+#include "colour/luminance.glsl"
 
 const int OAK = 0;
 const int MAPLE = 1;
@@ -116,7 +117,7 @@ int kind_of_rock(float brightness) {
 vec3 rock_colour(int shade) {
     vec3 hue = vec3(0.15, 0.13, 0.11);
     float wanted = (float(min(shade, ROCKS - 1)) + 0.5) / float(2 * ROCKS);
-    return hue * (wanted / dot(hue, vec3(0.2126, 0.7152, 0.0722)));
+    return hue * (wanted / luminance(hue));
 }
 
 vec3 colour_of_kind(int kind, float day) {

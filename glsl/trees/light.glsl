@@ -4,10 +4,13 @@
 //   needs    trees/stand.glsl
 //   units    shares of the light
 //   source   trees/stand.glsl
-//   tested   tests/glsl/test_trees_light.py: a stand's mean colour is the same at any distance
+//   tested   tests/glsl/test_trees_light.py: a stand's mean colour is the same at any distance,
+//            and whatever there is room for
 //
 // A tree far away stands for several: it is larger than they are, and one sees deeper between it
-// and the next. The light on it is that of what they would show there.
+// and the next. The light on it is that of what they would show there: as deep in the stand, and
+// as much turned upwards. With the normals of its own lower half a stand of few trees is darker
+// by a tenth.
 #ifndef TREES_LIGHT
 #define TREES_LIGHT
 #include "trees/stand.glsl"
@@ -17,7 +20,8 @@
 // the eye and to the sun (rise_of).
 vec2 tree_light(Stand all, Stand drawn, vec3 normal, float height, vec3 to_eye, vec3 to_sun,
                 vec2 rises) {
-    float share = share_in(all, drawn, share_above(drawn, height), to_eye, rises.x);
-    return crown_light(all, normal, share, to_sun, rises.y);
+    float above = share_above(drawn, height);
+    float share = share_in(all, drawn, above, to_eye, rises.x);
+    return crown_light(all, normal_in(normal, above, share), share, to_sun, rises.y);
 }
 #endif

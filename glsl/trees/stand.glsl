@@ -1,7 +1,8 @@
 // trees/stand.glsl -- what a stand of trees hides, and the light on what one sees of it.
 //
-//   gives    Stand, stand_of, thinned, share_above, share_in, rise_of, depth_towards, reaches,
-//            depth_of_sky, facing_sun, facing_sky, leaf_phase, crown_light, wood_sums
+//   gives    Stand, stand_of, thinned, share_above, rise_of, depth_towards, reaches,
+//            depth_of_sky, facing_sun, facing_sky, leaf_phase, crown_light, share_in, normal_in,
+//            wood_sums
 //   needs    trees/crown.glsl, trees/level.glsl
 //   units    metres; trees a square metre; shares 0..1; light as a share of that on a surface
 //            that faces the sun, and of that of the whole sky on open level ground
@@ -69,7 +70,7 @@ float share_above(Stand s, float height) {
     float total = 0.0;
     for (int k = 0; k < SIZES; k++) {
         vec2 of = size_of(s, k);
-        float t = clamp((height / of.x - s.middle) / s.up, -1.0, 1.0);
+        float t = clamp((height / of.x - s.middle) / max(s.up, 1e-6), -1.0, 1.0);
         total += of.y * (acos(t) - t * sqrt(1.0 - t * t)) / TREE_PI;
     }
     return min(total, 1.0);
@@ -95,7 +96,7 @@ float depth_towards(Stand s, vec3 towards, float rise) {
     // A band as wide as a crown, and as long as makes the same area, anywhere over the cells.
     float wide = 2.0 * s.across;
     float side = max(JITTER * s.cell, 1e-3);
-    float part = overlap(wide, side) * overlap(shadow / wide, side);
+    float part = overlap(wide, side) * overlap(shadow / max(wide, 1e-6), side);
     float hit = min(s.dense * s.cell * s.cell * part, 0.95);
     return s.dense * shadow * (hit > 1e-3 ? -log(1.0 - hit) / hit : 1.0);
 }
@@ -146,6 +147,15 @@ float share_in(Stand all, Stand thin, float share, vec3 to_eye, float rise) {
     if (d < 1e-3) return share;
     float higher = t < 1e-3 ? share : (1.0 - exp(-t * share)) / (1.0 - exp(-t));
     return -log(max(1.0 - higher * (1.0 - exp(-d)), 1e-6)) / d;
+}
+
+// A crown's normal where the share of the crowns above it is another. Across the middle of a disc
+// of radius 1 the share above falls by 2 / pi for each length of 1; nearer to its rim more slowly,
+// but there is less of it.
+vec3 normal_in(vec3 normal, float share, float other) {
+    float z = clamp(normal.z + 0.5 * TREE_PI * (share - other), -1.0, 1.0);
+    float across_square = max(dot(normal.xy, normal.xy), 1e-6);
+    return vec3(normal.xy * sqrt((1.0 - z * z) / across_square), z);
 }
 
 const int SPOKES = 12;

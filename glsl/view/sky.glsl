@@ -1,8 +1,8 @@
 // view/sky.glsl -- what is behind the terrain.
 //
 //   gives    frame, linear light
-//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl; the camera; daylight if
-//            there is any
+//   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun_image.glsl;
+//            the camera; daylight if there is any
 //   units    colours linear
 //   source   the colours: none, a backdrop; the sky: see lighting/daylight/dome
 //   tested   tests/glsl/test_view.py: the horizon's colour at the horizon, overhead's above; and
@@ -11,6 +11,7 @@
 // Three colours, or the sky of a daylight with the sun in it.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
+#include "lighting/sun_image.glsl"
 #pragma kernel(output = "frame:rgba16f")
 
 uniform sampler2D daylight;  //! input("black")
@@ -23,10 +24,6 @@ uniform vec3 nadir = vec3(0.125, 0.19, 0.27);     //! colour group("Sky")
                                                   //! Straight underfoot, where there is no
                                                   //! terrain; under daylight, what it is in white
                                                   //! light
-
-// The sun is 47,000 times as bright as white paper in its light, far past what half floats
-// hold and smooth edges bear.
-const float BRIGHTEST = 60.0;
 
 vec3 direction_of(vec2 pixel) {
     vec4 away = world_from_clip * vec4(pixel / vec2(size) * 2.0 - 1.0, 1.0, 1.0);
@@ -43,8 +40,7 @@ vec3 daylight_in(vec3 towards, float pixel) {
     float height = 0.001 * max(base_elevation + eye.z, 0.0);
     vec3 seen = sky_towards(daylight, towards, height);
     Sunlight from = sunlight(true, daylight, vec3(0.0), vec2(0.0), vec3(0.0), vec3(0.0));
-    float lit = dot(from.sun, vec3(0.2126, 0.7152, 0.0722));
-    vec3 disc = from.sun * min(46750.0, BRIGHTEST / max(lit, 1e-9));
+    vec3 disc = sun_image(from.sun, SUN_OVER_WHITE);
     seen = mix(seen, max(disc, seen), disc_in(towards, from.direction, pixel, height));
     vec3 below = nadir * level_light(daylight);
     return towards.z < 0.0 ? mix(seen, below, 1.0 - exp(3.0 * towards.z)) : seen;

@@ -8,13 +8,14 @@
 //   source   speed by slope and depth: Manning 1891, with 0.04 of natural streams; depth by width:
 //            Leopold and Maddock 1953, USGS Professional Paper 252, figures 5 and 8: about a
 //            twentieth, and less of wide rivers; the rest made here
-//   tested   tests/glsl/test_water_sheet.py: shores lie where the depth of a lake is 0
+//   tested   tests/glsl/test_water_sheet.py: shores lie where the depth of a lake is 0, and a
+//            river is as wide over a sea as without one
 //
 // A lake's level is known where it is wet. On dry texels around it, it goes on as the mean of the
 // wet ones nearby, but not over ground that lies much lower, at the outlet. So between a wet texel
 // and a dry one the surface meets the ground where it would in nature. A river lies on the ground
 // as a film, of which more than a half of the share of a texel is wet: narrower ones than that are
-// for texturing/waters.
+// for texturing/waters. Only beside a river does dry ground lie little above the water.
 #include "maths/nodes.glsl"
 #include "terrain/heightfield.glsl"
 #include "terrain/maps.glsl"
@@ -94,13 +95,24 @@ vec2 downhill(ivec2 texel, vec2 slope) {
     return total / max(length(total), 1e-6);
 }
 
+// Whether a texel next to one with no river has some.
+bool beside_river(ivec2 texel) {
+    float most = 0.0;
+    for (int k = 0; k < 9; k++) {
+        ivec2 there = clamp(texel + ivec2(k % 3, k / 3) - 1, ivec2(0), size - 1);
+        most = max(most, map_at(river, there, size).r);
+    }
+    return most > 0.0;
+}
+
 vec4 kernel(ivec2 texel) {
     vec2 share = share_of_texel(texel, size);
     float ground = ground_at_share(share);
-    vec4 found = vec4(wired_river ? ground - EDGE : ground - DRY, 0.0, 0.0, 0.0);
     float lake = wired_depth ? lake_level(texel) : ground - DRY;
-    found.x = max(found.x, lake);
+    bool none = lake < ground - 0.9 * DRY;
     float covered = wired_river ? map_at(river, texel, size).r : 0.0;
+    bool near = none && covered <= 0.0 && wired_river && beside_river(texel);
+    vec4 found = vec4(near ? ground - EDGE : lake, 0.0, 0.0, 0.0);
     if (covered > 0.0) {
         float wide = wired_width ? map_at(width, texel, size).r : 10.0;
         float deep = 0.06 * pow(max(wide, 0.1), 0.8);
@@ -117,7 +129,7 @@ vec4 kernel(ivec2 texel) {
         }
     }
     float open = sea_level - base_elevation;
-    bool none = covered <= 0.0 && lake < ground - 0.9 * DRY;
+    none = none && covered <= 0.0 && !near;
     if (sea && (none || open >= found.x)) found = vec4(open, 0.0, 0.0, OPEN);
     return found;
 }

@@ -32,8 +32,10 @@
 const int WAVES = 26;
 const float SHORTEST = 0.22;    // [m] drawn; ripples shorter than that are variance at once
 const float CAPILLARY = 0.01;   // [m] where the octaves of equal variance end
-const float SHARP = 4.5;        // pixels to a wave
-const float BLURRED = 2.0;
+// Pixels to a wave. What is mirrored is no linear function of a slope: of a wave that is sampled
+// no finer than sines need, that would still show rings where pixels and waves beat.
+const float SHARP = 7.0;
+const float BLURRED = 3.0;
 const float BENT = 0.9;         // longest waves that noise moves a place by, at most
 const float BENDS = 5.0;        // and those to a lump of that noise
 const float GRAVITY = 9.81;

@@ -108,17 +108,18 @@ def why_absent(technique: Technique, path: str) -> str:
         return why_absent(spec.technique, rest)
     if whole is None or not find_targets(whole.technique, rest):
         return ""
-    return unmet(whole.when, technique.wired)
+    term = unmet(whole.when, technique.wired)
+    name = term.removeprefix(NOT)
+    only = "no effect where" if name != term else "an effect only where"
+    return f"has {only} '{name}' is wired" if term else ""
 
 
 def unmet(when: Iterable[str], wired: Collection[str]) -> str:
-    """Return what keeps a pass from being there, by the inputs that are wired; "" where nothing does."""
+    """Return the first term that keeps a pass from being there, as ``when`` has it; "" where none does."""
     for term in when:
         name = term.removeprefix(NOT)
-        if term != name and name in wired:
-            return f"has no effect where '{name}' is wired"
-        if term == name and name not in wired:
-            return f"needs a {name}, and none is wired"
+        if (name in wired) == (term != name):
+            return term
     return ""
 
 

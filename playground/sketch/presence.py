@@ -118,7 +118,9 @@ def why_unfed(technique: Technique, name: str) -> str:
     whole = technique.written.find(head) if isinstance(technique, Graph) else None
     if whole is None or not isinstance(technique, Graph):
         return "there is no such input"
-    return f"pass '{head}' {unmet(whole.when, technique.wired)}"
+    term = unmet(whole.when, technique.wired)
+    name = term.removeprefix(NOT)
+    return f"pass '{head}' is there only where '{name}' is {'not wired' if name != term else 'wired'}"
 
 
 def _present(passes: Sequence[PassSpec], graph: Graph, wired: frozenset[str]) -> tuple[PassSpec, ...]:

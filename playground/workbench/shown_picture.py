@@ -89,21 +89,21 @@ class ShownPicture:
         ``coming``: it is opened or read again, and the view is the one that it will have.
         Raises as ``Engine.draw``.
         """
-        hasty = engine.info.software and not in_full
-        chosen = as_preview(sketch) if hasty else sketch
+        previews = engine.info.software and not in_full
+        chosen = as_preview(sketch) if previews else sketch
         pixels = size
-        if hasty and not self.needs_all_pixels and view.map is None:
+        if previews and not self.needs_all_pixels and view.map is None:
             at = _at(view, sketch, time, coming=coming)
             changed = self._changed(engine, sketch, view, size, at)
             if changed or self.texture is None or self.texture.size != size:
-                pixels = self._sizes.choose(engine, _seen(chosen, view, time, size), size, changed, **at)
+                pixels = self._sizes.choose(engine, _framed(chosen, view, time, size), size, changed, **at)
             else:
                 pixels = self._drawn_size
             chosen = as_preview(sketch, size, pixels)
 
         def drawn_at(time: float) -> moderngl.Texture:
             at = _at(view, sketch, time, coming=coming)
-            return engine.draw(_seen(chosen, view, time, size), size=pixels, **at)
+            return engine.draw(_framed(chosen, view, time, size), size=pixels, **at)
 
         with _timed(engine), pointed_at(engine.runner, size, pixels):
             texture = catch_up.draw(engine, time, drawn_at, in_full=in_full)
@@ -131,7 +131,7 @@ class ShownPicture:
         pixels = self._drawn_size if self.texture is not None and self.texture.size == size else size
         chosen = as_preview(sketch, size, pixels) if self.is_preview else sketch
         with pointed_at(engine.runner, size, pixels):
-            return engine.stale(_seen(chosen, view, at["time"], size), size=pixels, **at)
+            return engine.stale(_framed(chosen, view, at["time"], size), size=pixels, **at)
 
 
 def _at(view: View, sketch: Sketch, time: float, *, coming: bool = False) -> dict[str, Any]:
@@ -140,7 +140,7 @@ def _at(view: View, sketch: Sketch, time: float, *, coming: bool = False) -> dic
     return {"time": time, "steps": stops, "interpolated": view.interpolated}
 
 
-def _seen(sketch: Sketch, view: View, time: float, size: Size) -> Sketch:
+def _framed(sketch: Sketch, view: View, time: float, size: Size) -> Sketch:
     """Return a sketch at a time as it is shown in a picture of a size."""
     return framed(sketch, time, view.framed_for, size) if traits_of(sketch).camera else sketch
 

@@ -77,6 +77,7 @@ def render_times() -> tuple[float, float]:
             "-m",
             "playground",
             "render",
+            "jacksboro",
             "-o",
             f"{folder}/land.png",
             "--size",
@@ -196,7 +197,7 @@ def memory(side: int) -> float:
     """Return the most memory, in GiB, that a process takes to render jacksboro so large."""
     code = (
         "import resource, playground\n"
-        f"frame = playground.render(size={SIZE}, values={{'size': {side}}})\n"
+        f"frame = playground.render('jacksboro', size={SIZE}, values={{'size': {side}}})\n"
         "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)"
     )
     return float(_python(code)) / 2**20

@@ -117,3 +117,11 @@ def test_the_film_curve_rises_from_black_to_white_and_stays_there(on_gpu):
     assert found[-1] == 1
     # Published with the curve: about 0.8 for light of 1.
     assert found[np.searchsorted(light, 1.0)] == pytest.approx(0.80, abs=0.02)
+
+
+def test_luminance_is_that_of_the_screen_s_primaries(on_gpu):
+    """ITU-R BT.709-6: of three primaries, by x and y, as much as makes white of D65."""
+    places = np.array([[0.64, 0.33], [0.30, 0.60], [0.15, 0.06], [0.3127, 0.3290]])
+    stimuli = np.array([[x / y, 1.0, (1 - x - y) / y] for x, y in places])
+    found = on_gpu("colour/luminance.glsl", "luminance(c)", c=np.eye(3, dtype=np.float32))
+    np.testing.assert_allclose(found, np.linalg.solve(stimuli[:3].T, stimuli[3]), atol=1e-4)

@@ -44,6 +44,14 @@ def test_straight_dunes_fall_at_the_angle_of_repose_and_rise_slower(dunes):
     assert slope.max() < 0.5 * REPOSE
 
 
+def test_dunes_that_cannot_be_so_tall_are_lower_and_no_steeper(dunes):
+    """200 m on 150 m from crest to crest: at the angle of repose over half of that, 0.75 of 49 m."""
+    sand, _ = dunes(wind=270.0, bends=0.0, between=150.0, tallest=200.0)
+    slope = np.diff(sand, axis=1) * (SIDE - 1) / EXTENT
+    assert -REPOSE * 1.02 < slope.min() < -0.5 * REPOSE
+    assert 0.5 * 0.75 * REPOSE * 75 < sand.max() <= REPOSE * 75
+
+
 def test_no_sand_on_steep_or_high_ground(dunes):
     sand, lies = dunes(rise=1.0, steep=2.0, below=[100.0, 200.0])
     row = (SIDE - 1) // 5  # 100 m, and 200 m at twice the row

@@ -119,6 +119,27 @@ def test_the_distance_to_a_segment_is_that_to_the_nearest_of_its_points(on_gpu):
     np.testing.assert_allclose(found, np.linalg.norm(points - place, axis=-1).min(axis=0), atol=3e-3)
 
 
+def test_a_way_through_a_rectangle_is_where_its_places_are_inside(on_gpu):
+    place, ahead = RNG.uniform(-8, 8, (300, 2)), RNG.uniform(-1, 1, (300, 2))
+    ahead[:20, 0] = 0.0
+    sides = np.array([5.0, 3.0])
+    found = on_gpu(
+        "maths/square.glsl",
+        "way_through(place, ahead, vec2(5.0, 3.0))",
+        place=place.astype(np.float32),
+        ahead=ahead.astype(np.float32),
+    )
+    way = np.linspace(-100, 100, 40_001)
+    points = place[:, None] + way[:, None] * ahead[:, None]
+    inside = np.all((points > 0) & (points < sides), axis=-1)
+    enters, leaves = found.T
+    clear = inside.sum(axis=1) > 10
+    assert clear.sum() > 50 and not inside[enters >= leaves].any()
+    np.testing.assert_allclose(enters[clear], way[inside.argmax(axis=1)][clear], atol=0.006)
+    last = way[len(way) - 1 - inside[:, ::-1].argmax(axis=1)]
+    np.testing.assert_allclose(leaves[clear], last[clear], atol=0.006)
+
+
 def test_what_is_not_a_number_is_recognised(on_gpu):
     value = np.array([0.0, -1e30, np.nan, np.inf, -np.inf], np.float32)
     found = on_gpu("maths/number.glsl", "is_number(value) ? 1 : 0", value=value)

@@ -119,8 +119,11 @@ def test_bumps_are_none_on_the_mean_and_as_rough_as_they_say(on_gpu, pixel, kind
         assert np.all(abs(found.mean(axis=0)) < 5 * found.std(axis=0) / np.sqrt(len(places))), name
     for slopes, variance in (("slope", "variance"), ("snowy", "snow_variance")):
         ratio = read(slopes).var(axis=0) / read(variance).mean()
-        # Means over a long pixel take it that its places share nothing: along it they do.
-        np.testing.assert_allclose(ratio, 1.0, atol=0.04 if pixel == FINE else 0.5)
+        if pixel == FINE:
+            np.testing.assert_allclose(ratio, 1.0, atol=0.04)
+        else:
+            # Means over a long pixel take it that its places share nothing: along it they do.
+            assert ratio.mean() == pytest.approx(1.0, abs=0.25)
     assert np.quantile(read("tone"), 0.001) > -0.9, "no black specks"
 
 
@@ -223,13 +226,22 @@ def test_layers_follow_the_height(on_gpu):
 
 def test_on_a_plane_of_the_axes_rock_shows_that_plane_s_tile_alone(on_gpu):
     axes = np.eye(3, dtype=np.float32)
-    np.testing.assert_array_equal(on_gpu("scene/near/triplanar.glsl", "planes_of(n)", n=axes), axes)
+    file, call = "texturing/planes.glsl", "planes_of(n, vec2(30.0, 45.0), 4.0)"
+    np.testing.assert_allclose(on_gpu(file, call, n=axes), axes, atol=1e-12)
     normals = RNG.normal(size=(500, 3)).astype(np.float32)
+    normals[:, 2] = abs(normals[:, 2])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    shares = on_gpu("scene/near/triplanar.glsl", "planes_of(n)", n=normals)
+    shares = on_gpu(file, call, n=normals)
     np.testing.assert_allclose(shares.sum(axis=1), 1.0, atol=1e-5)
-    flat = abs(normals[:, 2]) > np.cos(np.radians(30))
+    flat = normals[:, 2] > np.cos(np.radians(30))
     np.testing.assert_array_equal(shares[flat][:, 2], 1.0)
+    # On a slope to the east no plane faces north, and the sides come in evenly by the angle. Mesa's acos
+    # is a polynomial, good to 1e-4 radians of the 15 degrees.
+    for angle, part in ((30, 0.0), (37.5, 0.5), (42, 0.8), (45, 1.0), (70, 1.0)):
+        sine, cosine = np.sin(np.radians(angle)), np.cos(np.radians(angle))
+        east = part / (1 + (cosine / sine) ** 4)
+        found = on_gpu(file, call, n=np.array([[sine, 0.0, cosine]], np.float32))[0]
+        np.testing.assert_allclose(found, [east, 0.0, 1 - east], atol=4e-4)
 
 
 # ── wet ground, snow ─────────────────────────────────────────────────────────
@@ -259,9 +271,6 @@ def test_wet_ground_gives_back_what_its_film_lets_out(on_gpu):
     found = on_gpu("scene/near/wet.glsl", "wet_albedo(vec3(c)).g", c=dry.astype(np.float32)).astype(float)
     np.testing.assert_allclose(found, out, rtol=2e-3)
     assert np.all(found < dry)
-    steep = np.linspace(0.0, 1.0, 50)
-    film = on_gpu("scene/near/wet.glsl", "film_reflects(c)", c=steep.astype(np.float32))
-    np.testing.assert_allclose(film, reflected(steep, 1.0, 1.333), atol=0.065)  # Schlick's
 
 
 def test_snow_covers_hollows_first_and_everything_at_last(on_gpu):

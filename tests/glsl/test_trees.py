@@ -78,6 +78,19 @@ def test_there_are_as_many_as_the_density_says(kept, ctx, make_sketch, seed):
     assert abs(np.corrcoef(key, tree[:, 0])[0, 1]) < 4 / np.sqrt(len(tree)), "ranks know nothing of the place"
 
 
+@pytest.mark.parametrize("level", [-10.0, 40.0, 61.5])
+def test_none_stands_in_water_and_all_others_stay(kept, ctx, make_sketch, level):
+    """The ground is 24 to 84 m high; rocks and tufts are placed by the same pass."""
+    sea = '[[pass]]\nname = "sea"\nuse = "water/sea"\nsize = 1\nset = {{ sea_level = {level} }}\n'
+    wired = PASSES.replace('"ground:density" }}', '"ground:density", water = "sea" }}')
+    passes = (sea + wired).format(level=level, values=EVERY, azimuth=200.0, x=1300.0, y=700.0)
+    sketch = make_sketch(passes, size=[53, 41], extent=list(EXTENT), relief=120.0, ground=SLOPE)
+    every = table(kept, placed(make_sketch))[0]
+    dry = rows(every[every[:, 2] > level])
+    assert len(dry) > 1000
+    assert rows(table(kept, sketch)[0]) == dry
+
+
 def test_farther_away_fewer_are_kept_by_a_known_share(kept, ctx, make_sketch):
     sketch = placed(make_sketch, "all_round = true, whole = 150, reach = 1200, trees = 200000")
     tree, key = table(kept, sketch)

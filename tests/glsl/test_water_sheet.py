@@ -32,6 +32,13 @@ void kernel(ivec2 texel, out float river, out float width) {
     width = 60.0;
 }
 """
+THIN = """
+#pragma kernel(output = "river:r32f, width:r32f")
+void kernel(ivec2 texel, out float river, out float width) {
+    river = texel.y == 20 ? 1.0 : 0.0;
+    width = 60.0;
+}
+"""
 READ = """
 #include "maths/land.glsl"
 #include "terrain/heightfield.glsl"
@@ -89,6 +96,20 @@ def test_a_lake_ends_where_its_depth_does(any_engine, make_sketch, size):
     np.testing.assert_allclose(inside, 35.0, atol=1e-3)
 
 
+def test_a_river_elsewhere_floods_no_shore(any_engine, make_sketch):
+    """A river that is wired and nowhere changes nothing."""
+    nowhere = '#pragma kernel(output = "river:r32f")\nfloat kernel(ivec2 texel) { return 0.0; }\n'
+    text = '[[pass]]\nname = "depth"\nuse = "./lake"\n{}[[pass]]\nname = "water"\nuse = "water/sheet"\n'
+    river = '[[pass]]\nname = "river"\nuse = "./nowhere"\n'
+    with_river, without = (
+        any_engine.read(
+            sketch_of(make_sketch, BOWL, text.format(one), [41, 33], lake=LAKE, nowhere=nowhere), "over"
+        )
+        for one in (river, "")
+    )
+    np.testing.assert_array_equal(with_river, without)
+
+
 def test_a_lake_does_not_go_on_over_its_outlet(any_engine, make_sketch):
     """On a slope that falls to the east, dry ground that lies lower stays dry."""
     lake = '#pragma kernel(output = "depth:r32f")\nfloat kernel(ivec2 t) { return t.x < 20 ? 5.0 : 0.0; }\n'
@@ -111,6 +132,20 @@ def test_a_river_is_as_wide_as_it_is_and_runs_downhill(any_engine, make_sketch):
     np.testing.assert_allclose(middle[1:3], [4.0, 0.0], atol=1e-3)
     assert 0.0 < middle[3] < 0.2
     np.testing.assert_array_equal(water[5, :, 1:], 0.0)
+
+
+@pytest.mark.parametrize("sea", ["false", "true"])
+def test_a_river_one_texel_wide_keeps_its_width_high_above_a_sea(any_engine, make_sketch, sea):
+    """Between 1.59 m of water and 0.3 m of dry ground 25 m away; ground beyond is far from water."""
+    text = '[[pass]]\nname = "river"\nuse = "./thin"\n[[pass]]\nname = "water"\nuse = "water/sheet"\n'
+    text += 'inputs = { river = "river:river", width = "river:width" }\n'
+    text += f"set = {{ sea = {sea}, sea_level = 1.0 }}\n"
+    over = any_engine.read(sketch_of(make_sketch, SLANT, text, [41, 33], thin=THIN), "over")
+    _, north = places()
+    deep = 0.06 * 60**0.8
+    width = (over > 0).sum(axis=0) * EXTENT[1] / 640
+    np.testing.assert_allclose(width, 2 * 25 * deep / (deep + 0.3), atol=1.25)
+    assert over[abs(north - 500) > 50].max() < -8.9
 
 
 def test_the_sea_meets_a_river(any_engine, make_sketch):

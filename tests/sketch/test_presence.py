@@ -126,7 +126,7 @@ def test_what_is_not_there_is_seen_by_nobody(make):
 def test_setting_what_is_not_there_says_why(make):
     bare, wired = make(*BARE), make(*WIRED)
     for path in ("it.by", "it.added.by"):
-        with pytest.raises(ParameterError, match=rf"^{path}: needs a density, and none is wired$"):
+        with pytest.raises(ParameterError, match=rf"^{path}: has an effect only where 'density' is wired$"):
             bare.with_values({path: 2.0})
     with pytest.raises(ParameterError, match=r"it\.plain_is: has no effect where 'density' is wired"):
         wired.with_values({"it.plain_is": 2.0})
@@ -138,7 +138,7 @@ def test_a_file_that_sets_what_is_not_there_is_warned_once(make):
     rest = '[[preset]]\nname = "p"\nset = { "it.by" = 3.0 }\n[[shot]]\nname = "s"\nset = { "it.by" = 2.0 }\n'
     sketch = make("it inner set = { by = 4.0, common_share = 2.0 }", tail=VIEW + rest)
     found = [(one.message, one.line) for one in sketch.warnings]
-    why = "by: needs a density, and none is wired"
+    why = "by: has an effect only where 'density' is wired"
     assert found == [
         (f"pass 'it': {why}", 6),
         (f"preset 'p': it.{why}", 12),
@@ -216,7 +216,7 @@ def test_each_form_of_a_technique_is_checked_with_its_file(make, pairs, words, l
     [
         ("when = 'density'", "a sketch has no inputs"),
         ("inputs = { density = ['a', 'b'] }", "all passes of a sketch are there"),
-        ("inputs = { 'added.density' = 'late' }", "pass 'added' needs a density, and none is wired"),
+        ("inputs = { 'added.density' = 'late' }", "pass 'added' is there only where 'density' is wired"),
     ],
 )
 def test_a_sketch_itself_has_no_conditions(make, more, words):

@@ -213,15 +213,20 @@ def test_compared_pictures_have_the_same_pixels(slow: Slow):
     slow.frame()
     slow.frame(1.0)
     compare = Inspection(slow.session).compare
+    kept = slow.session.sketch
     compare.keep()
     compare.follow(slow.session.picture.texture)
     slow.move(6, "made.high")
     slow.session.clock.time = 0.0
     compare.follow(slow.session.picture.texture)
     assert compare.picture.size == SIZE and slow.session.is_preview
+    assert slow.session.engine.plan.frame_size == slow.session.picture.drawn_size != SIZE
     slow.frame(1.0)
     compare.follow(slow.session.picture.texture)
-    assert slow.session.picture.drawn_size == SIZE and compare.picture.size == SIZE
+    assert slow.session.picture.drawn_size == SIZE
+    found = np.frombuffer(compare.picture.read(), np.uint8).reshape(*SIZE[::-1], -1)
+    expected = slow.session.engine.render(kept, size=SIZE).array
+    np.testing.assert_array_equal(found[::-1, :, :3], expected[..., :3])
     compare.release()
 
 

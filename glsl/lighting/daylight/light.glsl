@@ -6,8 +6,8 @@
 //            days from the first of January; 6 what clouds send down, share of open sky; from 7
 //            on the mean horizon as seen from each height of sky/dome.glsl, with the first how far
 //            the sky of stars has turned
-//   needs    sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl, lighting/sun.glsl; the sun's place,
-//            the air, the cover and two tables
+//   needs    colour/luminance.glsl, sky/clouds.glsl, sky/columns.glsl, sky/dome.glsl,
+//            lighting/sun.glsl; the sun's place, the air, the cover and two tables
 //   units    light without unit, 1 that of the sun outside the air on a surface that faces it;
 //            degrees
 //   source   see sky/clouds.glsl and sky/columns.glsl; the adapted eye: a light meter for incident
@@ -18,6 +18,7 @@
 // nor half floats follow. So exposure by the light begins here, where floats are whole;
 // view/present has the rest. Adaptation 1 keeps level ground as bright all day, 0 keeps nature's
 // numbers.
+#include "colour/luminance.glsl"
 #include "lighting/sun.glsl"
 #include "sky/clouds.glsl"
 #include "sky/columns.glsl"
@@ -36,7 +37,6 @@ uniform float adaptation = 0.75;   //! slider(0, 1) step(0.01)
 const int AROUND = 24;
 const int UP = 24;
 const float HORIZON = 0.03;  // the sine of where the horizon's colour is taken
-const vec3 LUMINANCE = vec3(0.2126, 0.7152, 0.0722);
 
 vec3 towards(float rise, float turned, vec3 sun) {
     vec2 ahead = dot(sun.xy, sun.xy) > 1e-12 ? normalize(sun.xy) : vec2(0.0, 1.0);
@@ -73,7 +73,7 @@ vec4 kernel(ivec2 texel) {
     beam *= beam_through_clouds(clouds);
     // What clouds take from the sun and hide of the sky, less what they hold back, they send down.
     vec3 cloud = max(whole - beam * level - open * sky, 0.0);
-    float adapted = pow(max(dot(whole, LUMINANCE), 1e-12), -adaptation);
+    float adapted = pow(max(luminance(whole), 1e-12), -adaptation);
     vec4 found = vec4(adapted * cloud, open);
     if (texel.x == 0) found = vec4(sun, at.y);
     if (texel.x == 1) found = vec4(adapted * beam, at.x);

@@ -1,4 +1,4 @@
-// objects/parameters/rocks.glsl -- how many models are drawn, how deep they stand, their shadows.
+// objects/parameters/rocks.glsl -- how many models are drawn, and how deep they stand.
 //
 //   gives    objects, sunk
 //   needs    nothing

@@ -1,7 +1,7 @@
 // scene/near/kinds.glsl -- what the ground consists of: grass, stones, rock.
 //
 //   gives    rock_share, kinds_of_ground, grain_of_sand, kinds_of_layers, SOIL_HUE, soiled
-//   needs    nothing: pure functions, no uniforms, no textures
+//   needs    colour/luminance.glsl
 //   units    shares that sum to 1, of grass, stones and rock; slopes in metres over metres;
 //            exposed from -1 in hollows to 1 on ridges; colours linear
 //   source   made here
@@ -10,9 +10,10 @@
 // Ridges and dry patches are stony, hollows hold soil and grass.
 #ifndef SCENE_NEAR_KINDS
 #define SCENE_NEAR_KINDS
+#include "colour/luminance.glsl"
+
 const vec3 SOIL_HUE = vec3(0.215, 0.165, 0.115);
 const float RIPPLE = 0.2;  // how much narrower than long ripples of sand are
-const vec3 LUMA = vec3(0.2126, 0.7152, 0.0722);
 
 // Within the two slopes, patches decide what is rock.
 float rock_share(float slope, vec2 rocky, float patchy) {
@@ -43,6 +44,6 @@ vec3 kinds_of_layers(vec4 weights) {
 
 // A colour of the same brightness in the hue of bare soil.
 vec3 soiled(vec3 colour, float share) {
-    return mix(colour, SOIL_HUE * (dot(colour, LUMA) / dot(SOIL_HUE, LUMA)), share);
+    return mix(colour, SOIL_HUE * (luminance(colour) / luminance(SOIL_HUE)), share);
 }
 #endif

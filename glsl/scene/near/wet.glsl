@@ -1,22 +1,21 @@
 // scene/near/wet.glsl -- what water in the ground does to its colour, and the film on top of it.
 //
-//   gives    WATER_INDEX, wet_albedo, film_of, film_reflects
-//   needs    nothing: pure functions, no uniforms, no textures
+//   gives    wet_albedo, film_of
+//   needs    water/fresnel.glsl
 //   units    colours linear; shares 0..1
 //   source   light that is caught in a film of water: Angstrom 1925, "The albedo of various
 //            surfaces of ground" (Geografiska Annaler 7), as Lekner and Dorf 1988, "Why some
-//            things are darker when wet" (Applied Optics 27), eqs. 1 to 5, correct it; Schlick
-//            1994, "An Inexpensive BRDF Model" (Computer Graphics Forum 13)
+//            things are darker when wet" (Applied Optics 27), eqs. 1 to 5, correct it
 //   tested   tests/glsl/test_near.py, against Fresnel's equations integrated in float64
 #ifndef SCENE_NEAR_WET
 #define SCENE_NEAR_WET
-const float WATER_INDEX = 1.333;
-const float INTO_WATER = 0.9336;  // of light from all sides, what passes into water
+#include "water/fresnel.glsl"
+
 const float HELD_BACK = 0.4746;  // of light from all sides in water, what its surface throws back
 
 // Of a matt surface under a film. What comes back from it is thrown back in part, again and again.
 vec3 wet_albedo(vec3 dry) {
-    return INTO_WATER * (1.0 - HELD_BACK) * dry / (1.0 - HELD_BACK * dry);
+    return (1.0 - DIFFUSE_MIRRORED) * (1.0 - HELD_BACK) * dry / (1.0 - HELD_BACK * dry);
 }
 
 // How much of a pixel stands under water: hollows first, and none on a slope, where it runs off.
@@ -26,12 +25,5 @@ float film_of(float wetness, float over, float hidden, float slope) {
     float soft = 0.01 + 2.0 * hidden;
     float stands = smoothstep(0.45, 0.7, wetness) * (1.0 - smoothstep(0.03, 0.2, slope));
     return stands * smoothstep(-soft, soft, level - over);
-}
-
-// What of the light such a film throws back, by the cosine of the angle.
-float film_reflects(float facing) {
-    float left = 1.0 - clamp(facing, 0.0, 1.0);
-    float square = left * left;
-    return 0.0204 + 0.9796 * square * square * left;
 }
 #endif

@@ -1,8 +1,8 @@
 // scene/sky/composed.glsl -- sky, sun and stars, and what is in front of them.
 //
 //   gives    sky, linear light
-//   needs    lighting/daylight_weather.glsl, sky/columns.glsl, sky/drops.glsl, sky/stars.glsl,
-//            scene/surfaces.glsl, maths/drape.glsl; the camera;
+//   needs    lighting/daylight_weather.glsl, lighting/sun_image.glsl, sky/columns.glsl,
+//            sky/drops.glsl, sky/stars.glsl, scene/surfaces.glsl, maths/drape.glsl; the camera;
 //            scene/sky/backdrop, scene/sky/through_air, a daylight and one of its tables
 //   units    light as of lighting/daylight
 //   source   see lighting/daylight/dome and scene/air
@@ -12,6 +12,7 @@
 // Where no clouds are drawn the sky is as lighting/daylight has it, its cover spread evenly. Where
 // they are, it is the clear sky, and the clouds make the cover.
 #include "lighting/daylight_weather.glsl"
+#include "lighting/sun_image.glsl"
 #include "maths/drape.glsl"
 #include "scene/surfaces.glsl"
 #include "sky/columns.glsl"
@@ -26,8 +27,6 @@ uniform sampler2D in_front;  //! input("linear")
 uniform sampler2D seen;      //! input("black")
 #include "clouds/parameters/drawn.glsl"
 
-// The sun is 47,000 times as bright as white paper in its light, far past what half floats hold.
-const float BRIGHTEST = 60.0;
 // For a brighter sky the eye is adapted less, and stars are lost in it.
 const float STARS_FROM = 1000.0;
 
@@ -41,8 +40,7 @@ vec3 disc_in(vec3 towards, vec3 sun, float pixel, float height, Weather now) {
     float part = clamp((radians(SUN_RADIUS) - distance(towards, sun)) / pixel + 0.5, 0.0, 1.0);
     if (towards.z < horizon_rise(height) || part <= 0.0) return vec3(0.0);
     vec3 beam = now.adapted * left_of_sunlight(columns, air_of(now.turbidity), height, sun.z);
-    float lit = dot(beam, vec3(0.2126, 0.7152, 0.0722));
-    return beam * (part * min(46750.0, BRIGHTEST / max(lit, 1e-9)));
+    return part * sun_image(beam, SUN_OVER_WHITE);
 }
 
 vec4 kernel(ivec2 texel) {
@@ -68,7 +66,7 @@ vec4 kernel(ivec2 texel) {
         vec3 left = left_of_sunlight(columns, air_of(now.turbidity), height, towards.z);
         float shown = straight * now.adapted * smoothstep(1.0, 4.0, now.adapted / STARS_FROM);
         found += min(shown * left * (stars_towards(celestial, near) + milky_way(celestial)),
-                     BRIGHTEST);
+                     DAZZLING);
     }
     return vec4(found, 1.0);
 }

@@ -2,13 +2,16 @@
 //
 //   gives    meets_terrain, MISSES
 //   asks     of the kernel that includes it: wood_height
-//   needs    lighting/march.glsl; heights and their block maxima come as arguments
+//   needs    lighting/march.glsl, maths/square.glsl; heights and their block maxima come as
+//            arguments
 //   units    metres
 //   source   the march of lighting/march.glsl; the last step as a secant: made here
-//   tested   tests/glsl/test_scene_water.py: calm water mirrors a peak within a pixel
+//   tested   tests/glsl/test_scene_water.py: calm water mirrors a peak within a pixel, and the sea
+//            beyond the terrain does
 #ifndef SCENE_WATER_MIRRORED
 #define SCENE_WATER_MIRRORED
 #include "lighting/march.glsl"
+#include "maths/square.glsl"
 
 // How high woods stand at a share of the terrain [m], and the most that they can be.
 float wood_height(vec2 share);
@@ -29,15 +32,20 @@ float after_step(float found, March march, float t, float terrain) {
 
 bool is_decided(float found) { return found > 0.0; }
 
-// How far it is from a point to the terrain, in a direction that does not fall, or MISSES.
+// How far it is from a point, over the terrain or beside it, to the terrain, in a direction that
+// does not fall, or MISSES.
 float meets_terrain(sampler2D field, sampler2D block_maxima, vec3 from, vec3 to, vec2 metres,
                     float metres_of_relief, float tallest) {
     last_texel = vec2(textureSize(field, 0) - 1);
     woods_at_most = tallest;
     vec2 place = from.xy / metres * last_texel;
-    if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, last_texel))) return MISSES;
+    vec2 along = to.xy / metres * last_texel;
+    vec2 way = way_through(place, along, last_texel);
+    float entry = max(way.x, 0.0);
+    if (entry >= way.y) return MISSES;
+    place = clamp(place + entry * along, vec2(0.0), last_texel);
     March march = march_from(field, place, false, to, metres, metres_of_relief, 1.0);
-    march.foot = from.z - tallest;
+    march.foot = from.z + entry * to.z - tallest;
     float found = marched_on(false, march.count, march, field, block_maxima, INTERPOLATED,
                              march.climb, 0.0);
     if (found <= 0.0) return MISSES;
@@ -49,6 +57,6 @@ float meets_terrain(sampler2D field, sampler2D block_maxima, vec3 from, vec3 to,
     float before = height_at(field, at) * metres_of_relief + top_of_woods(at) - tallest
             - march.foot - (found - 1.0) * march.climb;
     float back = before < 0.0 ? clamp(after / (after - before), 0.0, 1.0) : 1.0;
-    return (found - back) * march.path;
+    return entry + (found - back) * march.path;
 }
 #endif

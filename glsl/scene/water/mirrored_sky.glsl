@@ -1,18 +1,30 @@
 // scene/water/mirrored_sky.glsl -- the sky in a direction from the water, with its clouds.
 //
-//   gives    sky_of, clouds_towards
+//   gives    sky_of, LOBE, clouds_towards
 //   needs    clouds/shadow.glsl, scene/water/heaven_reading.glsl; the table of
 //            scene/water/heaven, a tile by clouds/field and a drift come as arguments
 //   units    metres; light as of lighting/daylight
-//   source   the heaps of clouds/seen, by few steps: what is mirrored is never as sharp
-//   tested   tests/glsl/test_scene_water.py: mirrored clouds have the cover of those above
+//   source   the clouds' outlines by few looks at their tile, from which share of a wide look is
+//            under cloud and how thick that is: made here
+//   tested   tests/glsl/test_scene_water.py: mirrored clouds have the light and the colour of
+//            those above
+//
+// A wide look at how thick clouds are is a mean: to ask whether that is more than some height has
+// yes or no for an answer, and an edge where there should be none. What clouds leave of the light
+// is a mean that can be taken as it is. So each look is at that first, and the mean thickness only
+// says how high those clouds are.
 #ifndef SCENE_WATER_MIRRORED_SKY
 #define SCENE_WATER_MIRRORED_SKY
 #include "clouds/shadow.glsl"
 #include "scene/water/heaven_reading.glsl"
 
-const int CLOUD_STEPS = 8;
-const float LONGEST_STEP = 500.0;  // [m]
+const int CLOUD_LOOKS = 4;
+const float UP_TO = 0.8;            // of the layer's height, where there is much of them
+const float LONGEST_WAY = 4000.0;  // [m] through the layer that looks are spread over
+
+// A mirror whose slopes have a variance, of both axes together, turns rays by twice the deviation
+// of one; a level of detail with texels of a width has a deviation of half of it.
+const float LOBE = 2.83;
 
 vec3 sky_of(sampler2D heaven, int which, vec3 to) {
     return textureLod(heaven, heaven_place(to, which, textureSize(heaven, 0)), 0.0).rgb;
@@ -22,33 +34,28 @@ vec3 sky_of(sampler2D heaven, int which, vec3 to) {
 // behind; `blur` is how wide what is mirrored blurs [radians]. Heaped, or as a flat layer.
 vec4 clouds_towards(sampler2D cloud, sampler2D heaven, vec4 drift, vec3 place, vec3 to,
                     float blur, bool heaped) {
-    vec3 bright = sky_of(heaven, THIN_SKY, to);
-    vec3 dark = sky_of(heaven, THICK_SKY, to);
     float rise = max(to.z, 0.03);
     float way = max(drift.z - place.z, 0.0) / rise;
+    float through = heaped ? min(UP_TO * CLOUD_TALL / rise, LONGEST_WAY) : 0.0;
     float texel = drift.w / float(textureSize(cloud, 0).x);
-    float level = max(log2(max(blur * way, 1.0) / texel), 0.0);
-    if (!heaped) {
-        way += CLOUD_MIDDLE / rise;
-        vec4 tile = textureLod(cloud, tile_of(place.xy + to.xy * way, drift), level);
-        float deep = clamp((tile.r - THIN_CLOUD) / (THICK_CLOUD - THIN_CLOUD), 0.0, 1.0);
-        return vec4(mix(bright, dark, deep) * (1.0 - tile.a), tile.a);
-    }
-    float climb = CLOUD_TALL / float(CLOUD_STEPS);
-    float step_of = min(climb / rise, LONGEST_STEP);
+    float wide = max(blur * way, 0.3 * through * length(to.xy));
+    float level = max(log2(max(wide, 1.0) / texel), 0.0);
     float left = 1.0;
-    vec3 found = vec3(0.0);
-    for (int k = 0; k < CLOUD_STEPS; k++) {
-        float path = way + (float(k) + 0.5) * step_of;
-        float up = (float(k) + 0.5) * step_of * rise / CLOUD_TALL;
-        float deep = textureLod(cloud, tile_of(place.xy + to.xy * path, drift), level).r;
-        float much = clamp((deep - up) * 6.0, 0.0, 1.0);
-        float passed = exp(-much * CLOUD_DEPTH / CLOUD_TALL * step_of);
-        // Their feet are dark, their heads bright.
-        float shade = clamp((deep - up - THIN_CLOUD) / (THICK_CLOUD - THIN_CLOUD), 0.0, 1.0);
-        found += left * (1.0 - passed) * mix(bright, dark, shade);
-        left *= passed;
+    float deep = 0.0;
+    for (int k = 0; k < CLOUD_LOOKS; k++) {
+        float part = float(k) / float(CLOUD_LOOKS);
+        vec2 there = place.xy + to.xy * (way + part * through);
+        vec4 tile = textureLod(cloud, tile_of(there, drift), level);
+        float hidden = 1.0 - tile.a;
+        float thick = tile.r / max(hidden, 0.02);
+        // Of clouds that thick on the mean, some up to twice as much, what reaches up to the ray.
+        float tall = clamp(1.0 - 0.5 * UP_TO * part / max(thick, 0.02), 0.0, 1.0);
+        left = min(left, 1.0 - hidden * tall);
+        deep = max(deep, thick);
+        if (!heaped) break;
     }
-    return vec4(found, left);
+    vec3 light = mix(sky_of(heaven, THIN_SKY, to), sky_of(heaven, THICK_SKY, to),
+                     share_of_thick(deep));
+    return vec4(light * (1.0 - left), left);
 }
 #endif

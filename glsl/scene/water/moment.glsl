@@ -11,7 +11,7 @@
 #pragma kernel(output = "moment:rgba32f")
 
 uniform sampler2D waves;   //! input
-uniform sampler2D drift;   //! input("black")
+uniform sampler2D drift;   //! input("zero")
 uniform sampler2D leaves;  //! input("black")
 uniform sampler2D grass;   //! input("linear", "repeat", "mipmap", "white")
 uniform sampler2D rock;    //! input("linear", "repeat", "mipmap", "white")

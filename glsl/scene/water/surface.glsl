@@ -2,8 +2,9 @@
 //
 //   gives    frame, linear light
 //   needs    clouds/shadow.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
-//            noise/gradient.glsl, scene/air_reading.glsl, scene/footprint.glsl,
-//            scene/ground_reading.glsl, scene/surfaces.glsl, scene/water/mirrored.glsl,
+//            lighting/sun_image.glsl, noise/gradient.glsl, scene/air_reading.glsl,
+//            scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
+//            scene/water/mirrored.glsl,
 //            scene/water/mirrored_sky.glsl, scene/water/moment_texels.glsl, water/body.glsl,
 //            water/foam.glsl, water/rough_mirror.glsl, water/waves.glsl, view/surface.glsl;
 //            the picture without water, what scene/water/where gives, the ground and the maps
@@ -22,6 +23,7 @@
 #include "lighting/daylight_reading.glsl"
 #include "lighting/daylight_sky.glsl"
 #include "lighting/sun.glsl"
+#include "lighting/sun_image.glsl"
 #include "noise/gradient.glsl"
 #include "scene/air_reading.glsl"
 #include "scene/footprint.glsl"
@@ -66,12 +68,13 @@ uniform vec3 deep = vec3(0.008, 0.018, 0.016);  //! colour group("Water")
                                   //! What deep water sends back of white light
 uniform float foam = 1.0;         //! slider(0, 2) step(0.01) group("Water")
                                   //! Foam at the shore, on crests and in rapids
-uniform float tallest = 21.0;     //! slider(1, 100) unit("m") group("Water")
+uniform float tallest = 21.0;     //! log_slider(0.1, 100) unit("m") group("Water")
                                   //! Trees that it mirrors, where a density is wired
 
 const uint SALT = 0xaa77626du;    // CRC-32 of "scene/water/surface"
-const float BRIGHTEST = 60.0;     // of the sun's image, as in scene/sky
 const float MOVING = 0.05;        // [m/s] slower water has the waves of a lake
+const float WASH = 0.25;          // longest waves that foam is wide at a wall
+const float HIDDEN = 0.35;        // of the slopes' deviation: flatter rays meet another wave
 const float REPEATS = 3.0;        // [s] after which what a current carries begins again
 
 float density_at(vec2 share) {
@@ -83,8 +86,8 @@ float wood_height(vec2 share) {
 }
 
 float cloud_shade(vec3 place, vec3 to_light) {
-    if (!wired_cloud || clouds == 0) return 1.0;
     vec4 wind_of = texelFetch(moment, DRIFT, 0);
+    if (!wired_cloud || clouds == 0 || wind_of.w <= 0.0) return 1.0;
     return wired_daylight ? cloud_share(cloud, wind_of, place, to_light)
             : cloud_transmittance(cloud, wind_of, place, to_light);
 }
@@ -101,7 +104,8 @@ Aerial air_before(vec2 share, float far) {
 vec3 colour_from(vec2 share, float wide) {
     if (!wired_colour && !wired_weights) return vec3(0.4);
     ivec2 texels = wired_weights ? textureSize(weights, 0) : textureSize(colour, 0);
-    float level = log2(max(wide * float(texels.x - 1) / extent.x, 1e-3));
+    vec2 many = wide * vec2(texels - 1) / extent;
+    float level = log2(max(max(many.x, many.y), 1e-3));
     vec2 at = drape_uv(share, texels);
     if (!wired_weights) return textureLod(colour, at, level).rgb;
     vec4 weight = textureLod(weights, at, level);
@@ -161,31 +165,39 @@ Lit light_on(vec3 place, Ground around) {
                from.sky * (ambient * around.sky));
 }
 
-vec3 mirrored_light(Mirrors mirrors, vec3 place, float far, float pixel, float rough, Aerial air,
-                    Lit lit) {
+// `rough`: the deviation of the slopes that a pixel does not show, `lowest` how steeply the lowest
+// of the mirrored rays rise that no other wave is in the way of.
+vec3 mirrored_light(Mirrors mirrors, vec3 place, float far, float pixel, float rough,
+                    float lowest, Aerial air, Lit lit) {
+    // What of the mirrors has the sky, and what the terrain, where on the mean.
     vec3 total = vec3(0.0);
     vec3 mean = vec3(0.0);
+    vec4 met = vec4(0.0);
     for (int k = 0; k < MIRRORS; k++) {
-        total += mirrors.share[k] * sky_of(heaven, CLEAR_SKY, mirrors.to[k]);
-        mean += mirrors.share[k] * mirrors.to[k];
+        vec3 to = mirrors.to[k];
+        mean += mirrors.share[k] * to;
+        vec3 risen = normalize(vec3(to.xy, length(vec2(to.z, lowest))));
+        float way = meets_terrain(height, block_maxima, place, risen, extent, relief,
+                                  wired_density ? tallest : 0.0);
+        if (way < 0.0) total += mirrors.share[k] * sky_of(heaven, CLEAR_SKY, to);
+        else met += mirrors.share[k] * vec4(way * risen, 1.0);
     }
-    vec3 to = normalize(mean);
-    float way = meets_terrain(height, block_maxima, place, to, extent, relief,
-                              wired_density ? tallest : 0.0);
-    if (way < 0.0 && clouds != 0 && wired_cloud) {
-        vec4 found = clouds_towards(cloud, heaven, texelFetch(moment, DRIFT, 0), place, to,
-                                    rough + pixel, clouds == 2);
-        return total * found.a + mirrors.mirrored * found.rgb;
+    vec4 wind_of = texelFetch(moment, DRIFT, 0);
+    if (clouds != 0 && wired_cloud && wind_of.w > 0.0) {
+        vec4 found = clouds_towards(cloud, heaven, wind_of, place, normalize(mean),
+                                    LOBE * rough + pixel, clouds == 2);
+        total = total * found.a + max(mirrors.mirrored - met.w, 0.0) * found.rgb;
     }
-    if (way < 0.0) return total;
-    vec3 hit = place + way * to;
-    vec3 found = terrain_from(hit, -to, far + way, pixel, lit.from);
+    if (met.w <= 0.0) return total;
+    vec3 hit = place + met.xyz / met.w;
+    float way = distance(place, hit);
+    vec3 found = terrain_from(hit, (place - hit) / max(way, 1e-3), far + way, pixel, lit.from);
     // Seen straight from the eye the air before it is about that along the mirrored path.
     vec4 clip = clip_from_world * vec4(hit, 1.0);
     vec2 share = clip.w > 0.0 ? clip.xy / clip.w * 0.5 + 0.5 : vec2(0.5);
     Aerial there = air_before(clamp(share, 0.0, 1.0), far + way);
     vec3 added = max(there.scattered - air.scattered, 0.0);
-    return mirrors.mirrored * (found * there.left + added) / max(air.left, 1e-3);
+    return total + met.w * (found * there.left + added) / max(air.left, 1e-3);
 }
 
 // The wind over its mean, in patches and in groups of waves.
@@ -206,6 +218,22 @@ float reach_of_waves() { return 0.15 + 0.5 * sea_of(wind, fetch, vec2(0.0)).high
 // A band along the shore, so high, that is narrower than a pixel has no more of it than its share.
 float band_share(float high, float slope, float pixel_wide) {
     return clamp(0.5 * high / (max(slope, 0.02) * pixel_wide), 0.0, 1.0);
+}
+
+// Where waves run up a shore, and where they wash against a wall, in pieces along it.
+float foam_at_shore(vec3 place, Ground around, Footprint foot, float pixel, Sea sea, float gust) {
+    if (any(greaterThan(abs(place.xy / extent - 0.5), vec2(0.5)))) return 0.0;
+    vec2 at = place.xy / extent * vec2(textureSize(height, 0) - 1);
+    float deep_here = max(place.z - relief * height_at(height, at), 0.0);
+    float steep = length(around.slope);
+    float shore = shore_cover(deep_here, sea.high, time, gust)
+            * band_share(BREAKER * sea.high, steep, pixel);
+    vec2 off = around.slope / max(steep, 1e-6);
+    float across = abs(dot(off, foot.right)) + abs(dot(off, foot.up));
+    float wash = wash_cover(deep_here / max(steep, 0.05), WASH * sea.longest, across);
+    float lump = perlin(place.xy / (3.0 * sea.longest), SALT + 4u).x;
+    float broken = clamp(0.6 + 1.6 * lump, 0.0, 1.0);
+    return max(shore, wash * broken * min(sea.high / 0.4, 1.0));
 }
 
 vec4 dry(ivec2 texel, vec4 shown, vec4 at, float over) {
@@ -248,8 +276,9 @@ vec4 kernel(ivec2 texel) {
         seen_waves = Waves(even.slope * sqrt(gust), even.variance * gust);
     }
     Mirrors mirrors = mirrors_of(to_eye, seen_waves.slope, seen_waves.variance);
-    float rough = sqrt(seen_waves.variance);
-    vec3 above = mirrored_light(mirrors, place, far, pixel, rough, air, lit);
+    float lowest = HIDDEN * sqrt(runs ? seen_waves.variance : sea.variance * gust);
+    vec3 above = mirrored_light(mirrors, place, far, pixel, sqrt(seen_waves.variance), lowest,
+                                air, lit);
 
     float glint = sun_glint(to_eye, lit.from.direction, seen_waves.slope, seen_waves.variance,
                             mirrors.area);
@@ -257,8 +286,7 @@ vec4 kernel(ivec2 texel) {
         float shaded = meets_terrain(height, block_maxima, place, lit.from.direction, extent,
                                      relief, wired_density ? tallest : 0.0);
         glint = shaded < 0.0 ? glint : 0.0;
-        float bright = dot(lit.beam, vec3(0.2126, 0.7152, 0.0722));
-        above += lit.beam * min(glint, BRIGHTEST / max(bright, 1e-6));
+        above += sun_image(lit.beam, glint);
     }
 
     // Where there is no bed it is too deep for any of what is shown there.
@@ -269,14 +297,13 @@ vec4 kernel(ivec2 texel) {
     vec3 in_air = max(lit.level + lit.sky, 1e-6);
     vec3 below = bed * (down / in_air) * kept + deep * down * (1.0 - kept);
 
-    float cover = shore_cover(here.x, sea.high, time, gust)
-            * band_share(BREAKER * sea.high, length(around.slope), far * pixel);
-    cover += whitecap_cover(wind * gust) + here.w;
+    float cover = foam_at_shore(place, around, foot, far * pixel, sea, gust);
+    cover += whitecap_cover(wind * sqrt(gust)) + here.w;
     // Whitecaps lie across the wind, and are drawn out along it.
     vec2 along = place.xy - time * here.yz;
     along -= sea.towards * (0.6 * dot(along, sea.towards) + 0.5 * wind * time);
     float white = foam_of(clamp(foam * cover, 0.0, 1.0), along,
-                          runs ? 0.7 : clamp(0.1 * sea.longest, 0.6, 8.0), far * pixel);
+                          runs ? 0.7 : clamp(0.1 * sea.longest, 0.6, 3.0), far * pixel);
     vec3 found = above + (1.0 - mirrors.mirrored) * below;
     found = mix(found, FOAM_ALBEDO * (lit.level + lit.sky), white);
     return vec4(found * air.left + air.scattered, 1.0);

@@ -4,8 +4,8 @@
 //            elsewhere what the pixel sees without water; state: depth of the water over what
 //            is seen through it, below 0 how far dry ground is above it; its current east and
 //            north, and how white it runs
-//   needs    scene/surfaces.glsl, terrain/heightfield.glsl, water/sheet_reading.glsl; seen, a
-//            height 0..1, water by water/sea or water/sheet
+//   needs    maths/square.glsl, scene/surfaces.glsl, terrain/heightfield.glsl,
+//            water/sheet_reading.glsl; seen, a height 0..1, water by water/sea or water/sheet
 //   units    metres
 //   source   the sagitta of the Earth's curve, d^2 / 2R; the rest made here
 //   tested   tests/glsl/test_scene_water.py, against rays on a level plane in float64
@@ -17,6 +17,7 @@
 // terrain's edges: there it goes on to the horizon, sinking as the Earth does.
 //
 // An eye under water sees none of it.
+#include "maths/square.glsl"
 #include "scene/surfaces.glsl"
 #include "terrain/heightfield.glsl"
 #include "water/sheet_reading.glsl"
@@ -36,14 +37,8 @@ bool on_terrain(vec2 place) {
 
 // How far a ray goes until it leaves the square of the terrain, or 0 where it never is in it.
 float leaves_at(vec3 ahead) {
-    vec2 safe = vec2(abs(ahead.x) < 1e-9 ? 1e-9 : ahead.x, abs(ahead.y) < 1e-9 ? 1e-9 : ahead.y);
-    vec2 one = -eye.xy / safe;
-    vec2 other = (extent - eye.xy) / safe;
-    vec2 first = min(one, other);
-    vec2 last = max(one, other);
-    float enters = max(first.x, first.y);
-    float leaves = min(last.x, last.y);
-    return enters < leaves ? max(leaves, 0.0) : 0.0;
+    vec2 way = way_through(eye.xy, ahead.xy, extent);
+    return way.x < way.y ? max(way.y, 0.0) : 0.0;
 }
 
 // The open sea beyond the terrain: `over` metres above it where the ray leaves, and sinking.
@@ -66,7 +61,7 @@ vec4 over_ground(vec4 at, out vec4 state) {
     // On the terrain the heights decide, not the mesh's; what stands on it, by itself.
     float depth = here.level - (is_top(at.w) ? relief * height_at(height, share * last) : at.z);
     if (depth <= 0.0 || here.level >= eye.z || is_cut(at.w) && !is_open(here)) {
-        state = vec4(min(depth, -1e-4), 0.0, 0.0, 0.0);
+        state = vec4(depth > 0.0 ? DRY : min(depth, -1e-4), 0.0, 0.0, 0.0);
         return at;
     }
     state = vec4(depth, here.current, max(here.white, 0.0));

@@ -3,18 +3,21 @@
 //   gives    tree: its foot east, north and up, and how tall it is, 0 for none; key: its rank over
 //            the share of trees that is drawn so far away, below 1 for one that is drawn, else 2;
 //            and how near to its end a tree of key 1 is (drawn_part)
-//   needs    terrain/heightfield.glsl, trees/level.glsl, trees/place/cell.glsl; a height, a
-//            density, the camera
+//   needs    terrain/heightfield.glsl, trees/level.glsl, trees/place/cell.glsl,
+//            water/sheet_reading.glsl; a height, a density, the camera; water, in which none
+//            stands, if there is any
 //   units    metres; density 0..1
 //   source   trees/place/cell.glsl; by level: Cook and others 2007 (trees/level.glsl)
 //   tested   tests/glsl/test_trees.py, by counts against the density's integral
 #include "terrain/heightfield.glsl"
 #include "trees/level.glsl"
 #include "trees/place/cell.glsl"
+#include "water/sheet_reading.glsl"
 #pragma kernel(output = "tree:rgba32f, key:rg32f")
 
 uniform sampler2D height;          //! input
 uniform sampler2D density;         //! input("white")
+uniform sampler2D water;           //! input("zero")
 #include "trees/parameters/reach.glsl"
 #include "trees/parameters/stand.glsl"
 uniform bool all_round = false;    //! Those outside the picture as well
@@ -49,6 +52,7 @@ void kernel(ivec2 texel, out vec4 tree, out vec2 key) {
     if (wired_density) wanted = height_at(density, share * vec2(textureSize(density, 0) - 1));
     if (own.chance >= wanted) return;
     float up = height_at(height, share * vec2(textureSize(height, 0) - 1)) * relief;
+    if (wired_water && up <= sheet_at(water, share).level) return;
     float away = distance(eye, vec3(place, up));
     float end = end_of_table(reach, cell, size);
     float kept = kept_share(away, whole, end);

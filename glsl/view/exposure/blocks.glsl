@@ -1,7 +1,7 @@
 // view/exposure/blocks.glsl -- the mean logarithm of the light of each block of a picture.
 //
 //   gives    blocks: the sum of the logarithms to base 2 of luminance, and the number of pixels
-//   needs    a picture in linear light
+//   needs    colour/luminance.glsl; a picture in linear light
 //   units    logarithms of light without unit
 //   source   Reinhard, Stark, Shirley and Ferwerda 2002, "Photographic Tone Reproduction for
 //            Digital Images" (SIGGRAPH), eq. 1
@@ -10,6 +10,7 @@
 // Each pixel is in one block. What is darker than a moonless night counts as that, and what is
 // brighter than half floats hold, infinity in a picture of such, as the brightest of them: or one
 // pixel would make the mean infinite.
+#include "colour/luminance.glsl"
 #pragma kernel(output = "blocks:rg32f", repeat = "1 if adapts else 0")
 
 uniform sampler2D picture;  //! input
@@ -25,8 +26,7 @@ vec2 kernel(ivec2 texel) {
     for (int y = first.y; y < last.y; y++) {
         for (int x = first.x; x < last.x; x++) {
             vec3 light = texelFetch(picture, ivec2(x, y), 0).rgb;
-            float luminance = dot(light, vec3(0.2126, 0.7152, 0.0722));
-            total += log2(clamp(luminance, DARKEST, BRIGHTEST));
+            total += log2(clamp(luminance(light), DARKEST, BRIGHTEST));
         }
     }
     return vec2(total, float((last.x - first.x) * (last.y - first.y)));

@@ -5,7 +5,7 @@
 in vec2 place;
 out vec4 frame;
 void main() {
-    // From what lies straight away from the sun to what lies towards it: the air depends on no more.
+    // From straight away from the sun to straight towards it: the air depends on no more.
     vec2 sun = texelFetch(daylight, ivec2(0), 0).xy;
     sun = length(sun) > 1e-9 ? normalize(sun) : vec2(0.0, 1.0);
     float aside = (gl_FragCoord.x - 0.5) / (AIR_DIRECTIONS - 1.0) * 2.0 - 1.0;

@@ -5,4 +5,7 @@ uniform float whole;
 uniform float reach;
 uniform float texels;
 out float share;
-void main() { share = drawn_share(kept_share(floor(gl_FragCoord.x) / (texels - 1.0) * reach, whole, reach)); }
+void main() {
+    float away = floor(gl_FragCoord.x) / (texels - 1.0) * reach;
+    share = drawn_share(kept_share(away, whole, reach));
+}

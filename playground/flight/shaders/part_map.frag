@@ -5,4 +5,7 @@ uniform sampler2D source;
 uniform float first;
 uniform float rise;
 out vec4 found;
-void main() { found = vec4(clamp(height_at(source, first + rise * floor(gl_FragCoord.xy)), 0.0, 1.0)); }
+void main() {
+    vec2 place = first + rise * floor(gl_FragCoord.xy);
+    found = vec4(clamp(height_at(source, place), 0.0, 1.0));
+}

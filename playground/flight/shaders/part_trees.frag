@@ -12,8 +12,10 @@ uniform float lowest;     // no tree stands lower: the sea, above height 0 [m]
 uniform float tallest;
 uniform float shortest;
 uniform int seed;
-layout(location = 0) out vec4 tree;  // from the part's corner, above height 0, and how tall [m]; 0: none
-layout(location = 1) out vec4 own;   // its rank, the density around, what the terrain leaves of the sun
+// From the part's corner, above height 0, and how tall [m]; 0: none.
+layout(location = 0) out vec4 tree;
+// Its rank, the density around, what the terrain leaves of the sun.
+layout(location = 1) out vec4 own;
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy);
     Rooted found = tree_in(first + here, uint(seed));

@@ -1,4 +1,5 @@
-// The ground of a part: its texture, fine grain near by, woods far away, water over it, air before it.
+// The ground of a part: its texture, fine grain near by, woods far away, water over it, air before
+// it.
 #include "flight/scene.glsl"
 #include "outdoors.glsl"
 #include "view.glsl"

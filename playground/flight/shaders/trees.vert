@@ -1,4 +1,5 @@
-// A tree of a part as a square towards the eye, smaller the nearer it is to where it is no longer drawn.
+// A tree of a part as a square towards the eye, smaller the nearer it is to where it is no longer
+// drawn.
 #include "flight/scene.glsl"
 #include "outdoors.glsl"
 #include "trees.glsl"
@@ -17,7 +18,7 @@ out vec3 away;
 flat out vec4 middle;
 flat out vec4 form;
 flat out vec3 local_eye;
-flat out vec4 stand;      // density, metres above the sea, distance of the level, the foot's height
+flat out vec4 stand;      // density, metres above the sea, distance of the level, foot's height
 flat out vec3 leaves;
 flat out vec2 lit;        // what terrain and clouds leave of the sun
 void main() {

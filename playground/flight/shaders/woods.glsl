@@ -1,4 +1,5 @@
-// What woods make of a part's ground: what is beyond the last trees, and what they take of the light.
+// What woods make of a part's ground: what is beyond the last trees, and what they take of the
+// light.
 #include "trees.glsl"
 #include "trees/wood_reading.glsl"
 uniform bool wooded;
@@ -29,6 +30,7 @@ Wood wood_from(vec3 away, float metres, vec2 here, float open) {
     vec4 in_sight = others_in_sight(species_at(metres));
     float needled = in_sight.z + in_sight.w;
     vec2 light = wood_at(table, towards_eye, to_sun, depths, needled);
-    vec3 lit = sun_light * (here.y * open * leaf_phase(towards_eye, to_sun) * light.x) + sky_light * light.y;
+    float sun = here.y * open * leaf_phase(towards_eye, to_sun) * light.x;
+    vec3 lit = sun_light * sun + sky_light * light.y;
     return Wood(hides, below, mix(leaf_colours[0], leaf_colours[1], needled) * lit);
 }

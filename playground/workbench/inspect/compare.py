@@ -228,8 +228,8 @@ class Compare:
     def _wanted(self, stored: Stored, plan: Plan, size: tuple[int, int]) -> object:
         shown = self.session.view.map
         time = plan.time if is_animated(stored.draft.sketch) else 0.0
-        seen = size, plan.sketch.camera, plan.interpolated
-        return stored.draft, seen, time, shown, self.session.engine
+        view_inputs = size, plan.sketch.camera, plan.interpolated
+        return stored.draft, view_inputs, time, shown, self.session.engine
 
     def _draw(self, stored: Stored, plan: Plan, size: tuple[int, int], *, preview: bool) -> None:
         """Draw A with as many pixels as B was drawn with, and at the size that B is shown at."""
