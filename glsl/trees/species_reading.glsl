@@ -1,8 +1,8 @@
 // trees/species_reading.glsl -- the shares of species at a place of the map of trees/species.
 //
 //   gives    species_at
-//   needs    nothing: the map as an argument; four texels at once, which on software renderers take
-//            less time than the loop of terrain/maps.glsl
+//   needs    nothing: the map as an argument; four texels at once, which on software renderers
+//            take less time than the loop of terrain/maps.glsl
 //   units    shares 0..1; places as shares of the terrain's sides
 //   source   interpolation
 //   tested   tests/glsl/test_trees_species.py

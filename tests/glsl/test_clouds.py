@@ -23,7 +23,15 @@ def dense_part(thick, steps=200):
 
 
 @pytest.mark.parametrize(
-    ("size", "seed"), [("[200, 152]", 3), ("[200, 152]", 11), ("33", 3), ("100", 11), ("257", 5)]
+    ("size", "seed"),
+    [
+        ("[200, 152]", 3),
+        ("33", 3),
+        *(
+            pytest.param(*case, marks=pytest.mark.slow)
+            for case in (("[200, 152]", 11), ("100", 11), ("257", 5))
+        ),
+    ],
 )
 def test_clouds_leave_of_the_beam_what_their_cover_leaves(any_engine, make_sketch, size, seed):
     """Kasten and Czeplak 1980, from clear to overcast, to a level of eight bits; more cover, more cloud."""
