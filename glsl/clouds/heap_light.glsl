@@ -13,6 +13,17 @@
 // A heap that stands alone loses light through all its sides: it fades along the sun's ray.
 // Where clouds stand all around, light that leaves one enters the next: then they are a layer,
 // into which light comes from above, and of which sky/drops.glsl has the solution.
+//
+// Over that of photons, in several runs of 12288 each, the light of a whole picture is
+//
+//     cover 0.35, sun at 25 degrees, behind the eye, from below      0.97, 0.89
+//     cover 0.6, sun at 60 degrees, from above                       0.97, 0.94
+//     cover 0.85, sun at 60 degrees, before the eye, from below      1.08, 0.94
+//     cover 0.35, sun at 60 degrees, beside the eye, from below      1.25, 1.36, 1.33, 1.19, 1.00
+//     cover 0.6, sun at 8 degrees, behind the eye, from below        0.77 to 0.95
+//
+// So the first three are within a fifth in each run. Beside the sun, under few clouds, it is a
+// fifth too strong, 1.21 of the mean of five runs; under a low sun it is 0.84 of that of seven.
 #ifndef CLOUDS_HEAP_LIGHT
 #define CLOUDS_HEAP_LIGHT
 #include "sky/drops.glsl"
