@@ -128,34 +128,28 @@ def photons(heaps, eye, ahead, sun, rng, asked=0.25):
 @pytest.mark.parametrize(
     ("cover", "elevation", "view"),
     [
-        # From below, beside the sun; with the sun behind; from above; below it, under nearly all cloud; low.
-        pytest.param(
-            0.35, 60.0, (60.0, 20.0), marks=pytest.mark.xfail(reason="1.21 on the mean of five runs")
-        ),
+        # With the sun behind; from above; from below, towards the sun, under nearly all cloud.
         (0.35, 25.0, (330.0, 20.0)),
         (0.6, 60.0, (20.0, -25.0)),
         (0.85, 60.0, (150.0, 20.0)),
-        pytest.param(
-            0.6,
-            8.0,
-            (330.0, 20.0),
-            marks=pytest.mark.xfail(reason="0.84 on the mean of seven runs, 0.77 in this"),
-        ),
     ],
 )
-def test_heaps_send_as_much_light_as_photons_do(engine, make_sketch, cover, elevation, view):
-    """To a fifth, as an even layer. Photons, one to a pixel, are themselves a tenth off by chance."""
+def test_heaps_send_as_much_light_as_photons_do(any_engine, make_sketch, cover, elevation, view):
+    """To a fifth, as an even layer. Photons, one to a pixel, are themselves a tenth off by chance.
+
+    The header of ``clouds/heap_light`` has the views that miss it.
+    """
     sun = sun_vector(150.0, elevation)
     told = TOLD.replace("vec4(0.0, 0.0, 1.0, 90.0)", f"vec4({sun[0]}, {sun[1]}, {sun[2]}, {elevation})")
     sketch = make_sketch(TERRAIN + SKETCH, flat=FLAT, told=told, none=NONE)
     sketch = sketch.with_values({"cloud.clouds": cover})
     target = (4000.0, 3000.0, 900.0 if view[1] > 0 else 6000.0)
     sketch = looking(sketch, *view, target, field=30.0)
-    found = engine.read(sketch, "seen", size=SEEN).astype(np.float64)[..., 1].mean()
-    tile = engine.read(sketch, "cloud", size=SEEN).astype(np.float64)[..., 0]
-    cube = cube_of(engine.read(sketch, "billows", size=SEEN).astype(np.float64)[..., 0])
-    eye = np.asarray(engine.plan.eye.position, np.float64)
-    ahead = rays(engine.plan.eye, SEEN).reshape(-1, 3)
+    found = any_engine.read(sketch, "seen", size=SEEN).astype(np.float64)[..., 1].mean()
+    tile = any_engine.read(sketch, "cloud", size=SEEN).astype(np.float64)[..., 0]
+    cube = cube_of(any_engine.read(sketch, "billows", size=SEEN).astype(np.float64)[..., 0])
+    eye = np.asarray(any_engine.plan.eye.position, np.float64)
+    ahead = rays(any_engine.plan.eye, SEEN).reshape(-1, 3)
     truth = photons(Heaps(tile, cube), eye, ahead, sun, np.random.default_rng(5))
     assert found == pytest.approx(truth, rel=0.2)
 
