@@ -94,7 +94,7 @@ void kernel(ivec2 texel, out vec4 scattered, out vec4 left) {
                                     drops);
         float lit = now.open;
         float beam = beam_through_clouds(1.0 - now.open);
-        if (wired_cloud && clouds != 0) {
+        if (wired_cloud && wired_drift && clouds != 0) {
             lit = cloud_transmittance(cloud, wind, eye + ahead * (500.0 * (before + after)), sun);
             beam = lit;
         }
