@@ -91,7 +91,7 @@ class Session:
         self._lost_over: object = None  # what was shown when a context was lost last
         self.picture = ShownPicture(engine.ctx, now)
         self._repeats: tuple[Sketch | None, float, dict[str, int]] = (None, 0.0, {})
-        self._drawn: object = None  # what the picture shows
+        self._drawn: tuple[object, ...] | None = None  # what the picture shows
         self._size: tuple[int, int] | None = None  # of the latest frame
         self._data_of: Sketch | None = None  # the sketch whose data files were noted last
         self._reported: set[str] = set()  # kinds of notes that are given once a sketch
@@ -410,7 +410,7 @@ class Session:
         """Say whether a sketch reads data that was never drawn with."""
         return self.data.are_new(sketch)
 
-    def _wanted(self, size: tuple[int, int]) -> object:
+    def _wanted(self, size: tuple[int, int]) -> tuple[object, ...]:
         sketch = self.drafts.sketch
         time = self.clock.time if sketch is not None and is_animated(sketch) else 0.0
         return self.drafts.revision, self.view.revision, size, self.view.framed_for, time
@@ -436,10 +436,11 @@ class Session:
         self._drawn = None if self.view.map is not None else self._wanted(size)
 
     def _draw_shown(
-        self, sketch: Sketch, wanted: object, size: tuple[int, int], *, in_full: bool = False
+        self, sketch: Sketch, wanted: tuple[object, ...], size: tuple[int, int], *, in_full: bool = False
     ) -> None:
         if self.drafts.sandboxed and self.reads_new_data(sketch):
             return  # the last good picture stays
+        time_alone = self._drawn is not None and wanted[:-1] == self._drawn[:-1]
         self._drawn, shown = wanted, self.view.map
         try:
             if shown is not None and not self.can_show(shown.ref):
@@ -447,6 +448,8 @@ class Session:
                 self.view.map = shown = None
             self._draw(shown.of(sketch) if shown else sketch, size, in_full=in_full)
             self.drafts.draw_error = None
+            if time_alone and self.picture.is_reduced:
+                self._pause_once()
         except Exception as error:
             self.drafts.report(error)
 
@@ -479,6 +482,12 @@ class Session:
             self._note_once("ground", engine.eye_height.message)
         if traits.arcs and engine.plan is not None and "arc" not in self._reported:
             self._note_once("arc", sun_off_arc(engine.plan))
+
+    def _pause_once(self) -> None:
+        """Let time stand still, the first time that a sketch is too slow for it: so it is drawn in full."""
+        if self.clock.playing and "slow" not in self._reported:
+            self.clock.playing = False
+            self._note_once("slow", "time is paused, so that the picture is drawn in full; Space plays it")
 
     def _note_once(self, kind: str, sentence: str) -> None:
         """Add a note, unless one of its kind was given of this sketch."""

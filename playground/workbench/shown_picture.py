@@ -55,6 +55,12 @@ class ShownPicture:
         return self.is_preview and self._now() - self._drawn_at >= self.rest
 
     @property
+    def is_reduced(self) -> bool:
+        """Whether it has fewer pixels because all of them are known to take too long."""
+        texture = self._picture.texture
+        return texture is not None and texture.size != self._drawn_size and not self._sizes.guessed
+
+    @property
     def drawn_size(self) -> Size:
         """The pixels that were drawn; fewer than those of ``texture`` in a preview."""
         return self._drawn_size

@@ -6,6 +6,7 @@ import itertools
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -191,6 +192,41 @@ def test_a_simulation_keeps_its_size(slow: Slow, tmp_path: Path):
     for _ in range(4):
         assert slow.frame(0.05) == SIZE
         slow.session.clock.time += 0.1
+
+
+def test_time_that_is_too_slow_is_paused_once_so_that_the_picture_is_whole(slow: Slow, tmp_path: Path):
+    (tmp_path / "ramp.glsl").write_text(RAMP.replace("level *", "fract(time) * level *"), encoding="utf-8")
+    (tmp_path / "playing.toml").write_text(SKETCH, encoding="utf-8")
+    session = slow.session
+    session.open(tmp_path / "playing.toml")
+
+    def play(frames: int) -> list[tuple[int, int]]:
+        found = []
+        for _ in range(frames):
+            session.advance(0.05, datetime(2026, 11, 23, tzinfo=UTC))
+            found.append(slow.frame(0.05))
+        return found
+
+    assert SIZE not in play(4) and not session.clock.playing
+    assert [note for note in session.notes if "paused" in note] == [
+        "time is paused, so that the picture is drawn in full; Space plays it"
+    ]
+    stands = session.clock.time
+    assert play(8)[-1] == SIZE and session.clock.time == stands and not session.is_preview
+    session.clock.toggle()
+    assert play(8)[-1] != SIZE and session.clock.playing, "who plays it, knows"
+    assert session.clock.time == pytest.approx(stands + 0.4)
+
+
+def test_time_that_is_fast_enough_is_not_paused(slow: Slow, tmp_path: Path):
+    slow.timer.each["view"] /= 20
+    (tmp_path / "ramp.glsl").write_text(RAMP.replace("level *", "fract(time) * level *"), encoding="utf-8")
+    (tmp_path / "playing.toml").write_text(SKETCH, encoding="utf-8")
+    slow.session.open(tmp_path / "playing.toml")
+    for _ in range(8):
+        slow.session.advance(0.05, datetime(2026, 11, 23, tzinfo=UTC))
+        slow.frame(0.05)
+    assert slow.session.clock.playing and not slow.session.notes
 
 
 def test_maps_and_what_reads_pixels_have_them_all(slow: Slow):
