@@ -35,7 +35,7 @@ STAGES = """async (shared, kernels, load) => {
 
 
 ORDINARY = 96 * 1024  # [bytes] of a page's plan and texts, compressed
-WHOLE_SCENES = {"alpine", "coast", "desert", "lake", "october", "sky"}
+WHOLE_SCENES = {"alpine", "coast", "desert", "gullies", "lake", "october", "sky"}
 """Land or its sky outdoors, with what makes it: two ordinary pages, the view's and that of the rest."""
 
 Written = Callable[[str], dict[str, Any]]
