@@ -5,6 +5,7 @@ MkDocs has this folder in its search path while it loads the file, so ``site_pag
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mkdocs.structure.files import File
@@ -26,3 +27,9 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     for path, content in pages.generated().items():
         files.append(File.generated(config, path, content=content))
     return files
+
+
+def on_post_build(config: MkDocsConfig) -> None:
+    """Leave out the source maps of the theme: megabytes, for its own developers."""
+    for path in Path(config.site_dir).rglob("*.map"):
+        path.unlink()
