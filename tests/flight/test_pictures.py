@@ -1,4 +1,4 @@
-"""A flight as a sequence of shots: morning over a lake, noon along a slope, an evening between mountains.
+"""A flight as a sequence of shots: a slope in the morning, lakes from high above, clouds in the evening.
 
 ``pictures/tour.jsonl`` is the flight, ``pictures/<renderer>/`` its pictures. To rewrite those
 that do not match: ./play test tests/flight/test_pictures.py --shots-update

@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 from scipy.ndimage import map_coordinates
 
+from .shadows import shadows_of
+
 FIELD = np.array([1 / 150.0, 4.5, 7.0, 9.0])  # trees a square metre, half width, half height, middle
 
 
@@ -176,20 +178,11 @@ def test_a_shadow_lies_where_rays_to_the_sun_meet_the_crown(
     tree = np.stack([1000 + 60.0 * k, 990 + 11.0 * k, 5.0 + 0 * k, 14 + 3.0 * k], 1).astype(np.float32)
     crowns = "crown_of(t, vec4(0.0))"
     forms = on_gpu("trees/crown.glsl", f"vec3({crowns}.middle.z, {crowns}.across, {crowns}.up)", t=tree)
-    turn, rise = np.radians([azimuth, elevation])
-    way = np.array([np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)])
-    metres = (np.arange(512) + 0.5) / 512 * 256 - 128
-    x, y = eye[0] + metres[None, :], eye[1] + metres[:, None]
-    hidden = np.zeros((512, 512), bool)
-    for (east, north, foot, _), (middle, across, up) in zip(tree.astype(float), forms, strict=True):
-        start = [
-            (x - east) / across + 0 * y,
-            (y - north) / across + 0 * x,
-            np.full_like(x + y, (foot - middle) / up),
-        ]
-        along = way / [across, across, up]
-        t = -sum(a * s for a, s in zip(along, start, strict=True)) / (along @ along)
-        hidden |= sum((s + a * t) ** 2 for a, s in zip(along, start, strict=True)) < 1
+    crowns = [
+        (np.array([east, north, middle - foot]), np.array([across, across, up]))
+        for (east, north, foot, _), (middle, across, up) in zip(tree.astype(float), forms, strict=True)
+    ]
+    hidden = shadows_of(eye, 256.0, crowns, azimuth, elevation)
     assert hidden.sum() > 500
     assert ((shade > 0.5) != hidden).sum() < 0.02 * hidden.sum()
     assert abs(shade.sum() / hidden.sum() - 1) < 0.03, "a soft edge takes no more light"

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from .shadows import shadows_of
 from .test_trees import DENSITY, PLANE
 
 SCREE = DENSITY.replace("trees/density", "objects/scree").replace('name = "density"', 'name = "rocks"')
@@ -148,21 +149,14 @@ def test_a_rock_s_shadow_lies_where_rays_to_the_sun_meet_it(kept, ctx, make_sket
     if elevation < 0:
         assert not shade.any(), "by night there are none"
         return
-    turn, rise = np.radians([azimuth, elevation])
-    way = np.array([np.sin(turn) * np.cos(rise), np.cos(turn) * np.cos(rise), np.sin(rise)])
-    metres = (np.arange(512) + 0.5) / 512 * 32 - 16
-    x, y = np.meshgrid(eye[0] + metres, eye[1] + metres)
-    hidden = np.zeros((512, 512), bool)
-    for k in range(3):
-        tall = 1.4 + 0.3 * k
-        half = tall * np.array([0.5, 0.5, 0.6])
-        start = [(x - 100 - 6 * k) / half[0], (y - 99 - 1.1 * k) / half[1], 0 * x]
-        along = way / half
-        t = np.maximum(-sum(a * s for a, s in zip(along, start, strict=True)) / (along @ along), 0)
-        hidden |= sum((s + a * t) ** 2 for a, s in zip(along, start, strict=True)) < 1
+    tall = 1.4 + 0.3 * np.arange(3)
+    rocks = [
+        (np.array([100 + 6.0 * k, 99 + 1.1 * k, 0.0]), tall[k] * np.array([0.5, 0.5, 0.6])) for k in range(3)
+    ]
+    hidden = shadows_of(eye, 32.0, rocks, azimuth, elevation)
     assert hidden.sum() > 1000
-    assert ((shade > 0.5) != hidden).sum() < 0.06 * hidden.sum()
-    assert shade.sum() == pytest.approx(hidden.sum(), rel=0.06)
+    assert ((shade > 0.5) != hidden).sum() < 0.02 * hidden.sum()
+    assert shade.sum() == pytest.approx(hidden.sum(), rel=0.03), "a soft edge takes no more light"
 
 
 def test_rocks_are_where_the_list_says_and_face_outwards(kept, ctx, make_sketch):

@@ -2,11 +2,11 @@
 //
 //   gives    frame, linear light
 //   needs    clouds/shadow.glsl, lighting/daylight_reading.glsl, lighting/daylight_sky.glsl,
-//            lighting/sun_image.glsl, noise/gradient.glsl, scene/air_reading.glsl,
-//            scene/footprint.glsl, scene/ground_reading.glsl, scene/surfaces.glsl,
-//            scene/water/mirrored.glsl,
-//            scene/water/mirrored_sky.glsl, scene/water/moment_texels.glsl, water/body.glsl,
-//            water/foam.glsl, water/rough_mirror.glsl, water/waves.glsl, view/surface.glsl;
+//            lighting/sun.glsl, lighting/sun_image.glsl, noise/gradient.glsl,
+//            scene/air_reading.glsl, scene/footprint.glsl, scene/ground_reading.glsl,
+//            scene/surfaces.glsl, scene/water/mirrored.glsl, scene/water/mirrored_sky.glsl,
+//            scene/water/moment_texels.glsl, water/body.glsl, water/foam.glsl,
+//            water/rough_mirror.glsl, water/waves.glsl, view/surface.glsl;
 //            the picture without water, what scene/water/where gives, the ground and the maps
 //            that scene/shaded has
 //   units    metres; light without unit, 1 for white
