@@ -14,11 +14,12 @@ from playground.commands.arguments import FAILED, Renderer, command_group, help_
 from playground.commands.live import check_display, open_window
 from playground.commands.options import complete_language, complete_lesson, flag, positional, value
 from playground.errors import PlaygroundError, SketchError, counted, nearest
-from playground.terminal import complain, note, painted, print_json, print_table, progress
+from playground.terminal import complain, note, painted, print_json, print_rows, print_table, progress
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine
     from playground.lessons.model import Lesson
+    from playground.lessons.read import Summary
 
 HELP = help_text(
     "Lessons on terrain, to read next to the window, in a browser or as notebooks.",
@@ -28,7 +29,9 @@ HELP = help_text(
     "playground lesson status",
 )
 LIST_HELP = help_text(
-    "List the lessons, in their order.\n\nIn a pipe, the columns are separated by tabs.",
+    "List the lessons, in their order, by the parts of the course.\n\n"
+    "Shown are the minutes that reading a lesson takes, and those that its exercises take besides. In a pipe,"
+    " the columns are separated by tabs, the last one is the part.",
     "playground lesson list",
     "playground lesson list --lang fr",
     "playground lesson list --json",
@@ -88,8 +91,17 @@ def list_(lang: options.Language = "", as_json: options.Json = False) -> None:
     if as_json:
         print_json([asdict(one) for one in found])
         return
-    table = [(str(one.number), one.name, one.title, f"{one.minutes} min") for one in found]
-    print_table("Lessons (playground lesson open NAME)", ("", "lesson", "title", "time"), table)
+    headings = ("", "lesson", "title", "reading", "exercises")
+    rows = [_row(one) for one in found]
+    if not sys.stdout.isatty():
+        print_rows([(*row, one.part) for row, one in zip(rows, found, strict=True)])
+        return
+    for part in dict.fromkeys(one.part for one in found):
+        print_table(part, headings, [row for row, one in zip(rows, found, strict=True) if one.part == part])
+
+
+def _row(one: Summary) -> tuple[str, ...]:
+    return str(one.number), one.name, one.title, f"{one.minutes} min", f"{one.exercise_minutes} min"
 
 
 @app.command("open", help=OPEN_HELP)

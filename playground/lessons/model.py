@@ -180,10 +180,11 @@ class Lesson:
     name: str
     language: str
     file: str  # absolute path of the English file
-    number: int
+    number: int  # its place in the course, from 0
     title: str
     goal: Markdown
-    minutes: int
+    minutes: int  # that reading it takes
+    exercise_minutes: int  # that its exercises take besides
     thesis: tuple[str, ...]  # sections, as "1.3.2"
     papers: tuple[str, ...]
     sketch: str  # to play with at the end

@@ -6,16 +6,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from playground.errors import SketchError
+from playground.lessons.course import lesson_names, number_of, parts
 from playground.lessons.document import Document, prose_of, read_document, texts_in
 from playground.lessons.fences import READERS, open_fence, read_fence
-from playground.lessons.library import SOURCE, lesson_file, lesson_files
+from playground.lessons.library import SOURCE, lesson_file
 from playground.lessons.markdown import Piece
 from playground.lessons.model import Block, Lesson
+from playground.lessons.reading_time import times_of
 from playground.lessons.scenes import Sketches
 from playground.lessons.translate import translated
 from playground.sketch.find import shipped_sketches
 
-_FRONT = ("number", "title", "goal", "minutes", "thesis", "papers", "sketch")
+_FRONT = ("title", "goal", "thesis", "papers", "sketch")
 
 
 def read_lesson(name: str, language: str = SOURCE, sketches: Sketches | None = None) -> Lesson:
@@ -37,36 +39,40 @@ def read_file(path: Path, sketches: Sketches | None = None) -> Lesson:
 
 
 def read_lessons(language: str = SOURCE) -> list[Lesson]:
-    """Return all lessons in a language, in their order; raise as ``read_lesson`` does."""
+    """Return all lessons in a language, in the course's order; raise as ``read_lesson`` does."""
     sketches = Sketches()
-    return sorted(
-        (read_lesson(name, language, sketches) for name in lesson_files()), key=lambda one: one.number
-    )
+    return [read_lesson(name, language, sketches) for name in lesson_names()]
 
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """What the front of a lesson's file holds."""
+    """What a list of lessons shows of one, read without its pictures."""
 
-    number: int
+    number: int  # its place in the course, from 0
     name: str
     title: str
     goal: str
-    minutes: int
+    minutes: int  # reading
+    exercise_minutes: int
+    part: str  # title of the part of the course that it is in
 
 
 def summaries(language: str = SOURCE) -> list[Summary]:
-    """List every lesson in its order, by the front of its file; raise ``SketchError`` where that is wrong."""
-    found = []
-    for name in lesson_files():
-        front = read_document(lesson_file(name)).front
-        number, minutes = (front.take(front.table, key, int, 0) for key in ("number", "minutes"))
-        texts = [front.take(front.table, key, str, "") for key in ("title", "goal")]
-        if language != SOURCE and (path := lesson_file(name, language)).is_file():
-            other = read_document(path).front
-            texts = [other.take(other.table, key, str, texts[i]) for i, key in enumerate(("title", "goal"))]
-        found.append(Summary(number, name, texts[0], texts[1], minutes))
-    return sorted(found, key=lambda one: one.number)
+    """List every lesson in the course's order; raise ``SketchError`` where course or front are wrong."""
+    named = [(name, part.titles[language]) for part in parts() for name in part.lessons]
+    return [_summary(number, name, title, language) for number, (name, title) in enumerate(named)]
+
+
+def _summary(number: int, name: str, part: str, language: str) -> Summary:
+    text = read_document(lesson_file(name))
+    times, front = times_of(text), text.front
+    title, goal = (front.take(front.table, key, str, "") for key in ("title", "goal"))
+    if language != SOURCE and (path := lesson_file(name, language)).is_file():
+        other = read_document(path).front
+        title, goal = (
+            other.take(other.table, key, str, english) for key, english in (("title", title), ("goal", goal))
+        )
+    return Summary(number, name, title, goal, times.reading, times.exercises, part)
 
 
 def _lesson(name: str, text: Document, sketches: Sketches) -> Lesson:
@@ -80,14 +86,16 @@ def _lesson(name: str, text: Document, sketches: Sketches) -> Lesson:
         raise front.error(f"sketch = '{sketch}': no sketch that ships has that name", "sketch")
     blocks = tuple(block_of(piece, text, sketches) for piece in text.pieces)
     _check_names(blocks, text)
+    times = times_of(text)
     return Lesson(
         name=name,
         language=SOURCE,
         file=str(text.path),
-        number=front.take(front.table, "number", int, 0),
+        number=number_of(name),
         title=front.take(front.table, "title", str, ""),
         goal=front.take(front.table, "goal", str, ""),
-        minutes=front.take(front.table, "minutes", int, 10),
+        minutes=times.reading,
+        exercise_minutes=times.exercises,
         thesis=texts_in(front, "thesis"),
         papers=texts_in(front, "papers"),
         sketch=sketch,

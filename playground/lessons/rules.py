@@ -22,6 +22,9 @@ from playground.sketch.find import shipped_sketches
 MOST_WORDS = 60
 """Words that may come before the first picture, so that it is on the first screen."""
 
+MOST_MINUTES = 12
+"""Minutes that reading a lesson may take, by ``reading_time``; its exercises are counted apart."""
+
 EXERCISES = 3
 """Exercises that a lesson has at least."""
 
@@ -31,6 +34,7 @@ VISIBLE_MEAN, VISIBLE_SHARE, VISIBLE_LEVELS = 2.0, 0.02, 16
 
 def broken_rules(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     """Yield (line, sentence) of every rule that a lesson's text breaks; nothing is drawn."""
+    yield from _time(lesson)
     yield from _first_screen(lesson)
     yield from _kinds(lesson)
     yield from _sections(lesson)
@@ -69,6 +73,12 @@ def visible(one: Frame, other: Frame) -> bool:
     difference = np.abs(one.array.astype(np.int16) - other.array).max(axis=-1)
     share = float((difference > VISIBLE_LEVELS).mean())
     return float(difference.mean()) >= VISIBLE_MEAN or share >= VISIBLE_SHARE
+
+
+def _time(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
+    if lesson.minutes > MOST_MINUTES:
+        message = f"reading takes {lesson.minutes} minutes; at most {MOST_MINUTES} are allowed"
+        yield 1, f"{message}: trim the lesson, or make it two"
 
 
 def _first_screen(lesson: model.Lesson) -> Iterator[tuple[int, str]]:

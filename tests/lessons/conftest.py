@@ -17,10 +17,8 @@ from playground.lessons.translate import translated, write_hashes
 from ..web.conftest import node as node
 
 FRONT = """+++
-number  = 4
 title   = "A small lesson"
 goal    = "Know $r^2$."
-minutes = 10
 thesis  = ["1.3.2"]
 papers  = ["Somebody 1982, https://doi.org/10.1145/358523.358553"]
 sketch  = "diamond_square_steps"

@@ -20,6 +20,8 @@ def texts(write_lesson, tmp_path, monkeypatch):
         (tmp_path / "texts" / language).mkdir(parents=True)
     (tmp_path / "texts/en/small.md").write_bytes(write_lesson().read_bytes())
     (tmp_path / "texts/fr/small.md").write_text(FRENCH, encoding="utf-8")
+    course = '[[part]]\ntitle = { en = "All", fr = "Tout" }\nlessons = ["small"]\n'
+    (tmp_path / "course.toml").write_text(course, encoding="utf-8")
     monkeypatch.setattr(library, "TEXTS", tmp_path / "texts")
     return tmp_path / "texts"
 
@@ -30,7 +32,7 @@ def run(*arguments):
 
 def test_list_in_a_pipe(texts, capsys):
     assert run("list") == 0
-    assert capsys.readouterr().out == "4\tsmall\tA small lesson\t10 min\n"
+    assert capsys.readouterr().out == "0\tsmall\tA small lesson\t5 min\t13 min\tAll\n"
 
 
 def test_list_in_french_and_as_json(texts, capsys, monkeypatch):
@@ -38,11 +40,13 @@ def test_list_in_french_and_as_json(texts, capsys, monkeypatch):
     assert run("list", "--json") == 0
     (row,) = json.loads(capsys.readouterr().out)
     assert row == {
-        "number": 4,
+        "number": 0,
         "name": "small",
         "title": "Une petite leçon",
         "goal": "Connaître $r^2$.",
-        "minutes": 10,
+        "minutes": 5,
+        "exercise_minutes": 13,
+        "part": "Tout",
     }
 
 

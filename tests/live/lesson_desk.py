@@ -29,10 +29,8 @@ OWN = "format = 1\nsize = 17\n" + map_of_height("generation/white_noise")
 SHIPPED = Sketches()
 """The shipped sketches that lessons show; no test changes them, so each is loaded once."""
 ENGLISH = r"""+++
-number  = 1
 title   = "Halving"
 goal    = "Know what a mean of *four* gives."
-minutes = 5
 thesis  = ["1.3.2"]
 papers  = []
 sketch  = "white_noise"
@@ -140,10 +138,8 @@ solution = "Changed."
 ```
 """
 OTHER = """+++
-number  = 2
 title   = "After it"
 goal    = "Nothing more."
-minutes = 1
 thesis  = []
 papers  = []
 sketch  = "white_noise"
@@ -230,6 +226,13 @@ solution = "Changé."
 """
 
 
+COURSE = """
+[[part]]
+title   = { en = "All", fr = "Tout" }
+lessons = ["halving", "after"]
+"""
+
+
 def write_lessons(folder: Path) -> Path:
     """Write the lessons into a folder, as the library has them; return it."""
     for language in ("en", "fr"):
@@ -238,6 +241,7 @@ def write_lessons(folder: Path) -> Path:
     (folder / "en" / "after.md").write_text(OTHER, encoding="utf-8")
     (folder / "fr" / "halving.md").write_text(FRENCH, encoding="utf-8")
     write_hashes(read_document(folder / "en" / "halving.md"), read_document(folder / "fr" / "halving.md"))
+    (folder.parent / "course.toml").write_text(COURSE, encoding="utf-8")
     return folder
 
 

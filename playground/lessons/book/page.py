@@ -71,7 +71,8 @@ def lesson_page(book: Book, lesson: Lesson, setting: Setting) -> str:
         heading = tag("h2", setting.line(section.title), id=title)
         body.append(tag("section", heading, *inside, aria_labelledby=title))
     label = book.label
-    kicker = f"{label('lesson')} {lesson.number} · {label('minutes', n=lesson.minutes)}"
+    minutes = label("minutes", n=lesson.minutes, exercises=lesson.exercise_minutes)
+    kicker = f"{label('lesson')} {lesson.number} · {minutes}"
     head = tag(
         "header",
         tag("p", kicker, class_="kicker"),

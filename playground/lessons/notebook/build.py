@@ -51,7 +51,7 @@ class _Writer:
     def cells(self) -> Iterator[tuple[str, str]]:
         """Yield all cells."""
         lesson, label = self.lesson, self.label
-        minutes = label("minutes", n=lesson.minutes)
+        minutes = label("minutes", n=lesson.minutes, exercises=lesson.exercise_minutes)
         head = f"{label('lesson')} {lesson.number} · {minutes}\n\n# {lesson.title}"
         goal = f"**{label('goal')}**{label('colon')}{lesson.goal}"
         yield "markdown", f"{head}\n\n{goal}\n\n{label('run_first')}"

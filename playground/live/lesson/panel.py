@@ -129,7 +129,8 @@ def _head(page: Page) -> None:
             with inked(theme.ACCENT if done else theme.INK):
                 if imgui.selectable(label, one.name == lesson.name)[0]:
                     reader.open(one.name)
-            imgui.set_item_tooltip(f"{plain(one.goal)}\n{page.say('minutes', one.minutes)}")
+            minutes = page.say("minutes", one.minutes, one.exercise_minutes)
+            imgui.set_item_tooltip(f"{plain(one.goal)}\n{minutes}")
         imgui.end_combo()
     for code in LANGUAGES:
         imgui.same_line(0, 4 * look.scale)
@@ -141,8 +142,8 @@ def _head(page: Page) -> None:
     with look.font(look.bold, theme.TEXT_SIZE + 5):
         imgui.text_wrapped(written(lesson.title))
     with look.font(look.text, theme.SMALL):
-        parts = [page.say("minutes", lesson.minutes), page.say("page", reader.index + 1, _count(page))]
-        imgui.text_disabled("   ".join(parts))
+        minutes = page.say("minutes", lesson.minutes, lesson.exercise_minutes)
+        imgui.text_disabled(f"{minutes}   {page.say('page', reader.index + 1, _count(page))}")
     _pages(page)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 _ENGLISH = {
     "lesson": "Lesson {}",
-    "minutes": "{} min",
+    "minutes": "{} min, exercises {}",
     "close": "Close the lessons (F2)",
     "page": "{} of {}",
     "previous": "Previous",
@@ -58,7 +58,7 @@ _ENGLISH = {
 }
 _FRENCH = {
     "lesson": "Leçon {}",
-    "minutes": "{} min",
+    "minutes": "{} min, exercices {}",
     "close": "Fermer les leçons (F2)",
     "page": "{} sur {}",
     "previous": "Précédent",
