@@ -5,7 +5,7 @@
     labels/             the labels around lessons in each language
     model               what a lesson is made of
     document            a file split into front matter and pieces
-    read, fences        from a file to a lesson
+    read, fences        from a file to a lesson; ``task_fences`` of what a student does
     translate, status   from a translation to a lesson; what of it is out of date
     library             which lessons and languages there are
     figure_renders      the pictures of a lesson
@@ -13,6 +13,8 @@
     measuring           the numbers of a lesson, by the functions of ``measures``
     excerpt, bugs       code by a named anchor; the lines around a deliberate bug
     rules               the rules of every lesson
+    tasks/              exercises that check themselves, and pictures to match
+    exercises/          their starters and model answers
     book/               pages to read offline
     notebook/           Jupyter notebooks
 

@@ -3,82 +3,22 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from itertools import pairwise
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
 
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.lessons import model
-from playground.lessons.document import texts_in
+from playground.lessons.fence import RENAMED, Fence, check_path, measure_of, shader
 from playground.lessons.markdown import Piece
-from playground.lessons.measures import MEASURES
-from playground.lessons.scenes import FRAME, PICTURE, STATE, Sketches, read_scene, with_steps, with_value
+from playground.lessons.scenes import FRAME, STATE, Sketches, read_scene, with_steps, with_value
+from playground.lessons.task_fences import read_challenge, read_exercise
 from playground.paths import GLSL
 from playground.sketch.assign import check_value, resolve
 from playground.sketch.model import Value
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 
-B = TypeVar("B", bound=model.Named)
-
 _NAME = re.compile(r"[a-z][a-z0-9]*(-[a-z0-9]+)*")
-_RENAMED = {"mend": "fix", "turns": "iterations"}  # keys of older lessons
-
-
-@dataclass(frozen=True)
-class Fence:
-    """A fenced block, opened: its kind, its name, and its lines as TOML."""
-
-    kind: str
-    name: str
-    piece: Piece
-    line: int  # in the file, from 1
-    file: TomlFile
-    sketches: Sketches
-
-    def only(self, kind: type[model.Named], *own: str) -> None:
-        """Raise ``SketchError`` for a key that is neither a text of such a block nor one of ``own``."""
-        self.file.only(self.file.table, [*own, *map(model.key_of, model.translated_fields(kind))])
-
-    def take(self, key: str, kind: type, default: Any) -> Any:
-        """Return what a key has, checked to be of a kind."""
-        return self.file.take(self.file.table, key, kind, default)
-
-    def markdown(self, key: str, *, needed: bool = True) -> str:
-        """Return the text that a key has; raise ``SketchError`` if it is needed and not there."""
-        found: str = self.take(key, str, "")
-        if needed and not found.strip():
-            raise self.error(f'a {self.kind} block needs {key} = "…"')
-        return found.strip()
-
-    def texts(self, key: str) -> tuple[str, ...]:
-        """Return the list of texts that a key has."""
-        return tuple(item.strip() for item in texts_in(self.file, key))
-
-    def block(self, kind: type[B], **fields: Any) -> B:
-        """Return the block with these fields; its line, its name and its texts are read."""
-        for text in model.translated_fields(kind):
-            key, meaning = model.key_of(text), text.metadata
-            if text.name not in fields:
-                fields[text.name] = (
-                    self.texts(key) if "listed" in meaning else self.markdown(key, needed=meaning["needed"])
-                )
-        return kind(line=self.line, text=self.piece.text, name=self.name, **fields)
-
-    @property
-    def state(self) -> dict[str, Any]:
-        """Its keys that describe a picture."""
-        return {key: value for key, value in self.file.table.items() if key in STATE}
-
-    def scene(self, pixels: tuple[int, int] = PICTURE) -> model.Scene:
-        """Return the picture that the block's own keys describe."""
-        return read_scene(self.file, self.state, (), self.sketches, pixels)
-
-    def error(self, message: str, *place: str | int) -> SketchError:
-        """Return an error at a place in the block."""
-        return self.file.error(message, *place)
 
 
 def open_fence(piece: Piece, path: Path, line: int, sketches: Sketches) -> Fence:
@@ -91,7 +31,7 @@ def open_fence(piece: Piece, path: Path, line: int, sketches: Sketches) -> Fence
         message = f"{kind} '{name}': behind its kind a block has a name of small letters, digits and -"
         raise SketchError(message, file=path, line=line)
     file = TomlFile(path, GLSL / "sketches", piece.inside, line)
-    file.table = {_RENAMED.get(key, key): value for key, value in file.table.items()}
+    file.table = {RENAMED.get(key, key): value for key, value in file.table.items()}
     return Fence(kind, name, piece, line, file, sketches)
 
 
@@ -104,7 +44,7 @@ def _figure(fence: Fence) -> model.Figure:
     fence.only(model.Figure, *STATE, "sliders")
     scene, sliders = fence.scene(), fence.texts("sliders")
     for path in sliders:
-        _check_path(fence, scene, path, "sliders")
+        check_path(fence, scene, path, "sliders")
     return fence.block(model.Figure, scene=scene, sliders=sliders)
 
 
@@ -136,7 +76,7 @@ def _slider(fence: Fence) -> model.Slider:
     fence.only(model.Slider, *STATE, "parameter", "values", "from", "to", "frames")
     scene = fence.scene(FRAME)
     parameter = fence.markdown("parameter")
-    _check_path(fence, scene, parameter, "parameter")
+    check_path(fence, scene, parameter, "parameter")
     values = _swept(fence, scene, parameter)
     scenes = tuple(with_value(scene, parameter, value) for value in values)
     return fence.block(model.Slider, scenes=scenes, parameter=parameter, values=values)
@@ -180,13 +120,13 @@ def _compare(fence: Fence) -> model.Compare:
 
 def _code(fence: Fence) -> model.Code:
     fence.only(model.Code, "file", "anchor")
-    return fence.block(model.Code, file=_shader(fence), anchor=fence.markdown("anchor"))
+    return fence.block(model.Code, file=shader(fence), anchor=fence.markdown("anchor"))
 
 
 def _break(fence: Fence) -> model.Break:
     fence.only(model.Break, *STATE, "file", "find", "put")
     find, put = (fence.take(key, str, "") for key in ("find", "put"))
-    return fence.block(model.Break, scene=fence.scene(), file=_shader(fence), find=find, put=put)
+    return fence.block(model.Break, scene=fence.scene(), file=shader(fence), find=find, put=put)
 
 
 def _question(fence: Fence) -> model.Question:
@@ -199,19 +139,9 @@ def _question(fence: Fence) -> model.Question:
     return fence.block(model.Question, right=right)
 
 
-def _exercise(fence: Fence) -> model.Exercise:
-    fence.only(model.Exercise, *STATE)
-    drawn = "sketch" in fence.file.table
-    alt = fence.markdown("alt", needed=drawn)
-    return fence.block(model.Exercise, scene=fence.scene() if drawn else None, alt=alt)
-
-
 def _measure(fence: Fence) -> model.Measure:
     fence.only(model.Measure, *STATE, "of", "what", "with", "over", "digits", "unit", "between")
-    what = fence.markdown("what")
-    what = _RENAMED.get(what, what)
-    if what not in MEASURES:
-        raise fence.error(f"what = '{what}': there is no such measure{nearest(what, MEASURES)}", "what")
+    what, arguments, between = measure_of(fence, fence.file.table)
     over = fence.take("over", dict, None)
     if over is not None:
         fence.file.only(over, STATE, "over")
@@ -225,47 +155,11 @@ def _measure(fence: Fence) -> model.Measure:
         over=over,
         of=fence.take("of", str, "height"),
         what=what,
-        arguments=_arguments(fence, what),
+        arguments=arguments,
         digits=digits,
         unit=fence.take("unit", str, ""),
-        between=_between(fence),
+        between=between,
     )
-
-
-def _arguments(fence: Fence, what: str) -> tuple[tuple[str, float], ...]:
-    given: Mapping[str, Any] = fence.take("with", dict, {})
-    wanted = MEASURES[what].arguments
-    fence.file.only(given, wanted, "with")
-    missing = [name for name in wanted if name not in given]
-    if missing:
-        raise fence.error(f"{what} needs with = {{ {', '.join(f'{name} = …' for name in wanted)} }}")
-    return tuple((name, float(fence.file.take(given, name, float, 0.0, "with"))) for name in wanted)
-
-
-def _between(fence: Fence) -> tuple[float, float] | None:
-    given = fence.take("between", list, None)
-    if given is None:
-        return None
-    numbers = all(type(v) in (int, float) for v in given)
-    if len(given) != 2 or not numbers or any(b < a for a, b in pairwise(given)):
-        raise fence.error(f"between = {spell(given)}: expected [lowest, highest]", "between")
-    return float(given[0]), float(given[1])
-
-
-def _shader(fence: Fence) -> str:
-    file = fence.markdown("file")
-    path = (GLSL / file).resolve()
-    if not path.is_relative_to(GLSL.resolve()) or not path.is_file():
-        names = [p.relative_to(GLSL).as_posix() for p in GLSL.rglob("*") if p.suffix in (".glsl", ".comp")]
-        raise fence.error(f"file = '{file}': not in glsl/{nearest(file, names)}", "file")
-    return file
-
-
-def _check_path(fence: Fence, scene: model.Scene, path: str, key: str) -> None:
-    try:
-        resolve(scene.sketch.graph, path)
-    except PlaygroundError as error:
-        raise fence.error(error.diagnostics[0].message, key) from None
 
 
 READERS: dict[str, Callable[[Fence], model.Named]] = {
@@ -276,7 +170,8 @@ READERS: dict[str, Callable[[Fence], model.Named]] = {
     "code": _code,
     "break": _break,
     "question": _question,
-    "exercise": _exercise,
+    "exercise": read_exercise,
+    "challenge": read_challenge,
     "measure": _measure,
 }
 """What reads each kind of block."""

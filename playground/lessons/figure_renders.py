@@ -54,7 +54,7 @@ def pictures_in(block: model.Block) -> Iterator[Picture]:
     elif isinstance(block, model.Break) and block.scene:
         yield Picture(block.name, block.scene)
         yield Picture(f"{block.name}-broken", broken(block), block.alt)
-    elif isinstance(block, model.Exercise) and block.scene:
+    elif isinstance(block, model.Exercise | model.Challenge) and block.scene:
         yield Picture(block.name, block.scene, block.alt)
 
 

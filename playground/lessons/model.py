@@ -138,14 +138,48 @@ class Question(Named):
 
 
 @dataclass(frozen=True)
-class Exercise(Named):
-    """Something to do, with a solution that is hidden at first."""
+class Check:
+    """What a student's work is judged by: its picture, a texture, or the measure of one."""
 
+    tolerance: float = 0.0  # share of pixels that may differ; or the largest difference of a texel
+    at: tuple[tuple[str, Value], ...] = ()  # parameter path → value, over the exercise's own
+    hidden: bool = False  # the student is not told at which values
+    of: str = ""  # texture, as "pass[.inner…][:output]"; "": the picture
+    measure: Measure | None = None  # of the texture; its ``between`` is what it must give
+
+
+@dataclass(frozen=True)
+class Task(Named):
+    """What a student writes or sets: a kernel in place of a file, or parameters."""
+
+    file: str = ""  # in glsl/, that the student's text replaces; "": parameters are set
+    start: str = ""  # in exercises/: what the student begins from; "": the file as it ships
+    answer: str = ""  # in exercises/: the model answer; "": the file as it ships
+    sliders: tuple[str, ...] = ()  # parameter paths
+    scene: Scene | None = None  # of the answer
+    begin: Scene | None = None  # the same before the student has set anything
     ask: Markdown = field(default="", metadata=_NEEDED)
     hint: Markdown = field(default="", metadata=_OPTIONAL)
+
+
+@dataclass(frozen=True)
+class Exercise(Task):
+    """Something to do, with a solution that is hidden at first; one with checks judges what is done."""
+
     solution: Markdown = field(default="", metadata=_NEEDED)
-    scene: Scene | None = None  # of the solution
-    alt: str = field(default="", metadata=_OPTIONAL)
+    alt: str = field(default="", metadata=_OPTIONAL)  # of the solution
+    checks: tuple[Check, ...] = ()
+    points: int = 0  # 0: there is nothing to check
+
+
+@dataclass(frozen=True)
+class Challenge(Task):
+    """A picture to match, with a score that says how near one is."""
+
+    solution: Markdown = field(default="", metadata=_OPTIONAL)
+    alt: str = field(default="", metadata=_NEEDED)  # of the picture to match
+    caption: Markdown = field(default="", metadata=_OPTIONAL)
+    goal: int = 95  # score of 100 from which it is solved
 
 
 @dataclass(frozen=True)

@@ -17,6 +17,8 @@ from playground.lessons.glossary import terms
 from playground.lessons.library import lesson_files
 from playground.lessons.markdown import formulas, images, links
 from playground.lessons.measuring import measured, named_in
+from playground.lessons.tasks.proof import wrong_task
+from playground.lessons.tasks.tasks import tasks_of
 from playground.sketch.find import shipped_sketches
 
 MOST_WORDS = 60
@@ -53,12 +55,14 @@ def broken_rules(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
 
 
 def wrong_pictures(engine: Engine, lesson: model.Lesson) -> Iterator[tuple[int, str]]:
-    """Yield (line, sentence) of bugs that are not visible, and of numbers that are not as claimed."""
+    """Yield (line, sentence) of what only drawing shows: bugs not seen, numbers not as claimed, bad tasks."""
     for block in lesson.blocks:
         try:
             if isinstance(block, model.Break) and block.scene:
                 if not visible(draw(engine, block.scene), draw(engine, broken(block))):
                     yield block.line, f"break '{block.name}': the bug hardly changes the picture"
+            elif isinstance(block, model.Exercise | model.Challenge):
+                yield from ((block.line, sentence) for sentence in wrong_task(engine, block))
             elif isinstance(block, model.Measure):
                 value = measured(engine, block).value
                 if block.between and not block.between[0] <= value <= block.between[1]:
@@ -99,10 +103,12 @@ def _kinds(lesson: model.Lesson) -> Iterator[tuple[int, str]]:
     wanted: tuple[tuple[str, tuple[type[model.Block], ...]], ...] = (
         ("a step or a slider", (model.Steps, model.Slider)),
         ("a compare or a question", (model.Compare, model.Question)),
-        ("a break", (model.Break,)),
         ("a code", (model.Code,)),
         ("a measure", (model.Measure,)),
     )
+    tasks = tasks_of(lesson)
+    if not tasks and not any(isinstance(block, model.Break) for block in lesson.blocks):
+        yield 1, "a lesson has a break block, or an exercise that checks itself"
     for what, kinds in wanted:
         if not any(isinstance(block, kinds) for block in lesson.blocks):
             yield 1, f"a lesson has {what} block"

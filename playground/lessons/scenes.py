@@ -17,6 +17,7 @@ from playground.sketch.load import load_with
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import LARGEST_SIDE, Shot, Sketch, Value
 from playground.sketch.techniques import Techniques
+from playground.sketch.text_overrides import with_texts
 from playground.sketch.toml_camera import read_camera
 from playground.sketch.toml_graph import read_set
 from playground.sketch.toml_places import Place
@@ -55,13 +56,17 @@ def read_scene(
     sketches: Sketches,
     pixels: tuple[int, int] = PICTURE,
     under: Mapping[str, Any] | None = None,
+    texts: Mapping[str, str] | None = None,
 ) -> Scene:
     """Return the picture that a table's keys of ``STATE`` describe; its own override those of ``under``.
 
-    ``set`` and ``steps`` of both are joined. Raises ``SketchError`` at the key that is wrong.
+    ``set`` and ``steps`` of both are joined. ``texts``, by absolute path, replace those of the sketch's
+    shaders, none of whose fast variants runs then. Raises ``SketchError`` at the key that is wrong.
     """
     whole = _joined(file, table, place, under or {})
     sketch = _sketch(file, whole, place, sketches)
+    if texts:
+        sketch = with_texts(sketch, texts).plainly()
     shot = _shot(file, whole, place, sketch)
     preset = file.take(whole, "preset", str, "", *place)
     values = read_set(file, sketch, whole, place, "this picture")
@@ -88,7 +93,7 @@ def read_scene(
         preset=preset,
         values=values,
         view=view,
-        plain=bool(shot.name) and whole.keys() <= {"sketch", "shot"},
+        plain=bool(shot.name) and not texts and whole.keys() <= {"sketch", "shot"},
     )
     _check_steps(file, place, scene)
     return scene

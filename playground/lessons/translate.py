@@ -19,7 +19,8 @@ from typing import Any
 from playground.errors import SketchError
 from playground.images.files import replacing
 from playground.lessons.document import Document, prose_of, texts_in
-from playground.lessons.fences import Fence, open_fence
+from playground.lessons.fence import Fence
+from playground.lessons.fences import open_fence
 from playground.lessons.markdown import Piece
 from playground.lessons.model import Block, Lesson, Named, Prose, key_of, translated_fields
 from playground.lessons.scenes import Sketches

@@ -1,0 +1,56 @@
+"""Prove that a task can be done, and that only doing it earns its points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from playground.engine.engine import Engine
+from playground.lessons.figure_renders import draw
+from playground.lessons.model import Challenge, Check, Exercise
+from playground.lessons.tasks.judge import Wanted, answers, compare, judge, small
+from playground.lessons.tasks.score import score
+from playground.lessons.tasks.sentences import sentence_of, sentences
+from playground.lessons.tasks.work import answer, scene_of, starter, wanted_scene
+
+
+def wrong_task(engine: Engine, task: Exercise | Challenge) -> Iterator[str]:
+    """Yield a sentence for all that is wrong with a task; raise as ``Engine.render`` does.
+
+    The model answer has all points, the starter passes no check, and a work that gives at hidden values
+    what is asked for at the shown ones passes no hidden check.
+    """
+    if isinstance(task, Challenge):
+        yield from _challenge(engine, task)
+        return
+    if not task.checks:
+        return
+    wanted = answers(engine, task)
+    good, bad = (judge(engine, task, work, wanted) for work in (answer(task), starter(task)))
+    if not good.passed:
+        found = [sentence_of(result, "en") for result in good.results if not result.passed]
+        yield f"exercise '{task.name}': the model answer fails: {' '.join(found or sentences(good, 'en'))}"
+    for number, (check, known) in enumerate(zip(task.checks, wanted, strict=True), start=1):
+        which = f"exercise '{task.name}': check {number}"
+        if bad.results and bad.results[number - 1].passed:
+            yield f"{which}: the starter passes it already"
+        if known.texture is not None and not np.isfinite(known.texture).all():
+            yield f"{which}: the model answer's '{check.of}' has values that are not finite"
+        if check.hidden and check.measure is None and _is_frozen(engine, task, check, known):
+            yield f"{which}: at its values all is as at those that are shown; give others in at"
+
+
+def _is_frozen(engine: Engine, task: Exercise, check: Check, wanted: Wanted) -> bool:
+    """Whether a work that takes no notice of the values of a check would pass it."""
+    shown = Exercise(task.line, task.text, task.name, scene=task.scene, checks=(Check(of=check.of),))
+    return compare(check, answers(engine, shown)[0], wanted).passed
+
+
+def _challenge(engine: Engine, task: Challenge) -> Iterator[str]:
+    scenes = wanted_scene(task), scene_of(task, starter(task)), scene_of(task, answer(task))
+    target, begin, done = (draw(engine, small(scene)).array for scene in scenes)
+    if score(target, begin, begin) >= task.goal:
+        yield f"challenge '{task.name}': the picture to begin from is the one to match"
+    if (found := score(target, begin, done)) < task.goal:
+        yield f"challenge '{task.name}': its own values score {found:.0f}, below its goal {task.goal}"

@@ -1,0 +1,92 @@
+"""Say what differs in a work, in the reader's language, without the answer."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from pathlib import Path
+
+from playground.lessons.library import Labels
+from playground.lessons.measuring import spelled
+from playground.lessons.tasks.verdict import Result, Verdict
+from playground.sketch.values import spell
+
+_BRIGHTER = 1.0  # level of 255, in the mean, from which a picture is called brighter or darker
+
+
+@cache
+def task_labels(language: str) -> Labels:
+    """Return what is said of works, in a language."""
+    with (Path(__file__).parent / "labels" / f"{language}.toml").open("rb") as handle:
+        return Labels(tomllib.load(handle))
+
+
+def sentences(verdict: Verdict, language: str) -> list[str]:
+    """Return a sentence for each check, or for each mistake that kept the work from being drawn."""
+    if verdict.diagnostics:
+        return [str(diagnostic) for diagnostic in verdict.diagnostics]
+    return [sentence_of(result, language) for result in verdict.results]
+
+
+def points_of(verdict: Verdict, language: str) -> str:
+    """Return the points as "1.5 of 2 points"."""
+    key = "points" if verdict.of > 1 else "point"
+    return task_labels(language)(key, got=_number(verdict.points, language), of=verdict.of)
+
+
+def sentence_of(result: Result, language: str) -> str:
+    """Return what comes of one check as a sentence."""
+    say, check = task_labels(language), result.check
+    given = ", ".join(f"{path} = {_local(spell(value), language)}" for path, value in check.at)
+    where = say["hidden"] if check.hidden else say("at", at=given) if check.at else ""
+    found = _found(result, say, language)
+    return f"{where}{found}" if where else f"{found[0].upper()}{found[1:]}"
+
+
+def _found(result: Result, say: Labels, language: str) -> str:
+    check = result.check
+    if result.mistake:
+        return say("mistake", mistake=result.mistake.rstrip("."))
+    if check.measure is not None:
+        return _of_measure(result, say, language)
+    kind, of = "texture" if check.of else "picture", f"`{check.of}`"
+    if result.passed:
+        return say(f"right_{kind}", of=of)
+    if result.sizes:
+        mine, wanted = (_size(size, say) for size in result.sizes)
+        return say("size" if check.of else "picture_size", of=of, mine=mine, wanted=wanted)
+    if result.not_finite:
+        return say("not_finite", of=of, count=result.not_finite)
+    place = say[f"{'map' if check.of else 'place'}_{result.place}"] if result.place else ""
+    least = check.tolerance if check.of else _BRIGHTER
+    more = "more" if result.bias > 0 else "less"
+    bias = say[f"bias_{kind}_{more}"] if abs(result.bias) > least else ""
+    by, tolerance = (_number(value, language) for value in (result.difference, check.tolerance))
+    share = _local(spelled(100.0 * result.difference, 2, "%"), language)
+    return say(f"wrong_{kind}", of=of, share=share, by=by, tolerance=tolerance, place=place, bias=bias)
+
+
+def _of_measure(result: Result, say: Labels, language: str) -> str:
+    check, measure = result.check, result.check.measure
+    assert measure is not None and measure.between is not None
+    low, high, value = (
+        _local(spelled(number, 3, measure.unit), language) for number in (*measure.between, result.difference)
+    )
+    hidden = "hidden_" if check.hidden else ""
+    key = f"{hidden}{'right' if result.passed else 'wrong'}_measure"
+    what = say[f"measure_{measure.what}"]
+    return say(key, what=what, of=f"`{check.of}`", value=value, low=low, high=high)
+
+
+def _size(size: tuple[int, ...], say: Labels) -> str:
+    if len(size) == 2:
+        return say("texels", width=size[0], height=size[1])
+    return say("channels", width=size[0], height=size[1], channels=size[2])
+
+
+def _number(value: float, language: str) -> str:
+    return _local(f"{value:.3g}", language)
+
+
+def _local(text: str, language: str) -> str:
+    return text.replace(".", ",") if language == "fr" else text
