@@ -1,7 +1,7 @@
 // lessons/mip_chain.glsl -- a square image at all its mip levels, each the mean of the one before.
 //
 //   gives    chain: level 0 on the left, the others one above the other on its right
-//   needs    lessons/mip_corner.glsl; an image whose side is a power of two; the size 3/2 by 1 of it
+//   needs    lessons/mip_corner.glsl; an image whose side is a power of two; 3/2 of its size by 1
 //   units    those of the image
 //   source   Williams 1983, "Pyramidal Parametrics" (SIGGRAPH), whose layout this resembles
 //   tested   tests/glsl/test_mipmaps.py, against means over blocks in float64

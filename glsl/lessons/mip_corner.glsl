@@ -1,4 +1,4 @@
-// lessons/mip_corner.glsl -- where a mip level lies in a chain of them, and what it has at a place.
+// lessons/mip_corner.glsl -- where a mip level lies in a chain of them, and what it holds.
 //
 //   gives    mip_corner, mip_value, mip_blend
 //   needs    nothing: the chain comes as an argument

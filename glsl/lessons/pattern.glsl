@@ -10,7 +10,8 @@
 
 uniform int pattern = 0;    //! menu("squares", "hills", "hills over 0.6")
                             //! A chessboard, hills as shades of grey, or only what of them is high
-uniform int squares = 8;    //! slider(2, 64) How many squares, or hills, lie side by side in a tile
+uniform int squares = 8;    //! slider(2, 64)
+                            //! How many squares, or hills, lie side by side in a tile
 uniform int seed = 7;       //! slider(0, 9999) Chooses the hills
 
 vec4 kernel(ivec2 texel) {

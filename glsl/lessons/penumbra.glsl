@@ -7,8 +7,8 @@
 //   tested   tests/glsl/test_lesson_shadows.py, against a march in float64, and against
 //            lighting/soft_cone, lighting/soft_cylinder and lighting/ray_cast
 //
-// One kernel for three methods: a ray (both numbers 0), the thesis's cylinder, which fails (a width
-// at the ground), and its cone (a width that grows from 0).
+// One kernel for three methods: a ray (both numbers 0), the thesis's cylinder, which fails (a
+// width at the ground), and its cone (a width that grows from 0).
 #include "lessons/edge.glsl"
 #include "terrain/heightfield.glsl"
 #pragma kernel(output = "visibility:r32f")

@@ -8,13 +8,14 @@
 //   tested   tests/glsl/test_mipmaps.py, against the same plain in float64
 //
 // The eye looks level to the north over a plain; the picture ends at the horizon, its upper edge.
-// It is 90 degrees wide, less by `zoom`. The ground that a pixel sees is taken from the rays of the pixels to
-// its right and above it: what a draw's dFdx and dFdy give.
+// It is 90 degrees wide, less by `zoom`. The ground that a pixel sees is taken from the rays of the
+// pixels to its right and below it: what a draw's dFdx and dFdy give.
 #include "lessons/mip_corner.glsl"
 #pragma kernel(output = "picture:rgba32f, level:r32f")
 
 uniform sampler2D chain;     //! input
-uniform int filtered = 0;    //! menu("one sample", "mip level", "trilinear", "anisotropic", "many samples")
+uniform int filtered = 0;    //! menu("one sample", "mip level", "trilinear", "anisotropic",
+                             //! "many samples")
                              //! How a pixel finds its colour
 uniform int samples = 16;    //! slider(1, 32) The many samples of a pixel, each way
 uniform float most = 8.0;    //! slider(1, 32) step(1)
