@@ -8,8 +8,8 @@
 //   tested   tests/glsl/test_mipmaps.py, against the same plain in float64
 //
 // The eye looks level to the north over a plain; the picture ends at the horizon, its upper edge.
-// It is 90 degrees wide, less by `zoom`. The ground that a pixel sees is taken from the rays of the
-// pixels to its right and below it: what a draw's dFdx and dFdy give.
+// It is 90 degrees wide, less by `zoom`. The ground that a pixel sees is taken from the rays of
+// the pixels to its right and below it: what a draw's dFdx and dFdy give.
 #include "lessons/mip_corner.glsl"
 #pragma kernel(output = "picture:rgba32f, level:r32f")
 
@@ -23,7 +23,8 @@ uniform float most = 8.0;    //! slider(1, 32) step(1)
 uniform float eye_height = 2.0;  //! slider(0.5, 20) step(0.1) unit("m") The eye over the plain
 uniform float shift = 0.0;   //! slider(0, 10) step(0.01) unit("m") How far the eye has gone north
 uniform float zoom = 1.0;    //! slider(1, 16) step(0.5) How many times nearer the plain looks
-uniform float tile = 4.0;    //! slider(1, 64) step(0.5) unit("m") The width of a tile on the ground
+uniform float tile = 4.0;    //! slider(1, 64) step(0.5) unit("m")
+                             //! The width of a tile on the ground
 uniform bool cut = false;    //! White where the colour that was found is over 0.6, black elsewhere
 
 // The place on the plain that a place of the picture shows, in tiles; the eye is over (0, shift).
