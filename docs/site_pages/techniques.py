@@ -27,6 +27,7 @@ FOLDERS = {
     "lighting": "Lighting: what gives light and shadows",
     "view": "Views: what gives the picture",
     "terrain": "Terrain: what reads heights",
+    "lessons": "Lessons: the ideas of others, as short as they go",
     "foreign": "Channels of other tools' shaders",
 }
 """The folders of the catalogue; one that is not here comes last, by its name."""

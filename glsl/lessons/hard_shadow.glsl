@@ -1,0 +1,34 @@
+// lessons/hard_shadow.glsl -- whether a ray towards the sun meets terrain: the idea and no more.
+//
+//   gives    visibility: 1 where no terrain is in the way of the sun, else 0
+//   needs    lessons/edge.glsl, terrain/heightfield.glsl
+//   units    without unit
+//   source   Belaiche 2010, section 3.5.4
+//   tested   tests/glsl/test_lesson_shadows.py, against a march in float64, and against
+//            lighting/ray_cast, which leaps over low terrain, or sweeps
+#include "lessons/edge.glsl"
+#include "terrain/heightfield.glsl"
+#pragma kernel(output = "visibility:r32f")
+
+uniform sampler2D height;              //! input
+uniform vec2 sun = vec2(270.0, 15.0);  //! direction Azimuth clockwise from north, elevation above
+                                       //! the horizon
+
+float kernel(ivec2 texel) {
+    if (towards_sun.z < 0.0) return 0.0;
+    // anchor: march
+    vec2 way = towards_sun.xy / spacing;              // texels, for each metre of the ray
+    float longer = max(max(abs(way.x), abs(way.y)), 1e-9);
+    vec2 ahead = way / longer;                        // one step, in texels
+    float climb = towards_sun.z / longer;             // and in metres of height
+    float foot = height_at(height, vec2(texel)) * relief;
+    for (int i = 1; i < max(size.x, size.y); i++) {
+        vec2 place = vec2(texel) + float(i) * ahead;
+        if (is_outside(height, place)) break;
+        float ray = foot + float(i) * climb;
+        float terrain = height_at(height, place) * relief;
+        if (terrain > ray) return 0.0;
+    }
+    return 1.0;
+    // end: march
+}

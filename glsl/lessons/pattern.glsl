@@ -1,0 +1,24 @@
+// lessons/pattern.glsl -- what lies on the plain of the lesson on aliasing: a tile in two colours.
+//
+//   gives    colour, linear light: a tile that continues into itself
+//   needs    noise/periodic.glsl
+//   units    none
+//   source   none: made for the lesson
+//   tested   tests/glsl/test_mipmaps.py: a chessboard's mean, and hills that repeat
+#include "noise/periodic.glsl"
+#pragma kernel(output = "colour:rgba16f")
+
+uniform int pattern = 0;    //! menu("squares", "hills", "hills over 0.6")
+                            //! A chessboard, hills as shades of grey, or only what of them is high
+uniform int squares = 8;    //! slider(2, 64)
+                            //! How many squares, or hills, lie side by side in a tile
+uniform int seed = 7;       //! slider(0, 9999) Chooses the hills
+
+vec4 kernel(ivec2 texel) {
+    vec2 place = (vec2(texel) + 0.5) / vec2(size) * float(squares);
+    ivec2 square = ivec2(place);
+    float hill = value_noise_periodic(place, ivec2(squares), uint(seed));
+    float chessboard = float((square.x + square.y) & 1);
+    float shown = pattern == 0 ? chessboard : pattern == 1 ? hill : step(0.6, hill);
+    return vec4(vec3(shown), 1.0);
+}
