@@ -133,7 +133,7 @@ def test_open_without_a_name_takes_the_lesson_read_last_or_the_first(texts, tmp_
     monkeypatch.setattr("sys.platform", "linux")
     opened = []
     monkeypatch.setattr(lesson_command, "check_display", lambda renderer: None)
-    monkeypatch.setattr(lesson_command, "open_window", lambda *arguments, **named: opened.append(named["lesson"]))
+    monkeypatch.setattr(lesson_command, "open_window", lambda *_, **named: opened.append(named["lesson"]))
     course = tmp_path / "course.toml"
     (texts / "en/first.md").write_bytes((texts / "en/small.md").read_bytes())
     course.write_text(course.read_text().replace('["small"]', '["first", "small"]'), encoding="utf-8")
