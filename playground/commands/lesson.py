@@ -38,8 +38,10 @@ LIST_HELP = help_text(
 )
 OPEN_HELP = help_text(
     "Open a lesson next to the live window, with the sketch that it ends with.\n\n"
+    "Without a name the one that was read last, or the course's first one.\n\n"
     "Its figures are the window's picture, its sliders act on it; its bugs are put into a copy, no file"
     " is written. Next time it opens at the page where you were.",
+    "playground lesson open",
     "playground lesson open diamond_square",
     "playground lesson open shadows --lang fr",
 )
@@ -106,17 +108,29 @@ def _row(one: Summary) -> tuple[str, ...]:
 
 @app.command("open", help=OPEN_HELP)
 def open_(
-    ctx: typer.Context, name: NameArgument, lang: options.Language = "", software: options.Software = False
+    ctx: typer.Context,
+    name: Annotated[str, positional("NAME", "A lesson; the one read last by default.", complete_lesson)] = "",
+    lang: options.Language = "",
+    software: options.Software = False,
 ) -> None:
     """Open a lesson next to the live window."""
     from playground.lessons.document import read_document
     from playground.lessons.library import lesson_file
 
     language = read_language(lang)
+    name = name or _lesson_read_last()
     sketch = str(read_document(lesson_file(name)).front.table.get("sketch", ""))
     renderer: Renderer = ctx.obj.or_else(software)
     check_display(renderer)
     open_window(sketch, None, renderer, lesson=name, language=language)
+
+
+def _lesson_read_last() -> str:
+    from playground.lessons.course import lesson_names
+    from playground.workbench.lesson.progress import progress_file, read_progress
+
+    names, last = lesson_names(), read_progress(progress_file()).lesson
+    return last if last in names else names[0]
 
 
 @app.command("status", help=STATUS_HELP)

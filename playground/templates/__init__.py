@@ -1,4 +1,4 @@
-"""Make a new sketch folder from the files in ``new/``; it never overwrites anything."""
+"""Make a new sketch folder from the files in ``new/`` or ``empty/``; it never overwrites anything."""
 
 from __future__ import annotations
 
@@ -9,15 +9,16 @@ from pathlib import Path
 from playground.errors import SketchError
 from playground.paths import shown
 
-_NEW = Path(__file__).resolve().parent / "new"
+_HERE = Path(__file__).resolve().parent
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_-]{0,63}")
 _TITLE = "@TITLE@"
 
 
-def make_sketch(folder: Path) -> Path:
+def make_sketch(folder: Path, *, empty: bool = False) -> Path:
     """Make the folder with ``sketch.toml`` and a kernel, and return it.
 
-    Its last part is the sketch's name; the folder around it must exist. Raises
+    ``empty``: a kernel of heights that gives 0 everywhere, to be written. The folder's last part is the
+    sketch's name; the folder around it must exist. Raises
     ``SketchError`` where the name is not valid, or something is there already.
     """
     name = folder.name
@@ -30,7 +31,7 @@ def make_sketch(folder: Path) -> Path:
         raise SketchError(f"there is no folder '{folder.parent}' to make it in", file=shown(folder))
     try:
         folder.mkdir()
-        for template in sorted(_NEW.iterdir()):
+        for template in sorted((_HERE / ("empty" if empty else "new")).iterdir()):
             if template.suffix == ".toml":
                 text = template.read_text(encoding="utf-8").replace(_TITLE, _title(name))
                 (folder / template.name).write_text(text, encoding="utf-8")

@@ -8,7 +8,9 @@ import sys
 import pytest
 
 from playground.cli import main
+from playground.commands import lesson as lesson_command
 from playground.lessons import library
+from playground.workbench.lesson.progress import Progress, progress_file, write_progress
 from tests.lessons.conftest import FRENCH
 
 
@@ -124,6 +126,22 @@ def test_languages_are_promised_as_they_are(capsys):
     assert "that of the system by default" in said["list"] and "that of the system" in said["open"]
     assert "both by default" in said["build"] and "that of the system" not in said["build"]
     assert "that of the system" not in said["translated"]
+
+
+def test_open_without_a_name_takes_the_lesson_read_last_or_the_first(texts, tmp_path, monkeypatch):
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    monkeypatch.setattr("sys.platform", "linux")
+    opened = []
+    monkeypatch.setattr(lesson_command, "check_display", lambda renderer: None)
+    monkeypatch.setattr(lesson_command, "open_window", lambda *_, **named: opened.append(named["lesson"]))
+    course = tmp_path / "course.toml"
+    (texts / "en/first.md").write_bytes((texts / "en/small.md").read_bytes())
+    course.write_text(course.read_text().replace('["small"]', '["first", "small"]'), encoding="utf-8")
+    assert run("open") == 0
+    for last in ("small", "gone"):
+        write_progress(Progress(last), progress_file())
+        assert run("open") == 0
+    assert opened == ["first", "small", "first"]
 
 
 def test_open_needs_a_screen_and_a_lesson(texts, capsys, monkeypatch):
