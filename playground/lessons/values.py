@@ -9,11 +9,20 @@ from playground.sketch.values import write
 
 
 def spelled_value(slider: Slider, value: Value, language: str) -> str:
-    """Return a value of a slider's parameter: menu choices by name, numbers with their unit."""
+    """Return a value of a slider's parameter: menu choices by name, numbers with their unit.
+
+    A direction is "135°, 25°": azimuth and elevation. In French, whose numbers have a comma, a
+    semicolon stands between the numbers of other vectors: "0,5 ; 2".
+    """
     parameter = resolve(slider.scenes[0].sketch.graph, slider.parameter)[0].parameter
-    text = write(parameter, value).replace(",", "; ")
-    if language == "fr" and parameter.widget.kind not in ("menu", "file"):
-        text = text.replace(".", ",")
-    if parameter.unit:
-        return f"{text}\u202f{parameter.unit}"
-    return f"{text}°" if parameter.widget.kind in ("angle", "direction") else text
+    kind = parameter.widget.kind
+    text = write(parameter, value)
+    if kind in ("menu", "file") or isinstance(value, str):
+        return text
+    comma = language == "fr"
+    degrees = kind in ("angle", "direction") or parameter.unit in ("°", "degrees")
+    parts = [part.replace(".", ",") if comma else part for part in text.split(",")]
+    if degrees:
+        return ", ".join(f"{part}°" for part in parts)
+    joined = ("\u00a0; " if comma else ", ").join(parts)
+    return f"{joined}\u202f{parameter.unit}" if parameter.unit else joined

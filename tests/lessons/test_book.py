@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from html import unescape
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import urldefrag
@@ -14,8 +16,9 @@ from PIL import Image
 from playground.errors import DataError
 from playground.lessons.book import build
 from playground.lessons.book import images as pictures
+from playground.lessons.book.blocks import Setting, block_html
 from playground.lessons.book.build import prepare, write_book
-from playground.lessons.book.html import formula, line, plain, prose
+from playground.lessons.book.html import DEEPEST, formula, line, plain, prose
 from playground.lessons.book.images import is_diagram, larger
 from playground.lessons.book.live_files import LiveBook
 from playground.lessons.figure_renders import draw, pictures_of
@@ -79,8 +82,9 @@ def test_its_files(book):
     )
     assert names == [
         *("book.css", "book.js", "book.json", "data/small.js", "en/glossary.html", "en/index.html"),
-        *("en/small.html", "fr/glossary.html", "fr/index.html", "fr/small.html", "glsl.js", "index.html"),
-        *("live.css", "live.js"),
+        *("en/small.html", "en/words.js", "find.js", "fonts/literata.txt", "fonts/math.woff2"),
+        *("fonts/stix-two-math.txt", "fonts/text-italic.woff2", "fonts/text.woff2", "fr/glossary.html"),
+        *("fr/index.html", "fr/small.html", "fr/words.js", "glsl.js", "index.html", "live.css", "live.js"),
     ]
 
 
@@ -98,7 +102,7 @@ def test_nothing_on_a_page_comes_from_a_network_and_every_link_leads_somewhere(b
             assert target.is_file(), (page.path, address)
             assert not place or place in ids[target], (page.path, address)
     assert set(outside) == {"https://doi.org/10.1145/358523.358553"}  # a paper, to be followed by hand
-    for name in ("book.css", "book.js"):
+    for name in ("book.css", "book.js", "find.js"):
         assert "http" not in (book / name).read_text(encoding="utf-8")
 
 
@@ -106,7 +110,7 @@ def test_a_term_shows_its_meaning_and_leads_to_the_glossary(book):
     texel = terms()["texel"]
     for language, title in (("en", "A small lesson"), ("fr", "Une petite leçon")):
         (link,) = [a for a in Page(book / language / "small.html").all("a") if a.get("class") == "term"]
-        assert link["href"] == "glossary.html#texel" and link["title"] == texel.definition(language)
+        assert link["href"] == "glossary.html#texel" and link["data-means"] == texel.definition(language)
         page = Page(book / language / "glossary.html")
         assert set(page.ids) >= set(terms())
         entry = page.text[page.text.index(texel.meaning[language]) :]
@@ -175,7 +179,9 @@ def test_a_picture_shown_twice_is_stored_once(book, lesson):
 def test_answers_are_folded_away_and_all_is_there_without_a_script(book):
     page = Page(book / "en/small.html")
     text = (book / "en/small.html").read_text(encoding="utf-8")
-    assert len(page.all("details")) == 7  # hint and fix of the bug, an answer, three solutions, a hint
+    assert (
+        len(page.all("details")) == 8
+    )  # contents; hint and fix of the bug, an answer, three solutions, a hint
     assert not any("open" in attributes for attributes in page.all("details"))
     assert text.count("<li") >= 6 + 3 + 2  # iterations, values, variants
     assert "total / count" in page.text and "total / 8.0" in page.text
@@ -253,9 +259,55 @@ def test_formulas_become_mathml():
     assert 'display="block"' in formula("x", alone=True)
 
 
-def test_every_block_of_code_can_be_scrolled():
-    for words in ("```glsl\nint a;\n```\n", "```\na\n```\n", "Before\n\n    indented\n"):
-        assert '<pre class="code" tabindex="0"' in prose(words, str), words
+def test_lines_of_code_wrap_under_their_indent_and_are_copied_as_they_are():
+    source = "float f() {\n    // all\n\n        return 1.0;  /* a\n  b */\n}"
+    for words in (f"```glsl\n{source}\n```\n", f"```\n{source}\n```\n"):
+        html = prose(words, str)
+        lines = re.findall(r'<span class="l([^"]*)">', html)
+        assert lines == ["", " i4", "", " i8", " i2", ""]
+        assert unescape(re.sub(r"<[^>]+>", "", html)).strip("\n") == source
+    css = (Path(build.__file__).parent / "book.css").read_text(encoding="utf-8")
+    assert all(f".i{n} {{ --i: {n}; }}" in css for n in range(1, DEEPEST + 1))
+
+
+def test_a_picture_that_shows_next_to_nothing_is_known(tmp_path):
+    dark = np.zeros((90, 160, 3), np.uint8)
+    dark[::16, ::16] = 90  # a few faint texels
+    lit = dark.copy()
+    lit[:, 60:100] = 200
+    for name, picture, blank in (("dark", dark, True), ("lit", lit, False), ("white", 255 - dark, True)):
+        pictures.store(tmp_path / f"{name}.webp", picture)
+        assert pictures.is_blank(tmp_path / f"{name}.webp") is blank, name
+
+
+def test_a_series_opens_on_the_first_picture_that_shows_something(lesson, french):
+    def opens(blank):
+        setting = Setting(lesson, interface_labels("en"), {}, lambda p: p.name, lambda link: {}, (), blank)
+        return re.search(r'data-opens="(\d+)"', block_html(lesson.named["turns"], setting))[1]
+
+    assert opens(lambda picture: False) == "0"
+    assert opens(lambda picture: picture.name in ("turns-0", "turns-1")) == "2"
+    assert opens(lambda picture: True) == str(len(lesson.named["turns"].scenes) - 1)
+
+
+def test_the_search_knows_every_section_and_gives_no_answer_away(book):
+    for language, words, hidden in (
+        (
+            "en",
+            ["One thing", "Each disc is a texel", "Smoother, rougher.", "How many points has it?"],
+            "Five times",
+        ),
+        ("fr", ["Une chose", "Chaque disque est un texel", "Plus lisse, plus rude."], "Cinq fois"),
+    ):
+        text = (book / language / "words.js").read_text(encoding="utf-8")
+        entries = json.loads(text.removeprefix("globalThis.bookWords=").removesuffix(";\n"))
+        assert all(any(word in part for entry in entries for part in entry) for word in words)
+        assert hidden not in text and "{{" not in text
+        ids = {page: set(Page(book / language / page).ids) for page in ("small.html", "glossary.html")}
+        for address, *_ in entries:
+            page, place = urldefrag(address)
+            assert not place or place in ids[page], address
+        assert {"glossary.html#texel"} <= {address for address, *_ in entries}
 
 
 def test_html_in_a_lesson_is_text():
@@ -284,8 +336,6 @@ def test_every_word_is_used():
 
 def test_french_is_set_as_french_is():
     """No ordinary space before ; : ? ! and within quotation marks."""
-    import re
-
     for key, text in interface_labels("fr").items():
         assert not re.search(r" [;:?!»]|« ", text), key
 

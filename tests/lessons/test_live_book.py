@@ -155,9 +155,15 @@ def test_blocks_of_each_kind(lesson, horizons, of_horizons):
     assert dict(beginning(exercise.scene).overrides) == {}
 
 
-def test_a_directions_degrees_stand_after_it():
+def test_degrees_stand_after_both_numbers_of_a_direction(node):
     slider = model.Slider(0, "", "sun", (model.Scene(load("jacksboro"), (32, 18)),), "light.sun")
-    assert spelled_value(slider, (110.0, 10.5), "en") == "110; 10.5°"
+    shown = next(one for one in shown_parameters(load("jacksboro")) if one.path == "light.sun")
+    row = row_data(shown, (0.0, 0.0), ("light.sun",))
+    for language, text in (("en", "110°, 10.5°"), ("fr", "110°, 10,5°")):
+        assert spelled_value(slider, (110.0, 10.5), language) == text
+        live = node.call("between.js", "spelled", row, (110.0, 10.5), language == "fr")
+        numbers = [float(part.removesuffix("°").replace(",", ".")) for part in live.split(", ")]
+        assert numbers == [110.0, 10.5] and live.count("°") == 2 and ("." in live) == (language == "en")
 
 
 def test_a_colour_between_two_is_spelled_as_those_are(node):

@@ -31,14 +31,15 @@ class Setting:
     source: Callable[[Picture], str]  # address of a picture
     anchor: Anchor
     live: Collection[str] = ()  # names of the blocks that a page can run
+    blank: Callable[[Picture], bool] = lambda picture: False  # whether a picture shows next to nothing
 
     def line(self, markdown: str) -> Markup:
         """Return a text within a line, with the numbers in it."""
-        return line(self._filled(markdown), self.anchor)
+        return line(self.filled(markdown), self.anchor)
 
     def prose(self, markdown: str) -> Markup:
         """Return a text as paragraphs, with the numbers in it."""
-        return prose(self._filled(markdown), self.anchor)
+        return prose(self.filled(markdown), self.anchor)
 
     def image(self, picture: Picture, *, lazy: bool = True, alt: str | None = None) -> Markup:
         """Return a picture as an element with its size, so that nothing jumps when it is loaded."""
@@ -46,7 +47,7 @@ class Setting:
         return tag(
             "img",
             src=self.source(picture),
-            alt=plain(self._filled(picture.alt)) if alt is None else alt,
+            alt=plain(self.filled(picture.alt)) if alt is None else alt,
             width=width,
             height=height,
             loading="lazy" if lazy else None,
@@ -72,7 +73,8 @@ class Setting:
         heading, kind = tag("h3", title, id=f"{block.name}-title"), type(block).__name__.lower()
         return tag("section", heading, *inside, id=block.name, class_=kind, **attributes)
 
-    def _filled(self, markdown: str) -> str:
+    def filled(self, markdown: str) -> str:
+        """Return a text with the numbers in it."""
         return filled(markdown, self.numbers, comma=self.lesson.language == "fr")
 
 
@@ -104,7 +106,9 @@ def _figure(block: model.Figure, setting: Setting, first: bool) -> Markup:
     return tag("figure", image, caption, id=block.name, **setting.started(block))
 
 
-def _series(block: model.Steps | model.Slider, setting: Setting, labels: list[str], name: str) -> Markup:
+def _series(
+    block: model.Steps | model.Slider, setting: Setting, labels: list[str], name: str, opens: int
+) -> Markup:
     frames = []
     captions = block.captions if isinstance(block, model.Steps) and block.captions else [""] * len(labels)
     for picture, label, caption in zip(pictures_in(block), labels, captions, strict=True):
@@ -122,6 +126,7 @@ def _series(block: model.Steps | model.Slider, setting: Setting, labels: list[st
         id=block.name,
         class_="series",
         data_kind="step" if isinstance(block, model.Steps) else "slider",
+        data_opens=str(opens),
         **setting.started(block),
     )
 
@@ -129,13 +134,16 @@ def _series(block: model.Steps | model.Slider, setting: Setting, labels: list[st
 def _steps(block: model.Steps, setting: Setting) -> Markup:
     count = len(block.iterations)
     labels = [setting.label("step_of", n=index + 1, m=count) for index in range(count)]
-    return _series(block, setting, labels, setting.label("step"))
+    pictures = list(pictures_in(block))
+    opens = next((index for index, one in enumerate(pictures) if not setting.blank(one)), count - 1)
+    return _series(block, setting, labels, setting.label("step"), opens)
 
 
 def _slider(block: model.Slider, setting: Setting) -> Markup:
     name = block.label or block.parameter
     labels = [spelled_value(block, value, setting.lesson.language) for value in block.values]
-    return _series(block, setting, labels, plain(name))
+    # A sweep opens in its middle, where there is something to drag towards on both sides.
+    return _series(block, setting, labels, plain(name), len(labels) // 2)
 
 
 def _compare(block: model.Compare, setting: Setting) -> Markup:

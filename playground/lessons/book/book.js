@@ -1,4 +1,5 @@
-// book.js -- what moves in the book: series that are dragged, comparisons that are swiped, choices, the theme.
+// book.js -- what moves in the book: series that are dragged, comparisons that are swiped, choices, what
+// terms mean, where one is on a page, the theme; the search comes when it is asked for.
 "use strict";
 (() => {
   const words = document.body.dataset;
@@ -52,8 +53,7 @@
     list.removeAttribute("tabindex");
     figure.classList.add("dragged");
     list.after(make("div", { className: "controls" }, back, range, on, output, run));
-    // A sweep opens in its middle, where there is something to drag towards on both sides.
-    show(figure.dataset.kind === "step" ? 0 : frames.length >> 1);
+    show(Number(figure.dataset.opens));
   }
 
   // A comparison of two: the second lies over the first, as far as the slider says.
@@ -118,7 +118,7 @@
         button.removeAttribute("aria-busy");
       }
     });
-    still.prepend(button);
+    still.append(button);
   }
 
   for (const field of document.querySelectorAll("fieldset")) {
@@ -127,6 +127,98 @@
       const verdict = field.querySelector(".verdict");
       verdict.textContent = right ? field.dataset.right : field.dataset.wrong;
       verdict.className = `verdict ${right ? "right" : "wrong"}`;
+    });
+  }
+
+  // What a term means, under the mouse, with the keys' focus, and at the first tap of a finger.
+  const meaning = make("div", { id: "meaning", className: "meaning", hidden: true });
+  meaning.setAttribute("role", "tooltip");
+  document.body.append(meaning);
+  let asked = null, leaving = 0;
+  const place = (term) => {
+    const [box] = term.getClientRects(), { width, height } = meaning.getBoundingClientRect();
+    const left = Math.min(Math.max(box.left, 8), document.documentElement.clientWidth - width - 8);
+    const above = box.bottom + height + 14 > innerHeight;
+    meaning.style.left = `${left + scrollX}px`;
+    meaning.style.top = `${(above ? box.top - height - 6 : box.bottom + 6) + scrollY}px`;
+  };
+  const forget = () => {
+    clearTimeout(leaving);
+    asked?.removeAttribute("aria-describedby");
+    asked = null;
+    meaning.hidden = true;
+  };
+  const explain = (term) => {
+    clearTimeout(leaving);
+    if (asked === term) return;
+    forget();
+    asked = term;
+    meaning.textContent = term.dataset.means;
+    term.setAttribute("aria-describedby", "meaning");
+    meaning.hidden = false;
+    place(term);
+  };
+  const leave = () => { leaving = setTimeout(forget, 200); };
+  for (const term of document.querySelectorAll("a.term")) {
+    let touched = false;
+    term.addEventListener("pointerdown", (event) => { touched = event.pointerType === "touch" && asked !== term; });
+    term.addEventListener("click", (event) => {
+      if (touched) event.preventDefault();  // a second tap goes to the glossary
+      explain(term);
+    });
+    term.addEventListener("pointerenter", (event) => { if (event.pointerType === "mouse") explain(term); });
+    term.addEventListener("pointerleave", (event) => { if (event.pointerType === "mouse") leave(); });
+    term.addEventListener("focus", () => { if (term.matches(":focus-visible")) explain(term); });
+    term.addEventListener("blur", forget);
+  }
+  meaning.addEventListener("pointerenter", () => clearTimeout(leaving));
+  meaning.addEventListener("pointerleave", leave);
+  addEventListener("keydown", (event) => { if (event.key === "Escape") forget(); });
+  addEventListener("pointerdown", (event) => {
+    if (asked && event.target !== asked && event.target !== meaning) forget();
+  });
+
+  // The contents of the page: open where there is room at the side, with the section that is being read marked.
+  const contents = document.querySelector(".toc details");
+  if (contents) {
+    const room = matchMedia("(min-width: 75rem)");
+    const unfold = () => { contents.open = room.matches; };
+    room.addEventListener("change", unfold);
+    unfold();
+    const links = [...contents.querySelectorAll("a")];
+    const headings = links.map((link) => document.getElementById(link.hash.slice(1)));
+    let waits = false;
+    const mark = () => {
+      waits = false;
+      const ends = scrollY + innerHeight >= document.documentElement.scrollHeight - 2;
+      const passed = headings.filter((heading) => heading.getBoundingClientRect().top < innerHeight * 0.3).length;
+      const now = ends ? links.length - 1 : passed - 1;
+      links.forEach((link, i) => {
+        if (i === now) link.setAttribute("aria-current", "true"); else link.removeAttribute("aria-current");
+      });
+    };
+    addEventListener("scroll", () => { if (!waits) { waits = true; requestAnimationFrame(mark); } }, { passive: true });
+    mark();
+  }
+
+  // The search: its words and what looks through them come the first time.
+  const finder = document.getElementById("search");
+  if (finder) {
+    let found = null;
+    const search = async () => {
+      found = found || Promise.all([added(make("script", { src: "words.js" })), added(make("script", { src: "../find.js" }))]);
+      try { await found; } catch { found = null; return; }
+      bookFind();
+    };
+    finder.hidden = false;
+    finder.append(" ", make("kbd", { textContent: "/" }));
+    finder.setAttribute("aria-keyshortcuts", "/");
+    finder.addEventListener("click", search);
+    addEventListener("keydown", (event) => {
+      const typing = event.target.closest?.("input:not([type=range]):not([type=radio]):not([type=checkbox]), textarea, select, [contenteditable]");
+      if (event.key !== "/" || event.ctrlKey || event.altKey || event.metaKey || typing) return;
+      event.preventDefault();
+      search();
     });
   }
 

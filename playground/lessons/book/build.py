@@ -3,7 +3,8 @@
 index.html          chooses a language
 en/, fr/            a page for each lesson, the contents, the glossary, the thesis's figures
 pictures/           all pictures, for all languages
-book.css, book.js
+book.css, book.js, find.js, fonts/
+en/words.js …       what is searched
 live.js, data/ …     what runs where a reader starts a figure: see live_files.py
 book.json           the files that were written, so that the next build removes what is no more
 """
@@ -22,7 +23,7 @@ from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.lessons.book.blocks import Setting
 from playground.lessons.book.gallery import gallery_html
-from playground.lessons.book.images import Album, of_picture
+from playground.lessons.book.images import Album, is_blank, of_picture
 from playground.lessons.book.live_files import LiveBook, live_book
 from playground.lessons.book.page import (
     FIGURES,
@@ -32,16 +33,23 @@ from playground.lessons.book.page import (
     door_page,
     gallery_page,
     glossary_page,
+    hero_image,
     lesson_page,
 )
-from playground.lessons.figure_renders import pictures_of
+from playground.lessons.book.search import Entry, glossary_entries, lesson_entries, words_script
+from playground.lessons.figure_renders import Picture, pictures_of
 from playground.lessons.figures import FigurePicture, ThesisFigure, thesis_figures
+from playground.lessons.heroes import Hero, hero_of
 from playground.lessons.library import interface_labels
 from playground.lessons.measuring import Number, numbers_of
 from playground.lessons.model import Lesson
+from playground.lessons.scenes import Sketches
+from playground.markup import Markup
 
 MANIFEST = "book.json"
 PICTURES = "pictures"
+FONTS = tuple(f"fonts/{path.name}" for path in sorted((Path(__file__).parent / "fonts").glob("*.[wt]*")))
+"""The book's fonts, and their licences."""
 _HERE = Path(__file__).resolve().parent
 
 
@@ -55,6 +63,7 @@ class Build:
     album: Album
     files: dict[str, dict[str, str]]  # lesson → picture → file
     gallery: dict[tuple[str, str], str]  # sketch, shot → file
+    heroes: dict[str, tuple[str, Hero]]  # lesson → file, hero
 
     @property
     def names(self) -> list[str]:
@@ -74,11 +83,15 @@ def prepare(folder: Path, lessons: Mapping[str, Sequence[Lesson]], *, gallery: b
             )
     album = Album(folder / PICTURES)
     one_language = next(iter(lessons.values()))
+    heroes, sketches = {}, Sketches()
+    for lesson in one_language:
+        if hero := hero_of(lesson.name, sketches):
+            heroes[lesson.name] = album.add(f"{lesson.name}-hero", hero.scene), hero
     files = {lesson.name: album.add_lesson(lesson) for lesson in one_language}
     figures = thesis_figures() if gallery else []
     shown = [drawn for figure in figures for drawn in figure.pictures]
     of_shots = {(d.sketch, d.shot): album.add(f"{d.sketch}-{d.shot}", d.scene) for d in shown}
-    return Build(folder, {k: tuple(v) for k, v in lessons.items()}, figures, album, files, of_shots)
+    return Build(folder, {k: tuple(v) for k, v in lessons.items()}, figures, album, files, of_shots, heroes)
 
 
 def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambda: None) -> Path:
@@ -102,15 +115,15 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
             gallery=bool(build.figures),
         )
         for name, text in _pages(build, book, numbers, live):
-            _write(build.folder / language / name, text)
+            _write(build.folder / language / name, text.encode())
             written.append(f"{language}/{name}")
     titles = {language: interface_labels(language)["book"] for language in build.lessons}
-    _write(build.folder / "index.html", door_page(list(build.lessons), titles))
-    for name in ("book.css", "book.js"):
-        _write(build.folder / name, (_HERE / name).read_text(encoding="utf-8"))
+    _write(build.folder / "index.html", door_page(list(build.lessons), titles).encode())
+    for name in ("book.css", "book.js", "find.js", *FONTS):
+        _write(build.folder / name, (_HERE / name).read_bytes())
         written.append(name)
     for name, text in live.files.items():
-        _write(build.folder / name, text)
+        _write(build.folder / name, text.encode())
         written.append(name)
     _forget(build.folder, [*written, "index.html"])
     return build.folder / "index.html"
@@ -119,16 +132,29 @@ def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambd
 def _pages(
     build: Build, book: Book, numbers: dict[str, dict[str, Number]], live: LiveBook
 ) -> Iterator[tuple[str, str]]:
-    covers = {}
+    covers: dict[str, Markup] = {}
+    entries: list[Entry] = []
     for lesson in book.lessons:
-        source = of_picture(build.files[lesson.name], f"../{PICTURES}")
+        files = build.files[lesson.name]
+        source = of_picture(files, f"../{PICTURES}")
         runs = live.blocks[lesson.name]
-        setting = Setting(lesson, book.label, numbers[lesson.name], source, book.anchor, runs)
-        cover = pictures_of(lesson)[0]
-        covers[lesson.name] = setting.image(cover, alt="")
-        yield f"{lesson.name}.html", lesson_page(book, lesson, setting)
+
+        def blank(picture: Picture, files: dict[str, str] = files) -> bool:
+            return is_blank(build.album.folder / files[picture.name])
+
+        setting = Setting(lesson, book.label, numbers[lesson.name], source, book.anchor, runs, blank)
+        entries += lesson_entries(lesson, setting)
+        hero = None
+        if found := build.heroes.get(lesson.name):
+            file, one = found
+            hero = hero_image(f"../{PICTURES}/{file}", one.alt[lesson.language])
+            covers[lesson.name] = hero_image(f"../{PICTURES}/{file}", "", lazy=True)
+        else:
+            covers[lesson.name] = setting.image(pictures_of(lesson)[0], alt="")
+        yield f"{lesson.name}.html", lesson_page(book, lesson, setting, hero)
     yield "index.html", contents_page(book, covers)
     yield f"{GLOSSARY}.html", glossary_page(book)
+    yield "words.js", words_script([*entries, *glossary_entries(book)])
     if build.figures:
 
         def address(drawn: FigurePicture) -> str:
@@ -137,16 +163,16 @@ def _pages(
         yield f"{FIGURES}.html", gallery_page(book, gallery_html(book, build.figures, address))
 
 
-def _write(path: Path, text: str) -> None:
+def _write(path: Path, data: bytes) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as handle:
-        handle.write(text.encode())
+        handle.write(data)
 
 
 def _begin(folder: Path) -> None:
     """Mark a folder as a book, so that a build that was stopped can begin again."""
     if not (folder / MANIFEST).is_file():
-        _write(folder / MANIFEST, json.dumps({"files": []}) + "\n")
+        _write(folder / MANIFEST, b'{"files": []}\n')
 
 
 def _forget(folder: Path, written: list[str]) -> None:
@@ -161,4 +187,4 @@ def _forget(folder: Path, written: list[str]) -> None:
         path = folder / name
         if name not in current and ".." not in Path(name).parts and not Path(name).is_absolute():
             path.unlink(missing_ok=True)
-    _write(manifest, json.dumps({"files": sorted(current)}, indent=1) + "\n")
+    _write(manifest, (json.dumps({"files": sorted(current)}, indent=1) + "\n").encode())

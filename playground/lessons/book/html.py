@@ -11,10 +11,13 @@ from markdown_it.renderer import RendererHTML
 from markdown_it.token import Token
 
 from playground.lessons.markdown import parser
-from playground.markup import Markup, tag
+from playground.markup import Markup, joined, tag
 
 Anchor = Callable[[str], dict[str, str]]
 """Maps a link to the attributes of its element: "lesson:fourier" → {"href": "fourier.html"}."""
+
+DEEPEST = 24
+"""Blanks of indent that book.css knows; a line with more wraps under these."""
 
 
 def prose(markdown: str, anchor: Anchor) -> Markup:
@@ -50,16 +53,33 @@ def code(text: str) -> Markup:
     from pygments.lexers.graphics import GLShaderLexer
 
     formatter: Any = HtmlFormatter(nowrap=True, classprefix="t-")
-    return Markup(highlight(text, GLShaderLexer(), formatter).rstrip("\n"))
+    return Markup(highlight(text, GLShaderLexer(stripnl=False), formatter).rstrip("\n"))
 
 
 def code_block(text: str, label: str) -> Markup:
-    """Return GLSL as a block that the keyboard can scroll where it is too wide."""
-    return tag("pre", tag("code", code(text)), class_="code", tabindex=0, role="group", aria_label=label)
+    """Return GLSL as a block whose lines wrap where they are too wide."""
+    text = text.strip("\n")
+    inside = wrapped_lines(text, code(text))
+    return tag("pre", tag("code", inside), class_="code", role="group", aria_label=label)
+
+
+def wrapped_lines(text: str, html: Markup) -> Markup:
+    """Return lines of code each in an element of its own, which wraps under its own indent.
+
+    ``html`` is the text with as many lines. A line's class says its indent, as styles in a page may not;
+    its end is inside, so that what is copied is the text.
+    """
+    lines = zip(text.split("\n"), html.split("\n"), strict=True)
+    return joined(*(_wrapped(one, Markup(f"{marked}\n")) for one, marked in lines))
+
+
+def _wrapped(text: str, html: Markup) -> Markup:
+    indent = min(len(text) - len(text.lstrip(" ")), DEEPEST)
+    return tag("span", html, class_=f"l i{indent}" if indent else "l")
 
 
 def _plain_block(text: str) -> Markup:
-    return tag("pre", tag("code", text), class_="code", tabindex=0)
+    return tag("pre", tag("code", wrapped_lines(text, joined(text))), class_="code")
 
 
 class _Renderer(RendererHTML):

@@ -26,6 +26,9 @@ SHARPER = 1.5
 """Pixels drawn for each of a page's, each way: screens have more than one."""
 
 
+BLANK = 10.0
+"""Levels of 255 that greys spread over, as a standard deviation, where there is next to nothing to see."""
+
 FEW_COLOURS = 2048
 """Colours that a diagram has at most; terrain has tens of thousands."""
 
@@ -84,6 +87,13 @@ def is_diagram(picture: NDArray[np.uint8]) -> bool:
     """Whether a picture has few colours: compression damages its thin lines, which terrain tolerates."""
     colours = picture[..., :3].astype(np.uint32) @ np.array([1, 256, 65536], np.uint32)
     return np.unique(colours).size <= FEW_COLOURS
+
+
+def is_blank(path: Path) -> bool:
+    """Whether a stored picture shows next to nothing, seen from as far as a stamp: all black, say."""
+    with Image.open(path) as image:
+        small = image.convert("L").resize((64, 36), Image.Resampling.BOX)
+    return float(np.asarray(small, np.float64).std()) < BLANK
 
 
 def larger(scene: Scene) -> Scene:

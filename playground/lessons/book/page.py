@@ -10,16 +10,18 @@ from dataclasses import dataclass
 from playground._version import __version__
 from playground.lessons.book.blocks import Setting, block_html, open_command
 from playground.lessons.book.html import Anchor, line, plain
+from playground.lessons.course import parts
 from playground.lessons.glossary import Term, alphabetical, linked_term, terms_of
+from playground.lessons.heroes import HERO
 from playground.lessons.library import LANGUAGES, THESIS, Labels
-from playground.lessons.model import Lesson
+from playground.lessons.model import Lesson, Section
 from playground.markup import Markup, joined, tag
 
 FIGURES = "figures"
 """The name of the gallery's page."""
 
 POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; "
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; font-src 'self'; "
     "base-uri 'none'; form-action 'none'"
 )
 """What a page may load: files of the book. Of pages opened from disk, browsers take those for 'self'."""
@@ -51,14 +53,14 @@ class Book:
             return {"href": "#play"}
         if term := linked_term(link):
             href = f"{GLOSSARY}.html#{term.key}"
-            return {"href": href, "class_": "term", "title": term.definition(self.language)}
+            return {"href": href, "class_": "term", "data_means": term.definition(self.language)}
         return {"href": link}
 
 
-def lesson_page(book: Book, lesson: Lesson, setting: Setting) -> str:
-    """Return the page of a lesson."""
+def lesson_page(book: Book, lesson: Lesson, setting: Setting, hero: Markup | None = None) -> str:
+    """Return the page of a lesson, with a picture at its head."""
     body: list[Markup] = []
-    first = True
+    first = hero is None
     for number, section in enumerate(lesson.sections):
         inside = []
         for block in section.blocks:
@@ -67,7 +69,7 @@ def lesson_page(book: Book, lesson: Lesson, setting: Setting) -> str:
         if not section.title:
             body.append(joined(*inside))
             continue
-        title = f"s{number}-{slug(plain(section.title))}"
+        title = section_id(number, section)
         heading = tag("h2", setting.line(section.title), id=title)
         body.append(tag("section", heading, *inside, aria_labelledby=title))
     label = book.label
@@ -75,32 +77,73 @@ def lesson_page(book: Book, lesson: Lesson, setting: Setting) -> str:
     kicker = f"{label('lesson')} {lesson.number} · {minutes}"
     head = tag(
         "header",
+        _pager(book, lesson, "above"),
         tag("p", kicker, class_="kicker"),
         tag("h1", lesson.title),
         tag("p", tag("b", label("goal")), label("colon"), setting.line(lesson.goal), class_="goal"),
         tag("p", label("stale"), class_="stale") if lesson.stale else None,
+        tag("figure", hero, class_="hero") if hero else None,
     )
-    ending = (_play(book, lesson), _references(book, lesson, setting.anchor), _pager(book, lesson))
+    ending = (_play(book, lesson), _references(book, lesson, setting.anchor), _pager(book, lesson, "below"))
     runs = lesson.name if setting.live else None
-    return _page(book, lesson.title, lesson.name, joined(head, *body, *ending), runs=runs)
+    side = _contents_of(book, lesson, setting)
+    return _page(book, lesson.title, lesson.name, joined(head, *body, *ending), runs=runs, side=side)
+
+
+def section_id(number: int, section: Section) -> str:
+    """Return the id of a lesson's section, by its place among them."""
+    return f"s{number}-{slug(plain(section.title))}"
+
+
+def _contents_of(book: Book, lesson: Lesson, setting: Setting) -> Markup:
+    """Return the list of a page's sections, to stand at its side."""
+    found = [
+        (section_id(number, section), line(section.title, lambda link: {}))
+        for number, section in enumerate(lesson.sections)
+        if section.title
+    ]
+    found += [("play-title", joined(book.label("play"))), ("thesis-title", joined(book.label("thesis")))]
+    rows = [tag("li", tag("a", title, href=f"#{place}")) for place, title in found]
+    title = book.label("on_this_page")
+    inside = tag("details", tag("summary", title), tag("ol", *rows))
+    return tag("nav", inside, class_="toc", aria_label=title)
+
+
+def hero_image(source: str, alt: str, *, lazy: bool = False) -> Markup:
+    """Return a hero as an element with its size."""
+    width, height = HERO
+    loading = "lazy" if lazy else None
+    return tag("img", src=source, alt=alt, width=width, height=height, loading=loading, decoding="async")
 
 
 def contents_page(book: Book, covers: Mapping[str, Markup]) -> str:
-    """Return the page with the list of lessons; ``covers`` are their first pictures."""
-    rows = []
-    for lesson in book.lessons:
-        name = tag("span", f"{lesson.number}. {lesson.title}", class_="name")
-        link = tag("a", covers[lesson.name], name, href=f"{lesson.name}.html")
-        rows.append(tag("li", link, tag("p", line(lesson.goal, book.anchor))))
-    label = book.label
+    """Return the page with the lessons, part by part; ``covers`` are their pictures."""
+    label, shown = book.label, []
+    by_name = {lesson.name: lesson for lesson in book.lessons}
+    for number, part in enumerate(parts(), 1):
+        cards = [_card(book, by_name.pop(name), covers[name]) for name in part.lessons if name in by_name]
+        if cards:
+            title, place = part.titles[book.language], f"part-{number}"
+            heading = tag("h2", title, id=place)
+            shown.append(tag("section", heading, tag("ol", *cards, class_="cards"), aria_labelledby=place))
+    if by_name:  # lessons whose texts are elsewhere
+        cards = [_card(book, lesson, covers[name]) for name, lesson in by_name.items()]
+        shown.append(tag("ol", *cards, class_="cards"))
     figures = tag("a", label("figures"), href=f"{FIGURES}.html")
     body = joined(
         tag("header", tag("h1", label("book")), tag("p", label("book_goal"), class_="goal")),
-        tag("ol", *rows, class_="cards"),
-        tag("p", figures, Markup(" — "), label("figures_goal")) if book.gallery else None,
-        tag("p", label("source", thesis=THESIS)),
+        *shown,
+        tag("p", figures, Markup(" — "), label("figures_goal"), class_="more") if book.gallery else None,
+        tag("p", label("source", thesis=THESIS), class_="more"),
     )
-    return _page(book, label("book"), "index", body)
+    return _page(book, label("book"), "index", body, wide=True)
+
+
+def _card(book: Book, lesson: Lesson, cover: Markup) -> Markup:
+    name = tag("span", f"{lesson.number}. {lesson.title}", class_="name")
+    link = tag("a", cover, name, href=f"{lesson.name}.html")
+    minutes = book.label("minutes", n=lesson.minutes, exercises=lesson.exercise_minutes)
+    return tag("li", link, tag("p", line(lesson.goal, book.anchor)), tag("p", minutes, class_="kicker"))
 
 
 def gallery_page(book: Book, body: Markup) -> str:
@@ -175,7 +218,14 @@ def _head(title: str, folder: str = "../") -> Markup:
 
 
 def _page(
-    book: Book, title: str, name: str, body: Markup, *, wide: bool = False, runs: str | None = None
+    book: Book,
+    title: str,
+    name: str,
+    body: Markup,
+    *,
+    wide: bool = False,
+    runs: str | None = None,
+    side: Markup | None = None,
 ) -> str:
     label = book.label
     others = [
@@ -189,17 +239,19 @@ def _page(
         tag("a", label("figures"), href=f"{FIGURES}.html") if book.gallery else None,
         tag("a", label("glossary"), href=f"{GLOSSARY}.html"),
         *others,
+        tag("button", label("search"), type="button", id="search", hidden=True),
         tag("button", label("theme"), type="button", id="theme", hidden=True),
         class_="top",
         aria_label=label("contents"),
     )
     scripted = ["backward", "forward", "run", "stop", "side", "over", "copy", "copied", "theme"]
-    scripted += ["live", "live_goal"]
+    scripted += ["live", "live_goal", "search", "search_hint", "found_none", "found", "close"]
+    main = tag("main", body, id="main", class_="wide" if wide else None)
     page = tag(
         "body",
         tag("a", label("skip"), href="#main", class_="skip"),
         top,
-        tag("main", body, id="main", class_="wide" if wide else None),
+        tag("div", side, main, class_="sheet with-side" if side else "sheet"),
         tag("footer", tag("p", label("made_by", version=__version__, renderer=book.renderer))),
         data_lesson=runs,
         **{f"data_{key}": label[key] for key in scripted},
@@ -248,7 +300,8 @@ def paper_html(paper: str) -> Markup:
     return joined(text, tag("a", f"https://{link}", href=f"https://{link}") if link else None)
 
 
-def _pager(book: Book, lesson: Lesson) -> Markup:
+def _pager(book: Book, lesson: Lesson, where: str) -> Markup:
+    """Return the links to the lessons before and after; they stand above a lesson and below it."""
     place = book.lessons.index(lesson)
     before = book.lessons[place - 1] if place else None
     after = book.lessons[place + 1] if place + 1 < len(book.lessons) else None
@@ -257,5 +310,5 @@ def _pager(book: Book, lesson: Lesson) -> Markup:
         tag("a", f"← {before.title}", href=f"{before.name}.html", rel="prev") if before else None,
         tag("a", f"{after.title} →", href=f"{after.name}.html", rel="next") if after else None,
         class_="pager",
-        aria_label=f"{book.label('previous')}, {book.label('next')}",
+        aria_label=f"{book.label('previous')}, {book.label('next')} ({book.label(where)})",
     )

@@ -21,13 +21,17 @@ export function valueAt(row, values, place) {
   return from.map((part, at) => mixed(part, to[at]));
 }
 
-/** A value as a reader sees it: with its unit, in the places that suit the parameter.
+/** A value as a reader sees it: with its unit, in the places that suit the parameter; each part of a
+ *  direction has its degrees, as in lessons/values.py.
  *  @param {Shown} row @param {Value} value @param {boolean} comma */
 export function spelled(row, value, comma) {
   if (typeof value === "boolean") return write(row, value);
   if (row.widget === "colour" && Array.isArray(value)) return toHex(value, row.raw);
   const all = Array.isArray(value) ? value : [value];
-  const numbers = all.map((number, part) => written(row, Number(number), part));
-  const text = numbers.join("; ") + unitOf(row);
-  return comma ? text.replaceAll(".", ",") : text;
+  const unit = unitOf(row), degrees = unit === "°";
+  const numbers = all.map((number, part) => {
+    const text = written(row, Number(number), part);
+    return (comma ? text.replaceAll(".", ",") : text) + (degrees ? unit : "");
+  });
+  return degrees ? numbers.join(", ") : numbers.join(comma ? "\u00a0; " : ", ") + unit;
 }
