@@ -81,10 +81,12 @@ Span octave_span(Octaves o, int from, int to) {
     return span;
 }
 
+// anchor: height
 float column_height(Column c, float t) {
     float high = c.high.x + t * (c.high.y + t * c.high.z);
     return c.low.x + t * (c.low.y + t * (c.low.z + t * (c.low.w + t * high)));
 }
+// end: height
 
 // The same polynomial, counted from t on: Horner's scheme, each time one coefficient shorter.
 Column column_moved(Column c, float t) {

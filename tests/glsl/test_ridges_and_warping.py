@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from .drawing import salt
+from .terrains import toml_value
 from .test_gradient_noise import SHIFT, perlin
 
 RIDGES, WARPING = "generation/gradient_noise/ridges", "generation/gradient_noise/warping"
@@ -18,9 +19,7 @@ def read(any_engine, make_sketch):
     """Give a texture of one pass, float64."""
 
     def of(use, output="", size=SIZE, extent=EXTENT, **values):
-        given = "".join(
-            f"{k} = {str(v).lower() if isinstance(v, bool) else repr(v)}\n" for k, v in values.items()
-        )
+        given = "".join(f"{k} = {toml_value(v)}\n" for k, v in values.items())
         text = f'[[pass]]\nname = "a"\nuse = "{use}"\n[pass.set]\n{given}'
         sketch = make_sketch(text, size=list(size), extent=list(extent))
         return any_engine.read(sketch, f"a{output}").astype(np.float64)
