@@ -11,6 +11,7 @@ import typer
 
 from playground.commands import options
 from playground.commands.arguments import FAILED, Renderer, command_group, help_text
+from playground.commands.lesson_present import present
 from playground.commands.live import check_display, open_window
 from playground.commands.options import complete_language, complete_lesson, flag, positional, value
 from playground.errors import PlaygroundError, SketchError, counted, nearest
@@ -76,6 +77,16 @@ BUILD_HELP = help_text(
     "playground lesson build --notebooks -o notebooks",
 )
 
+PRESENT_HELP = help_text(
+    "Present a lesson to a class: full screen, large type, one thought at a time.\n\n"
+    "Space, PgDn or a clicker goes on; ? shows every key; Esc goes back to the window. The teacher's notes,"
+    " with a clock, are at the address that is printed, for a browser on this machine. --video writes the"
+    " presentation as a film, its notes as subtitles (.srt) next to it, without a window.",
+    "playground lesson present diamond_square",
+    "playground lesson present diamond_square --lang fr --from 12",
+    "playground lesson present diamond_square --video talk.mp4",
+)
+
 app = command_group("lesson", HELP, "Lessons on terrain: read them, build them as a book or notebooks.")
 
 NameArgument = Annotated[str, positional("NAME", "A lesson.", complete_lesson)]
@@ -117,6 +128,9 @@ def open_(
     renderer: Renderer = ctx.obj.or_else(software)
     check_display(renderer)
     open_window(sketch, None, renderer, lesson=name, language=language)
+
+
+app.command("present", help=PRESENT_HELP)(present)
 
 
 @app.command("status", help=STATUS_HELP)
