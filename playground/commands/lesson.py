@@ -11,6 +11,7 @@ import typer
 
 from playground.commands import options
 from playground.commands.arguments import FAILED, Renderer, command_group, help_text
+from playground.commands.lesson_present import present
 from playground.commands.live import check_display, open_window
 from playground.commands.options import complete_language, complete_lesson, flag, positional, value
 from playground.errors import PlaygroundError, SketchError, counted, nearest
@@ -78,6 +79,16 @@ BUILD_HELP = help_text(
     "playground lesson build --notebooks -o notebooks",
 )
 
+PRESENT_HELP = help_text(
+    "Present a lesson to a class: full screen, large type, one thought at a time.\n\n"
+    "Space, PgDn or a clicker goes on; ? shows every key; Esc goes back to the window. The teacher's notes,"
+    " with a clock, are at the address that is printed, for a browser on this machine. --video writes the"
+    " presentation as a film, its notes as subtitles (.srt) next to it, without a window.",
+    "playground lesson present diamond_square",
+    "playground lesson present diamond_square --lang fr --from 12",
+    "playground lesson present diamond_square --video talk.mp4",
+)
+
 app = command_group("lesson", HELP, "Lessons on terrain: read them, build them as a book or notebooks.")
 
 NameArgument = Annotated[str, positional("NAME", "A lesson.", complete_lesson)]
@@ -131,6 +142,9 @@ def _lesson_read_last() -> str:
 
     names, last = lesson_names(), read_progress(progress_file()).lesson
     return last if last in names else names[0]
+
+
+app.command("present", help=PRESENT_HELP)(present)
 
 
 @app.command("status", help=STATUS_HELP)

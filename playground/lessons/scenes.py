@@ -121,6 +121,14 @@ def _check_steps(file: TomlFile, place: Place, scene: Scene) -> None:
         raise file.error(error.diagnostics[0].message, *place, "steps") from None
 
 
+def comparable(first: Scene, second: Scene) -> bool:
+    """Return whether a line can part them: one sketch shows both, at one time and from one place."""
+    one, other = (
+        (scene.sketch.file, scene.time, scene.view, scene.sketch.camera) for scene in (first, second)
+    )
+    return one == other
+
+
 def with_steps(scene: Scene, steps: Mapping[str, int]) -> Scene:
     """Return the picture with repeated passes stopped after so many iterations."""
     return replace(scene, steps=tuple({**dict(scene.steps), **steps}.items()), plain=False)

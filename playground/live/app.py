@@ -41,6 +41,7 @@ from playground.live.overlay import checking_text, draw_behind, draw_checking, d
 from playground.live.panel import Panel
 from playground.live.part_labels import draw_part_labels
 from playground.live.picture_keys import PictureKeys
+from playground.live.present.stage import Presenting, Stage
 from playground.live.status import Status
 from playground.live.window import Window, wake
 from playground.live.window_place import Place
@@ -89,6 +90,7 @@ def run(
     lesson: str = "",
     language: str = "",
     show_lessons: bool = False,
+    present: Presenting | None = None,
     cache_limit: int = 0,
     time_limit: float | None = None,
     sandbox: Sandbox | None = None,
@@ -100,10 +102,10 @@ def run(
     ``size`` in the screen's units, ``values`` by path as ``--set`` takes them. The user's edits
     of the last time are restored, unless ``fresh``. ``lesson`` opens one by name, in a
     ``language`` by code; ``show_lessons`` opens the one read last, or the first, next to the sketch,
-    unless the reader has closed the lessons. Expensive terrain is cached on disk, in at most
-    ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s] the window closes itself.
-    ``sandbox``: one that has been started already, and is its owner's. ``report`` receives each error,
-    for the terminal. ``remotes`` are closed by who opened them.
+    unless the reader has closed the lessons; ``present`` begins a presentation of it. Expensive terrain
+    is cached on disk, in at most ``cache_limit`` bytes, and taken from there. With a ``time_limit`` [s]
+    the window closes itself. ``sandbox``: one that has been started already, and is its owner's.
+    ``report`` receives each error, for the terminal. ``remotes`` are closed by who opened them.
     Raises ``ContextError`` where no window can be opened, ``SketchError`` where there is no such
     sketch, lesson or language, ``ParameterError`` for a value that does not fit; any other
     mistake in the sketch is shown in the window.
@@ -143,7 +145,10 @@ def run(
         if found.at is not None:
             live.place.move_to(found.at)
         live.lessons.begin(lesson, language, show_lessons=show_lessons)
+        if present is not None:
+            live.stage.begin(present)
         stack.callback(live.release)
+        stack.callback(live.stage.close)
         stack.callback(live.bench.captures.close)
         stack.callback(live.finish_painting, report)
         stack.callback(autosave.close)
@@ -219,6 +224,7 @@ class Live:
         session.engine.runner.inputs.is_live = True
         self.finite = FiniteWatch()
         self.lessons = Lessons(self.bench, autosave, self._remember)
+        self.stage = Stage(self.bench, self.lessons.reader, wake)
         self.remotes = Remotes()
 
     def run(self, time_limit: float | None = None) -> None:
@@ -227,7 +233,11 @@ class Live:
         self.guard.run("watching the files", self.follower.follow, None)
         while self._stays_open():
             now = self.bench.notices.now()
-            others = self.bench.inspection.patience(now), self.lessons.reader.patience(now)
+            others = (
+                self.bench.inspection.patience(now),
+                self.lessons.reader.patience(now),
+                self.stage.patience,
+            )
             patience = min(self._patience(), *others)
             if end is not None:
                 left = end - time.perf_counter()
@@ -237,6 +247,7 @@ class Live:
             self._sleep(patience)
             self.guard.run("reading what was saved", self._take_saved, None)
             self.guard.run("what a remote asks for", self.remotes.take, None)
+            self.guard.run("what the notes ask for", self.stage.take, None)
             if self.window.pixels != (0, 0):
                 self._draw_frame()
             if self.window.lost:
@@ -266,6 +277,7 @@ class Live:
         """Release all that was made in the window's context."""
         self.bench.inspection.release()
         self.lessons.release()
+        self.stage.release()
         self.painter.release()
         self.session.engine.runner.inputs.close()
         self.session.release()
@@ -327,6 +339,9 @@ class Live:
         window.zoom = bench.interface.size.size
         window.begin()
         bench.inspection.begin()
+        if self.stage.on:
+            self._draw_presentation()
+            return
         left = guard.draw("the lesson's panel", lambda: self.lessons.draw(look), 0.0)
         if bench.interface.panel_shown:
             left += guard.draw("the panel", lambda: self.panel.draw(bench, look, left), 0.0)
@@ -346,6 +361,25 @@ class Live:
         self._draw_over(picture, area)
         room_left = (skipped, 0, wide - skipped, high)
         guard.run("showing the picture", lambda: self._show(picture, room_left), None)
+        window.end()
+        guard.run("what follows a picture", self._follow_up, None)
+
+    def _draw_presentation(self) -> None:
+        """Draw the rest of a frame while a lesson is presented: its picture, and what is written of it."""
+        window, bench, guard, stage = self.window, self.bench, self.guard, self.stage
+        place, density = stage.area(window.pixels), window.density
+        area: Area = (0.0, 0.0, place[2] / density, place[3] / density)
+        if guard.draw("keys and mouse of the presentation", lambda: stage.act(area), False):
+            guard.draw("the mouse over the picture", lambda: self._act(area), None)
+        picture = guard.run("the picture", lambda: self._picture((place[2], place[3])), None)
+        guard.run("taking in the picture", self._take_in, None)
+        if picture is not None:
+            guard.run(
+                "the picture it is compared with", lambda: bench.inspection.compare.follow(picture), None
+            )
+        bench.inspection.update()
+        guard.draw("the presentation", lambda: stage.draw(window.pixels, density, area), None)
+        guard.run("showing the picture", lambda: self._show(picture, place), None)
         window.end()
         guard.run("what follows a picture", self._follow_up, None)
 

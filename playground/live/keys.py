@@ -72,6 +72,7 @@ KEYS: tuple[Key, ...] = (
     Key(_K.f2, "F2", "show the lessons, or no longer", lambda b: b.lessons.toggle()),
     Key(_K.page_down, "PgDn", "a page of the lesson on", lambda b: b.lessons.turn_page(1)),
     Key(_K.page_up, "PgUp", "a page of the lesson back", lambda b: b.lessons.turn_page(-1)),
+    Key(_K.f5, "F5", "present the lesson to a class, full screen", lambda b: b.lessons.present()),
     Key(_K.none, "/", "search the parameters", lambda b: b.interface.search(), letter="/"),
     Key(_K.f11, "F11", "fill the screen, or no longer", lambda b: b.window.toggle_full()),
     Key(_K.none, "?", _HELP, lambda b: b.interface.toggle_keymap(), letter="?", brief="keys"),

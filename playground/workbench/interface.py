@@ -127,3 +127,5 @@ class LessonControls:
     toggle: Callable[[], None] = lambda: None  # shows them, or no longer
     is_shown: Callable[[], bool] = lambda: False
     turn_page: Callable[[int], None] = lambda pages: None
+    present: Callable[[], None] = lambda: None  # in front of a class
+    beat: Callable[[], int] = lambda: 0  # the number of the beat that is presented; 0 for none

@@ -9,6 +9,7 @@ from imgui_bundle import imgui
 
 from playground.errors import ParameterError
 from playground.lessons.model import Compare, Figure, Slider, Steps
+from playground.lessons.scenes import comparable
 from playground.live import theme
 from playground.live.lesson.page import Page
 from playground.live.parameter_row import Rows
@@ -16,7 +17,6 @@ from playground.live.sliders import slide_whole
 from playground.sketch.assign import resolve
 from playground.sketch.values import write
 from playground.workbench.lesson.figure_state import path_of
-from playground.workbench.lesson.figure_view import comparable
 from playground.workbench.lesson.reader import BOTH
 
 _ON, _OFF = theme.ACCENT, theme.LINE

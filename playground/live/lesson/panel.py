@@ -22,6 +22,7 @@ from playground.lessons.model import (
     Slider,
     Steps,
 )
+from playground.lessons.present.labels import labels_of
 from playground.live import theme
 from playground.live.draw import SIDE_PANEL, button, inked, styled, window
 from playground.live.lesson.code_blocks import draw_break, draw_code_block
@@ -141,6 +142,8 @@ def _head(page: Page) -> None:
         reader.toggle()
     with look.font(look.bold, theme.TEXT_SIZE + 5):
         imgui.text_wrapped(written(lesson.title))
+    if page.button(labels_of(reader.language)["present"], labels_of(reader.language)["present_note"]):
+        reader.bench.lessons.present()
     with look.font(look.text, theme.SMALL):
         minutes = page.say("minutes", lesson.minutes, lesson.exercise_minutes)
         imgui.text_disabled(f"{minutes}   {page.say('page', reader.index + 1, _count(page))}")

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError
 from playground.lessons.model import Scene
+from playground.lessons.scenes import comparable
 from playground.sketch.load import load
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import DEFAULT_PICTURE
@@ -196,14 +197,6 @@ class FigureView:
         self.before_lesson = self.scene = self.key = self._first = None
         self._waits = False
         self.session.view.framed_for = DEFAULT_PICTURE
-
-
-def comparable(first: Scene, second: Scene) -> bool:
-    """Return whether a line can part them: one sketch shows both, at one time and from one place."""
-    one, other = (
-        (scene.sketch.file, scene.time, scene.view, scene.sketch.camera) for scene in (first, second)
-    )
-    return one == other
 
 
 def _record_change(history: History, before: Edits, after: Edits, now: float) -> None:

@@ -14,11 +14,12 @@ from playground.errors import PlaygroundError
 from playground.lessons.library import LANGUAGES, preferred_language
 from playground.lessons.model import Block, Compare, Exercise, Figure, Lesson, Scene, Section, Slider, Steps
 from playground.lessons.read import Summary
+from playground.lessons.scenes import comparable
 from playground.workbench.bench import Bench
 from playground.workbench.lesson.bugs import Bugs
 from playground.workbench.lesson.catalogue import Catalogue
 from playground.workbench.lesson.figure_state import steps_of
-from playground.workbench.lesson.figure_view import FigureView, comparable
+from playground.workbench.lesson.figure_view import FigureView
 from playground.workbench.lesson.labels import labels_in
 from playground.workbench.lesson.measurements import Numbers
 from playground.workbench.lesson.progress import Progress, progress_file, write_progress

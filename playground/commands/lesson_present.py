@@ -1,0 +1,73 @@
+"""Present a lesson to a class, in the window or as a film."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from playground.commands import options
+from playground.commands.arguments import Renderer, read_pixels
+from playground.commands.live import check_display, open_window
+from playground.commands.options import complete_lesson, flag, positional, value
+from playground.errors import ParameterError, SketchError, nearest
+from playground.terminal import note, progress
+
+if TYPE_CHECKING:
+    from playground.lessons.model import Lesson
+
+FILM_SIZE = (1280, 720)
+"""Pixels of a film, where none are given."""
+
+
+def present(
+    ctx: typer.Context,
+    name: Annotated[str, positional("NAME", "A lesson.", complete_lesson)],
+    lang: options.Language = "",
+    beat: Annotated[int, value("--from BEAT", "The number of the beat to begin at.")] = 1,
+    no_notes: Annotated[bool, flag("--no-notes", "Without the page of notes, or subtitles.")] = False,
+    video: Annotated[str, value("--video FILE", "Write it as a film: .mp4, .webm or .gif.")] = "",
+    size: options.Size = None,
+    software: options.Software = False,
+) -> None:
+    """Present a lesson to a class."""
+    from playground.lessons.library import LANGUAGES, lesson_file, preferred_language
+    from playground.lessons.present.beats import beats_of
+    from playground.lessons.read import read_lesson
+
+    if lang and lang not in LANGUAGES:
+        raise SketchError(f"--lang {lang}: no such language{nearest(lang, LANGUAGES)}")
+    lesson_file(name)  # says so where there is none
+    lesson = read_lesson(name, lang or preferred_language())
+    count = len(beats_of(lesson))
+    if not 1 <= beat <= count:
+        raise ParameterError(f"--from {beat}: lesson {name} has beats 1 to {count}")
+    renderer, pixels = ctx.obj.or_else(software), read_pixels(size)
+    if video:
+        _film(lesson, beat, video, pixels, renderer, subtitles=not no_notes)
+        return
+    check_display(renderer)
+    from playground.live.present.stage import Presenting
+
+    presenting = Presenting(beat, notes=not no_notes, say=note)
+    open_window(lesson.sketch, pixels, renderer, lesson=name, language=lesson.language, present=presenting)
+
+
+def _film(
+    lesson: Lesson,
+    first: int,
+    video: str,
+    size: tuple[int, int] | None,
+    renderer: Renderer,
+    *,
+    subtitles: bool,
+) -> None:
+    """Write the film, and print the paths of what was written."""
+    from playground.live.present.film import film_of, write_presentation
+
+    film = film_of(lesson, Path(video).expanduser(), size or FILM_SIZE, first=first - 1)
+    film.check()
+    with renderer.open_engine() as engine, progress(f"filming {lesson.name}", len(film.beats)) as done:
+        for path in write_presentation(engine, film, subtitles=subtitles, done=done, notice=note):
+            print(path)

@@ -1,0 +1,7 @@
+"""A lesson in front of a class: its blocks as beats, each with little to read and one picture.
+
+beats       from a lesson to its beats
+sentences   what of a text is shown large, and what is only in the notes
+spoken      how long a beat is read, and its notes as subtitles
+labels      the words around beats, in each language
+"""

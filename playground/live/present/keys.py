@@ -1,0 +1,106 @@
+"""The keys of a presentation: one table, which its help shows as well. A clicker sends some of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from imgui_bundle import imgui
+
+from playground.live.text_field import letters
+
+if TYPE_CHECKING:
+    from playground.live.present.stage import Stage
+
+_K = imgui.Key
+
+
+@dataclass(frozen=True)
+class PresentKey:
+    """Keys that do one thing, and what that is in each language."""
+
+    keys: tuple[imgui.Key, ...]
+    name: str
+    meaning: tuple[str, str]  # English, French
+    act: Callable[[Stage], None]
+    typed: str = ""  # letters that do it too, wherever the keyboard has them
+    repeats: bool = False
+
+
+KEYS: tuple[PresentKey, ...] = (
+    PresentKey(
+        (_K.right_arrow, _K.space, _K.page_down),
+        "→  Space  PgDn  click",
+        ("next", "suivant"),
+        lambda stage: stage.presenter.next(),
+    ),
+    PresentKey(
+        (_K.left_arrow, _K.page_up, _K.backspace),
+        "←  PgUp  Backspace",
+        ("back", "précédent"),
+        lambda stage: stage.presenter.back(),
+    ),
+    PresentKey((_K.home,), "Home", ("first", "premier"), lambda stage: stage.presenter.go(0)),
+    PresentKey(
+        (_K.end,), "End", ("last", "dernier"), lambda stage: stage.presenter.go(len(stage.presenter.beats))
+    ),
+    PresentKey(
+        (_K.enter, _K.keypad_enter),
+        "number, Enter",
+        ("go to that one", "aller à ce numéro"),
+        lambda stage: stage.enter(),
+    ),
+    PresentKey(
+        (_K.b, _K.period),
+        ".  B",
+        ("black screen", "écran noir"),
+        lambda stage: stage.presenter.cover("black"),
+        typed=".",
+    ),
+    PresentKey((_K.w,), "W", ("white screen", "écran blanc"), lambda stage: stage.presenter.cover("white")),
+    PresentKey(
+        (_K.up_arrow,),
+        "1–9, then ↑ ↓ or wheel",
+        ("choose a slider, move it", "choisir un curseur, le déplacer"),
+        lambda stage: stage.slide(1.0),
+        repeats=True,
+    ),
+    PresentKey((_K.down_arrow,), "", ("", ""), lambda stage: stage.slide(-1.0), repeats=True),
+    PresentKey((_K.p,), "P", ("spot at the mouse", "point lumineux"), lambda stage: stage.toggle_laser()),
+    PresentKey((_K.d,), "D", ("draw with the mouse", "dessiner à la souris"), lambda s: s.toggle_pen()),
+    PresentKey((_K.e,), "E", ("erase", "effacer"), lambda stage: stage.presenter.erase()),
+    PresentKey((_K.n,), "N", ("address of the notes", "adresse des notes"), lambda s: s.say_address()),
+    PresentKey((_K.f, _K.f11), "F", ("full screen", "plein écran"), lambda stage: stage.toggle_full()),
+    PresentKey((_K.h,), "?  H", ("these keys", "ces touches"), lambda stage: stage.toggle_help(), typed="?"),
+    PresentKey(
+        (_K.escape,), "Esc", ("leave the presentation", "quitter la présentation"),
+        lambda stage: stage.presenter.escape(),
+    ),
+)  # fmt: skip
+
+
+def help_rows(language: str) -> tuple[tuple[str, str], ...]:
+    """Return the keys and their meanings, in a language."""
+    which = 1 if language == "fr" else 0
+    return tuple((key.name, key.meaning[which]) for key in KEYS if key.name)
+
+
+def act_on_presentation_keys(stage: Stage) -> None:
+    """Act on the keys pressed since the last frame."""
+    io = imgui.get_io()
+    if (io.key_ctrl or io.key_super) and imgui.is_key_pressed(_K.q, repeat=False):
+        stage.quit()
+        return
+    if io.key_ctrl or io.key_alt or io.key_super:
+        return
+    typed = letters()
+    for digit in filter(str.isdecimal, typed):
+        stage.presenter.type(digit)
+        stage.choose()
+    for key in KEYS:
+        pressed = any(imgui.is_key_pressed(one, repeat=key.repeats) for one in key.keys)
+        if pressed or (key.typed and key.typed in typed):
+            key.act(stage)
+            if not stage.presenter.on:
+                return

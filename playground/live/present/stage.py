@@ -1,0 +1,322 @@
+"""A presentation in the window: its keys and mouse, what is written over the picture, the teacher's notes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.errors import DataError, ParameterError, PlaygroundError
+from playground.lessons.present.beats import Beat, texts_of_beat, with_texts
+from playground.lessons.present.labels import labels_of
+from playground.live.draw import Area
+from playground.live.present.keys import act_on_presentation_keys, help_rows
+from playground.live.present.overlays import Overlays
+from playground.live.present.pen import Pen
+from playground.live.present.slide import Gauge, Sizes, board_of, gauges_of, help_of, plate_of, strip_of
+from playground.live.present.told import told
+from playground.remote.notes import Notes
+from playground.workbench.bench import Bench
+from playground.workbench.lesson.presented_pictures import PresentedPictures, Row
+from playground.workbench.lesson.presenter import Presenter
+from playground.workbench.lesson.reader import Reader
+
+_CLICK = 5.0  # units that the mouse may move while it is pressed, and it is a click all the same
+_HIDES = 2.5  # [s] without a move after which the mouse is hidden
+
+
+@dataclass(frozen=True)
+class Presenting:
+    """How a presentation is to begin: at which beat, from 1 (0: at the open page), and with notes or not."""
+
+    beat: int = 0
+    notes: bool = True
+    say: Callable[[str], None] = lambda text: None  # to the terminal: where the notes are
+
+
+class Stage:
+    """The presentation of one window; ``wake`` ends the window's sleep, from any thread."""
+
+    def __init__(self, bench: Bench, reader: Reader, wake: Callable[[], None]) -> None:
+        self.bench, self.reader = bench, reader
+        self.pictures = PresentedPictures(reader)
+        self.presenter: Presenter = Presenter(self._show, self._left, bench.notices.now)
+        self.notes: Notes | None = None
+        self._wake = wake
+        self._overlays = Overlays()
+        self._pen = Pen()
+        self._was_full = False
+        self._moved = 0.0  # when the mouse moved last [s]
+        self._told: object = None
+        bench.lessons.present = self.begin
+        bench.lessons.beat = lambda: self.presenter.at + 1 if self.on else 0
+
+    # ── beginning and end ────────────────────────────────────────────────────
+
+    @property
+    def on(self) -> bool:
+        """Whether a lesson is presented."""
+        return self.presenter.on
+
+    def begin(self, options: Presenting = Presenting()) -> None:
+        """Present the lesson that is open, or the one read last; fills the screen."""
+        reader, notices = self.reader, self.bench.notices
+        if reader.lesson is None and not reader.open(show=False):
+            return
+        lesson = reader.lesson
+        if lesson is None:
+            return
+        reader.progress.shown = True
+        reader.bugs.close_all()
+        self.pictures.shown = None
+        reader.numbers.want(lesson, lesson.blocks)
+        try:
+            self.presenter.begin(lesson, beat=options.beat - 1 if options.beat else None, page=reader.index)
+        except PlaygroundError as error:
+            notices.say(str(error))
+            return
+        if options.beat > len(self.presenter.beats):
+            self._note(self._say("no_beat", options.beat, len(self.presenter.beats)))
+        if options.notes and self.notes is None:
+            try:
+                self.notes = Notes(self._act, self._wake)
+            except DataError as error:
+                self._note(self._say("no_notes", error))
+        if self.notes is not None:
+            options.say(self._say("notes_at", self.notes.url))
+        self._was_full = self.bench.window.is_full()
+        if not self._was_full:
+            self.bench.window.toggle_full()
+
+    def _left(self, beat: Beat) -> None:
+        """Go back to the window: the lesson's panel, at the page of the last beat."""
+        if self.bench.window.is_full() and not self._was_full:
+            self.bench.window.toggle_full()
+        self.reader.playing = ""
+        self.reader.go(beat.page, show=False)
+        if self.reader.figure.scene is not None and beat.kind in ("broken", "hint"):
+            self.reader.figure.set_texts({})
+        self._tell()
+
+    def release(self) -> None:
+        """Release what was made in the session's context."""
+        self._overlays.release()
+
+    def close(self) -> None:
+        """Close the page of notes."""
+        if self.notes is not None:
+            self.notes.close()
+            self.notes = None
+
+    # ── frames ───────────────────────────────────────────────────────────────
+
+    @property
+    def patience(self) -> float:
+        """How long nothing needs to be done here [s]."""
+        if self.notes is not None and self.notes.waits:
+            return 0.0
+        if not self.on:
+            return 1.0
+        return 0.1 if self.bench.notices.now() - self._moved < _HIDES else self.presenter.patience
+
+    def take(self) -> None:
+        """Do what the page of notes asked for."""
+        if self.notes is not None:
+            self.notes.take()
+
+    def area(self, pixels: tuple[int, int]) -> tuple[int, int, int, int]:
+        """Return where the picture is: x, y from below, width, height [pixels]."""
+        sizes = Sizes(*pixels)
+        return 0, sizes.height - sizes.picture[1], *sizes.picture
+
+    def act(self, area: Area) -> bool:
+        """Act on keys and mouse; return whether the mouse is for the picture, which is in ``area``."""
+        presenter, io = self.presenter, imgui.get_io()
+        presenter.forget_typed()
+        self._follow_mouse()
+        act_on_presentation_keys(self)
+        if not presenter.on or presenter.blank:
+            return False
+        if self._slide_by_wheel(io.mouse_wheel):
+            return False
+        if presenter.pen:
+            self._pen.act(presenter, area)
+            return False
+        held = self.bench.inspection.compare.held
+        if imgui.is_mouse_released(0) and io.mouse_drag_max_distance_sqr[0] < _CLICK**2 and not held:
+            presenter.next()
+            return False
+        return not presenter.laser and not presenter.beat.has_board
+
+    def draw(self, pixels: tuple[int, int], density: float, area: Area) -> None:
+        """Draw what is over the picture, which is in ``area``, and the strip below it."""
+        presenter, sizes = self.presenter, Sizes(*pixels)
+        if not presenter.on:
+            return
+        draw = imgui.get_background_draw_list()
+        rows = self.pictures.sliders(presenter.beat)
+        self._write(sizes, rows)
+        line = self._line(area)
+        if line is not None:
+            top, bottom = ImVec2(line, area[1]), ImVec2(line, area[1] + area[3])
+            draw.add_line(top, bottom, 0xE0FFFFFF, 3 * sizes.scale / density)
+        margin = 24 * sizes.scale / density
+        self._overlays.draw("board", (area[0], area[1]), density)
+        self._pen.draw(presenter, area, sizes.scale / density)
+        offers = presenter.beat.kind in ("figure", "sweep") or presenter.slider >= 0
+        if offers and not presenter.beat.has_board:
+            self._overlays.draw("gauges", (area[0] + margin, area[1] + margin), density)
+        self._overlays.draw("strip", (area[0], area[1] + area[3]), density)
+        if presenter.helps:
+            self._overlays.draw("help", (area[0], area[1]), density)
+        self._overlays.draw("typed", (area[0] + margin, area[1] + area[3] / 2), density)
+        if presenter.laser and not presenter.blank:
+            self._pen.draw_spot(sizes.scale / density)
+        if presenter.blank:
+            room = imgui.get_main_viewport().size
+            colour = 0xFF000000 if presenter.blank == "black" else 0xFFFFFFFF
+            imgui.get_foreground_draw_list().add_rect_filled(ImVec2(0, 0), ImVec2(room.x, room.y), colour)
+        self._tell()
+
+    def _write(self, sizes: Sizes, rows: list[Row]) -> None:
+        """Have images of what is written, where another is due."""
+        presenter, ctx, overlays = self.presenter, self.bench.session.engine.ctx, self._overlays
+        beat = self._filled(presenter.beat)
+        place = presenter.at + 1, len(presenter.beats)
+        if not overlays.knows("strip", (ctx, beat, place, sizes)):
+            overlays.put("strip", (ctx, beat, place, sizes), strip_of(beat, place, sizes), ctx)
+            overlays.put("board", None, board_of(beat, sizes), ctx)
+        gauges = tuple(
+            Gauge(n + 1, row.title, row.text, row.share, n == presenter.slider) for n, row in enumerate(rows)
+        )
+        if not overlays.knows("gauges", (ctx, gauges, sizes)):
+            overlays.put("gauges", (ctx, gauges, sizes), gauges_of(gauges, sizes), ctx)
+        if presenter.helps and not overlays.knows("help", (ctx, sizes)):
+            rows_of_help = help_rows(self.reader.language)
+            overlays.put("help", (ctx, sizes), help_of(rows_of_help, sizes), ctx)
+        says = f"→ {presenter.typed}" if presenter.typed else presenter.notice
+        if not overlays.knows("typed", (ctx, says, sizes)):
+            overlays.put("typed", (ctx, says, sizes), plate_of(says, sizes), ctx)
+
+    def _filled(self, beat: Beat) -> Beat:
+        """Return a beat with the numbers that are measured by now in its texts."""
+        lesson = self.presenter.lesson
+        if lesson is None or not any("{{" in text for text in texts_of_beat(beat)):
+            return beat
+        return with_texts(beat, lambda text: self.reader.numbers.fill(text, lesson))
+
+    def _line(self, area: Area) -> float | None:
+        """Return where the line between two pictures is, from the left; None where there is none."""
+        compare = self.bench.inspection.compare
+        shown = compare.on and compare.picture is not None and len(self.presenter.beat.names) == 2
+        return area[0] + compare.split * area[2] if shown else None
+
+    def _follow_mouse(self) -> None:
+        """Hide the mouse while it rests, and under the spot."""
+        io, now = imgui.get_io(), self.bench.notices.now()
+        if io.mouse_delta.x or io.mouse_delta.y:
+            self._moved = now
+        if now - self._moved >= _HIDES or self.presenter.laser:
+            imgui.set_mouse_cursor(imgui.MouseCursor_.none)
+
+    # ── what keys do ─────────────────────────────────────────────────────────
+
+    def quit(self) -> None:
+        """Quit the program."""
+        self.bench.window.quit()
+
+    def enter(self) -> None:
+        """Go to the beat whose number was typed."""
+        number = self.presenter.typed
+        if why := self.presenter.enter():
+            self._note(self._say(why, number, len(self.presenter.beats)))
+
+    def choose(self) -> None:
+        """Say where a digit has no slider; whoever types a beat's number goes on."""
+        self.presenter.notice = ""
+
+    def slide(self, by: float) -> None:
+        """Move the slider that was chosen, or the first."""
+        rows = self.pictures.sliders(self.presenter.beat)
+        if rows and not self.presenter.blank:
+            self.presenter.slider = min(max(self.presenter.slider, 0), len(rows) - 1)
+            self.presenter.typed = ""
+            self.pictures.slide(rows[self.presenter.slider], by)
+
+    def _slide_by_wheel(self, turns: float) -> bool:
+        """Move the chosen slider by the wheel; return whether it is the slider's."""
+        if self.presenter.slider < 0 or not turns:
+            return False
+        self.slide(turns)
+        return True
+
+    def toggle_laser(self) -> None:
+        """Show a spot at the mouse, or no longer."""
+        self.presenter.toggle_laser()
+        self._note(self._say("laser_on") if self.presenter.laser else "")
+
+    def toggle_pen(self) -> None:
+        """Take the pen, or put it down."""
+        self.presenter.toggle_pen()
+        self._note(self._say("pen_on") if self.presenter.pen else "")
+
+    def toggle_full(self) -> None:
+        """Fill the screen, or no longer."""
+        self.bench.window.toggle_full()
+
+    def toggle_help(self) -> None:
+        """Show the keys, or no longer."""
+        self.presenter.helps = not self.presenter.helps
+
+    def say_address(self) -> None:
+        """Show where the notes are."""
+        self._note(self._say("notes_at", self.notes.url if self.notes else "–"))
+
+    def _note(self, sentence: str) -> None:
+        self.presenter.notice = "" if sentence == self.presenter.notice else sentence
+
+    def _show(self, beat: Beat) -> None:
+        self.pictures.show(beat)
+
+    def _say(self, key: str, *given: object) -> str:
+        return labels_of(self.reader.language)[key].format(*given)
+
+    # ── the page of notes ────────────────────────────────────────────────────
+
+    def _tell(self) -> None:
+        """Tell the page what is on, where that is new."""
+        presenter = self.presenter
+        if self.notes is None or presenter.lesson is None or not presenter.beats:
+            return
+        clock = presenter.clock
+        beat, coming = self._filled(presenter.beat), presenter.following
+        following = self._filled(coming) if coming is not None else None
+        key = presenter.on, presenter.at, beat, presenter.blank, clock.running, clock.begun
+        if key != self._told:
+            self._told = key
+            self.notes.tell(told(presenter, beat, following, self.reader.language))
+
+    def _act(self, wishes: Mapping[str, Any]) -> None:
+        """Do what the page of notes asks for; raise ``ParameterError`` for what nobody knows."""
+        presenter = self.presenter
+        if not presenter.on:
+            raise ParameterError("the presentation is over")
+        go, cover, clock = (wishes.get(key) for key in ("go", "cover", "clock"))
+        steps = {"next": presenter.next, "back": presenter.back}
+        ends = {"first": 0, "last": len(presenter.beats) - 1}
+        if isinstance(go, str) and go in steps:
+            steps[go]()
+        elif isinstance(go, str) and go in ends:
+            presenter.go(ends[go])
+        elif type(go) is int:
+            presenter.go(go - 1)
+        elif cover in ("black", "white"):
+            presenter.cover(str(cover))
+        elif clock == "pause":
+            presenter.clock.toggle()
+        elif clock == "reset":
+            presenter.clock.reset()
+        else:
+            raise ParameterError('expected {"go": "next"}, {"cover": "black"} or {"clock": "pause"}')
