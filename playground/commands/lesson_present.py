@@ -8,14 +8,25 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from playground.commands import options
-from playground.commands.arguments import Renderer, read_pixels
+from playground.commands.arguments import Renderer, help_text, read_pixels
+from playground.commands.lesson_language import read_language
 from playground.commands.live import check_display, open_window
 from playground.commands.options import complete_lesson, flag, positional, value
-from playground.errors import ParameterError, SketchError, nearest
+from playground.errors import ParameterError
 from playground.terminal import note, progress
 
 if TYPE_CHECKING:
     from playground.lessons.model import Lesson
+
+HELP = help_text(
+    "Present a lesson to a class: full screen, large type, one thought at a time.\n\n"
+    "Space, PgDn or a clicker goes on; ? shows every key; Esc goes back to the window. The teacher's notes,"
+    " with a clock, are at the address that is printed, for a browser on this machine. --video writes the"
+    " presentation as a film, its notes as subtitles (.srt) next to it, without a window.",
+    "playground lesson present diamond_square",
+    "playground lesson present diamond_square --lang fr --from 12",
+    "playground lesson present diamond_square --video talk.mp4",
+)
 
 FILM_SIZE = (1280, 720)
 """Pixels of a film, where none are given."""
@@ -32,14 +43,12 @@ def present(
     software: options.Software = False,
 ) -> None:
     """Present a lesson to a class."""
-    from playground.lessons.library import LANGUAGES, lesson_file, preferred_language
+    from playground.lessons.library import lesson_file
     from playground.lessons.present.beats import beats_of
     from playground.lessons.read import read_lesson
 
-    if lang and lang not in LANGUAGES:
-        raise SketchError(f"--lang {lang}: no such language{nearest(lang, LANGUAGES)}")
     lesson_file(name)  # says so where there is none
-    lesson = read_lesson(name, lang or preferred_language())
+    lesson = read_lesson(name, read_language(lang))
     count = len(beats_of(lesson))
     if not 1 <= beat <= count:
         raise ParameterError(f"--from {beat}: lesson {name} has beats 1 to {count}")
