@@ -13,6 +13,10 @@ from playground.lessons.excerpt import excerpt
 from playground.lessons.glossary import linked_term, terms_of
 from playground.lessons.library import SOURCE, THESIS, interface_labels
 from playground.lessons.measuring import Number, filled
+from playground.lessons.tasks.sentences import task_labels
+from playground.lessons.tasks.tasks import checks_itself
+from playground.lessons.tasks.texts import starter_text
+from playground.sketch.assign import value_of, values_of
 
 _LINK = re.compile(r"\[([^\]]*)\]\((lesson|sketch|thesis|term):([^)]*)\)")
 
@@ -92,19 +96,35 @@ class _Writer:
             choices = "".join(f"\n- {text(choice)}" for choice in block.choices)
             question = f"### {label('question')}\n\n{text(block.ask)}\n{choices}".rstrip()
             yield "markdown", f"{question}\n\n{self.folded('answer', block.answer)}"
-        elif isinstance(block, model.Exercise):
-            yield "markdown", self.exercise(block)
+        elif isinstance(block, model.Exercise | model.Challenge):
+            yield from self.task(block)
         elif isinstance(block, model.Measure) and block.sentence:
             yield "markdown", text(block.sentence)
             yield "code", f'lesson.measure("{block.name}")'
 
-    def exercise(self, block: model.Exercise) -> str:
-        """Return an exercise, its solution folded away."""
-        parts = [f"### {self.label('exercise')} {self.lesson.number_of(block)}", self.text(block.ask)]
+    def task(self, block: model.Exercise | model.Challenge) -> Iterator[tuple[str, str]]:
+        """Yield an exercise, its solution folded away; one that checks itself has a cell that does."""
+        say, folded = task_labels(self.lesson.language), []
+        if isinstance(block, model.Exercise):
+            head = f"{self.label('exercise')} {self.lesson.number_of(block)}"
+        else:
+            head = say["challenge"]
         if block.hint:
-            parts.append(self.folded("hint", block.hint))
-        parts.append(self.folded("solution", block.solution))
-        return "\n\n".join(parts)
+            folded.append(self.folded("hint", block.hint))
+        if block.solution:
+            folded.append(self.folded("solution", block.solution))
+        asked = f"### {head}\n\n{self.text(block.ask)}"
+        if not checks_itself(block):
+            yield "markdown", "\n\n".join([asked, *folded])
+            return
+        matches = isinstance(block, model.Challenge)
+        here = say["match_here" if matches else "write_here" if block.file else "set_here"]
+        yield "markdown", asked
+        yield "code", f'lesson.exercise("{block.name}")'
+        yield "markdown", here
+        yield "code", f'lesson.{"match" if matches else "check"}("{block.name}", {_begun(block)})'
+        if folded:
+            yield "markdown", "\n\n".join(folded)
 
     def folded(self, key: str, markdown: str) -> str:
         """Return a text that is unfolded by its label."""
@@ -118,5 +138,17 @@ class _Writer:
         """Return a link that a notebook can follow: of a term, to the list at its end."""
         text, kind, what = link.groups()
         if term := linked_term(f"{kind}:{what}"):
-            return f'[{text}](#{self.label("glossary")} "{term.definition(self.lesson.language)}")'
+            name = f'[{text}](#{self.label("glossary")} "{term.definition(self.lesson.language)}")'
+            bold = link.string[: link.start()].endswith("**") and link.string[link.end() :].startswith("**")
+            return name if bold else f"**{name}**"
         return f"[{text}]({what}.ipynb)" if kind == "lesson" else text
+
+
+def _begun(task: model.Exercise | model.Challenge) -> str:
+    """Return what a student begins from, as Python."""
+    if task.file:
+        return f'r"""\n{starter_text(task).rstrip()}\n"""'
+    assert task.begin is not None
+    values = values_of(task.begin.sketch)
+    given = {path: value_of(task.begin.sketch, path, values) for path in task.sliders}
+    return repr(given)

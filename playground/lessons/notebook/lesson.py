@@ -14,16 +14,24 @@ from playground.api import headless
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundWarning, SketchError, nearest
+from playground.images.picture_difference import SHARE, share_differing
 from playground.lessons import model
 from playground.lessons.book.live_files import widget_page
 from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import broken, draw
 from playground.lessons.library import SOURCE, interface_labels
 from playground.lessons.measuring import measured
+from playground.lessons.notebook.checked import Checked, Matched
 from playground.lessons.notebook.controls import controls_of, scene_at
 from playground.lessons.read import read_lesson
+from playground.lessons.tasks.judge_process import JudgeProcess
+from playground.lessons.tasks.match import Match
+from playground.lessons.tasks.tasks import checks_itself
+from playground.lessons.tasks.verdict import Verdict
+from playground.lessons.tasks.work import Work, scene_of, starter
 from playground.markup import tag
 from playground.paths import GLSL
+from playground.sketch.model import Value
 from playground.sketch.text_overrides import with_texts
 
 T = TypeVar("T")
@@ -51,6 +59,19 @@ def open_lesson(name: str, language: str = SOURCE) -> NotebookLesson:
     return NotebookLesson(read_lesson(name, language))
 
 
+@cache
+def _judge() -> JudgeProcess:
+    return JudgeProcess()
+
+
+def _work(task: model.Task, given: str | Mapping[str, Value]) -> Work:
+    """Return what a student gives as a work; raise ``SketchError`` for a text where values are asked for."""
+    if isinstance(given, str) and not task.file:
+        what = ", ".join(f'"{path}": …' for path in task.sliders)
+        raise SketchError(f"'{task.name}' asks for values: {{{what}}}")
+    return Work(given) if isinstance(given, str) else Work(values=dict(given))
+
+
 @dataclass(frozen=True, eq=False)
 class Fixed(Frame):
     """The picture that edited lines make, with a verdict: whether the bug is fixed."""
@@ -68,6 +89,7 @@ class NotebookLesson:
     def __init__(self, lesson: model.Lesson) -> None:
         self.lesson = lesson
         self.label = interface_labels(lesson.language)
+        self._best: dict[str, float] = {}  # score, by challenge
 
     def show(self, name: str) -> Any:
         """Return what a notebook shows of a block: a picture, with sliders where it has some.
@@ -79,7 +101,7 @@ class NotebookLesson:
             return self._dragged(block)
         if isinstance(block, model.Break):
             return self._frame(broken(block))
-        if isinstance(block, model.Exercise) and block.scene:
+        if isinstance(block, model.Exercise | model.Challenge) and block.scene:
             return self._frame(block.scene)
         raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' has no picture")
 
@@ -103,8 +125,45 @@ class NotebookLesson:
         sketch = block.scene.sketch.plainly()  # what is compared is the text, not a fast variant
         tried = replace(block.scene, sketch=with_texts(sketch, {path: text}), plain=False)
         frame, correct = self._frame(tried), self._frame(replace(block.scene, sketch=sketch))
-        fixed = bool((frame.array == correct.array).all())
+        fixed = share_differing(frame.array, correct.array) <= SHARE
         return Fixed(frame.array, frame.sketch, frame.time, self.label("fixed" if fixed else "not_yet"))
+
+    def exercise(self, name: str) -> Frame:
+        """Return the picture that an exercise or a challenge begins from.
+
+        Raises ``SketchError`` for a block there is not, or one that does not check itself.
+        """
+        task = self._task(name)
+        return self._frame(scene_of(task, starter(task)))
+
+    def check(self, name: str, work: str | Mapping[str, Value]) -> Checked:
+        """Return the verdict on an exercise: of the text of its kernel, or of values by parameter path.
+
+        The work is judged in a process of its own. Raises ``SketchError`` for a block that is no exercise, or
+        one that does not check itself.
+        """
+        task = self._task(name)
+        if not isinstance(task, model.Exercise):
+            raise SketchError(f"block '{name}' is a picture to match: lesson.match scores it")
+        verdict = _judge().check(task, _work(task, work))
+        assert isinstance(verdict, Verdict)
+        return Checked(verdict, self.lesson.language)
+
+    def match(self, name: str, work: str | Mapping[str, Value]) -> Matched:
+        """Return how near a work is to the picture of a challenge, and the best score; else as ``check``."""
+        task = self._task(name)
+        if not isinstance(task, model.Challenge):
+            raise SketchError(f"block '{name}' is no picture to match: lesson.check checks it")
+        found = _judge().check(task, _work(task, work))
+        assert isinstance(found, Match)
+        self._best[name] = max(found.score, self._best.get(name, 0.0))
+        return Matched(found, self._best[name], self.lesson.language)
+
+    def _task(self, name: str) -> model.Exercise | model.Challenge:
+        block = self._block(name)
+        if not checks_itself(block):
+            raise SketchError(f"block '{name}' of lesson '{self.lesson.name}' does not check itself")
+        return block
 
     def mend(self, name: str, lines: str) -> Fixed:
         """Fix a bug, as notebooks of earlier versions call it."""

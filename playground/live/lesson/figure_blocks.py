@@ -8,7 +8,7 @@ from pathlib import Path
 from imgui_bundle import imgui
 
 from playground.errors import ParameterError
-from playground.lessons.model import Compare, Figure, Slider, Steps
+from playground.lessons.model import Compare, Figure, Scene, Slider, Steps
 from playground.lessons.scenes import comparable
 from playground.live import theme
 from playground.live.lesson.page import Page
@@ -126,11 +126,16 @@ def _player(block: Steps | Slider, page: Page, at: int, last: int) -> None:
 
 
 def _parameters(block: Figure | Slider, paths: tuple[str, ...], page: Page) -> None:
-    """Draw parameters of the figure that is shown, as the panel draws them."""
+    scene = block.scene if isinstance(block, Figure) else block.scenes[0]
+    if scene is not None and page.reader.is_on(block):
+        draw_parameters(scene, paths, page)
+
+
+def draw_parameters(scene: Scene, paths: tuple[str, ...], page: Page) -> None:
+    """Draw parameters of the picture that is shown, as the panel draws them."""
     bench, memory = page.reader.bench, page.memory
     session, draft = bench.session, bench.session.shown
-    scene = block.scene if isinstance(block, Figure) else block.scenes[0]
-    if not paths or scene is None or draft is None or not page.reader.is_on(block):
+    if not paths or draft is None:
         return
     if session.path != path_of(scene) or page.reader.figure.busy:
         return

@@ -47,6 +47,7 @@ class Lessons:
     def release(self) -> None:
         """Release what was made in the session's context; it is made again where it is needed."""
         self._panel.release()
+        self.reader.tasks.close()
 
     def _store_own(self) -> None:
         """Remember what is shown, before a lesson shows something else."""

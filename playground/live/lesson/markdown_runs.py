@@ -142,5 +142,6 @@ def runs_of(inline: Token) -> Runs:
         elif token.type == "softbreak":
             found.append(replace(style, text=" "))
         elif token.content:
-            found.append(replace(style, text=token.content))
+            term = style.link.startswith("term:")  # a term of the field is in bold where it first appears
+            found.append(replace(style, text=token.content, bold=style.bold or term))
     return tuple(found)

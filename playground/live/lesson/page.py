@@ -10,9 +10,10 @@ from imgui_bundle import ImVec2, imgui
 
 from playground.lessons.model import Lesson, Markdown
 from playground.live import theme
-from playground.live.draw import button, pushed_id, styled
+from playground.live.draw import button, inked, pushed_id, styled
 from playground.live.lesson.markdown_runs import written
 from playground.live.lesson.prose import Prose
+from playground.live.lesson.small_pictures import SmallPictures
 from playground.live.panel_memory import Memory
 from playground.live.theme import Theme
 from playground.workbench.lesson.labels import labels_in
@@ -31,6 +32,7 @@ class Page:
     look: Theme
     prose: Prose
     memory: Memory  # of the parameters' rows
+    pictures: SmallPictures
 
     def say(self, key: str, *given: object) -> str:
         """Return a label of the interface."""
@@ -42,6 +44,24 @@ class Page:
             ink = theme.packed(theme.DIM if dim else theme.INK)
             filled = self.reader.numbers.fill(words, self.lesson)
             self.prose.draw(filled, self.look, size=size, ink=ink)
+
+    def plain(self, words: str, rgb: theme.Rgb = theme.INK) -> None:
+        """Draw a text that is no Markdown, as a compiler's words, wrapped."""
+        with self.look.font(self.look.code, theme.SMALL), inked(rgb):
+            imgui.text_wrapped(written(words))
+
+    def behind(self, name: str, what: str, words: Markdown, label: str = "") -> None:
+        """Draw a button, and what it uncovers; nothing where there is nothing behind it."""
+        shown, key = self.reader.shown, (name, what)
+        if not words:
+            return
+        if key not in shown:
+            if self.button(label or self.say(what)):
+                shown.add(key)
+            return
+        self.text(words)
+        if self.button(f"{self.say('hide')}##{what}"):
+            shown.discard(key)
 
     def label(self, text: str, rgb: theme.Rgb = theme.ACCENT) -> None:
         """Write a block's label."""

@@ -12,6 +12,7 @@ from playground.lessons.library import LANGUAGES
 from playground.lessons.model import (
     Block,
     Break,
+    Challenge,
     Code,
     Compare,
     Exercise,
@@ -32,6 +33,8 @@ from playground.live.lesson.markdown_runs import plain, written
 from playground.live.lesson.page import Page
 from playground.live.lesson.prose import Prose as Texts
 from playground.live.lesson.questions import draw_exercise, draw_measure, draw_prose, draw_question
+from playground.live.lesson.small_pictures import SmallPictures
+from playground.live.lesson.task_blocks import draw_challenge
 from playground.live.panel_memory import Memory
 from playground.live.panel_rows import fitting
 from playground.live.theme import Theme
@@ -49,6 +52,7 @@ DRAWN: dict[type[Block], Any] = {
     Break: draw_break,
     Question: draw_question,
     Exercise: draw_exercise,
+    Challenge: draw_challenge,
     Measure: draw_measure,
 }
 """What draws each kind of block."""
@@ -64,6 +68,7 @@ class LessonPanel:
     memory: Memory = field(default_factory=Memory)
     _formulas: Formulas | None = None
     _texts: Texts | None = None
+    _pictures: SmallPictures | None = None
 
     def draw(self, reader: Reader, look: Theme) -> float:
         """Draw the panel at the window's left side; return the width it takes, 0 while it is hidden."""
@@ -85,7 +90,7 @@ class LessonPanel:
             ImVec2(min(NARROWEST * scale, widest), room.y), ImVec2(min(WIDEST * scale, widest), room.y)
         )
         with window("lesson", SIDE_PANEL, ground=theme.colour((0.110, 0.119, 0.127))):
-            page = Page(reader, lesson, look, self._texts, self.memory)
+            page = Page(reader, lesson, look, self._texts, self.memory, self._pictures_of(reader))
             _head(page)
             scrolls = imgui.WindowFlags_.always_vertical_scrollbar
             imgui.begin_child("page", ImVec2(0, -_foot_height()), 0, scrolls)
@@ -104,7 +109,15 @@ class LessonPanel:
         """Release what was made in the session's context; it is made again where it is needed."""
         if self._formulas is not None:
             self._formulas.release()
-        self._formulas = None
+        if self._pictures is not None:
+            self._pictures.release()
+        self._formulas = self._pictures = None
+
+    def _pictures_of(self, reader: Reader) -> SmallPictures:
+        ctx = reader.bench.session.engine.ctx
+        if self._pictures is None or self._pictures.ctx is not ctx:
+            self._pictures = SmallPictures(ctx)  # those before went with a context that was lost
+        return self._pictures
 
     def _formulas_of(self, reader: Reader) -> Formulas:
         ctx = reader.bench.session.engine.ctx

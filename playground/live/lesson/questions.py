@@ -6,10 +6,12 @@ from imgui_bundle import imgui
 
 from playground.lessons.measuring import named_in
 from playground.lessons.model import Exercise, Measure, Prose, Question
+from playground.lessons.tasks.tasks import checks_itself
 from playground.live import theme
 from playground.live.draw import pushed_id, styled
 from playground.live.lesson.markdown_runs import plain
 from playground.live.lesson.page import Page
+from playground.live.lesson.task_blocks import draw_work, task_label
 
 
 def draw_prose(block: Prose, page: Page) -> None:
@@ -33,21 +35,23 @@ def draw_question(block: Question, page: Page) -> None:
         if right:
             page.text(block.answer)
         else:
-            _behind(block.name, "answer", block.answer, page)
+            page.behind(block.name, "answer", block.answer)
 
 
 def draw_exercise(block: Exercise, page: Page) -> None:
     """Draw an exercise; hint and solution wait behind buttons."""
     reader = page.reader
     with page.frame(block.name, theme.WARM):
-        page.label(page.say("exercise"), theme.WARM)
+        page.label(task_label(block, page), theme.WARM)
         page.text(block.ask)
+        if checks_itself(block):
+            draw_work(block, page)
         if block.hint:
-            _behind(block.name, "hint", block.hint, page)
+            page.behind(block.name, "hint", block.hint)
             page.same_line(page.say("solution"))
-        _behind(block.name, "solution", block.solution, page)
+        page.behind(block.name, "solution", block.solution)
         if (block.name, "solution") in reader.shown and block.scene is not None:
-            if page.button(page.say("solution_picture"), block.alt, on=reader.is_on(block)):
+            if page.button(page.say("solution_picture"), block.alt, on=reader.figure.key == (block.name, 0)):
                 reader.show(block)
 
 
@@ -81,15 +85,3 @@ def _choice(block: Question, index: int, choice: str, chosen: int, page: Page) -
             page.reader.chosen[block.name] = index
     if imgui.is_item_hovered():
         imgui.set_tooltip(plain(choice))
-
-
-def _behind(name: str, what: str, words: str, page: Page) -> None:
-    """Draw a button, and what it uncovers."""
-    shown, key = page.reader.shown, (name, what)
-    if key not in shown:
-        if page.button(page.say(what)):
-            shown.add(key)
-        return
-    page.text(words)
-    if page.button(f"{page.say('hide')}##{what}"):
-        shown.discard(key)

@@ -11,9 +11,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-import numpy as np
-
 from playground.errors import PlaygroundError
+from playground.images.picture_difference import SHARE, share_differing
 from playground.lessons.excerpt import Excerpt, excerpt
 from playground.lessons.figure_renders import Picture, draw, with_bug
 from playground.lessons.model import Break, Code, Scene
@@ -28,8 +27,6 @@ from playground.workbench.notices import Notices
 from playground.workbench.session import Session
 
 _KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
-_SAME = 0.25
-"""Mean difference of two pictures, of 255, below which they are the same."""
 
 WHOLE, BROKEN, FIXED, SHOWN = "", "broken", "fixed", "shown"
 """How far a bug has come: SHOWN where the lesson has fixed it."""
@@ -109,7 +106,7 @@ class Bugs:
             return True
         try:
             with as_before(session.engine, session.plan):
-                same = self._difference(block.scene, {str(path): text}) < _SAME
+                same = self._difference(block.scene, {str(path): text}) <= SHARE
         except PlaygroundError as error:
             self.notices.say(str(error))
             return True
@@ -121,9 +118,9 @@ class Bugs:
     def _difference(self, scene: Scene, texts: Mapping[str, str]) -> float:
         small = Picture("", scene).smaller().scene
         engine = self.session.engine
-        whole = draw(engine, small).array.astype(np.float64)
+        whole = draw(engine, small).array
         mine = draw(engine, replace(small, sketch=with_texts(small.sketch, texts))).array
-        return float(np.abs(whole - mine)[..., :3].mean())
+        return share_differing(mine, whole)
 
     # ── code ─────────────────────────────────────────────────────────────────
 

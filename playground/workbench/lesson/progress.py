@@ -1,4 +1,4 @@
-"""What is remembered of lessons from one start to the next: where each was left, and how the panel stood.
+"""What is remembered of lessons from one start to the next: where each was left, and what was done for tasks.
 
 One small JSON file in the user's state folder, written whole or not at all. Without it, or
 where it cannot be read, lessons begin at their beginning.
@@ -15,12 +15,25 @@ from playground.errors import PlaygroundError
 from playground.folders import state_folder
 from playground.images.files import replacing
 from playground.json_text import read_json
+from playground.sketch.model import Value
 
 FORMAT = 1
 WIDTH = 420.0
 """Of the panel at first, in units of scale 1."""
 NARROWEST, WIDEST = 300.0, 760.0
-_LARGEST = 2**20  # [bytes]
+_LARGEST = 2**24  # [bytes]
+
+
+@dataclass
+class Attempt:
+    """What a student has done for a task that checks itself."""
+
+    text: str = ""  # of its kernel; "": its starter
+    values: dict[str, Value] = field(default_factory=dict)  # of its sliders, by path
+    before: tuple[str, dict[str, Value]] | None = None  # text and values before it was begun again
+    points: float = 0.0  # the most it had
+    of: int = 0  # points that can be had
+    score: float = 0.0  # of a challenge: the best, 0..100
 
 
 @dataclass
@@ -33,6 +46,7 @@ class Progress:
     width: float = WIDTH  # of the panel, in units of scale 1
     sections: dict[str, int] = field(default_factory=dict)  # the section each lesson was left at
     done: list[str] = field(default_factory=list)  # lessons that were read to their end
+    attempts: dict[str, Attempt] = field(default_factory=dict)  # by "lesson/task"
 
 
 def progress_file(folder: Path | None = None) -> Path:
@@ -73,4 +87,22 @@ def _read(table: Any) -> Progress:
         min(max(width, NARROWEST), WIDEST) if width == width else WIDTH,
         {str(name): max(int(at), 0) for name, at in table["sections"].items()},
         [str(name) for name in table["done"]],
+        {str(name): _attempt(found) for name, found in table.get("attempts", {}).items()},
     )
+
+
+def _attempt(table: Any) -> Attempt:
+    before = table["before"]
+    points, score = (float(table[key]) for key in ("points", "score"))
+    return Attempt(
+        str(table["text"]),
+        _values(table["values"]),
+        None if before is None else (str(before[0]), _values(before[1])),
+        points if points == points else 0.0,
+        int(table["of"]),
+        score if score == score else 0.0,
+    )
+
+
+def _values(table: Any) -> dict[str, Value]:
+    return {str(path): tuple(v) if isinstance(v, list) else v for path, v in table.items()}

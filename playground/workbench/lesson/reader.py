@@ -6,15 +6,27 @@ Draws nothing; ``update`` is called once a frame.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError
 from playground.lessons.library import LANGUAGES, preferred_language
-from playground.lessons.model import Block, Compare, Exercise, Figure, Lesson, Scene, Section, Slider, Steps
+from playground.lessons.model import (
+    Block,
+    Challenge,
+    Compare,
+    Exercise,
+    Figure,
+    Lesson,
+    Scene,
+    Section,
+    Slider,
+    Steps,
+)
 from playground.lessons.read import Summary
 from playground.lessons.scenes import comparable
+from playground.lessons.tasks.texts import answer_text, path_of
 from playground.workbench.bench import Bench
 from playground.workbench.lesson.bugs import Bugs
 from playground.workbench.lesson.catalogue import Catalogue
@@ -24,6 +36,7 @@ from playground.workbench.lesson.labels import labels_in
 from playground.workbench.lesson.measurements import Numbers
 from playground.workbench.lesson.progress import Progress, progress_file, write_progress
 from playground.workbench.lesson.shader_copies import Copies
+from playground.workbench.lesson.tasks import Tasks
 from playground.workbench.text_file import unsaved
 
 _STEP, _VALUE = 0.8, 0.5
@@ -32,7 +45,7 @@ _STEP, _VALUE = 0.8, 0.5
 BOTH = -1
 """The place of a comparison where two pictures are shown at once."""
 
-FigureBlock = Steps | Slider | Compare | Figure | Exercise
+FigureBlock = Steps | Slider | Compare | Figure | Exercise | Challenge
 
 
 @dataclass
@@ -55,12 +68,24 @@ class Reader:
         bench = self.bench
         self.figure = FigureView(bench.undo, bench.inspection.compare, self.begins)
         self.numbers = Numbers(bench.session)
+        copies = Copies(bench.files)
         self.bugs = Bugs(
             session=bench.session,
             notices=bench.notices,
-            copies=Copies(bench.files),
+            copies=copies,
             figure=self.figure,
             label=lambda key: labels_in(self.language)[key],
+        )
+        self.tasks = Tasks(
+            session=bench.session,
+            notices=bench.notices,
+            copies=copies,
+            figure=self.figure,
+            progress=self.progress,
+            label=lambda key: labels_in(self.language)[key],
+            remember=self.remember,
+            clear=self._clear,
+            lesson=lambda: self.progress.lesson,
         )
         self._catalogue = Catalogue(bench.notices.say)
         self._due = math.inf  # when what plays goes on
@@ -107,6 +132,7 @@ class Reader:
             return False
         if self.lesson is None or lesson.name != self.lesson.name:
             self.at, self.shown, self.chosen = {}, set(), {}
+            self.tasks.forget()
             self.bugs.forget()
         if self.lesson is None or not self.progress.shown:
             self._make_room()
@@ -129,6 +155,7 @@ class Reader:
         if page == last and self.lesson.name not in self.progress.done:
             self.progress.done.append(self.lesson.name)
         self.playing, self.to_top = "", True
+        self.tasks.leave()
         self.bugs.close_all()
         section = self.lesson.sections[page]
         self.numbers.want(self.lesson, section.blocks)
@@ -190,8 +217,11 @@ class Reader:
 
     def show(self, block: Block) -> None:
         """Show a block's figure; of a series the one it was left at."""
-        if isinstance(block, Figure | Exercise) and block.scene is not None:
+        if isinstance(block, Figure) and block.scene is not None:
             self._put(block.scene, block.name, 0)
+        elif isinstance(block, Exercise | Challenge) and block.scene is not None:
+            texts = {str(path_of(block)): answer_text(block)} if block.file else {}
+            self._put(block.scene, block.name, 0, texts)
         elif isinstance(block, Compare):
             both = len(block.scenes) == 2 and comparable(*block.scenes)
             self.choose(block, self.at.get(block.name, BOTH if both else 0))
@@ -213,6 +243,7 @@ class Reader:
     def choose(self, block: Compare, index: int) -> None:
         """Show one of several pictures, or ``BOTH``."""
         if index == BOTH:
+            self.tasks.leave()
             self.bugs.leave()
             self.figure.compare(block.scenes[0], block.scenes[1], block.name)
         else:
@@ -236,16 +267,23 @@ class Reader:
     def go_back(self) -> None:
         """Show again what was open before the lessons."""
         self.playing = ""
+        self.tasks.leave()
         self.bugs.close_all(drawn=False)
         self.figure.go_back()
         if self.figure.before_lesson is not None:  # it is gone: the lesson's picture stays, without copies
             self.bugs.close_all()
 
-    def _put(self, scene: Scene, name: str, index: int) -> None:
+    def _put(self, scene: Scene, name: str, index: int, texts: Mapping[str, str] | None = None) -> None:
         if self.playing != name:
             self.playing = ""
+        self.tasks.leave()
         self.bugs.leave()
-        self.figure.show(scene, (name, index), self.bugs.texts)
+        self.figure.show(scene, (name, index), {**self.bugs.texts, **(texts or {})})
+
+    def _clear(self) -> None:
+        """Stop what plays and what is broken: a task's picture comes."""
+        self.playing = ""
+        self.bugs.leave()
 
     # ── frames ───────────────────────────────────────────────────────────────
 
@@ -256,6 +294,9 @@ class Reader:
             return
         if self.playing and self.bench.notices.now() >= self._due and not self.figure.busy:
             self._play()
+        shown = self.lesson.named.get(self.figure.key[0]) if self.figure.key is not None else None
+        task = shown if isinstance(shown, Exercise | Challenge) else None
+        self.tasks.update(task, self.bench.notices.now())
         if idle and not self.playing and not self.bugs.check():
             self.numbers.compute()
 
@@ -265,7 +306,7 @@ class Reader:
             return math.inf
         if self.playing:
             return max(self._due - now, 0.0)
-        return 0.0 if self.numbers.ready or self.bugs.waits else math.inf
+        return 0.0 if self.numbers.ready or self.bugs.waits else self.tasks.patience(now)
 
     def _play(self) -> None:
         block = self.lesson.named.get(self.playing) if self.lesson else None

@@ -1,0 +1,85 @@
+"""What a notebook shows of a work: the verdict in words, and pictures of what differs."""
+
+from __future__ import annotations
+
+import io
+from base64 import b64encode
+from dataclasses import dataclass
+
+from PIL import Image
+
+from playground.lessons.tasks.difference_map import difference_map
+from playground.lessons.tasks.match import Match
+from playground.lessons.tasks.sentences import points_of, sentences, task_labels
+from playground.lessons.tasks.verdict import Picture, Result, Verdict
+from playground.markup import Markup, joined, tag
+
+_MARKS = {True: "✓", False: "✗"}
+_WIDE = 200  # pixels of a picture on the page
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """A verdict that a notebook shows."""
+
+    verdict: Verdict
+    language: str
+
+    def __str__(self) -> str:
+        return "\n".join([points_of(self.verdict, self.language), *self.lines])
+
+    @property
+    def lines(self) -> list[str]:
+        """A line for each check, with its mark."""
+        passed = [result.passed for result in self.verdict.results] or [False] * len(self.verdict.diagnostics)
+        said = sentences(self.verdict, self.language)
+        return [f"{_MARKS[good]} {words}" for good, words in zip(passed, said, strict=True)]
+
+    def _repr_html_(self) -> str:
+        wrong = [result for result in self.verdict.visible if not result.passed]
+        return joined(
+            tag("p", tag("b", points_of(self.verdict, self.language))),
+            tag("ul", *(tag("li", line, style="list-style:none") for line in self.lines)),
+            *(_compared(result, self.language) for result in wrong if result.mine is not None),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Matched:
+    """A score that a notebook shows, with the picture to match and one's own."""
+
+    match: Match
+    best: float
+    language: str
+
+    def __str__(self) -> str:
+        if self.match.diagnostics:
+            return "\n".join(map(str, self.match.diagnostics))
+        say, match = task_labels(self.language), self.match
+        said = say("score", score=int(match.score), best=int(self.best), goal=match.goal)
+        return f"{said} {say['solved']}" if match.solved else said
+
+    def _repr_html_(self) -> str:
+        pictures = (("wanted", self.match.target), ("mine", self.match.mine))
+        say = task_labels(self.language)
+        shown = [_picture(found, say[key]) for key, found in pictures if found is not None]
+        return joined(tag("p", str(self)), tag("div", *shown))
+
+
+def _compared(result: Result, language: str) -> Markup:
+    label = task_labels(language)
+    mine, wanted = result.mine, result.wanted
+    assert mine is not None and wanted is not None
+    shown = [_picture(mine, label["mine"]), _picture(wanted, label["wanted"])]
+    if mine.shape == wanted.shape:
+        shown.append(_picture(difference_map(mine, wanted), label["differs"]))
+    return tag("div", *shown)
+
+
+def _picture(picture: Picture, name: str) -> Markup:
+    stream = io.BytesIO()
+    Image.fromarray(picture).save(stream, "PNG")
+    source = f"data:image/png;base64,{b64encode(stream.getvalue()).decode()}"
+    image = tag("img", src=source, alt=name, width=_WIDE)
+    style = "display:inline-block;margin:0 .5em 0 0;text-align:center"
+    return tag("figure", image, tag("figcaption", name), style=style)

@@ -1,0 +1,176 @@
+"""Exercises that check themselves, and pictures to match: their buttons, their verdict, their score."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+from imgui_bundle import ImVec2, imgui
+
+from playground.lessons.model import Challenge, Exercise
+from playground.lessons.tasks.difference_map import difference_map
+from playground.lessons.tasks.sentences import points_of, sentence_of
+from playground.lessons.tasks.tasks import checks_itself
+from playground.lessons.tasks.texts import path_of
+from playground.lessons.tasks.verdict import Picture, Result, Verdict
+from playground.live import theme
+from playground.live.code_window import save
+from playground.live.lesson.figure_blocks import draw_parameters
+from playground.live.lesson.page import Page
+from playground.workbench.lesson.tasks import Task
+
+_WIDE = 160.0  # of the picture to match, in units of scale 1
+
+
+def draw_work(block: Exercise, page: Page) -> None:
+    """Draw what an exercise is done with: begin, check, the verdict."""
+    tasks = page.reader.tasks
+    _buttons(block, page)
+    if tasks.is_begun(block):
+        _sliders(block, page)
+    verdict = tasks.verdicts.get(block.name)
+    if verdict is not None and tasks.judging != block.name:
+        _verdict(block, verdict, page)
+
+
+def draw_challenge(block: Challenge, page: Page) -> None:
+    """Draw a picture to match, and how near the picture in view is."""
+    tasks = page.reader.tasks
+    found, best = tasks.matches.get(block.name), tasks.attempt(block).score
+    solved = best >= block.goal
+    with page.frame(block.name, theme.ACCENT if solved else theme.WARM):
+        page.label(page.say("challenge"), theme.ACCENT if solved else theme.WARM)
+        page.text(block.ask)
+        if found is not None and found.target is not None:
+            page.pictures.draw(found.target, _WIDE * page.look.scale)
+            imgui.same_line()
+            imgui.begin_group()
+            with page.look.font(page.look.bold, theme.TEXT_SIZE + 8):
+                imgui.text(page.say("score", int(found.score)))
+            with page.look.font(page.look.text, theme.SMALL):
+                imgui.text_disabled(page.say("best_score", int(best), block.goal))
+            if found.solved:
+                with page.look.font(page.look.bold):
+                    imgui.text_colored(theme.colour(theme.ACCENT), page.say("solved"))
+            imgui.end_group()
+        elif best:
+            page.text(page.say("best_score", int(best), block.goal), size=theme.SMALL, dim=True)
+        _buttons(block, page)
+        if tasks.is_begun(block):
+            _sliders(block, page)
+        for diagnostic in found.diagnostics if found is not None else ():
+            page.plain(str(diagnostic), theme.ALARM)
+        page.behind(block.name, "hint", block.hint)
+        page.behind(block.name, "solution", block.solution)
+        page.text(block.caption, size=theme.SMALL, dim=True)
+
+
+def task_label(block: Exercise, page: Page) -> str:
+    """Return what is written above an exercise: with its points where it has some."""
+    name = page.say("exercise")
+    if not checks_itself(block):
+        return name
+    best = page.reader.tasks.attempt(block)
+    points = f"{best.points:g} / {block.points}" if best.of else f"{block.points}"
+    return f"{name}   {points} pt"
+
+
+def _buttons(block: Task, page: Page) -> None:
+    tasks = page.reader.tasks
+    begun, attempt = tasks.is_begun(block), tasks.attempt(block)
+    if not begun:
+        label = page.say("go_on" if attempt.text or attempt.values else "start")
+        if page.button(f"{label}##start", page.say("start_note")):
+            tasks.start(block)
+    elif block.file:
+        if page.button(page.say("to_the_text"), f"glsl/{block.file}", on=True):
+            tasks.copies.focus(path_of(block))
+    if isinstance(block, Exercise):
+        judged = tasks.judging == block.name
+        label = page.say("checking" if judged else "check")
+        if begun or attempt.text or attempt.values:
+            page.same_line(label)
+            if page.button(f"{label}##check", page.say("check_note"), enabled=not judged):
+                _check(block, page)
+    if attempt.before is not None and not (attempt.text or attempt.values):
+        page.same_line(page.say("bring_back"))
+        if page.button(page.say("bring_back")):
+            tasks.undo(block)
+    elif begun or attempt.text or attempt.values:
+        page.same_line(page.say("again"))
+        if page.button(page.say("again"), page.say("again_note")):
+            tasks.start_again(block)
+
+
+def _check(block: Exercise, page: Page) -> None:
+    """Draw what is typed, and send it to be judged."""
+    tasks, files = page.reader.tasks, page.reader.bench.files
+    editing = files.copy_of(path_of(block)) if block.file else None
+    if editing is not None and editing.view is not None and editing.view.changed and tasks.is_begun(block):
+        save(editing, page.reader.bench.notices)
+    tasks.check(block)
+
+
+def _sliders(block: Task, page: Page) -> None:
+    if block.sliders and block.begin is not None:
+        draw_parameters(block.begin, block.sliders, page)
+
+
+def _verdict(block: Exercise, verdict: Verdict, page: Page) -> None:
+    language = page.reader.language
+    rgb = theme.ACCENT if verdict.passed else theme.WARM
+    with page.look.font(page.look.bold):
+        imgui.text_colored(theme.colour(rgb), points_of(verdict, language))
+    for diagnostic in verdict.diagnostics:
+        page.plain(str(diagnostic), theme.ALARM)
+    for result in verdict.results:
+        _mark(page, good=result.passed)
+        page.text(sentence_of(result, language), size=theme.SMALL + 1)
+    wrong = [result for result in verdict.visible if not result.passed and result.mine is not None]
+    known, key = page.reader.shown, (block.name, "differences")
+    if wrong and page.button(page.say("differences"), on=key in known):
+        known.symmetric_difference_update({key})
+    if key in known:
+        for result in wrong:
+            _difference(result, page)
+
+
+@lru_cache(maxsize=8)
+def _map(result: Result) -> Picture:
+    assert result.mine is not None and result.wanted is not None
+    return difference_map(result.mine, result.wanted)
+
+
+def _mark(page: Page, *, good: bool) -> None:
+    """Draw a tick or a cross before a line."""
+    side, draw = 9.0 * page.look.scale, imgui.get_window_draw_list()
+    at = imgui.get_cursor_screen_pos()
+    low = ImVec2(at.x, at.y + 4.0 * page.look.scale)
+    ink, thick = theme.packed(theme.ACCENT if good else theme.ALARM), 2.0 * page.look.scale
+    if good:
+        middle = ImVec2(low.x + 0.35 * side, low.y + side)
+        draw.add_line(ImVec2(low.x, low.y + 0.6 * side), middle, ink, thick)
+        draw.add_line(middle, ImVec2(low.x + side, low.y), ink, thick)
+    else:
+        draw.add_line(low, ImVec2(low.x + side, low.y + side), ink, thick)
+        draw.add_line(ImVec2(low.x, low.y + side), ImVec2(low.x + side, low.y), ink, thick)
+    imgui.dummy(ImVec2(side + 6.0 * page.look.scale, side))
+    imgui.same_line()
+
+
+def _difference(result: Result, page: Page) -> None:
+    """Draw the work, what is asked for, and where they differ."""
+    mine, wanted = result.mine, result.wanted
+    assert mine is not None and wanted is not None
+    shown = [("mine", mine), ("wanted", wanted)]
+    if mine.shape == wanted.shape:
+        shown.append(("differs", _map(result)))
+    gap = imgui.get_style().item_spacing.x
+    wide = (imgui.get_content_region_avail().x - gap * (len(shown) - 1)) / len(shown)
+    for number, (key, picture) in enumerate(shown):
+        if number:
+            imgui.same_line()
+        imgui.begin_group()
+        page.pictures.draw(picture, wide)
+        with page.look.font(page.look.text, theme.SMALL):
+            imgui.text_disabled(page.say(key))
+        imgui.end_group()

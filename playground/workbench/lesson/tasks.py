@@ -1,0 +1,312 @@
+"""Exercises that check themselves, and pictures to match, in the live view.
+
+What a student writes is a copy of the file, as a broken shader is; it is judged in a process of its own,
+so that a text that never ends, or values at which it does not, cost no more than that process. The last
+attempt, the best points and the best score are remembered from one start to the next.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from playground.errors import PlaygroundError
+from playground.lessons.model import Challenge, Exercise, Scene
+from playground.lessons.scenes import with_value
+from playground.lessons.tasks.judge_process import JudgeProcess
+from playground.lessons.tasks.match import Ends, Match, ends_of, match
+from playground.lessons.tasks.texts import path_of, starter_text
+from playground.lessons.tasks.verdict import Verdict
+from playground.lessons.tasks.work import Work
+from playground.sketch.assign import value_of, values_of
+from playground.sketch.model import Value
+from playground.workbench.inspect.compare import as_before
+from playground.workbench.lesson.figure_view import FigureView
+from playground.workbench.lesson.progress import Attempt, Progress
+from playground.workbench.lesson.shader_copies import Copies, Copy, line_of
+from playground.workbench.notices import Notices
+from playground.workbench.session import Session
+from playground.workbench.text_file import typed_in
+
+Task = Exercise | Challenge
+
+BEGUN = 1
+"""Which picture of a task is the student's own; 0 is that of the solution."""
+
+_KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
+_SIDE = 160  # pixels of the pictures that a score compares while one plays
+_PAUSE = 0.3  # [s] between two scores at least
+_SHARE = 10.0  # times what a score takes that it waits for the next
+_POLL = 0.05  # [s] between two looks at what is judged
+_STORE = 2.0  # [s] after which what is typed is remembered
+
+
+@dataclass(kw_only=True)
+class Tasks:
+    """The tasks of one reader."""
+
+    session: Session
+    notices: Notices
+    copies: Copies
+    figure: FigureView
+    progress: Progress
+    label: Callable[[str], str]  # of the interface, by key
+    remember: Callable[[], None]  # stores the progress
+    clear: Callable[[], None]  # called before a task's picture is shown
+    lesson: Callable[[], str]  # the name of the lesson that is open
+    judge: JudgeProcess = field(default_factory=JudgeProcess)
+    verdicts: dict[str, Verdict] = field(default_factory=dict)  # by block
+    matches: dict[str, Match] = field(default_factory=dict)  # by block: how near the picture in view is
+    judging: str = ""  # the block whose work is judged
+
+    def __post_init__(self) -> None:
+        self._on: Task | None = None  # the task that was begun
+        self._copy: Copy | None = None  # what replaces its file
+        self._ends: dict[str, Ends] = {}
+        self._scored: tuple[object, ...] = ()  # what the score is of
+        self._due = 0.0  # when the next score may be computed
+        self._store_at = math.inf
+        self._stored: Work | None = None  # what was remembered last
+
+    # ── what the student does ────────────────────────────────────────────────
+
+    def start(self, block: Task) -> None:
+        """Show what the student has, or what there is to begin from, and open its text."""
+        scene = block.begin
+        if scene is None:
+            return
+        self.leave()
+        self.clear()
+        attempt = self.attempt(block)
+        texts: Mapping[str, str] = {}
+        if block.file:
+            path, text = path_of(block), attempt.text or starter_text(block)
+            begins = _KERNEL.search(text)
+            self._open(block, path, text, line_of(text, begins[0]) if begins else 1)
+            texts = {str(path): text}
+        for slider, value in attempt.values.items():
+            if slider in block.sliders:
+                scene = _set(scene, slider, value)
+        self._on = block
+        self.figure.show(scene, (block.name, BEGUN), texts)
+
+    def check(self, block: Exercise) -> None:
+        """Send the work to be judged; ``update`` receives the verdict."""
+        work = self.work(block)
+        self._keep(block, work)
+        self.judge.submit(block, work)
+        self.judging = block.name
+
+    def start_again(self, block: Task) -> None:
+        """Show the starter; what was there before comes back by ``undo``."""
+        attempt = self.attempt(block)
+        work = self.work(block)
+        self._close(block)
+        attempt.before = work.text or "", dict(work.values)
+        attempt.text, attempt.values = "", {}
+        self._forget(block)
+        self.start(block)
+
+    def undo(self, block: Task) -> None:
+        """Bring back what was there before the student began again."""
+        attempt = self.attempt(block)
+        if attempt.before is None:
+            return
+        self._close(block)
+        (attempt.text, attempt.values), attempt.before = attempt.before, None
+        self._forget(block)
+        self.start(block)
+
+    # ── what is known ────────────────────────────────────────────────────────
+
+    def attempt(self, block: Task) -> Attempt:
+        """Return what is remembered of a task."""
+        return self.progress.attempts.setdefault(f"{self.lesson()}/{block.name}", Attempt())
+
+    def is_begun(self, block: Task) -> bool:
+        """Return whether the student's own picture of a task is in view."""
+        mine = self._on is not None and self._on.name == block.name
+        return mine and self.figure.key == (block.name, BEGUN)
+
+    def is_started(self, block: Task) -> bool:
+        """Return whether there is something to lose: a text or values other than the starter's."""
+        attempt = self.attempt(block)
+        return bool(attempt.text or attempt.values) or self.is_begun(block)
+
+    def work(self, block: Task) -> Work:
+        """Return what the student has now, saved or not."""
+        attempt, text = self.attempt(block), None
+        if block.file:
+            text = self._text_of(block) or attempt.text or starter_text(block)
+        values: dict[str, Value] = {k: v for k, v in attempt.values.items() if k in block.sliders}
+        shown = self.session.shown
+        if shown is not None and self.is_begun(block) and not self.figure.busy:
+            found = values_of(shown.sketch)
+            for slider in block.sliders:
+                try:
+                    values[slider] = value_of(shown.sketch, slider, found)
+                except PlaygroundError:  # a kernel of the student's that has it no more
+                    values.pop(slider, None)
+        return Work(text, values)
+
+    # ── frames ───────────────────────────────────────────────────────────────
+
+    def update(self, block: Task | None, now: float) -> None:
+        """Receive verdicts, score the picture in view, and remember what is typed.
+
+        ``block`` is the task whose picture is in view, if any.
+        """
+        if self.judging:
+            self._receive()
+        if self._on is not None and now >= self._store_at:
+            self._store_at = now + _STORE
+            self.store()
+        elif self._on is not None and self._store_at == math.inf:
+            self._store_at = now + _STORE
+        if isinstance(block, Challenge) and self.is_begun(block) and now >= self._due:
+            self._score(block)
+
+    def patience(self, now: float) -> float:
+        """Return how long nothing needs to be done here [s]."""
+        if self.judging:
+            return _POLL
+        typed = max(self._store_at - now, 0.0) if self._on is not None else math.inf
+        waits = max(self._due - now, 0.0) if self._scored == () and self.matches else math.inf
+        return min(typed, waits)
+
+    def store(self) -> None:
+        """Remember what is typed and set of the task that was begun."""
+        block = self._on
+        if block is None:
+            return
+        work = self.work(block)
+        if work != self._stored:
+            self._stored = work
+            self._keep(block, work)
+
+    def leave(self) -> None:
+        """Close the copy of a task: another picture comes."""
+        block = self._on
+        if block is None:
+            return
+        self.store()
+        self._close(block)
+
+    def close(self) -> None:
+        """Remember what is typed, and end the process that judges."""
+        self.store()
+        self.judging = ""
+        self.judge.close()
+
+    def forget(self) -> None:
+        """Forget verdicts: another lesson is opened."""
+        self.leave()
+        self.verdicts.clear()
+        self.matches.clear()
+        self._ends.clear()
+        self.judging = ""
+
+    # ── parts of it ──────────────────────────────────────────────────────────
+
+    def _receive(self) -> None:
+        name = self.judging
+        try:
+            found = self.judge.poll()
+        except PlaygroundError as error:
+            self.judging = ""
+            self.notices.say(str(error))
+            return
+        if found is None:
+            return
+        self.judging = ""
+        if isinstance(found, Verdict):
+            self.verdicts[name] = found
+            attempt = self.progress.attempts.setdefault(f"{self.lesson()}/{name}", Attempt())
+            attempt.points, attempt.of = max(attempt.points, found.points), found.of
+            self.remember()
+
+    def _score(self, block: Challenge) -> None:
+        """Score the picture in view, where it rests and is another than the one before."""
+        session = self.session
+        if session.error is not None or session.plan is None or self.figure.busy or not session.rests:
+            return
+        work = self.work(block)
+        state = (block.name, self._drawn_text(block), tuple(work.values.items()))
+        if state == self._scored:
+            return
+        begun = self.notices.now()
+        try:
+            with as_before(session.engine, session.plan):
+                if block.name not in self._ends:
+                    self._ends[block.name] = ends_of(session.engine, block, _SIDE)
+                drawn = Work(self._drawn_text(block), work.values)  # which the sandbox has tried
+                found = match(session.engine, block, drawn, self._ends[block.name], _SIDE)
+        except PlaygroundError as error:
+            self.notices.say(str(error))
+            self._scored = state
+            return
+        self.matches[block.name], self._scored = found, state
+        took = self.notices.now() - begun
+        self._due = begun + took + max(_PAUSE, _SHARE * took)
+        attempt = self.attempt(block)
+        if found.score > attempt.score:
+            attempt.score = found.score
+            self._keep(block, work)
+
+    def _text_of(self, block: Task) -> str | None:
+        """Return the text of a task's copy with what is typed; None where it is not open."""
+        path = path_of(block)
+        mine = self._on is not None and self._on.name == block.name
+        if self._copy is None or not mine or self.copies.open.get(path) is not self._copy:
+            return None
+        editing = self.copies.files.copy_of(path)
+        typed = typed_in(editing) if editing is not None else None
+        return self.copies.text_of(path) if typed is None else typed
+
+    def _drawn_text(self, block: Task) -> str | None:
+        """Return the text of a task's copy that is drawn; None where there is none."""
+        return self._copy.base if block.file and self._text_of(block) is not None and self._copy else None
+
+    def _close(self, block: Task) -> None:
+        """Close the copy of a task, which gets what was typed in it."""
+        copy, self._copy = self._copy, None
+        self._on, self._store_at = None, math.inf
+        if block.file and copy is not None and self.copies.open.get(copy.path) is copy:
+            self.copies.close(copy.path)
+
+    def _keep(self, block: Task, work: Work) -> None:
+        attempt = self.attempt(block)
+        own = "" if not block.file or work.text == starter_text(block) else work.text or ""
+        attempt.text, attempt.values = own, dict(work.values)
+        self.remember()
+
+    def _forget(self, block: Task) -> None:
+        """Forget what was said of a work that is no more."""
+        self._scored = ()
+        self.verdicts.pop(block.name, None)
+        self.matches.pop(block.name, None)
+        self.remember()
+
+    def _open(self, block: Task, path: Path, text: str, line: int) -> None:
+        def apply(new: str) -> None:
+            self._keep(block, Work(new, self.attempt(block).values))
+            self.figure.set_texts({str(file): copy.base for file, copy in self.copies.open.items()})
+
+        def leave(new: str) -> None:
+            self._keep(block, Work(new, self.attempt(block).values))
+
+        copy = self._copy = Copy(
+            path, text, apply=apply, leave=leave, note=self.label("applied"), label=self.label("copy")
+        )
+        self.copies.edit(copy, line)
+
+
+def _set(scene: Scene, path: str, value: Value) -> Scene:
+    """Return a picture with a value that was remembered; without it where the parameter takes it no more."""
+    try:
+        return with_value(scene, path, value)
+    except PlaygroundError:
+        return scene

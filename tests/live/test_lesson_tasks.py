@@ -1,0 +1,233 @@
+"""Exercises that check themselves, and pictures to match, next to the picture: nothing typed is lost."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from playground.lessons import library
+from playground.lessons.tasks.texts import answer_text
+from playground.paths import GLSL
+from playground.sketch.source import read_text
+from playground.workbench.lesson.progress import (
+    Attempt,
+    Progress,
+    progress_file,
+    read_progress,
+    write_progress,
+)
+
+FILE = "generation/diamond_square/raw.glsl"
+RAW = read_text(GLSL / FILE)
+LESSON = f"""+++
+title   = "After it"
+goal    = "Do."
+thesis  = []
+papers  = []
+sketch  = "white_noise"
++++
+
+Do it.
+
+```exercise power
+ask      = "Write it."
+solution = "So."
+sketch   = "diamond_square_steps"
+pixels   = [96, 96]
+alt      = "Discs"
+file     = "{FILE}"
+answer   = "diamond_square/dimension.answer.glsl"
+points   = 2
+
+[[check]]
+
+[[check]]
+of        = "height"
+tolerance = 0.001
+at        = {{ "height.seed" = 4 }}
+hidden    = true
+```
+
+## Values
+
+```exercise rough
+ask      = "Set it."
+solution = "So."
+sketch   = "diamond_square_steps"
+pixels   = [96, 96]
+alt      = "Discs"
+set      = {{ "height.smoothing" = 0.8 }}
+sliders  = ["height.smoothing"]
+```
+
+```challenge seen
+ask     = "Match it."
+sketch  = "diamond_square_steps"
+pixels  = [96, 96]
+alt     = "Discs"
+set     = {{ "height.smoothing" = 0.8 }}
+begin   = {{ "height.smoothing" = 0.0 }}
+sliders = ["height.smoothing"]
+```
+"""
+
+
+@pytest.fixture
+def tasks(desk):
+    (library.TEXTS / "en" / "after.md").write_text(LESSON, encoding="utf-8")
+    assert desk.reader.open("after", page=0)
+    desk.run_frames(4)
+    return desk.reader.tasks
+
+
+def block(desk, name):
+    return desk.reader.lesson.named[name]
+
+
+def judged(desk):
+    """Draw frames until the process has judged."""
+    end = time.monotonic() + 60.0
+    while desk.reader.tasks.judging:
+        assert time.monotonic() < end
+        desk.run_frames(1)
+        time.sleep(0.02)
+    desk.run_frames(2)
+
+
+def typed(editing, text):
+    """Type a text in place of all that is there."""
+    editing.view.editor.select_all()
+    editing.view.editor.replace_text_in_current_cursor(text)
+
+
+def attempts():
+    return read_progress(progress_file()).attempts
+
+
+def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
+    desk.click("Start##start")
+    desk.run_frames(4)
+    assert tasks.is_begun(block(desk, "power")) and desk.session.path.stem == "diamond_square_steps"
+    (editing,) = desk.bench.files.editing
+    assert editing.text.base == RAW
+    desk.click("Check##check")
+    judged(desk)
+    verdict = tasks.verdicts["power"]
+    assert verdict.points == 0.0 and [result.passed for result in verdict.results] == [False, False]
+    desk.click("What differs")
+    desk.run_frames(2)
+
+    right = answer_text(block(desk, "power"))
+    typed(editing, right)  # not saved
+    desk.run_frames(2)
+    desk.click("Check##check")
+    judged(desk)
+    assert tasks.verdicts["power"].passed
+    kept = attempts()["after/power"]
+    assert kept.text.strip() == right.strip() and (kept.points, kept.of) == (2.0, 2)
+
+    desk.reader.go(1)
+    desk.run_frames(4)
+    assert desk.bench.files.editing == [] and not desk.session.drafts.texts
+    desk.reader.go(0)
+    desk.run_frames(4)
+    desk.click("Go on##start")
+    desk.run_frames(4)
+    assert desk.bench.files.editing[0].text.base.strip() == right.strip()
+
+    desk.click("Begin again")
+    desk.run_frames(4)
+    assert desk.bench.files.editing[0].text.base == RAW
+    desk.click("Bring mine back")
+    desk.run_frames(4)
+    assert desk.bench.files.editing[0].text.base.strip() == right.strip()
+
+
+def test_what_is_typed_and_never_saved_is_there_at_the_next_start(desk, tasks):
+    tasks.start(block(desk, "power"))
+    desk.run_frames(4)
+    (editing,) = desk.bench.files.editing
+    typed(editing, RAW + "// mine\n")
+    desk.run_frames(10, step=0.5)
+    assert attempts()["after/power"].text.endswith("// mine\n"), "also where the program crashes"
+    typed(editing, RAW + "// later\n")
+    desk.run_frames(1)
+    desk.lessons.release()
+    assert attempts()["after/power"].text.endswith("// later\n")
+
+
+def test_the_text_of_another_block_is_no_attempt(desk, tasks):
+    """A bug put into the same file takes the place of the copy."""
+    one = block(desk, "power")
+    tasks.start(one)
+    desk.run_frames(4)
+    copies = tasks.copies
+    mine = copies.open[(GLSL / FILE).resolve()]
+    other = type(mine)(mine.path, "// another's")
+    copies.edit(other)
+    tasks.store()
+    assert tasks.work(one).text == RAW and tasks.attempt(one).text == ""
+    tasks.leave()
+    assert copies.text_of(mine.path) == "// another's"
+
+
+def test_the_solution_s_picture_is_that_of_the_model_answer(desk, tasks):
+    desk.reader.show(block(desk, "power"))
+    desk.run_frames(4)
+    ((path, text),) = desk.session.drafts.texts.items()
+    assert path.endswith("raw.glsl") and text == answer_text(block(desk, "power"))
+    assert not tasks.is_begun(block(desk, "power"))
+    desk.reader.go(1)
+    desk.run_frames(4)
+    assert not desk.session.drafts.texts
+
+
+def test_values_are_set_with_sliders_and_checked(desk, tasks):
+    desk.reader.go(1)
+    desk.run_frames(4)
+    rough = block(desk, "rough")
+    tasks.start(rough)
+    desk.run_frames(4)
+    assert dict(tasks.work(rough).values) == {"height.smoothing": 0.5}
+    tasks.check(rough)
+    judged(desk)
+    assert tasks.verdicts["rough"].points == 0.0
+    desk.session.drafts.set("height.smoothing", 0.8)
+    desk.run_frames(4)
+    tasks.check(rough)
+    judged(desk)
+    assert tasks.verdicts["rough"].passed
+    assert attempts()["after/rough"].values == {"height.smoothing": 0.8}
+
+
+def test_a_score_follows_the_picture_and_the_best_is_kept(desk, tasks):
+    desk.reader.go(1)
+    desk.run_frames(4)
+    seen = block(desk, "seen")
+    tasks.start(seen)
+    desk.run_frames(8, step=0.2)
+    assert tasks.matches["seen"].score == 0.0
+    scores = []
+    for smoothing in (0.4, 0.8, 0.6):
+        desk.session.drafts.set("height.smoothing", smoothing)
+        desk.run_frames(20, step=0.2)
+        scores.append(tasks.matches["seen"].score)
+    assert scores[1] == 100.0 and 0.0 < scores[0] < 100.0 and 0.0 < scores[2] < 100.0
+    assert attempts()["after/seen"].score == 100.0
+    drawn = desk.session.engine.runs.copy()
+    desk.run_frames(20, step=0.2)
+    assert desk.session.engine.runs == drawn, "a picture that rests is scored once"
+
+
+def test_progress_of_before_is_read_and_what_is_done_is_written_whole(tmp_path):
+    path = tmp_path / "lessons.json"
+    old = Progress("halving", sections={"halving": 2})
+    assert write_progress(old, path) == ""
+    text = path.read_text(encoding="utf-8").replace(',\n "attempts": {}', "")
+    assert "attempts" not in text
+    path.write_text(text, encoding="utf-8")
+    assert read_progress(path) == old
+    done = Attempt("x\n", {"a.b": (1.0, 2.0), "c": True}, ("y", {"a.b": 3}), 1.5, 2, 88.0)
+    write_progress(Progress("halving", attempts={"halving/x": done}), path)
+    assert read_progress(path).attempts == {"halving/x": done}
