@@ -11,6 +11,7 @@ uniform sampler2D rows;   //! input
 uniform sampler2D bands;  //! input
 uniform int overflow = 0; //! menu("divide", "clamp", "wrap") As in the technique
 
+// anchor: kernel
 float kernel(ivec2 texel) {
     vec2 row = texelFetch(rows, ivec2(texel.y, 0), 0).rg;
     vec4 powers = texelFetch(bands, ivec2(texel.x, int(row.x)), 0);
@@ -19,3 +20,4 @@ float kernel(ivec2 texel) {
     if (overflow < 2) return clamp(total, 0.0, 1.0);
     return total > 1.0 ? total - (ceil(total) - 1.0) : total;
 }
+// end: kernel
