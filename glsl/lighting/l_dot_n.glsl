@@ -21,10 +21,12 @@ uniform sampler2D height;                //! input
 #include "lighting/parameters/normal.glsl"
 
 vec4 kernel(ivec2 texel) {
+    // anchor: slope
     ivec2 grid = textureSize(height, 0);
     vec2 metres = spacing_of(grid, extent);
     vec2 slope = relief * (matches_height ? slope_of_node(height, texel, metres, normal)
                            : slope_at(height, place_on(grid, texel, size), metres, normal));
+    // end: slope
     Sunlight from = sunlight(wired_daylight, daylight, towards_sun, sun, sun_colour, sky_colour);
     float received = gain * sun_on(normal_of_slope(slope), from.direction);
     return vec4(from.sun * received + from.sky * ambient, 1.0);

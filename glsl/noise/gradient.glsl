@@ -49,10 +49,12 @@ vec3 perlin_in_cell(ivec2 cell, vec2 t, uint seed) {
     float p11 = dot(g11, t - vec2(1.0, 1.0));
     vec2 f = quintic(t);
     float noise = mix(mix(p00, p10, f.x), mix(p01, p11, f.x), f.y);
+    // anchor: slopes
     // By the product rule: the planes' own slopes, blended, and the change of the blend.
     vec2 slopes = mix(mix(g00, g10, f.x), mix(g01, g11, f.x), f.y);
     vec2 rises = vec2(mix(p10 - p00, p11 - p01, f.y), mix(p01 - p00, p11 - p10, f.x));
     return PERLIN_SCALE * vec3(noise, slopes + quintic_slope(t) * rises);
+    // end: slopes
 }
 
 vec3 perlin(vec2 place, uint seed) {

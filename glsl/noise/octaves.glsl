@@ -70,8 +70,10 @@ float octave_weight(float texels) {
 vec3 octave(vec2 place, Octaves o, int which, float frequency) {
     vec2 there = place * frequency + OCTAVE_SHIFT;
     uint seed = lattice_seed(o.seed, which);
+    // anchor: chain
     vec3 noise = o.basis == PERLIN ? perlin(there, seed) : simplex(there, seed);
     return vec3(noise.x, noise.yz * frequency);
+    // end: chain
 }
 
 // Billows: creases along the zeros of each octave, pointing down. Soft hills, sharp valleys.
