@@ -46,9 +46,11 @@ Footprint footprint_of(PixelRay ray, vec3 way, vec3 normal) {
 }
 
 // The level of detail of a texture with so many texels a metre, east and north.
+// anchor: level
 float level_of(Footprint foot, vec2 density) {
     vec2 right = foot.right * density;
     vec2 up = foot.up * density;
     return 0.5 * log2(max(max(dot(right, right), dot(up, up)), 1e-12));
 }
+// end: level
 #endif

@@ -70,8 +70,10 @@ float kernel(ivec2 texel) {
     if (light.z < 0.0) return 0.0;
     // A horizon of one texel was not swept: there are no compute shaders.
     bool swept = form == 1 && textureSize(horizon, 0).x > 1;
+    // anchor: swept
     float level = length(light.xy);
     if (swept) return free_part(light.z - texelFetch(horizon, texel, 0).r * level, delta_r);
+    // end: swept
     ivec2 grid = textureSize(height, 0);
     vec2 place = place_on(grid, texel, size);
     March march = march_from(height, place, size == grid, light, extent, relief, step_length);
