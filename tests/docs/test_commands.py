@@ -50,6 +50,7 @@ NOT_RUN = {
     r"playground reduce my-land --command .*": "is-good is the user's: test_a_command_judges_and_the_folder",
     r"playground shots report": "names the command; tests/report/test_report.py has results to give it",
     r"playground (render --video|check --json|reduce|pack|shots mutants)": "names it; with more it is run",
+    r"\./play lesson present .* --video .*": "takes minutes; test_present_film.py has a small one",
     r"playground lesson translated": "names the command; tests/lessons have a translation to give it",
     r"playground variants renew": "writes this checkout's record; that of a folder is written",
     r"playground (live|render) diamond_square-my-version\.zip.*": "saved by a browser: web/test_my_version",
@@ -117,6 +118,8 @@ def opens_a_window(command: str) -> bool:
     words = arguments(command)
     if command in ("./play", "playground") or words[:1] == ["live"] or words[:2] == ["lesson", "open"]:
         return True
+    if words[:2] == ["lesson", "present"]:
+        return "--video" not in words
     return words[:1] == ["fly"] and "--frames" not in words
 
 

@@ -8,13 +8,14 @@ already shown; where a page has none, the one before stays.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from playground.lessons.excerpt import excerpt
 from playground.lessons.model import (
     Block,
     Break,
+    Challenge,
     Code,
     Compare,
     Exercise,
@@ -39,7 +40,6 @@ BOARD_WORDS = 70
 BOTH = -1
 """The index of a comparison's picture where both are shown, with a line between them."""
 
-_WITH_FORMULA = 36  # words that a formula leaves room for
 _ROWS = 9  # of a table
 
 
@@ -63,6 +63,7 @@ class Beat:
     label: str = ""  # what it is, in the lesson's language: "Hint", "Step 2 of 5"
     shown: Markdown = ""  # in the strip
     board: Markdown = ""  # over the picture
+    formula: Markdown = ""  # over the picture's lower part
     code: str = ""  # over the picture
     file: str = ""  # that the code is from, in glsl/
     line: int = 0  # of the code's first line there
@@ -102,12 +103,23 @@ def beats_of(lesson: Lesson) -> tuple[Beat, ...]:
         for beat in mine:
             if beat.still is not None:
                 shown, sliders = beat.still, beat.sliders
+            if beat.kind == "text" and beat.shown[:1].islower() and found and found[-1].formula:
+                both = "\n\n".join(filter(None, [found[-1].formula, beat.formula]))
+                beat = replace(beat, formula=both)  # it goes on from that one
             found.append(replace(beat, still=shown, sliders=sliders))
+            if beat.kind == "sweep" and shown is not None:
+                shown = _at_end(lesson, shown)
     first = next((beat for beat in found if beat.still is not None), None)
     if first is not None:  # the title of a lesson whose first page has no picture
         empty = {"still": first.still, "sliders": first.sliders}
         found = [beat if beat.still is not None else replace(beat, **empty) for beat in found]  # type: ignore[arg-type]
     return tuple(found)
+
+
+def _at_end(lesson: Lesson, still: Still) -> Still:
+    """Return the picture that a sweep ends with."""
+    block = lesson.named[still.block]
+    return replace(still, index=len(block.scenes) - 1) if isinstance(block, Slider) else still
 
 
 def first_of_page(beats: tuple[Beat, ...], page: int) -> int:
@@ -123,12 +135,11 @@ def _title(lesson: Lesson) -> Beat:
 
 
 def _joined(blocks: list[Block], at: int) -> tuple[Markdown, int]:
-    """Return a formula that follows a short paragraph closely, and how many blocks are taken together."""
+    """Return the formula that follows a paragraph, and how many blocks are taken together."""
     first, second = blocks[at], blocks[at + 1] if at + 1 < len(blocks) else None
-    if isinstance(first, Prose) and first.kind == "paragraph" and isinstance(second, Prose):
-        short = words(first.markdown) <= _WITH_FORMULA
-        if second.kind == "formula" and short:
-            return second.markdown, 2
+    follows = isinstance(second, Prose) and second.kind == "formula"
+    if follows and isinstance(first, Prose) and first.kind == "paragraph":
+        return second.markdown, 2  # type: ignore[union-attr]
     return "", 1
 
 
@@ -161,15 +172,8 @@ def _beats(block: Block, formula: Markdown, lesson: Lesson) -> Iterator[Beat]:
     elif isinstance(block, Measure):
         if block.sentence:
             yield _told("text", block.sentence, label=say["measured"])
-    else:
-        yield from _other(block, say)
-
-
-def _other(block: Block, say: Mapping[str, str]) -> Iterator[Beat]:
-    """Yield the beat of a block that asks for something, of a kind that has no rule of its own."""
-    asked = getattr(block, "ask", "")
-    if asked:
-        yield _told("challenge", asked, label=say["challenge"])
+    elif isinstance(block, Challenge):
+        yield _told("challenge", block.ask, label=say["challenge"], still=Still(block.name))
 
 
 def _told(kind: str, text: Markdown, **more: object) -> Beat:
@@ -191,10 +195,9 @@ def _prose(block: Prose, formula: Markdown) -> Iterator[Beat]:
             part = "\n".join([head, rule, *rows[at : at + _ROWS]])
             yield Beat("board", 0, "", board=part, notes=part)
     elif block.kind == "formula":
-        yield Beat("text", 0, "", shown=text, notes=text)
+        yield Beat("text", 0, "", formula=text, notes=text)
     elif formula:
-        whole = f"{text}\n\n{formula}"
-        yield Beat("text", 0, "", shown=whole, notes=whole)
+        yield replace(_told("text", text), formula=formula, notes=f"{text}\n\n{formula}")
     elif block.kind != "rule":
         yield _told("text", text.lstrip("> ") if block.kind == "quote" else text)
 

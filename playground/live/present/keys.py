@@ -4,16 +4,47 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 from imgui_bundle import imgui
 
 from playground.live.text_field import letters
-
-if TYPE_CHECKING:
-    from playground.live.present.stage import Stage
+from playground.workbench.lesson.presenter import Presenter
 
 _K = imgui.Key
+
+
+class Keyed(Protocol):
+    """What keys act on: a ``Stage``."""
+
+    presenter: Presenter
+
+    def quit(self) -> None:
+        """Quit the program."""
+
+    def enter(self) -> None:
+        """Go to the beat whose number was typed."""
+
+    def type(self, digit: str) -> None:
+        """Take a digit."""
+
+    def slide(self, by: float) -> None:
+        """Move a slider."""
+
+    def toggle_laser(self) -> None:
+        """Show a spot at the mouse, or no longer."""
+
+    def toggle_pen(self) -> None:
+        """Take the pen, or put it down."""
+
+    def toggle_full(self) -> None:
+        """Fill the screen, or no longer."""
+
+    def toggle_help(self) -> None:
+        """Show the keys, or no longer."""
+
+    def say_address(self) -> None:
+        """Show where the notes are."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +54,7 @@ class PresentKey:
     keys: tuple[imgui.Key, ...]
     name: str
     meaning: tuple[str, str]  # English, French
-    act: Callable[[Stage], None]
+    act: Callable[[Keyed], None]
     typed: str = ""  # letters that do it too, wherever the keyboard has them
     repeats: bool = False
 
@@ -86,7 +117,7 @@ def help_rows(language: str) -> tuple[tuple[str, str], ...]:
     return tuple((key.name, key.meaning[which]) for key in KEYS if key.name)
 
 
-def act_on_presentation_keys(stage: Stage) -> None:
+def act_on_presentation_keys(stage: Keyed) -> None:
     """Act on the keys pressed since the last frame."""
     io = imgui.get_io()
     if (io.key_ctrl or io.key_super) and imgui.is_key_pressed(_K.q, repeat=False):
@@ -96,8 +127,7 @@ def act_on_presentation_keys(stage: Stage) -> None:
         return
     typed = letters()
     for digit in filter(str.isdecimal, typed):
-        stage.presenter.type(digit)
-        stage.choose()
+        stage.type(digit)
     for key in KEYS:
         pressed = any(imgui.is_key_pressed(one, repeat=key.repeats) for one in key.keys)
         if pressed or (key.typed and key.typed in typed):

@@ -34,6 +34,7 @@ LEAST = 28.0
 _TALL, _WIDE = 1080.0, 1920.0
 _STRIP = 252.0
 _TEXT, _TITLE, _CODE = 50.0, 54.0, 40.0  # the largest letters
+_FORMULA = 64.0
 _SIDE, _ABOVE, _HEAD = 60.0, 16.0, 36.0
 _GROUND: Rgb = (20, 22, 24)
 _BOARD_ALPHA = 244
@@ -118,7 +119,7 @@ def body_room(sizes: Sizes) -> tuple[float, float]:
 
 def board_of(beat: Beat, sizes: Sizes) -> Image.Image | None:
     """Return what is over the picture, as large as the picture; None where nothing is."""
-    if not beat.has_board and len(beat.names) < 2:
+    if not beat.has_board and len(beat.names) < 2 and not beat.formula:
         return None
     width, height = sizes.picture
     if beat.has_board:
@@ -129,9 +130,11 @@ def board_of(beat: Beat, sizes: Sizes) -> Image.Image | None:
             board_text(beat, sizes).paint(image, *_centred(board_text(beat, sizes), sizes))
         return image
     image = Image.new("RGBA", (width, height), (0, 0, 0, 0))
-    left, right = beat.names
-    _plate(image, left, sizes, 0.0)
-    _plate(image, right, sizes, 1.0)
+    if len(beat.names) == 2:
+        _plate(image, beat.names[0], sizes, 0.0)
+        _plate(image, beat.names[1], sizes, 1.0)
+    if beat.formula:
+        _plate(image, beat.formula, sizes, 0.5, _FORMULA)
     return image
 
 
@@ -236,11 +239,12 @@ def _code(image: Image.Image, beat: Beat, sizes: Sizes) -> None:
             x += len(text) * letter
 
 
-def _plate(image: Image.Image, text: str, sizes: Sizes, side: float) -> None:
-    """Write the name of a picture in its lower corner, left at 0 and right at 1."""
+def _plate(image: Image.Image, text: str, sizes: Sizes, side: float, largest: float = 36.0) -> None:
+    """Write a name or a formula at the picture's lower edge: left at 0, in the middle at ½, right at 1."""
     scale, (wide, high) = sizes.scale, sizes.picture
-    laid = fitted(text, (36 * scale, LEAST * scale), (wide * 0.45, high))
-    pad = 14 * scale
+    room = wide * (0.9 if side == 0.5 else 0.45)
+    laid = fitted(text, (largest * scale, LEAST * scale), (room, high * 0.6))
+    pad = (14 if side != 0.5 else 30) * scale
     box_wide, box_high = laid.width + 2 * pad, laid.height + pad
     left = 24 * scale + side * (wide - 48 * scale - box_wide)
     top = high - 24 * scale - box_high

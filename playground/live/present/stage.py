@@ -233,9 +233,10 @@ class Stage:
         if why := self.presenter.enter():
             self._note(self._say(why, number, len(self.presenter.beats)))
 
-    def choose(self) -> None:
-        """Say where a digit has no slider; whoever types a beat's number goes on."""
+    def type(self, digit: str) -> None:
+        """Take a digit, of a beat's number or of a slider."""
         self.presenter.notice = ""
+        self.presenter.type(digit)
 
     def slide(self, by: float) -> None:
         """Move the slider that was chosen, or the first."""

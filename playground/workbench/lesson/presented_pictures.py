@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from playground.errors import ParameterError, PlaygroundError
 from playground.lessons.figure_renders import with_bug
-from playground.lessons.model import Break, Compare, Slider, Steps
+from playground.lessons.model import Break, Challenge, Compare, Slider, Steps
 from playground.lessons.present.beats import Beat, Still
 from playground.sketch.assign import resolve
 from playground.sketch.described_parameter import range_of
@@ -72,8 +72,8 @@ class PresentedPictures:
             return
         reader.playing = ""
         self.shown = still
-        if isinstance(block, Break):
-            self._bug(block, still)
+        if isinstance(block, Break | Challenge):
+            self._plainly(block, still)
         elif isinstance(block, Compare):
             reader.choose(block, still.index)
         elif isinstance(block, Steps | Slider):
@@ -81,6 +81,7 @@ class PresentedPictures:
             if sweeps and isinstance(block, Slider):
                 reader.at[block.name] = 0
                 reader.play_or_pause(block)
+                self.shown = replace(still, index=len(block.scenes) - 1)
         elif block is not None:
             reader.show(block)
 
@@ -114,12 +115,14 @@ class PresentedPictures:
         if new != value:
             self.reader.bench.session.drafts.set(row.path, new)
 
-    def _bug(self, block: Break, still: Still) -> None:
+    def _plainly(self, block: Break | Challenge, still: Still) -> None:
+        """Show a picture without what the panel has for it: a bug's editor, a challenge's score."""
         if block.scene is None:
             return
         self.reader.bugs.leave()
         try:
-            texts = {str(file_of(block)): with_bug(block)} if still.broken else {}
+            bug = isinstance(block, Break) and still.broken
+            texts = {str(file_of(block)): with_bug(block)} if bug else {}  # type: ignore[arg-type]
         except PlaygroundError as error:
             self.reader.bench.notices.say(str(error))
             return
