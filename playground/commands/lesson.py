@@ -11,10 +11,15 @@ import typer
 
 from playground.commands import options
 from playground.commands.arguments import FAILED, Renderer, command_group, help_text
+from playground.commands.lesson_grade import HELP as GRADE_HELP
+from playground.commands.lesson_grade import grade
+from playground.commands.lesson_handout import HELP as HANDOUT_HELP
+from playground.commands.lesson_handout import handout
+from playground.commands.lesson_language import read_language
 from playground.commands.lesson_present import present
 from playground.commands.live import check_display, open_window
 from playground.commands.options import complete_language, complete_lesson, flag, positional, value
-from playground.errors import PlaygroundError, SketchError, counted, nearest
+from playground.errors import PlaygroundError, SketchError, counted
 from playground.terminal import complain, note, painted, print_json, print_rows, print_table, progress
 
 if TYPE_CHECKING:
@@ -90,6 +95,9 @@ PRESENT_HELP = help_text(
 )
 
 app = command_group("lesson", HELP, "Lessons on terrain: read them, build them as a book or notebooks.")
+
+app.command("handout", help=HANDOUT_HELP)(handout)
+app.command("grade", help=GRADE_HELP)(grade)
 
 NameArgument = Annotated[str, positional("NAME", "A lesson.", complete_lesson)]
 NamesArgument = Annotated[list[str] | None, positional("NAME", "Lessons; all by default.", complete_lesson)]
@@ -285,15 +293,6 @@ def _write_notebooks(folder: Path, lessons: dict[str, list[Lesson]], engine: Eng
             with replacing(path) as handle:
                 handle.write(notebook_text(lesson, numbers).encode())
             print(path)
-
-
-def read_language(text: str) -> str:
-    """Return the language that an option names, or the system's; raise ``SketchError`` for an unknown one."""
-    from playground.lessons.library import LANGUAGES, preferred_language
-
-    if text and text not in LANGUAGES:
-        raise SketchError(f"--lang {text}: no such language{nearest(text, LANGUAGES)}")
-    return text or preferred_language()
 
 
 def _chosen(names: list[str] | None) -> list[str]:

@@ -123,6 +123,8 @@ class Pool:
         self.ctx = ctx
         self.limit = limit  # [bytes]
         self.made = 0  # how often a texture was made anew
+        # Whether texels begin as zeros: what does not write all of them shows nothing of what others drew.
+        self.clears = False
         self._taken = 0
         self._spare: OrderedDict[int, Result] = OrderedDict()
         self._bytes = 0
@@ -136,7 +138,18 @@ class Pool:
         return len(self._spare)
 
     def take(self, size: tuple[int, int], outputs: Sequence[Output]) -> Result:
-        """Return a result with undefined texels; raise ``ContextError`` where the driver refuses its size."""
+        """Return a result with undefined texels, or zeros if this pool clears.
+
+        Raises ``ContextError`` where the driver refuses its size.
+        """
+        result = self._take(size, outputs)
+        if self.clears:
+            framebuffer = result.framebuffer(self.ctx)
+            framebuffer.use()  # clear() binds anew what was bound before, which may have been released by now
+            framebuffer.clear()
+        return result
+
+    def _take(self, size: tuple[int, int], outputs: Sequence[Output]) -> Result:
         wanted = tuple(outputs)
         formats = [o.format for o in wanted]
         self._taken += 1

@@ -1,0 +1,129 @@
+"""Grade what a class has handed in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from playground.commands import options
+from playground.commands.arguments import Renderer, help_text
+from playground.commands.lesson_language import read_language
+from playground.commands.options import complete_lesson, positional, value
+from playground.errors import SketchError, counted
+from playground.terminal import note, print_json, print_table, progress
+
+if TYPE_CHECKING:
+    from playground.lessons.grading.marks import Graded
+    from playground.lessons.grading.submissions import Submission
+    from playground.lessons.handout.exercise_files import Assignment
+
+HELP = help_text(
+    "Grade a folder of submissions: one folder or zip for each student, as `playground lesson handout` gave"
+    " them out.\n\n"
+    "Writes grades.csv and index.html, a contact sheet with what was handed in next to what was wanted. Each"
+    " work is judged in a process of its own limits: an endless loop costs its author the points and nobody"
+    " else anything. Without --lesson, those lessons are graded of which something was handed in. Exit"
+    " status 0 when graded, whatever the grades.",
+    "playground lesson grade handed-in -o report",
+    "playground lesson grade handed-in --lesson diamond_square --lang fr -o notes",
+    "playground lesson grade handed-in --json",
+)
+
+
+def grade(
+    ctx: typer.Context,
+    folder: Annotated[Path, positional("FOLDER", "A folder or a zip for each student is in it.")],
+    output: Annotated[Path, value("-o --output FOLDER", "The report; report by default.")] = Path("report"),
+    lessons: Annotated[
+        list[str] | None,
+        value("--lesson NAME", "A lesson to grade; may be repeated.", complete_lesson),
+    ] = None,
+    lang: options.Language = "",
+    as_json: options.Json = False,
+    software: options.Software = False,
+) -> None:
+    """Grade a folder of submissions."""
+    from playground.lessons.grading.grade import count_works, grade, read_all
+    from playground.lessons.grading.handler import Options
+    from playground.lessons.grading.judges import Judges
+    from playground.lessons.grading.report import check_folder, write_report
+    from playground.lessons.grading.submissions import find_submissions
+    from playground.lessons.handout.exercise_files import assignments_of
+    from playground.lessons.read import read_lesson
+
+    language, folder, output = read_language(lang), folder.expanduser(), output.expanduser()
+    found, others = find_submissions(folder, output)
+    check_folder(output)
+    names = list(dict.fromkeys(lessons or _lessons_handed_in(found)))
+    assignments = assignments_of(read_lesson(name, language) for name in names)
+    for name in names:
+        if not any(one.lesson.name == name for one in assignments):
+            raise SketchError(f"no exercise of the lesson {name} checks itself, so there is nothing to grade")
+    read = read_all(found, assignments)
+    renderer: Renderer = ctx.obj.or_else(software)
+    with (
+        Judges(Options(tuple(names), language, renderer.software, renderer.device)) as judges,
+        progress("grading", count_works(read, assignments)) as advance,
+    ):
+        graded = grade(read, assignments, judges, language, advance)
+        drawn_by = judges.renderer
+    titles = {one.name: f"{one.lesson.title}, {one.number}" for one in assignments}
+    page = write_report(output, graded, titles, language, drawn_by)
+    for name in others:
+        note(f"left out: {name!r} is no folder and no zip")
+    if as_json:
+        print_json([_as_json(one) for one in graded])
+        return
+    _print(graded, assignments)
+    note(f"{page} and {page.with_name('grades.csv')}")
+
+
+def _lessons_handed_in(submissions: Sequence[Submission]) -> list[str]:
+    """Return the lessons of which anything was handed in; raise ``SketchError`` for none."""
+    from playground.lessons.course import lesson_names
+    from playground.lessons.grading.handed_in import lessons_in
+
+    known = lesson_names()
+    found = {name for one in submissions for name in lessons_in(one.path, known)}
+    if not found:
+        raise SketchError("no submission holds a file of an exercise; name the lessons: --lesson NAME")
+    return [name for name in known if name in found]
+
+
+def _as_json(one: Graded) -> dict[str, object]:
+    return {
+        "student": one.student,
+        "points": one.points,
+        "of": one.of,
+        "exercises": {
+            name: {
+                "points": mark.points,
+                "of": mark.of,
+                "outcome": mark.outcome,
+                "sentences": list(mark.sentences),
+                "note": mark.note,
+                "same_as": list(mark.same_as),
+            }
+            for name, mark in one.marks.items()
+        },
+    }
+
+
+def _print(graded: Sequence[Graded], assignments: Sequence[Assignment]) -> None:
+    from playground.lessons.grading.entries import printable
+    from playground.lessons.grading.marks import spelled_points
+
+    headings = ["student", *(one.name for one in assignments), "total", "of"]
+    rows = [
+        [
+            printable(one.student),
+            *(spelled_points(mark.points) for mark in one.marks.values()),
+            spelled_points(one.points),
+            str(one.of),
+        ]
+        for one in graded
+    ]
+    print_table(f"Grades of {counted(len(graded), 'submission')}", headings, rows)

@@ -1,0 +1,53 @@
+"""Hand out the exercises of lessons as a zip."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from playground.commands import options
+from playground.commands.arguments import Renderer, check_parent, help_text
+from playground.commands.lesson_language import read_language
+from playground.commands.options import complete_lesson, flag, positional, value
+from playground.errors import DataError, counted
+from playground.terminal import note, progress
+
+HELP = help_text(
+    "Write the exercises of lessons as a zip for students: a page without answers, and for each exercise"
+    " that checks itself a folder that the window opens.\n\n"
+    "Students edit one file an exercise and hand the folder in; `playground lesson grade` grades what a class"
+    " has handed in. Model answers are not in the zip.",
+    "playground lesson handout diamond_square -o week3.zip",
+    "playground lesson handout diamond_square --hints --lang fr -o semaine3.zip",
+    "playground live week3.zip",
+)
+
+
+def handout(
+    ctx: typer.Context,
+    names: Annotated[list[str], positional("NAME", "The lessons.", complete_lesson)],
+    output: Annotated[Path, value("-o --output FILE", "The zip; handout.zip by default.")] = Path(
+        "handout.zip"
+    ),
+    hints: Annotated[bool, flag("--hints", "Put the exercises' hints on the page.")] = False,
+    lang: options.Language = "",
+    software: options.Software = False,
+) -> None:
+    """Write the exercises of lessons as a zip for students."""
+    from playground.lessons.handout.pack import count_tasks, write_handout
+    from playground.lessons.read import read_lesson
+
+    output = output.expanduser()
+    if output.is_dir() or output.suffix.lower() != ".zip":
+        raise DataError("a hand-out is written to a name ending in .zip", file=output)
+    check_parent(output, str(output))
+    language = read_language(lang)
+    lessons = [read_lesson(name, language) for name in dict.fromkeys(names)]
+    renderer: Renderer = ctx.obj.or_else(software)
+    with renderer.open_engine() as engine, progress("drawing", count_tasks(lessons)) as advance:
+        written = write_handout(output, lessons, engine, hints=hints, advance=advance)
+    print(output)
+    points = sum(one.exercise.points for one in written)
+    note(f"{counted(len(written), 'exercise')} to hand in, {counted(points, 'point')}")

@@ -1,0 +1,216 @@
+"""List the files of one submission, a folder or a zip, of which nothing is trusted.
+
+No link is followed, nothing is written to the disk, and how many files and bytes are looked at is
+bounded before the first is read. A zip that lies in the folder is looked into as if it were a folder.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from playground.errors import DataError
+
+MOST_FILES = 4000
+"""Files and folders that a submission may hold."""
+
+MOST_TEXT = 2**20
+"""Bytes of a file that is graded: a kernel or a sketch's TOML."""
+
+_DEEPEST = 16  # folders in folders
+_MOST_ZIP = 2**28  # [bytes] a zip may have
+_MOST_LIST = 2**21  # [bytes] a zip's list of files may have
+_MOST_UNPACKED = 2**30  # [bytes] its files may become
+_ALWAYS_FINE = 2**26  # [bytes] unpacked, with any ratio
+_MOST_RATIO = 200  # of what is unpacked to the zip
+_END_MARK = b"PK\x05\x06"  # of a zip's list; APPNOTE 6.3.10, section 4.3.16
+_END_BYTES = 22 + 2**16  # its record and the longest comment
+_BY_SYSTEMS = ("__macosx", ".ds_store", "thumbs.db", "desktop.ini")
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One file of a submission."""
+
+    path: str  # within it, with "/"
+    read: Callable[[], bytes]  # its bytes; raises ``DataError`` in a sentence
+
+    @property
+    def name(self) -> str:
+        """The file's own name."""
+        return self.path.rpartition("/")[2]
+
+
+def entries_of(path: Path) -> list[Entry]:
+    """List a submission's files, those of the zips in it as well, the shallowest first.
+
+    Raises ``DataError`` in a sentence for what is no folder and no zip, for more than is looked at, and for
+    a zip that was made to do harm.
+    """
+    found = list(_zip_entries(path) if is_zip(path) else _folder_entries(path))
+    return sorted(found, key=lambda entry: (entry.path.count("/"), entry.path))
+
+
+def is_zip(path: Path) -> bool:
+    """Return whether a path is named like a zip."""
+    return path.suffix.lower() == ".zip"
+
+
+def is_by_system(path: str) -> bool:
+    """Return whether a file is one that macOS or Windows adds by itself, or a hidden one."""
+    parts = path.split("/")
+    return any(part.casefold() in _BY_SYSTEMS or part.startswith("._") for part in parts)
+
+
+def _folder_entries(top: Path) -> Iterator[Entry]:
+    count, waiting = 0, [(top, "")]
+    while waiting:
+        folder, prefix = waiting.pop()
+        for item in _listed(folder):
+            path = f"{prefix}{item.name}"
+            if is_by_system(path):
+                continue
+            count += 1
+            if count > MOST_FILES:
+                raise DataError(f"holds more than {MOST_FILES} files; expected the folder of the hand-out")
+            if item.is_dir(follow_symlinks=False):
+                if path.count("/") < _DEEPEST:
+                    waiting.append((Path(item.path), f"{path}/"))
+            elif is_zip(Path(item.name)) and item.is_file(follow_symlinks=False):
+                yield from (Entry(f"{path}/{e.path}", e.read) for e in _zip_entries(Path(item.path)))
+            else:
+                yield Entry(path, _reader_of(Path(item.path)))
+
+
+def _listed(folder: Path) -> list[os.DirEntry[str]]:
+    try:
+        with os.scandir(folder) as items:
+            found = []
+            for item in items:
+                found.append(item)
+                if len(found) > MOST_FILES:
+                    break
+            return sorted(found, key=lambda item: item.name)
+    except OSError as error:
+        raise DataError(f"cannot be read: {error.strerror}") from None
+
+
+def _reader_of(path: Path) -> Callable[[], bytes]:
+    def read() -> bytes:
+        try:
+            kind = path.lstat()
+            if stat.S_ISLNK(kind.st_mode):
+                raise DataError("is a link to another file; only plain files are read")
+            if not stat.S_ISREG(kind.st_mode):  # to open a pipe or a device may never end
+                raise DataError("is a pipe, a socket or a device; only plain files are read")
+            _check_size(kind.st_size)
+            flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
+            flags |= getattr(os, "O_BINARY", 0)
+            with os.fdopen(os.open(path, flags), "rb") as file:
+                return _whole(file.read(MOST_TEXT + 1))
+        except OSError as error:
+            raise DataError(f"cannot be read: {error.strerror}") from None
+
+    return read
+
+
+def _check_size(size: int) -> None:
+    if size > MOST_TEXT:
+        raise DataError(f"has {size / 2**20:.0f} MiB; a text of at most {MOST_TEXT / 2**20:.0f} is read")
+
+
+def _whole(data: bytes) -> bytes:
+    _check_size(len(data))  # a file may have grown, and a zip lies about its files' sizes
+    return data
+
+
+def _zip_entries(path: Path) -> Iterator[Entry]:
+    """Yield the files of a zip; raise ``DataError`` for one that is not safe, before anything is unpacked."""
+    try:
+        _check_list(path)
+        with zipfile.ZipFile(path) as archive:
+            items = [item for item in archive.infolist() if not is_by_system(item.filename)]
+            _check_zip(items, path.stat().st_size)
+    except DataError:
+        raise
+    except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError) as error:
+        raise DataError(f"is no zip that can be read: {_reason(error)}") from None
+    for item in items:
+        if item.is_dir():
+            continue
+        yield Entry(item.filename, _zip_reader(path, item))
+
+
+def _check_list(path: Path) -> None:
+    """Raise ``DataError`` for a zip whose list of files alone would take too much memory."""
+    if not stat.S_ISREG(path.lstat().st_mode):
+        raise DataError("is a link or a device; only plain files are read")
+    size = path.stat().st_size
+    if size > _MOST_ZIP:
+        raise DataError(f"has {size / 2**20:.0f} MiB; a zip of at most {_MOST_ZIP // 2**20} is read")
+    with path.open("rb") as file:
+        file.seek(max(size - _END_BYTES, 0))
+        tail = file.read(_END_BYTES)
+    place = tail.rfind(_END_MARK)
+    if place < 0 or len(tail) < place + 20:
+        raise DataError("is no zip that can be read: it is cut short, or something else by this name")
+    count = int.from_bytes(tail[place + 10 : place + 12], "little")
+    length = int.from_bytes(tail[place + 12 : place + 16], "little")
+    # A larger list (zip64) has all bits set here.
+    if count > MOST_FILES or length > _MOST_LIST:
+        raise DataError(f"holds more than {MOST_FILES} files; expected the folder of the hand-out")
+
+
+def _check_zip(items: list[zipfile.ZipInfo], size: int) -> None:
+    if len(items) > MOST_FILES:
+        raise DataError(f"holds more than {MOST_FILES} files; expected the folder of the hand-out")
+    whole = sum(item.file_size for item in items)
+    if sum(item.compress_size for item in items) > size:
+        raise DataError("its files overlap, as those of a zip bomb do; it is not unpacked")
+    if whole > _MOST_UNPACKED or (whole > _ALWAYS_FINE and whole > _MOST_RATIO * size):
+        raise DataError(
+            f"would become {whole / 2**20:.0f} MiB from {size / 2**20:.2g}, as a zip bomb does; it is not"
+            " unpacked"
+        )
+    for item in items:
+        name = item.filename
+        if name.startswith("/") or "\\" in name or ".." in name.split("/") or name[1:2] == ":":
+            raise DataError(f"holds '{printable(name)}', which leads out of its folder; it is not unpacked")
+
+
+def _zip_reader(path: Path, item: zipfile.ZipInfo) -> Callable[[], bytes]:
+    def read() -> bytes:
+        if stat.S_IFMT(item.external_attr >> 16) not in (0, stat.S_IFREG):
+            raise DataError("is a link or a device; only plain files are read")
+        if item.flag_bits & 1:
+            raise DataError("is encrypted; expected a zip without a password")
+        _check_size(item.file_size)
+        try:
+            with zipfile.ZipFile(path) as archive, archive.open(item) as file:
+                return _whole(file.read(MOST_TEXT + 1))
+        except (
+            OSError,
+            zipfile.BadZipFile,
+            NotImplementedError,
+            RuntimeError,
+            zlib.error,
+            EOFError,
+        ) as error:
+            raise DataError(f"is damaged in its zip: {_reason(error)}") from None
+
+    return read
+
+
+def printable(text: str, most: int = 80) -> str:
+    """Return a name as it can be shown in one line, by others as well: no control characters."""
+    return "".join(c if c.isprintable() else "?" for c in text)[:most]
+
+
+def _reason(error: BaseException) -> str:
+    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return printable(" ".join(text.split()).rstrip(".")) or type(error).__name__

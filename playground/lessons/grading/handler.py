@@ -1,0 +1,172 @@
+"""Judge works in a worker process, one by one, on an engine whose textures hold nothing of the last one."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PIL import Image
+
+from playground.engine.engine import Engine
+from playground.engine.plain_forms import silent
+from playground.errors import ContextError, DataError, PlaygroundError, SandboxCrash
+from playground.gpu.context import context_info, open_context
+from playground.gpu.textures import is_lost
+from playground.lessons.figure_renders import draw
+from playground.lessons.grading.marks import GRADED, REFUSED, Mark, Pair
+from playground.lessons.grading.values_in_toml import values_in_toml
+from playground.lessons.handout.exercise_files import Assignment, assignments_of
+from playground.lessons.model import Exercise
+from playground.lessons.read import read_lesson
+from playground.lessons.tasks.judge import Wanted, answers, judge, small
+from playground.lessons.tasks.sentences import sentences
+from playground.lessons.tasks.texts import path_of
+from playground.lessons.tasks.verdict import Picture, Verdict
+from playground.lessons.tasks.work import Work, answer, scene_of, wanted_scene
+from playground.paths import GLSL, shown
+from playground.process.child import Parent, Service
+from playground.sketch.allowed_files import leads_outside
+from playground.sketch.model import Sketch, kernels_of
+
+PREPARING, JUDGING = "preparing", "judging"
+"""What the worker reports: it draws the model answer, or a student's work, whose time is limited."""
+
+_CACHE = 192 * 2**20  # [bytes] of textures
+_QUALITY = 82  # of WebP
+_LONGEST = 160  # characters of a line of a sentence
+_MOST_SENTENCES = 8  # a text may have thousands of mistakes
+_MOST_PAIRS = 4  # of pictures, for each exercise
+
+
+@dataclass(frozen=True)
+class Options:
+    """What a worker is started with."""
+
+    lessons: tuple[str, ...]
+    language: str
+    software: bool = False
+    device: int | None = None
+
+
+@dataclass(frozen=True)
+class Request:
+    """One work to judge; without a text, the model answer, which must have all points."""
+
+    exercise: str  # its name in a hand-out
+    text: str | None = None  # of its file
+
+
+def open_service(parent: Parent, options: Options) -> Service:
+    """Open a context and an engine on it, and read the lessons."""
+    context = open_context(software=options.software, device=options.device)
+    engine = Engine(context, owns_context=True, cache_bytes=_CACHE, notice=silent)
+    engine.pool.clears = True
+    lessons = [read_lesson(name, options.language) for name in options.lessons]
+    return Service(_Handler(parent, engine, options, assignments_of(lessons)).answer, context_info(context))
+
+
+class _Handler:
+    """Judges with one engine; what the model answers give is drawn once."""
+
+    def __init__(
+        self, parent: Parent, engine: Engine, options: Options, assignments: Sequence[Assignment]
+    ) -> None:
+        self._parent, self._engine, self._language = parent, engine, options.language
+        self._exercises = {one.name: one.exercise for one in assignments}
+        self._wanted: dict[str, tuple[Wanted, ...]] = {}
+
+    def answer(self, request: Request) -> Mark:
+        """Return the mark of a work.
+
+        Raises ``PlaygroundError`` where the model answer cannot be drawn or has not all points, and
+        ``SandboxCrash`` where the context was lost.
+        """
+        exercise = self._exercises[request.exercise]
+        if request.exercise not in self._wanted:
+            self._parent.report(PREPARING)
+            self._wanted[request.exercise] = answers(self._engine, exercise)
+        if request.text is None:
+            return self._judged(exercise, request.exercise, answer(exercise))
+        self._parent.report(JUDGING)
+        try:
+            work = _work_of(exercise, request.text)
+            found = self._judged(exercise, request.exercise, work)
+        except ContextError as error:  # a texture larger than there is room for
+            found = _refused(exercise, error)
+        except DataError as error:
+            found = _refused(exercise, error)
+        if is_lost(self._engine.ctx):
+            raise SandboxCrash("made the driver reset itself")
+        return found
+
+    def _judged(self, exercise: Exercise, name: str, work: Work) -> Mark:
+        verdict = judge(self._engine, exercise, work, self._wanted[name])
+        # Where the text was read from is the student's own file, not the one that it takes the place of.
+        place, own = shown(path_of(exercise)) if exercise.file else "", f"{name}.glsl"
+        said = [_short(s.replace(place, own) if place else s) for s in sentences(verdict, self._language)]
+        return Mark(
+            verdict.points,
+            verdict.of,
+            GRADED,
+            tuple(said[:_MOST_SENTENCES]),
+            self._pairs(exercise, work, verdict),
+        )
+
+    def _pairs(self, exercise: Exercise, work: Work, verdict: Verdict) -> tuple[Pair, ...]:
+        """Return the pictures to compare: those that failed first, of measures one of all that is drawn."""
+        if verdict.diagnostics:
+            return ()
+        shown = [
+            result for result in verdict.results if result.mine is not None and result.wanted is not None
+        ]
+        found = []
+        for result in sorted(shown, key=lambda result: result.passed)[:_MOST_PAIRS]:
+            assert result.mine is not None and result.wanted is not None
+            found.append(Pair(_webp(result.mine), _webp(result.wanted)))
+        if not found:
+            scenes = scene_of(exercise, work), wanted_scene(exercise)
+            mine, wanted = (_webp(draw(self._engine, small(scene)).array) for scene in scenes)
+            found.append(Pair(mine, wanted))
+        return tuple(found)
+
+
+def _work_of(exercise: Exercise, text: str) -> Work:
+    """Return a work by its file's text; raise ``DataError`` for what names files elsewhere."""
+    if not exercise.file:
+        return Work(None, values_in_toml(text, exercise.sliders))
+    work = Work(text)
+    try:
+        sketch = scene_of(exercise, work).sketch
+    except PlaygroundError:
+        return work  # the judge says what is wrong with it
+    if outside := _outside_file(sketch):
+        raise DataError(f"names '{outside}', a file outside of its folder; it was not opened")
+    return work
+
+
+def _outside_file(sketch: Sketch) -> str:
+    """Return a file that a kernel names by itself and that lies neither with the sketch nor in ``glsl/``."""
+    for _, kernel in kernels_of(sketch.graph):
+        for parameter in kernel.parameters:
+            text = str(parameter.default)
+            if parameter.widget.kind == "file" and text and leads_outside(text, GLSL, parameter.file):
+                return text
+    return ""
+
+
+def _short(sentence: str) -> str:
+    """Return a sentence, with the code that it may quote, without the rest of endless lines."""
+    lines = [line if len(line) <= _LONGEST else f"{line[:_LONGEST]}…" for line in sentence.split("\n")]
+    return "\n".join(line for line in lines[:3] if line.strip())
+
+
+def _refused(exercise: Exercise, error: PlaygroundError) -> Mark:
+    return Mark(0.0, exercise.points, REFUSED, (_short(error.diagnostics[0].message),))
+
+
+def _webp(picture: Picture) -> bytes:
+    stream = io.BytesIO()
+    Image.fromarray(np.ascontiguousarray(picture[..., :3])).save(stream, "WEBP", quality=_QUALITY, method=2)
+    return stream.getvalue()

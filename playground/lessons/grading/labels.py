@@ -1,0 +1,16 @@
+"""The labels of a report of grades."""
+
+from __future__ import annotations
+
+import tomllib
+from functools import cache
+from pathlib import Path
+
+from playground.lessons.library import Labels
+
+
+@cache
+def report_labels(language: str) -> Labels:
+    """Return the labels of a report of grades in a language."""
+    with (Path(__file__).resolve().parent / "labels" / f"{language}.toml").open("rb") as handle:
+        return Labels(tomllib.load(handle))

@@ -1,0 +1,172 @@
+"""Write the contact sheet: for each student what was handed in next to what was wanted, points, what differs.
+
+All text in it is escaped, and its policy lets no script run but its own: the browser compares hashes.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from playground._version import __version__
+from playground.lessons.grading.labels import report_labels
+from playground.lessons.grading.marks import GRADED, Graded, Mark, Pair, spelled_points
+from playground.lessons.library import Labels
+from playground.markup import Markup, joined, tag
+
+_HERE = Path(__file__).resolve().parent
+_COARSE = 100  # pixels: pictures with fewer are shown texel by texel
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What the page is written with."""
+
+    language: str
+    renderer: str  # that drew the pictures
+    file_of: Callable[[bytes], str]  # a picture's address
+    size_of: Callable[[bytes], tuple[int, int]]  # [pixels]
+
+    @property
+    def label(self) -> Labels:
+        """The labels in its language."""
+        return report_labels(self.language)
+
+    def number(self, points: float) -> str:
+        """Return points as this language writes them."""
+        text = spelled_points(points)
+        return text.replace(".", ",") if self.language == "fr" else text
+
+
+def page(graded: Sequence[Graded], titles: dict[str, str], setting: Setting) -> str:
+    """Return the page as HTML; ``titles`` are those of the exercises by name."""
+    label, style, script = setting.label, _read("report.css"), _read("report.js")
+    mean = sum(one.points for one in graded) / max(len(graded), 1)
+    count = label("students", n=len(graded)) if len(graded) != 1 else label("student")
+    of = graded[0].of if graded else 0
+    policy = (
+        f"default-src 'none'; img-src 'self'; style-src '{_hash(style)}'; script-src '{_hash(script)}';"
+        " base-uri 'none'; form-action 'none'"
+    )
+    head = joined(
+        Markup('<meta charset="utf-8">'),
+        tag("meta", http_equiv="Content-Security-Policy", content=policy),
+        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("title", label["title"]),
+        tag("style", Markup(style)),
+    )
+    summary = f"{count} · {label('mean', mean=setting.number(round(mean, 2)), of=of)}"
+    body = joined(
+        tag("header", tag("h1", label["title"]), tag("p", summary)),
+        _tools(label),
+        tag("main", tag("ul", *(_student(one, titles, setting) for one in graded), class_="students")),
+        tag("footer", tag("p", label("made_by", version=__version__, renderer=setting.renderer))),
+        tag("script", Markup(script)),
+    )
+    whole = tag("html", tag("head", head), tag("body", body), lang=setting.language)
+    return f"<!doctype html>\n{whole}\n"
+
+
+def _tools(label: Labels) -> Markup:
+    def choice(name: str, text: str, options: Sequence[tuple[str, str]]) -> Markup:
+        rows = [tag("option", label[key], value=value) for value, key in options]
+        return tag("label", text, tag("select", *rows, id=name))
+
+    sorts = [("name", "by_name"), ("fewest", "by_points"), ("most", "by_most")]
+    shows = [("all", "all"), ("not-full", "not_full"), ("full", "full"), ("trouble", "trouble")]
+    return tag(
+        "div",
+        choice("sort", label["sort"], sorts),
+        choice("show", label["show"], shows),
+        tag("label", label["find"], tag("input", type="search", id="find")),
+        tag("span", id="shown", role="status", data_text=label["of_shown"]),
+        class_="tools",
+        hidden=True,
+    )
+
+
+def _student(one: Graded, titles: dict[str, str], setting: Setting) -> Markup:
+    states = ["full" if one.points == one.of else "not-full"]
+    states += ["trouble"] if any(mark.outcome != GRADED for mark in one.marks.values()) else []
+    return tag(
+        "li",
+        tag("h2", tag("bdi", one.student), _chip(one.points, one.of, setting)),
+        tag("div", *(_mark(name, titles[name], m, setting) for name, m in one.marks.items()), class_="marks"),
+        class_="student",
+        data_name=one.student,
+        data_points=spelled_points(one.points),
+        data_states=" ".join(states),
+    )
+
+
+def _chip(points: float, of: int, setting: Setting) -> Markup:
+    kind = "full" if points == of else "part" if points else "none"
+    return tag("span", f"{setting.number(points)} / {of}", class_=f"chip {kind}")
+
+
+def _mark(name: str, title: str, mark: Mark, setting: Setting) -> Markup:
+    label = setting.label
+    first, *others = mark.pairs or (None,)
+    further = [_pair(title, pair, setting) for pair in others if pair]
+    sentences = [tag("li", _with_code(sentence)) for sentence in mark.sentences]
+    same = None
+    if mark.same_as:
+        names = _in_list(mark.same_as)
+        same = tag("p", label("same", names=names), class_="note", title=label["same_hint"])
+    return tag(
+        "section",
+        tag("h3", tag("span", title), _chip(mark.points, mark.of, setting)),
+        _pair(title, first, setting) if first else None,
+        tag("ul", *sentences, class_="sentences") if sentences else None,
+        tag("details", tag("summary", label["more"]), *further) if further else None,
+        same,
+        tag("p", mark.note, class_="note") if mark.note else None,
+        class_="mark",
+        data_exercise=name,
+    )
+
+
+def _with_code(sentence: str) -> Markup:
+    """Return a sentence, escaped, what is between backticks as code, and what follows its first line too."""
+    first, line_end, quoted = sentence.partition("\n")
+    parts = [tag("code", part) if odd % 2 else joined(part) for odd, part in enumerate(first.split("`"))]
+    return joined(*parts, tag("pre", quoted) if line_end else None)
+
+
+def _in_list(names: Sequence[str], most: int = 6) -> str:
+    shown = ", ".join(names[:most])
+    return shown if len(names) <= most else f"{shown}, +{len(names) - most}"
+
+
+def _pair(title: str, pair: Pair, setting: Setting) -> Markup:
+    figures = [
+        _figure(title, setting.label[key], data, setting)
+        for key, data in (("mine", pair.mine), ("wanted", pair.wanted))
+    ]
+    return tag("div", *figures, class_="pair")
+
+
+def _figure(title: str, text: str, data: bytes, setting: Setting) -> Markup:
+    width, height = setting.size_of(data)
+    coarse = "texels" if max(width, height) < _COARSE else None
+    image = tag(
+        "img",
+        src=setting.file_of(data),
+        alt=f"{title}: {text}",
+        width=width,
+        height=height,
+        loading="lazy",
+        class_=coarse,
+    )
+    return tag("figure", image, tag("figcaption", text))
+
+
+def _read(name: str) -> str:
+    return (_HERE / name).read_text(encoding="utf-8")
+
+
+def _hash(text: str) -> str:
+    return f"sha256-{base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()}"

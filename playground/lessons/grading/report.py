@@ -1,0 +1,75 @@
+"""Write the report of grades into a folder: the table, the contact sheet, its pictures.
+
+grades.csv    a row for each student
+index.html    the contact sheet
+pictures/     named after their bytes: equal ones share a file
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from PIL import Image
+
+from playground.errors import DataError
+from playground.images.files import replacing
+from playground.lessons.grading.marks import Graded
+from playground.lessons.grading.page import Setting, page
+from playground.lessons.grading.table import table_bytes
+from playground.paths import shown
+
+TABLE, PAGE, PICTURES = "grades.csv", "index.html", "pictures"
+_PICTURE = re.compile(r"[0-9a-f]{20}\.webp")
+
+
+def check_folder(folder: Path) -> None:
+    """Raise ``DataError`` where a report would go over what is none."""
+    there = folder.exists()
+    if there and (not folder.is_dir() or (any(folder.iterdir()) and not (folder / TABLE).is_file())):
+        message = "there is something here that is no report of grades; name a new or empty folder"
+        raise DataError(message, file=shown(folder))
+    if not there and not folder.absolute().parent.is_dir():
+        raise DataError(f"there is no folder '{folder.parent}' to write into", file=shown(folder))
+
+
+def write_report(
+    folder: Path, graded: Sequence[Graded], titles: dict[str, str], language: str, renderer: str
+) -> Path:
+    """Write the report and return its page; pictures of an earlier one that are no longer shown are removed.
+
+    Raises ``DataError`` where it cannot be written.
+    """
+    written: set[str] = set()
+
+    def file_of(data: bytes) -> str:
+        name = f"{hashlib.sha256(data).hexdigest()[:20]}.webp"
+        if name not in written:
+            written.add(name)
+            _write(folder / PICTURES / name, data)
+        return f"{PICTURES}/{name}"
+
+    try:
+        (folder / PICTURES).mkdir(parents=True, exist_ok=True)
+        text = page(graded, titles, Setting(language, renderer, file_of, _size_of))
+        _write(folder / TABLE, table_bytes(graded, list(titles)))
+        _write(folder / PAGE, text.encode("utf-8", "replace"))
+        for old in (folder / PICTURES).iterdir():
+            if _PICTURE.fullmatch(old.name) and old.name not in written:
+                old.unlink()
+    except OSError as error:
+        raise DataError(f"cannot be written: {error.strerror}", file=shown(folder)) from None
+    return folder / PAGE
+
+
+def _size_of(data: bytes) -> tuple[int, int]:
+    with Image.open(io.BytesIO(data)) as picture:
+        return picture.size
+
+
+def _write(path: Path, data: bytes) -> None:
+    with replacing(path) as handle:
+        handle.write(data)

@@ -1,0 +1,31 @@
+"""Write the marks as a table: CSV (RFC 4180), UTF-8 with the byte order mark that Excel needs to see it.
+
+A name such as ``=1+1`` would be computed by a spreadsheet; behind an apostrophe it stays a text.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Sequence
+
+from playground.lessons.grading.marks import Graded, spelled_points
+
+_FORMULAS = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
+_TOTAL, _OF = "total", "of"
+
+
+def table_bytes(graded: Sequence[Graded], exercises: Sequence[str]) -> bytes:
+    """Return the table: a row for each student, the points of each exercise, the total, and of how many."""
+    text = io.StringIO(newline="")
+    rows = csv.writer(text)
+    rows.writerow(["student", *map(as_text, exercises), _TOTAL, _OF])
+    for one in graded:
+        points = [spelled_points(one.marks[name].points) for name in exercises]
+        rows.writerow([as_text(one.student), *points, spelled_points(one.points), one.of])
+    return text.getvalue().encode("utf-8-sig", "replace")
+
+
+def as_text(name: str) -> str:
+    """Return a name as a spreadsheet shows it, not as a formula that it computes."""
+    return f"'{name}" if name.lstrip(" ").startswith(_FORMULAS) or name.startswith(_FORMULAS) else name

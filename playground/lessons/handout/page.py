@@ -1,0 +1,167 @@
+"""Write the page of a hand-out: what is to be done, with pictures, and no answer.
+
+It is one file that needs no network: its pictures are in it.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import io
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from playground._version import __version__
+from playground.engine.engine import Engine
+from playground.lessons.book.html import plain, prose
+from playground.lessons.figure_renders import draw
+from playground.lessons.glossary import linked_term
+from playground.lessons.handout.exercise_files import Assignment
+from playground.lessons.handout.labels import handout_labels
+from playground.lessons.library import SOURCE, Labels
+from playground.lessons.measuring import Number, filled
+from playground.lessons.model import Challenge, Exercise, Lesson, Scene, Task
+from playground.lessons.tasks.work import scene_of, starter
+from playground.markup import Markup, joined, tag
+
+_WIDTH = 480  # pixels of a picture
+_QUALITY = 80  # of WebP
+
+
+@dataclass(frozen=True)
+class _Setting:
+    lesson: Lesson
+    label: Labels
+    numbers: Mapping[str, Number]
+    engine: Engine
+    hints: bool
+
+    def text(self, markdown: str) -> Markup:
+        """Return a text as paragraphs, with the numbers in it."""
+        return prose(filled(markdown, self.numbers, comma=self.lesson.language == "fr"), self.anchor)
+
+    def anchor(self, link: str) -> dict[str, str]:
+        """Return the attributes of a link: the page has no other page to lead to."""
+        if term := linked_term(link):
+            return {"class_": "term", "title": term.definition(self.lesson.language)}
+        return {"href": link} if link.startswith("https://") else {}
+
+    def picture(self, scene: Scene, alt: str, caption: str) -> Markup:
+        """Draw a picture and return it as a figure that holds it."""
+        times = max(scene.pixels[0] / _WIDTH, 1.0)
+        width, height = (max(round(side / times), 16) for side in scene.pixels)
+        array = draw(self.engine, replace(scene, pixels=(width, height))).array
+        stream = io.BytesIO()
+        Image.fromarray(np.ascontiguousarray(array[..., :3])).save(stream, "WEBP", quality=_QUALITY, method=4)
+        source = f"data:image/webp;base64,{base64.b64encode(stream.getvalue()).decode()}"
+        image = tag("img", src=source, alt=alt, width=width, height=height)
+        return tag("figure", image, tag("figcaption", caption))
+
+
+def handout_page(
+    lessons: Sequence[Lesson],
+    assignments: Sequence[Assignment],
+    numbers: Mapping[str, Mapping[str, Number]],
+    engine: Engine,
+    folder: str,
+    *,
+    hints: bool = False,
+    advance: Callable[[], None] = lambda: None,
+) -> str:
+    """Return the page as HTML; ``numbers`` are those of each lesson, ``folder`` is the hand-out's name.
+
+    Raises as ``Engine.render`` does.
+    """
+    label = handout_labels(lessons[0].language)
+    by_place = {(one.lesson.name, one.exercise.name): one for one in assignments}
+    body = [
+        tag("h1", label["title"]),
+        tag("p", label["name_line"], label["colon"], tag("span", Markup("&nbsp;")), class_="name"),
+    ]
+    for lesson in lessons:
+        setting = _Setting(lesson, label, numbers[lesson.name], engine, hints)
+        body.append(tag("h2", f"{label('lesson', n=lesson.number)}{label['colon']}{lesson.title}"))
+        for block in lesson.blocks:
+            if isinstance(block, Task):
+                body.append(_task(block, by_place.get((lesson.name, block.name)), setting, folder))
+                advance()
+    style = (Path(__file__).resolve().parent / "handout.css").read_text(encoding="utf-8")
+    digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
+    policy = (
+        f"default-src 'none'; img-src data:; style-src 'sha256-{digest}'; base-uri 'none'; form-action 'none'"
+    )
+    head = joined(
+        Markup('<meta charset="utf-8">'),
+        tag("meta", http_equiv="Content-Security-Policy", content=policy),
+        tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("title", f"{label['title']}{label['colon']}{', '.join(lesson.title for lesson in lessons)}"),
+        tag("style", Markup(style)),
+    )
+    footer = tag("footer", tag("p", label("made_by", version=__version__)))
+    whole = tag("html", tag("head", head), tag("body", tag("main", *body), footer), lang=lessons[0].language)
+    return f"<!doctype html>\n{whole}\n"
+
+
+def _task(task: Task, one: Assignment | None, setting: _Setting, folder: str) -> Markup:
+    label = setting.label
+    title = label["challenge"]
+    points = None
+    if isinstance(task, Exercise):
+        title = label("exercise", n=setting.lesson.number_of(task))
+        points = label["no_points"]
+        if task.points:
+            points = label("points", n=task.points) if task.points > 1 else label["point"]
+    hint = None
+    if setting.hints and task.hint:
+        hint = joined(tag("p", tag("b", label["hint"])), setting.text(task.hint))
+    pictures = _pictures(task, setting)
+    return tag(
+        "section",
+        tag("h3", title, tag("small", points) if points else None),
+        setting.text(task.ask),
+        tag("div", *pictures, class_="pictures") if pictures else None,
+        _about(task, one, setting, folder),
+        hint,
+        class_="task",
+    )
+
+
+def _about(task: Task, one: Assignment | None, setting: _Setting, folder: str) -> Markup | None:
+    """Return which file is to be edited, and how it is opened."""
+    label = setting.label
+    if isinstance(task, Challenge):
+        language = "" if setting.lesson.language == SOURCE else f" --lang {setting.lesson.language}"
+        command = tag("code", f"playground lesson open {setting.lesson.name}{language}")
+        return tag("div", tag("p", label["in_lesson"], label["colon"], command), class_="about")
+    if one is None:
+        return None
+    lines = [
+        tag("p", label["edit"], label["colon"], tag("code", f"{one.name}/{one.file}")),
+        tag("p", label["open"], label["colon"], tag("code", f"playground live {folder}/{one.opens}")),
+    ]
+    if task.file:
+        lines.append(tag("p", label("kernel", file=task.file)))
+    else:
+        paths = joined(*(joined(Markup(" "), tag("code", path)) for path in task.sliders))
+        lines.append(tag("p", label["values"], label["colon"], paths))
+    return tag("div", *lines, class_="about")
+
+
+def _pictures(task: Task, setting: _Setting) -> list[Markup]:
+    """Return what a student begins with, and what the picture is to be, where the picture is judged."""
+    label = setting.label
+    works = isinstance(task, Challenge) or (isinstance(task, Exercise) and task.checks)
+    if not works or task.scene is None:
+        return []
+    found = [setting.picture(scene_of(task, starter(task)), label["begin"], label["begin"])]
+    judged = isinstance(task, Challenge) or any(
+        not check.of and check.measure is None for check in getattr(task, "checks", ())
+    )
+    if judged:
+        alt = plain(filled(getattr(task, "alt", ""), setting.numbers))
+        found.append(setting.picture(task.scene, alt or label["wanted"], label["wanted"]))
+    return found

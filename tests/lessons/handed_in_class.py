@@ -1,0 +1,134 @@
+"""Make what a class hands in for exercises: right, nearly right, wrong, endless, hostile.
+
+Run as a script it writes a class for a measurement by hand:
+
+    python -m tests.lessons.handed_in_class FOLDER 100 diamond_square
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+
+from playground.lessons.handout.exercise_files import Assignment, assignments_of
+from playground.lessons.handout.student_sketch import student_files
+from playground.lessons.read import read_lesson
+from playground.lessons.tasks.texts import answer_text, starter_text
+from playground.sketch.toml_edit import put
+from playground.sketch.values import spell
+
+_KERNEL = re.compile(r"^(\w+) kernel\((ivec2|vec2) (\w+)\) \{", re.MULTILINE)
+
+
+def around(text: str, body: str, before: str = "") -> str:
+    """Return a kernel's text with another body, which may call the kernel as ``given()``."""
+    match = _KERNEL.search(text)
+    assert match, "a kernel of another form"
+    kind, place, name = match.groups()
+    inner = text.replace(match[0], f"{kind} inner_kernel({place} {name}) {{", 1)
+    body = body.replace("given()", f"inner_kernel({name})")
+    return f"{inner}\n{before}\n{kind} kernel({place} {name}) {{ {body} }}\n"
+
+
+def right(one: Assignment) -> str:
+    """Return the file of a student who has solved an exercise, in words of their own."""
+    if one.exercise.file:
+        return answer_text(one.exercise) + "\n// by myself\n"
+    scene = one.exercise.scene
+    assert scene is not None
+    return with_values(one, {p: v for p, v in scene.values if p in one.exercise.sliders})
+
+
+def with_values(one: Assignment, values: dict[str, object]) -> str:
+    """Return the sketch of an exercise with values set in it."""
+    text = student_files(one)[one.file].decode()
+    names = re.findall(r'^name\s*=\s*"(\w+)"', text, re.MULTILINE)
+    for path, value in values.items():
+        owner, _, rest = path.partition(".")
+        place = ("view", "set") if owner == "view" else ("pass", names.index(owner), "set")
+        text = put(text, place, rest, spell(value))
+    return text
+
+
+def untouched(one: Assignment) -> str:
+    """Return the file as it was handed out."""
+    return starter_text(one.exercise) if one.exercise.file else student_files(one)[one.file].decode()
+
+
+def nearly(one: Assignment) -> str:
+    """Return a kernel that is a little off everywhere; the hand-out where values are set."""
+    return (
+        around(answer_text(one.exercise), "return given() * 0.97;") if one.exercise.file else untouched(one)
+    )
+
+
+def wrong(one: Assignment) -> str:
+    """Return a text that does not compile."""
+    return around(answer_text(one.exercise), "return given() + hieght;") if one.exercise.file else "set = {"
+
+
+def endless(one: Assignment) -> str:
+    """Return a kernel that never ends, which no compiler can see."""
+    loop = "int k = 0; for (;;) { k = (k * 5 + 1) & 255; if (k > 300) break; } return given() + float(k);"
+    return around(answer_text(one.exercise), loop) if one.exercise.file else untouched(one)
+
+
+def hostile(one: Assignment, secret: Path) -> dict[str, str]:
+    """Return texts that are made to do harm, by what they are."""
+    if not one.exercise.file:
+        text = untouched(one)
+        return {
+            "climbs": text + '\n[[pass]]\nname = "x"\nuse = "../../other/x"\n',
+            "device": text + '\n[[preset]]\nname = "x"\nset = { "height.image" = "/dev/zero" }\n',
+            "nested": "a = " + "[" * 5000 + "]" * 5000,
+        }
+    text = answer_text(one.exercise)
+    macros = "".join(f"#define M{k}(x) M{k - 1}(x) + M{k - 1}(x) + M{k - 1}(x)\n" for k in range(1, 15))
+    model = "../" * 8 + str(Path("playground/lessons/exercises").resolve() / one.exercise.answer).lstrip("/")
+    return {
+        "other": f'#include "{secret}"\n{text}',
+        "model": f'#include "{model}"\n',
+        "picture": around(
+            text,
+            "return given() + texelFetch(stolen, ivec2(0), 0).r;",
+            f'uniform sampler2D stolen; //! file("{secret.with_suffix(".png")}")',
+        ),
+        "memory": around(text, f"float a[{2**28}]; a[int(given())] = 1.0; return a[int(given()) + 7];"),
+        "macros": around(text, "return given() + M14(1.0);", f"#define M0(x) x + x + x\n{macros}"),
+        "lines": "\n" * 300_000,
+    }
+
+
+def write(folder: Path, student: str, files: dict[str, str | bytes], *, zipped: bool = False) -> None:
+    """Write what a student hands in: files by their names, in a folder or a zip."""
+    if zipped:
+        with zipfile.ZipFile(folder / f"{student}.zip", "w", zipfile.ZIP_DEFLATED) as archive:
+            for name, data in files.items():
+                archive.writestr(name, data)
+        return
+    for name, data in files.items():
+        path = folder / student / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(data if isinstance(data, bytes) else data.encode())
+
+
+def write_class(folder: Path, count: int, assignments: Sequence[Assignment]) -> None:
+    """Write a class as classes are: half of them right, some off, some wrong, a few endless, some missing."""
+    kinds = [right, nearly, right, untouched, wrong, right, nearly, right, right, untouched]
+    folder.mkdir(parents=True, exist_ok=True)
+    for number in range(count):
+        files: dict[str, str | bytes] = {}
+        for place, one in enumerate(assignments):
+            make = endless if (number + place) % 33 == 32 else kinds[(number + 3 * place) % len(kinds)]
+            mark = f"\n// student {number}\n" if one.exercise.file else f"\n# student {number}\n"
+            files[f"week/{one.name}/{one.file}"] = make(one) + mark  # no two texts are the same
+        write(folder, f"Student {number:03}", files, zipped=number % 2 == 1)
+
+
+if __name__ == "__main__":
+    chosen = assignments_of(read_lesson(name) for name in sys.argv[3:])[:3]
+    print("\n".join(one.name for one in chosen))
+    write_class(Path(sys.argv[1]), int(sys.argv[2]), chosen)

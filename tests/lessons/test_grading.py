@@ -1,0 +1,382 @@
+"""Grading: what a class has handed in is read with care, judged fairly, and shown as it is."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import os
+import sys
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.cli import main
+from playground.errors import DataError
+from playground.images.files import write_png
+from playground.lessons.grading.duplicates import alike, normalised
+from playground.lessons.grading.handed_in import lessons_in, read_submission
+from playground.lessons.grading.marks import GRADED, MISSING, REFUSED, STOPPED, Graded, Mark, Pair
+from playground.lessons.grading.page import Setting, page
+from playground.lessons.grading.submissions import find_submissions
+from playground.lessons.grading.table import table_bytes
+from playground.lessons.grading.values_in_toml import values_in_toml
+from playground.lessons.handout.exercise_files import assignments_of
+from playground.lessons.read import read_lesson
+
+from ..report.browser import MISSING as NO_BROWSER
+from ..report.browser import Browser
+from . import handed_in_class as students
+
+FILE = "diamond_square-dimension.glsl"
+TEXT = "float kernel(ivec2 texel) { return 0.0; }\n"
+
+
+def read(path):
+    return read_submission(path, [FILE])[FILE]
+
+
+def zipped(path, *entries, compression=zipfile.ZIP_STORED):
+    with zipfile.ZipFile(path, "w", compression) as archive:
+        for name, data in entries:
+            archive.writestr(name, data)
+    return path
+
+
+# ── reading what was handed in ───────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        FILE,
+        f"week3/diamond_square-dimension/{FILE}",
+        f"Week 3 (my work)/week3/x/{FILE}",
+        "diamond_square-dimension (1).glsl",
+        "Diamond_Square-Dimension.GLSL.txt",
+    ],
+)
+@pytest.mark.parametrize("as_zip", [False, True], ids=["folder", "zip"])
+def test_a_file_is_found_wherever_it_lies(tmp_path, name, as_zip):
+    students.write(tmp_path, "Zoë", {name: TEXT, "__MACOSX/._x": "", ".DS_Store": b"\0"}, zipped=as_zip)
+    path = tmp_path / ("Zoë.zip" if as_zip else "Zoë")
+    assert read(path).text == TEXT
+    assert lessons_in(path, ["diamond_square", "fourier"]) == {"diamond_square"}
+
+
+def test_a_zip_in_the_folder_is_looked_into(tmp_path):
+    (tmp_path / "Ana").mkdir()
+    zipped(tmp_path / "Ana" / "week3.zip", (f"week3/x/{FILE}", TEXT))
+    assert read(tmp_path / "Ana").text == TEXT
+
+
+def test_of_several_files_the_outermost_counts_and_the_others_are_mentioned(tmp_path):
+    students.write(tmp_path, "Ana", {FILE: TEXT, f"old/{FILE}": TEXT})
+    assert read(tmp_path / "Ana").note == ""
+    students.write(tmp_path, "Ana", {f"old/{FILE}": "// earlier"})
+    found = read(tmp_path / "Ana")
+    assert found.text == TEXT and found.note == f"2 files of this name were handed in; graded: {FILE}"
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_texts_as_editors_write_them(tmp_path, encoding):
+    data = "// été\r\nfloat x;\r\n".encode(encoding)
+    students.write(tmp_path, "Ana", {FILE: data})
+    assert read(tmp_path / "Ana").text == "// été\nfloat x;\n"
+
+
+def link(info):
+    info.external_attr = 0o120777 << 16
+    return info
+
+
+@pytest.mark.parametrize(
+    ("entries", "sentence"),
+    [
+        ([(f"../{FILE}", TEXT)], "leads out of its folder"),
+        ([(FILE, TEXT), ("/etc/x", "")], "leads out of its folder"),
+        ([(link(zipfile.ZipInfo(FILE)), "/etc/passwd")], "is a link or a device"),
+        ([(FILE, TEXT), ("b", bytes(2**27))], "as a zip bomb does"),
+        ([(FILE, bytes(2**21))], "a text of at most 1 is read"),
+        ([(FILE, b"\xff\x00")], "is not UTF-8 text"),
+        ([(FILE, b"a\0b")], "holds zero bytes"),
+        ([(f"{n}.txt", "") for n in range(4001)], "more than 4000 files"),
+    ],
+)
+def test_a_zip_that_does_harm_is_refused_in_a_sentence(tmp_path, entries, sentence):
+    found = read(zipped(tmp_path / "Ana.zip", *entries, compression=zipfile.ZIP_DEFLATED))
+    assert sentence in found.problem and not found.text and not found.missing
+
+
+def test_a_zip_that_lies_about_a_size_is_not_believed(tmp_path):
+    path = zipped(tmp_path / "Ana.zip", (FILE, b"x" * 2**21), compression=zipfile.ZIP_DEFLATED)
+    data = path.read_bytes()
+    assert data.count((2**21).to_bytes(4, "little")) == 2  # in the entry, and in the list
+    path.write_bytes(data.replace((2**21).to_bytes(4, "little"), (9).to_bytes(4, "little")))
+    assert read(path).problem
+
+
+def test_what_is_no_zip(tmp_path):
+    (tmp_path / "Ana.zip").write_bytes(b"not a zip")
+    assert "is no zip that can be read" in read(tmp_path / "Ana.zip").problem
+    (tmp_path / "Bea").mkdir()
+    assert read(tmp_path / "Bea").missing
+
+
+@pytest.mark.skipif(os.name != "posix", reason="links, pipes and devices are POSIX's")
+def test_links_and_pipes_are_not_read(tmp_path):
+    (tmp_path / "secret.glsl").write_text("secret")
+    (tmp_path / "Ana").mkdir()
+    (tmp_path / "Ana" / FILE).symlink_to(tmp_path / "secret.glsl")
+    assert "is a link" in read(tmp_path / "Ana").problem
+    (tmp_path / "Bea").symlink_to(tmp_path / "Ana", target_is_directory=True)
+    (tmp_path / "Cem").mkdir()
+    os.mkfifo(tmp_path / "Cem" / FILE)
+    assert "a pipe" in read(tmp_path / "Cem").problem
+    (tmp_path / "Dan").mkdir()
+    (tmp_path / "Dan" / "out").symlink_to(tmp_path / "Cem", target_is_directory=True)
+    assert read(tmp_path / "Dan").missing
+    found, others = find_submissions(tmp_path, tmp_path / "report")
+    assert [one.student for one in found] == ["Ana", "Cem", "Dan"]
+    assert others == ["Bea", "secret.glsl"]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a file of a gigabyte takes no room")
+def test_a_text_of_a_gigabyte_is_not_read(tmp_path):
+    (tmp_path / "Ana").mkdir()
+    with (tmp_path / "Ana" / FILE).open("wb") as file:
+        file.truncate(2**30)
+    assert "has 1024 MiB" in read(tmp_path / "Ana").problem
+
+
+def test_students_go_by_the_names_of_what_they_handed_in(tmp_path):
+    for name in ("李雷", "Zoë", "A & B"):
+        (tmp_path / name).mkdir()
+    zipped(tmp_path / "Zoë.zip", ("x", ""))
+    (tmp_path / "report").mkdir()
+    found, _ = find_submissions(tmp_path, tmp_path / "report")
+    assert {one.student for one in found} == {"李雷", "Zoë", "Zoë.zip", found[0].student}
+    with pytest.raises(DataError, match="no such folder"):
+        find_submissions(tmp_path / "nowhere", tmp_path)
+
+
+# ── values ───────────────────────────────────────────────────────────────────
+
+TOML = """[[pass]]
+name = "height"
+set  = { smoothing = 0.3, "raw.seed" = 4 }
+[view.set]
+sun = { azimuth = 3 }
+"""
+
+
+def test_only_the_values_that_are_asked_for_are_taken():
+    sliders = ["height.smoothing", "height.raw.seed", "view.sun", "height.corners", "size"]
+    found = values_in_toml(TOML, sliders)
+    assert found == {"height.smoothing": 0.3, "height.raw.seed": 4, "view.sun": {"azimuth": 3}}
+    assert values_in_toml(TOML.replace('"raw.seed"', "raw.seed"), ["height.raw.seed"]) == {
+        "height.raw.seed": 4
+    }
+
+
+@pytest.mark.parametrize(
+    ("text", "sentence"),
+    [
+        ('x = "../../other/y"', "a file outside of its folder"),
+        ('x = "/dev/zero"', "a file outside of its folder"),
+        ('[a]\nx = ["C:\\\\secret.png"]', "a file outside of its folder"),
+        ("x = ", "is no TOML"),
+        ("a = " + "[" * 9000, "TOML|nest"),
+        (TOML.replace("0.3", "nan"), "is no number|what is no number"),
+        (TOML.replace("0.3", "[[1]]"), "what is no number"),
+        ("#" * 200_000, "longer than any sketch"),
+    ],
+)
+def test_a_toml_that_is_wrong_or_does_harm_is_refused(text, sentence):
+    with pytest.raises(DataError, match=sentence):
+        values_in_toml(text, ["height.smoothing"])
+
+
+# ── what is alike ────────────────────────────────────────────────────────────
+
+
+def test_texts_are_alike_but_for_white_space_and_comments():
+    text = "float a = 1.0; // mine\n/* of\nmine */ float b=a;"
+    assert normalised(text) == normalised("float  a=1.0;\nfloat b = a ;\n")
+    assert normalised("int ab;") != normalised("int a b;")
+    found = alike({"Ana": text, "Bea": "float a=1.0; float b=a;", "Cem": "x", "Dan": "y", "Eva": "y"}, "y")
+    assert found == {"Ana": ("Bea",), "Bea": ("Ana",)}
+
+
+# ── the table and the page ───────────────────────────────────────────────────
+
+NAMES = ["=1+1", "+SUM(A1)", "@x", "-2", "\tx", '"quoted", with; marks', "<script>alert(1)</script>", "Zoë"]
+
+
+def graded(name, points=1.5):
+    mark = Mark(points, 2, GRADED, ("`a` is <b>.\n  quoted <i>",), (Pair(b"m", b"w"),), same_as=("<u>",))
+    return Graded(name, {"x-y": mark})
+
+
+def test_no_name_becomes_a_formula_and_each_comes_back_from_the_table():
+    data = table_bytes([graded(name) for name in NAMES], ["x-y"])
+    assert data.startswith(b"\xef\xbb\xbf")
+    rows = list(csv.reader(io.StringIO(data.decode("utf-8-sig"), newline="")))
+    assert rows[0] == ["student", "x-y", "total", "of"]
+    assert [row[1:] for row in rows[1:]] == [["1.5", "1.5", "2"]] * len(NAMES)
+    assert [row[0].removeprefix("'") for row in rows[1:]] == NAMES
+    assert not any(row[0].startswith(("=", "+", "-", "@", "\t")) for row in rows)
+
+
+def test_all_text_of_the_page_is_escaped():
+    text = page([graded(name) for name in NAMES], {"x-y": "<em>"}, setting())
+    for markup in ("<script>alert", "<b>.", "<i>", "<u>", "<em>"):
+        assert markup not in text
+    assert "<code>a</code> is &lt;b&gt;." in text and "&lt;script&gt;alert(1)" in text
+    assert "1,5 / 2" in page([graded("x")], {"x-y": "y"}, replace(setting(), language="fr"))
+
+
+def setting():
+    return Setting("en", "llvmpipe", lambda data: f"pictures/{data.decode()}.webp", lambda data: (160, 90))
+
+
+# ── a whole class ────────────────────────────────────────────────────────────
+
+
+def run(*arguments):
+    return main(["lesson", "grade", *map(str, arguments)])
+
+
+def test_mistakes_of_the_teacher_are_sentences(tmp_path, capsys):
+    assert run(tmp_path / "nowhere") == 2
+    assert "there is no such folder" in capsys.readouterr().err
+    (tmp_path / "in" / "Ana").mkdir(parents=True)
+    assert run(tmp_path / "in", "-o", tmp_path / "report") == 2
+    assert "name the lessons" in capsys.readouterr().err
+    assert run(tmp_path / "in", "--lesson", "diamond_sqare") == 2
+    assert "did you mean 'diamond_square'" in capsys.readouterr().err
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "thesis.txt").write_text("mine")
+    assert run(tmp_path / "in", "--lesson", "diamond_square", "-o", tmp_path / "mine") == 2
+    assert "is no report of grades" in capsys.readouterr().err
+
+
+@pytest.fixture(scope="module")
+def one():
+    return next(x for x in assignments_of([read_lesson("diamond_square")]) if x.exercise.name == "dimension")
+
+
+@pytest.fixture(scope="module")
+def class_of_20(tmp_path_factory, one):
+    """Write a class of twenty, grade it, and return its report's folder and what was printed."""
+    folder = tmp_path_factory.mktemp("class")
+    handed, report = folder / "in", folder / "report"
+    (handed / "Nothing").mkdir(parents=True)
+    secret = handed / "Right 1" / "secret.glsl"
+    harm = students.hostile(one, secret)
+    texts = {
+        "Right 1": students.right(one),
+        "Right 2": students.right(one).replace("// by myself", "/* copied */\n\n"),
+        "Right 3": students.right(one) + "float own() { return 1.0; }\n",
+        "=1+1": students.right(one) + "int x;",
+        "Nearly 1": students.nearly(one),
+        "Nearly 2": students.nearly(one).replace("0.97", "1.001"),
+        "Handed back": students.untouched(one),
+        "Visible only": students.around(students.right(one), "return seed == 18 ? given() : 0.0;"),
+        "Wrong": students.wrong(one),
+        "Endless": students.endless(one),
+        **{f"Hostile {name}": text for name, text in harm.items()},
+        "<img src=x> 李雷": "",
+        "Zoë": students.right(one).replace("by myself", "moi-même"),
+    }
+    for number, (name, text) in enumerate(texts.items()):
+        zipped_ = number % 2 == 1
+        path = f"week3/{one.name}/{one.file}"
+        students.write(handed, name, {path: text}, zipped=zipped_)
+    secret.parent.mkdir(exist_ok=True)
+    secret.write_text(students.right(one))
+    write_png(secret.with_suffix(".png"), np.full((4, 4, 3), 255, np.uint8))
+    zipped(handed / "Bomb.zip", (one.file, TEXT), ("b", bytes(2**27)), compression=zipfile.ZIP_DEFLATED)
+    stdout, sys.stdout = sys.stdout, io.StringIO()
+    try:
+        assert run(handed, "-o", report, "--json") == 0
+        printed = json.loads(sys.stdout.getvalue())
+    finally:
+        sys.stdout = stdout
+    return handed, report, {row["student"]: row for row in printed}
+
+
+@pytest.mark.slow
+def test_a_class_of_twenty_gets_the_points_that_it_deserves(class_of_20, one):
+    _, report, rows = class_of_20
+    marks = {student: row["exercises"][one.name] for student, row in rows.items()}
+    points = {student: mark["points"] for student, mark in marks.items()}
+    assert len(rows) == 20
+    rights = ("Right 1", "Right 2", "Right 3")
+    assert {student for student, of in points.items() if of == 2} == {*rights, "=1+1", "Zoë"}
+    assert points["Visible only"] == 1  # the check whose values are hidden is not deceived
+    assert all(of == 0 for student, of in points.items() if student.startswith(("Hostile", "Nearly")))
+    assert marks["Right 1"]["same_as"] == ["Right 2", "Zoë"] and marks["Right 3"]["same_as"] == []
+    assert marks["Handed back"]["same_as"] == []
+    assert marks["Nothing"]["outcome"] == MISSING
+    assert marks["Endless"]["outcome"] == STOPPED and "endless loop" in marks["Endless"]["sentences"][0]
+    assert marks["Bomb"]["outcome"] == REFUSED and "zip bomb" in marks["Bomb"]["sentences"][0]
+    assert (
+        marks["Wrong"]["sentences"][0].startswith(f"{one.file}:")
+        and "hieght" in marks["Wrong"]["sentences"][0]
+    )
+    outside = marks["Hostile model"], marks["Hostile other"]
+    assert all("lies outside" in mark["sentences"][0] for mark in outside)
+    assert "a file outside of its folder" in marks["Hostile picture"]["sentences"][0]
+    assert all(mark["sentences"] for mark in marks.values())
+    table = list(csv.reader((report / "grades.csv").read_text("utf-8-sig").splitlines()))
+    assert ["'=1+1", "2", "2", "2"] in table
+
+
+@pytest.mark.slow
+def test_the_same_class_in_another_order_gets_the_same_points(class_of_20, one, tmp_path, capsys):
+    handed, _, rows = class_of_20
+    again = tmp_path / "in"
+    again.mkdir()
+    some = ["Right 1", "Nearly 2", "Visible only", "Hostile macros", "Handed back", "Wrong"]
+    for number, name in enumerate(some):
+        path = handed / name if (handed / name).is_dir() else handed / f"{name}.zip"
+        path.copy(again / f"{9 - number}") if hasattr(path, "copy") else copied(path, again / f"{9 - number}")
+    assert run(again, "-o", tmp_path / "report", "--json") == 0
+    found = {row["student"]: row["points"] for row in json.loads(capsys.readouterr().out)}
+    assert {name: found[str(9 - n)] for n, name in enumerate(some)} == {
+        name: rows[name]["points"] for name in some
+    }
+
+
+def copied(source, target):
+    import shutil
+
+    if source.is_dir():
+        shutil.copytree(source, target)
+    else:
+        shutil.copyfile(source, target.with_name(f"{target.name}.zip"))
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(bool(NO_BROWSER), reason=NO_BROWSER or "there is one")
+def test_the_report_in_a_browser(class_of_20, tmp_path):
+    _, report, rows = class_of_20
+    with Browser(tmp_path) as browser:
+        browser.open((report / "index.html").as_uri())
+        browser.wait("document.getElementById('shown').textContent === '20 of 20 shown'")
+        assert browser.run("return [...document.images].every(i => (i.loading = 'eager', true))")
+        browser.wait("[...document.images].every(i => i.complete && i.naturalWidth > 0)")
+        assert browser.run("return document.documentElement.scrollWidth <= innerWidth")
+        first = "document.querySelector('.student:not([hidden]) h2 bdi').textContent"
+        choose = "const tool = document.getElementById(arguments[0]); tool.value = arguments[1];"
+        choose += " tool.dispatchEvent(new Event('input'))"
+        browser.run(choose, "sort", "most")
+        assert rows[browser.run(f"return {first}")]["points"] == 2
+        browser.run(choose, "find", "IMG")
+        assert browser.run(f"return {first}") == "<img src=x> 李雷"
+        assert browser.log() == []
+        Path(os.environ.get("REPORT_PICTURE", tmp_path / "report.png")).write_bytes(browser.picture())
