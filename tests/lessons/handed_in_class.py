@@ -60,7 +60,9 @@ def untouched(one: Assignment) -> str:
 
 def nearly(one: Assignment) -> str:
     """Return a kernel that is a little off everywhere; the hand-out where values are set."""
-    return around(answer_text(one.exercise), "return given() * 0.97;") if one.exercise.file else untouched(one)
+    return (
+        around(answer_text(one.exercise), "return given() * 0.97;") if one.exercise.file else untouched(one)
+    )
 
 
 def wrong(one: Assignment) -> str:

@@ -153,7 +153,7 @@ def test_a_text_of_a_gigabyte_is_not_read(tmp_path):
 
 
 def test_students_go_by_the_names_of_what_they_handed_in(tmp_path):
-    for name in ("李雷", "Zoë", "A & <b>B</b>" if os.name == "posix" else "A & B"):
+    for name in ("李雷", "Zoë", "A & B"):
         (tmp_path / name).mkdir()
     zipped(tmp_path / "Zoë.zip", ("x", ""))
     (tmp_path / "report").mkdir()
@@ -165,7 +165,12 @@ def test_students_go_by_the_names_of_what_they_handed_in(tmp_path):
 
 # ── values ───────────────────────────────────────────────────────────────────
 
-TOML = '[[pass]]\nname = "height"\nset = { smoothing = 0.3, "raw.seed" = 4 }\n[view.set]\nsun = { azimuth = 3 }\n'
+TOML = """[[pass]]
+name = "height"
+set  = { smoothing = 0.3, "raw.seed" = 4 }
+[view.set]
+sun = { azimuth = 3 }
+"""
 
 
 def test_only_the_values_that_are_asked_for_are_taken():
@@ -280,18 +285,17 @@ def class_of_20(tmp_path_factory, one):
         "Nearly 1": students.nearly(one),
         "Nearly 2": students.nearly(one).replace("0.97", "1.001"),
         "Handed back": students.untouched(one),
-        "Visible only": students.around(
-            students.right(one), "return seed == 18 ? given() : 0.0;"
-        ),
+        "Visible only": students.around(students.right(one), "return seed == 18 ? given() : 0.0;"),
         "Wrong": students.wrong(one),
         "Endless": students.endless(one),
         **{f"Hostile {name}": text for name, text in harm.items()},
-        "<script>alert(1)</script> 李雷": "",
+        "<img src=x> 李雷": "",
+        "Zoë": students.right(one).replace("by myself", "moi-même"),
     }
     for number, (name, text) in enumerate(texts.items()):
-        zipped_ = number % 2 == 1 and "/" not in name
+        zipped_ = number % 2 == 1
         path = f"week3/{one.name}/{one.file}"
-        students.write(handed, name.replace("/", "∕"), {path: text}, zipped=zipped_)
+        students.write(handed, name, {path: text}, zipped=zipped_)
     secret.parent.mkdir(exist_ok=True)
     secret.write_text(students.right(one))
     write_png(secret.with_suffix(".png"), np.full((4, 4, 3), 255, np.uint8))
@@ -311,15 +315,19 @@ def test_a_class_of_twenty_gets_the_points_that_it_deserves(class_of_20, one):
     marks = {student: row["exercises"][one.name] for student, row in rows.items()}
     points = {student: mark["points"] for student, mark in marks.items()}
     assert len(rows) == 20
-    assert {student for student, of in points.items() if of == 2} == {"Right 1", "Right 2", "Right 3", "=1+1"}
+    rights = ("Right 1", "Right 2", "Right 3")
+    assert {student for student, of in points.items() if of == 2} == {*rights, "=1+1", "Zoë"}
     assert points["Visible only"] == 1  # the check whose values are hidden is not deceived
     assert all(of == 0 for student, of in points.items() if student.startswith(("Hostile", "Nearly")))
-    assert marks["Right 1"]["same_as"] == ["Right 2"] and marks["Right 3"]["same_as"] == []
+    assert marks["Right 1"]["same_as"] == ["Right 2", "Zoë"] and marks["Right 3"]["same_as"] == []
     assert marks["Handed back"]["same_as"] == []
     assert marks["Nothing"]["outcome"] == MISSING
     assert marks["Endless"]["outcome"] == STOPPED and "endless loop" in marks["Endless"]["sentences"][0]
     assert marks["Bomb"]["outcome"] == REFUSED and "zip bomb" in marks["Bomb"]["sentences"][0]
-    assert marks["Wrong"]["sentences"][0].startswith(f"{one.file}:") and "hieght" in marks["Wrong"]["sentences"][0]
+    assert (
+        marks["Wrong"]["sentences"][0].startswith(f"{one.file}:")
+        and "hieght" in marks["Wrong"]["sentences"][0]
+    )
     outside = marks["Hostile model"], marks["Hostile other"]
     assert all("lies outside" in mark["sentences"][0] for mark in outside)
     assert "a file outside of its folder" in marks["Hostile picture"]["sentences"][0]
@@ -364,9 +372,11 @@ def test_the_report_in_a_browser(class_of_20, tmp_path):
         browser.wait("[...document.images].every(i => i.complete && i.naturalWidth > 0)")
         assert browser.run("return document.documentElement.scrollWidth <= innerWidth")
         first = "document.querySelector('.student:not([hidden]) h2 bdi').textContent"
-        browser.run("const s = document.getElementById('sort'); s.value = 'most'; s.dispatchEvent(new Event('input'))")
+        choose = "const tool = document.getElementById(arguments[0]); tool.value = arguments[1];"
+        choose += " tool.dispatchEvent(new Event('input'))"
+        browser.run(choose, "sort", "most")
         assert rows[browser.run(f"return {first}")]["points"] == 2
-        browser.run("const s = document.getElementById('find'); s.value = 'SCRIPT'; s.dispatchEvent(new Event('input'))")
-        assert browser.run(f"return {first}") == "<script>alert(1)<∕script> 李雷"
+        browser.run(choose, "find", "IMG")
+        assert browser.run(f"return {first}") == "<img src=x> 李雷"
         assert browser.log() == []
         Path(os.environ.get("REPORT_PICTURE", tmp_path / "report.png")).write_bytes(browser.picture())

@@ -19,7 +19,8 @@ def alike(texts: Mapping[str, str], handed_out: str) -> dict[str, tuple[str, ...
     groups: dict[str, list[str]] = {}
     for student, text in texts.items():
         groups.setdefault(normalised(text), []).append(student)
-    groups.pop(normalised(handed_out), None)
+    for nobodys in ("", normalised(handed_out)):
+        groups.pop(nobodys, None)
     return {
         student: tuple(other for other in group if other != student)
         for group in groups.values()

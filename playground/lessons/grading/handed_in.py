@@ -37,7 +37,7 @@ def read_submission(path: Path, wanted: Collection[str]) -> dict[str, HandedIn]:
     try:
         entries = entries_of(path)
     except DataError as error:
-        problem = error.diagnostics[0].message
+        problem = f"{printable(path.name)} {error.diagnostics[0].message}"
         return {name: HandedIn(problem=problem) for name in wanted}
     return {name: _file_of([e for e in entries if _plain_name(e.name) == name.casefold()]) for name in wanted}
 

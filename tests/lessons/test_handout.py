@@ -1,0 +1,121 @@
+"""Hand-outs: what students get opens, begins as the exercise does, and holds no answer."""
+
+from __future__ import annotations
+
+import io
+import re
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.cli import main
+from playground.lessons.handout.exercise_files import assignments_of
+from playground.lessons.handout.student_sketch import student_files
+from playground.lessons.read import read_lesson, read_lessons
+from playground.lessons.tasks.texts import answer_text, starter_text
+from playground.lessons.tasks.work import scene_of, starter
+from playground.sketch.load import load
+from playground.sketch.unpack import unpacked_beside
+
+
+@pytest.fixture(scope="module")
+def handed_out(tmp_path_factory):
+    """Write the hand-out of a lesson, with its hints, and return its path."""
+    path = tmp_path_factory.mktemp("handout") / "week3.zip"
+    assert main(["lesson", "handout", "diamond_square", "--hints", "-o", str(path)]) == 0
+    return path
+
+
+@pytest.fixture(scope="module")
+def one():
+    return next(x for x in assignments_of([read_lesson("diamond_square")]) if x.exercise.name == "dimension")
+
+
+def test_the_zip_opens_in_the_window_as_the_exercise_begins(handed_out, one, tmp_path, engine):
+    zipped = tmp_path / "week3.zip"
+    zipped.write_bytes(handed_out.read_bytes())
+    sketch_file, _ = unpacked_beside(zipped)
+    folder = tmp_path / "week3"
+    assert sketch_file == folder / one.name / "sketch.toml"
+    assert load(folder / one.opens).file == str(sketch_file)
+    kernel = folder / one.name / one.file
+    assert starter_text(one.exercise).splitlines()[0] in kernel.read_text()
+    begin = scene_of(one.exercise, starter(one.exercise))
+    shown = engine.render(load(sketch_file), size=(160, 90)).array
+    wanted = engine.render(begin.sketch, size=(160, 90)).array
+    np.testing.assert_array_equal(shown, wanted)
+    kernel.write_text(answer_text(one.exercise))  # its includes are found from there, too
+    changed = engine.render(load(sketch_file), size=(160, 90)).array
+    assert (changed != shown).any()
+
+
+def test_every_exercise_of_the_course_has_a_sketch_that_loads(tmp_path):
+    found = assignments_of(read_lessons())
+    assert len({one.name for one in found}) == len(found) > 0
+    for one in found:
+        folder = tmp_path / one.name
+        for name, data in student_files(one).items():
+            (folder / name).parent.mkdir(parents=True, exist_ok=True)
+            (folder / name).write_bytes(data)
+        sketch = load(tmp_path / one.opens)
+        assert sketch.shots == () and sketch.presets == () and (folder / one.file).is_file()
+
+
+def test_no_answer_is_in_the_zip(handed_out):
+    """Neither a line of a model answer that the starter lacks, nor of a solution."""
+    lesson = read_lesson("diamond_square")
+    with zipfile.ZipFile(handed_out) as archive:
+        data = handed_out.read_bytes() + b"\n".join(archive.read(name) for name in archive.namelist())
+    spaceless = re.sub(r"\s+", "", re.sub(r"<[^>]+>", "", data.decode("utf-8", "replace")))
+    for one in assignments_of([lesson]):
+        answer = set(answer_text(one.exercise).splitlines()) - set(starter_text(one.exercise).splitlines())
+        secrets = [line for line in answer if len(line.strip()) > 8]
+        secrets += re.split(r"[.`$*\[\]]+", one.exercise.solution)
+        secrets = [re.sub(r"\s+", "", secret) for secret in secrets]
+        secrets = [secret for secret in secrets if len(secret) > 15]
+        assert len(secrets) > 1
+        assert [secret for secret in secrets if secret in spaceless] == []
+        asked = re.sub(r"\s+", "", one.exercise.ask[:30].replace("`", ""))
+        assert asked in spaceless  # the search finds what is there
+
+
+def test_the_page_has_every_exercise_and_needs_no_network(handed_out):
+    with zipfile.ZipFile(handed_out) as archive:
+        page = archive.read("week3/exercises.html").decode()
+        readme = archive.read("week3/README.txt").decode()
+    tasks = [block for block in read_lesson("diamond_square").blocks if hasattr(block, "ask")]
+    assert page.count('class="task"') == sum(hasattr(block, "sliders") for block in tasks)
+    assert "data:image/webp" in page and "Hint" in page
+    assert not re.search(r'(?:src|href)="(?!data:|https://|#)', page) and "<script" not in page
+    assert "playground live diamond_square-dimension" in readme
+
+
+def test_the_same_lessons_give_the_same_bytes(handed_out, tmp_path):
+    again = tmp_path / "week3.zip"
+    assert main(["lesson", "handout", "diamond_square", "--hints", "-o", str(again)]) == 0
+    assert again.read_bytes() == handed_out.read_bytes()
+
+
+def test_in_french_without_hints(tmp_path):
+    path = tmp_path / "semaine 3 (été).zip"
+    assert main(["lesson", "handout", "diamond_square", "--lang", "fr", "-o", str(path)]) == 0
+    with zipfile.ZipFile(io.BytesIO(path.read_bytes())) as archive:
+        page = archive.read("semaine-3-été/exercises.html").decode()
+    assert 'lang="fr"' in page and "Exercices" in page and "Indice" not in page
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["diamond_sqare"], "did you mean 'diamond_square'"),
+        (["diamond_square", "-o", "week3.tar"], "ending in .zip"),
+        (["diamond_square", "-o", "nowhere/week3.zip"], "no folder 'nowhere'"),
+    ],
+)
+def test_mistakes_are_sentences(arguments, sentence, capsys, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert main(["lesson", "handout", *arguments]) == 2
+    assert sentence in capsys.readouterr().err
+    assert list(Path().iterdir()) == []
