@@ -41,11 +41,13 @@ void main() {
         return;
     }
     Rows rows = Rows(vec2(float(x) * (spacing.x * scale), 0.0), spacing.y * scale);
+    // anchor: split
     int visible = 0;
     for (float finest = 1.0; visible < octaves && finest < texels; finest *= lacunarity) visible++;
     int split = max(visible - FINE, 0);
     Span coarse = octave_span(o, 0, split);
     Span fine = octave_span(o, split, visible);
+    // end: split
     if (visible == 0) fine.strength = 0.0;
     do {
         int stop = last;
