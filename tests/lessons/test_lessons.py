@@ -35,7 +35,6 @@ TOO_LONG: frozenset[str] = frozenset(
         "diamond_square",
         "faults_and_circles",
         "delaunay",
-        "mixed_and_tiling",
         "level_of_detail",
         "horizons",
         "night_and_flight",

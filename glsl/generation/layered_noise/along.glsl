@@ -13,10 +13,12 @@ uniform int overflow = 0; //! menu("divide", "clamp", "wrap") As in the techniqu
 
 // anchor: kernel
 float kernel(ivec2 texel) {
+    // anchor: polynomial
     vec2 row = texelFetch(rows, ivec2(texel.y, 0), 0).rg;
     vec4 powers = texelFetch(bands, ivec2(texel.x, int(row.x)), 0);
     float v = row.y;
     float total = powers.x + v * (powers.y + v * (powers.z + v * powers.w));
+    // end: polynomial
     if (overflow < 2) return clamp(total, 0.0, 1.0);
     return total > 1.0 ? total - (ceil(total) - 1.0) : total;
 }
