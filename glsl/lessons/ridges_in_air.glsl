@@ -27,8 +27,8 @@ float crest(int ridge, float across) {
     float total = 0.0;
     float part = 1.0;
     for (int k = 0; k < 6; k++) {
-        total += part * perlin(vec2(across * (1.2 + 1.6 * far), 7.3 * float(ridge)) * exp2(float(k)),
-                               seed + SALT).x;
+        vec2 place = vec2(across * (1.2 + 1.6 * far), 7.3 * float(ridge));
+        total += part * perlin(place * exp2(float(k)), seed + SALT).x;
         part *= 0.5;
     }
     return mix(0.10, 0.66, pow(far, 0.7)) + mix(0.14, 0.05, far) * total;

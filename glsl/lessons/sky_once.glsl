@@ -1,7 +1,8 @@
 // lessons/sky_once.glsl -- the sky of light that air has scattered once: the idea and no more.
 //
 //   gives    sky: half of the horizon from left to right, the sun's side in the middle, from the
-//            horizon up to the zenith; ratio: of its blue to its red
+//            horizon up to the zenith; ratio: of its blue to its red; molecules: the
+//            same of what they scatter
 //   needs    sky/air.glsl, sky/shell.glsl
 //   units    the sky 0..1 of white, as on film; its light: 1 of a white sheet that faces the sun
 //            outside the air
@@ -10,11 +11,12 @@
 //   tested   tests/glsl/test_lesson_outdoors.py, against integrals in float64
 #include "sky/air.glsl"
 #include "sky/shell.glsl"
-#pragma kernel(output = "sky:rgba16f, ratio:r32f")
+#pragma kernel(output = "sky:rgba16f, ratio:r32f, molecules:r32f")
 
 uniform float elevation = 35.0;  //! slider(0, 90) step(0.5) unit("°") Of the sun over the horizon
 uniform float turbidity = 1.5;   //! slider(1, 10) step(0.1) Haze: 1 none, 2 very clear, 6 hazy
-uniform float exposure = 5.0;    //! log_slider(1, 100) Light of 1 / exposure is shown as 63 % of white
+uniform float exposure = 5.0;    //! log_slider(1, 100)
+                                 //! Light of 1 / exposure is shown as 63 % of white
 
 const float EYE = 0.001;      // [km] over the sea
 const int STEPS = 24;         // along the line of sight
@@ -62,13 +64,14 @@ vec3 light_from(Air air, float rise, float sun_rise, float together) {
     return PI * light;
 }
 
-void kernel(ivec2 texel, out vec4 sky, out float ratio) {
+void kernel(ivec2 texel, out vec4 sky, out float ratio, out float molecules) {
     vec2 turned = (vec2(texel) + 0.5) / vec2(size);
     float up = 0.5 * PI * turned.y;
     float aside = PI * (turned.x - 0.5);
     float sun_up = radians(elevation);
     float together = sin(up) * sin(sun_up) + cos(up) * cos(sun_up) * cos(aside);
     Air air = air_of(turbidity);
+    molecules = air.molecules.b / air.molecules.r;
     vec3 light = light_from(air, sin(up), sin(sun_up), together);
     ratio = light.b / max(light.r, 1e-6);
     // The sun's disc, four times as wide as it is, in the colour of what is left of its light.

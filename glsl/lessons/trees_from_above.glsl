@@ -19,7 +19,7 @@ uniform float jitter = 0.8;  //! slider(0, 1) step(0.01)
 uniform float radius = 3.0;  //! slider(0.5, 6) step(0.1) unit("m") Of a crown
 uniform float kept = 1.0;    //! log_slider(0.02, 1) The share of the trees that is drawn
 uniform float growth = 0.5;  //! slider(0, 1) step(0.01)
-                             //! How trees grow as fewer are drawn: by kept to the power of minus it
+                             //! As fewer are drawn, trees grow: by kept to the power of minus it
 uniform uint seed = 1u;      //! slider(0, 9999) Which trees
 
 const uint SALT = 0x92c0a2a6u;  // CRC-32 of "lessons/trees_from_above"

@@ -58,8 +58,10 @@ float risen(float height, float rise) {
 }
 
 // What is left of the sun's light at a height where the sun is at this rise.
+// anchor: left
 vec3 left_of_sunlight(sampler2D columns, Air air, float height, float rise) {
     vec3 depth = extinction(air, column_at(columns, height, max(rise, horizon_rise(height))));
     return risen(height, rise) * exp(-min(depth, 50.0));
 }
+// end: left
 #endif

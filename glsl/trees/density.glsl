@@ -44,9 +44,11 @@ float kernel(ivec2 texel) {
     float metres = height_at(height, at) * relief + base_elevation;
     vec2 rise = slope_at(height, at, spacing_of(grid, extent), CENTRAL_DIFFERENCES);
     float slope = relief * length(rise);
+    // anchor: reasons
     float density = most * (1.0 - smoothstep(steep.x, max(steep.y, steep.x + 1e-4), slope));
     density *= smoothstep(lowest, lowest + band, metres);
     density *= 1.0 - smoothstep(highest - band, highest, metres);
+    // end: reasons
     if (wired_wetness) {
         float soaked = clamp(map_at(wetness, texel, size).r, 0.0, 1.0);
         density *= 1.0 - abs(wet) * (wet > 0.0 ? 1.0 - soaked : soaked);

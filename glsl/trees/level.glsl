@@ -37,10 +37,12 @@ float kept_share(float away, float whole, float reach) {
 
 // A tree's growth. Over the last tenth of `reach` all of them shrink to nothing: were fewer kept
 // there instead, the last would go within a metre of the eye's way, and pop.
+// anchor: growth
 float growth_of_kept(float away, float whole, float reach) {
     float left = clamp((reach - away) / max(0.1 * reach, 1e-3), 0.0, 1.0);
     return left * pow(max(away / max(whole, 1e-3), 1.0), -2.0 * GROWTH);
 }
+// end: growth
 
 // Those that are drawn, whole or shrunk.
 float drawn_share(float kept) { return min(LONGER * kept, 1.0); }

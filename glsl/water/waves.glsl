@@ -111,12 +111,14 @@ Waves waves_at(sampler2D table, int row, Sea sea, vec2 place, float seconds, Foo
         // Rows are as long as each other by a fifth or so: the next may still be longer.
         if (wave.w < 0.8 * least) break;
         float part = one * ((k & 1) == 0 ? 1.5 : 0.5);
+        // anchor: shown
         float passed = max(abs(dot(wave.xy, foot.right)), abs(dot(wave.xy, foot.up)));
         float shown = clamp((1.0 / max(passed, 1e-6) - BLURRED) / (SHARP - BLURRED), 0.0, 1.0);
         // In turns, whose whole part is dropped: kilometres from the corner floats stay exact.
         float turns = fract(dot(wave.xy, there)) + wave.z;
         found.slope += wave.xy * (wave.w * shown * sqrt(2.0 * part) * cos(TURN * turns));
         found.variance += part * (1.0 - shown * shown);
+        // end: shown
         k++;
     }
     found.variance += one * (float(WAVES - k) - 0.5 * float(k & 1));
