@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from playground.lessons.model import Slider
+from playground.lessons.model import Scene, Slider
 from playground.sketch.assign import resolve
 from playground.sketch.model import Value
 from playground.sketch.values import write
@@ -26,3 +26,10 @@ def spelled_value(slider: Slider, value: Value, language: str) -> str:
         return ", ".join(f"{part}°" for part in parts)
     joined = ("\u00a0; " if comma else ", ").join(parts)
     return f"{joined}\u202f{parameter.unit}" if parameter.unit else joined
+
+
+def spelled_at(scene: Scene, path: str, value: Value) -> str:
+    """Return a value of a parameter as the command line takes it."""
+    if "." not in path:
+        return str(value)
+    return write(resolve(scene.sketch.graph, path)[0].parameter, value)

@@ -50,6 +50,10 @@ class Texts:
         self.files[name] = text
         return name
 
+    def name_of(self, path: Path) -> str:
+        """Return the name of a file of the library, which need not be among the texts."""
+        return self._names.get(str(path)) or _short_name(path, "")
+
     @property
     def names(self) -> dict[str, str]:
         """The names of files by absolute path, and of rewritten texts by what else they are known by."""

@@ -22,6 +22,7 @@ from playground.lessons.figure_renders import broken, draw
 from playground.lessons.library import interface_labels
 from playground.lessons.read import read_file
 from playground.lessons.scenes import with_value
+from playground.lessons.tasks.texts import EXERCISES
 from playground.lessons.translate import translated, write_hashes
 
 from ..report.browser import MISSING, Browser
@@ -36,6 +37,34 @@ TRY = (
     'solution = "So."\nsketch   = "diamond_square_steps"',
     'solution = "So."\nset = { "height.smoothing" = 0.7 }\nsketch = "diamond_square_steps"',
 )
+SET = (
+    'ask      = "Predict."\nsolution = "So."',
+    'ask      = "Predict."\nsolution = "So."\nsketch = "diamond_square_steps"\n'
+    'pixels = [96, 96]\nalt = "It."\n'
+    'sliders = ["height.smoothing"]\nset = { "height.smoothing" = 0.7 }\npoints = 2\n'
+    '[[check]]\n[[check]]\nof = "height"\ntolerance = 0.01\nat = { "height.seed" = 5 }\nhidden = true',
+)
+WRITE = (
+    'ask      = "Change."\nsolution = "So."',
+    'ask      = "Change."\nsolution = "So."\nsketch = "diamond_square_steps"\n'
+    'pixels = [96, 96]\nalt = "It."\n'
+    'file = "generation/diamond_square/raw.glsl"\nanswer = "diamond_square/dimension.answer.glsl"\n'
+    '[[check]]\nof = "height"\ntolerance = 0.001\nat = { "height.seed" = 4 }',
+)
+MATCH = """
+```challenge match
+ask     = "Match it."
+alt     = "Discs."
+sketch  = "diamond_square_steps"
+pixels  = [96, 96]
+sliders = ["height.smoothing"]
+set     = { "height.smoothing" = 0.9 }
+begin   = { "height.smoothing" = 0.1 }
+goal    = 90
+```
+"""
+MATCH_FRENCH = '\n```challenge match\nask = "Retrouvez-la."\nalt = "Des disques."\n```\n'
+ALT = 'ask      = "{}"\nsolution = "Ainsi."'
 
 
 @pytest.fixture(scope="module")
@@ -43,9 +72,14 @@ def lessons(tmp_path_factory):
     """Give the small lesson in two languages, with an exercise that has something to set."""
     folder = tmp_path_factory.mktemp("lessons")
     english, french = folder / "small.md", folder / "petit.md"
-    assert TRY[0] in BODY
-    english.write_text(FRONT + BODY.replace(*TRY), encoding="utf-8")
-    french.write_text(FRENCH, encoding="utf-8")
+    body, words = BODY, FRENCH
+    for change in (TRY, SET, WRITE):
+        assert change[0] in body
+        body = body.replace(*change)
+    for ask in ("Prédisez.", "Changez."):
+        words = words.replace(ALT.format(ask), f'{ALT.format(ask)}\nalt = "Là."')
+    english.write_text(FRONT + body + MATCH, encoding="utf-8")
+    french.write_text(words + MATCH_FRENCH, encoding="utf-8")
     first = read_document(english)
     write_hashes(first, read_document(french))
     found = read_file(english, SKETCHES)
@@ -69,7 +103,7 @@ def book(tmp_path_factory, lessons, shared_context):
 def page(book, tmp_path) -> Iterator[Browser]:
     with Browser(tmp_path / "profile", flags=LLVMPIPE) as browser:
         browser.open((book / PAGE).as_uri())
-        browser.wait("document.querySelectorAll('.start').length === 6")
+        browser.wait("document.querySelectorAll('.start').length === 9")
         yield browser
         assert browser.log() == []
 
@@ -122,7 +156,7 @@ def test_nothing_runs_until_it_is_asked_for_and_then_nothing_but_the_book(book, 
     Thread(target=server.serve_forever, daemon=True).start()
     with server, Browser(tmp_path / "profile", flags=LLVMPIPE) as browser:
         browser.open(f"http://127.0.0.1:{server.server_address[1]}/{PAGE}")
-        browser.wait("document.querySelectorAll('.start').length === 6")
+        browser.wait("document.querySelectorAll('.start').length === 9")
         scripts = [path for path in Recorder.asked if path.endswith(".js")]
         assert scripts == ["/book.js"]
         assert browser.run("return [typeof playground, document.querySelectorAll('canvas').length]") == [
@@ -240,6 +274,72 @@ def test_an_exercise_says_when_the_picture_is_that_of_the_solution(page, lesson,
     np.testing.assert_array_equal(shown, drawn(engine, lesson.named["second"].scene, shown))
 
 
+def results(page, name):
+    found = f"document.querySelectorAll('#{name} .results li')"
+    page.wait(f"document.querySelector('#{name} .outcome .verdict')")
+    return page.run(f"return [...{found}].map((each) => [each.className, each.textContent])")
+
+
+def test_an_exercise_of_values_is_checked_at_values_that_are_not_shown(page):
+    start(page, "first")
+    page.click("#first .check")
+    (seen, said), (hidden, other) = results(page, "first")
+    assert (seen, hidden) == ("wrong", "wrong")
+    assert "of the picture differs" in said and other.startswith("At other values") and "seed" not in other
+    assert page.run("return document.querySelectorAll('#first .pictures canvas').length") == 3
+    page.run(
+        "const field = document.querySelector('#first [data-path=\"height.smoothing\"] .number');"
+        "field.value = '0.7'; field.dispatchEvent(new Event('change'))"
+    )
+    page.wait("!document.querySelector('#first .outcome .verdict')")  # what was said is of another work
+    page.click("#first .check")
+    assert [kind for kind, _ in results(page, "first")] == ["right", "right"]
+    assert "All" in page.run("return document.querySelector('#first .outcome').textContent").title()
+
+
+def test_a_kernel_that_a_reader_writes_is_checked_by_its_texture(page):
+    start(page, "third")
+    area = "document.querySelector('#third textarea')"
+    page.wait("document.querySelector('#third .editor-status').textContent === ''")
+    text = page.run(f"return {area}.value")
+    assert "share * smoothing" in text or "share" in text
+    page.click("#third .check")
+    ((kind, said),) = results(page, "third")
+    assert kind == "wrong" and said.startswith("At height.seed = 4: `height` differs".replace("`", ""))
+    answer = (EXERCISES / "diamond_square/dimension.answer.glsl").read_text(encoding="utf-8")
+    put = f"{area}.value = arguments[0]; {area}.dispatchEvent(new Event('input'))"
+    page.run(put, answer.replace("pow(share, 0.8)", "powr(share, 0.8)"))
+    page.click("#third .check")
+    page.wait("document.querySelector('#third .editor-status.wrong')")
+    page.wait("document.querySelector('#third .outcome .verdict.wrong')")
+    page.run(put, answer.replace("pow(share, 0.8)", "exp(0.8 * log(share))"))  # not the words of the answer
+    page.wait("document.querySelector('#third .editor-status').textContent === ''")
+    page.click("#third .check")
+    page.wait("document.querySelector('#third .outcome .verdict.right')")
+    # Other blocks of the page still have the file as it ships.
+    start(page, "land")
+    assert page.run("return !document.querySelector('#land .live .alarm')")
+
+
+def test_a_challenge_keeps_its_best_score(page, book):
+    start(page, "match")
+    said = "document.querySelector('#match .score').textContent"
+    page.wait(f"{said}.startsWith('Score 0 of 100')")
+    set_to = (
+        "const field = document.querySelector('#match [data-path=\"height.smoothing\"] .number');"
+        "field.value = arguments[0]; field.dispatchEvent(new Event('change'))"
+    )
+    page.run(set_to, "0.6")
+    page.wait(f"/Score [1-8][0-9] /.test({said})")
+    page.run(set_to, "0.9")
+    page.wait(f"{said}.startsWith('Solved, with a score of 100.')")
+    page.run(set_to, "0.1")
+    page.wait(f"/Score 0 .*Best so far: 100/.test({said})")
+    page.open((book / PAGE).as_uri())
+    start(page, "match")
+    page.wait(f"/Score 0 .*Best so far: 100/.test({said})")
+
+
 def test_french_and_paper_and_a_phone(page, book):
     page.open((book / "fr/small.html").as_uri())
     page.emulate("setDeviceMetricsOverride", width=390, height=844, deviceScaleFactor=1, mobile=True)
@@ -266,7 +366,7 @@ def test_without_scripts_everything_can_be_read(book, tmp_path):
         counts = (
             "[...document.querySelectorAll('.still img')].filter((image) => image.offsetHeight > 40).length"
         )
-        assert browser.run(f"return {counts}") == 1 + 6 + 3 + 2 + 1
+        assert browser.run(f"return {counts}") == 1 + 6 + 3 + 2 + 1 + 1
         assert "total / 8.0" in browser.run("return document.querySelector('#fault .still pre').innerText")
 
 
@@ -366,7 +466,7 @@ def test_lines_that_lose_the_context_are_taken_back_and_those_that_hang_are_not_
     typed(page, broken_lines.replace("8.0", "6.0"))
     page.wait("Object.values(sessionStorage).some((text) => text.includes('6.0') && text.includes('tried'))")
     page.run("location.reload()")
-    page.wait("document.querySelectorAll('.start').length === 6")
+    page.wait("document.querySelectorAll('.start').length === 9")
     start(page, "fault")
     page.wait(f"{said}?.includes('loop without end')")
     assert page.run(f"return {area}") == broken_lines

@@ -17,6 +17,7 @@ from playground.lessons.excerpt import excerpt
 from playground.lessons.figure_renders import Picture, pictures_in
 from playground.lessons.library import SOURCE, Labels
 from playground.lessons.measuring import Number, filled
+from playground.lessons.tasks.texts import starter_text
 from playground.lessons.values import spelled_value
 from playground.markup import Markup, joined, tag
 
@@ -232,16 +233,43 @@ def _question(block: model.Question, setting: Setting) -> Markup:
 
 def _exercise(block: model.Exercise, setting: Setting) -> Markup:
     pictures = [tag("figure", setting.image(found)) for found in pictures_in(block)]
-    room = setting.still() if block.name in setting.live else None  # only what can be started has one
+    live = block.name in setting.live
+    room = setting.still() if live else None  # only what can be started has one
+    elsewhere = block.checks and not (live and any(check.measure is None for check in block.checks))
     return setting.titled(
         block,
         f"{setting.label('exercise')} {setting.lesson.number_of(block)}",
         setting.prose(block.ask),
+        _starter(block, setting),
         room,
+        tag("p", tag("small", setting.line(setting.label("checked_elsewhere")))) if elsewhere else None,
         setting.folded("hint", setting.prose(block.hint)) if block.hint else None,
         setting.folded("solution", setting.prose(block.solution), *pictures),
         **setting.started(block),
     )
+
+
+def _challenge(block: model.Challenge, setting: Setting) -> Markup:
+    (target,) = pictures_in(block)
+    caption = setting.line(block.caption) if block.caption else setting.label("target")
+    return setting.titled(
+        block,
+        setting.label("challenge"),
+        setting.prose(block.ask),
+        _starter(block, setting),
+        setting.still(tag("figure", setting.image(target), tag("figcaption", caption))),
+        setting.folded("hint", setting.prose(block.hint)) if block.hint else None,
+        setting.folded("solution", setting.prose(block.solution)) if block.solution else None,
+        **setting.started(block),
+    )
+
+
+def _starter(task: model.Task, setting: Setting) -> Markup | None:
+    """Return the text that a reader begins from, folded away."""
+    if not task.file:
+        return None
+    title = setting.label("code_of", file=f"glsl/{task.file}")
+    return setting.folded("starter", code_block(starter_text(task), title))
 
 
 def _measure(block: model.Measure, setting: Setting) -> Markup:
@@ -260,5 +288,6 @@ _WRITERS: dict[type[model.Block], Callable[[Any, Setting], Markup]] = {
     model.Break: _break,
     model.Question: _question,
     model.Exercise: _exercise,
+    model.Challenge: _challenge,
     model.Measure: _measure,
 }

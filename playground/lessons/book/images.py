@@ -26,8 +26,8 @@ SHARPER = 1.5
 """Pixels drawn for each of a page's, each way: screens have more than one."""
 
 
-BLANK = 10.0
-"""Levels of 255 that greys spread over, as a standard deviation, where there is next to nothing to see."""
+BLACK = 32.0
+"""Level of 255 that nine tenths of a picture lie below, where there is nothing but black to see."""
 
 FEW_COLOURS = 2048
 """Colours that a diagram has at most; terrain has tens of thousands."""
@@ -90,10 +90,10 @@ def is_diagram(picture: NDArray[np.uint8]) -> bool:
 
 
 def is_blank(path: Path) -> bool:
-    """Whether a stored picture shows next to nothing, seen from as far as a stamp: all black, say."""
+    """Whether a stored picture is as good as black, seen from as far as a stamp."""
     with Image.open(path) as image:
         small = image.convert("L").resize((64, 36), Image.Resampling.BOX)
-    return float(np.asarray(small, np.float64).std()) < BLANK
+    return float(np.percentile(np.asarray(small), 90)) < BLACK
 
 
 def larger(scene: Scene) -> Scene:

@@ -8,6 +8,7 @@ from typing import Any
 from playground.errors import PlaygroundError
 from playground.lessons import model
 from playground.lessons.book.live_scenes import Library, Scenes
+from playground.lessons.book.live_tasks import task_data
 from playground.lessons.bugs import bug_region
 from playground.sketch.model import Sketch
 
@@ -46,6 +47,8 @@ def _data(block: model.Named, scenes: Scenes) -> LiveData | None:
         return {"kind": "compare", "scenes": [scenes.setting(scene) for scene in block.scenes]}
     if isinstance(block, model.Break) and block.scene:
         return _break(block, block.scene, scenes)
+    if isinstance(block, model.Challenge) or (isinstance(block, model.Exercise) and block.checks):
+        return task_data(block, scenes)
     if isinstance(block, model.Exercise) and block.scene:
         return _exercise(block.scene, scenes)
     return None

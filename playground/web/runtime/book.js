@@ -4,7 +4,8 @@ import "./with_all.js";
 import { openBook, settled } from "./book_data.js";
 import { liveFigure } from "./book_figure.js";
 import { liveCompare, liveSlider, liveSteps } from "./book_series.js";
-import { liveBreak, liveExercise } from "./book_tasks.js";
+import { liveChallenge, liveExercise } from "./book_exercise.js";
+import { liveBreak } from "./book_tasks.js";
 import { createBookRecovery } from "./book_recovery.js";
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
@@ -16,7 +17,7 @@ import { lackOf } from "./lacks.js";
 /** @type {Object<string, (room: Room) => Promise<unknown>>} */
 const KINDS = {
   figure: liveFigure, steps: liveSteps, slider: liveSlider, compare: liveCompare, break: liveBreak,
-  exercise: liveExercise,
+  exercise: liveExercise, challenge: liveChallenge,
 };
 
 const BYTES = 192 * 2 ** 20; // of textures for all figures of a page: those seen last keep theirs

@@ -25,19 +25,25 @@ import { unpackedJson } from "./packed.js";
 
 /** What a page can run of a lesson's block. See live_blocks.py.
  *  @typedef {object} LiveBlock
- *  @property {"figure" | "steps" | "slider" | "compare" | "break" | "exercise"} kind
+ *  @property {"figure" | "steps" | "slider" | "compare" | "break" | "exercise"
+ *            | "challenge"} kind
  *  @property {Setting[]} scenes
  *  @property {string[]} [rows]         of the panel, by path
  *  @property {string[]} [passes]       of steps: stopped together
  *  @property {number[]} [iterations]
  *  @property {string} [row]            of a slider between whose values there are others
  *  @property {Value[]} [values]
- *  @property {string} [file]           of a break
+ *  @property {string} [file]           of a break, or that a reader writes
+ *  @property {string} [starter]        what a reader begins from
+ *  @property {string} [answer]
+ *  @property {import("./work_check.js").PageCheck[]} [checks]
+ *  @property {number} [elsewhere]      checks that no page can do
+ *  @property {number} [goal]           score of a challenge
  *  @property {number} [first]          its lines before those with the bug
  *  @property {number} [rest]           and after them
  *  @property {number} [indent]         blanks that those do not show
  *  @property {string} [broken]
- *  @property {Setting} [begin]         of an exercise */
+ *  @property {Setting} [begin]         of an exercise or a challenge */
 
 /** @typedef {Omit<Sketch, "kernels"> & {kernels: number[]}} Stored  its kernels are numbers in the book */
 /** @typedef {{sketches: Stored[], blocks: Object<string, LiveBlock>,

@@ -28,9 +28,10 @@ export function difference(one, other) {
 }
 
 /** Pixels of the pictures that are compared: of the sketch's shape. @param {[number, number]} frame
+ *  @param {number} [side]  each way at most
  *  @returns {[number, number]} */
-function sizeToCompare([width, height]) {
-  const scale = Math.min(1, SIDE / Math.max(width, height));
+export function sizeToCompare([width, height], side = SIDE) {
+  const scale = Math.min(1, side / Math.max(width, height));
   return [Math.max(Math.round(width * scale), 16), Math.max(Math.round(height * scale), 16)];
 }
 
