@@ -49,12 +49,14 @@ vec4 kernel(ivec2 texel) {
         ivec2 x = ivec2(column.xy);
         ivec2 y = ivec2(row.xy);
         uint which = seed_of_layer(seed, random_layers == 1 ? k : 0);
+        // anchor: sum
         vec2 west = vec2(random(ivec2(x.x, y.x), which), random(ivec2(x.x, y.y), which));
         vec2 east = vec2(random(ivec2(x.y, y.x), which), random(ivec2(x.y, y.y), which));
         vec2 between = west + (east - west) * column.b;
         vec4 rise = (between.y - between.x) * curve(row.b, row.a);
         total += weight * (vec4(between.x, 0.0, 0.0, 0.0) + rise);
         weights += weight;
+        // end: sum
     }
     return overflow == 0 && weights > 0.0 ? total / weights : total;
 }
