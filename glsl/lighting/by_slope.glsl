@@ -22,7 +22,8 @@ uniform vec2 sun = vec2(315.0, 40.0);  //! direction group("Sun")
 
 vec4 kernel(ivec2 texel) {
     ivec2 grid = textureSize(slope, 0);
-    vec2 rise = relief * textureLod(slope, (place_on(grid, texel, size) + 0.5) / vec2(grid), 0.0).rg;
+    vec2 uv = (place_on(grid, texel, size) + 0.5) / vec2(grid);
+    vec2 rise = relief * textureLod(slope, uv, 0.0).rg;
     // anchor: light
     vec3 normal = normal_of_slope(rise);
     float received = gain * sun_on(normal, towards_sun);

@@ -1,6 +1,6 @@
 // terrain/slope.glsl -- slopes by differences of heights, to the east and to the north.
 //
-//   gives    slope: height per metre, east in red, north in green; times relief, metres over metres
+//   gives    slope: height per metre, east in red, north in green; times relief, without unit
 //   needs    maths/land.glsl; a height
 //   units    apart in texels of the height
 //   source   derived here: the slope of the line through two heights

@@ -45,9 +45,11 @@ vec3 thrown_back(vec3 ground, float k) {
 }
 // end: thrown-back
 
+// anchor: sector
 // What the sector towards u adds to n K, times the length of (-slope, 1).
 float sky_of_sector(float tangent, vec2 slope, vec2 towards, float shape) {
     vec2 open = above_horizon(horizon_over_slope(tangent, slope, towards));
     return open.y - dot(slope, towards) * shape * open.x;
 }
+// end: sector
 #endif

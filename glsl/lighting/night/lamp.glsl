@@ -64,12 +64,14 @@ vec4 kernel(ivec2 texel) {
     float far = max(length(way), 1e-3);
     way = length(way) < 1e-3 ? vec3(0.0, 0.0, 1.0) : way / far;
     vec2 slope = relief * slope_at(height, place, metres, normal);
+    // anchor: lamp
     float facing = max(0.0, dot(normal_of_slope(slope), way));
     float received = lamp_gain * facing * falling_off(far);
     March march = march_from(height, place, size == grid, way, extent, relief, 1.0);
     // Steps before the lamp; none where it sends no light.
     march.count = received > 0.0 ? min(march.count, int(ceil(far / march.path)) - 1) : 0;
     radius_a_step = march.path * lamp_radius / far;
+    // end: lamp
     float lower_side = march.climb - radius_a_step;
     float part = marched(march, height, block_maxima, INTERPOLATED, lower_side, 1.0);
     vec4 moon = texelFetch(moonlit, texel, 0);
