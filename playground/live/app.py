@@ -371,12 +371,14 @@ class Live:
         area: Area = (0.0, 0.0, place[2] / density, place[3] / density)
         if guard.draw("keys and mouse of the presentation", lambda: stage.act(area), False):
             guard.draw("the mouse over the picture", lambda: self._act(area), None)
-        picture = guard.run("the picture", lambda: self._picture((place[2], place[3])), None)
+        if stage.turned():  # its words come at once, its picture as soon as it is drawn
+            picture, self._settling = self.session.picture.texture, _SETTLES
+        else:
+            picture = guard.run("the picture", lambda: self._picture((place[2], place[3])), None)
         guard.run("taking in the picture", self._take_in, None)
         if picture is not None:
-            guard.run(
-                "the picture it is compared with", lambda: bench.inspection.compare.follow(picture), None
-            )
+            compared = bench.inspection.compare
+            guard.run("the picture that it is compared with", lambda: compared.follow(picture), None)
         bench.inspection.update()
         guard.draw("the presentation", lambda: stage.draw(window.pixels, density, area), None)
         guard.run("showing the picture", lambda: self._show(picture, place), None)

@@ -6,7 +6,6 @@ from collections.abc import Mapping
 
 _ENGLISH = {
     "lesson": "Lesson",
-    "goal": "Goal",
     "question": "Question",
     "choices": "Choose",
     "answer": "Answer",
@@ -24,9 +23,6 @@ _ENGLISH = {
     "back": "Back",
     "following": "Next",
     "over": "End of the lesson",
-    "picture": "Picture",
-    "elapsed": "Elapsed",
-    "clock": "Time",
     "pause": "Pause",
     "go_on": "Go on",
     "reset": "Reset",
@@ -37,13 +33,12 @@ _ENGLISH = {
     "no_notes": "without notes: {}",
     "notes_at": "notes: {}",
     "no_beat": "there is no beat {}: 1 to {}",
-    "no_slider": "this picture has no slider {}",
+    "prepares": "measuring this lesson's numbers…",
     "pen_on": "pen: draw with the mouse; E erases, D puts it down",
     "laser_on": "spot: P puts it out",
 }
 _FRENCH = {
     "lesson": "Leçon",
-    "goal": "But",
     "question": "Question",
     "choices": "Choisissez",
     "answer": "Réponse",
@@ -61,9 +56,6 @@ _FRENCH = {
     "back": "Précédent",
     "following": "Ensuite",
     "over": "Fin de la leçon",
-    "picture": "Image",
-    "elapsed": "Écoulé",
-    "clock": "Heure",
     "pause": "Pause",
     "go_on": "Reprendre",
     "reset": "Remettre à zéro",
@@ -74,7 +66,7 @@ _FRENCH = {
     "no_notes": "sans notes\u00a0: {}",
     "notes_at": "notes\u00a0: {}",
     "no_beat": "il n’y a pas de temps {}\u00a0: de 1 à {}",
-    "no_slider": "cette image n’a pas de curseur {}",
+    "prepares": "mesure des nombres de la leçon…",
     "pen_on": "crayon\u00a0: dessinez à la souris\u00a0; E efface, D le repose",
     "laser_on": "point lumineux\u00a0: P l’éteint",
 }

@@ -50,6 +50,7 @@ class Stage:
         self._was_full = False
         self._moved = 0.0  # when the mouse moved last [s]
         self._told: object = None
+        self._turned = False  # to another beat, in this frame
         bench.lessons.present = self.begin
         bench.lessons.beat = lambda: self.presenter.at + 1 if self.on else 0
 
@@ -120,6 +121,11 @@ class Stage:
         if not self.on:
             return 1.0
         return 0.1 if self.bench.notices.now() - self._moved < _HIDES else self.presenter.patience
+
+    def turned(self) -> bool:
+        """Return whether another beat is on since the last call."""
+        turned, self._turned = self._turned, False
+        return turned
 
     def take(self) -> None:
         """Do what the page of notes asked for."""
@@ -196,7 +202,8 @@ class Stage:
         if presenter.helps and not overlays.knows("help", (ctx, sizes)):
             rows_of_help = help_rows(self.reader.language)
             overlays.put("help", (ctx, sizes), help_of(rows_of_help, sizes), ctx)
-        says = f"→ {presenter.typed}" if presenter.typed else presenter.notice
+        prepares = self._say("prepares") if presenter.at == 0 and self.reader.numbers.wanted else ""
+        says = f"→ {presenter.typed}" if presenter.typed else presenter.notice or prepares
         if not overlays.knows("typed", (ctx, says, sizes)):
             overlays.put("typed", (ctx, says, sizes), plate_of(says, sizes), ctx)
 
@@ -280,6 +287,7 @@ class Stage:
 
     def _show(self, beat: Beat) -> None:
         self.pictures.show(beat)
+        self._turned = True
 
     def _say(self, key: str, *given: object) -> str:
         return labels_of(self.reader.language)[key].format(*given)

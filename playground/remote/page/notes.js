@@ -13,7 +13,7 @@ function text(seconds) {
 }
 
 function tick() {
-  at("wall").textContent = new Date().toLocaleTimeString([], { hour: "2-digit", minute: "2-digit" });
+  at("wall").textContent = new Date().toLocaleTimeString(document.documentElement.lang, { hour: "2-digit", minute: "2-digit" });
   if (state) {
     const more = state.running ? (performance.now() - since) / 1000 : 0;
     at("elapsed").textContent = text(state.elapsed + more);
