@@ -32,7 +32,6 @@ def shipped(request):
 
 TOO_LONG: frozenset[str] = frozenset(
     {
-        "diamond_square",
         "faults_and_circles",
         "delaunay",
         "thermal_erosion",

@@ -31,6 +31,7 @@ struct Lattice {
 };
 
 // The height of a new point between four neighbours, or three of them at the border.
+// anchor: height
 float new_height(vec4 neighbours, bvec4 inside, ivec2 point, Lattice lattice) {
     ivec2 key = point * lattice.apart;
     float number = lattice.centred ? random_signed(key, lattice.seed) : random(key, lattice.seed);
@@ -39,6 +40,7 @@ float new_height(vec4 neighbours, bvec4 inside, ivec2 point, Lattice lattice) {
     for (int i = 0; i < 4; i++) total += inside[i] ? neighbours[i] : 0.0;
     return total / (all(inside) ? 4.0 : 3.0) + number * lattice.amplitude;
 }
+// end: height
 
 // The centre of a cell, from its corners in the north-east, north-west, south-west, south-east.
 float centre(vec4 corners, ivec2 cell, Lattice lattice) {

@@ -36,11 +36,13 @@ uniform vec4 corners = vec4(0.0, 0.0, 0.0, 0.0);  //! slider(-1, 1) step(0.01)
 
 const uint SALT = 0xa289e770u;  // CRC-32 of "generation/triangle_subdivision"
 
+// anchor: visit
 ivec2 visit(ivec2 cell) {
     // Of the cells of a step, those with two even numbers were vertices before.
     bool known = iteration > 0 && ((cell.x | cell.y) & 1) == 0;
     return known ? ivec2(-1) : cell * ((size.x - 1) >> iteration);
 }
+// end: visit
 
 float corner(ivec2 texel) {
     if (corners_are == 0) return random_signed(finest_point(texel, size.x - 1), seed + SALT);
