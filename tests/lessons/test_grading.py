@@ -17,7 +17,7 @@ import pytest
 from playground.cli import main
 from playground.errors import DataError
 from playground.images.files import write_png
-from playground.lessons.grading.duplicates import alike, normalised
+from playground.lessons.grading.duplicates import alike
 from playground.lessons.grading.handed_in import lessons_in, read_submission
 from playground.lessons.grading.marks import GRADED, MISSING, REFUSED, STOPPED, Graded, Mark, Pair
 from playground.lessons.grading.page import Setting, page
@@ -25,6 +25,7 @@ from playground.lessons.grading.submissions import find_submissions
 from playground.lessons.grading.table import table_bytes
 from playground.lessons.grading.values_in_toml import values_in_toml
 from playground.lessons.handout.exercise_files import assignments_of
+from playground.lessons.handout.normalised import normalised
 from playground.lessons.read import read_lesson
 
 from ..report.browser import MISSING as NO_BROWSER

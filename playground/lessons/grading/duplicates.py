@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 
-_COMMENT = re.compile(r"//(?:\\\n|[^\n])*|/\*.*?(?:\*/|\Z)", re.DOTALL)
-_TOKEN = re.compile(r"\w+|[^\w\s]")
-
-
-def normalised(text: str) -> str:
-    """Return a text as its tokens, without comments and without how it is laid out."""
-    return " ".join(_TOKEN.findall(_COMMENT.sub(" ", text)))
+from playground.lessons.handout.normalised import normalised
 
 
 def alike(texts: Mapping[str, str], handed_out: str) -> dict[str, tuple[str, ...]]:

@@ -15,7 +15,6 @@ from playground.lessons.grading.marks import MISSING, REFUSED, STOPPED, Graded, 
 from playground.lessons.grading.submissions import Submission
 from playground.lessons.handout.exercise_files import Assignment
 from playground.lessons.library import Labels
-from playground.lessons.tasks.texts import starter_text
 
 Judged = dict[tuple[str, str | None], Outcome]
 """What came of each text, by the exercise's name; None is the model answer."""
@@ -57,11 +56,7 @@ def grade(
             advance()
         _check_answers(judged, assignments)
     label = report_labels(language)
-    same = {
-        one.name: alike(_readable(read, one), starter_text(one.exercise))
-        for one in assignments
-        if one.exercise.file
-    }
+    same = {one.name: alike(_readable(read, one), one.starter) for one in assignments if one.exercise.file}
     return [
         Graded(
             student,

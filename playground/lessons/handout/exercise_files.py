@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from playground.lessons.handout.normalised import normalised
 from playground.lessons.model import Exercise, Lesson
 from playground.lessons.tasks.tasks import tasks_of
+from playground.lessons.tasks.texts import answer_text, starter_text
 
 
 @dataclass(frozen=True)
@@ -15,6 +17,8 @@ class Assignment:
 
     lesson: Lesson
     exercise: Exercise
+    starter: str = ""  # what is handed out in the student's file; "" where values are set
+    follows: Exercise | None = None  # the student goes on from what was written there
 
     @property
     def name(self) -> str:
@@ -43,10 +47,25 @@ class Assignment:
 
 
 def assignments_of(lessons: Iterable[Lesson]) -> list[Assignment]:
-    """List the exercises of lessons that check themselves, in the order of the lessons."""
-    return [
-        Assignment(lesson, task)
-        for lesson in lessons
-        for task in tasks_of(lesson)
-        if isinstance(task, Exercise)
-    ]
+    """List the exercises of lessons that check themselves, in the order of the lessons.
+
+    Where an exercise begins with the answer of an earlier one, it is handed out with what that one begins
+    with: the student goes on from a kernel of their own, and no answer is given away.
+    """
+    found: list[Assignment] = []
+    for lesson in lessons:
+        of_lesson: list[Assignment] = []
+        for task in tasks_of(lesson):
+            if isinstance(task, Exercise):
+                of_lesson.append(_assignment(lesson, task, of_lesson))
+        found += of_lesson
+    return found
+
+
+def _assignment(lesson: Lesson, exercise: Exercise, earlier: Iterable[Assignment]) -> Assignment:
+    starter = starter_text(exercise)
+    for before in earlier:
+        if exercise.file and exercise.file == before.exercise.file:
+            if normalised(starter) == normalised(answer_text(before.exercise)):
+                return Assignment(lesson, exercise, before.starter, before.exercise)
+    return Assignment(lesson, exercise, starter)

@@ -63,7 +63,7 @@ def write_handout(
     for one in assignments:
         for name, data in student_files(one).items():
             files[f"{top}/{one.name}/{name}"] = data
-    page = handout_page(lessons, assignments, numbers, engine, top, hints=hints, advance=advance)
+    page = handout_page(lessons, assignments, numbers, engine, hints=hints, advance=advance)
     files[f"{top}/exercises.html"] = page.encode()
     first = assignments[0]
     manifest = {

@@ -67,12 +67,11 @@ def handout_page(
     assignments: Sequence[Assignment],
     numbers: Mapping[str, Mapping[str, Number]],
     engine: Engine,
-    folder: str,
     *,
     hints: bool = False,
     advance: Callable[[], None] = lambda: None,
 ) -> str:
-    """Return the page as HTML; ``numbers`` are those of each lesson, ``folder`` is the hand-out's name.
+    """Return the page as HTML; ``numbers`` are those of each lesson.
 
     Raises as ``Engine.render`` does.
     """
@@ -87,7 +86,7 @@ def handout_page(
         body.append(tag("h2", f"{label('lesson', n=lesson.number)}{label['colon']}{lesson.title}"))
         for block in lesson.blocks:
             if isinstance(block, Task):
-                body.append(_task(block, by_place.get((lesson.name, block.name)), setting, folder))
+                body.append(_task(block, by_place.get((lesson.name, block.name)), setting))
                 advance()
     style = (Path(__file__).resolve().parent / "handout.css").read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
@@ -106,7 +105,7 @@ def handout_page(
     return f"<!doctype html>\n{whole}\n"
 
 
-def _task(task: Task, one: Assignment | None, setting: _Setting, folder: str) -> Markup:
+def _task(task: Task, one: Assignment | None, setting: _Setting) -> Markup:
     label = setting.label
     title = label["challenge"]
     points = None
@@ -124,13 +123,13 @@ def _task(task: Task, one: Assignment | None, setting: _Setting, folder: str) ->
         tag("h3", title, tag("small", points) if points else None),
         setting.text(task.ask),
         tag("div", *pictures, class_="pictures") if pictures else None,
-        _about(task, one, setting, folder),
+        _about(task, one, setting),
         hint,
         class_="task",
     )
 
 
-def _about(task: Task, one: Assignment | None, setting: _Setting, folder: str) -> Markup | None:
+def _about(task: Task, one: Assignment | None, setting: _Setting) -> Markup | None:
     """Return which file is to be edited, and how it is opened."""
     label = setting.label
     if isinstance(task, Challenge):
@@ -141,8 +140,10 @@ def _about(task: Task, one: Assignment | None, setting: _Setting, folder: str) -
         return None
     lines = [
         tag("p", label["edit"], label["colon"], tag("code", f"{one.name}/{one.file}")),
-        tag("p", label["open"], label["colon"], tag("code", f"playground live {folder}/{one.opens}")),
+        tag("p", label["open"], label["colon"], tag("code", f"playground live {one.opens}")),
     ]
+    if one.follows:
+        lines.append(tag("p", label("go_on", n=setting.lesson.number_of(one.follows))))
     if task.file:
         lines.append(tag("p", label("kernel", file=task.file)))
     else:
@@ -158,10 +159,8 @@ def _pictures(task: Task, setting: _Setting) -> list[Markup]:
     if not works or task.scene is None:
         return []
     found = [setting.picture(scene_of(task, starter(task)), label["begin"], label["begin"])]
-    judged = isinstance(task, Challenge) or any(
-        not check.of and check.measure is None for check in getattr(task, "checks", ())
-    )
-    if judged:
+    # Where only a measure is judged, many pictures are right.
+    if isinstance(task, Challenge) or any(check.measure is None for check in getattr(task, "checks", ())):
         alt = plain(filled(getattr(task, "alt", ""), setting.numbers))
         found.append(setting.picture(task.scene, alt or label["wanted"], label["wanted"]))
     return found

@@ -9,19 +9,21 @@ from __future__ import annotations
 
 import re
 import tempfile
-from dataclasses import replace
+import tomllib
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from playground.errors import DataError, PlaygroundError, SketchError
+from playground.errors import DataError, PlaygroundError
 from playground.images.files import reason
 from playground.lessons.handout.exercise_files import Assignment
-from playground.lessons.tasks.texts import path_of, starter_text
+from playground.lessons.tasks.texts import path_of
 from playground.paths import GLSL, SKETCHES
+from playground.sketch.header import parse_kernel
 from playground.sketch.load import load
 from playground.sketch.model import Graph, Sketch, Technique
 from playground.sketch.save import save, save_copy
-from playground.sketch.source import read_text
-from playground.sketch.toml_edit import put, text_of
+from playground.sketch.source import read_source, read_text
+from playground.sketch.toml_edit import drop, put, text_of
 from playground.sketch.toml_places import Place
 
 _HEADER = re.compile(r"^\s*\[\[?\s*([A-Za-z_-]+)")
@@ -41,12 +43,13 @@ def student_files(one: Assignment) -> dict[str, bytes]:
         try:
             shipped = load(SKETCHES / f"{scene.sketch.name}.toml")
             first = save_copy(shipped, shipped, Path(scratch))
-            text = _without_moments(_read(first), one)
+            text = _without_moments(read_text(first), one)
             first.unlink()
             path = first.with_name(one.sketch_file)
             path.write_text(text, encoding="utf-8", newline="\n")
             if one.exercise.file:
                 _put_kernel(one, path)
+            _drop_view_settings(path, scene.sketch)
             sketch = load(path)
             save(sketch, _as_begun(sketch, scene.sketch))
             load(path)
@@ -57,10 +60,6 @@ def student_files(one: Assignment) -> dict[str, bytes]:
             }
         except OSError as error:
             raise DataError(f"{one.name}: no folder could be made for it: {reason(error)}") from None
-
-
-def _read(path: Path) -> str:
-    return read_text(path)
 
 
 def _without_moments(text: str, one: Assignment) -> str:
@@ -85,6 +84,15 @@ def _without_moments(text: str, one: Assignment) -> str:
     return put(whole, (), "title", text_of(title))
 
 
+def _drop_view_settings(path: Path, begin: Sketch) -> None:
+    """Take out of a student's sketch what it sets of a view that the exercise does not set."""
+    view, text = begin.graph.find("view"), read_text(path)
+    set_there = tomllib.loads(text).get("view", {}).get("set", {})
+    for key in set_there.keys() - dict(view.values if view else ()).keys():
+        text = drop(text, ("view", "set"), key)
+    path.write_text(text, encoding="utf-8", newline="\n")
+
+
 def _as_begun(sketch: Sketch, begin: Sketch) -> Sketch:
     """Return a student's sketch with the values, the view and the camera that the exercise begins with."""
     found = sketch
@@ -102,52 +110,79 @@ def _as_begun(sketch: Sketch, begin: Sketch) -> Sketch:
 def _put_kernel(one: Assignment, sketch_file: Path) -> None:
     """Write the starter into the folder and have the sketch use it, through the techniques around it."""
     folder, kernel = sketch_file.parent, path_of(one.exercise)
-    starter = _includes_from_library(starter_text(one.exercise), kernel)
+    starter = _includes_from_library(one.starter, kernel)
     (folder / f"{one.name}.glsl").write_text(starter, encoding="utf-8", newline="\n")
-    sketch = load(sketch_file)
-    text = _read(sketch_file)
-    for place, use in _replaced_uses(sketch.graph, kernel, one.name, folder):
-        text = put(text, place, "use", text_of(use))
+    own = _OwnKernel(
+        kernel, one.name, folder, _parameters(read_text(kernel), kernel) - _parameters(starter, kernel)
+    )
+    graph, text = load(sketch_file).graph, read_text(sketch_file)
+    text, gone = _using(own, text, graph, of_sketch=True)
+    main = tomllib.loads(text).get("main", [])
+    if there := [path for path in main if path not in gone]:
+        text = put(text, (), "main", f"[{', '.join(map(text_of, there))}]")
+    elif main:
+        text = drop(text, (), "main")
     sketch_file.write_text(text, encoding="utf-8", newline="\n")
 
 
-def _replaced_uses(graph: Graph, kernel: Path, name: str, folder: Path) -> list[tuple[Place, str]]:
-    """Return what each pass that leads to a kernel must use instead, with its place in the graph's TOML.
+@dataclass(frozen=True)
+class _OwnKernel:
+    """A student's kernel, in the place of one that ships."""
 
-    Techniques of several passes on the way are written into the folder, with their own uses replaced.
+    shipped: Path
+    name: str  # of its file, and of those of the techniques around it
+    folder: Path
+    lacks: set[str]  # parameters of the shipped one
+
+
+def _using(own: _OwnKernel, text: str, graph: Graph, *, of_sketch: bool = False) -> tuple[str, set[str]]:
+    """Return a graph's TOML with the student's kernel in it, and the paths of parameters that are gone.
+
+    Techniques of several passes on the way to the kernel are written into the folder.
     """
-    found: list[tuple[Place, str]] = []
+    gone: set[str] = set()
     number = 0
     for spec in graph.passes:
-        place: Place = (
-            ("view",) if spec.name == "view" and Path(graph.path).parent == folder else ("pass", number)
-        )
-        number += place != ("view",)
-        if not _leads_to(spec.technique, kernel):
+        is_view = of_sketch and spec.name == "view"
+        place: Place = ("view",) if is_view else ("pass", number)
+        number += not is_view
+        if not _leads_to(spec.technique, own.shipped):
+            if not of_sketch and spec.use.startswith("./"):
+                text = put(text, place, "use", text_of(_from_library(spec.use, Path(graph.path))))
             continue
+        lost = own.lacks
+        use = own.name
         if isinstance(spec.technique, Graph):
-            found.append((place, f"./{_own_technique(spec.technique, kernel, name, folder)}"))
-        else:
-            found.append((place, f"./{name}"))
-    if not found:
-        raise SketchError(f"{name}: no pass uses {kernel.name}")
-    return found
+            use, lost = _own_technique(own, spec.technique)
+        text = put(text, place, "use", text_of(f"./{use}"))
+        for key, _ in spec.values:
+            if key in lost:
+                text = drop(text, (*place, "set"), key)
+        gone |= {f"{spec.name}.{path}" for path in lost}
+    return text, gone
 
 
-def _own_technique(technique: Graph, kernel: Path, name: str, folder: Path) -> str:
-    """Write a technique of several passes into the folder, using the student's kernel; return its name."""
+def _own_technique(own: _OwnKernel, technique: Graph) -> tuple[str, set[str]]:
+    """Write a technique of several passes, with the student's kernel; return its name and what is gone."""
     source = Path(technique.path)
-    own = f"{name}-{_NOT_IN_A_NAME.sub('_', source.stem)}"
-    target = folder / f"{own}.toml"
-    text = _read(source)
-    replaced = dict(_replaced_uses(technique, kernel, name, folder))
-    for number, spec in enumerate(technique.passes):
-        place: Place = ("pass", number)
-        use = replaced.get(place) or _from_library(spec.use, source)
-        if use != spec.use:
-            text = put(text, place, "use", text_of(use))
-    target.write_text(text, encoding="utf-8", newline="\n")
-    return own
+    name = f"{own.name}-{_NOT_IN_A_NAME.sub('_', source.stem)}"
+    text, gone = _using(own, read_text(source), technique)
+    for exported, path in tomllib.loads(text).get("parameters", {}).items():
+        inner = path if isinstance(path, list) else [path]
+        there = [text_of(each) for each in inner if each not in gone]
+        if there and len(there) < len(inner):
+            text = put(text, ("parameters",), exported, f"[{', '.join(there)}]")
+        elif not there:
+            text = drop(text, ("parameters",), exported)
+            gone.add(exported)
+    (own.folder / f"{name}.toml").write_text(text, encoding="utf-8", newline="\n")
+    return name, gone
+
+
+def _parameters(text: str, kernel: Path) -> set[str]:
+    """Return the parameters that a text in the place of a kernel declares."""
+    found = parse_kernel(kernel.stem, read_source(kernel, (GLSL,), {str(kernel): text}))
+    return {parameter.name for parameter in found.parameters} if found else set()
 
 
 def _from_library(use: str, source: Path) -> str:
