@@ -87,8 +87,13 @@ def block(desk, name):
 
 def judged(desk):
     """Draw frames until the process has judged."""
+    drawn_elsewhere(desk, lambda: not desk.reader.tasks.judging)
+
+
+def drawn_elsewhere(desk, until):
+    """Draw frames until the process has done something."""
     end = time.monotonic() + 60.0
-    while desk.reader.tasks.judging:
+    while not until():
         assert time.monotonic() < end
         desk.run_frames(1)
         time.sleep(0.02)
@@ -136,10 +141,10 @@ def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
     desk.run_frames(4)
     assert desk.bench.files.editing[0].text.base.strip() == right.strip()
 
-    desk.click("Begin again")
+    desk.click("Begin again##again")
     desk.run_frames(4)
     assert desk.bench.files.editing[0].text.base == RAW
-    desk.click("Bring mine back")
+    desk.click("Bring mine back##back")
     desk.run_frames(4)
     assert desk.bench.files.editing[0].text.base.strip() == right.strip()
 
@@ -205,6 +210,7 @@ def test_a_score_follows_the_picture_and_the_best_is_kept(desk, tasks):
     desk.reader.go(1)
     desk.run_frames(4)
     seen = block(desk, "seen")
+    drawn_elsewhere(desk, lambda: tasks.target(seen) is not None)  # before one begins
     tasks.start(seen)
     desk.run_frames(8, step=0.2)
     assert tasks.matches["seen"].score == 0.0

@@ -37,29 +37,34 @@ class _Judge:
     engine: Engine
     known: dict[tuple[str, ...], tuple[Wanted, ...] | Ends] = field(default_factory=dict)
 
-    def answer(self, request: Request) -> Verdict | Match:
-        """Judge a work."""
+    def answer(self, request: Request) -> Verdict | Match | Ends:
+        """Judge a work, or draw a challenge."""
         task = request.task
         if isinstance(task, Challenge):
-            return match(self.engine, task, request.work, self._ends(task))
+            ends = self._ends(task, request.side)
+            if request.work is None:
+                return ends
+            return match(self.engine, task, request.work, ends, request.side)
+        assert request.work is not None
         return judge(self.engine, task, request.work, self._wanted(task))
 
     def _wanted(self, task: Exercise) -> tuple[Wanted, ...]:
         found = self.known.get(_key(task))
         if not isinstance(found, tuple):
-            self._keep(task, found := answers(self.engine, task))
+            self._keep(_key(task), found := answers(self.engine, task))
         return found
 
-    def _ends(self, task: Challenge) -> Ends:
-        found = self.known.get(_key(task))
+    def _ends(self, task: Challenge, side: int) -> Ends:
+        key = (*_key(task), str(side))
+        found = self.known.get(key)
         if not isinstance(found, Ends):
-            self._keep(task, found := ends_of(self.engine, task))
+            self._keep(key, found := ends_of(self.engine, task, side))
         return found
 
-    def _keep(self, task: Exercise | Challenge, found: tuple[Wanted, ...] | Ends) -> None:
+    def _keep(self, key: tuple[str, ...], found: tuple[Wanted, ...] | Ends) -> None:
         if len(self.known) >= _KNOWN:
             self.known.clear()
-        self.known[_key(task)] = found
+        self.known[key] = found
 
 
 def _key(task: Exercise | Challenge) -> tuple[str, ...]:

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from playground.errors import Diagnostic, PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.lessons.model import Challenge, Exercise
-from playground.lessons.tasks.match import Match
+from playground.lessons.tasks.judge import SIDE
+from playground.lessons.tasks.match import Ends, Match
 from playground.lessons.tasks.verdict import Verdict
 from playground.lessons.tasks.work import Work
 from playground.process.messages import summary_of
@@ -23,10 +24,11 @@ _WHOLE = 6  # times that limit for all of a work
 
 @dataclass(frozen=True)
 class Request:
-    """A work to judge."""
+    """A work to judge; without one the two pictures that a challenge's score lies between are wanted."""
 
     task: Exercise | Challenge
-    work: Work
+    work: Work | None
+    side: int = SIDE  # pixels of a challenge's pictures, the longer way
 
 
 class JudgeProcess(Closing):
@@ -55,16 +57,16 @@ class JudgeProcess(Closing):
         """Whether a work waits for its verdict."""
         return self._current is not None
 
-    def submit(self, task: Exercise | Challenge, work: Work) -> None:
-        """Send a work to be judged; one that is still judged gets no verdict."""
+    def submit(self, task: Exercise | Challenge, work: Work | None, side: int = SIDE) -> None:
+        """Send a work to be judged, or a challenge to be drawn; an earlier one is not answered."""
         worker = self._workers.worker
         if worker is not None and worker.busy:
             self._workers.end(kill=True)
-        self._current = Request(task, work)
+        self._current = Request(task, work, side)
         self._workers.start().submit(self._current)
 
-    def poll(self) -> Verdict | Match | None:
-        """Return what came of the work that was sent last, once; None while it is judged.
+    def poll(self) -> Verdict | Match | Ends | None:
+        """Return what came of what was sent last, once; None while it is judged or drawn.
 
         A work that takes too long, or that ends the process, is judged too: it has no points. Raises
         ``PlaygroundError`` only where it is not the student's doing.
@@ -76,6 +78,7 @@ class JudgeProcess(Closing):
         self.submit(task, work)
         while (found := self._answer(0.05)) is None:
             pass
+        assert not isinstance(found, Ends)
         return found
 
     def close(self) -> None:
@@ -83,7 +86,7 @@ class JudgeProcess(Closing):
         self._current = None
         self._workers.close(patience=1.0)
 
-    def _answer(self, timeout: float) -> Verdict | Match | None:
+    def _answer(self, timeout: float) -> Verdict | Match | Ends | None:
         request, worker = self._current, self._workers.worker
         if request is None or worker is None:
             return None
@@ -99,7 +102,7 @@ class JudgeProcess(Closing):
         if isinstance(answer.error, MemoryError):
             return self._failed("it needs more memory than it may have")
         self._current = None
-        if isinstance(answer.value, Verdict | Match):
+        if isinstance(answer.value, Verdict | Match | Ends):
             return answer.value
         if isinstance(answer.error, PlaygroundError):
             raise answer.error
@@ -123,6 +126,8 @@ class JudgeProcess(Closing):
         request = self._current
         assert request is not None
         self._end()
+        if request.work is None:
+            raise PlaygroundError(f"challenge '{request.task.name}' cannot be drawn: {message}")
         diagnostics = (Diagnostic(message),)
         if isinstance(request.task, Challenge):
             return Match(0.0, request.task.goal, None, None, diagnostics)

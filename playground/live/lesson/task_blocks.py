@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
+from collections.abc import Callable
+from functools import lru_cache, partial
+from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
@@ -15,6 +17,7 @@ from playground.lessons.tasks.verdict import Picture, Result, Verdict
 from playground.live import theme
 from playground.live.code_window import save
 from playground.live.lesson.figure_blocks import draw_parameters
+from playground.live.lesson.markdown_runs import written
 from playground.live.lesson.page import Page
 from playground.workbench.lesson.tasks import Task
 
@@ -40,20 +43,21 @@ def draw_challenge(block: Challenge, page: Page) -> None:
     with page.frame(block.name, theme.ACCENT if solved else theme.WARM):
         page.label(page.say("challenge"), theme.ACCENT if solved else theme.WARM)
         page.text(block.ask)
-        if found is not None and found.target is not None:
-            page.pictures.draw(found.target, _WIDE * page.look.scale)
+        target = tasks.target(block)
+        if target is not None:
+            page.pictures.draw(target, _WIDE * page.look.scale)
+            imgui.set_item_tooltip(written(block.alt))
             imgui.same_line()
-            imgui.begin_group()
+        imgui.begin_group()
+        if found is not None and tasks.is_begun(block):
             with page.look.font(page.look.bold, theme.TEXT_SIZE + 8):
                 imgui.text(page.say("score", int(found.score)))
-            with page.look.font(page.look.text, theme.SMALL):
-                imgui.text_disabled(page.say("best_score", int(best), block.goal))
-            if found.solved:
-                with page.look.font(page.look.bold):
-                    imgui.text_colored(theme.colour(theme.ACCENT), page.say("solved"))
-            imgui.end_group()
-        elif best:
-            page.text(page.say("best_score", int(best), block.goal), size=theme.SMALL, dim=True)
+        with page.look.font(page.look.text, theme.SMALL):
+            imgui.text_disabled(page.say("best_score", int(best), block.goal))
+        if solved:
+            with page.look.font(page.look.bold):
+                imgui.text_colored(theme.colour(theme.ACCENT), page.say("solved"))
+        imgui.end_group()
         _buttons(block, page)
         if tasks.is_begun(block):
             _sliders(block, page)
@@ -70,35 +74,36 @@ def task_label(block: Exercise, page: Page) -> str:
     if not checks_itself(block):
         return name
     best = page.reader.tasks.attempt(block)
-    points = f"{best.points:g} / {block.points}" if best.of else f"{block.points}"
-    return f"{name}   {points} pt"
+    if best.of:
+        return f"{name}   {page.say('best_points', f'{best.points:g}', block.points)}"
+    return f"{name}   {page.say('points' if block.points > 1 else 'point', block.points)}"
 
 
 def _buttons(block: Task, page: Page) -> None:
     tasks = page.reader.tasks
     begun, attempt = tasks.is_begun(block), tasks.attempt(block)
+    has_own = begun or bool(attempt.text or attempt.values)
+    judged = tasks.judging == block.name
+    row: list[
+        tuple[str, str, str, Callable[[Any], object], bool]
+    ] = []  # key, mark, note, what it does, enabled
     if not begun:
-        label = page.say("go_on" if attempt.text or attempt.values else "start")
-        if page.button(f"{label}##start", page.say("start_note")):
-            tasks.start(block)
+        row.append(("go_on" if has_own else "start", "start", page.say("start_note"), tasks.start, True))
     elif block.file:
-        if page.button(page.say("to_the_text"), f"glsl/{block.file}", on=True):
-            tasks.copies.focus(path_of(block))
-    if isinstance(block, Exercise):
-        judged = tasks.judging == block.name
-        label = page.say("checking" if judged else "check")
-        if begun or attempt.text or attempt.values:
-            page.same_line(label)
-            if page.button(f"{label}##check", page.say("check_note"), enabled=not judged):
-                _check(block, page)
+        row.append(("to_the_text", "text", f"glsl/{block.file}", tasks.focus, True))
+    if isinstance(block, Exercise) and has_own:
+        key, check = "checking" if judged else "check", partial(_check, page=page)
+        row.append((key, "check", page.say("check_note"), check, not judged))
     if attempt.before is not None and not (attempt.text or attempt.values):
-        page.same_line(page.say("bring_back"))
-        if page.button(page.say("bring_back")):
-            tasks.undo(block)
-    elif begun or attempt.text or attempt.values:
-        page.same_line(page.say("again"))
-        if page.button(page.say("again"), page.say("again_note")):
-            tasks.start_again(block)
+        row.append(("bring_back", "back", "", tasks.undo, True))
+    elif has_own:
+        row.append(("again", "again", page.say("again_note"), tasks.start_again, True))
+    for number, (key, mark, note, act, enabled) in enumerate(row):
+        label = page.say(key)
+        if number:
+            page.same_line(label)
+        if page.button(f"{label}##{mark}", note, enabled=enabled):
+            act(block)
 
 
 def _check(block: Exercise, page: Page) -> None:

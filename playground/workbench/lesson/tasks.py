@@ -10,24 +10,26 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError
-from playground.lessons.model import Challenge, Exercise, Scene
+from playground.lessons.model import Block, Challenge, Exercise, Scene
 from playground.lessons.scenes import with_value
 from playground.lessons.tasks.judge_process import JudgeProcess
-from playground.lessons.tasks.match import Ends, Match, ends_of, match
+from playground.lessons.tasks.match import Ends, Match, match
 from playground.lessons.tasks.texts import path_of, starter_text
-from playground.lessons.tasks.verdict import Verdict
+from playground.lessons.tasks.verdict import Picture, Verdict
 from playground.lessons.tasks.work import Work
 from playground.sketch.assign import value_of, values_of
-from playground.sketch.model import Value
+from playground.sketch.model import Sketch, Value
 from playground.workbench.inspect.compare import as_before
 from playground.workbench.lesson.figure_view import FigureView
 from playground.workbench.lesson.progress import Attempt, Progress
 from playground.workbench.lesson.shader_copies import Copies, Copy, line_of
 from playground.workbench.notices import Notices
+from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.session import Session
 from playground.workbench.text_file import typed_in
 
@@ -66,7 +68,12 @@ class Tasks:
         self._on: Task | None = None  # the task that was begun
         self._copy: Copy | None = None  # what replaces its file
         self._ends: dict[str, Ends] = {}
+        self._wanted: list[Challenge] = []
+        self._to_judge: tuple[Exercise, Work] | None = None
+        self._sent = ""  # the block that the process is at
         self._scored: tuple[object, ...] = ()  # what the score is of
+        self._news = False  # something has come that is not on the screen yet
+        self._stale = False  # the picture in view is another than that which was scored
         self._due = 0.0  # when the next score may be computed
         self._store_at = math.inf
         self._stored: Work | None = None  # what was remembered last
@@ -93,12 +100,15 @@ class Tasks:
         self._on = block
         self.figure.show(scene, (block.name, BEGUN), texts)
 
+    def focus(self, block: Task) -> None:
+        """Bring the student's text to the front, also where its window was closed."""
+        self.copies.focus(path_of(block))
+
     def check(self, block: Exercise) -> None:
         """Send the work to be judged; ``update`` receives the verdict."""
         work = self.work(block)
         self._keep(block, work)
-        self.judge.submit(block, work)
-        self.judging = block.name
+        self.judging, self._to_judge = block.name, (block, work)
 
     def start_again(self, block: Task) -> None:
         """Show the starter; what was there before comes back by ``undo``."""
@@ -131,11 +141,6 @@ class Tasks:
         mine = self._on is not None and self._on.name == block.name
         return mine and self.figure.key == (block.name, BEGUN)
 
-    def is_started(self, block: Task) -> bool:
-        """Return whether there is something to lose: a text or values other than the starter's."""
-        attempt = self.attempt(block)
-        return bool(attempt.text or attempt.values) or self.is_begun(block)
-
     def work(self, block: Task) -> Work:
         """Return what the student has now, saved or not."""
         attempt, text = self.attempt(block), None
@@ -144,13 +149,17 @@ class Tasks:
         values: dict[str, Value] = {k: v for k, v in attempt.values.items() if k in block.sliders}
         shown = self.session.shown
         if shown is not None and self.is_begun(block) and not self.figure.busy:
-            found = values_of(shown.sketch)
-            for slider in block.sliders:
-                try:
-                    values[slider] = value_of(shown.sketch, slider, found)
-                except PlaygroundError:  # a kernel of the student's that has it no more
-                    values.pop(slider, None)
+            values = _values(shown.sketch, block.sliders)
         return Work(text, values)
+
+    def target(self, block: Challenge) -> Picture | None:
+        """Return the picture to match; None while it is not drawn yet."""
+        ends = self._ends.get(block.name)
+        return None if ends is None else ends.target
+
+    def want(self, blocks: tuple[Block, ...]) -> None:
+        """Request the pictures to match of a page."""
+        self._wanted = [b for b in blocks if isinstance(b, Challenge) and b.name not in self._ends]
 
     # ── frames ───────────────────────────────────────────────────────────────
 
@@ -159,23 +168,26 @@ class Tasks:
 
         ``block`` is the task whose picture is in view, if any.
         """
-        if self.judging:
-            self._receive()
+        self._news = False
+        self._receive()
+        self._send()
         if self._on is not None and now >= self._store_at:
             self._store_at = now + _STORE
             self.store()
         elif self._on is not None and self._store_at == math.inf:
             self._store_at = now + _STORE
-        if isinstance(block, Challenge) and self.is_begun(block) and now >= self._due:
-            self._score(block)
+        challenge = block if isinstance(block, Challenge) and self.is_begun(block) else None
+        coming = self.session.drafts.stage is not ReloadStage.NONE or self.session.error is not None
+        self._stale = challenge is not None and not coming and self._state(challenge) != self._scored
+        if challenge is not None and self._stale and now >= self._due:
+            self._score(challenge)
 
     def patience(self, now: float) -> float:
         """Return how long nothing needs to be done here [s]."""
-        if self.judging:
-            return _POLL
+        if self._news or self._sent or self.judging:
+            return 0.0 if self._news else _POLL
         typed = max(self._store_at - now, 0.0) if self._on is not None else math.inf
-        waits = max(self._due - now, 0.0) if self._scored == () and self.matches else math.inf
-        return min(typed, waits)
+        return min(typed, max(self._due - now, 0.0) if self._stale else math.inf)
 
     def store(self) -> None:
         """Remember what is typed and set of the task that was begun."""
@@ -198,7 +210,7 @@ class Tasks:
     def close(self) -> None:
         """Remember what is typed, and end the process that judges."""
         self.store()
-        self.judging = ""
+        self._stop()
         self.judge.close()
 
     def forget(self) -> None:
@@ -207,22 +219,46 @@ class Tasks:
         self.verdicts.clear()
         self.matches.clear()
         self._ends.clear()
-        self.judging = ""
+        self._wanted.clear()
+        self._stop()
+
+    def _stop(self) -> None:
+        """Expect nothing more of the process."""
+        self.judging, self._sent, self._to_judge = "", "", None
 
     # ── parts of it ──────────────────────────────────────────────────────────
 
+    def _send(self) -> None:
+        """Send the process what comes next: a work, or a picture to match."""
+        if self._sent:
+            return
+        if self._to_judge is not None:
+            (block, work), self._to_judge = self._to_judge, None
+            self._sent = block.name
+            self.judge.submit(block, work)
+        elif self._wanted and self.session.rests:
+            challenge = self._wanted.pop(0)
+            self._sent = challenge.name
+            self.judge.submit(challenge, None, _SIDE)
+
     def _receive(self) -> None:
-        name = self.judging
+        """Receive what the process has judged or drawn."""
+        name, found = self._sent, None
+        if not name:
+            return
         try:
             found = self.judge.poll()
         except PlaygroundError as error:
-            self.judging = ""
             self.notices.say(str(error))
-            return
-        if found is None:
-            return
-        self.judging = ""
-        if isinstance(found, Verdict):
+        else:
+            if found is None:
+                return
+        self._sent, self._news = "", True
+        if name == self.judging and self._to_judge is None:
+            self.judging = ""
+        if isinstance(found, Ends):
+            self._ends[name] = found
+        elif isinstance(found, Verdict):
             self.verdicts[name] = found
             attempt = self.progress.attempts.setdefault(f"{self.lesson()}/{name}", Attempt())
             attempt.points, attempt.of = max(attempt.points, found.points), found.of
@@ -231,17 +267,12 @@ class Tasks:
     def _score(self, block: Challenge) -> None:
         """Score the picture in view, where it rests and is another than the one before."""
         session = self.session
-        if session.error is not None or session.plan is None or self.figure.busy or not session.rests:
+        if session.plan is None or block.name not in self._ends:
             return
-        work = self.work(block)
-        state = (block.name, self._drawn_text(block), tuple(work.values.items()))
-        if state == self._scored:
-            return
-        begun = self.notices.now()
+        work, state = self.work(block), self._state(block)
+        begun, self._news = self.notices.now(), True
         try:
             with as_before(session.engine, session.plan):
-                if block.name not in self._ends:
-                    self._ends[block.name] = ends_of(session.engine, block, _SIDE)
                 drawn = Work(self._drawn_text(block), work.values)  # which the sandbox has tried
                 found = match(session.engine, block, drawn, self._ends[block.name], _SIDE)
         except PlaygroundError as error:
@@ -255,6 +286,10 @@ class Tasks:
         if found.score > attempt.score:
             attempt.score = found.score
             self._keep(block, work)
+
+    def _state(self, block: Challenge) -> tuple[object, ...]:
+        """Return what the score of the picture in view depends on."""
+        return block.name, self._drawn_text(block), tuple(self.work(block).values.items())
 
     def _text_of(self, block: Task) -> str | None:
         """Return the text of a task's copy with what is typed; None where it is not open."""
@@ -280,7 +315,9 @@ class Tasks:
     def _keep(self, block: Task, work: Work) -> None:
         attempt = self.attempt(block)
         own = "" if not block.file or work.text == starter_text(block) else work.text or ""
-        attempt.text, attempt.values = own, dict(work.values)
+        begun = _values(block.begin.sketch, block.sliders) if block.begin is not None else {}
+        values = dict(work.values)
+        attempt.text, attempt.values = own, {} if values == begun else values
         self.remember()
 
     def _forget(self, block: Task) -> None:
@@ -310,3 +347,12 @@ def _set(scene: Scene, path: str, value: Value) -> Scene:
         return with_value(scene, path, value)
     except PlaygroundError:
         return scene
+
+
+def _values(sketch: Sketch, sliders: tuple[str, ...]) -> dict[str, Value]:
+    """Return the values of parameters; without those that a kernel of the student's has no more."""
+    found, values = values_of(sketch), dict[str, Value]()
+    for slider in sliders:
+        with suppress(PlaygroundError):
+            values[slider] = value_of(sketch, slider, found)
+    return values
