@@ -217,6 +217,16 @@ def test_a_parameter_that_is_gone_is_named(task, engine):
     assert said == ["the kernel has no parameter 'smoothing', which is set here"]
 
 
+def test_a_value_that_is_refused_is_not_told_where_it_is_hidden(task, engine):
+    text = RAW.replace(
+        "uniform uint seed = 7u;         //! slider(0, 9999)", "uniform uint seed = 7u; //! slider(6, 9999)"
+    )
+    assert text != RAW
+    verdict, said = results(engine, task(KERNEL).block, text)
+    assert [result.passed for result in verdict.results] == [True, False, True]
+    assert said[1].endswith("this cannot be drawn: a parameter does not take its value.")
+
+
 def test_a_slider_of_ones_own_is_welcome(task, engine):
     own = RAW.replace(
         "uniform uint seed", "uniform float mine = 1.0; //! slider(0, 2) Mine\nuniform uint seed"

@@ -162,6 +162,19 @@ def test_what_is_typed_and_never_saved_is_there_at_the_next_start(desk, tasks):
     assert attempts()["after/power"].text.endswith("// later\n")
 
 
+def test_a_slider_that_a_student_adds_is_there_to_drag(desk, tasks):
+    power = block(desk, "power")
+    tasks.start(power)
+    desk.run_frames(4)
+    assert tasks.sliders(power) == ()
+    own = "uniform float mine = 0.5; //! slider(0, 1) Mine\nuniform uint seed"
+    tasks.copies.open[(GLSL / FILE).resolve()].save(RAW.replace("uniform uint seed", own))
+    desk.run_frames(4)
+    assert tasks.sliders(power) == ("height.raw.mine",)
+    desk.click("##height.raw.mine", 0.9)
+    assert dict(desk.session.shown.applied)["height.raw.mine"] > 0.8
+
+
 def test_the_text_of_another_block_is_no_attempt(desk, tasks):
     """A bug put into the same file takes the place of the copy."""
     one = block(desk, "power")

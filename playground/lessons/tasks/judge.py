@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
-from playground.errors import ContextError, PlaygroundError, SandboxError
+from playground.errors import ParameterError, PlaygroundError
 from playground.images.picture_difference import differing, share_differing
 from playground.lessons.figure_renders import draw
 from playground.lessons.measuring import measured
 from playground.lessons.model import Check, Exercise, Scene
 from playground.lessons.tasks.verdict import Picture, Result, Verdict
-from playground.lessons.tasks.work import Work, scene_of, wanted_scene
+from playground.lessons.tasks.work import LackingParameter, Work, scene_of, wanted_scene
 
 SIDE = 240
 """Pixels of the longer side of the pictures that are compared."""
@@ -50,8 +50,6 @@ def judge(
     wanted = answers(engine, exercise) if wanted is None else wanted
     try:
         draw(engine, small(scene_of(exercise, work)))
-    except (ContextError, SandboxError):
-        raise
     except PlaygroundError as error:
         return Verdict((), error.diagnostics, 0.0, exercise.points)
     results = tuple(
@@ -100,10 +98,11 @@ def _result(engine: Engine, exercise: Exercise, work: Work, check: Check, wanted
         if check.of:
             return compare(check, Wanted(texture=_read(engine, scene, check.of)), wanted)
         return compare(check, Wanted(picture=_drawn(engine, scene)), wanted)
-    except (ContextError, SandboxError):
-        raise
     except PlaygroundError as error:
-        return Result(check, False, float("inf"), mistake=error.diagnostics[0].message)
+        # The words of a value that is refused have the value, which may be hidden.
+        tells = check.hidden and isinstance(error, ParameterError) and not isinstance(error, LackingParameter)
+        mistake = "a parameter does not take its value" if tells else error.diagnostics[0].message
+        return Result(check, False, float("inf"), mistake=mistake)
 
 
 def _drawn(engine: Engine, scene: Scene) -> Picture:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import dataclass, field
 
 from playground.engine.engine import Engine
 from playground.engine.plain_forms import silent
 from playground.engine.plan import Step
 from playground.gpu.context import open_context
+from playground.gpu.textures import is_lost
 from playground.lessons.model import Challenge, Exercise
 from playground.lessons.tasks.judge import Wanted, answers, judge
 from playground.lessons.tasks.judge_process import Request
@@ -29,13 +31,21 @@ def open_service(parent: Parent, options: tuple[bool, int | None]) -> Service:
         parent.report(step.path)
 
     engine.runner.before_step = begin
-    return Service(_Judge(engine).answer)
+    return Service(_Judge(engine).answer_or_end)
 
 
 @dataclass
 class _Judge:
     engine: Engine
     known: dict[tuple[str, ...], tuple[Wanted, ...] | Ends] = field(default_factory=dict)
+
+    def answer_or_end(self, request: Request) -> Verdict | Match | Ends:
+        """Answer; end the process where a work has cost it its context, which is of no more use."""
+        try:
+            return self.answer(request)
+        finally:
+            if is_lost(self.engine.ctx):
+                sys.exit("the driver reset itself")
 
     def answer(self, request: Request) -> Verdict | Match | Ends:
         """Judge a work, or draw a challenge."""

@@ -13,6 +13,10 @@ from playground.sketch.model import Sketch, Value, kernels_of
 from playground.sketch.text_overrides import with_texts
 
 
+class LackingParameter(ParameterError):
+    """A kernel has not a parameter that its task sets."""
+
+
 @dataclass(frozen=True)
 class Work:
     """What a student hands in."""
@@ -67,7 +71,7 @@ def _of_kernel(task: Task, text: str, values: Mapping[str, Value]) -> Scene:
     except ParameterError:
         if lacking := _parameters(before, path) - _parameters(sketch, path):
             message = f"the kernel has no parameter '{min(lacking)}', which is set here"
-            raise ParameterError(message) from None
+            raise LackingParameter(message) from None
         raise
     return replace(scene, sketch=sketch, plain=False)
 

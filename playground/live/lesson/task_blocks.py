@@ -116,8 +116,9 @@ def _check(block: Exercise, page: Page) -> None:
 
 
 def _sliders(block: Task, page: Page) -> None:
-    if block.sliders and block.begin is not None:
-        draw_parameters(block.begin, block.sliders, page)
+    sliders = page.reader.tasks.sliders(block)
+    if sliders and block.begin is not None:
+        draw_parameters(block.begin, sliders, page)
 
 
 def _verdict(block: Exercise, verdict: Verdict, page: Page) -> None:

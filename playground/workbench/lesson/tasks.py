@@ -21,9 +21,9 @@ from playground.lessons.tasks.judge_process import JudgeProcess
 from playground.lessons.tasks.match import Ends, Match, match
 from playground.lessons.tasks.texts import path_of, starter_text
 from playground.lessons.tasks.verdict import Picture, Verdict
-from playground.lessons.tasks.work import Work
+from playground.lessons.tasks.work import Work, scene_of, starter
 from playground.sketch.assign import value_of, values_of
-from playground.sketch.model import Sketch, Value
+from playground.sketch.model import Sketch, Value, kernels_of
 from playground.workbench.inspect.compare import as_before
 from playground.workbench.lesson.figure_view import FigureView
 from playground.workbench.lesson.progress import Attempt, Progress
@@ -68,6 +68,7 @@ class Tasks:
         self._on: Task | None = None  # the task that was begun
         self._copy: Copy | None = None  # what replaces its file
         self._ends: dict[str, Ends] = {}
+        self._given: dict[str, list[str]] = {}  # parameters that a starter has
         self._wanted: list[Challenge] = []
         self._to_judge: tuple[Exercise, Work] | None = None
         self._sent = ""  # the block that the process is at
@@ -140,6 +141,20 @@ class Tasks:
         """Return whether the student's own picture of a task is in view."""
         mine = self._on is not None and self._on.name == block.name
         return mine and self.figure.key == (block.name, BEGUN)
+
+    def sliders(self, block: Task) -> tuple[str, ...]:
+        """Return the parameters to drag in the picture in view: the task's, and the student's own."""
+        shown = self.session.shown
+        if shown is None or not self.is_begun(block) or self.figure.busy:
+            return ()
+        if not block.file:
+            return block.sliders
+        if block.name not in self._given:
+            self._given[block.name] = _parameters(scene_of(block, starter(block)).sketch, path_of(block))
+        own = [
+            path for path in _parameters(shown.sketch, path_of(block)) if path not in self._given[block.name]
+        ]
+        return tuple(dict.fromkeys([*block.sliders, *own]))
 
     def work(self, block: Task) -> Work:
         """Return what the student has now, saved or not."""
@@ -219,6 +234,7 @@ class Tasks:
         self.verdicts.clear()
         self.matches.clear()
         self._ends.clear()
+        self._given.clear()
         self._wanted.clear()
         self._stop()
 
@@ -347,6 +363,12 @@ def _set(scene: Scene, path: str, value: Value) -> Scene:
         return with_value(scene, path, value)
     except PlaygroundError:
         return scene
+
+
+def _parameters(sketch: Sketch, path: Path) -> list[str]:
+    """Return the parameters of the kernels that a file makes."""
+    found = [(where, kernel) for where, kernel in kernels_of(sketch.graph) if Path(kernel.path) == path]
+    return [f"{where}.{parameter.name}" for where, kernel in found for parameter in kernel.parameters]
 
 
 def _values(sketch: Sketch, sliders: tuple[str, ...]) -> dict[str, Value]:
