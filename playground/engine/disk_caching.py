@@ -151,7 +151,7 @@ class DiskCaching:
         self._is_new = False
         if source.record.plan is not plan:  # a texture was read since
             source.recall(plan)
-        self._work = self._write_all(source, plan)
+        self._work = self._write_all(source, plan, source.record.keys)
         return 0.0
 
     def finish(self, source: FrameSource, plan: Plan) -> None:
@@ -166,12 +166,14 @@ class DiskCaching:
         self._work = None
         self.store.close()
 
-    def _write_all(self, source: FrameSource, plan: Plan) -> Iterator[None]:
+    def _write_all(self, source: FrameSource, plan: Plan, keys: Keys) -> Iterator[None]:
         """Write what is worth it, a piece at a time; ends early where a texture is gone."""
-        keys, results = source.record.keys, source.record.results
         passes = passing(plan, source.runner.painted)
         for worth in worth_caching(plan, keys, plan.picture, passes, self._costs, read_time, self.floor):
-            result = results.get(worth.path)
+            if source.record.keys.steps.get(worth.path) != worth.key:
+                self._is_new = True  # another sketch was drawn since
+                return
+            result = source.record.results.get(worth.path)
             if result is None or worth.key in self.store:
                 continue
             size = sum(bytes_of(result.size, o.format) for o in result.outputs)

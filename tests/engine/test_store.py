@@ -649,6 +649,22 @@ def test_a_terrain_that_goes_while_it_is_read_back_is_not_cached(any_shelf, worn
     assert reopened(any_shelf, worn) == set(TERRAIN_PASSES)
 
 
+def test_another_sketch_that_is_drawn_before_it_begins_is_not_cached_for_the_first(any_shelf, worn, folder):
+    bare = folder.sketch(
+        '[[pass]]\nname = "terrain"\nuse = "./terrain"\n[view]\nuse = "./light"\n'
+        'inputs = { height = "terrain:height" }\n',
+        size="size = 33",
+    )
+    engine = any_shelf.engine()
+    engine.disk_caching.rest = 0.0
+    picture(engine, worn)
+    engine.disk_caching.look(engine, engine.plan)
+    picture(engine, bare)
+    any_shelf.keep(engine)
+    assert {each.textures.made_for for each in listed(any_shelf.folder)} <= {f"{bare.name}: terrain"}
+    assert "worn.add" in reopened(any_shelf, worn)
+
+
 # ── the files ────────────────────────────────────────────────────────────────
 
 
