@@ -191,6 +191,8 @@ def furnish(folder: Path, command: str) -> None:
                 assert plain is not None
                 exports = "".join(f'{p.name} = "height.{p.name}"\n' for p in plain.parameters)
                 (made / "my_land.fast.toml").write_text(f"{FAST}[parameters]\n{exports}", "utf-8")
+    if "first" in words and words[:1] != ["new"]:
+        make_sketch(folder / "first", empty=True)
     if "lesson.zip" in words and words[0] != "pack":
         make_sketch(folder / "my-land")
         assert cli.main(["pack", "my-land", "-o", "lesson.zip"]) == 0
