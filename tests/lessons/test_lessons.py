@@ -32,8 +32,6 @@ def shipped(request):
 
 TOO_LONG: frozenset[str] = frozenset(
     {
-        "faults_and_circles",
-        "delaunay",
         "thermal_erosion",
         "hydraulic_erosion",
         "water_flow",

@@ -56,6 +56,7 @@ vec4 fragment(int drawn) {
     vec2 rest = vec2(east.y, north.y);
     int triangle = drawn;
     vec3 a, b, c, areas;
+    // anchor: walk
     for (int i = 0; i < LONGEST_WALK; i++) {
         vec4 corners = entry(triangles, triangle);
         a = entry(places, int(corners.x)).xyz;
@@ -71,6 +72,7 @@ vec4 fragment(int drawn) {
         if (next < 0.0) break;
         triangle = int(next);
     }
+    // end: walk
     // anchor: plane
     float all = exact_cross(ivec2(b.xy - a.xy), ivec2(c.xy - a.xy));
     // From one corner on, not a sum of three: between equal heights it is exactly that height.

@@ -55,6 +55,7 @@ void main() {
         int run = (texels + READERS - 1) / READERS;
         for (int x = reader; x < texels; x += READERS) change[x] = 0;
         barrier();
+        // anchor: difference
         int first = 0;
         for (int which = reader; which < known; which += READERS) {
             vec4 fault = texelFetch(lines, ivec2(which, 0), 0);
@@ -66,6 +67,7 @@ void main() {
             if (crossing > 0 && crossing < texels) atomicAdd(change[crossing], 2 * height);
         }
         if (first != 0) atomicAdd(change[0], first);
+        // end: difference
         barrier();
         int from = min(reader * run, texels);
         int to = min(from + run, texels);
