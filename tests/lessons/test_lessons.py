@@ -34,10 +34,6 @@ TOO_LONG: frozenset[str] = frozenset(
     {
         "faults_and_circles",
         "delaunay",
-        "thermal_erosion",
-        "hydraulic_erosion",
-        "water_flow",
-        "by_example",
     }
 )
 """Lessons whose texts are still to be trimmed or made two."""
