@@ -20,7 +20,7 @@ WINDOW = 2**20
 """Seeds go up to 9999, times 64 in some materials, and each has some numbers more for its layers."""
 
 UNSALTED = "generation/first_height"
-"""The first lesson's kernel: those who write their first one have not met salts. Its salt is 0, as it were."""
+"""The first lesson's kernel: those who write their first one have not met salts. It has none."""
 
 TERRAINS = [
     "first_height",

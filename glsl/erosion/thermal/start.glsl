@@ -21,6 +21,8 @@ uniform bool coarse = true;  //! Whether it begins on coarse grids, where few st
 
 void kernel(ivec2 texel, out float ground, out float before) {
     before = height_at(height, place_on(textureSize(height, 0), texel, size));
+    // anchor: coarse
     vec2 place = place_on(textureSize(slid, 0), texel, size);
     ground = before + (height_at(slid, place) - height_at(coarse_before, place));
+    // end: coarse
 }
