@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from playground.commands import options
-from playground.commands.arguments import FAILED, Renderer, command_group, help_text
+from playground.commands.arguments import FAILED, Renderer, command_group, either, help_text
 from playground.commands.lesson_grade import HELP as GRADE_HELP
 from playground.commands.lesson_grade import grade
 from playground.commands.lesson_handout import HELP as HANDOUT_HELP
@@ -20,7 +20,7 @@ from playground.commands.lesson_present import HELP as PRESENT_HELP
 from playground.commands.lesson_present import present
 from playground.commands.live import check_display, open_window
 from playground.commands.options import complete_language, complete_lesson, flag, positional, value
-from playground.errors import PlaygroundError, SketchError, counted
+from playground.errors import ParameterError, PlaygroundError, SketchError, counted, nearest
 from playground.terminal import complain, note, painted, print_json, print_rows, print_table, progress
 
 if TYPE_CHECKING:
@@ -82,6 +82,7 @@ BUILD_HELP = help_text(
     "playground lesson build -o book",
     "playground lesson build -o livre --lang fr",
     "playground lesson build diamond_square -o one-lesson",
+    "playground lesson build diamond_square -o for-class --answers end",
     "playground lesson build --notebooks -o notebooks",
 )
 
@@ -228,13 +229,21 @@ def build(
         str,
         value("--lang CODE", "Language: en or fr; both by default.", complete_language),
     ] = "",
+    answers: Annotated[
+        str,
+        value("--answers PLACE", "Answers: inline, folded under their questions; end of the page; or none."),
+    ] = "inline",
     notebooks: Annotated[bool, flag("--notebooks", "Write Jupyter notebooks, not pages.")] = False,
     software: options.Software = False,
 ) -> None:
     """Build the lessons as a book, or as notebooks."""
+    from playground.lessons.book.blocks import ANSWERS
+    from playground.lessons.book.build import prepare, write_book
     from playground.lessons.library import LANGUAGES
     from playground.lessons.read import read_lessons
 
+    if answers not in ANSWERS:
+        raise ParameterError(f"--answers {answers}: expected {either(ANSWERS)}{nearest(answers, ANSWERS)}")
     languages = [read_language(lang)] if lang else list(LANGUAGES)
     chosen = _chosen(names)
     lessons = {code: [one for one in read_lessons(code) if one.name in chosen] for code in languages}
@@ -242,9 +251,7 @@ def build(
         with _engine(ctx, software) as engine:
             _write_notebooks(output, lessons, engine)
         return
-    from playground.lessons.book.build import prepare, write_book
-
-    made = prepare(output, lessons, gallery=not names)
+    made = prepare(output, lessons, gallery=not names, answers=answers)
     with _engine(ctx, software) as engine, progress("drawing", len(made.names)) as advance:
         front = write_book(made, engine, advance)
     print(front)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from html import unescape
+from html import escape, unescape
 from html.parser import HTMLParser
 from pathlib import Path
 from urllib.parse import urldefrag
@@ -25,6 +25,7 @@ from playground.lessons.figure_renders import draw, pictures_of
 from playground.lessons.figures import thesis_figures
 from playground.lessons.glossary import terms
 from playground.lessons.library import interface_labels
+from playground.lessons.model import Break, Exercise, Question
 
 VOID = {"img", "input", "br", "meta", "link", "hr", "source"}
 
@@ -185,6 +186,24 @@ def test_answers_are_folded_away_and_all_is_there_without_a_script(book):
     assert not any("open" in attributes for attributes in page.all("details"))
     assert text.count("<li") >= 6 + 3 + 2  # iterations, values, variants
     assert "total / count" in page.text and "total / 8.0" in page.text
+
+
+@pytest.mark.parametrize("answers", ["end", "none"])
+def test_answers_are_at_the_end_or_nowhere(answers, tmp_path, lesson, engine):
+    folder = tmp_path / "book"
+    write_book(prepare(folder, {"en": [lesson]}, gallery=False, answers=answers), engine)
+    text = (folder / "en" / "small.html").read_text("utf-8")
+    tasks = [block for block in lesson.blocks if isinstance(block, Break | Question | Exercise)]
+    keys = {Break: "fix", Question: "answer", Exercise: "solution"}
+    texts = [getattr(block, keys[type(block)]) for block in tasks]
+    assert len(texts) > 2
+    first, _, end = text.partition('class="answers"')
+    assert [escape(each) in first for each in texts] == [False] * len(texts)
+    assert [escape(each) in end for each in texts] == [answers == "end"] * len(texts)
+    links = re.findall(r'href="#(answer-[^"]+)"', first)
+    assert len(links) == (len(texts) if answers == "end" else 0)
+    assert all(f'id="{link}"' in end for link in links)
+    assert first.count("<summary>") and "Hint" in first
 
 
 def test_a_figure_with_sliders_that_no_page_can_run_says_where_they_are(

@@ -87,7 +87,8 @@ def test_a_comparison_is_swiped_by_mouse_and_keys_and_shown_side_by_side(page):
     assert left["right"] <= right["left"] and left["top"] == right["top"]
 
 
-def test_on_paper_everything_lies_open(page):
+def test_on_paper_everything_lies_open_and_answers_are_at_the_end(page):
+    folded = count(page, "details:not([open])")
     page.run("dispatchEvent(new Event('beforeprint'))")
     page.emulate("setEmulatedMedia", media="print")
     assert count(page, "details:not([open])") == 0
@@ -100,9 +101,15 @@ def test_on_paper_everything_lies_open(page):
     assert len(places) == len(boxes)  # none lies over another
     assert page.run("return [...document.querySelectorAll('.frames b')].every((b) => b.offsetWidth > 0)")
     assert page.run("return document.querySelector('nav.top').offsetWidth") == 0
+    answers = count(page, "details.answer")
+    assert answers > 1 and count(page, ".answers details.answer") == answers  # none is under its question
+    assert page.run(
+        "return [...document.querySelectorAll('details.answer')].every((a) => a.offsetHeight > 0)"
+    )
     page.emulate("setEmulatedMedia", media="")
     page.run("dispatchEvent(new Event('afterprint'))")
-    assert count(page, "details[open]") == 0
+    assert count(page, "details:not([open])") == folded > 0
+    assert count(page, ".answers") == 0 and count(page, "details.answer") == answers
 
 
 def test_a_chosen_theme_stays_on_every_page(page, book):

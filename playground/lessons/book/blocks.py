@@ -7,7 +7,7 @@ comparison, answers to be unfolded. The script turns them into sliders and swipe
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from playground.lessons import model
@@ -21,6 +21,11 @@ from playground.lessons.tasks.texts import starter_text
 from playground.lessons.values import spelled_value
 from playground.markup import Markup, joined, tag
 
+_LONGEST_ASK = 120  # characters of a question that are repeated over its answer
+
+ANSWERS = ("inline", "end", "none")
+"""Where answers are: folded away under their questions, and on paper at the end; at the end; nowhere."""
+
 
 @dataclass(frozen=True)
 class Setting:
@@ -33,6 +38,8 @@ class Setting:
     anchor: Anchor
     live: Collection[str] = ()  # names of the blocks that a page can run
     blank: Callable[[Picture], bool] = lambda picture: False  # whether a picture shows next to nothing
+    answers: str = "inline"  # one of ANSWERS
+    at_end: list[Markup] = field(default_factory=list)  # answers, for the end of the page
 
     def line(self, markdown: str) -> Markup:
         """Return a text within a line, with the numbers in it."""
@@ -66,6 +73,22 @@ class Setting:
     def folded(self, key: str, *inside: Markup | None) -> Markup:
         """Return what is unfolded by its label."""
         return tag("details", tag("summary", self.label(key)), tag("div", *inside))
+
+    def answer(
+        self, block: model.Named, key: str, title: str, ask: str, *inside: Markup | None
+    ) -> Markup | None:
+        """Return an answer as it is under its question: folded away, or a link to it, or nothing."""
+        if self.answers == "none":
+            return None
+        if self.answers == "inline":
+            summary = tag("summary", self.label(key))
+            return tag("details", summary, tag("div", *inside), class_="answer", data_title=title)
+        place = f"answer-{block.name}"
+        asked = plain(self.filled(ask)).split("\n")[0]
+        heading = tag("h3", tag("a", title, href=f"#{block.name}"))
+        short = asked if len(asked) <= _LONGEST_ASK else f"{asked[:_LONGEST_ASK].rsplit(' ', 1)[0]} …"
+        self.at_end.append(tag("section", heading, tag("p", short, class_="asked"), *inside, id=place))
+        return tag("p", tag("a", self.label("answer_below"), href=f"#{place}"), class_="to-answer")
 
     def titled(
         self, block: model.Named, title: str, *inside: Markup | None, **attributes: str | None
@@ -199,8 +222,11 @@ def _break(block: model.Break, setting: Setting) -> Markup:
             code_block(lines.broken, label("broken_code")),
         ),
         setting.folded("hint", setting.prose(block.hint)),
-        setting.folded(
+        setting.answer(
+            block,
             "fix",
+            label("bug"),
+            block.ask,
             setting.prose(block.fix),
             tag("p", label("fixed_code")),
             code_block(lines.correct, label("fixed_code")),
@@ -227,7 +253,7 @@ def _question(block: model.Question, setting: Setting) -> Markup:
             data_right=label("right"),
             data_wrong=label("wrong"),
         )
-    answer = setting.folded("answer", setting.prose(block.answer))
+    answer = setting.answer(block, "answer", label("question"), block.ask, setting.prose(block.answer))
     return setting.titled(block, label("question"), setting.prose(block.ask), choices, answer)
 
 
@@ -235,31 +261,35 @@ def _exercise(block: model.Exercise, setting: Setting) -> Markup:
     pictures = [tag("figure", setting.image(found)) for found in pictures_in(block)]
     live = block.name in setting.live
     room = setting.still() if live else None  # only what can be started has one
+    title = f"{setting.label('exercise')} {setting.lesson.number_of(block)}"
     elsewhere = block.checks and not (live and any(check.measure is None for check in block.checks))
     return setting.titled(
         block,
-        f"{setting.label('exercise')} {setting.lesson.number_of(block)}",
+        title,
         setting.prose(block.ask),
         _starter(block, setting),
         room,
         tag("p", tag("small", setting.line(setting.label("checked_elsewhere")))) if elsewhere else None,
         setting.folded("hint", setting.prose(block.hint)) if block.hint else None,
-        setting.folded("solution", setting.prose(block.solution), *pictures),
+        setting.answer(block, "solution", title, block.ask, setting.prose(block.solution), *pictures),
         **setting.started(block),
     )
 
 
 def _challenge(block: model.Challenge, setting: Setting) -> Markup:
     (target,) = pictures_in(block)
+    title, solution = setting.label("challenge"), None
+    if block.solution:
+        solution = setting.answer(block, "solution", title, block.ask, setting.prose(block.solution))
     caption = setting.line(block.caption) if block.caption else setting.label("target")
     return setting.titled(
         block,
-        setting.label("challenge"),
+        title,
         setting.prose(block.ask),
         _starter(block, setting),
         setting.still(tag("figure", setting.image(target), tag("figcaption", caption))),
         setting.folded("hint", setting.prose(block.hint)) if block.hint else None,
-        setting.folded("solution", setting.prose(block.solution)) if block.solution else None,
+        solution,
         **setting.started(block),
     )
 

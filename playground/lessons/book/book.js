@@ -236,15 +236,31 @@
     }
   }
 
-  // Answers lie open on paper, also in a browser whose style sheets cannot open them.
+  // On paper answers are at the end, not under their questions; what else is folded lies open in its place.
   let opened = [];
+  let moved = [];
+  const atEnd = make("section", { className: "answers on-paper" });
   addEventListener("beforeprint", () => {
+    moved = [...document.querySelectorAll("details.answer")].map((answer) => {
+      const place = document.createComment("answer");
+      answer.replaceWith(place);
+      return [answer, place];
+    });
+    if (moved.length) {
+      atEnd.append(make("h2", { textContent: document.body.dataset.answers }));
+      for (const [answer] of moved) atEnd.append(make("h3", { textContent: answer.dataset.title }), answer);
+      document.querySelector("main").append(atEnd);
+    }
     opened = [...document.querySelectorAll("details:not([open])")];
     for (const each of opened) each.open = true;
   });
   addEventListener("afterprint", () => {
     for (const each of opened) each.open = false;
     opened = [];
+    for (const [answer, place] of moved) place.replaceWith(answer);
+    moved = [];
+    atEnd.replaceChildren();
+    atEnd.remove();
   });
 
   // Light or dark: as the system has it, until one chooses. A page opened from a disk may have no memory.

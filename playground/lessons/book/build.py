@@ -64,6 +64,7 @@ class Build:
     files: dict[str, dict[str, str]]  # lesson → picture → file
     gallery: dict[tuple[str, str], str]  # sketch, shot → file
     heroes: dict[str, tuple[str, Hero]]  # lesson → file, hero
+    answers: str = "inline"  # one of ``blocks.ANSWERS``
 
     @property
     def names(self) -> list[str]:
@@ -71,7 +72,9 @@ class Build:
         return list(self.album.wanted)
 
 
-def prepare(folder: Path, lessons: Mapping[str, Sequence[Lesson]], *, gallery: bool = True) -> Build:
+def prepare(
+    folder: Path, lessons: Mapping[str, Sequence[Lesson]], *, gallery: bool = True, answers: str = "inline"
+) -> Build:
     """Return what is to be built into a folder, that is empty, new, or a book already.
 
     Raises ``DataError`` for a folder with other things in it.
@@ -91,7 +94,16 @@ def prepare(folder: Path, lessons: Mapping[str, Sequence[Lesson]], *, gallery: b
     figures = thesis_figures() if gallery else []
     shown = [drawn for figure in figures for drawn in figure.pictures]
     of_shots = {(d.sketch, d.shot): album.add(f"{d.sketch}-{d.shot}", d.scene) for d in shown}
-    return Build(folder, {k: tuple(v) for k, v in lessons.items()}, figures, album, files, of_shots, heroes)
+    return Build(
+        folder,
+        {k: tuple(v) for k, v in lessons.items()},
+        figures,
+        album,
+        files,
+        of_shots,
+        heroes,
+        answers=answers,
+    )
 
 
 def write_book(build: Build, engine: Engine, advance: Callable[[], None] = lambda: None) -> Path:
@@ -142,7 +154,9 @@ def _pages(
         def blank(picture: Picture, files: dict[str, str] = files) -> bool:
             return is_blank(build.album.folder / files[picture.name])
 
-        setting = Setting(lesson, book.label, numbers[lesson.name], source, book.anchor, runs, blank)
+        setting = Setting(
+            lesson, book.label, numbers[lesson.name], source, book.anchor, runs, blank, build.answers
+        )
         entries += lesson_entries(lesson, setting)
         hero = None
         if found := build.heroes.get(lesson.name):

@@ -73,6 +73,11 @@ def lesson_page(book: Book, lesson: Lesson, setting: Setting, hero: Markup | Non
         heading = tag("h2", setting.line(section.title), id=title)
         body.append(tag("section", heading, *inside, aria_labelledby=title))
     label = book.label
+    if setting.at_end:
+        heading = tag("h2", label("answers"), id="answers-title")
+        body.append(
+            tag("section", heading, *setting.at_end, class_="answers", aria_labelledby="answers-title")
+        )
     minutes = label("minutes", n=lesson.minutes, exercises=lesson.exercise_minutes)
     kicker = f"{label('lesson')} {lesson.number} · {minutes}"
     head = tag(
@@ -102,6 +107,8 @@ def _contents_of(book: Book, lesson: Lesson, setting: Setting) -> Markup:
         for number, section in enumerate(lesson.sections)
         if section.title
     ]
+    if setting.at_end:
+        found.append(("answers-title", joined(book.label("answers"))))
     found += [("play-title", joined(book.label("play"))), ("thesis-title", joined(book.label("thesis")))]
     rows = [tag("li", tag("a", title, href=f"#{place}")) for place, title in found]
     title = book.label("on_this_page")
@@ -245,7 +252,7 @@ def _page(
         aria_label=label("contents"),
     )
     scripted = ["backward", "forward", "run", "stop", "side", "over", "copy", "copied", "theme"]
-    scripted += ["live", "live_goal", "search", "search_hint", "found_none", "found", "close"]
+    scripted += ["live", "live_goal", "search", "search_hint", "found_none", "found", "close", "answers"]
     main = tag("main", body, id="main", class_="wide" if wide else None)
     page = tag(
         "body",
