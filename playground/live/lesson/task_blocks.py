@@ -53,7 +53,8 @@ def draw_challenge(block: Challenge, page: Page) -> None:
             with page.look.font(page.look.bold, theme.TEXT_SIZE + 8):
                 imgui.text(page.say("score", int(found.score)))
         with page.look.font(page.look.text, theme.SMALL):
-            imgui.text_disabled(page.say("best_score", int(best), block.goal))
+            key, shown = ("best_score", (int(best), block.goal)) if best else ("goal_score", (block.goal,))
+            imgui.text_disabled(page.say(key, *shown))
         if solved:
             with page.look.font(page.look.bold):
                 imgui.text_colored(theme.colour(theme.ACCENT), page.say("solved"))
