@@ -70,6 +70,7 @@ class Stage:
         if lesson is None:
             return
         reader.progress.shown = True
+        reader.tasks.leave()
         reader.bugs.close_all()
         self.pictures.shown = None
         reader.numbers.want(lesson, lesson.blocks)
