@@ -16,6 +16,7 @@
     tasks/              exercises that check themselves, and pictures to match
     exercises/          their starters and model answers
     book/               pages to read offline
+    present/            beats to show to a class
     notebook/           Jupyter notebooks
 
 Reading needs no OpenGL; what draws receives an engine.

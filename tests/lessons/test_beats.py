@@ -9,7 +9,18 @@ import pytest
 
 from playground.lessons.excerpt import excerpt
 from playground.lessons.library import LANGUAGES
-from playground.lessons.model import Break, Code, Compare, Figure, Lesson, Prose, Question, Slider, Steps
+from playground.lessons.model import (
+    Break,
+    Code,
+    Compare,
+    Exercise,
+    Figure,
+    Lesson,
+    Prose,
+    Question,
+    Slider,
+    Steps,
+)
 from playground.lessons.present.beats import BOARD_WORDS, BOTH, CODE_LINES, Beat, beats_of, first_of_page
 from playground.lessons.present.labels import LABELS
 from playground.lessons.present.sentences import MOST_WORDS, sentences, shown_of, words
@@ -67,6 +78,11 @@ def test_answers_and_fixes_come_after_what_asks_for_them(language: str) -> None:
                 early, late = block.ask, block.answer
             elif isinstance(block, Break):
                 early, late = block.hint, block.fix
+            elif isinstance(block, Exercise) and any(beat.notes == block.solution for beat in beats):
+                early, late = block.ask, block.solution
+                until = next(beat for beat in beats if beat.notes == early)
+                ahead = beats[: beats.index(until) + 1]
+                assert all(beat.still is None or beat.still.block != block.name for beat in ahead), block.name
             else:
                 continue
             first = next(n for n, beat in enumerate(beats) if early in (beat.notes, beat.board))

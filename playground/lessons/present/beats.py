@@ -1,8 +1,9 @@
 """A lesson as beats: what is on the screen between one press of Next and the following one.
 
 A paragraph is one beat, and shows its first sentences; all of it is in the notes. A series is a beat
-a step, a question three, a bug three. Until a page's first picture is reached, that picture is
-already shown; where a page has none, the one before stays.
+a step, a question three, a bug three; an exercise in the middle of the text two, since it goes on from
+the solution, and one at the end one. Until a page's first picture is reached, that picture is
+already shown, unless it answers something; where a page has none, the one before stays.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ class Beat:
     """What is on the screen between two presses of Next."""
 
     kind: str  # title | text | board | figure | step | sweep | compare | code | question | choices
-    #            | answer | broken | hint | fix | exercise | challenge
+    #            | answer | broken | hint | fix | exercise | solution | challenge
     page: int  # of the lesson, from 0
     heading: Markdown  # of that page
     label: str = ""  # what it is, in the lesson's language: "Hint", "Step 2 of 5"
@@ -98,7 +99,7 @@ def beats_of(lesson: Lesson) -> tuple[Beat, ...]:
                 mine.append(replace(beat, page=page, heading=section.title or lesson.title))
             at += taken[1]
         coming = next((beat for beat in mine if beat.still is not None), None)
-        if coming is not None and coming.still is not None and not coming.still.broken:
+        if coming is not None and coming.kind not in ("broken", "solution", "challenge"):
             shown, sliders = coming.still, coming.sliders
         for beat in mine:
             if beat.still is not None:
@@ -169,6 +170,8 @@ def _beats(block: Block, formula: Markdown, lesson: Lesson) -> Iterator[Beat]:
         aside = "\n\n".join(filter(None, [block.hint, f"**{say['solution']}.** {block.solution}"]))
         label = say["exercise"].format(lesson.number_of(block))
         yield _told("exercise", block.ask, label=label, aside=aside)
+        if block.scene is not None and block not in lesson.sections[-1].blocks:  # the text goes on from it
+            yield _told("solution", block.solution, label=say["solution"], still=Still(block.name))
     elif isinstance(block, Measure):
         if block.sentence:
             yield _told("text", block.sentence, label=say["measured"])
@@ -185,7 +188,8 @@ def _prose(block: Prose, formula: Markdown) -> Iterator[Beat]:
     text = block.markdown
     if block.kind == "code":
         lines = [line for line in text.strip().split("\n") if not line.startswith("```")]
-        yield Beat("code", 0, "", code="\n".join(lines[:CODE_LINES]), notes=text)
+        for shared in _shared(lines):
+            yield Beat("code", 0, "", code="\n".join(shared))
     elif block.kind == "list":
         for part in _listed(text):
             yield Beat("board", 0, "", board=part, notes=part)
@@ -251,17 +255,21 @@ def _variants(block: Compare) -> Iterator[Beat]:
 
 def _code(block: Code, label: str) -> Iterator[Beat]:
     found = excerpt(block.file, block.anchor)
-    lines = found.text.split("\n")
-    count = math.ceil(len(lines) / CODE_LINES)
-    each = math.ceil(len(lines) / count)
-    for number in range(count):
-        part = lines[number * each : (number + 1) * each]
+    parts = _shared(found.text.split("\n"))
+    line = found.line
+    for number, part in enumerate(parts):
         beat = _told("code", block.caption or found.file, label="", file=found.file)
-        line = found.line + number * each
         beat = replace(beat, code="\n".join(part), line=line, notes=block.caption)
-        if count > 1:
-            beat = replace(beat, label=label.format(number + 1, count))
+        line += len(part)
+        if len(parts) > 1:
+            beat = replace(beat, label=label.format(number + 1, len(parts)))
         yield beat if number == 0 else replace(beat, notes="")
+
+
+def _shared(lines: list[str]) -> list[list[str]]:
+    """Return lines of code in parts of about one length, each no longer than a board."""
+    each = math.ceil(len(lines) / math.ceil(len(lines) / CODE_LINES))
+    return [lines[at : at + each] for at in range(0, len(lines), each)]
 
 
 def _bug(block: Break, lesson: Lesson) -> Iterator[Beat]:

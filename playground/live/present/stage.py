@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 from imgui_bundle import ImVec2, imgui
 
-from playground.errors import DataError, ParameterError, PlaygroundError
+from playground.errors import PlaygroundError
 from playground.lessons.present.beats import Beat, texts_of_beat, with_texts
 from playground.lessons.present.labels import labels_of
 from playground.live.draw import Area
 from playground.live.present.keys import act_on_presentation_keys, help_rows
+from playground.live.present.notes_link import NotesLink
 from playground.live.present.overlays import Overlays
 from playground.live.present.pen import Pen
 from playground.live.present.slide import Gauge, Sizes, board_of, gauges_of, help_of, plate_of, strip_of
-from playground.live.present.told import told
-from playground.remote.notes import Notes
 from playground.workbench.bench import Bench
 from playground.workbench.lesson.presented_pictures import PresentedPictures, Row
 from playground.workbench.lesson.presenter import Presenter
@@ -43,13 +41,11 @@ class Stage:
         self.bench, self.reader = bench, reader
         self.pictures = PresentedPictures(reader)
         self.presenter: Presenter = Presenter(self._show, self._left, bench.notices.now)
-        self.notes: Notes | None = None
-        self._wake = wake
+        self.notes = NotesLink(self.presenter, self._filled, wake)
         self._overlays = Overlays()
         self._pen = Pen()
         self._was_full = False
         self._moved = 0.0  # when the mouse moved last [s]
-        self._told: object = None
         self._turned = False  # to another beat, in this frame
         bench.lessons.present = self.begin
         bench.lessons.beat = lambda: self.presenter.at + 1 if self.on else 0
@@ -70,6 +66,7 @@ class Stage:
         if lesson is None:
             return
         reader.progress.shown = True
+        reader.tasks.leave()
         reader.bugs.close_all()
         self.pictures.shown = None
         reader.numbers.want(lesson, lesson.blocks)
@@ -80,12 +77,9 @@ class Stage:
             return
         if options.beat > len(self.presenter.beats):
             self._note(self._say("no_beat", options.beat, len(self.presenter.beats)))
-        if options.notes and self.notes is None:
-            try:
-                self.notes = Notes(self._act, self._wake)
-            except DataError as error:
-                self._note(self._say("no_notes", error))
-        if self.notes is not None:
+        if options.notes and (why := self.notes.open()):
+            self._note(self._say("no_notes", why))
+        if self.notes.url:
             options.say(self._say("notes_at", self.notes.url))
         self._was_full = self.bench.window.is_full()
         if not self._was_full:
@@ -99,7 +93,7 @@ class Stage:
         self.reader.go(beat.page, show=False)
         if self.reader.figure.scene is not None and beat.kind in ("broken", "hint"):
             self.reader.figure.set_texts({})
-        self._tell()
+        self.notes.tell(self.reader.language)
 
     def release(self) -> None:
         """Release what was made in the session's context."""
@@ -107,16 +101,14 @@ class Stage:
 
     def close(self) -> None:
         """Close the page of notes."""
-        if self.notes is not None:
-            self.notes.close()
-            self.notes = None
+        self.notes.close()
 
     # ── frames ───────────────────────────────────────────────────────────────
 
     @property
     def patience(self) -> float:
         """How long nothing needs to be done here [s]."""
-        if self.notes is not None and self.notes.waits:
+        if self.notes.waits:
             return 0.0
         if not self.on:
             return 1.0
@@ -129,8 +121,7 @@ class Stage:
 
     def take(self) -> None:
         """Do what the page of notes asked for."""
-        if self.notes is not None:
-            self.notes.take()
+        self.notes.take()
 
     def area(self, pixels: tuple[int, int]) -> tuple[int, int, int, int]:
         """Return where the picture is: x, y from below, width, height [pixels]."""
@@ -184,7 +175,7 @@ class Stage:
             room = imgui.get_main_viewport().size
             colour = 0xFF000000 if presenter.blank == "black" else 0xFFFFFFFF
             imgui.get_foreground_draw_list().add_rect_filled(ImVec2(0, 0), ImVec2(room.x, room.y), colour)
-        self._tell()
+        self.notes.tell(self.reader.language)
 
     def _write(self, sizes: Sizes, rows: list[Row]) -> None:
         """Have images of what is written, where another is due."""
@@ -280,7 +271,7 @@ class Stage:
 
     def say_address(self) -> None:
         """Show where the notes are."""
-        self._note(self._say("notes_at", self.notes.url if self.notes else "–"))
+        self._note(self._say("notes_at", self.notes.url or "–"))
 
     def _note(self, sentence: str) -> None:
         self.presenter.notice = "" if sentence == self.presenter.notice else sentence
@@ -291,41 +282,3 @@ class Stage:
 
     def _say(self, key: str, *given: object) -> str:
         return labels_of(self.reader.language)[key].format(*given)
-
-    # ── the page of notes ────────────────────────────────────────────────────
-
-    def _tell(self) -> None:
-        """Tell the page what is on, where that is new."""
-        presenter = self.presenter
-        if self.notes is None or presenter.lesson is None or not presenter.beats:
-            return
-        clock = presenter.clock
-        beat, coming = self._filled(presenter.beat), presenter.following
-        following = self._filled(coming) if coming is not None else None
-        key = presenter.on, presenter.at, beat, presenter.blank, clock.running, clock.begun
-        if key != self._told:
-            self._told = key
-            self.notes.tell(told(presenter, beat, following, self.reader.language))
-
-    def _act(self, wishes: Mapping[str, Any]) -> None:
-        """Do what the page of notes asks for; raise ``ParameterError`` for what nobody knows."""
-        presenter = self.presenter
-        if not presenter.on:
-            raise ParameterError("the presentation is over")
-        go, cover, clock = (wishes.get(key) for key in ("go", "cover", "clock"))
-        steps = {"next": presenter.next, "back": presenter.back}
-        ends = {"first": 0, "last": len(presenter.beats) - 1}
-        if isinstance(go, str) and go in steps:
-            steps[go]()
-        elif isinstance(go, str) and go in ends:
-            presenter.go(ends[go])
-        elif type(go) is int:
-            presenter.go(go - 1)
-        elif cover in ("black", "white"):
-            presenter.cover(str(cover))
-        elif clock == "pause":
-            presenter.clock.toggle()
-        elif clock == "reset":
-            presenter.clock.reset()
-        else:
-            raise ParameterError('expected {"go": "next"}, {"cover": "black"} or {"clock": "pause"}')

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from playground.errors import ParameterError, PlaygroundError
 from playground.lessons.figure_renders import with_bug
-from playground.lessons.model import Break, Challenge, Compare, Slider, Steps
+from playground.lessons.model import Break, Compare, Slider, Steps
 from playground.lessons.present.beats import Beat, Still
 from playground.sketch.assign import resolve
 from playground.sketch.described_parameter import range_of
@@ -72,8 +72,8 @@ class PresentedPictures:
             return
         reader.playing = ""
         self.shown = still
-        if isinstance(block, Break | Challenge):
-            self._plainly(block, still)
+        if isinstance(block, Break):
+            self._bug(block, still)
         elif isinstance(block, Compare):
             reader.choose(block, still.index)
         elif isinstance(block, Steps | Slider):
@@ -115,14 +115,14 @@ class PresentedPictures:
         if new != value:
             self.reader.bench.session.drafts.set(row.path, new)
 
-    def _plainly(self, block: Break | Challenge, still: Still) -> None:
-        """Show a picture without what the panel has for it: a bug's editor, a challenge's score."""
+    def _bug(self, block: Break, still: Still) -> None:
+        """Show a picture with or without its bug, and no editor for it."""
         if block.scene is None:
             return
+        self.reader.tasks.leave()
         self.reader.bugs.leave()
         try:
-            bug = isinstance(block, Break) and still.broken
-            texts = {str(file_of(block)): with_bug(block)} if bug else {}  # type: ignore[arg-type]
+            texts = {str(file_of(block)): with_bug(block)} if still.broken else {}
         except PlaygroundError as error:
             self.reader.bench.notices.say(str(error))
             return
