@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from playground.lessons.book import build, images
 from playground.lessons.book.build import prepare, write_book
+from playground.lessons.book.live_files import LiveBook
+from playground.lessons.measuring import Number
+from playground.lessons.read import read_lessons
 
 from ..report.browser import MISSING, Browser
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING)]
 
 RIGHT, END, HOME, ENTER = "\ue014", "\ue010", "\ue011", "\ue007"
+UP, DOWN, ESCAPE = "\ue013", "\ue015", "\ue00c"
 SHOWN = "document.querySelector('#turns li.now img').src.split('/').pop()"
 SAID = "document.querySelector('#turns output').textContent"
 AT = "document.querySelector('#two input').value"
@@ -88,7 +95,6 @@ def test_a_comparison_is_swiped_by_mouse_and_keys_and_shown_side_by_side(page):
 
 
 def test_on_paper_everything_lies_open_and_answers_are_at_the_end(page):
-    folded = count(page, "details:not([open])")
     page.run("dispatchEvent(new Event('beforeprint'))")
     page.emulate("setEmulatedMedia", media="print")
     assert count(page, "details:not([open])") == 0
@@ -108,7 +114,7 @@ def test_on_paper_everything_lies_open_and_answers_are_at_the_end(page):
     )
     page.emulate("setEmulatedMedia", media="")
     page.run("dispatchEvent(new Event('afterprint'))")
-    assert count(page, "details:not([open])") == folded > 0
+    assert count(page, "main details[open]") == 0
     assert count(page, ".answers") == 0 and count(page, "details.answer") == answers
 
 
@@ -129,3 +135,155 @@ def test_no_page_is_wider_than_a_phone(page, book, name):
     page.open((book / name).as_uri())
     page.run("for (const each of document.querySelectorAll('details')) each.open = true")
     assert page.run("return [innerWidth, document.documentElement.scrollWidth]") == [390, 390]
+
+
+def test_code_is_copied_as_it_is_written_however_it_wraps(page):
+    page.emulate("setDeviceMetricsOverride", width=390, height=844, deviceScaleFactor=1, mobile=True)
+    copied, written = page.run(
+        "const pre = document.querySelector('#mean pre'); getSelection().selectAllChildren(pre);"
+        "return [getSelection().toString(), pre.textContent]"
+    )
+    assert copied.rstrip("\n") == written.rstrip("\n") and "\n    " in written
+    first, last, letter = page.run(
+        "const wraps = (line) => line.offsetHeight > 1.7 * parseFloat(getComputedStyle(line).lineHeight);"
+        "const line = [...document.querySelectorAll('.l')].find(wraps), range = document.createRange();"
+        "const walk = document.createTreeWalker(line, NodeFilter.SHOW_TEXT), boxes = [];"
+        "for (let node; node = walk.nextNode();) for (let i = 0; i < node.length; i++) {"
+        " range.setStart(node, i); range.setEnd(node, i + 1);"
+        " if (node.data[i].trim()) boxes.push(range.getBoundingClientRect()); }"
+        "const low = boxes.at(-1).top, last = boxes.filter((box) => Math.abs(box.top - low) < 3);"
+        "return [boxes[0].left, last[0].left, boxes[0].width]"
+    )
+    assert last - first == pytest.approx(2 * letter, abs=1.0)
+
+
+SEARCHED = "[...document.querySelectorAll('#found a')].map((each) => each.getAttribute('href'))"
+
+
+def test_the_search_finds_words_without_their_accents_by_keys_alone(page, book):
+    page.open((book / "fr/small.html").as_uri())
+    page.run("document.body.focus()")
+    page.press("/")
+    page.wait("document.activeElement.type === 'search'")
+    page.press(*"ecart DE")
+    page.wait(f"{SEARCHED}.length === 1")
+    assert page.run(f"return {SEARCHED}") == ["small.html#s1-une-chose"]
+    assert page.run("return [...document.querySelectorAll('#found mark')].map((m) => m.textContent)")[:2] == [
+        "écart",
+        "de",
+    ]
+    page.run("document.querySelector('.find input').select()")
+    page.press(*"texel")
+    page.wait(f"{SEARCHED}.length > 2")
+    first, second = page.run(f"return {SEARCHED}.slice(0, 2)")
+    assert first == "glossary.html#texel"  # what it is named after comes first
+    page.press(DOWN)
+    assert page.run("return document.querySelector('[aria-selected=true]').getAttribute('href')") == second
+    page.press(UP, ENTER)
+    page.wait("location.hash === '#texel'")
+    page.open((book / "fr/small.html").as_uri())
+    page.click("#search")
+    page.wait("document.querySelector('dialog[open]')")
+    page.press(*"zzzz")
+    page.wait("document.querySelector('.said').textContent === document.body.dataset.foundNone")
+    page.press(ESCAPE)
+    page.wait("!document.querySelector('dialog[open]')")
+
+
+def test_a_term_is_explained_where_it_stands(page):
+    said = "document.getElementById('meaning')"
+    assert page.run(f"return {said}.hidden")
+    page.run("document.querySelector('a.term').scrollIntoView({block: 'center', behavior: 'instant'})")
+    page.drag("a.term", (0, 0), (0, 60))  # the mouse comes, and leaves
+    page.wait(f"{said}.hidden")
+    page.run("document.querySelector('h2').tabIndex = -1; document.querySelector('h2').focus()")
+    page.press("\ue004", "\ue004")  # over the link before it
+    page.wait(f"!{said}.hidden")
+    term = page.run("return document.activeElement.dataset.means")
+    assert page.run(f"return {said}.textContent") == term and term.startswith("texel: ")
+    assert page.run("return document.activeElement.getAttribute('aria-describedby')") == "meaning"
+    page.press(ESCAPE)
+    page.wait(f"{said}.hidden")
+
+
+def test_the_contents_at_the_side_say_where_one_is(page):
+    page.emulate("setDeviceMetricsOverride", width=1300, height=500, deviceScaleFactor=1, mobile=False)
+    now = "document.querySelector('.toc [aria-current]')?.textContent"
+    assert page.run("return document.querySelector('.toc details').open")
+    for name in ("One thing", "Exercises"):
+        page.run(
+            "const found = [...document.querySelectorAll('h2')].find((h) => h.textContent === arguments[0]);"
+            "scrollTo({ top: found.offsetTop - 60, behavior: 'instant' })",
+            name,
+        )
+        page.wait(f"{now} === arguments[0]", name)
+    page.emulate("setDeviceMetricsOverride", width=390, height=844, deviceScaleFactor=1, mobile=True)
+    page.wait("!document.querySelector('.toc details').open")
+
+
+AXE = Path(build.__file__).resolve().parents[2] / "web/node_modules/axe-core/axe.min.js"
+
+
+@pytest.mark.skipif(not AXE.is_file(), reason="npm ci in playground/web installs axe-core")
+def test_no_page_has_a_serious_fault_for_those_who_read_otherwise(page, book):
+    """Of axe-core's rules, in the light and in the dark; the search is open on one."""
+    found = []
+    for name in ("index.html", "en/index.html", "en/small.html", "fr/small.html", "en/glossary.html"):
+        for theme in ("light", "dark"):
+            page.emulate("setEmulatedMedia", features=[{"name": "prefers-color-scheme", "value": theme}])
+            page.open((book / name).as_uri())
+            page.run("for (const each of document.querySelectorAll('details')) each.open = true")
+            if name == "en/small.html":
+                page.click("#search")
+                page.wait("document.querySelector('dialog[open]')")
+                page.press(*"texel")
+                page.wait(f"{SEARCHED}.length > 0")
+            page.run(AXE.read_text(encoding="utf-8"))
+            found += page.run(
+                "return axe.run({ resultTypes: ['violations'] }).then(({ violations }) => violations"
+                ".filter(({ impact }) => ['serious', 'critical'].includes(impact))"
+                ".map(({ id, nodes }) => `${arguments[0]}: ${id}: ${nodes[0].html}`))",
+                f"{name}, {theme}",
+            )
+    assert found == []
+    page.log()  # axe asks for style sheets that the policy refuses
+
+
+@pytest.fixture
+def bare_book(tmp_path, engine, monkeypatch):
+    """Give every page of the course, without its pictures and its numbers, which take minutes."""
+    monkeypatch.setattr(images.Album, "draw", lambda *_: None)
+    monkeypatch.setattr(build, "is_blank", lambda path: False)
+    monkeypatch.setattr(
+        build, "numbers_of", lambda _, lesson: {one.name: Number(0.25, "0.25") for one in lesson.measures}
+    )
+    monkeypatch.setattr(
+        build, "live_book", lambda lessons, _: LiveBook({one.name: frozenset() for one in lessons}, {})
+    )
+    lessons = {code: read_lessons(code) for code in ("en", "fr")}
+    write_book(prepare(tmp_path / "whole", lessons), engine)
+    return tmp_path / "whole"
+
+
+def test_nothing_is_cut_off_on_any_page_at_any_width(bare_book, tmp_path):
+    cut = []
+    with Browser(tmp_path / "profile") as browser:
+        for path in sorted(bare_book.rglob("*.html")):
+            browser.open(path.as_uri())
+            browser.run("for (const each of document.querySelectorAll('details')) each.open = true")
+            for width in (1200, 900, 390):
+                browser.emulate(
+                    "setDeviceMetricsOverride",
+                    width=width,
+                    height=900,
+                    deviceScaleFactor=1,
+                    mobile=width < 500,
+                )
+                wide, codes = browser.run(
+                    "const codes = [...document.querySelectorAll('pre')];"
+                    "return [document.documentElement.scrollWidth > innerWidth,"
+                    " codes.filter((c) => c.scrollWidth > c.clientWidth).map((c) => c.textContent)]"
+                )
+                if wide or codes:
+                    cut.append((path.parent.name, path.name, width, wide, codes))
+    assert cut == []

@@ -133,7 +133,7 @@ def test_a_sketch_that_no_page_can_run_stays_a_picture(lesson, monkeypatch):
     assert whole - set(lesson_data(lesson, Library())["blocks"]) == {"smooth", "two"}
 
 
-def test_blocks_of_each_kind(lesson, horizons, of_horizons):
+def test_blocks_of_each_kind(lesson):
     blocks = lesson_data(lesson, Library())["blocks"]
     assert {name: block["kind"] for name, block in blocks.items()} == {
         "land": "figure",
@@ -148,10 +148,11 @@ def test_blocks_of_each_kind(lesson, horizons, of_horizons):
         [*range(6)],
     )
     assert (blocks["smooth"]["row"], blocks["smooth"]["values"]) == ("height.smoothing", [0.1, 0.5, 0.9])
-    more = of_horizons[1]["blocks"]
+    sky_light = read_lesson("sky_light", "en", SKETCHES)
+    more = lesson_data(sky_light, Library())["blocks"]
     assert more["clouds"]["kind"] == "exercise" and more["clouds"]["begin"] != more["clouds"]["scenes"][0]
     assert {"light.clouds", "view.exposure"} <= set(more["clouds"]["rows"])
-    exercise = horizons.named["clouds"]
+    exercise = sky_light.named["clouds"]
     assert dict(beginning(exercise.scene).overrides) == {}
 
 

@@ -116,6 +116,7 @@ globalThis.bookFind = (() => {
     if (event.key === "ArrowDown" && count) choose((now + 1) % count);
     else if (event.key === "ArrowUp" && count) choose((now - 1 + count) % count);
     else if (event.key === "Enter" && rows()[now]) rows()[now].click();
+    else if (event.key === "Escape") dialog.close();  // a search field would clear itself first
     else return;
     event.preventDefault();
   });
