@@ -21,8 +21,10 @@ float noise(vec2 place) {
     ivec2 node = ivec2(floor(place));
     vec2 a = place - floor(place);
     a = a * a * (3.0 - 2.0 * a);
-    float south = mix(random(node, seed), random(node + ivec2(1, 0), seed), a.x);
-    float north = mix(random(node + ivec2(0, 1), seed), random(node + ivec2(1, 1), seed), a.x);
+    float south = mix(random(node, seed),
+                      random(node + ivec2(1, 0), seed), a.x);
+    float north = mix(random(node + ivec2(0, 1), seed),
+                      random(node + ivec2(1, 1), seed), a.x);
     return mix(south, north, a.y);
 }
 // end: noise
