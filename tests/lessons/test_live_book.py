@@ -49,14 +49,14 @@ def book(tmp_path, lesson, french, engine):
 
 
 @pytest.fixture(scope="module")
-def horizons():
-    return read_lesson("horizons", "en", SKETCHES)
+def sky_light():
+    return read_lesson("sky_light", "en", SKETCHES)
 
 
 @pytest.fixture(scope="module")
-def of_horizons(horizons):
+def of_sky_light(sky_light):
     library = Library()
-    return library, lesson_data(horizons, library)
+    return library, lesson_data(sky_light, library)
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def written_alone(scene):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", ["horizons", "delaunay"])
+@pytest.mark.parametrize("name", ["sky_light", "delaunay"])
 def test_every_scene_of_a_lesson_is_its_sketch_with_its_setting(node, name):
     count, data = compare_scenes(node, read_lesson(name, "en", SKETCHES))
     assert count > 15 and len(data["sketches"]) < count / 3
@@ -109,10 +109,10 @@ def compare_scenes(node, lesson):
     return count, data
 
 
-def test_the_lessons_of_a_book_share_texts_and_kernels(horizons, of_horizons):
-    library, first = of_horizons
+def test_the_lessons_of_a_book_share_texts_and_kernels(sky_light, of_sky_light):
+    library, first = of_sky_light
     once = len(library.kernels), len(library.data()["files"])
-    assert lesson_data(horizons, library) == first
+    assert lesson_data(sky_light, library) == first
     assert (len(library.kernels), len(library.data()["files"])) == once
     assert once[0] == len({json.dumps(kernel) for kernel in library.kernels})
 
@@ -133,7 +133,7 @@ def test_a_sketch_that_no_page_can_run_stays_a_picture(lesson, monkeypatch):
     assert whole - set(lesson_data(lesson, Library())["blocks"]) == {"smooth", "two"}
 
 
-def test_blocks_of_each_kind(lesson):
+def test_blocks_of_each_kind(lesson, sky_light, of_sky_light):
     blocks = lesson_data(lesson, Library())["blocks"]
     assert {name: block["kind"] for name, block in blocks.items()} == {
         "land": "figure",
@@ -148,8 +148,7 @@ def test_blocks_of_each_kind(lesson):
         [*range(6)],
     )
     assert (blocks["smooth"]["row"], blocks["smooth"]["values"]) == ("height.smoothing", [0.1, 0.5, 0.9])
-    sky_light = read_lesson("sky_light", "en", SKETCHES)
-    more = lesson_data(sky_light, Library())["blocks"]
+    more = of_sky_light[1]["blocks"]
     assert more["clouds"]["kind"] == "exercise" and more["clouds"]["begin"] != more["clouds"]["scenes"][0]
     assert {"light.clouds", "view.exposure"} <= set(more["clouds"]["rows"])
     exercise = sky_light.named["clouds"]
@@ -266,9 +265,9 @@ def test_pages_are_strict(book):
         assert not re.search(r"<style|\sstyle=|\son\w+=", text)
 
 
-def test_a_setting_is_small(horizons):
+def test_a_setting_is_small(sky_light):
     scenes = Scenes(Library())
-    block = horizons.named["sun"]
+    block = sky_light.named["ground"]
     first, *rest = [scenes.setting(scene) for scene in block.scenes]
     assert set(first) == {"sketch"} and len(scenes.sketches) == 1
     assert all(set(setting) == {"sketch", "values", "shown"} for setting in rest)
