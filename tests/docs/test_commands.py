@@ -132,8 +132,8 @@ OURS = [c for c in ALL if is_run(c) and runs_by_playground(c)]
 WINDOWS = [c for c in OURS if opens_a_window(c)]
 OTHERS = [c for c in ALL if is_run(c) and not runs_by_playground(c)]
 SLOW = re.compile(
-    r"(playground|\./play) (check|list)$|check (hills|dunes|ridges|--json)|lesson (build|check|grade)|reduce|fly"
-    r"|variants verify|mutants"
+    r"(playground|\./play) (check|list)$|check (hills|dunes|ridges|--json)|lesson (build|check|grade)"
+    r"|reduce|fly|variants verify|mutants"
     r"|--video|--frames|\.glb|--sweep|20000|--texture|--technique|--profile|\.html"
 )
 
