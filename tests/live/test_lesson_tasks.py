@@ -87,7 +87,7 @@ def block(desk, name):
 
 def judged(desk):
     """Draw frames until the process has judged."""
-    drawn_elsewhere(desk, lambda: not desk.reader.tasks.judging)
+    drawn_elsewhere(desk, lambda: not desk.reader.tasks.judging.at)
 
 
 def drawn_elsewhere(desk, until):
@@ -118,7 +118,7 @@ def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
     assert editing.text.base == RAW
     desk.click("Check##check")
     judged(desk)
-    verdict = tasks.verdicts["power"]
+    verdict = tasks.judging.verdicts["power"]
     assert verdict.points == 0.0 and [result.passed for result in verdict.results] == [False, False]
     desk.click("What differs")
     desk.run_frames(2)
@@ -128,7 +128,7 @@ def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
     desk.run_frames(2)
     desk.click("Check##check")
     judged(desk)
-    assert tasks.verdicts["power"].passed
+    assert tasks.judging.verdicts["power"].passed
     kept = attempts()["after/power"]
     assert kept.text.strip() == right.strip() and (kept.points, kept.of) == (2.0, 2)
 
@@ -210,12 +210,12 @@ def test_values_are_set_with_sliders_and_checked(desk, tasks):
     assert dict(tasks.work(rough).values) == {"height.smoothing": 0.5}
     tasks.check(rough)
     judged(desk)
-    assert tasks.verdicts["rough"].points == 0.0
+    assert tasks.judging.verdicts["rough"].points == 0.0
     desk.session.drafts.set("height.smoothing", 0.8)
     desk.run_frames(4)
     tasks.check(rough)
     judged(desk)
-    assert tasks.verdicts["rough"].passed
+    assert tasks.judging.verdicts["rough"].passed
     assert attempts()["after/rough"].values == {"height.smoothing": 0.8}
 
 
@@ -223,7 +223,7 @@ def test_a_score_follows_the_picture_and_the_best_is_kept(desk, tasks):
     desk.reader.go(1)
     desk.run_frames(4)
     seen = block(desk, "seen")
-    drawn_elsewhere(desk, lambda: tasks.target(seen) is not None)  # before one begins
+    drawn_elsewhere(desk, lambda: tasks.judging.target(seen) is not None)  # before one begins
     tasks.start(seen)
     desk.run_frames(8, step=0.2)
     assert tasks.matches["seen"].score == 0.0
@@ -248,5 +248,5 @@ def test_progress_of_before_is_read_and_what_is_done_is_written_whole(tmp_path):
     path.write_text(text, encoding="utf-8")
     assert read_progress(path) == old
     done = Attempt("x\n", {"a.b": (1.0, 2.0), "c": True}, ("y", {"a.b": 3}), 1.5, 2, 88.0)
-    write_progress(Progress("halving", attempts={"halving/x": done}), path)
+    write_progress(Progress("halving", attempts={"halving/x": done, "halving/y": Attempt()}), path)
     assert read_progress(path).attempts == {"halving/x": done}
