@@ -43,13 +43,7 @@ class Checked:
         wrong = [result for result in self.verdict.visible if not result.passed]
         return joined(
             tag("p", tag("b", points_of(self.verdict, self.language))),
-            tag(
-                "ul",
-                *(
-                    tag("li", _line(line) if self.verdict.results else line, style=style)
-                    for line in self.lines
-                ),
-            ),
+            tag("ul", *lines),
             *(_compared(result, self.language) for result in wrong if result.mine is not None),
         )
 
