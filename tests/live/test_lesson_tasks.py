@@ -8,6 +8,7 @@ import pytest
 
 from playground.lessons import library
 from playground.lessons.tasks.texts import answer_text
+from playground.live.lesson.page import Page
 from playground.paths import GLSL
 from playground.sketch.source import read_text
 from playground.workbench.lesson.progress import (
@@ -111,6 +112,7 @@ def attempts():
 
 
 def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
+    monkeypatch = pytest.MonkeyPatch()
     desk.click("Start##start")
     desk.run_frames(4)
     assert tasks.is_begun(block(desk, "power")) and desk.session.path.stem == "diamond_square_steps"
@@ -124,8 +126,14 @@ def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
     desk.run_frames(2)
 
     right = answer_text(block(desk, "power"))
+    said = []
+    monkeypatch.setattr(Page, "text", lambda page, words, **rest: said.append(words))
+    desk.run_frames(1)
+    assert "You have changed it since: check again." not in said
     typed(editing, right)  # not saved
     desk.run_frames(2)
+    assert "You have changed it since: check again." in said
+    monkeypatch.undo()
     desk.click("Check##check")
     judged(desk)
     assert tasks.judging.verdicts["power"].passed

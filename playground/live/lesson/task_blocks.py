@@ -127,6 +127,9 @@ def _verdict(block: Exercise, verdict: Verdict, page: Page) -> None:
     rgb = theme.ACCENT if verdict.passed else theme.WARM
     with page.look.font(page.look.bold):
         imgui.text_colored(theme.colour(rgb), points_of(verdict, language))
+    tasks = page.reader.tasks
+    if tasks.is_begun(block) and tasks.work(block) != tasks.judging.judged.get(block.name):
+        page.text(page.say("changed_since"), size=theme.SMALL, dim=True)
     for diagnostic in verdict.diagnostics:
         page.plain(str(diagnostic), theme.ALARM)
     for result in verdict.results:

@@ -30,10 +30,12 @@ class Judging:
     process: JudgeProcess = field(default_factory=JudgeProcess)
     verdicts: dict[str, Verdict] = field(default_factory=dict)  # by block
     ends: dict[str, Ends] = field(default_factory=dict)  # by challenge: what its score lies between
+    judged: dict[str, Work] = field(default_factory=dict)  # by block: what its verdict is on
     at: str = ""  # the exercise whose work is judged, or is to be
     _work: tuple[Exercise, Work] | None = None  # that is still to be sent
     _wanted: list[Challenge] = field(default_factory=list)
     _sent: str = ""  # the block that the process is at
+    _at_work: Work = field(default_factory=Work)  # the work that it is at, or was last
 
     @property
     def busy(self) -> bool:
@@ -62,7 +64,7 @@ class Judging:
     def forget(self) -> None:
         """Forget all, and expect nothing more of the process."""
         self.at, self._sent, self._work = "", "", None
-        for known in (self.verdicts, self.ends, self._wanted):
+        for known in (self.verdicts, self.judged, self.ends, self._wanted):
             known.clear()
 
     def close(self) -> None:
@@ -75,7 +77,7 @@ class Judging:
             return
         if self._work is not None:
             (block, work), self._work = self._work, None
-            self._sent = block.name
+            self._sent, self._at_work = block.name, work
             self.process.submit(block, work)
         elif self._wanted and self.rests():
             challenge = self._wanted.pop(0)
@@ -99,6 +101,6 @@ class Judging:
         if isinstance(found, Ends):
             self.ends[name] = found
         elif isinstance(found, Verdict):
-            self.verdicts[name] = found
+            self.verdicts[name], self.judged[name] = found, self._at_work
             self.received(name, found)
         return True
