@@ -38,6 +38,7 @@ def test_a_verdict_has_points_marks_and_pictures_of_what_is_shown_only(opened):
     assert str(checked).split("\n")[0] == "0 of 3 points"
     assert [line[0] for line in checked.lines] == ["✗", "✗", "✗"]
     html = checked._repr_html_()
+    assert "<code>height</code> differs" in html
     assert html.count("<img") == 3 and "yours" in html and "what differs" in html  # of one check
     right = lesson.check("third", RAW)
     assert str(right).startswith("3 of 3 points\n✓ ") and "<img" not in right._repr_html_()

@@ -15,6 +15,7 @@ from playground.lessons.tasks.verdict import Picture, Result, Verdict
 from playground.markup import Markup, joined, tag
 
 _MARKS = {True: "✓", False: "✗"}
+_COMPILERS = "list-style:none;white-space:pre-wrap;font:0.9em monospace"  # a compiler's words, as it has them
 _WIDE = 200  # pixels of a picture on the page
 
 
@@ -36,10 +37,13 @@ class Checked:
         return [f"{_MARKS[good]} {words}" for good, words in zip(passed, said, strict=True)]
 
     def _repr_html_(self) -> str:
+        drawn = bool(self.verdict.results)
+        style = "list-style:none" if drawn else _COMPILERS
+        lines = [tag("li", _line(line) if drawn else line, style=style) for line in self.lines]
         wrong = [result for result in self.verdict.visible if not result.passed]
         return joined(
             tag("p", tag("b", points_of(self.verdict, self.language))),
-            tag("ul", *(tag("li", line, style="list-style:none") for line in self.lines)),
+            tag("ul", *lines),
             *(_compared(result, self.language) for result in wrong if result.mine is not None),
         )
 
@@ -64,6 +68,11 @@ class Matched:
         say = task_labels(self.language)
         shown = [_picture(found, say[key]) for key, found in pictures if found is not None]
         return joined(tag("p", str(self)), tag("div", *shown))
+
+
+def _line(text: str) -> Markup:
+    """Return a line in which what stands between backquotes is code."""
+    return joined(*(tag("code", part) if odd % 2 else part for odd, part in enumerate(text.split("`"))))
 
 
 def _compared(result: Result, language: str) -> Markup:

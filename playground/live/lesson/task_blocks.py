@@ -30,8 +30,8 @@ def draw_work(block: Exercise, page: Page) -> None:
     _buttons(block, page)
     if tasks.is_begun(block):
         _sliders(block, page)
-    verdict = tasks.verdicts.get(block.name)
-    if verdict is not None and tasks.judging != block.name:
+    verdict = tasks.judging.verdicts.get(block.name)
+    if verdict is not None and tasks.judging.at != block.name:
         _verdict(block, verdict, page)
 
 
@@ -43,7 +43,7 @@ def draw_challenge(block: Challenge, page: Page) -> None:
     with page.frame(block.name, theme.ACCENT if solved else theme.WARM):
         page.label(page.say("challenge"), theme.ACCENT if solved else theme.WARM)
         page.text(block.ask)
-        target = tasks.target(block)
+        target = tasks.judging.target(block)
         if target is not None:
             page.pictures.draw(target, _WIDE * page.look.scale)
             imgui.set_item_tooltip(written(block.alt))
@@ -84,7 +84,7 @@ def _buttons(block: Task, page: Page) -> None:
     tasks = page.reader.tasks
     begun, attempt = tasks.is_begun(block), tasks.attempt(block)
     has_own = begun or bool(attempt.text or attempt.values)
-    judged = tasks.judging == block.name
+    judged = tasks.judging.at == block.name
     row: list[
         tuple[str, str, str, Callable[[Any], object], bool]
     ] = []  # key, mark, note, what it does, enabled
@@ -127,6 +127,9 @@ def _verdict(block: Exercise, verdict: Verdict, page: Page) -> None:
     rgb = theme.ACCENT if verdict.passed else theme.WARM
     with page.look.font(page.look.bold):
         imgui.text_colored(theme.colour(rgb), points_of(verdict, language))
+    tasks = page.reader.tasks
+    if tasks.is_begun(block) and tasks.work(block) != tasks.judging.judged.get(block.name):
+        page.text(page.say("changed_since"), size=theme.SMALL, dim=True)
     for diagnostic in verdict.diagnostics:
         page.plain(str(diagnostic), theme.ALARM)
     for result in verdict.results:

@@ -7,7 +7,7 @@ where it cannot be read, lessons begin at their beginning.
 from __future__ import annotations
 
 import json
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +66,8 @@ def read_progress(path: Path) -> Progress:
 
 def write_progress(progress: Progress, path: Path) -> str:
     """Write it; return a sentence where that cannot be done, else nothing."""
-    text = json.dumps({"format": FORMAT, **asdict(progress)}, indent=1, ensure_ascii=False)
+    table = asdict(replace(progress, attempts=_done(progress.attempts)))
+    text = json.dumps({"format": FORMAT, **table}, indent=1, ensure_ascii=False)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with replacing(path) as file:
@@ -74,6 +75,11 @@ def write_progress(progress: Progress, path: Path) -> str:
     except (OSError, PlaygroundError) as error:
         return f"where you are in the lessons cannot be remembered: {error}"
     return ""
+
+
+def _done(attempts: dict[str, Attempt]) -> dict[str, Attempt]:
+    """Return the attempts at which something was done."""
+    return {task: attempt for task, attempt in attempts.items() if attempt != Attempt()}
 
 
 def _read(table: Any) -> Progress:

@@ -159,7 +159,7 @@ class Reader:
         self.bugs.close_all()
         section = self.lesson.sections[page]
         self.numbers.want(self.lesson, section.blocks)
-        self.tasks.want(section.blocks)
+        self.tasks.judging.want(section.blocks)
         self.remember()
         first = self._picture_of(page)
         if not show or first is None:

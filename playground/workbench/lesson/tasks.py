@@ -1,8 +1,7 @@
 """Exercises that check themselves, and pictures to match, in the live view.
 
-What a student writes is a copy of the file, as a broken shader is; it is judged in a process of its own,
-so that a text that never ends, or values at which it does not, cost no more than that process. The last
-attempt, the best points and the best score are remembered from one start to the next.
+What a student writes is a copy of the file, as a broken shader is. The last attempt, the best points and
+the best score are remembered from one start to the next.
 """
 
 from __future__ import annotations
@@ -15,17 +14,17 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError
-from playground.lessons.model import Block, Challenge, Exercise, Scene
+from playground.lessons.model import Challenge, Exercise, Scene
 from playground.lessons.scenes import with_value
-from playground.lessons.tasks.judge_process import JudgeProcess
-from playground.lessons.tasks.match import Ends, Match, match
+from playground.lessons.tasks.match import Match, match
 from playground.lessons.tasks.texts import path_of, starter_text
-from playground.lessons.tasks.verdict import Picture, Verdict
+from playground.lessons.tasks.verdict import Verdict
 from playground.lessons.tasks.work import Work, scene_of, starter
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.model import Sketch, Value, kernels_of
 from playground.workbench.inspect.compare import as_before
 from playground.workbench.lesson.figure_view import FigureView
+from playground.workbench.lesson.judging import SIDE, Judging
 from playground.workbench.lesson.progress import Attempt, Progress
 from playground.workbench.lesson.shader_copies import Copies, Copy, line_of
 from playground.workbench.notices import Notices
@@ -39,7 +38,6 @@ BEGUN = 1
 """Which picture of a task is the student's own; 0 is that of the solution."""
 
 _KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
-_SIDE = 160  # pixels of the pictures that a score compares while one plays
 _PAUSE = 0.3  # [s] between two scores at least
 _SHARE = 10.0  # times what a score takes that it waits for the next
 _POLL = 0.05  # [s] between two looks at what is judged
@@ -59,19 +57,15 @@ class Tasks:
     remember: Callable[[], None]  # stores the progress
     clear: Callable[[], None]  # called before a task's picture is shown
     lesson: Callable[[], str]  # the name of the lesson that is open
-    judge: JudgeProcess = field(default_factory=JudgeProcess)
-    verdicts: dict[str, Verdict] = field(default_factory=dict)  # by block
     matches: dict[str, Match] = field(default_factory=dict)  # by block: how near the picture in view is
-    judging: str = ""  # the block whose work is judged
 
     def __post_init__(self) -> None:
+        self.judging = Judging(
+            notices=self.notices, rests=lambda: self.session.rests, received=self._received
+        )
         self._on: Task | None = None  # the task that was begun
         self._copy: Copy | None = None  # what replaces its file
-        self._ends: dict[str, Ends] = {}
         self._given: dict[str, list[str]] = {}  # parameters that a starter has
-        self._wanted: list[Challenge] = []
-        self._to_judge: tuple[Exercise, Work] | None = None
-        self._sent = ""  # the block that the process is at
         self._scored: tuple[object, ...] = ()  # what the score is of
         self._news = False  # something has come that is not on the screen yet
         self._stale = False  # the picture in view is another than that which was scored
@@ -109,7 +103,7 @@ class Tasks:
         """Send the work to be judged; ``update`` receives the verdict."""
         work = self.work(block)
         self._keep(block, work)
-        self.judging, self._to_judge = block.name, (block, work)
+        self.judging.check(block, work)
 
     def start_again(self, block: Task) -> None:
         """Show the starter; what was there before comes back by ``undo``."""
@@ -167,15 +161,6 @@ class Tasks:
             values = _values(shown.sketch, block.sliders)
         return Work(text, values)
 
-    def target(self, block: Challenge) -> Picture | None:
-        """Return the picture to match; None while it is not drawn yet."""
-        ends = self._ends.get(block.name)
-        return None if ends is None else ends.target
-
-    def want(self, blocks: tuple[Block, ...]) -> None:
-        """Request the pictures to match of a page."""
-        self._wanted = [b for b in blocks if isinstance(b, Challenge) and b.name not in self._ends]
-
     # ── frames ───────────────────────────────────────────────────────────────
 
     def update(self, block: Task | None, now: float) -> None:
@@ -183,15 +168,15 @@ class Tasks:
 
         ``block`` is the task whose picture is in view, if any.
         """
-        self._news = False
-        self._receive()
-        self._send()
+        self._news = self.judging.update()
         if self._on is not None and now >= self._store_at:
             self._store_at = now + _STORE
             self.store()
         elif self._on is not None and self._store_at == math.inf:
             self._store_at = now + _STORE
         challenge = block if isinstance(block, Challenge) and self.is_begun(block) else None
+        if challenge is not None and challenge.name not in self.judging.ends:
+            challenge = None  # what it is compared with is still drawn
         coming = self.session.drafts.stage is not ReloadStage.NONE or self.session.error is not None
         self._stale = challenge is not None and not coming and self._state(challenge) != self._scored
         if challenge is not None and self._stale and now >= self._due:
@@ -199,7 +184,7 @@ class Tasks:
 
     def patience(self, now: float) -> float:
         """Return how long nothing needs to be done here [s]."""
-        if self._news or self._sent or self.judging:
+        if self._news or self.judging.busy:
             return 0.0 if self._news else _POLL
         typed = max(self._store_at - now, 0.0) if self._on is not None else math.inf
         return min(typed, max(self._due - now, 0.0) if self._stale else math.inf)
@@ -225,72 +210,33 @@ class Tasks:
     def close(self) -> None:
         """Remember what is typed, and end the process that judges."""
         self.store()
-        self._stop()
-        self.judge.close()
+        self.judging.close()
 
     def forget(self) -> None:
         """Forget verdicts: another lesson is opened."""
         self.leave()
-        self.verdicts.clear()
+        self.judging.forget()
         self.matches.clear()
-        self._ends.clear()
         self._given.clear()
-        self._wanted.clear()
-        self._stop()
-
-    def _stop(self) -> None:
-        """Expect nothing more of the process."""
-        self.judging, self._sent, self._to_judge = "", "", None
 
     # ── parts of it ──────────────────────────────────────────────────────────
 
-    def _send(self) -> None:
-        """Send the process what comes next: a work, or a picture to match."""
-        if self._sent:
-            return
-        if self._to_judge is not None:
-            (block, work), self._to_judge = self._to_judge, None
-            self._sent = block.name
-            self.judge.submit(block, work)
-        elif self._wanted and self.session.rests:
-            challenge = self._wanted.pop(0)
-            self._sent = challenge.name
-            self.judge.submit(challenge, None, _SIDE)
-
-    def _receive(self) -> None:
-        """Receive what the process has judged or drawn."""
-        name, found = self._sent, None
-        if not name:
-            return
-        try:
-            found = self.judge.poll()
-        except PlaygroundError as error:
-            self.notices.say(str(error))
-        else:
-            if found is None:
-                return
-        self._sent, self._news = "", True
-        if name == self.judging and self._to_judge is None:
-            self.judging = ""
-        if isinstance(found, Ends):
-            self._ends[name] = found
-        elif isinstance(found, Verdict):
-            self.verdicts[name] = found
-            attempt = self.progress.attempts.setdefault(f"{self.lesson()}/{name}", Attempt())
-            attempt.points, attempt.of = max(attempt.points, found.points), found.of
-            self.remember()
+    def _received(self, name: str, verdict: Verdict) -> None:
+        attempt = self.progress.attempts.setdefault(f"{self.lesson()}/{name}", Attempt())
+        attempt.points, attempt.of = max(attempt.points, verdict.points), verdict.of
+        self.remember()
 
     def _score(self, block: Challenge) -> None:
         """Score the picture in view, where it rests and is another than the one before."""
         session = self.session
-        if session.plan is None or block.name not in self._ends:
+        if session.plan is None:
             return
         work, state = self.work(block), self._state(block)
         begun, self._news = self.notices.now(), True
         try:
             with as_before(session.engine, session.plan):
                 drawn = Work(self._drawn_text(block), work.values)  # which the sandbox has tried
-                found = match(session.engine, block, drawn, self._ends[block.name], _SIDE)
+                found = match(session.engine, block, drawn, self.judging.ends[block.name], SIDE)
         except PlaygroundError as error:
             self.notices.say(str(error))
             self._scored = state
@@ -339,7 +285,7 @@ class Tasks:
     def _forget(self, block: Task) -> None:
         """Forget what was said of a work that is no more."""
         self._scored = ()
-        self.verdicts.pop(block.name, None)
+        self.judging.verdicts.pop(block.name, None)
         self.matches.pop(block.name, None)
         self.remember()
 
