@@ -107,6 +107,8 @@ def beats_of(lesson: Lesson) -> tuple[Beat, ...]:
             if beat.kind == "text" and beat.shown[:1].islower() and found and found[-1].formula:
                 both = "\n\n".join(filter(None, [found[-1].formula, beat.formula]))
                 beat = replace(beat, formula=both)  # it goes on from that one
+            if beat.kind == "code" and not beat.shown and found[-1].page == page:
+                beat = replace(beat, shown=found[-1].shown)  # "This is the kernel:" stays
             found.append(replace(beat, still=shown, sliders=sliders))
             if beat.kind == "sweep" and shown is not None:
                 shown = _at_end(lesson, shown)
@@ -258,11 +260,12 @@ def _code(block: Code, label: str) -> Iterator[Beat]:
     parts = _shared(found.text.split("\n"))
     line = found.line
     for number, part in enumerate(parts):
-        beat = _told("code", block.caption or found.file, label="", file=found.file)
-        beat = replace(beat, code="\n".join(part), line=line, notes=block.caption)
-        line += len(part)
+        name = found.file
         if len(parts) > 1:
-            beat = replace(beat, label=label.format(number + 1, len(parts)))
+            name += f", {label.format(number + 1, len(parts))}"
+        beat = _told("code", block.caption, label=name, file=found.file)
+        beat = replace(beat, code="\n".join(part), line=line)
+        line += len(part)
         yield beat if number == 0 else replace(beat, notes="")
 
 

@@ -52,7 +52,7 @@ class PresentKey:
     """Keys that do one thing, and what that is in each language."""
 
     keys: tuple[imgui.Key, ...]
-    name: str
+    name: tuple[str, str] | str  # in both languages; one text where they are the same
     meaning: tuple[str, str]  # English, French
     act: Callable[[Keyed], None]
     typed: str = ""  # letters that do it too, wherever the keyboard has them
@@ -62,23 +62,26 @@ class PresentKey:
 KEYS: tuple[PresentKey, ...] = (
     PresentKey(
         (_K.right_arrow, _K.space, _K.page_down),
-        "→  Space  PgDn  click",
+        ("→  Space  PgDn  click", "→  Espace  PgSuiv  clic"),
         ("next", "suivant"),
         lambda stage: stage.presenter.next(),
     ),
     PresentKey(
         (_K.left_arrow, _K.page_up, _K.backspace),
-        "←  PgUp  Backspace",
+        ("←  PgUp  Backspace", "←  PgPréc  Retour arrière"),
         ("back", "précédent"),
         lambda stage: stage.presenter.back(),
     ),
-    PresentKey((_K.home,), "Home", ("first", "premier"), lambda stage: stage.presenter.go(0)),
+    PresentKey((_K.home,), ("Home", "Début"), ("first", "premier"), lambda stage: stage.presenter.go(0)),
     PresentKey(
-        (_K.end,), "End", ("last", "dernier"), lambda stage: stage.presenter.go(len(stage.presenter.beats))
+        (_K.end,),
+        ("End", "Fin"),
+        ("last", "dernier"),
+        lambda stage: stage.presenter.go(len(stage.presenter.beats)),
     ),
     PresentKey(
         (_K.enter, _K.keypad_enter),
-        "number, Enter",
+        ("number, Enter", "numéro, Entrée"),
         ("go to that one", "aller à ce numéro"),
         lambda stage: stage.enter(),
     ),
@@ -92,7 +95,7 @@ KEYS: tuple[PresentKey, ...] = (
     PresentKey((_K.w,), "W", ("white screen", "écran blanc"), lambda stage: stage.presenter.cover("white")),
     PresentKey(
         (_K.up_arrow,),
-        "1–9, then ↑ ↓ or wheel",
+        ("1–9, then ↑ ↓ or wheel", "1–9, puis ↑ ↓ ou molette"),
         ("choose a slider, move it", "choisir un curseur, le déplacer"),
         lambda stage: stage.slide(1.0),
         repeats=True,
@@ -105,7 +108,7 @@ KEYS: tuple[PresentKey, ...] = (
     PresentKey((_K.f, _K.f11), "F", ("full screen", "plein écran"), lambda stage: stage.toggle_full()),
     PresentKey((_K.h,), "?  H", ("these keys", "ces touches"), lambda stage: stage.toggle_help(), typed="?"),
     PresentKey(
-        (_K.escape,), "Esc", ("leave the presentation", "quitter la présentation"),
+        (_K.escape,), ("Esc", "Échap"), ("leave the presentation", "quitter la présentation"),
         lambda stage: stage.presenter.escape(),
     ),
 )  # fmt: skip
@@ -114,7 +117,8 @@ KEYS: tuple[PresentKey, ...] = (
 def help_rows(language: str) -> tuple[tuple[str, str], ...]:
     """Return the keys and their meanings, in a language."""
     which = 1 if language == "fr" else 0
-    return tuple((key.name, key.meaning[which]) for key in KEYS if key.name)
+    rows = ((key.name if isinstance(key.name, str) else key.name[which], key) for key in KEYS)
+    return tuple((name, key.meaning[which]) for name, key in rows if name)
 
 
 def act_on_presentation_keys(stage: Keyed) -> None:

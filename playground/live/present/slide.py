@@ -37,6 +37,7 @@ _TEXT, _TITLE, _CODE = 50.0, 54.0, 40.0  # the largest letters
 _FORMULA = 64.0
 _SIDE, _ABOVE, _HEAD = 60.0, 16.0, 36.0
 _GROUND: Rgb = (20, 22, 24)
+_RAIL: Rgb = (92, 100, 106)
 _BOARD_ALPHA = 244
 _SPACING = 1.24  # of lines of code
 _NUMBERS = 3.2  # columns that the numbers of lines take
@@ -181,7 +182,8 @@ def gauges_of(gauges: Sequence[Gauge], sizes: Sizes) -> Image.Image | None:
         baseline = middle + face.size * 0.34
         paint_text(draw, str(gauge.number), (pad, baseline), bold, WARM if gauge.chosen else ACCENT)
         left = 2 * pad + bold.width("0")
-        draw.rounded_rectangle((left, middle - 3 * scale, left + bar, middle + 3 * scale), 3 * scale, FIELD)
+        rail = (left, middle - 3 * scale, left + bar, middle + 3 * scale)
+        draw.rounded_rectangle(rail, 3 * scale, _RAIL)
         end = left + bar * min(max(gauge.share, 0.0), 1.0)
         draw.rounded_rectangle((left, middle - 3 * scale, end, middle + 3 * scale), 3 * scale, ink)
         draw.ellipse((end - 9 * scale, middle - 9 * scale, end + 9 * scale, middle + 9 * scale), ink)
@@ -232,7 +234,7 @@ def _code(image: Image.Image, beat: Beat, sizes: Sizes) -> None:
         x = left
         if beat.line:
             mark = str(beat.line + number)
-            paint_text(draw, mark, (x + (_NUMBERS - len(mark)) * letter, baseline), face, (92, 100, 106))
+            paint_text(draw, mark, (x + (_NUMBERS - len(mark)) * letter, baseline), face, DIM)
             x += (_NUMBERS + 1) * letter
         for text, ink in line:
             paint_text(draw, text, (x, baseline), face, ink)

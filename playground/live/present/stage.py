@@ -131,9 +131,9 @@ class Stage:
     def act(self, area: Area) -> bool:
         """Act on keys and mouse; return whether the mouse is for the picture, which is in ``area``."""
         presenter, io = self.presenter, imgui.get_io()
-        presenter.forget_typed()
         self._follow_mouse()
         act_on_presentation_keys(self)
+        presenter.forget_typed()
         if not presenter.on or presenter.blank:
             return False
         if self._slide_by_wheel(io.mouse_wheel):

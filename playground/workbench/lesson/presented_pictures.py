@@ -42,13 +42,13 @@ class Row:
     @property
     def text(self) -> str:
         """Its value, short, with its unit."""
+        unit = unit_of(self.parameter)
+        if isinstance(self.value, tuple):  # a direction's two angles have their units
+            between = f"{unit}, " if unit == "°" else ", "
+            return between.join(f"{part:.3g}" for part in self.value) + unit
         if isinstance(self.value, float):
-            shown = f"{self.value:.4g}"
-        elif isinstance(self.value, tuple):
-            shown = ", ".join(f"{part:.3g}" for part in self.value)
-        else:
-            shown = write(self.parameter, self.value).strip('"')
-        return shown + unit_of(self.parameter)
+            return f"{self.value:.4g}{unit}"
+        return write(self.parameter, self.value).strip('"') + unit
 
 
 @dataclass
