@@ -118,6 +118,11 @@
         button.removeAttribute("aria-busy");
       }
     });
+    // A picture itself starts as well, but where pressing it swipes.
+    if (root.matches("figure:not(.compare)")) {
+      still.classList.add("starts");
+      still.addEventListener("click", (event) => { if (event.target.matches("img")) button.click(); });
+    }
     still.append(button);
   }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator
 
 from playground.lessons import model
@@ -16,6 +17,9 @@ Entry = tuple[str, str, str, str]
 
 _HIDDEN = {"answer", "fix", "hint", "solution"}
 """Fields of blocks that are folded away: a search does not give them away."""
+
+
+_ENDS = ("softbreak", "paragraph_close", "heading_close", "td_close", "th_close")
 
 
 def lesson_entries(lesson: model.Lesson, setting: Setting) -> Iterator[Entry]:
@@ -49,14 +53,17 @@ def _texts(block: model.Block) -> Iterator[str]:
 
 
 def _words(*texts: str) -> str:
-    """Return Markdown as its words: formulas as they are written, code too."""
-    kinds = ("text", "code_inline", "math_inline", "math_block", "fence", "code_block")
+    """Return Markdown as its words, code too; of formulas those within a line, signs by their names."""
+    return " ".join(" ".join(map(_plain, texts)).split())
+
+
+def _plain(text: str) -> str:
     found = []
-    for text in texts:
-        parts = [
-            " " if token.type in ("softbreak", "paragraph_close", "td_close", "th_close") else token.content
-            for token in every_token(parser().parse(text))
-            if token.type in (*kinds, "softbreak", "paragraph_close", "td_close", "th_close")
-        ]
-        found.append("".join(parts))
-    return " ".join(" ".join(found).split())
+    for token in every_token(parser().parse(text)):
+        if token.type in _ENDS:
+            found.append(" ")
+        elif token.type == "math_inline":
+            found.append(re.sub(r"[\\{}]", "", token.content))
+        elif token.type in ("text", "code_inline", "fence", "code_block"):
+            found.append(token.content)
+    return "".join(found)
