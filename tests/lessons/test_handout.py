@@ -14,8 +14,8 @@ from playground.cli import main
 from playground.lessons.handout.exercise_files import assignments_of
 from playground.lessons.handout.student_sketch import student_files
 from playground.lessons.read import read_lesson, read_lessons
-from playground.lessons.tasks.texts import answer_text, starter_text
-from playground.lessons.tasks.work import scene_of, starter
+from playground.lessons.tasks.texts import answer_text
+from playground.lessons.tasks.work import Work, scene_of
 from playground.sketch.load import load
 from playground.sketch.unpack import unpacked_beside
 
@@ -38,11 +38,13 @@ def test_the_zip_opens_in_the_window_as_the_exercise_begins(handed_out, one, tmp
     zipped.write_bytes(handed_out.read_bytes())
     sketch_file, _ = unpacked_beside(zipped)
     folder = tmp_path / "week3"
-    assert sketch_file == folder / one.name / "sketch.toml"
+    first = assignments_of([read_lesson("diamond_square")])[0]
+    assert sketch_file == folder / first.name / first.sketch_file
+    sketch_file = folder / one.name / "sketch.toml"
     assert load(folder / one.opens).file == str(sketch_file)
     kernel = folder / one.name / one.file
-    assert starter_text(one.exercise).splitlines()[0] in kernel.read_text()
-    begin = scene_of(one.exercise, starter(one.exercise))
+    assert one.starter.splitlines()[0] in kernel.read_text()
+    begin = scene_of(one.exercise, Work(one.starter))
     shown = engine.render(load(sketch_file), size=(160, 90)).array
     wanted = engine.render(begin.sketch, size=(160, 90)).array
     np.testing.assert_array_equal(shown, wanted)
