@@ -21,6 +21,7 @@ uniform float shelving = 0.16;   //! slider(0, 1) step(0.01) Metres that the bed
 uniform float eye_height = 2.0;  //! log_slider(0.5, 50) unit("m") Over the water
 uniform float down = 14.0;       //! slider(0, 60) step(0.5) unit("°") How far down the eye looks
 uniform vec2 sun = vec2(8.0, 24.0);  //! slider(-60, 90) parts("right", "up") unit("°")
+                                 //! Where the sun stands, from where the eye looks
 
 const int WAVES = 24;
 const float LONGEST = 6.0, SHORTEST = 0.12;  // [m]

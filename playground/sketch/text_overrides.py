@@ -12,6 +12,7 @@ from typing import Any, cast
 
 from playground.errors import DataError
 from playground.paths import GLSL
+from playground.sketch.assign import find_targets
 from playground.sketch.composed import composed
 from playground.sketch.dialects import read_foreign
 from playground.sketch.header import parse_kernel
@@ -24,7 +25,8 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
     """Return the sketch with texts, by absolute path, in place of those of its shaders' files.
 
     Texts of files that the sketch does not use change nothing. Where a text says something else
-    than its file, the fast variants of what is made of it no longer agree, and do not run.
+    than its file, the fast variants of what is made of it no longer agree, and do not run. A main
+    parameter that a text no longer declares is one no more.
 
     Raises ``DataError`` where a text leaves no kernel of its file, and ``ShaderError`` where
     a text's declarations or includes are wrong.
@@ -52,7 +54,8 @@ def with_texts(sketch: Sketch, texts: Mapping[str, str]) -> Sketch:
                 known[id(technique)] = replace(kernel, variants=variants)
         return cast(Technique, known[id(technique)])
 
-    return replace(sketch, graph=cast(Graph, reread(sketch.graph)))
+    graph = cast(Graph, reread(sketch.graph))
+    return replace(sketch, graph=graph, main=tuple(path for path in sketch.main if find_targets(graph, path)))
 
 
 def _read_again(graph: Graph, texts: Mapping[str, str], folder: Path) -> Graph:

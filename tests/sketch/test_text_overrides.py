@@ -30,6 +30,13 @@ def kernels(sketch):
     return {kernel.name.rpartition("/")[2]: kernel for _, kernel in kernels_of(sketch.graph)}
 
 
+def test_a_main_parameter_that_a_text_lacks_is_one_no_more(folder):
+    sketch = folder.sketch(head='format = 1\nmain = ["height.rise"]\n')
+    assert with_texts(sketch, {str(folder.path / "terrain.glsl"): TERRAIN}).main == ("height.rise",)
+    steep = TERRAIN.replace("rise", "climb")
+    assert with_texts(sketch, {str(folder.path / "terrain.glsl"): steep}).main == ()
+
+
 def test_a_text_is_read_in_place_of_its_file_and_declares_what_it_declares(folder):
     sketch = folder.sketch()
     steep = TERRAIN.replace("rise", "climb").replace("0.5", "0.75")
