@@ -57,7 +57,8 @@ def test_every_picture_can_be_set_by_hand(name):
     count = 0
     for block in read_lesson(name).blocks:
         if isinstance(block, Figure | Break | Exercise):
-            scenes = (block.scene,) if block.scene else ()
+            written = isinstance(block, Exercise) and block.file  # its picture is of a kernel, not of values
+            scenes = (block.scene,) if block.scene and not written else ()
         else:
             scenes = block.scenes if isinstance(block, Steps | Slider | Compare) else ()
         for scene in scenes:
@@ -69,5 +70,6 @@ def test_every_picture_can_be_set_by_hand(name):
                 shown = map_of(scene)
                 assert shown is not None and ":" in shown.ref
             else:
-                assert made.with_values({}) == scene.sketch.with_values({}), block.name
+                same = made.with_values({}) == scene.sketch.with_values({})
+                assert same, block.name  # the difference of two sketches is thousands of lines
     assert count >= 5
