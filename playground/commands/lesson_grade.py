@@ -71,9 +71,11 @@ def grade(
         graded = grade(read, assignments, judges, language, advance)
         drawn_by = judges.renderer
     titles = {one.name: f"{one.lesson.title}, {one.number}" for one in assignments}
-    page = write_report(output, graded, titles, language, drawn_by)
+    page, kept = write_report(output, graded, titles, language, drawn_by)
     for name in others:
-        note(f"left out: {name!r} is no folder and no zip")
+        note(f"left out: {name}")
+    if kept is not None:
+        note(f"grades.csv had been changed since the last report; it is kept as {kept}")
     if as_json:
         print_json([_as_json(one) for one in graded])
         return

@@ -6,6 +6,7 @@ import csv
 import io
 import json
 import os
+import struct
 import sys
 import zipfile
 from dataclasses import replace
@@ -18,9 +19,11 @@ from playground.cli import main
 from playground.errors import DataError
 from playground.images.files import write_png
 from playground.lessons.grading.duplicates import alike
+from playground.lessons.grading.grade import read_all
 from playground.lessons.grading.handed_in import lessons_in, read_submission
 from playground.lessons.grading.marks import GRADED, MISSING, REFUSED, STOPPED, Graded, Mark, Pair
 from playground.lessons.grading.page import Setting, page
+from playground.lessons.grading.report import write_report
 from playground.lessons.grading.submissions import find_submissions
 from playground.lessons.grading.table import table_bytes
 from playground.lessons.grading.values_in_toml import values_in_toml
@@ -120,6 +123,23 @@ def test_a_zip_that_lies_about_a_size_is_not_believed(tmp_path):
     assert read(path).problem
 
 
+def test_a_list_that_only_zip64_tells_of_is_refused_before_it_is_read(tmp_path):
+    path = tmp_path / "Ana.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        for number in range(40):
+            (info := zipfile.ZipInfo(f"{number}.txt")).comment = bytes(60_000)
+            archive.writestr(info, "")
+    data = path.read_bytes()
+    body, (length, start) = data[:-22], struct.unpack("<LL", data[-10:-2])
+    assert length > 2**21 and len(data) == start + length + 22
+    large = struct.pack("<4sQHHLLQQQQ", b"PK\6\6", 44, 45, 45, 0, 0, 40, 40, length, start)
+    locator = struct.pack("<4sLQL", b"PK\6\7", 0, len(body), 1)
+    end = struct.pack("<4sHHHHLLH", b"PK\5\6", 0, 0, 1, 1, 46, start, 0)
+    path.write_bytes(body + large + locator + end)
+    assert len(zipfile.ZipFile(path).namelist()) == 40  # Python believes zip64, not the end record
+    assert "more than 4000 files" in read(path).problem
+
+
 def test_what_is_no_zip(tmp_path):
     (tmp_path / "Ana.zip").write_bytes(b"not a zip")
     assert "is no zip that can be read" in read(tmp_path / "Ana.zip").problem
@@ -142,7 +162,7 @@ def test_links_and_pipes_are_not_read(tmp_path):
     assert read(tmp_path / "Dan").missing
     found, others = find_submissions(tmp_path, tmp_path / "report")
     assert [one.student for one in found] == ["Ana", "Cem", "Dan"]
-    assert others == ["Bea", "secret.glsl"]
+    assert others == ["'Bea' is no folder and no zip", "'secret.glsl' is no folder and no zip"]
 
 
 @pytest.mark.skipif(os.name != "posix", reason="a file of a gigabyte takes no room")
@@ -162,6 +182,40 @@ def test_students_go_by_the_names_of_what_they_handed_in(tmp_path):
     assert {one.student for one in found} == {"李雷", "Zoë", "Zoë.zip", found[0].student}
     with pytest.raises(DataError, match="no such folder"):
         find_submissions(tmp_path / "nowhere", tmp_path)
+
+
+def test_no_two_students_have_one_name(tmp_path):
+    for name in ("Anna", "Ben (2)"):
+        (tmp_path / name).mkdir()
+    for name in ("Anna.zip", "Anna.zip.zip", "Ben (2).zip"):
+        zipped(tmp_path / name, (FILE, name))
+    found, _ = find_submissions(tmp_path, tmp_path / "report")
+    names = {one.path.name: one.student for one in found}
+    assert names == {
+        "Anna": "Anna",
+        "Anna.zip": "Anna.zip",
+        "Anna.zip.zip": "Anna.zip (2)",
+        "Ben (2)": "Ben (2)",
+        "Ben (2).zip": "Ben (2).zip",
+    }
+    assert len(read_all(found, [])) == 5
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a name is always text")
+def test_names_whose_wrong_bytes_look_the_same_are_numbered(tmp_path):
+    for name in (b"Zo\xeb", b"Zo\xec"):
+        (tmp_path / os.fsdecode(name)).mkdir()
+    (tmp_path / "Zo\ufffd (2)").mkdir()
+    found, _ = find_submissions(tmp_path, tmp_path / "report")
+    assert sorted(one.student for one in found) == ["Zo\ufffd", "Zo\ufffd (2)", "Zo\ufffd (3)"]
+
+
+def test_an_earlier_report_is_no_student(tmp_path):
+    (tmp_path / "Ana").mkdir()
+    write_report(tmp_path / "last week", [graded_as("Ana")], {"x-y": "y"}, "en", "llvmpipe")
+    found, others = find_submissions(tmp_path, tmp_path / "report")
+    assert [one.student for one in found] == ["Ana"]
+    assert others == ["'last week' is an earlier report of grades"]
 
 
 # ── values ───────────────────────────────────────────────────────────────────
@@ -238,6 +292,24 @@ def test_all_text_of_the_page_is_escaped():
         assert markup not in text
     assert "<code>a</code> is &lt;b&gt;." in text and "&lt;script&gt;alert(1)" in text
     assert "1,5 / 2" in page([graded("x")], {"x-y": "y"}, replace(setting(), language="fr"))
+
+
+def graded_as(name, points=1.5):
+    return Graded(name, {"x-y": Mark(points, 2, GRADED)})
+
+
+def test_what_a_teacher_corrected_is_kept_when_the_report_is_written_again(tmp_path):
+    def write(points):
+        return write_report(tmp_path, [graded_as("Ana", points)], {"x-y": "y"}, "en", "llvmpipe")[1]
+
+    table, first, second = (tmp_path / name for name in ("grades.csv", "grades (1).csv", "grades (2).csv"))
+    assert write(1.5) is None and write(0.5) is None and not first.exists()
+    table.write_text("corrected")
+    assert write(1.0) == first and first.read_text() == "corrected"
+    assert "Ana,1,1,2" in table.read_text("utf-8-sig")
+    assert write(2.0) is None and not second.exists()
+    table.write_text("corrected again")
+    assert write(2.0) == second and first.read_text() == "corrected"
 
 
 def setting():

@@ -249,6 +249,16 @@ def test_a_texture_of_another_size_differs():
     assert not result.passed and result.sizes == ((5, 5, 1), (5, 5, 4))
 
 
+@pytest.mark.parametrize(
+    ("wanted", "mine", "greys"),
+    [(0.5, 0.25, (128, 64)), (0.0, 1.0, (0, 255)), (300.0, 150.0, (255, 128)), (-1.0, 0.0, (0, 128))],
+)
+def test_a_texture_that_is_the_same_everywhere_is_shown_as_its_value(wanted, mine, greys):
+    one, other = (Wanted(texture=np.full((5, 5), value, np.float32)) for value in (wanted, mine))
+    found = compare(Check(0.1, of="height"), other, one)
+    assert (np.unique(found.wanted).tolist(), np.unique(found.mine).tolist()) == ([greys[0]], [greys[1]])
+
+
 def test_values_that_are_not_asked_for_are_named(task, engine):
     block = task(VALUES).block
     verdict = judge(engine, block, Work(values={"height.sede": 4}))

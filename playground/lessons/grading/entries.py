@@ -29,6 +29,7 @@ _MOST_UNPACKED = 2**30  # [bytes] its files may become
 _ALWAYS_FINE = 2**26  # [bytes] unpacked, with any ratio
 _MOST_RATIO = 200  # of what is unpacked to the zip
 _END_MARK = b"PK\x05\x06"  # of a zip's list; APPNOTE 6.3.10, section 4.3.16
+_ZIP64_MARK, _ZIP64_BYTES = b"PK\x06\x07", 20  # of what points to a larger list; section 4.3.15
 _END_BYTES = 22 + 2**16  # its record and the longest comment
 _BY_SYSTEMS = ("__macosx", ".ds_store", "thumbs.db", "desktop.ini")
 
@@ -154,15 +155,16 @@ def _check_list(path: Path) -> None:
     if size > _MOST_ZIP:
         raise DataError(f"has {size / 2**20:.0f} MiB; a zip of at most {_MOST_ZIP // 2**20} is read")
     with path.open("rb") as file:
-        file.seek(max(size - _END_BYTES, 0))
-        tail = file.read(_END_BYTES)
+        file.seek(max(size - _END_BYTES - _ZIP64_BYTES, 0))
+        tail = file.read(_END_BYTES + _ZIP64_BYTES)
     place = tail.rfind(_END_MARK)
     if place < 0 or len(tail) < place + 20:
         raise DataError("is no zip that can be read: it is cut short, or something else by this name")
     count = int.from_bytes(tail[place + 10 : place + 12], "little")
     length = int.from_bytes(tail[place + 12 : place + 16], "little")
-    # A larger list (zip64) has all bits set here.
-    if count > MOST_FILES or length > _MOST_LIST:
+    # With this mark before the end record, that of a larger list (zip64) counts, whatever is written here.
+    larger = tail[max(place - _ZIP64_BYTES, 0) : place].startswith(_ZIP64_MARK)
+    if larger or count > MOST_FILES or length > _MOST_LIST:
         raise DataError(f"holds more than {MOST_FILES} files; expected the folder of the hand-out")
 
 

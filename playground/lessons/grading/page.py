@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,6 +19,7 @@ from playground.lessons.library import Labels
 from playground.markup import Markup, joined, tag
 
 _HERE = Path(__file__).resolve().parent
+_HASH_NAME = "table-sha256"
 _COARSE = 100  # pixels: pictures with fewer are shown texel by texel
 
 
@@ -29,6 +31,7 @@ class Setting:
     renderer: str  # that drew the pictures
     file_of: Callable[[bytes], str]  # a picture's address
     size_of: Callable[[bytes], tuple[int, int]]  # [pixels]
+    table_hash: str = ""  # SHA-256 of the table that the page goes with
 
     @property
     def label(self) -> Labels:
@@ -55,6 +58,7 @@ def page(graded: Sequence[Graded], titles: dict[str, str], setting: Setting) -> 
         Markup('<meta charset="utf-8">'),
         tag("meta", http_equiv="Content-Security-Policy", content=policy),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        tag("meta", name=_HASH_NAME, content=setting.table_hash) if setting.table_hash else None,
         tag("title", label["title"]),
         tag("style", Markup(style)),
     )
@@ -68,6 +72,12 @@ def page(graded: Sequence[Graded], titles: dict[str, str], setting: Setting) -> 
     )
     whole = tag("html", tag("head", head), tag("body", body), lang=setting.language)
     return f"<!doctype html>\n{whole}\n"
+
+
+def table_hash_of(text: str) -> str:
+    """Return the hash of the table that a page was written with; "" where it has none."""
+    found = re.search(f'<meta name="{_HASH_NAME}" content="([0-9a-f]{{64}})">', text)
+    return found[1] if found else ""
 
 
 def _tools(label: Labels) -> Markup:

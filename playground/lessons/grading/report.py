@@ -1,7 +1,7 @@
 """Write the report of grades into a folder: the table, the contact sheet, its pictures.
 
-grades.csv    a row for each student
-index.html    the contact sheet
+grades.csv    a row for each student; one that was changed since is kept as "grades (1).csv"
+index.html    the contact sheet, with the hash of grades.csv as it was written
 pictures/     named after their bytes: equal ones share a file
 """
 
@@ -11,6 +11,7 @@ import hashlib
 import io
 import re
 from collections.abc import Sequence
+from itertools import count
 from pathlib import Path
 
 from PIL import Image
@@ -18,12 +19,18 @@ from PIL import Image
 from playground.errors import DataError
 from playground.images.files import replacing
 from playground.lessons.grading.marks import Graded
-from playground.lessons.grading.page import Setting, page
+from playground.lessons.grading.page import Setting, page, table_hash_of
 from playground.lessons.grading.table import table_bytes
 from playground.paths import shown
 
 TABLE, PAGE, PICTURES = "grades.csv", "index.html", "pictures"
 _PICTURE = re.compile(r"[0-9a-f]{20}\.webp")
+
+
+def is_report(folder: Path) -> bool:
+    """Return whether a folder holds a report of grades."""
+    files = (folder / TABLE).is_file() and (folder / PAGE).is_file()
+    return files and (folder / PICTURES).is_dir()
 
 
 def check_folder(folder: Path) -> None:
@@ -38,9 +45,10 @@ def check_folder(folder: Path) -> None:
 
 def write_report(
     folder: Path, graded: Sequence[Graded], titles: dict[str, str], language: str, renderer: str
-) -> Path:
-    """Write the report and return its page; pictures of an earlier one that are no longer shown are removed.
+) -> tuple[Path, Path | None]:
+    """Write the report; return its page, and what an earlier table that was changed since is now kept as.
 
+    Pictures of an earlier report that are no longer shown are removed.
     Raises ``DataError`` where it cannot be written.
     """
     written: set[str] = set()
@@ -54,15 +62,36 @@ def write_report(
 
     try:
         (folder / PICTURES).mkdir(parents=True, exist_ok=True)
-        text = page(graded, titles, Setting(language, renderer, file_of, _size_of))
-        _write(folder / TABLE, table_bytes(graded, list(titles)))
+        table = table_bytes(graded, list(titles))
+        text = page(graded, titles, Setting(language, renderer, file_of, _size_of, _hash(table)))
+        kept = _keep_changed(folder, table)
+        _write(folder / TABLE, table)
         _write(folder / PAGE, text.encode("utf-8", "replace"))
         for old in (folder / PICTURES).iterdir():
             if _PICTURE.fullmatch(old.name) and old.name not in written:
                 old.unlink()
     except OSError as error:
         raise DataError(f"cannot be written: {error.strerror}", file=shown(folder)) from None
-    return folder / PAGE
+    return folder / PAGE, kept
+
+
+def _keep_changed(folder: Path, new: bytes) -> Path | None:
+    """Copy a table that is not as the last report wrote it to a name that is free, and return that."""
+    table, page_file = folder / TABLE, folder / PAGE
+    if not table.is_file():
+        return None
+    data = table.read_bytes()
+    written = table_hash_of(page_file.read_text("utf-8", "replace")) if page_file.is_file() else ""
+    if data == new or _hash(data) == written:
+        return None
+    names = (table.with_stem(f"{table.stem} ({number})") for number in count(1))
+    kept = next(path for path in names if not path.exists())
+    _write(kept, data)
+    return kept
+
+
+def _hash(data: bytes) -> str:
+    return hashlib.sha256(data).hexdigest()
 
 
 def _size_of(data: bytes) -> tuple[int, int]:

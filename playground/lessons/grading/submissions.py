@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import unicodedata
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 
 from playground.errors import DataError
 from playground.lessons.grading.entries import is_by_system, is_zip
+from playground.lessons.grading.report import is_report
 from playground.paths import shown
 
 
@@ -16,15 +19,15 @@ from playground.paths import shown
 class Submission:
     """What one student has handed in."""
 
-    student: str  # the folder's or the zip's name, as given
+    student: str  # the folder's or the zip's name, as given; numbered where another has it
     path: Path
 
 
 def find_submissions(folder: Path, report: Path) -> tuple[list[Submission], list[str]]:
-    """List the submissions of a folder by name, and the names of what else is there.
+    """List the submissions of a folder by name, and in a sentence each what else is there.
 
-    ``report`` is left out: it may be in the same folder. Raises ``DataError`` for a folder that is missing
-    or holds no submission.
+    ``report`` is left out: it may be in the same folder. No two students have one name. Raises
+    ``DataError`` for a folder that is missing or holds no submission.
     """
     if not folder.is_dir():
         what = "is a file" if folder.is_file() else "there is no such folder"
@@ -43,21 +46,35 @@ def find_submissions(folder: Path, report: Path) -> tuple[list[Submission], list
         if path.name.startswith(".") or is_by_system(path.name) or path.resolve() == report.resolve():
             continue
         if path.is_symlink() or not (path.is_dir() or is_zip(path)):
-            others.append(readable(path.name))
+            others.append(f"{readable(path.name)!r} is no folder and no zip")
+        elif is_report(path):
+            others.append(f"{readable(path.name)!r} is an earlier report of grades")
         else:
             found.append(path)
     if not found:
         raise DataError("holds no folder and no zip; expected one for each student", file=shown(folder))
     names = Counter(_student_of(path) for path in found)
-    alone = {
-        path: _student_of(path) if names[_student_of(path)] == 1 else readable(path.name) for path in found
-    }
-    return [Submission(alone[path], path) for path in found], others
+    students = _numbered(
+        [_student_of(path) if names[_student_of(path)] == 1 else readable(path.name) for path in found]
+    )
+    return [Submission(student, path) for student, path in zip(students, found, strict=True)], others
 
 
 def readable(name: str) -> str:
     """Return a file's name as text: bytes that are no UTF-8 become question marks in diamonds."""
     return name.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
+
+
+def _numbered(names: Sequence[str]) -> list[str]:
+    """Return names of which no two are the same: the second "Ana" is "Ana (2)", if none has that name."""
+    taken, found = set(names), list[str]()
+    for name in names:
+        alone = name
+        if name in found:
+            alone = next(new for n in count(2) if (new := f"{name} ({n})") not in taken)
+            taken.add(alone)
+        found.append(alone)
+    return found
 
 
 def _student_of(path: Path) -> str:

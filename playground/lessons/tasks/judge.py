@@ -28,6 +28,9 @@ _DOWN, _ACROSS = ("top", "", "bottom"), ("left", "", "right")
 _MOST = 0.6
 """Share of all that differs that lies in a third of a picture, to say that it lies there."""
 
+_ROUNDING = 4 * float(np.finfo(np.float32).eps)
+"""By how much, relatively, the texels of a constant texture may differ."""
+
 Values = NDArray[np.float32]
 
 
@@ -157,10 +160,15 @@ def _size(values: Values) -> tuple[int, ...]:
 
 
 def _as_picture(values: Values, wanted: Values) -> Picture:
-    """Return a texture in grey or colour, from the answer's lowest to its highest value; north is up."""
+    """Return a texture in grey or colour, from the answer's lowest to its highest value; north is up.
+
+    An answer that is the same everywhere is shown as it is: from 0 to 1, or to itself where it is outside.
+    """
     low, high = float(wanted.min()), float(wanted.max())
+    if high - low <= _ROUNDING * max(abs(low), abs(high)):
+        low, high = min(low, 0.0), max(high, 1.0)
     clean = np.nan_to_num(values, nan=low, posinf=high, neginf=low)
-    grey = np.clip((clean - low) / max(high - low, 1e-9), 0.0, 1.0)[::-1]
+    grey = np.clip((clean - low) / (high - low), 0.0, 1.0)[::-1]
     channels = grey[..., None] if grey.ndim == 2 else grey
     if channels.shape[2] < 3:
         channels = np.repeat(channels[..., :1], 3, axis=2)
