@@ -30,8 +30,15 @@ class Number:
     text: str  # to its digits, with its unit; a point for the decimals
 
 
+class NoNumberError(SketchError):
+    """A measure is not finite for the texture that there is."""
+
+
 def measured(engine: Engine, measure: Measure) -> Number:
-    """Return the number of a measure; raise ``SketchError`` naming it where there is none."""
+    """Return the number of a measure; raise ``SketchError`` naming it where there is none.
+
+    It is a ``NoNumberError`` where the value is not finite.
+    """
     assert measure.scene is not None
     value = _value(engine, measure, measure.scene)
     if measure.over is not None:
@@ -39,7 +46,7 @@ def measured(engine: Engine, measure: Measure) -> Number:
         value = value / below if below else math.nan
     value *= 100.0 if measure.unit == "%" else 1.0
     if not math.isfinite(value):
-        raise SketchError(f"measure '{measure.name}': {value} is not a number to show", line=measure.line)
+        raise NoNumberError(f"measure '{measure.name}': {value} is not a number to show", line=measure.line)
     return Number(value, spelled(value, measure.digits, measure.unit))
 
 

@@ -239,7 +239,30 @@ def test_a_slider_of_ones_own_is_welcome(task, engine):
 def test_numbers_that_are_none_differ(task, engine, value):
     verdict, said = results(engine, task(KERNEL).block, RAW.replace(FORMULA, value))
     assert verdict.points == 0.0
-    assert re.match(r"At other values.*: `height` has \d+ texels without a number", said[1])
+    assert re.match(r"At other values.*: `height` has \d+ texels that are not finite", said[1])
+
+
+def test_a_measure_without_a_value_is_said_so(task, engine):
+    flat = re.sub(r"(kernel\([^)]*\)\s*\{)", r"\1 return 0.5;", RAW)
+    assert flat != RAW
+    block = task(KERNEL, "exercise", ('"spread"', '"edge_match"')).block
+    verdict, said = results(engine, block, flat)
+    assert not verdict.results[2].passed and not verdict.results[2].mistake
+    assert said[2].endswith("of `height` has no value for this texture.")
+    assert sentences(verdict, "fr")[2].endswith("de `height` n’a pas de valeur pour cette texture.")
+
+
+def test_a_measure_is_of_the_scenes_own_pixels(task, engine, monkeypatch):
+    seen = []
+
+    def measured(engine, measure):
+        seen.append(measure.scene.pixels)
+        return SimpleNamespace(value=0.82)
+
+    monkeypatch.setattr("playground.lessons.tasks.judge.measured", measured)
+    block = task(KERNEL, "exercise", ("[96, 96]", "[480, 270]")).block
+    verdict, _ = results(engine, block, RAW)
+    assert verdict.results[2].passed and seen == [(480, 270)]
 
 
 def test_a_texture_of_another_size_differs():

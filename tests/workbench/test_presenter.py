@@ -57,11 +57,17 @@ def test_a_blank_screen_comes_back_before_the_next_beat(talk: Talk) -> None:
     assert talk.blank == ""
 
 
-def test_escape_closes_the_help_and_then_leaves_and_nothing_else(talk: Talk) -> None:
+@pytest.mark.parametrize("colour", ["black", "white"])
+def test_escape_takes_away_what_is_in_the_way_one_by_one_and_then_leaves(talk: Talk, colour: str) -> None:
     talk.helps = True
+    talk.type("4")
+    talk.cover(colour)
     talk.escape()
-    assert talk.on and not talk.helps
-    talk.cover("black")
+    assert talk.on and (talk.blank, talk.helps, talk.typed) == ("", True, "4")
+    talk.escape()
+    assert talk.on and (talk.helps, talk.typed) == (False, "4")
+    talk.escape()
+    assert talk.on and talk.typed == ""
     talk.escape()
     assert not talk.on and [beat.page for beat in talk.ends] == [1]
     talk.escape()

@@ -6,6 +6,7 @@ verdict too. A work that never ends is its caller's to stop: judge in a process 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -16,7 +17,7 @@ from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
 from playground.images.picture_difference import differing, share_differing
 from playground.lessons.figure_renders import draw
-from playground.lessons.measuring import measured
+from playground.lessons.measuring import NoNumberError, measured
 from playground.lessons.model import Check, Exercise, Scene
 from playground.lessons.tasks.verdict import Picture, Result, Verdict
 from playground.lessons.tasks.work import LackingParameter, Work, scene_of, wanted_scene
@@ -95,9 +96,10 @@ def small(scene: Scene, side: int = SIDE) -> Scene:
 
 def _result(engine: Engine, exercise: Exercise, work: Work, check: Check, wanted: Wanted) -> Result:
     try:
-        scene = small(scene_of(exercise, work, check.at))
+        whole = scene_of(exercise, work, check.at)
         if check.measure is not None:
-            return _measure(engine, check, scene)
+            return _measure(engine, check, whole)
+        scene = small(whole)
         if check.of:
             return compare(check, Wanted(texture=_read(engine, scene, check.of)), wanted)
         return compare(check, Wanted(picture=_drawn(engine, scene)), wanted)
@@ -118,9 +120,14 @@ def _read(engine: Engine, scene: Scene, of: str) -> Values:
 
 
 def _measure(engine: Engine, check: Check, scene: Scene) -> Result:
+    """Measure at the scene's own pixels, as the lesson does: triangles depend on the frame's size."""
     measure = check.measure
     assert measure is not None and measure.between is not None
-    value = measured(engine, replace(measure, scene=scene)).value
+    try:
+        with np.errstate(all="ignore"):  # a flat texture has no correlation: 0/0
+            value = measured(engine, replace(measure, scene=scene)).value
+    except NoNumberError:
+        return Result(check, False, math.nan)
     low, high = measure.between
     return Result(check, low <= value <= high, value)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from functools import cache
 from pathlib import Path
@@ -56,7 +57,9 @@ def _found(result: Result, say: Labels, language: str) -> str:
         mine, wanted = (_size(size, say) for size in result.sizes)
         return say("size" if check.of else "picture_size", of=of, mine=mine, wanted=wanted)
     if result.not_finite:
-        return say("not_finite", of=of, count=result.not_finite)
+        return say(
+            "not_finite" if result.not_finite > 1 else "not_finite_one", of=of, count=result.not_finite
+        )
     place = say[f"{'map' if check.of else 'place'}_{result.place}"] if result.place else ""
     least = check.tolerance if check.of else _BRIGHTER
     more = "more" if result.bias > 0 else "less"
@@ -69,12 +72,14 @@ def _found(result: Result, say: Labels, language: str) -> str:
 def _of_measure(result: Result, say: Labels, language: str) -> str:
     check, measure = result.check, result.check.measure
     assert measure is not None and measure.between is not None
+    what = say[f"measure_{measure.what}"]
+    if not math.isfinite(result.difference):
+        return say("no_value", what=what, of=f"`{check.of}`")
     low, high, value = (
         _local(spelled(number, 3, measure.unit), language) for number in (*measure.between, result.difference)
     )
     hidden = "hidden_" if check.hidden else ""
     key = f"{hidden}{'right' if result.passed else 'wrong'}_measure"
-    what = say[f"measure_{measure.what}"]
     return say(key, what=what, of=f"`{check.of}`", value=value, low=low, high=high)
 
 

@@ -20,7 +20,8 @@ class Result:
 
     check: Check
     passed: bool
-    # Share of the pixels that differ, or the largest difference of a texel; of a measure its value.
+    # Share of the pixels that differ, or the largest difference of a texel; of a measure its
+    # value, NaN where it has none.
     difference: float = 0.0
     bias: float = 0.0  # mean of the work's minus the answer's: levels of 255, or the texture's unit
     place: str = ""  # where most of it differs, as "top-left" or "middle"; "": in no third of it

@@ -141,8 +141,10 @@ class Presenter:
         self.blank = "" if self.blank == colour else colour
 
     def escape(self) -> None:
-        """Take away the help or a blank screen; else leave the presentation."""
-        if self.helps:
+        """Take away a blank screen, else the help, else a typed number; without these, leave."""
+        if self.blank:
+            self.blank = ""
+        elif self.helps:
             self.helps = False
         elif self.typed:
             self.typed = ""
