@@ -47,5 +47,6 @@ def test_an_empty_sketch_is_the_one_of_the_first_lesson_with_the_kernel_that_it_
     assert own["pass"][0].pop("use") == "./height"
     assert shipped["pass"][0].pop("use") == "generation/first_height"
     assert own.pop("title") == "First" and shipped.pop("title")
+    assert "main" not in own and shipped.pop("main")  # the kernel begins without parameters
     assert own["shot"][0].pop("name") and shipped["shot"][0].pop("name")
     assert own == shipped

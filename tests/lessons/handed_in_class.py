@@ -72,7 +72,9 @@ def wrong(one: Assignment) -> str:
 
 def endless(one: Assignment) -> str:
     """Return a kernel that never ends, which no compiler can see."""
-    loop = "int k = 0; for (;;) { k = (k * 5 + 1) & 255; if (k > 300) break; } return given() + float(k);"
+    # llvmpipe leaves a loop after 65 535 turns: two, one in the other, are endless for it too.
+    inner = "for (;;) { k = (k * 5 + 1) & 255; if (k > 300) break; }"
+    loop = f"int k = 0; for (;;) {{ {inner} if (k > 301) break; }} return given() + float(k) + 1.0;"
     return around(answer_text(one.exercise), loop) if one.exercise.file else untouched(one)
 
 

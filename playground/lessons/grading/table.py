@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import csv
 import io
+import unicodedata
 from collections.abc import Sequence
 
 from playground.lessons.grading.marks import Graded, spelled_points
 
-_FORMULAS = ("=", "+", "-", "@", "\t", "\r", "\n", "＝", "＋", "－", "＠")
+_FORMULAS = ("=", "+", "-", "@", "\t", "\r", "\n")  # also in their wide forms
 _TOTAL, _OF = "total", "of"
 
 
@@ -28,4 +29,5 @@ def table_bytes(graded: Sequence[Graded], exercises: Sequence[str]) -> bytes:
 
 def as_text(name: str) -> str:
     """Return a name as a spreadsheet shows it, not as a formula that it computes."""
-    return f"'{name}" if name.lstrip(" ").startswith(_FORMULAS) or name.startswith(_FORMULAS) else name
+    begins = unicodedata.normalize("NFKC", name).lstrip(" ")
+    return f"'{name}" if begins.startswith(_FORMULAS) else name

@@ -21,7 +21,7 @@ _FILES = {
     "italic": (_FONTS / "Roboto" / "Roboto-RegularItalic.ttf", _SYMBOLS, _CODE),
     "code": (_CODE, _TEXT, _SYMBOLS),
 }
-_NOTHING = "\U0010fffd"  # no font has it: what stands for a glyph that is missing
+_NOTHING = chr(0x10FFFD)  # no font has it: what stands for a glyph that is missing
 
 
 @dataclass(frozen=True)

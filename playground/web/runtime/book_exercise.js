@@ -9,6 +9,12 @@ import { createSession } from "./session.js";
 import { fill } from "./words.js";
 import { createJudge, createScore } from "./work_check.js";
 
+/** What is said of a check, by what is checked: keys of the words. */
+const KEYS = {
+  picture: { right: "rightPicture", wrong: "wrongPicture", more: "morePicture", less: "lessPicture" },
+  texture: { right: "rightTexture", wrong: "wrongTexture", more: "moreTexture", less: "lessTexture" },
+};
+
 /** @typedef {import("./book_figure.js").Room} Room */
 /** @typedef {import("./work_check.js").Outcome} Outcome */
 
@@ -110,7 +116,8 @@ async function checkedExercise(room) {
       const all = found.every(({ passed }) => passed), count = found.filter(({ passed }) => passed).length;
       say(fill(all ? words.allRight : words.someRight, { count, all: found.length }), all);
       if (block.elsewhere) {
-        results.append(make("p", { className: "elsewhere" }, fill(words.elsewhere, { count: block.elsewhere })));
+        results.append(
+          make("p", { className: "elsewhere" }, fill(words.elsewhere, { count: block.elsewhere })));
       }
       const first = found.find((one, at) => !one.passed && !checks[at].hidden && one.mine);
       if (first) results.append(pictures(first, words));
@@ -136,13 +143,13 @@ export function sentence(found, check, words, comma) {
   };
   const where = check.hidden ? words.atHidden : check.said ? fill(words.at, { at: check.said }) : "";
   const of = check.of?.name ?? "";
-  const kind = check.of ? "Texture" : "Picture";
-  const more = found.bias ? words[`${found.bias > 0 ? "more" : "less"}${kind}`] : "";
-  const what = found.passed ? fill(words[`right${kind}`], { of })
+  const keys = KEYS[check.of ? "texture" : "picture"];
+  const more = found.bias ? words[found.bias > 0 ? keys.more : keys.less] : "";
+  const what = found.passed ? fill(words[keys.right], { of })
     : found.mistake ? fill(words.mistake, { mistake: found.mistake })
     : found.sizes ? fill(words.otherSize, { of, mine: found.sizes[0], wanted: found.sizes[1] })
     : found.notFinite ? fill(words.notFinite, { of, count: found.notFinite })
-    : fill(words[`wrong${kind}`], {
+    : fill(words[keys.wrong], {
       of, bias: more, share: local(100 * found.difference), by: local(found.difference),
       tolerance: local(check.tolerance),
     });
@@ -159,7 +166,9 @@ function pictures({ mine, wanted, differs }, words) {
     canvas.style.maxWidth = `${SIDE}px`;
     const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
     const image = context.createImageData(width, height), row = 4 * width;
-    for (let y = 0; y < height; y++) image.data.set(data.subarray(y * row, (y + 1) * row), (height - 1 - y) * row);
+    for (let y = 0; y < height; y++) {
+      image.data.set(data.subarray(y * row, (y + 1) * row), (height - 1 - y) * row);
+    }
     context.putImageData(image, 0, 0);
     return make("figure", {}, canvas, make("figcaption", {}, String(name)));
   }));

@@ -119,7 +119,8 @@ export function compareTextures(mine, wanted, { tolerance }) {
   return { passed: largest <= tolerance, difference: largest, bias: Math.abs(bias) > tolerance ? bias : 0 };
 }
 
-/** Return what gives a challenge's score of a work: 100 for the picture asked for, 0 for the one to begin from.
+/** Return what gives a challenge's score of a work: 100 for the picture asked for, 0 for the one to begin
+ * from.
  *  @param {{open: (sketch: Sketch) => any}} engine @param {Sketch} solution @param {Sketch} begin
  *  @param {{file: string, answer: string, starter: string}} challenge */
 export function createScore(engine, solution, begin, { file, answer, starter }) {
