@@ -23,6 +23,7 @@ from playground.sketch.model import Camera, Value
 from playground.workbench.edit_merge import FileValue
 from playground.workbench.edits import Edits
 from playground.workbench.resume import StoredEdits
+from playground.workbench.unread import set_aside
 
 FORMAT = 1
 _LARGEST = 4 * 2**20  # [bytes] no session sets so much by the user
@@ -87,12 +88,7 @@ class Memory:
                 raise ValueError(f"it is larger than {_LARGEST // 2**20} MiB")
             return _read(read_json(self.path.read_text(encoding="utf-8"))), ""
         except (OSError, ValueError, TypeError, KeyError, AttributeError, ArithmeticError) as error:
-            aside = self.path.with_suffix(".unread.json")
-            with contextlib.suppress(OSError):
-                self.path.replace(aside)
-            why = f" ({error})" if str(error) else ""
-            complaint = f"what was remembered of this sketch cannot be read; it is kept in {aside}{why}"
-            return Remembered(), complaint
+            return Remembered(), set_aside(self.path, "what was remembered of this sketch", error)
 
     def write(self, remembered: Remembered) -> None:
         """Write it, or remove the file where there is nothing to remember; raise ``DataError``."""

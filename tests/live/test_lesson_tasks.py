@@ -8,6 +8,7 @@ import pytest
 
 from playground.lessons import library
 from playground.lessons.tasks.texts import answer_text
+from playground.live.lesson.host import Lessons
 from playground.live.lesson.page import Page
 from playground.paths import GLSL
 from playground.sketch.source import read_text
@@ -157,6 +158,52 @@ def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
     assert desk.bench.files.editing[0].text.base.strip() == right.strip()
 
 
+def test_begin_again_and_bring_back_exchange_what_is_typed(desk, tasks):
+    """Neither loses anything that was typed; a bare starter is not kept."""
+    power = block(desk, "power")
+    tasks.start(power)
+    desk.run_frames(4)
+
+    def now():
+        (editing,) = desk.bench.files.editing
+        return editing.text.base.strip()
+
+    def press(label):
+        desk.run_frames(2)
+        desk.click(label)
+        desk.run_frames(4)
+
+    first, second = RAW + "// first", RAW + "// second"
+    typed(desk.bench.files.editing[0], first)  # none of what is typed here is saved
+    press("Begin again##again")
+    assert now() == RAW.strip()
+    typed(desk.bench.files.editing[0], second)
+    press("Bring mine back##back")
+    assert now() == first.strip()
+    press("Bring mine back##back")
+    assert now() == second.strip(), "what was typed after it began again is kept as well"
+    typed(desk.bench.files.editing[0], RAW)
+    press("Bring mine back##back")
+    assert now() == first.strip() and tasks.attempt(power).before is None
+    press("Begin again##again")  # is offered again
+    assert now() == RAW.strip() and attempts()["after/power"].before[0].strip() == first.strip()
+
+
+def test_values_are_exchanged_as_they_are_in_the_picture(desk, tasks):
+    desk.reader.go(1)
+    desk.run_frames(4)
+    rough = block(desk, "rough")
+    tasks.start(rough)
+    desk.run_frames(4)
+    for value in (0.8, 0.2):
+        desk.session.drafts.set("height.smoothing", value)
+        desk.run_frames(4, step=0.01)  # before it is stored by itself
+        (tasks.start_again if value == 0.8 else tasks.undo)(rough)
+        desk.run_frames(4)
+    assert dict(tasks.work(rough).values) == {"height.smoothing": 0.8}
+    assert tasks.attempt(rough).before == ("", {"height.smoothing": 0.2})
+
+
 def test_what_is_typed_and_never_saved_is_there_at_the_next_start(desk, tasks):
     tasks.start(block(desk, "power"))
     desk.run_frames(4)
@@ -234,17 +281,26 @@ def test_a_score_follows_the_picture_and_the_best_is_kept(desk, tasks):
     drawn_elsewhere(desk, lambda: tasks.judging.target(seen) is not None)  # before one begins
     tasks.start(seen)
     desk.run_frames(8, step=0.2)
-    assert tasks.matches["seen"].score == 0.0
+    assert tasks.scoring.matches["seen"].score == 0.0
     scores = []
     for smoothing in (0.4, 0.8, 0.6):
         desk.session.drafts.set("height.smoothing", smoothing)
         desk.run_frames(20, step=0.2)
-        scores.append(tasks.matches["seen"].score)
+        scores.append(tasks.scoring.matches["seen"].score)
     assert scores[1] == 100.0 and 0.0 < scores[0] < 100.0 and 0.0 < scores[2] < 100.0
     assert attempts()["after/seen"].score == 100.0
-    last = tasks.matches["seen"]
+    last = tasks.scoring.matches["seen"]
     desk.run_frames(20, step=0.2)
-    assert tasks.matches["seen"] is last, "a picture that rests is scored once"
+    assert tasks.scoring.matches["seen"] is last, "a picture that rests is scored once"
+
+
+def test_the_window_says_that_attempts_could_not_be_read(desk):
+    progress_file().parent.mkdir(parents=True, exist_ok=True)
+    progress_file().write_text("damaged", encoding="utf-8")
+    Lessons(desk.bench, desk.autosave, lambda: None)
+    desk.run_frames(1)
+    said = [notice.text for notice in desk.bench.notices.items]
+    assert any("what was remembered of lessons cannot be read; it is kept in" in text for text in said)
 
 
 def test_progress_of_before_is_read_and_what_is_done_is_written_whole(tmp_path):

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import string
 import subprocess
 import sys
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import moderngl
@@ -17,7 +19,14 @@ from playground.live.lesson.formulas import Formulas, can_set, set_formula
 from playground.live.lesson.line_breaking import Extent, broken
 from playground.live.lesson.markdown_runs import Run, parts_of, plain
 from playground.workbench.lesson.labels import _ALL, labels_in
-from playground.workbench.lesson.progress import NARROWEST, Progress, read_progress, write_progress
+from playground.workbench.lesson.progress import (
+    NARROWEST,
+    Attempt,
+    Progress,
+    open_progress,
+    read_progress,
+    write_progress,
+)
 
 from ..cases import each
 
@@ -198,6 +207,35 @@ def test_a_file_that_is_no_progress_is_the_beginning(tmp_path, text):
     file.write_text(text, encoding="utf-8")
     assert read_progress(file) == Progress()
     assert read_progress(tmp_path / "none.json") == Progress()
+
+
+def test_a_damaged_attempt_takes_no_other_with_it(tmp_path):
+    file = tmp_path / "lessons.json"
+    whole = Attempt("mine", {"a.b": 1.0}, None, 1.0, 2)
+    progress = Progress("fourier", attempts={"fourier/one": whole, "fourier/two": whole})
+    for damaged in (3, None, {"text": "lost"}, {**asdict(whole), "before": 1}, {**asdict(whole), "of": "x"}):
+        write_progress(progress, file)
+        table = json.loads(file.read_text(encoding="utf-8"))
+        table["attempts"]["fourier/one"] = damaged
+        file.write_text(json.dumps(table), encoding="utf-8")
+        assert open_progress(file) == (replace(progress, attempts={"fourier/two": whole}), "")
+
+
+def test_a_file_that_cannot_be_read_is_kept_and_no_earlier_one_is_overwritten(tmp_path):
+    file = tmp_path / "lessons.json"
+    kept = []
+    for text in ("{ my first kernels", '{"format": 9}', "my attempts" + " " * 2**24):
+        file.write_text(text, encoding="utf-8")
+        progress, said = open_progress(file)
+        assert progress == Progress() and not file.exists()
+        kept.append((text, said))
+        assert write_progress(Progress("fourier"), file) == ""
+        assert open_progress(file) == (Progress("fourier"), ""), "said once"
+    for (text, said), name in zip(
+        kept, ("lessons.unread", "lessons.unread-2", "lessons.unread-3"), strict=True
+    ):
+        aside = tmp_path / f"{name}.json"
+        assert aside.read_text(encoding="utf-8") == text and str(aside) in said
 
 
 def test_a_width_that_no_window_has_is_brought_into_range(tmp_path):

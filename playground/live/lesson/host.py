@@ -8,7 +8,7 @@ from playground.live.lesson.panel import LessonPanel
 from playground.live.theme import Theme
 from playground.workbench.autosave import Autosave
 from playground.workbench.bench import Bench
-from playground.workbench.lesson.progress import progress_file, read_progress
+from playground.workbench.lesson.progress import open_progress, progress_file
 from playground.workbench.lesson.reader import Reader
 
 
@@ -17,7 +17,9 @@ class Lessons:
 
     def __init__(self, bench: Bench, autosave: Autosave, remember: Callable[[], None]) -> None:
         file = progress_file()
-        self.reader = Reader(bench, read_progress(file), file, self._store_own, autosave.open)
+        progress, complaint = open_progress(file)
+        bench.session.notes.extend(filter(None, [complaint]))
+        self.reader = Reader(bench, progress, file, self._store_own, autosave.open)
         self._panel = LessonPanel()
         self._autosave = autosave
         self._remember = remember

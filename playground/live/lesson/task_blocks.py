@@ -38,7 +38,7 @@ def draw_work(block: Exercise, page: Page) -> None:
 def draw_challenge(block: Challenge, page: Page) -> None:
     """Draw a picture to match, and how near the picture in view is."""
     tasks = page.reader.tasks
-    found, best = tasks.matches.get(block.name), tasks.attempt(block).score
+    found, best = tasks.scoring.matches.get(block.name), tasks.attempt(block).score
     solved = best >= block.goal
     with page.frame(block.name, theme.ACCENT if solved else theme.WARM):
         page.label(page.say("challenge"), theme.ACCENT if solved else theme.WARM)
@@ -95,7 +95,7 @@ def _buttons(block: Task, page: Page) -> None:
     if isinstance(block, Exercise) and has_own:
         key, check = "checking" if judged else "check", partial(_check, page=page)
         row.append((key, "check", page.say("check_note"), check, not judged))
-    if attempt.before is not None and not (attempt.text or attempt.values):
+    if attempt.before is not None:  # to begin again once more would take its place
         row.append(("bring_back", "back", "", tasks.undo, True))
     elif has_own:
         row.append(("again", "again", page.say("again_note"), tasks.start_again, True))

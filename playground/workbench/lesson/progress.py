@@ -1,12 +1,14 @@
 """What is remembered of lessons from one start to the next: where each was left, and what was done for tasks.
 
 One small JSON file in the user's state folder, written whole or not at all. Without it, or
-where it cannot be read, lessons begin at their beginning.
+where it cannot be read, lessons begin at their beginning; the window keeps the damaged file.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import suppress
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -16,12 +18,14 @@ from playground.folders import state_folder
 from playground.images.files import replacing
 from playground.json_text import read_json
 from playground.sketch.model import Value
+from playground.workbench.unread import set_aside
 
 FORMAT = 1
 WIDTH = 420.0
 """Of the panel at first, in units of scale 1."""
 NARROWEST, WIDEST = 300.0, 760.0
 _LARGEST = 2**24  # [bytes]
+_UNREADABLE = OSError, ValueError, TypeError, KeyError, AttributeError, ArithmeticError
 
 
 @dataclass
@@ -55,13 +59,24 @@ def progress_file(folder: Path | None = None) -> Path:
 
 
 def read_progress(path: Path) -> Progress:
-    """Return what is remembered; the beginning where nothing can be read."""
+    """Return what is remembered; the beginning where nothing can be read. The file stays as it is."""
     try:
-        if path.stat().st_size > _LARGEST:
-            return Progress()
-        return _read(read_json(path.read_text(encoding="utf-8")))
-    except (OSError, ValueError, TypeError, KeyError, AttributeError):
+        return _whole(path)
+    except _UNREADABLE:
         return Progress()
+
+
+def open_progress(path: Path) -> tuple[Progress, str]:
+    """Return what is remembered, to be written again, and a sentence if the file cannot be used.
+
+    It is then set aside: what a student wrote may still be in it.
+    """
+    try:
+        return _whole(path), ""
+    except FileNotFoundError:
+        return Progress(), ""
+    except _UNREADABLE as error:
+        return Progress(), set_aside(path, "what was remembered of lessons", error)
 
 
 def write_progress(progress: Progress, path: Path) -> str:
@@ -82,9 +97,15 @@ def _done(attempts: dict[str, Attempt]) -> dict[str, Attempt]:
     return {task: attempt for task, attempt in attempts.items() if attempt != Attempt()}
 
 
+def _whole(path: Path) -> Progress:
+    if path.stat().st_size > _LARGEST:
+        raise ValueError(f"it is larger than {_LARGEST // 2**20} MiB")
+    return _read(read_json(path.read_text(encoding="utf-8")))
+
+
 def _read(table: Any) -> Progress:
     if table["format"] != FORMAT:
-        raise ValueError
+        raise ValueError(f"its format is {table['format']!r}; expected {FORMAT}")
     width = float(table["width"])
     return Progress(
         str(table["lesson"]),
@@ -93,8 +114,15 @@ def _read(table: Any) -> Progress:
         min(max(width, NARROWEST), WIDEST) if width == width else WIDTH,
         {str(name): max(int(at), 0) for name, at in table["sections"].items()},
         [str(name) for name in table["done"]],
-        {str(name): _attempt(found) for name, found in table.get("attempts", {}).items()},
+        dict(_attempts(table.get("attempts", {}))),
     )
+
+
+def _attempts(table: Any) -> Iterator[tuple[str, Attempt]]:
+    """Yield the attempts that can be read: a damaged one takes no other with it."""
+    for name, found in table.items():
+        with suppress(ValueError, TypeError, KeyError, AttributeError, IndexError):
+            yield str(name), _attempt(found)
 
 
 def _attempt(table: Any) -> Attempt:

@@ -10,25 +10,24 @@ import math
 import re
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 
 from playground.errors import PlaygroundError
 from playground.lessons.model import Challenge, Exercise, Scene
 from playground.lessons.scenes import with_value
-from playground.lessons.tasks.match import Match, match
+from playground.lessons.tasks.match import Match
 from playground.lessons.tasks.texts import path_of, starter_text
 from playground.lessons.tasks.verdict import Verdict
 from playground.lessons.tasks.work import Work, scene_of, starter
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.model import Sketch, Value, kernels_of
-from playground.workbench.inspect.compare import as_before
 from playground.workbench.lesson.figure_view import FigureView
-from playground.workbench.lesson.judging import SIDE, Judging
+from playground.workbench.lesson.judging import Judging
 from playground.workbench.lesson.progress import Attempt, Progress
+from playground.workbench.lesson.scoring import Scoring
 from playground.workbench.lesson.shader_copies import Copies, Copy, line_of
 from playground.workbench.notices import Notices
-from playground.workbench.reload_stages import ReloadStage
 from playground.workbench.session import Session
 from playground.workbench.text_file import typed_in
 
@@ -38,8 +37,6 @@ BEGUN = 1
 """Which picture of a task is the student's own; 0 is that of the solution."""
 
 _KERNEL = re.compile(r"^\w+ kernel\(.*$", re.MULTILINE)
-_PAUSE = 0.3  # [s] between two scores at least
-_SHARE = 10.0  # times what a score takes that it waits for the next
 _POLL = 0.05  # [s] between two looks at what is judged
 _STORE = 2.0  # [s] after which what is typed is remembered
 
@@ -57,19 +54,16 @@ class Tasks:
     remember: Callable[[], None]  # stores the progress
     clear: Callable[[], None]  # called before a task's picture is shown
     lesson: Callable[[], str]  # the name of the lesson that is open
-    matches: dict[str, Match] = field(default_factory=dict)  # by block: how near the picture in view is
 
     def __post_init__(self) -> None:
         self.judging = Judging(
             notices=self.notices, rests=lambda: self.session.rests, received=self._received
         )
+        self.scoring = Scoring(session=self.session, notices=self.notices, scored=self._scored)
         self._on: Task | None = None  # the task that was begun
         self._copy: Copy | None = None  # what replaces its file
         self._given: dict[str, list[str]] = {}  # parameters that a starter has
-        self._scored: tuple[object, ...] = ()  # what the score is of
         self._news = False  # something has come that is not on the screen yet
-        self._stale = False  # the picture in view is another than that which was scored
-        self._due = 0.0  # when the next score may be computed
         self._store_at = math.inf
         self._stored: Work | None = None  # what was remembered last
 
@@ -107,23 +101,13 @@ class Tasks:
 
     def start_again(self, block: Task) -> None:
         """Show the starter; what was there before comes back by ``undo``."""
-        attempt = self.attempt(block)
-        work = self.work(block)
-        self._close(block)
-        attempt.before = work.text or "", dict(work.values)
-        attempt.text, attempt.values = "", {}
-        self._forget(block)
-        self.start(block)
+        self._exchange(block, ("", {}))
 
     def undo(self, block: Task) -> None:
-        """Bring back what was there before the student began again."""
-        attempt = self.attempt(block)
-        if attempt.before is None:
-            return
-        self._close(block)
-        (attempt.text, attempt.values), attempt.before = attempt.before, None
-        self._forget(block)
-        self.start(block)
+        """Bring back what was there before the student began again, in exchange for what is there now."""
+        before = self.attempt(block).before
+        if before is not None:
+            self._exchange(block, before)
 
     # ── what is known ────────────────────────────────────────────────────────
 
@@ -174,20 +158,19 @@ class Tasks:
             self.store()
         elif self._on is not None and self._store_at == math.inf:
             self._store_at = now + _STORE
-        challenge = block if isinstance(block, Challenge) and self.is_begun(block) else None
-        if challenge is not None and challenge.name not in self.judging.ends:
-            challenge = None  # what it is compared with is still drawn
-        coming = self.session.drafts.stage is not ReloadStage.NONE or self.session.error is not None
-        self._stale = challenge is not None and not coming and self._state(challenge) != self._scored
-        if challenge is not None and self._stale and now >= self._due:
-            self._score(challenge)
+        ends = self.judging.ends.get(block.name) if block is not None else None
+        if isinstance(block, Challenge) and self.is_begun(block) and ends is not None:
+            drawn = Work(self._drawn_text(block), self.work(block).values)
+            self._news |= self.scoring.update(block, drawn, ends, now)
+        else:
+            self.scoring.rest()
 
     def patience(self, now: float) -> float:
         """Return how long nothing needs to be done here [s]."""
         if self._news or self.judging.busy:
             return 0.0 if self._news else _POLL
         typed = max(self._store_at - now, 0.0) if self._on is not None else math.inf
-        return min(typed, max(self._due - now, 0.0) if self._stale else math.inf)
+        return min(typed, self.scoring.patience(now))
 
     def store(self) -> None:
         """Remember what is typed and set of the task that was begun."""
@@ -216,7 +199,7 @@ class Tasks:
         """Forget verdicts: another lesson is opened."""
         self.leave()
         self.judging.forget()
-        self.matches.clear()
+        self.scoring.forget()
         self._given.clear()
 
     # ── parts of it ──────────────────────────────────────────────────────────
@@ -226,32 +209,11 @@ class Tasks:
         attempt.points, attempt.of = max(attempt.points, verdict.points), verdict.of
         self.remember()
 
-    def _score(self, block: Challenge) -> None:
-        """Score the picture in view, where it rests and is another than the one before."""
-        session = self.session
-        if session.plan is None:
-            return
-        work, state = self.work(block), self._state(block)
-        begun, self._news = self.notices.now(), True
-        try:
-            with as_before(session.engine, session.plan):
-                drawn = Work(self._drawn_text(block), work.values)  # which the sandbox has tried
-                found = match(session.engine, block, drawn, self.judging.ends[block.name], SIDE)
-        except PlaygroundError as error:
-            self.notices.say(str(error))
-            self._scored = state
-            return
-        self.matches[block.name], self._scored = found, state
-        took = self.notices.now() - begun
-        self._due = begun + took + max(_PAUSE, _SHARE * took)
+    def _scored(self, block: Challenge, found: Match) -> None:
         attempt = self.attempt(block)
         if found.score > attempt.score:
             attempt.score = found.score
-            self._keep(block, work)
-
-    def _state(self, block: Challenge) -> tuple[object, ...]:
-        """Return what the score of the picture in view depends on."""
-        return block.name, self._drawn_text(block), tuple(self.work(block).values.items())
+            self._keep(block, self.work(block))
 
     def _text_of(self, block: Task) -> str | None:
         """Return the text of a task's copy with what is typed; None where it is not open."""
@@ -274,19 +236,24 @@ class Tasks:
         if block.file and copy is not None and self.copies.open.get(copy.path) is copy:
             self.copies.close(copy.path)
 
+    def _exchange(self, block: Task, new: tuple[str, dict[str, Value]]) -> None:
+        """Show another text and values, and keep what was there; a bare starter is not worth keeping."""
+        attempt, now = self.attempt(block), _own(block, self.work(block))  # read while its copy is open
+        self._close(block)
+        attempt.text, attempt.values = new
+        attempt.before = now if any(now) else None
+        self._forget(block)
+        self.start(block)
+
     def _keep(self, block: Task, work: Work) -> None:
         attempt = self.attempt(block)
-        own = "" if not block.file or work.text == starter_text(block) else work.text or ""
-        begun = _values(block.begin.sketch, block.sliders) if block.begin is not None else {}
-        values = dict(work.values)
-        attempt.text, attempt.values = own, {} if values == begun else values
+        attempt.text, attempt.values = _own(block, work)
         self.remember()
 
     def _forget(self, block: Task) -> None:
         """Forget what was said of a work that is no more."""
-        self._scored = ()
         self.judging.verdicts.pop(block.name, None)
-        self.matches.pop(block.name, None)
+        self.scoring.forget(block.name)
         self.remember()
 
     def _open(self, block: Task, path: Path, text: str, line: int) -> None:
@@ -301,6 +268,14 @@ class Tasks:
             path, text, apply=apply, leave=leave, note=self.label("applied"), label=self.label("copy")
         )
         self.copies.edit(copy, line)
+
+
+def _own(block: Task, work: Work) -> tuple[str, dict[str, Value]]:
+    """Return what is a student's own of a work: the text where it is not the starter, the values likewise."""
+    text = "" if not block.file or work.text == starter_text(block) else work.text or ""
+    begun = _values(block.begin.sketch, block.sliders) if block.begin is not None else {}
+    values = dict(work.values)
+    return text, {} if values == begun else values
 
 
 def _set(scene: Scene, path: str, value: Value) -> Scene:
