@@ -6,8 +6,9 @@ import warnings
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from playground.engine.engine import CACHE_BYTES, Engine, opened
+from playground.engine.engine import Engine
 from playground.engine.frame import Frame
+from playground.engine.internals import CACHE_BYTES, opened
 from playground.engine.plain_forms import warn
 from playground.errors import Diagnostic, PlaygroundWarning
 from playground.gpu.context import open_context
@@ -35,7 +36,7 @@ def headless(
     context = open_context(software=software, device=device)
     engine = Engine(context, driver=driver, cache_bytes=cache_bytes, owns_context=True, notice=notice)
     if notice is warn:
-        engine.warnings.report = _warn
+        engine.internal.warnings.report = _warn
     return engine
 
 

@@ -38,7 +38,8 @@ from playground.capture.shader_export.es_check import check_es
 from playground.capture.shader_export.export import ShaderFiles, shader_files
 from playground.capture.values import SOFTWARE, Encoded, Layer, colour_samples, encode, encode_picture
 from playground.capture.web_page import WebPage, page_bytes, prepare_page
-from playground.engine.engine import Engine, opened
+from playground.engine.engine import Engine
+from playground.engine.internals import opened
 from playground.engine.plan import Plan
 from playground.engine.view_inputs import view_input
 from playground.errors import DataError, SketchError
@@ -142,12 +143,12 @@ def prepare(
     """
     check(path, form)
     if path.suffix.lower() in PAGES:
-        plan = engine.plan_for(sketch, frame or DEFAULT_PICTURE, time, steps)
+        plan = engine.internal.plan_for(sketch, frame or DEFAULT_PICTURE, time, steps)
         page = prepare_page(engine, sketch, path, form.techniques, frame=frame, time=time, steps=steps)
         return ExportJob(sketch=sketch, path=path, form=form, plan=plan, texture="", kind="", page=page)
     if path.suffix.lower() in SHADERS:
         return _prepare_shader(engine, sketch, path, form, time, steps)
-    plan = engine.plan_for(sketch, DEFAULT_PICTURE, time, steps)
+    plan = engine.internal.plan_for(sketch, DEFAULT_PICTURE, time, steps)
     if path.suffix.lower() in MESHES:
         return _prepare_mesh(sketch, path, form, plan)
     texture, kind = form.texture, form.kind
@@ -220,10 +221,7 @@ def _read(engine: Engine, job: ExportJob, texture: str, kind: str) -> NDArray[np
     if kind == HEIGHT:
         if channels != 1:
             raise SketchError(f"texture '{texture}' has {channels} channels; heights have one")
-        relief, base = job.plan.terrain.relief, job.plan.terrain.base_elevation
-        assert relief is not None and base is not None  # a plan's terrain is known
-        metres: NDArray[np.float32] = (values.astype(np.float64) * relief + base).astype(np.float32)
-        return metres
+        return job.plan.terrain.metres(values)
     if kind == COLOUR:
         if channels == 2:
             raise SketchError(f"texture '{texture}' has 2 channels; colours have one or three")

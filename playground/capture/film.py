@@ -19,7 +19,8 @@ from numpy.typing import NDArray
 
 from playground.api import headless
 from playground.capture.video import QUALITY, Video, alpha_note
-from playground.engine.engine import Engine, opened
+from playground.engine.engine import Engine
+from playground.engine.internals import opened
 from playground.errors import ParameterError
 from playground.sketch.model import Sketch
 
@@ -78,12 +79,12 @@ def film_of(
 @contextmanager
 def frame_uniforms(engine: Engine, film: Film) -> Iterator[None]:
     """Set the time between two pictures for plain shaders, in the block."""
-    before = engine.runner.delta
-    engine.runner.delta = float(1 / film.fps)
+    before = engine.internal.runner.delta
+    engine.internal.runner.delta = float(1 / film.fps)
     try:
         yield
     finally:
-        engine.runner.delta = before
+        engine.internal.runner.delta = before
 
 
 def frames(engine: Engine, film: Film) -> Iterator[NDArray[np.uint8]]:

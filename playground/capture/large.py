@@ -16,7 +16,8 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.engine.engine import Engine, opened
+from playground.engine.engine import Engine
+from playground.engine.internals import opened
 from playground.engine.plan import Window
 from playground.engine.supersampling import drawn_size
 from playground.errors import DataError, ParameterError, SketchError
@@ -46,7 +47,7 @@ def is_large(engine: Engine, sketch: Sketch, size: tuple[int, int]) -> bool:
     if size[0] * size[1] <= MOST_WHOLE:
         return False
     try:
-        engine.plan_for_window(sketch, tiles_of(size)[0][0])
+        engine.internal.plan_for_window(sketch, tiles_of(size)[0][0])
     except SketchError:
         return False  # drawing it whole says what else may be wrong
     return True
@@ -102,7 +103,7 @@ def strips(
         strip = np.empty((row[0].size[1], whole[0], 4), np.uint8)
         for window in row:
             left = window.origin[0]
-            texture = engine.draw_window(found, window, time=time, steps=steps)
+            texture = engine.internal.draw_window(found, window, time=time, steps=steps)
             strip[:, left : left + window.size[0]] = read_picture(texture)
             engine.forget_unused()
             done()

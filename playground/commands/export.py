@@ -166,7 +166,7 @@ def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: 
             check(path, form)
         show = stack.enter_context(busy(f"exporting {sketch.name}"))
         engine = stack.enter_context(renderer.open_engine(driver=driver))
-        engine.runner.works.on_progress = show
+        engine.internal.runner.works.on_progress = show
         # Every file is prepared before the first is written.
         jobs = [
             prepare(engine, sketch, path, form, time=moment.time, steps=moment.steps, frame=moment.size)

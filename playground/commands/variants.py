@@ -123,7 +123,7 @@ def _verdicts(what: str, renderer: Renderer) -> list[Verdict]:
                 mark = "ok" if verdict.ok else "skipped" if verdict.skipped else "FAILED"
                 print(f"{mark:8}{shown(subject.variant.path)}: {verdict.words}", flush=True)
                 found.append(verdict)
-                engine.cache.clear()
+                engine.internal.cache.clear()
                 advance()
     return found
 

@@ -1,67 +1,54 @@
-"""Run a sketch on a context, and only what is stale.
+"""What a program calls: pictures and textures of sketches, drawn on one OpenGL context.
 
-A pass runs again when its key changes (see ``cache_keys``): so moving the sun lights the terrain
-anew and leaves the terrain alone. ``execution`` runs the passes in order, ``runner`` each of
-them; here is what a program calls.
+``internals`` does the work: it keeps what was computed, and computes again what is stale.
 """
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager, nullcontext
-from functools import partial
-from hashlib import blake2b
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.engine.cache import Cache
-from playground.engine.cache_keys import KeyMaker, Keys
-from playground.engine.disk_caching import DiskCaching
-from playground.engine.execution import Execution, would_run
-from playground.engine.eye_height import EyeHeight
 from playground.engine.frame import Frame
-from playground.engine.frame_record import FrameRecord, Recorded
-from playground.engine.non_finite import FiniteCheck, NotFinite
-from playground.engine.painted_images import PaintedFiles
-from playground.engine.picture_hash import PictureHasher
-from playground.engine.plain_forms import PlainForms, warn
-from playground.engine.plan import LoopIteration, Plan, Step, Window, most_iterations, needed
-from playground.engine.plan_warnings import PlanWarnings
-from playground.engine.planner import Planner, repeated_in
-from playground.engine.results import Pool, Result, Wired
-from playground.engine.runner import Runner
+from playground.engine.internals import CACHE_BYTES, Internals, opened
+from playground.engine.non_finite import NotFinite
+from playground.engine.plain_forms import warn
+from playground.engine.plan import most_iterations
+from playground.engine.planner import repeated_in
 from playground.engine.supersampling import drawn_size
-from playground.engine.unfinished import Deadline
-from playground.engine.window import windowed
-from playground.errors import ContextError, Diagnostic, OpenGLFault
-from playground.gpu.context import ContextInfo, context_info
+from playground.errors import SketchError
+from playground.gpu.context import ContextInfo
 from playground.gpu.textures import read_picture, read_texture
-from playground.gpu.timers import Timer
-from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.images.supersampled import reduced
-from playground.paths import shown
-from playground.sketch.flat import Ref
-from playground.sketch.load import load
-from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, LARGEST_PICTURE, LARGEST_SIDE, Sketch
+from playground.sketch.model import DEFAULT_PICTURE, Sketch
 
 if TYPE_CHECKING:
     import moderngl
 
-CACHE_BYTES = 768 * 2**20
-_POOL_SHARE = 8  # spare textures may take an eighth of what the cache may
 
+class Engine:
+    """Draws sketches on one context, and keeps their textures between frames.
 
-class Engine(Recorded):
-    """Runs sketches on one context; keeps textures between frames.
+    ``playground.headless()`` opens one with a context of its own. Here the context ``ctx`` is the
+    caller's, unless ``owns_context``: then ``release`` releases it too. ``driver`` is "fragment",
+    "compute", or "auto": compute for what gains by it (visits) where there is compute, fragment for the
+    rest. Fast variants that need compute run unless it is "fragment". ``cache_bytes`` limits the GPU
+    memory of cached textures, in bytes. ``notice`` is called, once each, with why a fast variant does
+    not run.
 
-    The context is the caller's, unless ``owns_context``. ``driver`` is "fragment",
-    "compute", or "auto": compute for what gains by it (visits) where there is compute,
-    fragment for the rest. Fast variants that need compute run unless it is "fragment".
-    ``notice`` is called, once each, with why a fast variant does not run.
+    It draws any number of sketches. It belongs to the thread that opened it: a call from another
+    raises ``ContextError``; open an engine in each thread. What ``internal`` has is for the
+    playground's own tools, and changes without notice.
+
+        sketch = playground.load("l_dot_n")
+        with playground.headless() as engine:
+            frame = engine.render(sketch, size=(64, 36))
+            evening = engine.render(sketch.with_values({"light.sun": (250.0, 12.0)}), size=(64, 36))
+
+    Raises ``ContextError`` for an unknown driver, and for "compute" on a context without it.
     """
 
     def __init__(
@@ -73,43 +60,39 @@ class Engine(Recorded):
         owns_context: bool = False,
         notice: Callable[[str], None] = warn,
     ) -> None:
-        if driver not in DRIVERS:
-            raise ContextError(f"driver '{driver}': expected one of {', '.join(DRIVERS)}")
-        self.ctx = ctx
-        self.info: ContextInfo = context_info(ctx)
-        self._computes = self.info.compute  # whether there are compute shaders
-        if driver == COMPUTE and not self._computes:
-            raise ContextError(f"this context is {self.info.opengl}; compute needs 4.3")
-        self.driver = driver
-        self.runs: Counter[str] = Counter()  # how often each pass ran, by path
-        super().__init__()
-        self.profiling = False
-        # [s] after which loops that follow the time, and sources at work, raise ``Unfinished``
-        self.patience: float | None = None
-        self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
-        self.cache = Cache(cache_bytes, self.pool)
-        self.painted = PaintedFiles()  # painted in this process, in place of their files
-        self.runner = Runner(ctx, self.info, self.pool, self.painted)
-        self.planner = Planner()
-        self.warnings = PlanWarnings(lambda: self.runner.inputs)
-        self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
-        self.eye_height = EyeHeight()  # over the terrain, in the last frame
-        self.plain_forms = PlainForms(notice, self._computes and driver != FRAGMENT)
-        self._keys = KeyMaker(content=self.painted.content)
-        self._hasher = PictureHasher()
-        self._finite = FiniteCheck(self)
-        self._timer: Timer | None = None
-        self._owns_context = owns_context
-        self._default = ctx.detect_framebuffer(0)
-        self._released = False
+        self.internal = Internals(
+            ctx, driver=driver, cache_bytes=cache_bytes, owns_context=owns_context, notice=notice
+        )
 
     @property
-    def clock(self) -> str:
-        """Which clock the times come from."""
-        return self._timer_of().clock
+    def ctx(self) -> moderngl.Context:
+        """Return the OpenGL context, for own calls of moderngl.
+
+        with playground.headless() as engine:
+            print(engine.ctx.version_code)
+        """
+        return self.internal.ctx
+
+    @property
+    def info(self) -> ContextInfo:
+        """Return what the context is: ``renderer``, ``opengl``, ``compute``, ``software``.
+
+        with playground.headless() as engine:
+            print(engine.info.renderer, engine.info.opengl)
+        """
+        return self.internal.info
+
+    @property
+    def driver(self) -> str:
+        """Return what runs kernels: "auto", "fragment" or "compute".
+
+        with playground.headless(driver="fragment") as engine:
+            assert engine.driver == "fragment"
+        """
+        return self.internal.driver
 
     def __enter__(self) -> Engine:
-        self._refuse_released()
+        self.internal.refuse_misuse()
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -119,41 +102,13 @@ class Engine(Recorded):
         """Release every texture and program, and the context if it is the engine's own.
 
         A second call does nothing. Once its own context is gone, nothing more can be drawn.
-        """
-        if self._released:
-            return
-        self._make_current()
-        self._released = self._owns_context
-        self.record = FrameRecord()
-        self.cache.clear()
-        self.pool.clear()
-        self.runner.release()
-        self._timer = None
-        if self._owns_context:
-            self.ctx.release()
 
-    def plan_for(
-        self,
-        sketch: Sketch | str | Path,
-        size: tuple[int, int],
-        time: float = 0.0,
-        steps: Mapping[str, int] | None = None,
-        wanted: str = "",
-        largest: int = LARGEST_SIDE,
-        interpolated: bool | None = None,
-    ) -> Plan:
-        """Make a sketch, or that of a name or path, concrete for this engine; see ``Planner.plan``."""
-        self._refuse_released()
-        return self.planner.plan(
-            opened(sketch),
-            frame_size=size,
-            time=time,
-            variants=self.plain_forms.kinds,
-            steps=steps,
-            wanted=wanted,
-            interpolated=interpolated,
-            largest=largest,
-        )
+            engine = playground.headless()
+            engine.release()
+
+        Raises ``ContextError`` in another thread than its own.
+        """
+        self.internal.release()
 
     def render(
         self,
@@ -169,6 +124,11 @@ class Engine(Recorded):
         ``size`` in pixels, ``time`` in seconds; ``steps`` stops repeated passes after so
         many iterations, by path. What a stopped pass has not computed yet is interpolated where its
         header says how (see ``between``); without ``interpolated`` it is shown as it is, 0.
+
+            with playground.headless() as engine:
+                frame = engine.render("l_dot_n", size=(64, 36))
+                assert frame.array.shape == (36, 64, 4)
+
         Raises ``PlaygroundError`` for any mistake in the sketch.
         """
         found = opened(sketch)
@@ -180,62 +140,23 @@ class Engine(Recorded):
         self,
         sketch: Sketch | str | Path,
         *,
-        size: tuple[int, int],
+        size: tuple[int, int] = DEFAULT_PICTURE,
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
         interpolated: bool = True,
     ) -> moderngl.Texture:
-        """Draw the sketch's picture, as ``render``; return its texture, which lives until the next frame."""
-        plan_of = partial(self.plan_for, size=size, time=time, steps=steps, interpolated=interpolated)
-        return self._draw_above_terrain(opened(sketch), plan_of)
+        """Draw the sketch's picture, as ``render``, and return its texture on the GPU.
 
-    def draw_window(
-        self,
-        sketch: Sketch | str | Path,
-        window: Window,
-        *,
-        time: float = 0.0,
-        steps: Mapping[str, int] | None = None,
-    ) -> moderngl.Texture:
-        """Draw a window of a picture and return its texture, which lives until the next frame.
+        It lives until the next frame, and has ``size`` pixels whatever the sketch's supersampling. Its
+        colours are as ``moderngl`` reads them, row 0 at the bottom.
 
-        The whole picture may have up to ``LARGEST_PICTURE`` pixels a side, more than any texture.
-        Raises ``SketchError`` at a pass that cannot be drawn in parts (see ``window``).
+            with playground.headless() as engine:
+                texture = engine.draw("l_dot_n", size=(64, 36))
+                assert texture.size == (64, 36)
+
+        Raises ``PlaygroundError`` for any mistake in the sketch.
         """
-        plan_of = partial(self.plan_for_window, window=window, time=time, steps=steps)
-        return self._draw_above_terrain(opened(sketch), plan_of)
-
-    def _draw_above_terrain(self, sketch: Sketch, plan_of: Callable[[Sketch], Plan]) -> moderngl.Texture:
-        """Draw a sketch; where the eye is under the terrain, warn once, and draw again from just above it."""
-        plan, before = plan_of(sketch), None
-        camera = self.eye_height.raised_as_before(plan, self.keys_of)
-        if camera is None:
-            texture = self._texture(plan, plan.picture)
-            with self.borrowed():
-                camera = self.eye_height.raised(plan, self.record.keys, self.record.results, self.ctx)
-            if camera is None:
-                return texture
-            before = self.record
-        warning = Diagnostic(self.eye_height.message, shown(sketch.file), severity="warning")
-        self.warnings.once(warning, "the eye's height")
-        raised = plan_of(sketch.with_camera(camera))
-        texture = self._texture(raised, raised.picture)
-        if before is not None:
-            self.record = self.record.plus(before)
-        return texture
-
-    def plan_for_window(
-        self,
-        sketch: Sketch | str | Path,
-        window: Window,
-        time: float = 0.0,
-        steps: Mapping[str, int] | None = None,
-    ) -> Plan:
-        """Make a sketch concrete for a window of a picture; raise as ``draw_window`` does."""
-        found, (width, height) = opened(sketch), window.whole
-        plan = self.plan_for(found, window.whole, time, steps, largest=LARGEST_PICTURE)
-        other = self.plan_for(found, (width + 1, height + 1), time, steps, largest=LARGEST_PICTURE + 1)
-        return windowed(plan, other, window)
+        return self.internal.draw(sketch, size=size, time=time, steps=steps, interpolated=interpolated)
 
     def texture(
         self,
@@ -247,16 +168,20 @@ class Engine(Recorded):
         steps: Mapping[str, int] | None = None,
         interpolated: bool = False,
     ) -> moderngl.Texture:
-        """Return the texture of ``pass[.inner…][:output]``; it lives until the next frame.
+        """Return the texture of ``pass[.inner…][:output]`` on the GPU; it lives until the next frame.
 
         Runs only what it needs. What a stopped pass has not computed is 0, unless ``interpolated``.
-        """
-        plan = self.plan_for(sketch, size, time, steps, ref, interpolated=interpolated)
-        return self._texture(plan, plan.flat.ref(ref, plan.sketch.name))
+        ``size``, ``time`` and ``steps`` as in ``render``.
 
-    def texture_of(self, plan: Plan, ref: Ref) -> moderngl.Texture:
-        """Run what a texture of a plan needs, and return it; it lives until the next frame."""
-        return self._texture(plan, ref)
+            with playground.headless() as engine:
+                texture = engine.texture("l_dot_n", "height")
+                print(texture.size, texture.components, texture.dtype)
+
+        Raises ``PlaygroundError`` for any mistake in the sketch, and with the nearest name for a wrong
+        ``ref``.
+        """
+        plan = self.internal.plan_for(sketch, size, time, steps, ref, interpolated=interpolated)
+        return self.internal.texture_of(plan, plan.flat.ref(ref, plan.sketch.name))
 
     def read(
         self,
@@ -268,14 +193,48 @@ class Engine(Recorded):
         steps: Mapping[str, int] | None = None,
         interpolated: bool = False,
     ) -> NDArray[np.float32]:
-        """Return the values of ``pass[.inner…][:output]``.
+        """Return the values of ``pass[.inner…][:output]``; the other arguments as in ``texture``.
 
         float32, (ny, nx) or (ny, nx, components), row 0 in the south; heights are 0..1
-        (times ``relief`` for metres), colours and light linear. What a stopped pass has not
+        (``metres`` gives metres), colours and light linear. What a stopped pass has not
         computed is 0, unless ``interpolated``.
+
+            with playground.headless() as engine:
+                height = engine.read("l_dot_n", "height")
+                print(height.shape, height.dtype, height.max())
+
+        Raises as ``texture``.
         """
         texture = self.texture(sketch, ref, size=size, time=time, steps=steps, interpolated=interpolated)
         return read_texture(texture)
+
+    def metres(
+        self,
+        sketch: Sketch | str | Path,
+        ref: str = "height",
+        *,
+        size: tuple[int, int] = DEFAULT_PICTURE,
+        time: float = 0.0,
+        steps: Mapping[str, int] | None = None,
+        interpolated: bool = False,
+    ) -> NDArray[np.float32]:
+        """Return heights in metres above sea level: those of ``read`` times the relief, plus the base.
+
+        float32, (ny, nx), row 0 in the south; the other arguments as in ``texture``. It is meant for
+        heights, 0..1; any texture with one number a texel is taken.
+
+            with playground.headless() as engine:
+                metres = engine.metres("jacksboro", "height")
+                print(f"{metres.min():.0f} to {metres.max():.0f} m")
+
+        Raises as ``texture``, and ``SketchError`` for a texture with several numbers a texel.
+        """
+        plan = self.internal.plan_for(sketch, size, time, steps, ref, interpolated=interpolated)
+        found = self.internal.texture_of(plan, plan.flat.ref(ref, plan.sketch.name))
+        values = read_texture(found)
+        if values.ndim != 2:
+            raise SketchError(f"texture '{ref}' has {values.shape[2]} channels; heights have one")
+        return plan.terrain.metres(values)
 
     def steps(
         self,
@@ -287,45 +246,37 @@ class Engine(Recorded):
     ) -> Iterator[tuple[int, NDArray[np.float32]]]:
         """Yield (iterations done, values) of a repeated pass, from before its first to after its last.
 
-        ``path`` may be a technique's in which one pass repeats: it is that one.
+        ``path`` may be a technique's in which one pass repeats: it is that one. Values, ``size`` and
+        ``time`` as in ``read``.
+
+            small = playground.load("diamond_square").with_values({"size": 5})
+            with playground.headless() as engine:
+                for step, values in engine.steps(small, "height"):
+                    print(step, values.std())
+
+        Raises as ``texture``, and ``SketchError`` with those that repeat for a pass that does not.
         """
         found = opened(sketch)
         repeated = repeated_in(found, path)
         # No fast variant replaces a pass that is stopped.
-        whole = most_iterations(self.plan_for(found, size, time, {repeated: 0}).nodes)[repeated]
+        plan = self.internal.plan_for(found, size, time, {repeated: 0})
+        whole = most_iterations(plan.nodes)[repeated]
         for done in range(whole + 1):
             yield done, self.read(found, repeated, size=size, time=time, steps={repeated: done})
-
-    def drawn(self) -> str:
-        """Return a hash of what the last frame's picture was drawn from; "" before the first.
-
-        The same on every machine: see ``engine.picture_hash``.
-        """
-        return "" if self.plan is None else self._hash_of(self.plan)
 
     def not_finite(self) -> NotFinite | None:
         """Return the first number that is not finite among what the last frame was made from, if any.
 
         Ask before the next frame is drawn. What it costs, and what it leaves out: see
         ``engine.non_finite``.
+
+            with playground.headless() as engine:
+                engine.render("l_dot_n", size=(64, 36))
+                assert engine.not_finite() is None
+
+        Raises ``ContextError`` once the engine was released.
         """
-        return self._finite.first()
-
-    def not_finite_by_pass(self) -> Iterator[NotFinite | None]:
-        """Look at the last frame's passes one by one, in the order in which they ran, as ``not_finite`` does.
-
-        Yields after each what is not finite in it, if anything; another frame ends it.
-        """
-        return self._finite.looks()
-
-    def recall(self, plan: Plan) -> None:
-        """Restore ``plan`` and ``results`` of an earlier frame; what is cached of it does not run.
-
-        What ran for the last frame, and what it took, stays as it was.
-        """
-        before = self.record
-        self._texture(plan, plan.picture)
-        self.record = self.record.counted_as(before)
+        return self.internal.not_finite()
 
     def fingerprint(
         self,
@@ -335,161 +286,25 @@ class Engine(Recorded):
         time: float = 0.0,
         steps: Mapping[str, int] | None = None,
     ) -> str:
-        """Return a hash of all that a picture depends on, the renderer included, without drawing it."""
-        found = opened(sketch)
-        size = drawn_size(found, size, LARGEST_PICTURE)
-        plan = self.plan_for(found, size, time, steps, largest=LARGEST_PICTURE)
-        with self._supposing(plan):
-            made = f"{self._hash_of(plan)} {self.info.renderer} {self.info.opengl}"
-        return blake2b(made.encode(), digest_size=16).hexdigest()
+        """Return a hash of all that a picture depends on, the renderer included, without drawing it.
 
-    def _hash_of(self, plan: Plan) -> str:
-        return self._hasher.hash_of(plan, self.driver_for, self.runner.given_for_key)
+        32 hexadecimal digits; the arguments as in ``render``. What an array or a file holds counts, not
+        what it is called.
+
+            with playground.headless() as engine:
+                assert engine.fingerprint("l_dot_n") == engine.fingerprint("l_dot_n")
+
+        Raises ``PlaygroundError`` for any mistake in the sketch.
+        """
+        return self.internal.fingerprint(sketch, size=size, time=time, steps=steps)
 
     def forget_unused(self) -> None:
-        """Drop what is cached but not used for the last frame; without it, a film caches all its frames."""
-        self.cache.drop_unused()
+        """Drop what is cached but not used for the last frame; without it, a film caches all its frames.
 
-    def stale(
-        self,
-        sketch: Sketch | str | Path,
-        *,
-        size: tuple[int, int],
-        time: float = 0.0,
-        steps: Mapping[str, int] | None = None,
-        interpolated: bool = True,
-    ) -> list[str]:
-        """Return the paths of the passes that drawing the sketch's picture would run; nothing is run."""
-        plan = self.plan_for(sketch, size, time, steps, interpolated=interpolated)
-        keys, nodes = self.keys_of(plan), needed(plan.nodes, plan.picture)
-        if self.disk_caching is not None:
-            nodes = self.disk_caching.would_run(self.cache, plan, keys, plan.picture, self.painted)
-        return would_run(keys, self.cache, nodes, plan)
-
-    def keys_of(self, plan: Plan) -> Keys:
-        """Return what each pass's textures depend on: see ``cache_keys``."""
-        with self._supposing(plan):
-            return self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
-
-    @contextmanager
-    def _supposing(self, plan: Plan) -> Iterator[None]:
-        """Suppose that a plan were being drawn; afterwards the last frame's is the last frame's again."""
-        self.runner.look_at(plan)
-        try:
-            yield
-        finally:
-            if self.plan is not None:
-                self.runner.look_at(self.plan)
-
-    # ── running ──────────────────────────────────────────────────────────────
-
-    def _texture(self, plan: Plan, ref: Ref) -> moderngl.Texture:
-        """Run what a texture needs and return it, with the context left as it was found."""
-        self.plain_forms.report(plan.sketch, plan.lacking)
-        self.record = record = FrameRecord(plan)
-        self.cache.begin()
-        self.runner.look_at(plan)
-        self.runner.programs.frame += 1
-        record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
-        execution = Execution(record.keys, self.cache, self.runner, self._compute)
-        execution.deadline = Deadline(self.patience, self.ctx.finish)
-        self.runner.works.waits = self.patience is None
-        self.runner.works.keep(record.keys.raw)
-        with self.borrowed():
-            if self.disk_caching is not None:
-                execution.run(self.disk_caching.begin(execution, plan, ref))
-            else:
-                execution.run(needed(plan.nodes, ref))
-        self.cache.end()
-        record.results = execution.results
-        self.warnings.look(plan)
-        return execution.results[ref.path].textures[ref.output]
-
-    @contextmanager
-    def borrowed(self) -> Iterator[None]:
-        """Lend the context, made current, and restore its framebuffer and samplers afterwards."""
-        self._make_current()
-        bound = self.ctx.fbo
-        try:
-            yield
-        finally:
-            self.runner.binder.tidy()
-            # What stays bound here is bound again by later calls, so it may not be a released one.
-            (bound if bound is not None and _is_alive(bound) else self._default).use()
-
-    def _compute(
-        self,
-        step: Step,
-        inputs: Mapping[str, Wired],
-        iteration: LoopIteration | None,
-        start: Result | None,
-    ) -> Result:
-        """Run a step, and record that and how it ran."""
-        record, runner, first = self.record, self.runner, (start.settled or start.iterations) if start else 0
-        continued = record.plan is not None and step.path in record.plan.continued
-        objects, drawn = self.pool.made + runner.programs.compiled, runner.draws.drawn
-        timed = self._timer_of().measure(record.times, step.path) if self.profiling else nullcontext()
-        with timed:
-            result = runner.run(
-                step,
-                self.driver_for(step),
-                inputs,
-                iteration=iteration,
-                start=start,
-                keeps_surface=continued,
-                key="" if iteration is not None else record.keys.raw.get(step.path, ""),
-            )
-        if objects != self.pool.made + runner.programs.compiled:
-            # What has run without an error before will do so again, and a query waits for the driver.
-            error = self.ctx.error
-            if error != "GL_NO_ERROR":
-                raise OpenGLFault(f"pass '{step.path}': OpenGL reports {error}")
-        self.runs[step.path] += 1
-        record.ran.append(step.path)
-        steps = max((result.settled or step.repeat) - first, 0)
-        record.iterations[step.path] += steps
-        record.texels += step.size[0] * step.size[1] * max(steps, 1)
-        record.triangles += runner.draws.drawn - drawn
-        return result
-
-    def driver_for(self, step: Step) -> str:
-        """Choose by which driver the kernel of a step runs."""
-        kernel = step.kernel
-        if kernel.kind in ("compute", "plain_compute"):
-            if not self._computes:
-                message = f"'{kernel.name}' is a compute shader; this context is {self.info.opengl}"
-                raise ContextError(f"{message}, and compute needs 4.3")
-            return COMPUTE
-        if kernel.kind != "kernel" or not self._computes or self.driver == FRAGMENT:
-            return FRAGMENT
-        return COMPUTE if self.driver == COMPUTE or kernel.visits else FRAGMENT
-
-    def _make_current(self) -> None:
-        """Make this engine's context current: there may be others in the process.
-
-        It stays current, since glcontext's way back leaves none.
+        with playground.headless() as engine:
+            for azimuth in (120.0, 180.0, 240.0):
+                sketch = playground.load("l_dot_n").with_values({"light.sun": (azimuth, 20.0)})
+                engine.render(sketch, size=(64, 36))
+                engine.forget_unused()
         """
-        self._refuse_released()
-        context: Any = self.ctx
-        context.__enter__()
-
-    def _refuse_released(self) -> None:
-        if self._released:
-            raise ContextError("this engine was released; open another")
-
-    def _timer_of(self) -> Timer:
-        self._refuse_released()
-        if self._timer is None:
-            self._timer = Timer(self.ctx, software=self.info.software)
-        return self._timer
-
-
-def opened(sketch: Sketch | str | Path) -> Sketch:
-    """Return the sketch itself, or the one of that name or path."""
-    return sketch if isinstance(sketch, Sketch) else load(sketch)
-
-
-def _is_alive(framebuffer: moderngl.Framebuffer) -> bool:
-    import moderngl
-
-    return not isinstance(framebuffer.mglo, moderngl.InvalidObject)
+        self.internal.forget_unused()

@@ -119,7 +119,7 @@ def verify(engine: Engine, variant: Variant, technique: Technique, places: Itera
     verdict = Verdict(variant, (content_of(technique), content_of(variant.technique)))
     if not variant.technique.agrees:
         verdict.wrong = 'it does not say how closely it agrees, as agrees = "1e-5"'
-    elif variant.kind not in engine.plain_forms.kinds:
+    elif variant.kind not in engine.internal.plain_forms.kinds:
         verdict.skipped = f"this context is {engine.info.opengl}; compute needs 4.3"
     else:
         try:
@@ -300,7 +300,7 @@ def _compare(engine: Engine, place: Place, sketch: Sketch, words: str, verdict: 
 def _has_run(engine: Engine, place: Place) -> bool:
     """Return whether the fast variant was what gave the last texture: where more is wired, it steps back."""
     files = {kernel.path for _, kernel in kernels_of(place.variant.technique)}
-    steps = engine.plan.walk() if engine.plan is not None else ()
+    steps = engine.internal.plan.walk() if engine.internal.plan is not None else ()
     return any(step.path.startswith(place.path) and step.kernel.path in files for step in steps)
 
 

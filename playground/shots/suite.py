@@ -97,7 +97,7 @@ def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
         frame.array,
         frame.sketch,
         frame.time,
-        drawn=engine.drawn(),
+        drawn=engine.internal.drawn(),
         not_finite=str(found) if found else "",
         gl_error="" if error == "GL_NO_ERROR" else error,
     )

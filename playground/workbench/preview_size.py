@@ -86,8 +86,8 @@ class PreviewSize:
         if len(possible) == 1:
             self.divisor = 1
             return size
-        whole = engine.plan_for(sketch, size, **at)
-        smaller = engine.plan_for(sketch, divided(size, 2), **at)
+        whole = engine.internal.plan_for(sketch, size, **at)
+        smaller = engine.internal.plan_for(sketch, divided(size, 2), **at)
         sizes, halved = _texels(whole), _texels(smaller)
         following = {path for path, texels in sizes.items() if halved.get(path) != texels}
         if not _goes_on(whole).isdisjoint(following):

@@ -64,14 +64,14 @@ class Session:
         is_lost: Callable[[], bool] = lambda: False,
     ) -> None:
         self.engine = engine
-        engine.plain_forms.notice = silent  # ``notes`` say it
+        engine.internal.plain_forms.notice = silent  # ``notes`` say it
         self.clock = Clock()
         self._clock_before = Clock()  # of the sketch that is shown, while another is opened
         self.view = View()
         self.data = DataFiles()
         checks = Checks(
             driver=engine.driver,
-            variants=tuple(engine.plain_forms.kinds),
+            variants=tuple(engine.internal.plain_forms.kinds),
             sandbox=sandbox,
             now=now,
             sketch_time=lambda: self.clock.time,
@@ -214,8 +214,9 @@ class Session:
 
     def point(self, mouse: tuple[float, float, float, float]) -> None:
         """Pass the mouse to plain shaders: pixels from the lower left, then where it was pressed."""
-        if self.engine.runner.mouse != mouse and self.sketch is not None and traits_of(self.sketch).mouse:
-            self.engine.runner.mouse = mouse
+        runner = self.engine.internal.runner
+        if runner.mouse != mouse and self.sketch is not None and traits_of(self.sketch).mouse:
+            runner.mouse = mouse
             self.redraw()
 
     def hover(self, place: tuple[float, float], *, pressed: bool, clicked: bool) -> None:
@@ -223,7 +224,7 @@ class Session:
 
         ``clicked``: it was pressed in this very frame.
         """
-        runner = self.engine.runner
+        runner = self.engine.internal.runner
         x, y, press_x, press_y = runner.drag
         if clicked:
             drag = (*place, *place)
@@ -255,7 +256,7 @@ class Session:
 
     def _press(self) -> None:
         """Pass the buttons pressed since the last frame to the engine, and let go of those before."""
-        runner = self.engine.runner
+        runner = self.engine.internal.runner
         if runner.pressed != self._pressed:
             runner.pressed = self._pressed
             self.redraw()
@@ -263,7 +264,8 @@ class Session:
 
     def hold_keys(self, codes: Collection[int]) -> None:
         """Begin a frame in which the picture's keys are down, by their codes in JavaScript."""
-        if self.engine.runner.inputs.keyboard.hold(codes) and self.sketch and traits_of(self.sketch).keys:
+        inputs = self.engine.internal.runner.inputs
+        if inputs.keyboard.hold(codes) and self.sketch and traits_of(self.sketch).keys:
             self.redraw()
 
     @property
@@ -273,7 +275,7 @@ class Session:
 
     def listen(self) -> None:
         """Begin a frame: take what microphones and cameras delivered."""
-        if self.engine.runner.inputs.begin_frame() and self.listens:
+        if self.engine.internal.runner.inputs.begin_frame() and self.listens:
             self.redraw()
 
     def advance(self, seconds: float, date: datetime) -> None:
@@ -284,7 +286,7 @@ class Session:
         if self.catch_up.behind is None:
             self.clock.advance(seconds)
         midnight = date.replace(hour=0, minute=0, second=0, microsecond=0)
-        runner = self.engine.runner
+        runner = self.engine.internal.runner
         runner.delta = seconds * self.clock.speed
         runner.date = (float(date.year), date.month - 1.0, float(date.day), (date - midnight).total_seconds())
 
@@ -314,7 +316,7 @@ class Session:
         shown = self.view.map
         if shown is not None and self.sketch is not None:
             values = self.read_values(shown.ref)
-            if values is not None or not self.engine.runner.works.at_work:
+            if values is not None or not self.engine.internal.runner.works.at_work:
                 self.view.show(fitted(shown, values) if values is not None else None)
 
     def read_values(self, ref: str) -> NDArray[np.float32] | None:
@@ -326,14 +328,14 @@ class Session:
             return None
         now, engine = self.clock.time, self.engine
         stops, fills = self.view.stops(self.sketch, now), self.view.interpolated
-        engine.patience = float("inf")  # loops run to their end
+        engine.internal.patience = float("inf")  # loops run to their end
         try:
             return engine.read(self.sketch, ref, time=now, steps=stops, interpolated=fills)
         except (PlaygroundError, SourceUnfinished) as error:
             self.notes.append(str(error))
             return None
         finally:
-            engine.patience = None
+            engine.internal.patience = None
 
     # ── the picture ──────────────────────────────────────────────────────────
 
@@ -376,11 +378,11 @@ class Session:
         What is shown is drawn anew, unless it lost two contexts in a row: then it waits until
         something is changed.
         """
-        engine.runner.mouse = self.engine.runner.mouse
-        engine.runner.inputs = self.engine.runner.inputs
-        engine.runner.hover, engine.runner.drag = self.engine.runner.hover, self.engine.runner.drag
-        engine.plain_forms.notice = silent
-        engine.painted.update(self.engine.painted)
+        runner, before = engine.internal.runner, self.engine.internal.runner
+        runner.mouse, runner.inputs = before.mouse, before.inputs
+        runner.hover, runner.drag = before.hover, before.drag
+        engine.internal.plain_forms.notice = silent
+        engine.internal.painted.update(self.engine.internal.painted)
         self.engine, self.plan = engine, None
         self.picture = ShownPicture(engine.ctx, self._now)
         self._drawn, shown = None, (self.shown, self.drafts.revision, self.view.revision)
@@ -475,13 +477,13 @@ class Session:
         if not drawn:
             return
         self.draws += 1
-        if engine.profiling:
-            self.times |= engine.times
-        self.plan = engine.plan
-        if engine.eye_height.message:
-            self._note_once("ground", engine.eye_height.message)
-        if traits.arcs and engine.plan is not None and "arc" not in self._reported:
-            self._note_once("arc", sun_off_arc(engine.plan))
+        if engine.internal.profiling:
+            self.times |= engine.internal.times
+        self.plan = engine.internal.plan
+        if engine.internal.eye_height.message:
+            self._note_once("ground", engine.internal.eye_height.message)
+        if traits.arcs and engine.internal.plan is not None and "arc" not in self._reported:
+            self._note_once("arc", sun_off_arc(engine.internal.plan))
 
     def _pause_once(self) -> None:
         """Let time stand still, the first time that a sketch is too slow for it: so it is drawn in full."""

@@ -111,13 +111,17 @@ class ShownPicture:
             at = _at(view, sketch, time, coming=coming)
             return engine.draw(_framed(chosen, view, time, size), size=pixels, **at)
 
-        with _timed(engine), pointed_at(engine.runner, size, pixels):
+        with _timed(engine), pointed_at(engine.internal.runner, size, pixels):
             texture = catch_up.draw(engine, time, drawn_at, in_full=in_full)
-        if engine.info.software and engine.plan is not None:
-            self._sizes.take(engine.plan, engine.times, in_full=in_full and as_preview(sketch) is not sketch)
+        if engine.info.software and engine.internal.plan is not None:
+            self._sizes.take(
+                engine.internal.plan,
+                engine.internal.times,
+                in_full=in_full and as_preview(sketch) is not sketch,
+            )
         if texture is None:
             return False
-        with engine.borrowed():
+        with engine.internal.borrowed():
             self._picture.copy(texture, size)
         self.is_preview = chosen is not sketch or pixels != size
         # Nobody waits for what was drawn small because its cost was not known.
@@ -136,8 +140,8 @@ class ShownPicture:
         """Return the passes that would run if a sketch were drawn as the last picture was, by path."""
         pixels = self._drawn_size if self.texture is not None and self.texture.size == size else size
         chosen = as_preview(sketch, size, pixels) if self.is_preview else sketch
-        with pointed_at(engine.runner, size, pixels):
-            return engine.stale(_framed(chosen, view, at["time"], size), size=pixels, **at)
+        with pointed_at(engine.internal.runner, size, pixels):
+            return engine.internal.stale(_framed(chosen, view, at["time"], size), size=pixels, **at)
 
 
 def _at(view: View, sketch: Sketch, time: float, *, coming: bool = False) -> dict[str, Any]:
@@ -154,12 +158,12 @@ def _framed(sketch: Sketch, view: View, time: float, size: Size) -> Sketch:
 @contextmanager
 def _timed(engine: Engine) -> Iterator[None]:
     """Have passes timed on a software renderer, where that costs next to nothing."""
-    before = engine.profiling
-    engine.profiling = before or engine.info.software
+    before = engine.internal.profiling
+    engine.internal.profiling = before or engine.info.software
     try:
         yield
     finally:
-        engine.profiling = before
+        engine.internal.profiling = before
 
 
 @contextmanager

@@ -103,7 +103,7 @@ def sun() -> tuple[list[str], float]:
             engine.draw(moved, size=SIZE)
             engine.ctx.finish()
             times.append((time.perf_counter() - start) * 1e3)
-        return sorted({path.split(".")[0] for path in engine.ran}), statistics.median(times)
+        return sorted({path.split(".")[0] for path in engine.internal.ran}), statistics.median(times)
 
 
 def save_to_picture(name: str, saves: int, *, sandboxed: bool) -> list[float]:

@@ -126,9 +126,9 @@ def test_the_picture_of_a_stopped_run_has_a_fingerprint_and_a_hash_of_its_own(
 ) -> None:
     sketch, steps = sketch_of(tmp_path, "diamond_square"), {"height.raw": 3}
     engine.render(sketch, size=(9, 9), steps=steps)
-    drawn = engine.drawn()
+    drawn = engine.internal.drawn()
     engine.render(sketch, size=(9, 9), steps=steps, interpolated=False)
-    assert engine.drawn() != drawn
+    assert engine.internal.drawn() != drawn
 
 
 @pytest.mark.parametrize(

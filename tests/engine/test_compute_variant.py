@@ -84,7 +84,7 @@ def test_it_runs_where_there_is_compute_and_agrees(ctx, sums, ran, driver):
             np.testing.assert_allclose(found, truth(scale), rtol=1e-6)
         assert ("sums.comp" in ran) == (driver != "fragment")
         assert ("sums.glsl" in ran) == (driver == "fragment")
-        assert engine.runs["sums"] == 2
+        assert engine.internal.runs["sums"] == 2
 
 
 def test_its_iterations_are_shown_by_the_kernel(any_engine, sums, ran):
@@ -166,10 +166,10 @@ def test_one_next_to_a_technique_replaces_all_of_it(ctx, folder):
     with Engine(ctx, driver="fragment") as slow, Engine(ctx) as fast:
         np.testing.assert_array_equal(slow.read(sketch, "t"), fast.read(sketch, "t"))
         assert slow.read(sketch, "t").max() == 2 * 3 * 7
-        assert set(slow.runs) == {"values", "t.doubled", "t.add"}
-        assert set(fast.runs) == {"values", "t"}
+        assert set(slow.internal.runs) == {"values", "t.doubled", "t.add"}
+        assert set(fast.internal.runs) == {"values", "t"}
         for _ in range(3):
-            fast.cache.clear()
+            fast.internal.cache.clear()
             np.testing.assert_array_equal(
                 slow.read(sketch, "t"), fast.read(sketch, "t"), "nothing is left over"
             )
@@ -217,7 +217,7 @@ def test_a_spare_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engin
         sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 19")
         assert (any_engine.read(sketch, "a") == 1.0).all()
         assert (any_engine.read(sketch.with_values({"a.again": 1.0}), "a") == second).all()
-        any_engine.runner.compute_variants.release()
+        any_engine.internal.runner.compute_variants.release()
 
 
 def test_overwrites_names_an_output_or_a_buffer(folder):
@@ -287,11 +287,11 @@ def test_stages_say_what_each_iteration_does(any_engine, folder):
     folder.write("fill.glsl", PLAIN_FILL)
     folder.write("fill.comp", STAGES)
     sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 19")
-    before = any_engine.runner.programs.compiled
+    before = any_engine.internal.runner.programs.compiled
     for _ in range(2):
         assert (any_engine.read(sketch, "a") == 4 * 294).all()
-        any_engine.cache.clear()
-    made = any_engine.runner.programs.compiled - before
+        any_engine.internal.cache.clear()
+    made = any_engine.internal.runner.programs.compiled - before
     assert made == (3 if any_engine.info.software else 1), "one for each stage, where the processor draws"
 
 

@@ -37,7 +37,7 @@ void main() {
 @pytest.fixture(params=["compiled in", "set as uniforms"])
 def each_engine(request, any_engine):
     """Give an engine that compiles in what is wired, as where the processor draws, and one that does not."""
-    any_engine.runner.kernels.software = request.param == "compiled in"
+    any_engine.internal.runner.kernels.software = request.param == "compiled in"
     return any_engine
 
 

@@ -128,17 +128,17 @@ def test_the_picture_stays_the_last_frame_and_nothing_of_the_arrays_stays_cached
     engine.draw(sketch, size=(32, 24))
     hills = engine.read(sketch, "hills").copy()
     engine.draw(sketch, size=(32, 24))
-    record, runs, held = engine.record, engine.runs.copy(), len(engine.cache)
+    record, runs, held = engine.internal.record, engine.internal.runs.copy(), len(engine.internal.cache)
     brush = OnArrays(engine, slumps)
     for _ in range(3):
         brush.run({"height_before": hills}, **OPTIONS)
-    made, count = engine.pool.made, len(engine.cache)
+    made, count = engine.internal.pool.made, len(engine.internal.cache)
     for _ in range(5):
         brush.run({"height_before": hills}, **OPTIONS)
-    assert engine.pool.made == made and len(engine.cache) == count == held
-    assert engine.record is record and engine.runs == runs
+    assert engine.internal.pool.made == made and len(engine.internal.cache) == count == held
+    assert engine.internal.record is record and engine.internal.runs == runs
     engine.draw(sketch, size=(32, 24))
-    assert engine.ran == []
+    assert engine.internal.ran == []
 
 
 def test_a_source_that_a_window_waits_for_goes_on(engine, sketch, slumps):
@@ -152,17 +152,17 @@ def test_a_source_that_a_window_waits_for_goes_on(engine, sketch, slumps):
             ended.set()
         return {"height": np.ones((2, 2), np.float32)}
 
-    works = engine.runner.works
+    works = engine.internal.runner.works
     works.waits = False
     with pytest.raises(SourceUnfinished):
         works.made("height", "key", lambda: work)
-    engine.patience = 0.1
+    engine.internal.patience = 0.1
     try:
         OnArrays(engine, slumps).run({"height_before": np.zeros((5, 4), np.float32)}, **OPTIONS)
-        assert engine.patience == 0.1
+        assert engine.internal.patience == 0.1
     finally:
-        engine.patience = None
-    assert engine.runner.works is works and not works.waits
+        engine.internal.patience = None
+    assert engine.internal.runner.works is works and not works.waits
     assert not ended.wait(0.1) and works.at_work
     may_end.set()
     assert ended.wait(5.0)
@@ -175,7 +175,7 @@ def test_warm_it_neither_compiles_nor_plans_anew(any_engine, slumps):
     counts = []
     for number in range(4):
         brush.run({"height_before": hills + number}, values={"rate": 0.1 * number}, **OPTIONS)
-        counts.append((any_engine.planner.made_whole, any_engine.runner.programs.compiled))
+        counts.append((any_engine.internal.planner.made_whole, any_engine.internal.runner.programs.compiled))
     assert counts[0] == counts[-1]
 
 

@@ -48,7 +48,7 @@ def sketch(folder, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_an_engine_reports_each_once(any_engine, sketch):
     reports: list[tuple[str, str]] = []
-    any_engine.warnings.report = lambda found: reports.append((found.place, found.message))
+    any_engine.internal.warnings.report = lambda found: reports.append((found.place, found.message))
     for size in ((8, 8), (9, 9)):
         any_engine.render(load(sketch), size=size)
     place = next(place for place, message in reports if message == SECOND)
@@ -59,7 +59,7 @@ def test_an_engine_reports_each_once(any_engine, sketch):
 def test_steps_past_the_end_of_a_repeat_that_follows_the_time_are_said_once(any_engine, folder):
     """One whose number stays is refused; this one may grow."""
     reports: list[str] = []
-    any_engine.warnings.report = lambda found: reports.append(f"{found.severity}: {found.message}")
+    any_engine.internal.warnings.report = lambda found: reports.append(f"{found.severity}: {found.message}")
     text = '#pragma kernel(output = "a:r32f", repeat = "floor(2 * time)")\n'
     text += "float kernel(ivec2 texel) { return previous(texel) + 1.0; }\n"
     for time, expected in ((1.0, 2), (1.5, 3), (6.0, 5)):
@@ -112,17 +112,17 @@ def test_the_window_lists_them(any_engine, sketch):
     known = Warnings(lambda kernel: ())
     loaded = load(sketch)
     any_engine.render(loaded, size=(8, 8))
-    assert [w.message for w in known.of(loaded, any_engine.plan)] == [SECOND]
+    assert [w.message for w in known.of(loaded, any_engine.internal.plan)] == [SECOND]
     while known.waiting:
         known.look()
-    assert [w.line for w in known.of(loaded, any_engine.plan)] == [2, 3, 3]
+    assert [w.line for w in known.of(loaded, any_engine.internal.plan)] == [2, 3, 3]
 
 
 def test_a_file_that_goes_while_its_picture_is_shown_is_no_mistake_of_the_list(any_engine, sketch):
     loaded = load(sketch)
     any_engine.render(loaded, size=(8, 8))
     (sketch.parent / "two.tif").unlink()
-    assert Warnings(lambda kernel: ()).of(loaded, any_engine.plan) == []
+    assert Warnings(lambda kernel: ()).of(loaded, any_engine.internal.plan) == []
 
 
 def test_a_hidden_default_is_reported_by_render_and_check(folder, monkeypatch, capsys):

@@ -147,9 +147,9 @@ def test_what_is_used_is_weighed_twice_a_frame_at_most(ctx, monkeypatch):
         engine.render(sketch, size=SIZE)
         monkeypatch.setattr(Cache, "_weigh", counting)
         engine.render(sketch.with_values({"light.sun": (130.0, 20.0)}), size=SIZE)
-        passes = len(list(engine.plan.walk()))
+        passes = len(list(engine.internal.plan.walk()))
         # What ran is weighed as it is put away as well, once more where something stood under its key.
-        assert sum(weighed.values()) <= passes + 2 * len(engine.ran)
+        assert sum(weighed.values()) <= passes + 2 * len(engine.internal.ran)
         weighed.clear()
         engine.render(sketch.with_values({"light.sun": (130.0, 20.0)}), size=SIZE)
-        assert engine.ran == [] and sum(weighed.values()) <= passes
+        assert engine.internal.ran == [] and sum(weighed.values()) <= passes

@@ -53,8 +53,10 @@ def test_its_shape_is_the_technique_with_its_fast_form(ctx, sketch_of):
     for use in ("mixed", "mixed_tiled"):
         with Engine(ctx) as engine:
             engine.texture(sketch_of(use=use), "terrain")
-            assert "terrain.shape" in engine.ran
-            assert not [name for name in engine.ran if name.startswith("terrain.shape.")], engine.ran
+            assert "terrain.shape" in engine.internal.ran
+            assert not [name for name in engine.internal.ran if name.startswith("terrain.shape.")], (
+                engine.internal.ran
+            )
 
 
 def test_without_details_it_is_the_shape(engine, sketch_of):

@@ -195,7 +195,7 @@ def test_a_tile_has_a_share_of_the_interpolations(any_engine, sketch_of, use):
     """Interpolations are counted as texels of the pass that makes the tile."""
     texels = {}
     for tiles in (1, 2, 4, 8, 16):
-        plan = any_engine.plan_for(sketch_of(use, 1025, tiles=tiles), (64, 64))
+        plan = any_engine.internal.plan_for(sketch_of(use, 1025, tiles=tiles), (64, 64))
         width, height = plan.node("terrain.tile.fast.along").size
         texels[tiles] = width * height
     for tiles, count in texels.items():

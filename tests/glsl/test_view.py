@@ -33,7 +33,7 @@ def above(sketch, azimuth=180.0, elevation=60.0, **more):
 
 def pixels_of(engine, points):
     """Where points of the terrain are in the last picture: column and row from the top left."""
-    plan = engine.plan
+    plan = engine.internal.plan
     clip = np.c_[points, np.ones(len(points))] @ plan.eye.clip_from_world.astype(float).T
     place = clip[:, :2] / clip[:, 3:]
     width, height = plan.frame_size
@@ -263,9 +263,9 @@ def test_a_valley_below_height_0_is_filled_by_a_sea_far_below_the_hills(any_engi
 
 def test_no_sea_costs_nothing(any_engine, terrain):
     any_engine.render(above(terrain()), size=(40, 30))
-    assert "view.sea" not in any_engine.ran
+    assert "view.sea" not in any_engine.internal.ran
     any_engine.render(above(terrain()).with_values({"view.sea": True}), size=(40, 30))
-    assert any_engine.ran == ["view.sea", "view.present"]
+    assert any_engine.internal.ran == ["view.sea", "view.present"]
 
 
 # ── the last pass ────────────────────────────────────────────────────────────

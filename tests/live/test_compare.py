@@ -209,17 +209,23 @@ def test_to_draw_a_leaves_the_engine_s_account_of_b(session: Session, compare: C
     picture = session.frame(SIZE)
     assert picture is not None
     engine = session.engine
-    counters = list(engine.ran), engine.texels, dict(engine.runs), engine.triangles, dict(engine.times)
+    counters = (
+        list(engine.internal.ran),
+        engine.internal.texels,
+        dict(engine.internal.runs),
+        engine.internal.triangles,
+        dict(engine.internal.times),
+    )
     inspector = Inspector(session)
     under = inspector.at((30, 20), picture)
     compare.follow(picture)
     assert compare.draws == 1
     assert counters == (
-        list(engine.ran),
-        engine.texels,
-        dict(engine.runs),
-        engine.triangles,
-        dict(engine.times),
+        list(engine.internal.ran),
+        engine.internal.texels,
+        dict(engine.internal.runs),
+        engine.internal.triangles,
+        dict(engine.internal.times),
     )
     again = Inspector(session)
     assert again.at((30, 20), picture) == under and under is not None and under.ground is not None

@@ -118,10 +118,12 @@ def test_a_map_of_the_texture_shows_it_in_magenta_where_the_mark_is(desk: Desk) 
 def test_a_texture_that_was_read_since_changes_nothing(desk: Desk) -> None:
     desk.run_frames()
     desk.session.read_values("first:first")
-    ran = list(desk.session.engine.ran)
-    runs = dict(desk.session.engine.runs)
+    ran = list(desk.session.engine.internal.ran)
+    runs = dict(desk.session.engine.internal.runs)
     assert desk.rest() == ["first", "second"]
-    assert dict(desk.session.engine.runs) == runs and desk.session.engine.ran == ran, "nothing ran again"
+    assert dict(desk.session.engine.internal.runs) == runs and desk.session.engine.internal.ran == ran, (
+        "nothing ran again"
+    )
 
 
 def test_time_that_runs_is_looked_at_now_and_then(desk: Desk, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -178,10 +178,12 @@ def test_the_engine_keeps_its_frame_and_warm_stamps_compile_nothing(any_engine: 
     work(on, HERE, (0.6, 0.5), seconds=0.3)
     engine, known = any_engine, []
     for _ in range(2):
-        known.append((len(engine.cache), engine.runner.programs.compiled, engine.pool.made))
-        planned = engine.planner.made_whole
+        known.append(
+            (len(engine.internal.cache), engine.internal.runner.programs.compiled, engine.internal.pool.made)
+        )
+        planned = engine.internal.planner.made_whole
         work(on, (0.3, 0.5), (0.6, 0.7), seconds=0.5)
-        assert engine.planner.made_whole <= planned + 1, "one plan a stroke: of its own level"
+        assert engine.internal.planner.made_whole <= planned + 1, "one plan a stroke: of its own level"
     assert known[0] == known[1]
 
 

@@ -66,7 +66,7 @@ class MadeUpTimer:
     @contextmanager
     def measure(self, into: dict[str, float], name: str) -> Iterator[None]:
         yield
-        step = self.engine.record.plan.step(name)
+        step = self.engine.internal.record.plan.step(name)
         texels = step.size[0] * step.size[1]
         into[name] = self.busy() * (self.fixed.get(name, 0.0) + self.each.get(name, 0.0) * texels)
 
@@ -102,7 +102,7 @@ def slow(tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch) ->
         (tmp_path / name).write_text(text, encoding="utf-8")
     monkeypatch.setattr(ContextInfo, "software", True)
     timer = MadeUpTimer(any_engine, each={"view": 1000.0 / (SIZE[0] * SIZE[1])})
-    monkeypatch.setattr(any_engine, "_timer_of", lambda: timer)
+    monkeypatch.setattr(any_engine.internal, "_timer_of", lambda: timer)
     now = [0.0]
     made = Slow(Session(any_engine, tmp_path / "sketch.toml", now=lambda: now[0]), timer, now)
     yield made
@@ -115,7 +115,7 @@ def test_a_slow_picture_moves_in_fewer_pixels_and_rests_in_full(slow: Slow):
     slow.frame(1.0)
     assert session.picture.drawn_size == SIZE and not session.is_preview
     divisors = slow.move(12)
-    spent = sum(session.engine.times.values())
+    spent = sum(session.engine.internal.times.values())
     assert set(divisors[-6:]) == {3} and spent < 1.2e3 * BUDGET, "the largest within the budget: 111 ms"
     assert session.is_preview and session.picture.texture.size == SIZE and not session.rests
     assert slow.frame(REST / 2) != SIZE and slow.frame(REST) == SIZE
@@ -256,7 +256,7 @@ def test_compared_pictures_have_the_same_pixels(slow: Slow):
     slow.session.clock.time = 0.0
     compare.follow(slow.session.picture.texture)
     assert compare.picture.size == SIZE and slow.session.is_preview
-    assert slow.session.engine.plan.frame_size == slow.session.picture.drawn_size != SIZE
+    assert slow.session.engine.internal.plan.frame_size == slow.session.picture.drawn_size != SIZE
     slow.frame(1.0)
     compare.follow(slow.session.picture.texture)
     assert slow.session.picture.drawn_size == SIZE
@@ -296,7 +296,7 @@ def test_a_cubic_surface_is_enlarged_to_itself(
     picture = ctx.texture(small, 4, np.repeat(texels[..., None], 4, 2).tobytes())
     shown = ctx.texture(large, 4)
     target = ctx.framebuffer([shown])
-    with any_engine.borrowed():
+    with any_engine.internal.borrowed():
         enlarger.draw(picture, target)
     found = np.frombuffer(shown.read(), np.uint8).reshape(large[1], large[0], 4)
     for made in (enlarger, target, shown, picture):

@@ -8,7 +8,8 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from playground.engine.engine import CACHE_BYTES, Engine
+from playground.engine.engine import Engine
+from playground.engine.internals import CACHE_BYTES
 from playground.engine.plain_forms import silent
 from playground.gpu.context import open_context
 from playground.process.child import Parent, Service
