@@ -27,7 +27,7 @@ from playground.engine.standalone import free_name, standalone_sketch, with_pict
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
-from playground.sketch.allowed_files import TEXTS, is_elevation, is_variant, root_of
+from playground.sketch.allowed_files import TEXTS, is_elevation, is_variant, root_of, unsaved_texts
 from playground.sketch.assign import values_of
 from playground.sketch.dialects import EXPORT, is_export
 from playground.sketch.dialects.shadertoy_folder import is_image, is_of_folder
@@ -181,7 +181,7 @@ class _Check:
             if not Path(one.path).is_relative_to(GLSL) or self.path.is_relative_to(GLSL):
                 self.warnings |= dict.fromkeys(warnings_of_kernel(one))
         if kernel is None:
-            self.attempt(TryLibrary(str(self.path), str(self.root)))
+            self.attempt(TryLibrary(str(self.path), str(self.root), tuple(unsaved_texts().items())))
         elif isinstance(kernel, Graph) or kernel.kind.startswith("plain"):
             sketch = with_pictures(plain_sketch(self.path, kernel, self.root), self.picture)
             if isinstance(kernel, Graph):

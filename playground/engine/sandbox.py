@@ -59,6 +59,7 @@ class TryLibrary:
 
     path: str
     folder: str
+    unsaved: tuple[tuple[Path, str], ...] = ()  # texts in place of what files hold, by absolute path
 
 
 Request = TrySketch | TryLibrary
@@ -119,6 +120,7 @@ class Sandbox(Closing):
         device: int | None = None,
     ) -> None:
         self.on_answer: Callable[[], None] = lambda: None  # called, in another thread, when ``poll`` has news
+        self.while_waiting: Callable[[], None] = lambda: None  # called while ``run`` waits; may raise
         self.limit_seconds = limit_seconds
         self._workers = Replaceable(
             Launch(
@@ -144,10 +146,13 @@ class Sandbox(Closing):
         self._workers.start()
 
     def run(self, request: Request) -> SandboxReport:
-        """Try something and wait for the answer, no longer than the limit."""
+        """Try something and wait for the answer, no longer than the limit.
+
+        What ``while_waiting`` raises leaves the request unanswered: the next one replaces it.
+        """
         self.submit(request)
         while (report := self._report(timeout=0.05)) is None:
-            pass
+            self.while_waiting()
         return report
 
     def submit(self, request: Request) -> None:

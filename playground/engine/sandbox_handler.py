@@ -20,6 +20,7 @@ from playground.gpu.program import compile_library
 from playground.gpu.textures import drain, is_lost
 from playground.gpu.wrap import COMPUTE
 from playground.process.child import Parent, Service
+from playground.sketch.allowed_files import reading_unsaved
 from playground.sketch.model import Sketch
 from playground.sketch.source import read_source
 
@@ -54,7 +55,9 @@ class _Handler:
         try:
             if isinstance(request, TryLibrary):
                 self._report(Activity("", request.path))
-                compile_library(self._ctx, read_source(Path(request.path), (Path(request.folder),)))
+                with reading_unsaved(dict(request.unsaved)):
+                    source = read_source(Path(request.path), (Path(request.folder),))
+                compile_library(self._ctx, source)
                 return SandboxReport(True)
             for driver in request.drivers:
                 if driver == COMPUTE and self._ctx.version_code < 430:

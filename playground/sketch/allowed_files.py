@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath, PureWindowsPath
+from types import MappingProxyType
 from typing import TypeVar
 
 from playground.paths import GLSL
@@ -58,6 +59,8 @@ class _State:
     signatures: dict[Path, Signature | None] = field(default_factory=dict)  # from before the first look
 
 
+_NOTHING: Mapping[Path, str] = MappingProxyType({})
+_unsaved: ContextVar[Mapping[Path, str]] = ContextVar("unsaved", default=_NOTHING)
 _noted: ContextVar[dict[Path, Signature | None] | None] = ContextVar("noted", default=None)
 _state: ContextVar[_State | None] = ContextVar("state", default=None)
 
@@ -83,6 +86,18 @@ def looking_once() -> Iterator[None]:
     """
     with _set(_state, _State() if (known := _state.get()) is None else known):
         yield
+
+
+@contextmanager
+def reading_unsaved(texts: Mapping[Path, str]) -> Iterator[None]:
+    """Take texts, by absolute path, in place of what files hold; such a file need not be there."""
+    with _set(_unsaved, texts):
+        yield
+
+
+def unsaved_texts() -> Mapping[Path, str]:
+    """Return the texts that are taken in place of what files hold, by absolute path."""
+    return _unsaved.get()
 
 
 def texts_of_load() -> dict[tuple[Path, bool], str] | None:
@@ -185,6 +200,8 @@ def _followed(path: Path) -> Path | None:
 def is_file(path: Path) -> bool:
     """Return whether a file is there, also for names that no file can have."""
     note(path)
+    if path in _unsaved.get():
+        return True
     state = _state.get()
     if state is None:
         return _is_file(path)

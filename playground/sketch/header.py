@@ -28,12 +28,14 @@ _MAIN = re.compile(r"\bvoid\s+main\s*\(")
 _OWN_NAME = re.compile(rf"^\S+(?:{'|'.join(map(re.escape, SHADERS))})\s*(?:--|—|–|:)\s*")
 _LONGEST_TITLE = 72
 _BETWEEN = ("squares", "triangles")
+_BLENDS = ("none", "alpha", "add")
+_DEPTHS = ("less", "equal", "none")
 _STEPS = ("visits", "stride", "between", "at_once", "until")
 _IMAGE = re.compile(
     r"layout\s*\(([^)]*)\)\s*(?:(?:writeonly|readonly|restrict|coherent|volatile)\s+)*"
     r"uniform\s+(?:\w+\s+)*image2D\s+(\w+)"
 )
-_KEYS = {
+PRAGMAS: dict[str, tuple[str, ...]] = {
     "kernel": ("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once", "until"),
     "source": ("name", "output", "reads"),
     "draw": ("where", "mesh", "count", "instances", "output", "blend", "depth", "samples", "repeat"),
@@ -42,6 +44,7 @@ _KEYS = {
         "agrees",
     ),
 }
+"""Kind of a pragma → its options."""
 # The options that may use the names of where.
 _EXPRESSIONS = ("groups", "buffers", "repeat", "count", "instances", "visits", "stride", "at_once")
 _EXAMPLES = {
@@ -54,6 +57,16 @@ _SIZE = ("size.x", "size.y")
 _SOURCE_READS = ("time", "keys", "microphone", "camera", *OF_THE_TERRAIN)
 _NAME = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?![\w.]|\s*:)")
 _NOT_IN_WHERE = ("size", "if", "else", "and", "or", "not", "log2", "min", "max", "abs", "floor", "ceil")
+CHOICES: dict[str, tuple[str, ...]] = {
+    "blend": _BLENDS,
+    "depth": _DEPTHS,
+    "between": _BETWEEN,
+    "until": ("unchanged",),
+    "reads": _SOURCE_READS,
+    "samples": ("0", "1"),
+    "aligned": ("4", "8"),
+}
+"""Option of a pragma → what it may be, where that is one of a few."""
 _BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()
 
 
@@ -233,8 +246,8 @@ def _draw(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         raise line.error('#pragma draw needs a mesh, as mesh = "grid"')
     blend, depth = options.get("blend", "none"), options.get("depth", "less")
     for key, value, valid in (
-        ("blend", blend, ("none", "alpha", "add")),
-        ("depth", depth, ("less", "equal", "none")),
+        ("blend", blend, _BLENDS),
+        ("depth", depth, _DEPTHS),
     ):
         if value not in valid:
             raise line.error(f'{key} = "{value}": expected one of {", ".join(valid)}')
@@ -310,9 +323,9 @@ def _options(kind: str, text: str, line: Line) -> dict[str, str]:
     for key, value in arguments(text[1:-1], line):
         if not key and kind == "source" and "name" not in found:
             key = "name"
-        if key not in _KEYS[kind]:
+        if key not in PRAGMAS[kind]:
             what = f"has no option '{key}'" if key else f"cannot tell what '{value}' is for"
-            raise line.error(f"#pragma {kind} {what}{nearest(key, _KEYS[kind])}")
+            raise line.error(f"#pragma {kind} {what}{nearest(key, PRAGMAS[kind])}")
         if key in found:
             raise line.error(f"#pragma {kind} gives '{key}' twice")
         found[key] = value
@@ -373,7 +386,7 @@ def _check(what: str, text: str, known: Collection[str], line: Line, count: int 
 def _refuse_misspelt(lines: list[Line]) -> None:
     for line in lines:
         match = _OTHER_PRAGMA.match(line.code)
-        hint = nearest(match.group(1), _KEYS) if match else ""
+        hint = nearest(match.group(1), PRAGMAS) if match else ""
         if match and "did you mean" in hint:
             raise line.error(f"no #pragma '{match.group(1)}'{hint}")
 

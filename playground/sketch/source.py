@@ -30,6 +30,7 @@ from playground.sketch.allowed_files import (
     note,
     real,
     texts_of_load,
+    unsaved_texts,
 )
 from playground.sketch.libraries import how_to_name, libraries, library_around
 from playground.sketch.macro_calls import with_calls_joined
@@ -176,6 +177,15 @@ def read_source_and_origin(
     return source, Origin(tuple(reader.texts.items()), tuple(reader.looked_at.items()), asked)
 
 
+def find_include(name: str, includer: Path, roots: Sequence[Path]) -> Path | None:
+    """Return the file that ``#include`` names in a file, found as ``read_source`` does; None for none."""
+    reader = _Reader(tuple(dict.fromkeys(root.resolve() for root in roots)), GLSL.resolve(), {}, False)
+    try:
+        return reader.find(name, includer.resolve(), Line("", "", "", str(includer), 0))
+    except PlaygroundError:
+        return None
+
+
 class EncodingError(SketchError):
     """A file is not UTF-8."""
 
@@ -186,6 +196,8 @@ def read_text(path: Path, *, any_encoding: bool = False) -> str:
     With ``any_encoding``, a text that is no UTF-8 is taken as Latin-1, where each byte is a character.
     """
     note(path)
+    if (unsaved := unsaved_texts().get(path)) is not None:
+        return normalised(unsaved)
     known = texts_of_load()
     if known is None:
         return _text(path, any_encoding)

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from typing import Any
 
 from playground.sketch.model import Camera
+from playground.sketch.toml_keys import CAMERA
 from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 
-_CAMERA = ("azimuth", "elevation", "distance", "target", "field_of_view")
 _LIMITS = {
     "azimuth": (-720, 720),
     "elevation": (-89, 89),
@@ -26,7 +26,7 @@ def read_camera(file: TomlFile, table: Mapping[str, Any], default: Camera, place
     if given is None:
         return default
     here = (*place, "camera")
-    file.only(given, _CAMERA, *here)
+    file.only(given, CAMERA, *here)
     values: dict[str, Any] = {}
     for key, (low, high) in _LIMITS.items():
         number = file.take(given, key, float, getattr(default, key), *here)

@@ -11,7 +11,7 @@ from typing import Any
 
 from playground.errors import ParameterError, SketchError, nearest
 from playground.paths import shown
-from playground.sketch import wiring
+from playground.sketch import toml_keys, wiring
 from playground.sketch.agreement import read_agreement
 from playground.sketch.allowed_files import is_variant, leads_outside
 from playground.sketch.assign import (
@@ -31,13 +31,11 @@ from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import coerce, spell
 
-TECHNIQUE_KEYS = ("parameters", "inputs", "outputs")
+TECHNIQUE_KEYS = tuple(key for key in toml_keys.TECHNIQUE if key not in toml_keys.SKETCH)
 """What a technique's TOML may hold and a sketch's may not."""
 
 Read = Callable[[str, Path, Path], Technique]
 """Returns the technique that ``use`` names, from a folder inside a root."""
-
-_PASS_KEYS = ("name", "use", "inputs", "set", "size", "repeat", "feedback", "when")
 
 _ALL = "*"
 """Exports every parameter of every pass by its own name: ``"*" = "*"``."""
@@ -45,8 +43,8 @@ _ALL = "*"
 
 def read_graph(file: TomlFile, use: str, read: Read) -> Graph:
     """Return a technique of several passes; raise ``SketchError`` at the line that is wrong."""
-    more = ("agrees",) if is_variant(file.path) else ()
-    file.only(file.table, ("format", "title", "pass", *TECHNIQUE_KEYS, *more))
+    more = toml_keys.VARIANT if is_variant(file.path) else ()
+    file.only(file.table, (*toml_keys.TECHNIQUE, *more))
     file.version(required=False)
     try:
         stated = file.take(file.table, "agrees", str, "")
@@ -90,7 +88,7 @@ def read_passes(file: TomlFile, read: Read, inside: Sequence[str] | None = None)
     found: dict[str, PassSpec] = {}
     for index, table in enumerate(tables):
         place = ("pass", index)
-        file.only(table, _PASS_KEYS, *place)
+        file.only(table, toml_keys.PASS, *place)
         name = file.take(table, "name", str, "", *place)
         wrong = ""
         if not name.isidentifier():

@@ -10,11 +10,11 @@ from playground.sketch.keyframes import EASES
 from playground.sketch.model import Camera, Keyframe, Sketch
 from playground.sketch.toml_camera import read_camera
 from playground.sketch.toml_graph import read_set
+from playground.sketch.toml_keys import KEYFRAME
 from playground.sketch.toml_places import Place
 from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 
-_KEYS = ("time", "camera", "set", "ease")
 _LATEST = 1e6  # [s]
 
 
@@ -24,7 +24,7 @@ def read_keyframes(file: TomlFile, sketch: Sketch) -> tuple[Keyframe, ...]:
     names: dict[str, str] = {}  # the path that a parameter inside was set by, by its own path
     for index, table in enumerate(file.tables("keyframe")):
         place: Place = ("keyframe", index)
-        file.only(table, _KEYS, *place)
+        file.only(table, KEYFRAME, *place)
         time = _time(file, table, place, found)
         who = f"keyframe at {time:g} s"
         values = read_set(file, sketch, table, place, who)

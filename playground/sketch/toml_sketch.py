@@ -8,6 +8,7 @@ from typing import Any
 
 from playground.errors import ParameterError, nearest
 from playground.paths import GLSL, shown
+from playground.sketch import toml_keys
 from playground.sketch.assign import (
     TERRAIN_KEYS,
     check_value,
@@ -36,12 +37,9 @@ from playground.sketch.toml_table import TomlFile
 from playground.sketch.values import spell
 from playground.sketch.wiring import check_graph
 
-SKETCH_KEYS = frozenset({*TERRAIN_KEYS, "main", "view", "shot", "preset", "keyframe"})
+SKETCH_KEYS = frozenset(toml_keys.SKETCH.keys() - toml_keys.TECHNIQUE.keys())
 """What a sketch's TOML may hold and a technique's may not."""
 
-_TOP = ("format", "title", "pass", *sorted(SKETCH_KEYS))
-_VIEW = ("use", "inputs", "set", "camera", "samples", "supersample", "above_ground")
-_SHOT = ("name", "size", "time", "camera", "set", "preset", "samples", "supersample", "steps", "marks")
 _PAIRS = {"size": "a whole number of texels, or [x, y]", "extent": "metres, or [east, north]"}
 _DEFAULT_VIEW = "view/terrain"
 _PLAIN_VIEW = "view/map"  # of a sketch without [view]: its last pass from above
@@ -49,7 +47,7 @@ _PLAIN_VIEW = "view/map"  # of a sketch without [view]: its last pass from above
 
 def read_sketch(file: TomlFile, read: Read) -> Sketch:
     """Return a sketch, wired once to see that it can be; raise ``SketchError`` at the line that is wrong."""
-    file.only(file.table, _TOP)
+    file.only(file.table, toml_keys.SKETCH)
     file.version(required=True)
     passes = read_passes(file, read)
     view, camera, samples = _view(file, passes, read)
@@ -111,7 +109,7 @@ def _view(file: TomlFile, passes: tuple[PassSpec, ...], read: Read) -> tuple[Pas
         technique = read(_PLAIN_VIEW, GLSL, GLSL)
         inputs = (("shown", passes[-1].name),)
         return PassSpec("view", _PLAIN_VIEW, technique, inputs, file=shown(file.path)), Camera(), 4
-    file.only(table, _VIEW, "view")
+    file.only(table, toml_keys.VIEW, "view")
     spec = read_pass(file, {"use": _DEFAULT_VIEW, **table}, ("view",), "view", read)
     return spec, read_camera(file, table, Camera(), ("view",)), _samples(file, table, 4, ("view",))
 
@@ -161,7 +159,7 @@ def _presets(file: TomlFile, sketch: Sketch) -> tuple[Preset, ...]:
     found: list[Preset] = []
     for index, table in enumerate(file.tables("preset")):
         place = ("preset", index)
-        file.only(table, ("name", "set"), *place)
+        file.only(table, toml_keys.PRESET, *place)
         name = file.take(table, "name", str, "", *place)
         if not name or name in [p.name for p in found]:
             raise file.error(f"name = {spell(name)}: a preset needs a name of its own", *place, "name")
@@ -174,7 +172,7 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
     presets = [preset.name for preset in sketch.presets]
     for index, table in enumerate(file.tables("shot")):
         place = ("shot", index)
-        file.only(table, _SHOT, *place)
+        file.only(table, toml_keys.SHOT, *place)
         name = file.take(table, "name", str, "", *place)
         if not name.replace("-", "_").isidentifier():
             message = f"name = {spell(name)}: a shot needs a name of letters, digits, _ and -"

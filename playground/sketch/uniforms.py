@@ -33,7 +33,7 @@ from playground.sketch.reserved_names import (
 from playground.sketch.source import Line, SourceText
 from playground.sketch.widgets import SCALARS, VECTORS, WIDGETS
 
-_FALLBACKS = ("white", "black", "zero")
+FALLBACKS = ("white", "black", "zero")
 """What an input reads where nothing is wired: "zero" is black with alpha 0, and a loop's first iteration
 reads zeros of the size of what is fed back."""
 _UNIFORM = re.compile(
@@ -51,7 +51,8 @@ _LONGEST_LITERAL = 64
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
 _BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
-_MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "values", "follows", "was", "erode"})
+MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "values", "follows", "was", "erode"})
+"""Words of an annotation that may follow its widget."""
 
 Calls = dict[str, list[str]]
 
@@ -91,7 +92,7 @@ def read_uniforms(
             first = f"{shown(seen[name].file)}:{seen[name].number}"
             raise line.error(f"'{name}' is declared twice: first at {first}")
         seen[name] = line
-        calls, tooltip = read_calls(note_at(source.lines, index), _ROLES | _MODIFIERS, _BARE)
+        calls, tooltip = read_calls(note_at(source.lines, index), _ROLES | MODIFIERS, _BARE)
         if glsl_type == "sampler2D":
             item = _sampler(name, calls, tooltip, line)
             if isinstance(item, Input) and plain:
@@ -196,12 +197,12 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         "clamp",
         "repeat",
         "mipmap",
-        *(["paint"] if is_file else _FALLBACKS),
+        *(["paint"] if is_file else FALLBACKS),
     ]
     for word in words:
         if word not in valid:
             raise line.error(f"'{word}' is not a way to read a texture{nearest(word, valid)}")
-    for pair in (("nearest", "linear"), ("clamp", "repeat"), _FALLBACKS):
+    for pair in (("nearest", "linear"), ("clamp", "repeat"), FALLBACKS):
         if len(both := [word for word in pair if word in words]) > 1:
             raise line.error(f"'{name}' is both {both[0]} and {both[1]}")
     sampling = Sampling(
@@ -210,7 +211,7 @@ def _sampler(name: str, calls: Calls, tooltip: str, line: Line) -> Parameter | I
         "mipmap" in words,
     )
     if not is_file:
-        fallback = next((word for word in _FALLBACKS if word in words), "")
+        fallback = next((word for word in FALLBACKS if word in words), "")
         return Input(name, sampling, fallback, line.number)
     return Parameter(
         name,
