@@ -16,8 +16,10 @@ import numpy as np
 import pytest
 
 from playground.cli import main
+from playground.engine.engine import Engine
 from playground.errors import DataError
 from playground.images.files import write_png
+from playground.lessons.grading import handler
 from playground.lessons.grading.duplicates import alike
 from playground.lessons.grading.grade import read_all
 from playground.lessons.grading.handed_in import lessons_in, read_submission
@@ -30,6 +32,7 @@ from playground.lessons.grading.values_in_toml import values_in_toml
 from playground.lessons.handout.exercise_files import assignments_of
 from playground.lessons.handout.normalised import normalised
 from playground.lessons.read import read_lesson
+from playground.lessons.tasks.texts import answer_text
 
 from ..report.browser import MISSING as NO_BROWSER
 from ..report.browser import Browser
@@ -423,6 +426,43 @@ def test_the_same_class_in_another_order_gets_the_same_points(class_of_20, one, 
     assert {name: found[str(9 - n)] for n, name in enumerate(some)} == {
         name: rows[name]["points"] for name in some
     }
+
+
+def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
+    """A kernel that writes nothing has no points, however right what was drawn before it is.
+
+    Kernels may not discard; a word that the preprocessor puts together is not seen by that rule.
+    """
+    one = next(x for x in assignments_of([read_lesson("first_height")]) if x.exercise.name == "wave")
+    made = []
+
+    def engine(context, *, owns_context, cache_bytes, notice):
+        made.append(Engine(context, cache_bytes=2**21, notice=notice))  # full after two works
+        made[0].pool.limit = 2**26
+        return made[0]
+
+    monkeypatch.setattr(handler, "open_context", lambda **choice: ctx)
+    monkeypatch.setattr(handler, "Engine", engine)
+    judge = handler.open_service(Silent(), handler.Options(("first_height",), "en")).answer
+    right = answer_text(one.exercise)
+    for number in range(3):
+        assert judge(handler.Request(one.name, f"{right}\n// {number}\n")).is_full
+        varied = students.around(right, f"return given() + 1e-9 * {number}.0;")
+        assert judge(handler.Request(one.name, varied)).is_full
+    assert len(made[0].pool) > 0, "there are textures to be used again, with right heights in them"
+    nothing = students.around(
+        right, "if (texel.x >= 0) JOINED(dis, card); return given();", "#define JOINED(a, b) a##b"
+    )
+    mark = judge(handler.Request(one.name, nothing))
+    made[0].release()
+    assert mark.points == 0.0 and "differs by" in mark.sentences[0]
+
+
+class Silent:
+    """A parent that is told nothing."""
+
+    def report(self, progress):
+        pass
 
 
 def copied(source, target):
