@@ -37,6 +37,18 @@ def test_water_mirrors_the_mean_of_both_polarisations(on_gpu):
     assert on_gpu("water/fresnel.glsl", "fresnel_of_water(c)", c=np.float32([0.0]))[0] == 1.0
 
 
+def test_schlick_is_off_by_up_to_six_percent_of_the_light(on_gpu):
+    """As the lesson on water says, and `water/fresnel.glsl`: the most, at 84°, and too bright there."""
+    cosine = np.linspace(0.001, 0.9999, 2001)
+    off = 0.02 + 0.98 * (1.0 - cosine) ** 5 - fresnel(cosine)
+    worst = np.argmax(np.abs(off))
+    assert off[worst] == pytest.approx(0.059, abs=5e-4)
+    assert np.degrees(np.arccos(cosine[worst])) == pytest.approx(84.0, abs=0.5)
+    schlick = "0.02 + 0.98 * pow(1.0 - c, 5.0) - fresnel_of_water(c)"
+    found = on_gpu("water/fresnel.glsl", schlick, c=cosine.astype(np.float32))
+    np.testing.assert_allclose(found, off, atol=2e-5)
+
+
 def test_what_it_mirrors_of_an_even_sky_is_the_integral(on_gpu):
     cosine = (np.arange(100_000) + 0.5) / 100_000
     whole = np.mean(2 * cosine * fresnel(cosine))
