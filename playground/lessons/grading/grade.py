@@ -8,7 +8,7 @@ from dataclasses import replace
 from playground.errors import SketchError
 from playground.lessons.grading.duplicates import alike
 from playground.lessons.grading.handed_in import HandedIn, read_submission
-from playground.lessons.grading.handler import Request
+from playground.lessons.grading.handler import Request, no_mark
 from playground.lessons.grading.judges import Judges, Outcome, Stopped
 from playground.lessons.grading.labels import report_labels
 from playground.lessons.grading.marks import MISSING, REFUSED, STOPPED, Graded, Mark, spelled_points
@@ -56,7 +56,7 @@ def grade(
             advance()
         _check_answers(judged, assignments)
     label = report_labels(language)
-    same = {one.name: alike(_readable(read, one), one.starter) for one in assignments if one.exercise.file}
+    same = {one.name: alike(_readable(read, one), one.starter) for one in assignments if one.task.file}
     return [
         Graded(
             student,
@@ -91,12 +91,14 @@ def _check_answers(judged: Judged, assignments: Sequence[Assignment]) -> None:
         mark = judged[one.name, None]
         if isinstance(mark, Mark) and mark.is_full:
             continue
-        if isinstance(mark, Mark):
+        if isinstance(mark, Mark) and mark.score is not None:
+            got = f"has a score of {mark.spelled} here"
+        elif isinstance(mark, Mark):
             got = f"has {spelled_points(mark.points)} of {mark.of} points here: {'; '.join(mark.sentences)}"
         else:
             got = "takes too long here" if mark.took_too_long else f"cannot be drawn here: it {mark.cause}"
         message = f"{one.name}: the model answer {got}; nothing was graded"
-        raise SketchError(message, file=one.lesson.file, line=one.exercise.line)
+        raise SketchError(message, file=one.lesson.file, line=one.task.line)
 
 
 def _mark(
@@ -108,15 +110,16 @@ def _mark(
     same: dict[str, dict[str, tuple[str, ...]]],
     student: str,
 ) -> Mark:
-    of = one.exercise.points
+    nothing = no_mark(one.task)
     if file.missing:
-        return Mark(0.0, of, MISSING, (label["missing"],))
+        return replace(nothing, outcome=MISSING, sentences=(label["missing"],))
     if file.problem:
-        return Mark(0.0, of, REFUSED, (_sentence(file.problem),), note=file.note)
+        return replace(nothing, outcome=REFUSED, sentences=(_sentence(file.problem),), note=file.note)
     outcome = judged[one.name, file.text]
     if isinstance(outcome, Stopped):
         key = "stopped" if outcome.took_too_long else "crashed"
-        mark = Mark(0.0, of, STOPPED, (label(key, limit=f"{limit:g}", cause=outcome.cause),))
+        said = label(key, limit=f"{limit:g}", cause=outcome.cause)
+        mark = replace(nothing, outcome=STOPPED, sentences=(said,))
     else:
         mark = outcome
     if mark.outcome == REFUSED:

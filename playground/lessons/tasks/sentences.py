@@ -9,6 +9,7 @@ from pathlib import Path
 
 from playground.lessons.library import Labels
 from playground.lessons.measuring import spelled
+from playground.lessons.tasks.match import Match
 from playground.lessons.tasks.verdict import Result, Verdict
 from playground.sketch.values import spell
 
@@ -33,6 +34,11 @@ def points_of(verdict: Verdict, language: str) -> str:
     """Return the points as "1.5 of 2 points"."""
     key = "points" if verdict.of > 1 else "point"
     return task_labels(language)(key, got=_number(verdict.points, language), of=verdict.of)
+
+
+def score_of(match: Match, language: str) -> str:
+    """Return how near a challenge's picture is as "Score 87 of 100; solved from 95."."""
+    return task_labels(language)("score_of", score=int(match.score), goal=match.goal)
 
 
 def sentence_of(result: Result, language: str) -> str:
