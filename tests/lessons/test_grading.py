@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import csv
 import io
 import json
 import os
+import pickle
+import re
 import struct
 import sys
 import zipfile
@@ -21,6 +24,7 @@ from playground.errors import DataError
 from playground.images.files import write_png
 from playground.lessons.grading import handler
 from playground.lessons.grading.duplicates import alike
+from playground.lessons.grading.entries import _TOO_MANY
 from playground.lessons.grading.grade import read_all
 from playground.lessons.grading.handed_in import lessons_in, read_submission
 from playground.lessons.grading.marks import GRADED, MISSING, REFUSED, STOPPED, Graded, Mark, Pair
@@ -31,8 +35,10 @@ from playground.lessons.grading.table import table_bytes
 from playground.lessons.grading.values_in_toml import values_in_toml
 from playground.lessons.handout.exercise_files import assignments_of
 from playground.lessons.handout.normalised import normalised
+from playground.lessons.library import HERE
 from playground.lessons.model import Challenge
 from playground.lessons.read import read_lesson
+from playground.lessons.said import in_language, patterns
 from playground.lessons.tasks.texts import answer_text
 from playground.sketch.assign import values_of
 
@@ -307,6 +313,30 @@ def test_a_driver_s_quotes_end_where_they_end():
     said = "1:2: `hieght' undeclared; `hieght` is not declared"
     text = page([Graded("Ana", {"x": Mark(0.0, 1, GRADED, (said,))})], {"x": "Lesson, 1"}, setting())
     assert "1:2: <code>hieght</code> undeclared; <code>hieght</code> is not declared" in text
+
+
+def test_what_grading_says_of_a_file_is_french_in_a_french_report(tmp_path):
+    students.write(tmp_path, "Ana", {FILE: b"\xff\x00"})
+    problem = read(tmp_path / "Ana").problem
+    assert problem == f"{FILE} is not UTF-8 text; save the file as UTF-8" == in_language(problem, "en")
+    french = f"{FILE} n’est pas un texte UTF-8\xa0; enregistrez le fichier en UTF-8"
+    assert in_language(problem, "fr") == in_language(pickle.loads(pickle.dumps(problem)), "fr") == french
+    (tmp_path / "Cem.zip").write_bytes(b"none")
+    short = in_language(read(tmp_path / "Cem.zip").problem, "fr")
+    assert short.startswith("Cem.zip n’est pas un zip lisible"), "a sentence in a sentence"
+
+
+def test_every_sentence_of_grading_has_its_french_with_the_same_places():
+    known = patterns("fr")
+    used = set()
+    for path in (HERE / "grading").glob("*.py"), (HERE / "tasks").glob("*.py"):
+        for node in (node for file in path for node in ast.walk(ast.parse(file.read_text("utf-8")))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Said":
+                (said,) = node.args
+                used.add(_TOO_MANY if isinstance(said, ast.Name) else ast.literal_eval(said))
+    assert used - {"{name} {what}"} == set(known)
+    for english, french in known.items():
+        assert re.findall(r"{.*?}", english) == re.findall(r"{.*?}", french), english
 
 
 def test_what_a_teacher_corrected_is_kept_when_the_report_is_written_again(tmp_path):

@@ -20,6 +20,7 @@ from playground.lessons.grading.values_in_toml import values_in_toml
 from playground.lessons.handout.exercise_files import Assignment, assignments_of
 from playground.lessons.model import Challenge, Exercise
 from playground.lessons.read import read_lesson
+from playground.lessons.said import Said, in_language
 from playground.lessons.tasks.judge import Wanted, answers, judge, small
 from playground.lessons.tasks.match import Ends, ends_of, match
 from playground.lessons.tasks.sentences import score_of, sentences
@@ -96,7 +97,7 @@ class _Handler:
             work = _work_of(task, request.text)
             found = self._judged(task, request.exercise, work)
         except (ContextError, DataError) as error:  # or a texture larger than there is room for
-            said = (_short(error.diagnostics[0].message),)
+            said = (_short(in_language(error.diagnostics[0].message, self._language)),)
             found = replace(no_mark(task), outcome=REFUSED, sentences=said)
         if is_lost(self._engine.ctx):
             raise SandboxCrash("made the driver reset itself")
@@ -165,7 +166,7 @@ def _work_of(task: Exercise | Challenge, text: str) -> Work:
     except PlaygroundError:
         return work  # the judge says what is wrong with it
     if outside := _outside_file(sketch):
-        raise DataError(f"names '{outside}', a file outside of its folder; it was not opened")
+        raise DataError(Said("names '{name}', a file outside of its folder; it was not opened", name=outside))
     return work
 
 

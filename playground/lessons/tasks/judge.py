@@ -19,6 +19,7 @@ from playground.images.picture_difference import differing, share_differing
 from playground.lessons.figure_renders import draw
 from playground.lessons.measuring import NoNumberError, measured
 from playground.lessons.model import Check, Exercise, Scene
+from playground.lessons.said import Said
 from playground.lessons.tasks.verdict import Picture, Result, Verdict
 from playground.lessons.tasks.work import LackingParameter, Work, scene_of, wanted_scene
 
@@ -106,7 +107,7 @@ def _result(engine: Engine, exercise: Exercise, work: Work, check: Check, wanted
     except PlaygroundError as error:
         # The words of a value that is refused have the value, which may be hidden.
         tells = check.hidden and isinstance(error, ParameterError) and not isinstance(error, LackingParameter)
-        mistake = "a parameter does not take its value" if tells else error.diagnostics[0].message
+        mistake = Said("a parameter does not take its value") if tells else error.diagnostics[0].message
         return Result(check, False, float("inf"), mistake=mistake)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from playground.lessons.library import Labels
 from playground.lessons.measuring import spelled
+from playground.lessons.said import in_language
 from playground.lessons.tasks.match import Match
 from playground.lessons.tasks.verdict import Result, Verdict
 from playground.sketch.values import spell
@@ -53,7 +54,7 @@ def sentence_of(result: Result, language: str) -> str:
 def _found(result: Result, say: Labels, language: str) -> str:
     check = result.check
     if result.mistake:
-        return say("mistake", mistake=result.mistake.rstrip("."))
+        return say("mistake", mistake=in_language(result.mistake, language).rstrip("."))
     if check.measure is not None:
         return _of_measure(result, say, language)
     kind, of = "texture" if check.of else "picture", f"`{check.of}`"
