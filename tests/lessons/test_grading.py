@@ -38,8 +38,8 @@ from playground.lessons.handout.normalised import normalised
 from playground.lessons.library import HERE
 from playground.lessons.model import Challenge
 from playground.lessons.read import read_lesson
-from playground.lessons.said import in_language, patterns
 from playground.lessons.tasks.texts import answer_text
+from playground.lessons.translatable import in_language, patterns
 from playground.sketch.assign import values_of
 
 from ..report.browser import MISSING as NO_BROWSER

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from playground.errors import DataError
-from playground.lessons.said import Said
+from playground.lessons.translatable import Said
 
 MOST_FILES = 4000
 """Files and folders that a submission may hold."""

@@ -14,7 +14,7 @@ from playground.lessons.grading.labels import report_labels
 from playground.lessons.grading.marks import MISSING, REFUSED, STOPPED, Graded, Mark, spelled_points
 from playground.lessons.grading.submissions import Submission
 from playground.lessons.handout.exercise_files import Assignment
-from playground.lessons.said import in_language
+from playground.lessons.translatable import in_language
 
 Judged = dict[tuple[str, str | None], Outcome]
 """What came of each text, by the exercise's name; None is the model answer."""

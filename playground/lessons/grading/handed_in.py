@@ -14,7 +14,7 @@ from pathlib import Path
 
 from playground.errors import DataError
 from playground.lessons.grading.entries import Entry, entries_of, printable
-from playground.lessons.said import Said
+from playground.lessons.translatable import Said
 
 _NUMBERED = re.compile(r"(?:[ _-]*\(\d+\)|[ _-]+copy(?:[ _-]*\d+)?|[ _-]+kopie)+(?=\.[^.]+$)")
 _MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}  # of what Windows writes as "Unicode"

@@ -20,13 +20,13 @@ from playground.lessons.grading.values_in_toml import values_in_toml
 from playground.lessons.handout.exercise_files import Assignment, assignments_of
 from playground.lessons.model import Challenge, Exercise
 from playground.lessons.read import read_lesson
-from playground.lessons.said import Said, in_language
 from playground.lessons.tasks.judge import Wanted, answers, judge, small
 from playground.lessons.tasks.match import Ends, ends_of, match
 from playground.lessons.tasks.sentences import score_of, sentences
 from playground.lessons.tasks.texts import path_of
 from playground.lessons.tasks.verdict import Picture, Verdict
 from playground.lessons.tasks.work import Work, answer, scene_of, wanted_scene
+from playground.lessons.translatable import Said, in_language
 from playground.paths import GLSL, shown
 from playground.process.child import Parent, Service
 from playground.sketch.allowed_files import leads_outside

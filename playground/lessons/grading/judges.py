@@ -16,7 +16,7 @@ from playground.errors import PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.gpu.context import ContextInfo
 from playground.lessons.grading.handler import JUDGING, Options, Request
 from playground.lessons.grading.marks import Mark
-from playground.lessons.said import Said
+from playground.lessons.translatable import Said
 from playground.process.messages import UnexpectedError
 from playground.process.worker import START_SECONDS, Closing, Launch, Replaceable, WorkerDied
 

@@ -14,7 +14,7 @@ from typing import Any, cast
 
 from playground.errors import DataError
 from playground.lessons.grading.entries import printable
-from playground.lessons.said import Said
+from playground.lessons.translatable import Said
 from playground.sketch.allowed_files import is_absolute
 from playground.sketch.model import Value
 

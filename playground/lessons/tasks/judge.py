@@ -19,9 +19,9 @@ from playground.images.picture_difference import differing, share_differing
 from playground.lessons.figure_renders import draw
 from playground.lessons.measuring import NoNumberError, measured
 from playground.lessons.model import Check, Exercise, Scene
-from playground.lessons.said import Said
 from playground.lessons.tasks.verdict import Picture, Result, Verdict
 from playground.lessons.tasks.work import LackingParameter, Work, scene_of, wanted_scene
+from playground.lessons.translatable import Said
 
 SIDE = 240
 """Pixels of the longer side of the pictures that are compared."""

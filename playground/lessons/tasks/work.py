@@ -7,8 +7,8 @@ from dataclasses import dataclass, field, replace
 
 from playground.errors import ParameterError, nearest
 from playground.lessons.model import Challenge, Scene, Task
-from playground.lessons.said import Said
 from playground.lessons.tasks.texts import answer_text, path_of, starter_text
+from playground.lessons.translatable import Said
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Sketch, Value, kernels_of
 from playground.sketch.text_overrides import with_texts

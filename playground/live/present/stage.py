@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from imgui_bundle import ImVec2, imgui
 
 from playground.errors import PlaygroundError
-from playground.lessons.present.beats import Beat, texts_of_beat, with_texts
+from playground.lessons.present.beat import Beat, texts_of_beat, with_texts
 from playground.lessons.present.labels import labels_of
 from playground.live.draw import Area
 from playground.live.present.keys import act_on_presentation_keys, help_rows
