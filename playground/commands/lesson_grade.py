@@ -70,7 +70,7 @@ def grade(
     ):
         graded = grade(read, assignments, judges, language, advance)
         drawn_by = judges.renderer
-    titles = {one.name: f"{one.lesson.title}, {one.number}" for one in assignments}
+    titles = {one.name: one.title for one in assignments}
     page, kept = write_report(output, graded, titles, language, drawn_by)
     for name in others:
         note(f"left out: {name}")
@@ -104,6 +104,7 @@ def _as_json(one: Graded) -> dict[str, object]:
             name: {
                 "points": mark.points,
                 "of": mark.of,
+                **({} if mark.score is None else {"score": mark.score}),
                 "outcome": mark.outcome,
                 "sentences": list(mark.sentences),
                 "note": mark.note,
@@ -122,7 +123,7 @@ def _print(graded: Sequence[Graded], assignments: Sequence[Assignment]) -> None:
     rows = [
         [
             printable(one.student),
-            *(spelled_points(mark.points) for mark in one.marks.values()),
+            *(mark.spelled for mark in one.marks.values()),
             spelled_points(one.points),
             str(one.of),
         ]

@@ -49,5 +49,7 @@ def handout(
     with renderer.open_engine() as engine, progress("drawing", count_tasks(lessons)) as advance:
         written = write_handout(output, lessons, engine, hints=hints, advance=advance)
     print(output)
-    points = sum(one.exercise.points for one in written)
-    note(f"{counted(len(written), 'exercise')} to hand in, {counted(points, 'point')}")
+    exercises = sum(one.points > 0 for one in written)
+    matches = f", {counted(len(written) - exercises, 'challenge')}" if exercises < len(written) else ""
+    points = counted(sum(one.points for one in written), "point")
+    note(f"{counted(exercises, 'exercise')} to hand in, {points}{matches}")

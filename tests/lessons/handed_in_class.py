@@ -17,8 +17,8 @@ from playground.lessons.handout.exercise_files import Assignment, assignments_of
 from playground.lessons.handout.student_sketch import student_files
 from playground.lessons.read import read_lesson
 from playground.lessons.tasks.texts import answer_text, starter_text
+from playground.sketch.save_values import written_value
 from playground.sketch.toml_edit import put
-from playground.sketch.values import spell
 
 _KERNEL = re.compile(r"^(\w+) kernel\((ivec2|vec2) (\w+)\) \{", re.MULTILINE)
 
@@ -35,11 +35,11 @@ def around(text: str, body: str, before: str = "") -> str:
 
 def right(one: Assignment) -> str:
     """Return the file of a student who has solved an exercise, in words of their own."""
-    if one.exercise.file:
-        return answer_text(one.exercise) + "\n// by myself\n"
-    scene = one.exercise.scene
+    if one.task.file:
+        return answer_text(one.task) + "\n// by myself\n"
+    scene = one.task.scene
     assert scene is not None
-    return with_values(one, {p: v for p, v in scene.values if p in one.exercise.sliders})
+    return with_values(one, {p: v for p, v in scene.values if p in one.task.sliders})
 
 
 def with_values(one: Assignment, values: dict[str, object]) -> str:
@@ -49,25 +49,23 @@ def with_values(one: Assignment, values: dict[str, object]) -> str:
     for path, value in values.items():
         owner, _, rest = path.partition(".")
         place = ("view", "set") if owner == "view" else ("pass", names.index(owner), "set")
-        text = put(text, place, rest, spell(value))
+        text = put(text, place, rest, written_value(one.task.begin.sketch, path, value, ""))
     return text
 
 
 def untouched(one: Assignment) -> str:
     """Return the file as it was handed out."""
-    return starter_text(one.exercise) if one.exercise.file else student_files(one)[one.file].decode()
+    return starter_text(one.task) if one.task.file else student_files(one)[one.file].decode()
 
 
 def nearly(one: Assignment) -> str:
     """Return a kernel that is a little off everywhere; the hand-out where values are set."""
-    return (
-        around(answer_text(one.exercise), "return given() * 0.97;") if one.exercise.file else untouched(one)
-    )
+    return around(answer_text(one.task), "return given() * 0.97;") if one.task.file else untouched(one)
 
 
 def wrong(one: Assignment) -> str:
     """Return a text that does not compile."""
-    return around(answer_text(one.exercise), "return given() + hieght;") if one.exercise.file else "set = {"
+    return around(answer_text(one.task), "return given() + hieght;") if one.task.file else "set = {"
 
 
 def endless(one: Assignment) -> str:
@@ -75,21 +73,21 @@ def endless(one: Assignment) -> str:
     # llvmpipe leaves a loop after 65 535 turns: two, one in the other, are endless for it too.
     inner = "for (;;) { k = (k * 5 + 1) & 255; if (k > 300) break; }"
     loop = f"int k = 0; for (;;) {{ {inner} if (k > 301) break; }} return given() + float(k) + 1.0;"
-    return around(answer_text(one.exercise), loop) if one.exercise.file else untouched(one)
+    return around(answer_text(one.task), loop) if one.task.file else untouched(one)
 
 
 def hostile(one: Assignment, secret: Path) -> dict[str, str]:
     """Return texts that are made to do harm, by what they are."""
-    if not one.exercise.file:
+    if not one.task.file:
         text = untouched(one)
         return {
             "climbs": text + '\n[[pass]]\nname = "x"\nuse = "../../other/x"\n',
             "device": text + '\n[[preset]]\nname = "x"\nset = { "height.image" = "/dev/zero" }\n',
             "nested": "a = " + "[" * 5000 + "]" * 5000,
         }
-    text = answer_text(one.exercise)
+    text = answer_text(one.task)
     macros = "".join(f"#define M{k}(x) M{k - 1}(x) + M{k - 1}(x) + M{k - 1}(x)\n" for k in range(1, 15))
-    model = "../" * 8 + str(Path("playground/lessons/exercises").resolve() / one.exercise.answer).lstrip("/")
+    model = "../" * 8 + str(Path("playground/lessons/exercises").resolve() / one.task.answer).lstrip("/")
     return {
         "other": f'#include "{secret}"\n{text}',
         "model": f'#include "{model}"\n',
@@ -125,7 +123,7 @@ def write_class(folder: Path, count: int, assignments: Sequence[Assignment]) -> 
         files: dict[str, str | bytes] = {}
         for place, one in enumerate(assignments):
             make = endless if (number + place) % 33 == 32 else kinds[(number + 3 * place) % len(kinds)]
-            mark = f"\n// student {number}\n" if one.exercise.file else f"\n# student {number}\n"
+            mark = f"\n// student {number}\n" if one.task.file else f"\n# student {number}\n"
             files[f"week/{one.name}/{one.file}"] = make(one) + mark  # no two texts are the same
         write(folder, f"Student {number:03}", files, zipped=number % 2 == 1)
 

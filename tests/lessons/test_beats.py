@@ -21,7 +21,9 @@ from playground.lessons.model import (
     Slider,
     Steps,
 )
-from playground.lessons.present.beats import BOARD_WORDS, BOTH, CODE_LINES, Beat, beats_of, first_of_page
+from playground.lessons.present.beat import BOTH, Beat
+from playground.lessons.present.beats import beats_of, first_of_page
+from playground.lessons.present.block_beats import BOARD_WORDS, CODE_LINES
 from playground.lessons.present.labels import LABELS
 from playground.lessons.present.sentences import MOST_WORDS, sentences, shown_of, words
 from playground.lessons.present.spoken import LEAST, LETTERS, cues_of, plain_text, seconds_of, srt

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import ast
 import csv
 import io
 import json
 import os
+import pickle
+import re
 import struct
 import sys
 import zipfile
@@ -21,6 +24,7 @@ from playground.errors import DataError
 from playground.images.files import write_png
 from playground.lessons.grading import handler
 from playground.lessons.grading.duplicates import alike
+from playground.lessons.grading.entries import _TOO_MANY
 from playground.lessons.grading.grade import read_all
 from playground.lessons.grading.handed_in import lessons_in, read_submission
 from playground.lessons.grading.marks import GRADED, MISSING, REFUSED, STOPPED, Graded, Mark, Pair
@@ -31,8 +35,12 @@ from playground.lessons.grading.table import table_bytes
 from playground.lessons.grading.values_in_toml import values_in_toml
 from playground.lessons.handout.exercise_files import assignments_of
 from playground.lessons.handout.normalised import normalised
+from playground.lessons.library import HERE
+from playground.lessons.model import Challenge
 from playground.lessons.read import read_lesson
 from playground.lessons.tasks.texts import answer_text
+from playground.lessons.translatable import in_language, patterns
+from playground.sketch.assign import values_of
 
 from ..report.browser import MISSING as NO_BROWSER
 from ..report.browser import Browser
@@ -301,6 +309,36 @@ def graded_as(name, points=1.5):
     return Graded(name, {"x-y": Mark(points, 2, GRADED)})
 
 
+def test_a_driver_s_quotes_end_where_they_end():
+    said = "1:2: `hieght' undeclared; `hieght` is not declared"
+    text = page([Graded("Ana", {"x": Mark(0.0, 1, GRADED, (said,))})], {"x": "Lesson, 1"}, setting())
+    assert "1:2: <code>hieght</code> undeclared; <code>hieght</code> is not declared" in text
+
+
+def test_what_grading_says_of_a_file_is_french_in_a_french_report(tmp_path):
+    students.write(tmp_path, "Ana", {FILE: b"\xff\x00"})
+    problem = read(tmp_path / "Ana").problem
+    assert problem == f"{FILE} is not UTF-8 text; save the file as UTF-8" == in_language(problem, "en")
+    french = f"{FILE} n’est pas un texte UTF-8\xa0; enregistrez le fichier en UTF-8"
+    assert in_language(problem, "fr") == in_language(pickle.loads(pickle.dumps(problem)), "fr") == french
+    (tmp_path / "Cem.zip").write_bytes(b"none")
+    short = in_language(read(tmp_path / "Cem.zip").problem, "fr")
+    assert short.startswith("Cem.zip n’est pas un zip lisible"), "a sentence in a sentence"
+
+
+def test_every_sentence_of_grading_has_its_french_with_the_same_places():
+    known = patterns("fr")
+    used = set()
+    for path in (HERE / "grading").glob("*.py"), (HERE / "tasks").glob("*.py"):
+        for node in (node for file in path for node in ast.walk(ast.parse(file.read_text("utf-8")))):
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "Said":
+                (said,) = node.args
+                used.add(_TOO_MANY if isinstance(said, ast.Name) else ast.literal_eval(said))
+    assert used - {"{name} {what}"} == set(known)
+    for english, french in known.items():
+        assert re.findall(r"{.*?}", english) == re.findall(r"{.*?}", french), english
+
+
 def test_what_a_teacher_corrected_is_kept_when_the_report_is_written_again(tmp_path):
     def write(points):
         return write_report(tmp_path, [graded_as("Ana", points)], {"x-y": "y"}, "en", "llvmpipe")[1]
@@ -342,7 +380,7 @@ def test_mistakes_of_the_teacher_are_sentences(tmp_path, capsys):
 
 @pytest.fixture(scope="module")
 def one():
-    return next(x for x in assignments_of([read_lesson("diamond_square")]) if x.exercise.name == "dimension")
+    return next(x for x in assignments_of([read_lesson("diamond_square")]) if x.task.name == "dimension")
 
 
 @pytest.fixture(scope="module")
@@ -433,7 +471,7 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
 
     Kernels may not discard; a word that the preprocessor puts together is not seen by that rule.
     """
-    one = next(x for x in assignments_of([read_lesson("first_height")]) if x.exercise.name == "wave")
+    one = next(x for x in assignments_of([read_lesson("first_height")]) if x.task.name == "wave")
     made = []
 
     def engine(context, *, owns_context, cache_bytes, notice):
@@ -444,7 +482,7 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
     monkeypatch.setattr(handler, "open_context", lambda **choice: ctx)
     monkeypatch.setattr(handler, "Engine", engine)
     judge = handler.open_service(Silent(), handler.Options(("first_height",), "en")).answer
-    right = answer_text(one.exercise)
+    right = answer_text(one.task)
     for number in range(3):
         assert judge(handler.Request(one.name, f"{right}\n// {number}\n")).is_full
         varied = students.around(right, f"return given() + 1e-9 * {number}.0;")
@@ -456,6 +494,31 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
     mark = judge(handler.Request(one.name, nothing))
     made[0].release()
     assert mark.points == 0.0 and "differs by" in mark.sentences[0]
+
+
+def test_a_challenge_has_a_score_in_its_column_and_no_points(ctx, monkeypatch):
+    """Its picture has 100, what is handed out 0, between them it grows with the slider that was moved."""
+    one = next(x for x in assignments_of([read_lesson("slopes", "fr")]) if isinstance(x.task, Challenge))
+    monkeypatch.setattr(handler, "open_context", lambda **choice: ctx)
+    monkeypatch.setattr(handler, "Engine", lambda context, **rest: Engine(context))
+    judge = handler.open_service(Silent(), handler.Options(("slopes",), "fr")).answer
+    begin, wanted = (values_of(scene.sketch)["light.sun"] for scene in (one.task.begin, one.task.scene))
+    half = tuple((a + b) / 2 for a, b in zip(begin, wanted, strict=True))
+    nearer = students.with_values(one, {"light.sun": half})
+    texts = [None, students.right(one), nearer, students.untouched(one), "set = {"]
+    marks = [judge(handler.Request(one.name, text)) for text in texts]
+    answer, solved, near, begun, wrong = marks
+    assert answer.score == solved.score == 100.0 and begun.score == wrong.score == 0.0
+    assert 0.0 < near.score < 100.0
+    assert [mark.is_full for mark in marks] == [True, True, near.score >= one.task.goal, False, False]
+    assert {(mark.points, mark.of) for mark in marks} == {(0.0, 0)} and wrong.outcome == REFUSED
+    assert solved.sentences == (f"Score 100 sur 100\xa0; réussi à partir de {one.task.goal}.",)
+    row = Graded("Ana", {"lesson-exercise": Mark(1.5, 2, GRADED), one.name: replace(near, pairs=())})
+    table = table_bytes([row], list(row.marks)).decode("utf-8-sig").splitlines()
+    assert table[1] == f"Ana,1.5,{int(near.score)},1.5,2"
+    assert f"score {int(near.score)} sur 100" in page(
+        [row], dict.fromkeys(row.marks, "x"), replace(setting(), language="fr")
+    )
 
 
 class Silent:

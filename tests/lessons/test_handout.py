@@ -44,11 +44,11 @@ def test_the_zip_opens_in_the_window_as_the_exercise_begins(handed_out, one, tmp
     assert load(folder / one.opens).file == str(sketch_file)
     kernel = folder / one.name / one.file
     assert one.starter.splitlines()[0] in kernel.read_text()
-    begin = scene_of(one.exercise, Work(one.starter))
+    begin = scene_of(one.task, Work(one.starter))
     shown = engine.render(load(sketch_file), size=(160, 90)).array
     wanted = engine.render(begin.sketch, size=(160, 90)).array
     np.testing.assert_array_equal(shown, wanted)
-    kernel.write_text(answer_text(one.exercise))  # its includes are found from there, too
+    kernel.write_text(answer_text(one.task))  # its includes are found from there, too
     changed = engine.render(load(sketch_file), size=(160, 90)).array
     assert (changed != shown).any()
 
@@ -76,16 +76,16 @@ def test_no_answer_is_in_the_zip(lesson, handed_out, tmp_path):
         data = path.read_bytes() + b"\n".join(archive.read(name) for name in archive.namelist())
     spaceless = re.sub(r"\s+", "", re.sub(r"<[^>]+>", "", data.decode("utf-8", "replace")))
     found = assignments_of([read_lesson(lesson)])
-    given = re.sub(r"\s+", "", "\n".join(one.exercise.ask for one in found))
+    given = re.sub(r"\s+", "", "\n".join(one.task.ask for one in found))
     for one in found:
-        answer = set(answer_text(one.exercise).splitlines()) - set(one.starter.splitlines())
+        answer = set(answer_text(one.task).splitlines()) - set(one.starter.splitlines())
         secrets = [line for line in answer if not line.startswith("//")]
-        secrets += re.split(r"[.`$*\[\]]+", one.exercise.solution)
+        secrets += re.split(r"[.`$*\[\]]+", one.task.solution)
         secrets = [re.sub(r"\s+", "", secret) for secret in secrets]
         secrets = [x for x in secrets if len(x) > 15 and x not in given and not re.fullmatch(r"[\w/.]+", x)]
         assert secrets
         assert [secret for secret in secrets if secret in spaceless] == [], one.name
-    asked = re.sub(r"\s+", "", found[0].exercise.ask)
+    asked = re.sub(r"\s+", "", found[0].task.ask)
     assert max(re.split(r"[`$*\[\]\\]+", asked), key=len) in spaceless  # the search finds what is there
 
 

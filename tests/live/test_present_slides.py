@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from playground.lessons.library import LANGUAGES
-from playground.lessons.present.beats import Beat, beats_of
+from playground.lessons.present.beat import Beat
+from playground.lessons.present.beats import beats_of
 from playground.lessons.read import read_lesson, summaries
 from playground.lessons.scenes import Sketches
 from playground.live.present.faces import Face

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from playground.errors import DataError
+from playground.lessons.translatable import Said
 
 MOST_FILES = 4000
 """Files and folders that a submission may hold."""
@@ -31,6 +32,7 @@ _MOST_RATIO = 200  # of what is unpacked to the zip
 _END_MARK = b"PK\x05\x06"  # of a zip's list; APPNOTE 6.3.10, section 4.3.16
 _ZIP64_MARK, _ZIP64_BYTES = b"PK\x06\x07", 20  # of what points to a larger list; section 4.3.15
 _END_BYTES = 22 + 2**16  # its record and the longest comment
+_TOO_MANY = "holds more than {most} files; expected the folder of the hand-out"
 _BY_SYSTEMS = ("__macosx", ".ds_store", "thumbs.db", "desktop.ini")
 
 
@@ -78,7 +80,7 @@ def _folder_entries(top: Path) -> Iterator[Entry]:
                 continue
             count += 1
             if count > MOST_FILES:
-                raise DataError(f"holds more than {MOST_FILES} files; expected the folder of the hand-out")
+                raise DataError(Said(_TOO_MANY, most=MOST_FILES))
             if item.is_dir(follow_symlinks=False):
                 if path.count("/") < _DEEPEST:
                     waiting.append((Path(item.path), f"{path}/"))
@@ -98,7 +100,7 @@ def _listed(folder: Path) -> list[os.DirEntry[str]]:
                     break
             return sorted(found, key=lambda item: item.name)
     except OSError as error:
-        raise DataError(f"cannot be read: {error.strerror}") from None
+        raise DataError(Said("cannot be read: {why}", why=error.strerror)) from None
 
 
 def _reader_of(path: Path) -> Callable[[], bytes]:
@@ -106,23 +108,29 @@ def _reader_of(path: Path) -> Callable[[], bytes]:
         try:
             kind = path.lstat()
             if stat.S_ISLNK(kind.st_mode):
-                raise DataError("is a link to another file; only plain files are read")
+                raise DataError(Said("is a link to another file; only plain files are read"))
             if not stat.S_ISREG(kind.st_mode):  # to open a pipe or a device may never end
-                raise DataError("is a pipe, a socket or a device; only plain files are read")
+                raise DataError(Said("is a pipe, a socket or a device; only plain files are read"))
             _check_size(kind.st_size)
             flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
             flags |= getattr(os, "O_BINARY", 0)
             with os.fdopen(os.open(path, flags), "rb") as file:
                 return _whole(file.read(MOST_TEXT + 1))
         except OSError as error:
-            raise DataError(f"cannot be read: {error.strerror}") from None
+            raise DataError(Said("cannot be read: {why}", why=error.strerror)) from None
 
     return read
 
 
 def _check_size(size: int) -> None:
     if size > MOST_TEXT:
-        raise DataError(f"has {size / 2**20:.0f} MiB; a text of at most {MOST_TEXT / 2**20:.0f} is read")
+        raise DataError(
+            Said(
+                "has {size:.0f} MiB; a text of at most {most:.0f} is read",
+                size=size / 2**20,
+                most=MOST_TEXT / 2**20,
+            )
+        )
 
 
 def _whole(data: bytes) -> bytes:
@@ -140,7 +148,7 @@ def _zip_entries(path: Path) -> Iterator[Entry]:
     except DataError:
         raise
     except (OSError, zipfile.BadZipFile, NotImplementedError, RuntimeError, ValueError) as error:
-        raise DataError(f"is no zip that can be read: {_reason(error)}") from None
+        raise DataError(Said("is no zip that can be read: {why}", why=_reason(error))) from None
     for item in items:
         if item.is_dir():
             continue
@@ -150,47 +158,60 @@ def _zip_entries(path: Path) -> Iterator[Entry]:
 def _check_list(path: Path) -> None:
     """Raise ``DataError`` for a zip whose list of files alone would take too much memory."""
     if not stat.S_ISREG(path.lstat().st_mode):
-        raise DataError("is a link or a device; only plain files are read")
+        raise DataError(Said("is a link or a device; only plain files are read"))
     size = path.stat().st_size
     if size > _MOST_ZIP:
-        raise DataError(f"has {size / 2**20:.0f} MiB; a zip of at most {_MOST_ZIP // 2**20} is read")
+        raise DataError(
+            Said(
+                "has {size:.0f} MiB; a zip of at most {most} is read",
+                size=size / 2**20,
+                most=_MOST_ZIP // 2**20,
+            )
+        )
     with path.open("rb") as file:
         file.seek(max(size - _END_BYTES - _ZIP64_BYTES, 0))
         tail = file.read(_END_BYTES + _ZIP64_BYTES)
     place = tail.rfind(_END_MARK)
     if place < 0 or len(tail) < place + 20:
-        raise DataError("is no zip that can be read: it is cut short, or something else by this name")
+        raise DataError(Said("is no zip that can be read: it is cut short, or something else by this name"))
     count = int.from_bytes(tail[place + 10 : place + 12], "little")
     length = int.from_bytes(tail[place + 12 : place + 16], "little")
     # With this mark before the end record, that of a larger list (zip64) counts, whatever is written here.
     larger = tail[max(place - _ZIP64_BYTES, 0) : place].startswith(_ZIP64_MARK)
     if larger or count > MOST_FILES or length > _MOST_LIST:
-        raise DataError(f"holds more than {MOST_FILES} files; expected the folder of the hand-out")
+        raise DataError(Said(_TOO_MANY, most=MOST_FILES))
 
 
 def _check_zip(items: list[zipfile.ZipInfo], size: int) -> None:
     if len(items) > MOST_FILES:
-        raise DataError(f"holds more than {MOST_FILES} files; expected the folder of the hand-out")
+        raise DataError(Said(_TOO_MANY, most=MOST_FILES))
     whole = sum(item.file_size for item in items)
     if sum(item.compress_size for item in items) > size:
-        raise DataError("its files overlap, as those of a zip bomb do; it is not unpacked")
+        raise DataError(Said("its files overlap, as those of a zip bomb do; it is not unpacked"))
     if whole > _MOST_UNPACKED or (whole > _ALWAYS_FINE and whole > _MOST_RATIO * size):
         raise DataError(
-            f"would become {whole / 2**20:.0f} MiB from {size / 2**20:.2g}, as a zip bomb does; it is not"
-            " unpacked"
+            Said(
+                "would become {whole:.0f} MiB from {size:.2g}, as a zip bomb does; it is not unpacked",
+                whole=whole / 2**20,
+                size=size / 2**20,
+            )
         )
     for item in items:
         name = item.filename
         if name.startswith("/") or "\\" in name or ".." in name.split("/") or name[1:2] == ":":
-            raise DataError(f"holds '{printable(name)}', which leads out of its folder; it is not unpacked")
+            raise DataError(
+                Said(
+                    "holds '{name}', which leads out of its folder; it is not unpacked", name=printable(name)
+                )
+            )
 
 
 def _zip_reader(path: Path, item: zipfile.ZipInfo) -> Callable[[], bytes]:
     def read() -> bytes:
         if stat.S_IFMT(item.external_attr >> 16) not in (0, stat.S_IFREG):
-            raise DataError("is a link or a device; only plain files are read")
+            raise DataError(Said("is a link or a device; only plain files are read"))
         if item.flag_bits & 1:
-            raise DataError("is encrypted; expected a zip without a password")
+            raise DataError(Said("is encrypted; expected a zip without a password"))
         _check_size(item.file_size)
         try:
             with zipfile.ZipFile(path) as archive, archive.open(item) as file:
@@ -203,7 +224,7 @@ def _zip_reader(path: Path, item: zipfile.ZipInfo) -> Callable[[], bytes]:
             zlib.error,
             EOFError,
         ) as error:
-            raise DataError(f"is damaged in its zip: {_reason(error)}") from None
+            raise DataError(Said("is damaged in its zip: {why}", why=_reason(error))) from None
 
     return read
 

@@ -8,13 +8,13 @@ from dataclasses import replace
 from playground.errors import SketchError
 from playground.lessons.grading.duplicates import alike
 from playground.lessons.grading.handed_in import HandedIn, read_submission
-from playground.lessons.grading.handler import Request
+from playground.lessons.grading.handler import Request, no_mark
 from playground.lessons.grading.judges import Judges, Outcome, Stopped
 from playground.lessons.grading.labels import report_labels
 from playground.lessons.grading.marks import MISSING, REFUSED, STOPPED, Graded, Mark, spelled_points
 from playground.lessons.grading.submissions import Submission
 from playground.lessons.handout.exercise_files import Assignment
-from playground.lessons.library import Labels
+from playground.lessons.translatable import in_language
 
 Judged = dict[tuple[str, str | None], Outcome]
 """What came of each text, by the exercise's name; None is the model answer."""
@@ -55,13 +55,14 @@ def grade(
             judged[key] = outcome  # type: ignore[index]
             advance()
         _check_answers(judged, assignments)
-    label = report_labels(language)
-    same = {one.name: alike(_readable(read, one), one.starter) for one in assignments if one.exercise.file}
+    same = {one.name: alike(_readable(read, one), one.starter) for one in assignments if one.task.file}
     return [
         Graded(
             student,
             {
-                one.name: _mark(one, files[one.name], judged, judges.limit_of(one.name), label, same, student)
+                one.name: _mark(
+                    one, files[one.name], judged, judges.limit_of(one.name), language, same, student
+                )
                 for one in assignments
             },
         )
@@ -91,12 +92,14 @@ def _check_answers(judged: Judged, assignments: Sequence[Assignment]) -> None:
         mark = judged[one.name, None]
         if isinstance(mark, Mark) and mark.is_full:
             continue
-        if isinstance(mark, Mark):
+        if isinstance(mark, Mark) and mark.score is not None:
+            got = f"has a score of {mark.spelled} here"
+        elif isinstance(mark, Mark):
             got = f"has {spelled_points(mark.points)} of {mark.of} points here: {'; '.join(mark.sentences)}"
         else:
             got = "takes too long here" if mark.took_too_long else f"cannot be drawn here: it {mark.cause}"
         message = f"{one.name}: the model answer {got}; nothing was graded"
-        raise SketchError(message, file=one.lesson.file, line=one.exercise.line)
+        raise SketchError(message, file=one.lesson.file, line=one.task.line)
 
 
 def _mark(
@@ -104,24 +107,32 @@ def _mark(
     file: HandedIn,
     judged: Judged,
     limit: float,
-    label: Labels,
+    language: str,
     same: dict[str, dict[str, tuple[str, ...]]],
     student: str,
 ) -> Mark:
-    of = one.exercise.points
+    nothing, label = no_mark(one.task), report_labels(language)
     if file.missing:
-        return Mark(0.0, of, MISSING, (label["missing"],))
+        return replace(nothing, outcome=MISSING, sentences=(label["missing"],))
     if file.problem:
-        return Mark(0.0, of, REFUSED, (_sentence(file.problem),), note=file.note)
+        return replace(
+            nothing,
+            outcome=REFUSED,
+            sentences=(_sentence(in_language(file.problem, language)),),
+            note=in_language(file.note, language),
+        )
     outcome = judged[one.name, file.text]
     if isinstance(outcome, Stopped):
         key = "stopped" if outcome.took_too_long else "crashed"
-        mark = Mark(0.0, of, STOPPED, (label(key, limit=f"{limit:g}", cause=outcome.cause),))
+        said = label(key, limit=f"{limit:g}", cause=in_language(outcome.cause, language))
+        mark = replace(nothing, outcome=STOPPED, sentences=(said,))
     else:
         mark = outcome
     if mark.outcome == REFUSED:
         mark = replace(mark, sentences=tuple(_sentence(f"{one.file} {text}") for text in mark.sentences))
-    return replace(mark, note=file.note, same_as=same.get(one.name, {}).get(student, ()))
+    return replace(
+        mark, note=in_language(file.note, language), same_as=same.get(one.name, {}).get(student, ())
+    )
 
 
 def _sentence(text: str) -> str:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from playground.errors import DataError
 from playground.lessons.grading.entries import Entry, entries_of, printable
+from playground.lessons.translatable import Said
 
 _NUMBERED = re.compile(r"(?:[ _-]*\(\d+\)|[ _-]+copy(?:[ _-]*\d+)?|[ _-]+kopie)+(?=\.[^.]+$)")
 _MARKS = {b"\xff\xfe": "utf-16", b"\xfe\xff": "utf-16"}  # of what Windows writes as "Unicode"
@@ -37,7 +38,7 @@ def read_submission(path: Path, wanted: Collection[str]) -> dict[str, HandedIn]:
     try:
         entries = entries_of(path)
     except DataError as error:
-        problem = f"{printable(path.name)} {error.diagnostics[0].message}"
+        problem = Said("{name} {what}", name=printable(path.name), what=error.diagnostics[0].message)
         return {name: HandedIn(problem=problem) for name in wanted}
     return {name: _file_of([e for e in entries if _plain_name(e.name) == name.casefold()]) for name in wanted}
 
@@ -59,7 +60,11 @@ def _file_of(entries: list[Entry]) -> HandedIn:
     others = [_read(entry) for entry in entries[1:4]]
     if all(other.text == first.text and not other.problem for other in others):
         return first
-    note = f"{len(entries)} files of this name were handed in; graded: {printable(entries[0].path)}"
+    note = Said(
+        "{count} files of this name were handed in; graded: {path}",
+        count=len(entries),
+        path=printable(entries[0].path),
+    )
     return HandedIn(first.text, first.problem, note)
 
 
@@ -69,11 +74,15 @@ def _read(entry: Entry) -> HandedIn:
         encoding = _MARKS.get(data[:2], "utf-8-sig")
         text = data.decode(encoding).replace("\r\n", "\n").replace("\r", "\n")
     except DataError as error:
-        return HandedIn(problem=f"{printable(entry.name)} {error.diagnostics[0].message}")
+        return HandedIn(
+            problem=Said("{name} {what}", name=printable(entry.name), what=error.diagnostics[0].message)
+        )
     except UnicodeDecodeError:
-        return HandedIn(problem=f"{printable(entry.name)} is not UTF-8 text; save the file as UTF-8")
+        return HandedIn(
+            problem=Said("{name} is not UTF-8 text; save the file as UTF-8", name=printable(entry.name))
+        )
     if "\0" in text:
-        return HandedIn(problem=f"{printable(entry.name)} is not a text: it holds zero bytes")
+        return HandedIn(problem=Said("{name} is not a text: it holds zero bytes", name=printable(entry.name)))
     return HandedIn(text)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from PIL import Image
@@ -18,13 +18,15 @@ from playground.lessons.figure_renders import draw
 from playground.lessons.grading.marks import GRADED, REFUSED, Mark, Pair
 from playground.lessons.grading.values_in_toml import values_in_toml
 from playground.lessons.handout.exercise_files import Assignment, assignments_of
-from playground.lessons.model import Exercise
+from playground.lessons.model import Challenge, Exercise
 from playground.lessons.read import read_lesson
 from playground.lessons.tasks.judge import Wanted, answers, judge, small
-from playground.lessons.tasks.sentences import sentences
+from playground.lessons.tasks.match import Ends, ends_of, match
+from playground.lessons.tasks.sentences import score_of, sentences
 from playground.lessons.tasks.texts import path_of
 from playground.lessons.tasks.verdict import Picture, Verdict
 from playground.lessons.tasks.work import Work, answer, scene_of, wanted_scene
+from playground.lessons.translatable import Said, in_language
 from playground.paths import GLSL, shown
 from playground.process.child import Parent, Service
 from playground.sketch.allowed_files import leads_outside
@@ -74,8 +76,8 @@ class _Handler:
         self, parent: Parent, engine: Engine, options: Options, assignments: Sequence[Assignment]
     ) -> None:
         self._parent, self._engine, self._language = parent, engine, options.language
-        self._exercises = {one.name: one.exercise for one in assignments}
-        self._wanted: dict[str, tuple[Wanted, ...]] = {}
+        self._tasks = {one.name: one.task for one in assignments}
+        self._wanted: dict[str, tuple[Wanted, ...] | Ends] = {}
 
     def answer(self, request: Request) -> Mark:
         """Return the mark of a work.
@@ -83,36 +85,51 @@ class _Handler:
         Raises ``PlaygroundError`` where the model answer cannot be drawn or has not all points, and
         ``SandboxCrash`` where the context was lost.
         """
-        exercise = self._exercises[request.exercise]
+        task = self._tasks[request.exercise]
         if request.exercise not in self._wanted:
             self._parent.report(PREPARING)
-            self._wanted[request.exercise] = answers(self._engine, exercise)
+            draw_wanted = ends_of if isinstance(task, Challenge) else answers
+            self._wanted[request.exercise] = draw_wanted(self._engine, task)  # type: ignore[arg-type]
         if request.text is None:
-            return self._judged(exercise, request.exercise, answer(exercise))
+            return self._judged(task, request.exercise, answer(task))
         self._parent.report(JUDGING)
         try:
-            work = _work_of(exercise, request.text)
-            found = self._judged(exercise, request.exercise, work)
-        except ContextError as error:  # a texture larger than there is room for
-            found = _refused(exercise, error)
-        except DataError as error:
-            found = _refused(exercise, error)
+            work = _work_of(task, request.text)
+            found = self._judged(task, request.exercise, work)
+        except (ContextError, DataError) as error:  # or a texture larger than there is room for
+            said = (_short(in_language(error.diagnostics[0].message, self._language)),)
+            found = replace(no_mark(task), outcome=REFUSED, sentences=said)
         if is_lost(self._engine.ctx):
             raise SandboxCrash("made the driver reset itself")
         return found
 
-    def _judged(self, exercise: Exercise, name: str, work: Work) -> Mark:
-        verdict = judge(self._engine, exercise, work, self._wanted[name])
-        # Where the text was read from is the student's own file, not the one that it takes the place of.
-        place, own = shown(path_of(exercise)) if exercise.file else "", f"{name}.glsl"
-        said = [_short(s.replace(place, own) if place else s) for s in sentences(verdict, self._language)]
+    def _judged(self, task: Exercise | Challenge, name: str, work: Work) -> Mark:
+        wanted = self._wanted[name]
+        if isinstance(task, Challenge):
+            assert isinstance(wanted, Ends)
+            found = match(self._engine, task, work, wanted)
+            shown_pairs = () if found.mine is None else (Pair(_webp(found.mine), _webp(wanted.target)),)
+            said = [*map(str, found.diagnostics)] or [score_of(found, self._language)]
+            return replace(
+                no_mark(task), sentences=self._said(task, name, said), pairs=shown_pairs, score=found.score
+            )
+        assert not isinstance(wanted, Ends)
+        verdict = judge(self._engine, task, work, wanted)
         return Mark(
             verdict.points,
             verdict.of,
             GRADED,
-            tuple(said[:_MOST_SENTENCES]),
-            self._pairs(exercise, work, verdict),
+            self._said(task, name, sentences(verdict, self._language)),
+            self._pairs(task, work, verdict),
         )
+
+    def _said(self, task: Exercise | Challenge, name: str, said: Sequence[str]) -> tuple[str, ...]:
+        """Return sentences as they are shown.
+
+        Where a text was read from is the student's own file, not the one that it takes the place of.
+        """
+        place, own = shown(path_of(task)) if task.file else "", f"{name}.glsl"
+        return tuple(_short(s.replace(place, own) if place else s) for s in said[:_MOST_SENTENCES])
 
     def _pairs(self, exercise: Exercise, work: Work, verdict: Verdict) -> tuple[Pair, ...]:
         """Return the pictures to compare: those that failed first, of measures one of all that is drawn."""
@@ -132,17 +149,24 @@ class _Handler:
         return tuple(found)
 
 
-def _work_of(exercise: Exercise, text: str) -> Work:
+def no_mark(task: Exercise | Challenge) -> Mark:
+    """Return the mark of one who has nothing."""
+    if isinstance(task, Challenge):
+        return Mark(0.0, 0, GRADED, score=0.0, goal=task.goal)
+    return Mark(0.0, task.points, GRADED)
+
+
+def _work_of(task: Exercise | Challenge, text: str) -> Work:
     """Return a work by its file's text; raise ``DataError`` for what names files elsewhere."""
-    if not exercise.file:
-        return Work(None, values_in_toml(text, exercise.sliders))
+    if not task.file:
+        return Work(None, values_in_toml(text, task.sliders))
     work = Work(text)
     try:
-        sketch = scene_of(exercise, work).sketch
+        sketch = scene_of(task, work).sketch
     except PlaygroundError:
         return work  # the judge says what is wrong with it
     if outside := _outside_file(sketch):
-        raise DataError(f"names '{outside}', a file outside of its folder; it was not opened")
+        raise DataError(Said("names '{name}', a file outside of its folder; it was not opened", name=outside))
     return work
 
 
@@ -160,10 +184,6 @@ def _short(sentence: str) -> str:
     """Return a sentence, with the code that it may quote, without the rest of endless lines."""
     lines = [line if len(line) <= _LONGEST else f"{line[:_LONGEST]}…" for line in sentence.split("\n")]
     return "\n".join(line for line in lines[:3] if line.strip())
-
-
-def _refused(exercise: Exercise, error: PlaygroundError) -> Mark:
-    return Mark(0.0, exercise.points, REFUSED, (_short(error.diagnostics[0].message),))
 
 
 def _webp(picture: Picture) -> bytes:

@@ -16,6 +16,7 @@ from playground.errors import PlaygroundError, SandboxCrash, SandboxTimeout
 from playground.gpu.context import ContextInfo
 from playground.lessons.grading.handler import JUDGING, Options, Request
 from playground.lessons.grading.marks import Mark
+from playground.lessons.translatable import Said
 from playground.process.messages import UnexpectedError
 from playground.process.worker import START_SECONDS, Closing, Launch, Replaceable, WorkerDied
 
@@ -178,7 +179,7 @@ class Judges(Closing):
 
 def _cause(error: Exception) -> str:
     if isinstance(error, MemoryError):
-        return "ran out of memory"
+        return Said("ran out of memory")
     if isinstance(error, SandboxCrash):
         return error.diagnostics[0].message
-    return f"could not be judged: {error.args[0]}"
+    return Said("could not be judged: {why}", why=error.args[0])

@@ -18,7 +18,7 @@ class Pair:
 
 @dataclass(frozen=True)
 class Mark:
-    """What came of one exercise of one student."""
+    """What came of one exercise or challenge of one student; a challenge has a score and no points."""
 
     points: float
     of: int
@@ -27,11 +27,18 @@ class Mark:
     pairs: tuple[Pair, ...] = ()
     note: str = ""  # for information: it changes no points
     same_as: tuple[str, ...] = ()  # students who handed in the same text
+    score: float | None = None  # of a challenge: 0..100
+    goal: int = 0  # score from which a challenge is solved
 
     @property
     def is_full(self) -> bool:
-        """Whether it has all points."""
-        return self.points == self.of
+        """Whether it has all points, or solves its challenge."""
+        return self.points == self.of and (self.score is None or self.score >= self.goal)
+
+    @property
+    def spelled(self) -> str:
+        """What stands in a table: points, or the score in whole steps, as the window shows it."""
+        return spelled_points(self.points) if self.score is None else str(int(self.score))
 
 
 @dataclass(frozen=True)

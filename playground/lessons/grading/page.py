@@ -20,6 +20,7 @@ from playground.markup import Markup, joined, tag
 
 _HERE = Path(__file__).resolve().parent
 _HASH_NAME = "table-sha256"
+_DRIVER_QUOTES = re.compile(r"`(\w+)'")
 _COARSE = 100  # pixels: pictures with fewer are shown texel by texel
 
 
@@ -117,6 +118,13 @@ def _chip(points: float, of: int, setting: Setting) -> Markup:
     return tag("span", f"{setting.number(points)} / {of}", class_=f"chip {kind}")
 
 
+def _chip_of(mark: Mark, setting: Setting) -> Markup:
+    if mark.score is None:
+        return _chip(mark.points, mark.of, setting)
+    kind = "full" if mark.is_full else "part" if mark.score else "none"
+    return tag("span", setting.label("score", score=mark.spelled), class_=f"chip {kind}")
+
+
 def _mark(name: str, title: str, mark: Mark, setting: Setting) -> Markup:
     label = setting.label
     first, *others = mark.pairs or (None,)
@@ -128,7 +136,7 @@ def _mark(name: str, title: str, mark: Mark, setting: Setting) -> Markup:
         same = tag("p", label("same", names=names), class_="note", title=label["same_hint"])
     return tag(
         "section",
-        tag("h3", tag("span", title), _chip(mark.points, mark.of, setting)),
+        tag("h3", tag("span", title), _chip_of(mark, setting)),
         _pair(title, first, setting) if first else None,
         tag("ul", *sentences, class_="sentences") if sentences else None,
         tag("details", tag("summary", label["more"]), *further) if further else None,
@@ -142,6 +150,7 @@ def _mark(name: str, title: str, mark: Mark, setting: Setting) -> Markup:
 def _with_code(sentence: str) -> Markup:
     """Return a sentence, escaped, what is between backticks as code, and what follows its first line too."""
     first, line_end, quoted = sentence.partition("\n")
+    first = _DRIVER_QUOTES.sub(r"`\1`", first)
     parts = [tag("code", part) if odd % 2 else joined(part) for odd, part in enumerate(first.split("`"))]
     return joined(*parts, tag("pre", quoted) if line_end else None)
 

@@ -17,12 +17,15 @@ _TOTAL, _OF = "total", "of"
 
 
 def table_bytes(graded: Sequence[Graded], exercises: Sequence[str]) -> bytes:
-    """Return the table: a row for each student, the points of each exercise, the total, and of how many."""
+    """Return the table: a row for each student, the points of each exercise, the total, and of how many.
+
+    A challenge has its score in its column, which counts in no total.
+    """
     text = io.StringIO(newline="")
     rows = csv.writer(text)
     rows.writerow(["student", *map(as_text, exercises), _TOTAL, _OF])
     for one in graded:
-        points = [spelled_points(one.marks[name].points) for name in exercises]
+        points = [one.marks[name].spelled for name in exercises]
         rows.writerow([as_text(one.student), *points, spelled_points(one.points), one.of])
     return text.getvalue().encode("utf-8-sig", "replace")
 

@@ -14,6 +14,7 @@ from typing import Any, cast
 
 from playground.errors import DataError
 from playground.lessons.grading.entries import printable
+from playground.lessons.translatable import Said
 from playground.sketch.allowed_files import is_absolute
 from playground.sketch.model import Value
 
@@ -27,16 +28,18 @@ def values_in_toml(text: str, sliders: Sequence[str]) -> dict[str, Value]:
     Raises ``DataError`` in a sentence for what is no TOML, or names a file elsewhere.
     """
     if len(text) > _LONGEST:
-        raise DataError(f"is longer than any sketch: {len(text)} characters")
+        raise DataError(Said("is longer than any sketch: {count} characters", count=len(text)))
     try:
         table = tomllib.loads(text)
     except (tomllib.TOMLDecodeError, ValueError) as error:
-        raise DataError(f"is no TOML: {printable(str(error), 200)}") from None
+        raise DataError(Said("is no TOML: {why}", why=printable(str(error), 200))) from None
     except RecursionError:
-        raise DataError("is no sketch: its tables nest too deeply") from None
+        raise DataError(Said("is no sketch: its tables nest too deeply")) from None
     for name in _texts(table):
         if _leads_out(name):
-            raise DataError(f"names '{printable(name)}', a file outside of its folder; it was not opened")
+            raise DataError(
+                Said("names '{name}', a file outside of its folder; it was not opened", name=printable(name))
+            )
     found: dict[str, Value] = {}
     for path in sliders:
         owner, _, rest = path.partition(".")
@@ -75,7 +78,9 @@ def _checked(path: str, value: Any) -> Value:
     )
     plain = all(type(n) in (int, float) and math.isfinite(n) and abs(n) < 2**53 for n in numbers)
     if not plain or not 0 < len(numbers) <= 16:
-        raise DataError(f"sets {path} to what is no number: {printable(repr(value))}")
+        raise DataError(
+            Said("sets {path} to what is no number: {value}", path=path, value=printable(repr(value)))
+        )
     return cast(Value, value)
 
 

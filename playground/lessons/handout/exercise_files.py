@@ -1,53 +1,61 @@
-"""Name the files of exercises in a hand-out, by which a submission is found again."""
+"""Name the files of exercises and challenges in a hand-out, by which a submission is found again."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from playground.lessons.handout.labels import handout_labels
 from playground.lessons.handout.normalised import normalised
-from playground.lessons.model import Exercise, Lesson
+from playground.lessons.model import Challenge, Exercise, Lesson
 from playground.lessons.tasks.tasks import tasks_of
 from playground.lessons.tasks.texts import answer_text, starter_text
 
 
 @dataclass(frozen=True)
 class Assignment:
-    """One exercise that checks itself, of one lesson."""
+    """One exercise that checks itself, or one picture to match, of one lesson."""
 
     lesson: Lesson
-    exercise: Exercise
+    task: Exercise | Challenge
     starter: str = ""  # what is handed out in the student's file; "" where values are set
     follows: Exercise | None = None  # the student goes on from what was written there
 
     @property
     def name(self) -> str:
         """What it goes by in a hand-out and a table: no other exercise has the same."""
-        return f"{self.lesson.name}-{self.exercise.name}"
+        return f"{self.lesson.name}-{self.task.name}"
 
     @property
     def file(self) -> str:
         """The file that the student edits: a kernel, or the sketch whose values are set."""
-        return f"{self.name}.glsl" if self.exercise.file else f"{self.name}.toml"
+        return f"{self.name}.glsl" if self.task.file else f"{self.name}.toml"
 
     @property
     def sketch_file(self) -> str:
         """The sketch that shows the exercise; a kernel next to it may not have its name."""
-        return "sketch.toml" if self.exercise.file else self.file
+        return "sketch.toml" if self.task.file else self.file
 
     @property
     def opens(self) -> str:
         """What opens the exercise in the window, from the hand-out's folder."""
-        return self.name if self.exercise.file else f"{self.name}/{self.file}"
+        return self.name if self.task.file else f"{self.name}/{self.file}"
 
     @property
-    def number(self) -> int:
-        """The exercise's number in its lesson, from 1."""
-        return self.lesson.number_of(self.exercise)
+    def points(self) -> int:
+        """How many points it has: a picture to match has a score instead."""
+        return self.task.points if isinstance(self.task, Exercise) else 0
+
+    @property
+    def title(self) -> str:
+        """The lesson, and the exercise's number in it, or that a picture is to be matched."""
+        if isinstance(self.task, Challenge):
+            return f"{self.lesson.title}, {handout_labels(self.lesson.language)['challenge'].lower()}"
+        return f"{self.lesson.title}, {self.lesson.number_of(self.task)}"
 
 
 def assignments_of(lessons: Iterable[Lesson]) -> list[Assignment]:
-    """List the exercises of lessons that check themselves, in the order of the lessons.
+    """List the exercises of lessons that check themselves and the challenges, in the order of the lessons.
 
     Where an exercise begins with the answer of an earlier one, it is handed out with what that one begins
     with: the student goes on from a kernel of their own, and no answer is given away.
@@ -56,16 +64,15 @@ def assignments_of(lessons: Iterable[Lesson]) -> list[Assignment]:
     for lesson in lessons:
         of_lesson: list[Assignment] = []
         for task in tasks_of(lesson):
-            if isinstance(task, Exercise):
-                of_lesson.append(_assignment(lesson, task, of_lesson))
+            of_lesson.append(_assignment(lesson, task, of_lesson))
         found += of_lesson
     return found
 
 
-def _assignment(lesson: Lesson, exercise: Exercise, earlier: Iterable[Assignment]) -> Assignment:
-    starter = starter_text(exercise)
+def _assignment(lesson: Lesson, task: Exercise | Challenge, earlier: Iterable[Assignment]) -> Assignment:
+    starter = starter_text(task)
     for before in earlier:
-        if exercise.file and exercise.file == before.exercise.file:
-            if normalised(starter) == normalised(answer_text(before.exercise)):
-                return Assignment(lesson, exercise, before.starter, before.exercise)
-    return Assignment(lesson, exercise, starter)
+        if task.file and task.file == before.task.file and isinstance(before.task, Exercise):
+            if normalised(starter) == normalised(answer_text(before.task)):
+                return Assignment(lesson, task, before.starter, before.task)
+    return Assignment(lesson, task, starter)

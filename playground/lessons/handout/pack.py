@@ -70,7 +70,7 @@ def write_handout(
         "format": FORMAT,
         "sketch": f"{top}/{first.name}/{first.sketch_file}",
         "version": __version__,
-        "shipped": sorted({one.exercise.file for one in assignments if one.exercise.file}),
+        "shipped": sorted({one.task.file for one in assignments if one.task.file}),
     }
     files[MANIFEST] = (json.dumps(manifest, indent=1) + "\n").encode()
     with replacing(path) as handle, zipfile.ZipFile(handle, "w") as archive:

@@ -76,7 +76,7 @@ def handout_page(
     Raises as ``Engine.render`` does.
     """
     label = handout_labels(lessons[0].language)
-    by_place = {(one.lesson.name, one.exercise.name): one for one in assignments}
+    by_place = {(one.lesson.name, one.task.name): one for one in assignments}
     body = [
         tag("h1", label["title"]),
         tag("p", label["name_line"], label["colon"], tag("span", Markup("&nbsp;")), class_="name"),
@@ -132,10 +132,6 @@ def _task(task: Task, one: Assignment | None, setting: _Setting) -> Markup:
 def _about(task: Task, one: Assignment | None, setting: _Setting) -> Markup | None:
     """Return which file is to be edited, and how it is opened."""
     label = setting.label
-    if isinstance(task, Challenge):
-        language = "" if setting.lesson.language == SOURCE else f" --lang {setting.lesson.language}"
-        command = tag("code", f"playground lesson open {setting.lesson.name}{language}")
-        return tag("div", tag("p", label["in_lesson"], label["colon"], command), class_="about")
     if one is None:
         return None
     lines = [
@@ -149,6 +145,10 @@ def _about(task: Task, one: Assignment | None, setting: _Setting) -> Markup | No
     else:
         paths = joined(*(joined(Markup(" "), tag("code", path)) for path in task.sliders))
         lines.append(tag("p", label["values"], label["colon"], paths))
+    if isinstance(task, Challenge):
+        language = "" if setting.lesson.language == SOURCE else f" --lang {setting.lesson.language}"
+        command = tag("code", f"playground lesson open {setting.lesson.name}{language}")
+        lines.append(tag("p", label["in_lesson"], label["colon"], command))
     return tag("div", *lines, class_="about")
 
 

@@ -37,7 +37,7 @@ def student_files(one: Assignment) -> dict[str, bytes]:
 
     Raises ``PlaygroundError`` where no such sketch can be made.
     """
-    scene = one.exercise.begin
+    scene = one.task.begin
     assert scene is not None
     with tempfile.TemporaryDirectory(prefix="handout-") as scratch:
         try:
@@ -47,7 +47,7 @@ def student_files(one: Assignment) -> dict[str, bytes]:
             first.unlink()
             path = first.with_name(one.sketch_file)
             path.write_text(text, encoding="utf-8", newline="\n")
-            if one.exercise.file:
+            if one.task.file:
                 _put_kernel(one, path)
             _drop_view_settings(path, scene.sketch)
             sketch = load(path)
@@ -79,7 +79,7 @@ def _without_moments(text: str, one: Assignment) -> str:
         waiting = []
     while kept and (not kept[0].strip() or kept[0].lstrip().startswith("#")):
         kept.pop(0)  # what the shipped sketch says of itself
-    title = f"{one.lesson.title}, {one.number}"
+    title = one.title
     whole = "\n".join([f"# {title}", *kept]).rstrip() + "\n"
     return put(whole, (), "title", text_of(title))
 
@@ -109,7 +109,7 @@ def _as_begun(sketch: Sketch, begin: Sketch) -> Sketch:
 
 def _put_kernel(one: Assignment, sketch_file: Path) -> None:
     """Write the starter into the folder and have the sketch use it, through the techniques around it."""
-    folder, kernel = sketch_file.parent, path_of(one.exercise)
+    folder, kernel = sketch_file.parent, path_of(one.task)
     starter = _includes_from_library(one.starter, kernel)
     (folder / f"{one.name}.glsl").write_text(starter, encoding="utf-8", newline="\n")
     own = _OwnKernel(

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from playground.lessons.model import Markdown
-from playground.lessons.present.beats import Beat
+from playground.lessons.present.beat import Beat
 from playground.lessons.present.sentences import sentences, words
 
 WORDS_A_MINUTE = 200

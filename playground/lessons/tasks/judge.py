@@ -21,6 +21,7 @@ from playground.lessons.measuring import NoNumberError, measured
 from playground.lessons.model import Check, Exercise, Scene
 from playground.lessons.tasks.verdict import Picture, Result, Verdict
 from playground.lessons.tasks.work import LackingParameter, Work, scene_of, wanted_scene
+from playground.lessons.translatable import Said
 
 SIDE = 240
 """Pixels of the longer side of the pictures that are compared."""
@@ -106,7 +107,7 @@ def _result(engine: Engine, exercise: Exercise, work: Work, check: Check, wanted
     except PlaygroundError as error:
         # The words of a value that is refused have the value, which may be hidden.
         tells = check.hidden and isinstance(error, ParameterError) and not isinstance(error, LackingParameter)
-        mistake = "a parameter does not take its value" if tells else error.diagnostics[0].message
+        mistake = Said("a parameter does not take its value") if tells else error.diagnostics[0].message
         return Result(check, False, float("inf"), mistake=mistake)
 
 

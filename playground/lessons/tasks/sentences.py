@@ -9,7 +9,9 @@ from pathlib import Path
 
 from playground.lessons.library import Labels
 from playground.lessons.measuring import spelled
+from playground.lessons.tasks.match import Match
 from playground.lessons.tasks.verdict import Result, Verdict
+from playground.lessons.translatable import in_language
 from playground.sketch.values import spell
 
 _BRIGHTER = 1.0  # level of 255, in the mean, from which a picture is called brighter or darker
@@ -35,6 +37,11 @@ def points_of(verdict: Verdict, language: str) -> str:
     return task_labels(language)(key, got=_number(verdict.points, language), of=verdict.of)
 
 
+def score_of(match: Match, language: str) -> str:
+    """Return how near a challenge's picture is as "Score 87 of 100; solved from 95."."""
+    return task_labels(language)("score_of", score=int(match.score), goal=match.goal)
+
+
 def sentence_of(result: Result, language: str) -> str:
     """Return what comes of one check as a sentence."""
     say, check = task_labels(language), result.check
@@ -47,7 +54,7 @@ def sentence_of(result: Result, language: str) -> str:
 def _found(result: Result, say: Labels, language: str) -> str:
     check = result.check
     if result.mistake:
-        return say("mistake", mistake=result.mistake.rstrip("."))
+        return say("mistake", mistake=in_language(result.mistake, language).rstrip("."))
     if check.measure is not None:
         return _of_measure(result, say, language)
     kind, of = "texture" if check.of else "picture", f"`{check.of}`"

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from playground.errors import ParameterError, nearest
 from playground.lessons.model import Challenge, Scene, Task
 from playground.lessons.tasks.texts import answer_text, path_of, starter_text
+from playground.lessons.translatable import Said
 from playground.sketch.flatten import flatten
 from playground.sketch.model import Sketch, Value, kernels_of
 from playground.sketch.text_overrides import with_texts
@@ -70,7 +71,7 @@ def _of_kernel(task: Task, text: str, values: Mapping[str, Value]) -> Scene:
         flatten(sketch)
     except ParameterError:
         if lacking := _parameters(before, path) - _parameters(sketch, path):
-            message = f"the kernel has no parameter '{min(lacking)}', which is set here"
+            message = Said("the kernel has no parameter '{name}', which is set here", name=min(lacking))
             raise LackingParameter(message) from None
         raise
     return replace(scene, sketch=sketch, plain=False)

@@ -21,7 +21,8 @@ from playground.images.files import replacing
 from playground.lessons.figure_renders import broken
 from playground.lessons.measuring import Number, filled, measured, named_in
 from playground.lessons.model import Break, Compare, Lesson, Scene, Slider
-from playground.lessons.present.beats import BOTH, Beat, beats_of, scene_of, texts_of_beat, with_texts
+from playground.lessons.present.beat import BOTH, Beat, scene_of, texts_of_beat, with_texts
+from playground.lessons.present.beats import beats_of
 from playground.lessons.present.spoken import cues_of, seconds_of, srt
 from playground.lessons.scenes import with_value
 from playground.live.present.slide import Gauge, Sizes, board_of, gauges_of, strip_of

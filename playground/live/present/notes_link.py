@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from playground.errors import DataError, ParameterError
-from playground.lessons.present.beats import Beat
+from playground.lessons.present.beat import Beat
 from playground.live.present.told import told
 from playground.remote.notes import Notes
 from playground.workbench.lesson.presenter import Presenter

@@ -12,7 +12,7 @@ from functools import lru_cache
 
 from PIL import Image, ImageDraw
 
-from playground.lessons.present.beats import Beat
+from playground.lessons.present.beat import Beat
 from playground.live.lesson.markdown_runs import plain
 from playground.live.present.code_colours import coloured
 from playground.live.present.faces import Face

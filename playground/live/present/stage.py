@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from imgui_bundle import ImVec2, imgui
 
 from playground.errors import PlaygroundError
-from playground.lessons.present.beats import Beat, texts_of_beat, with_texts
+from playground.lessons.present.beat import Beat, texts_of_beat, with_texts
 from playground.lessons.present.labels import labels_of
 from playground.live.draw import Area
 from playground.live.present.keys import act_on_presentation_keys, help_rows
@@ -47,6 +47,7 @@ class Stage:
         self._was_full = False
         self._moved = 0.0  # when the mouse moved last [s]
         self._turned = False  # to another beat, in this frame
+        self._due: Beat | None = None  # whose words are on the screen, and whose picture is not shown yet
         bench.lessons.present = self.begin
         bench.lessons.beat = lambda: self.presenter.at + 1 if self.on else 0
 
@@ -89,7 +90,7 @@ class Stage:
         """Go back to the window: the lesson's panel, at the page of the last beat."""
         if self.bench.window.is_full() and not self._was_full:
             self.bench.window.toggle_full()
-        self.reader.playing = ""
+        self.reader.playing, self._due = "", None
         self.reader.go(beat.page, show=False)
         if self.reader.figure.scene is not None and beat.kind in ("broken", "hint"):
             self.reader.figure.set_texts({})
@@ -108,7 +109,7 @@ class Stage:
     @property
     def patience(self) -> float:
         """How long nothing needs to be done here [s]."""
-        if self.notes.waits:
+        if self.notes.waits or self._due is not None:
             return 0.0
         if not self.on:
             return 1.0
@@ -131,6 +132,7 @@ class Stage:
     def act(self, area: Area) -> bool:
         """Act on keys and mouse; return whether the mouse is for the picture, which is in ``area``."""
         presenter, io = self.presenter, imgui.get_io()
+        self._show_due()
         self._follow_mouse()
         act_on_presentation_keys(self)
         presenter.forget_typed()
@@ -277,8 +279,14 @@ class Stage:
         self.presenter.notice = "" if sentence == self.presenter.notice else sentence
 
     def _show(self, beat: Beat) -> None:
-        self.pictures.show(beat)
-        self._turned = True
+        """Show a beat's words in this frame; its sketch is loaded in the next one."""
+        self._due, self._turned = beat, True
+
+    def _show_due(self) -> None:
+        """Show the picture of the beat whose words have been drawn."""
+        if self._due is not None and not self._turned:
+            beat, self._due = self._due, None
+            self.pictures.show(beat)
 
     def _say(self, key: str, *given: object) -> str:
         return labels_of(self.reader.language)[key].format(*given)

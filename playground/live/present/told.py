@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from playground.lessons.book.html import code_block, prose
-from playground.lessons.present.beats import Beat
+from playground.lessons.present.beat import Beat
 from playground.lessons.present.labels import labels_of
 from playground.live.lesson.markdown_runs import plain
 from playground.workbench.lesson.presenter import Presenter

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from playground.errors import ParameterError, PlaygroundError
 from playground.lessons.figure_renders import with_bug
 from playground.lessons.model import Break, Compare, Slider, Steps
-from playground.lessons.present.beats import Beat, Still
+from playground.lessons.present.beat import Beat, Still
 from playground.sketch.assign import resolve
 from playground.sketch.described_parameter import range_of
 from playground.sketch.model import Parameter, Value

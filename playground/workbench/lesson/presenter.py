@@ -10,7 +10,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from playground.lessons.model import Lesson
-from playground.lessons.present.beats import Beat, beats_of, first_of_page
+from playground.lessons.present.beat import Beat
+from playground.lessons.present.beats import beats_of, first_of_page
 
 TYPED = 3.0
 """[s] after its last digit that a typed number is forgotten."""
