@@ -343,7 +343,7 @@ def test_a_challenge_keeps_its_best_score(page, book):
 def test_french_and_paper_and_a_phone(page, book):
     page.open((book / "fr/small.html").as_uri())
     page.emulate("setDeviceMetricsOverride", width=390, height=844, deviceScaleFactor=1, mobile=True)
-    assert "Animer" in page.run("return document.querySelector('.start').textContent")
+    assert "Lancer" in page.run("return document.querySelector('.start').textContent")
     for name in ("turns", "fault", "land"):
         start(page, name)
     assert "Itération 0 sur 5" in page.run("return document.querySelector('#turns output').textContent") or (
