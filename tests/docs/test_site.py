@@ -52,11 +52,14 @@ def test_nothing_is_loaded_from_the_network(site: Path):
         assert not re.search(r"(?:@import|url\()\s*['\"]?(?:https?:)?//", style.read_text("utf-8")), style
 
 
+MOST = 28e6  # bytes: 24 MB now; with every page's whole navigation in each page it is 45 MB
+
+
 def test_every_image_is_there_and_pages_stay_small(site: Path):
     for page in site.rglob("*.html"):
         for image in re.findall(r'<img [^>]*src="([^"]+)"', page.read_text("utf-8")):
             assert (page.parent / image).is_file(), (page, image)
-    assert sum(path.stat().st_size for path in site.rglob("*") if path.is_file()) < 48e6
+    assert sum(path.stat().st_size for path in site.rglob("*") if path.is_file()) < MOST
 
 
 def test_the_search_knows_english_and_french(site: Path):

@@ -18,6 +18,7 @@ from playground.lessons.book.live_scenes import Library, Scenes
 from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import pictures_in
 from playground.lessons.read import read_lesson
+from playground.lessons.tasks.sentences import task_labels
 from playground.lessons.values import spelled_value
 from playground.sketch.assign import shown_parameters
 from playground.sketch.load import load
@@ -215,7 +216,10 @@ def test_the_scripts_hold_the_data(book, lesson):
     library = Library()
     data = json.loads(json.dumps(lesson_data(lesson, library)))
     name, shared = held(book / "glsl.js")
-    assert name == "glsl" and json.loads(shared) == json.loads(json.dumps(library.data()))
+    shared = json.loads(shared)
+    for language, say in shared.pop("say").items():
+        assert say.items() <= task_labels(language).items() and "wrong_texture" in say
+    assert name == "glsl" and shared == json.loads(json.dumps(library.data()))
     name, found = held(book / "data/small.js")
     found = json.loads(found)
     assert name == "data/small" and found.pop("blobs") == {} and found == data

@@ -24,10 +24,6 @@ BY_NAME = {
         *("keyFrame", "keyFull", "keyHelp", "keyMap", "keyPanel"),
         *("keyPlay", "keyResetView", "keySave", "keyStart"),
     ),
-    "book_exercise.js": (
-        *("rightPicture", "rightTexture", "wrongPicture", "wrongTexture"),
-        *("morePicture", "moreTexture", "lessPicture", "lessTexture"),
-    ),
     "notices.js": ("header", "annotation", "initial", "added", "removed"),
     "session.js": ("size", "extent", "relief", "base_elevation"),
     "sketch_files.js": ("ownFiles", "kernelFiles", "libraryFiles"),

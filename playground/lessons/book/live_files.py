@@ -19,7 +19,9 @@ from typing import Any
 from playground.engine.engine import Engine
 from playground.lessons.book.live_blocks import block_data, lesson_data
 from playground.lessons.book.live_scenes import Library, Scenes
+from playground.lessons.library import LANGUAGES
 from playground.lessons.model import Lesson, Named
+from playground.lessons.tasks.sentences import task_labels
 from playground.web.blobs import packed
 from playground.web.bundle import read_bundle
 
@@ -68,7 +70,8 @@ def widget_page(block: Named, engine: Engine | None = None) -> str:
 
 
 def _scripts(data: dict[str, dict[str, Any]], library: Library) -> Iterator[tuple[str, str]]:
-    yield "glsl.js", script("glsl", packed_json(library.data()))
+    say = {language: _said_in_a_page(language) for language in LANGUAGES}
+    yield "glsl.js", script("glsl", packed_json({**library.data(), "say": say}))
     texts = library.shared.blobs.texts
     few = {key for key, text in texts.items() if len(text) <= FEW}
     for lesson, found in data.items():
@@ -76,6 +79,11 @@ def _scripts(data: dict[str, dict[str, Any]], library: Library) -> Iterator[tupl
         yield f"data/{lesson}.js", script(f"data/{lesson}", packed_json({**found, "blobs": blobs}))
     for key in texts.keys() - few:
         yield f"data/{key}.js", script(f"data/{key}", texts[key])
+
+
+def _said_in_a_page(language: str) -> dict[str, str]:
+    """Return what work_words.js says of works; measures are taken elsewhere."""
+    return {key: text for key, text in task_labels(language).items() if not key.startswith("measure_")}
 
 
 def blobs_in(data: Any, library: Library) -> set[str]:

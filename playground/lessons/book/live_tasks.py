@@ -86,9 +86,9 @@ def _check(
         row = scenes.row(setting, path)
         for leaf in row["targets"] if row else [path]:
             at[leaf] = values[leaf]
-    said = ", ".join(f"{path} = {spelled_at(task.scene, path, value)}" for path, value in check.at)
+    said = [[path, spelled_at(task.scene, path, value)] for path, value in check.at]
     found: LiveData = {"hidden": check.hidden, "tolerance": check.tolerance, "at": at}
-    found["said"] = "" if check.hidden else said
+    found["said"] = [] if check.hidden else said
     if check.of:
         ref = flatten(task.scene.sketch).ref(check.of, task.scene.sketch.name)
         found["of"] = {"path": ref.path, "output": ref.output, "name": check.of}

@@ -58,7 +58,8 @@ export async function start(root, folder, lesson) {
     root.classList.add("is-live");
     const comma = /^fr/.test(language), watched = losses.watch(host);
     ({ end } = watched);
-    await KINDS[block.kind]({ host, still, block, sketches, begin, engine, watched, words, comma });
+    const say = library.say[/^fr/.test(language) ? "fr" : "en"];
+    await KINDS[block.kind]({ host, still, block, sketches, begin, engine, watched, words, say, comma });
   } catch (error) {
     opened &&= opened.catch(() => (opened = null, Promise.reject(error)));
     end();

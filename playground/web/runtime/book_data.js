@@ -48,7 +48,8 @@ import { unpackedJson } from "./packed.js";
 /** @typedef {Omit<Sketch, "kernels"> & {kernels: number[]}} Stored  its kernels are numbers in the book */
 /** @typedef {{sketches: Stored[], blocks: Object<string, LiveBlock>,
  *             blobs: Object<string, string>}} LessonData */
-/** @typedef {Shared & {kernels: Kernel[]}} Library */
+/** say: by language, what is said of works that are checked.
+ *  @typedef {Shared & {kernels: Kernel[], say: Object<string, Object<string, string>>}} Library */
 
 /** A scene as a sketch of its own.
  *  @param {Stored} base @param {Setting} setting @param {Kernel[]} kernels @returns {Sketch} */

@@ -7,13 +7,9 @@ import { button, make } from "./dom.js";
 import { createCheck } from "./picture_check.js";
 import { createSession } from "./session.js";
 import { fill } from "./words.js";
+import { followParameters } from "./written_parameters.js";
 import { createJudge, createScore } from "./work_check.js";
-
-/** What is said of a check, by what is checked: keys of the words. */
-const KEYS = {
-  picture: { right: "rightPicture", wrong: "wrongPicture", more: "morePicture", less: "lessPicture" },
-  texture: { right: "rightTexture", wrong: "wrongTexture", more: "moreTexture", less: "lessTexture" },
-};
+import { sentence } from "./work_words.js";
 
 /** @typedef {import("./book_figure.js").Room} Room */
 /** @typedef {import("./work_check.js").Outcome} Outcome */
@@ -31,7 +27,7 @@ export async function liveExercise(room) {
   const { host, still, block, sketches, begin, engine, words } = room;
   const session = createSession([begin ?? sketches[0]]);
   const figure = makePicture(room, host, session, { poster: still.querySelector("img") });
-  host.append(makeRows(session, block.rows ?? [], words));
+  host.append(makeRows(session, () => block.rows ?? [], words));
   if (begin) {
     const verdict = makeVerdict(host), check = await createCheck(engine, sketches[0], solutionOf(room));
     settled(session, async () => {
@@ -59,8 +55,9 @@ function settled(session, act) {
  *  @param {Room} room @param {HTMLElement} host  of the picture
  *  @param {{changed: () => unknown}} news */
 function makeTask(room, host, { changed }) {
-  const { block, sketches, begin, watched, words } = room, { file = "", starter = "", rows = [] } = block;
-  const session = createSession([begin ?? sketches[0]]);
+  const { block, sketches, engine, watched, words } = room, begin = room.begin ?? sketches[0];
+  const { file = "", starter = "", answer = "", rows = [] } = block, session = createSession([begin]);
+  const parameters = file ? followParameters(begin, engine.shared, file, answer) : null;
   const figure = makePicture(room, host, session, file ? {
     opened: (/** @type {any} */ made) => text?.opened(made),
     prepare: (/** @type {any} */ made) => watched.recovery.resume(made),
@@ -68,9 +65,11 @@ function makeTask(room, host, { changed }) {
   const text = file ? createText(room, {
     file, first: starter, label: fill(words.field, { name: file }), key: `${file} ${block.kind}`,
     whole: (shown) => shown, part: (all) => all, failed: changed,
+    read: parameters?.read,
+    works(read) { if (parameters?.take(read)) session.renew(); },
     made() { figure.ask(); return changed(); },
   }) : null;
-  room.host.append(makeRows(session, rows, words));
+  room.host.append(makeRows(session, () => [...rows, ...parameters?.added ?? []], words));
   settled(session, changed);
   const restart = text ? [button(words.restart, () => text.put(starter))] : [];
   const buttons = make("div", { className: "buttons" }, ...restart, makeReset(session, words));
@@ -85,7 +84,8 @@ function makeTask(room, host, { changed }) {
 
 /** @param {Room} room */
 async function checkedExercise(room) {
-  const { host, block, sketches, begin, engine, words, comma } = room, { file = "", answer = "" } = block;
+  const { host, block, sketches, begin, engine, words, say: labels = {}, comma } = room;
+  const { file = "", answer = "" } = block;
   const task = makeTask(room, host, { changed: () => forget() }), checks = block.checks ?? [];
   const check = button(words.check, act, { className: "check" });
   task.buttons.prepend(check);
@@ -110,7 +110,7 @@ async function checkedExercise(room) {
       if (task.text?.isWrong) return say(words.notCompiled, false);
       const found = await judge.judged(file ? null : task.session.state(), task.text?.text ?? "");
       list.replaceChildren(...found.map((one, at) => {
-        const text = sentence(one, checks[at], words, comma);
+        const text = sentence(one, checks[at], labels, comma);
         return make("li", { className: one.passed ? "right" : "wrong" }, text);
       }));
       const all = found.every(({ passed }) => passed), count = found.filter(({ passed }) => passed).length;
@@ -120,7 +120,7 @@ async function checkedExercise(room) {
           make("p", { className: "elsewhere" }, fill(words.elsewhere, { count: block.elsewhere })));
       }
       const first = found.find((one, at) => !one.passed && !checks[at].hidden && one.mine);
-      if (first) results.append(pictures(first, words));
+      if (first) results.append(pictures(first, labels));
     } catch (error) {
       say(error instanceof Error ? error.message : String(error), false);
     } finally {
@@ -134,32 +134,10 @@ async function checkedExercise(room) {
   }
 }
 
-/** @param {Outcome} found @param {import("./work_check.js").PageCheck} check
- *  @param {Object<string, string>} words @param {boolean} comma */
-export function sentence(found, check, words, comma) {
-  const local = (/** @type {number} */ number) => {
-    const text = String(+number.toPrecision(3));
-    return comma ? text.replace(".", ",") : text;
-  };
-  const where = check.hidden ? words.atHidden : check.said ? fill(words.at, { at: check.said }) : "";
-  const of = check.of?.name ?? "";
-  const keys = KEYS[check.of ? "texture" : "picture"];
-  const more = found.bias ? words[found.bias > 0 ? keys.more : keys.less] : "";
-  const what = found.passed ? fill(words[keys.right], { of })
-    : found.mistake ? fill(words.mistake, { mistake: found.mistake })
-    : found.sizes ? fill(words.otherSize, { of, mine: found.sizes[0], wanted: found.sizes[1] })
-    : found.notFinite ? fill(words.notFinite, { of, count: found.notFinite })
-    : fill(words[keys.wrong], {
-      of, bias: more, share: local(100 * found.difference), by: local(found.difference),
-      tolerance: local(check.tolerance),
-    });
-  return where ? where + what : what[0].toUpperCase() + what.slice(1);
-}
-
 /** One's own picture, the one that is asked for, and where they differ.
- *  @param {Outcome} found @param {Object<string, string>} words */
-function pictures({ mine, wanted, differs }, words) {
-  const all = [[words.mine, mine], [words.wanted, wanted], [words.differs, differs]];
+ *  @param {Outcome} found @param {Object<string, string>} labels */
+function pictures({ mine, wanted, differs }, labels) {
+  const all = [[labels.mine, mine], [labels.wanted, wanted], [labels.differs, differs]];
   return make("div", { className: "pictures" }, ...all.map(([name, picture]) => {
     const { size: [width, height], data } = /** @type {import("./work_check.js").Shot} */ (picture);
     const canvas = make("canvas", { width, height, role: "img", "aria-label": String(name) });

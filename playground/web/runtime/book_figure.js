@@ -20,6 +20,7 @@ import { createTimeline, hasTime } from "./timeline.js";
  *  @property {import("./engine.js").Engine} engine
  *  @property {import("./book_recovery.js").Watched} watched   speaks for its figures when the context is lost
  *  @property {Object<string, string>} words
+ *  @property {Object<string, string>} [say]         of works that are checked, in a book: lessons/tasks/labels
  *  @property {boolean} comma                    whether numbers have one */
 
 const STEP = 1 / 36; // of the picture's height that an arrow turns: 5 degrees
@@ -53,27 +54,36 @@ export function makePicture(room, host, session, options = {}) {
 }
 
 /** Make rows for some parameters of a session, those there are; why several are locked stands once.
- *  @param {Session} session @param {string[]} paths @param {Object<string, string>} words */
+ *  @param {Session} session @param {() => string[]} paths  asked again when the session has other rows
+ *  @param {Object<string, string>} words */
 export function makeRows(session, paths, words) {
   const box = make("div", { className: "rows" });
   /** @type {[string, ReturnType<typeof makeRow>][]} */
-  const rows = [];
-  const found = paths.flatMap((path) => session.row(path) ?? []), known = new Set([""]);
-  for (const one of found) {
-    const { path, locked } = one, several = found.filter((other) => other.locked === locked).length > 1;
-    if (several && !known.has(locked)) box.append(whyLocked(locked));
-    if (several) known.add(locked);
-    const row = makeRow(one, labelOf(one.label), {
-      words,
-      changed: (value) => session.set(path, value),
-      reset: () => session.reset(path),
-      press: (down) => session.press(path, down),
-    }, several);
-    rows.push([path, row]);
-    box.append(row.element);
+  let rows = [];
+  function build() {
+    const found = paths().flatMap((path) => session.row(path) ?? []), known = new Set([""]);
+    rows = [];
+    box.replaceChildren();
+    for (const one of found) {
+      const { path, locked } = one, several = found.filter((other) => other.locked === locked).length > 1;
+      if (several && !known.has(locked)) box.append(whyLocked(locked));
+      if (several) known.add(locked);
+      const row = makeRow(one, labelOf(one.label), {
+        words,
+        changed: (value) => session.set(path, value),
+        reset: () => session.reset(path),
+        press: (down) => session.press(path, down),
+      }, several);
+      rows.push([path, row]);
+      box.append(row.element);
+    }
   }
   const show = () => rows.forEach(([path, row]) => row.show(session.value(path), session.changed(path)));
-  session.follow(show);
+  session.follow((news) => {
+    if (news === "rows") build();
+    show();
+  });
+  build();
   show();
   return box;
 }
@@ -124,6 +134,6 @@ export function liveFigure(room) {
   const { host, block, sketches, still, words } = room, session = createSession(sketches);
   const figure = makePicture(room, host, session, { poster: still.querySelector("img") });
   if (hasTime(session.sketch)) host.append(createTimeline(figure, words).element);
-  host.append(makeRows(session, block.rows ?? [], words), makeReset(session, words));
+  host.append(makeRows(session, () => block.rows ?? [], words), makeReset(session, words));
   return figure.start().then(() => figure);
 }

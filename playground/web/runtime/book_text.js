@@ -21,7 +21,9 @@ const PAUSE = 200; // [ms] without a key, then what was typed is compiled
  *  @property {(text: string) => string} part       what is shown of the file
  *  @property {number} [above]                      lines of the file before those that are shown
  *  @property {(text: string, shown: string) => Promise<unknown> | unknown} made  its picture is there
- *  @property {() => void} failed                   it does not compile */
+ *  @property {() => void} failed                   it does not compile
+ *  @property {(text: string) => any} [read]        what else is read of it; throws where that cannot be
+ *  @property {(read: any) => void} [works]         it compiles, and this was read of it */
 
 /** Make the field in a block; its player is opened by `opened`, its first text tried by `begin`.
  *  @param {Room} room @param {Written} written */
@@ -47,9 +49,17 @@ export function createText({ host, sketches, engine, watched, words }, written) 
   function typed() {
     clearTimeout(timer);
     timer = window.setTimeout(() => { work = work.then(tried); }, PAUSE);
+    editor.setAttribute("aria-busy", "true");
   }
 
+  /** Try what is written, and say when nothing of it is left to be tried. */
   async function tried() {
+    const begun = timer;
+    await tryNow();
+    if (begun === timer) editor.setAttribute("aria-busy", "false");
+  }
+
+  async function tryNow() {
     const mine = ++number, shown = field.text, text = whole(shown);
     status.textContent = words.compilingText;
     let errors;
@@ -59,7 +69,8 @@ export function createText({ host, sketches, engine, watched, words }, written) 
       errors = await Promise.race([drawn(text), lost(listening.signal)]);
       if (!engine.isLost()) guard.worked(player.texts);
     } catch (error) {
-      errors = [{ file, line: 0, message: error instanceof Error ? error.message : String(error) }];
+      const { file: where = file, line = 0 } = /** @type {any} */ (error);
+      errors = [{ file: where, line, message: error instanceof Error ? error.message : String(error) }];
       if (!engine.isLost()) guard.forget();
     } finally {
       listening.abort();
@@ -76,8 +87,9 @@ export function createText({ host, sketches, engine, watched, words }, written) 
   /** Compile a text and make its whole picture, wherever the page is scrolled; return what is wrong with it.
    *  @param {string} text @returns {Promise<Mistake[]>} */
   async function drawn(text) {
-    const { errors } = await player.edit(file, text);
+    const read = written.read?.(text), { errors } = await player.edit(file, text);
     if (errors.length) return errors;
+    written.works?.(read);
     await player.renderSoon();
     await finished(engine.parts.context.gl);
     return [];

@@ -63,6 +63,7 @@ export function createFigure(host, engine, page, options) {
   const quality = createQuality();
   let asked = 0, askedAt = 0, resting = 0, last = 0, took = 0, speed = 1;
   let inSight = true, closed = false, playing = false, moving = false, long = true, again = false;
+  let due = false; // something was asked for since the state was last taken
   let overtaken = false; // values have changed since a picture was begun in pieces
   /** @type {(() => void)[]} who waits for the next picture */
   const waiting = [];
@@ -88,9 +89,11 @@ export function createFigure(host, engine, page, options) {
     message.classList.toggle("alarm", Boolean(error));
   }
 
-  /** Whether another picture is to come: who listens, or tests, waits for the last. */
+  /** Whether another picture is to come: who listens, or tests, waits for the last. Out of sight, it comes
+   *  when the figure is seen again; without a player none does. */
   function tellBusy() {
-    stage.setAttribute("aria-busy", String(asked !== 0 || begun !== null || moving || held.waits));
+    const coming = held.isOpening || (held.now !== null && (due || begun !== null || held.waits));
+    stage.setAttribute("aria-busy", String(coming || moving));
   }
 
   // ── what is drawn ──────────────────────────────────────────────────────────
@@ -118,6 +121,7 @@ export function createFigure(host, engine, page, options) {
     if (again) return;
     const late = Math.max(start - askedAt - FRAME, 0), inPieces = long && from.renderSoon;
     if (playing) advance(start);
+    due = false;
     try {
       const size = takeState(from);
       if (inPieces) drawInPieces(from, size, start);
@@ -187,7 +191,8 @@ export function createFigure(host, engine, page, options) {
       moving = true;
       settle();
     }
-    if (asked || closed) return;
+    due = true;
+    if (asked || closed) return tellBusy();
     askedAt = performance.now();
     asked = requestAnimationFrame(draw);
     tellBusy();
@@ -200,7 +205,6 @@ export function createFigure(host, engine, page, options) {
       moving = false;
       quality.rest();
       ask(); // whole, also where a smaller picture is still being made
-      tellBusy();
     }, REST);
   }
 
@@ -211,6 +215,7 @@ export function createFigure(host, engine, page, options) {
       options.opened?.(made);
       ask();
     },
+    tellBusy: () => tellBusy(),
   });
 
   // ── time ───────────────────────────────────────────────────────────────────
@@ -241,10 +246,7 @@ export function createFigure(host, engine, page, options) {
     if (news !== "camera" && news !== "time") long = overtaken = true;
     if (news === "sketch") held.open();
     else if (news !== "map") ask(true);
-    else {
-      held.more().then(() => ask());
-      tellBusy();
-    }
+    else held.more().then(() => ask());
   });
   const sizes = new ResizeObserver(() => ask());
   const sights = new IntersectionObserver(([entry]) => {

@@ -12,13 +12,14 @@ import { fill } from "./words.js";
  *  @property {(text: string, error?: unknown) => void} tell
  *  @property {(to: Player) => unknown} takeState   gives a player the state of now
  *  @property {(player: Player) => unknown} [prepare]
- *  @property {(player: Player) => void} opened     it is there, its programs too */
+ *  @property {(player: Player) => void} opened     it is there, its programs too
+ *  @property {() => void} tellBusy                 `waits` or `isOpening` is another */
 
 /** @param {Holder} holder */
-export function holdPlayer({ engine, session, words, tell, takeState, prepare, opened }) {
+export function holdPlayer({ engine, session, words, tell, takeState, prepare, opened, tellBusy }) {
   /** @type {Player | null} */
   let player = null;
-  let opening = 0, asked = 0, loading = 0, closed = false;
+  let opening = 0, asked = 0, loading = 0, isOpening = false, closed = false;
 
   const compiling = (/** @type {number} */ done, /** @type {number} */ all) =>
     tell(fill(words.compiling, { done, all }));
@@ -26,6 +27,8 @@ export function holdPlayer({ engine, session, words, tell, takeState, prepare, o
   /** Open a player for the sketch of now; the one before stays until it can draw. */
   async function open() {
     const mine = ++opening;
+    isOpening = true;
+    tellBusy();
     tell(words.loading);
     try {
       const made = engine.open(session.sketch);
@@ -37,9 +40,14 @@ export function holdPlayer({ engine, session, words, tell, takeState, prepare, o
       if (mine !== opening || closed) return made.close();
       player?.close();
       player = made;
+      isOpening = false;
       opened(made);
     } catch (error) {
-      if (mine === opening) tell(words.failed, error);
+      if (mine === opening) {
+        isOpening = false;
+        tell(words.failed, error);
+        tellBusy();
+      }
     }
     return undefined;
   }
@@ -49,6 +57,7 @@ export function holdPlayer({ engine, session, words, tell, takeState, prepare, o
     const from = player, mine = ++asked;
     if (!from) return;
     loading++;
+    tellBusy();
     try {
       takeState(from);
       await from.load((done, all) => {
@@ -58,6 +67,7 @@ export function holdPlayer({ engine, session, words, tell, takeState, prepare, o
       if (mine === asked) tell(words.kept, error);
     } finally {
       loading--;
+      tellBusy();
     }
   }
 
@@ -67,6 +77,8 @@ export function holdPlayer({ engine, session, words, tell, takeState, prepare, o
     get now() { return player; },
     /** Whether what is asked of the player cannot be drawn yet without waiting for a compiler. */
     get waits() { return loading > 0; },
+    /** Whether a player for the sketch of now is on its way. */
+    get isOpening() { return isOpening; },
     close() {
       closed = true;
       player?.close();

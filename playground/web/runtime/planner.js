@@ -45,6 +45,9 @@ const MAP = "#map"; // the path of the step that shows a texture from above
 /** @type {WeakMap<Sketch, Last>} */
 const lastPlans = new WeakMap();
 
+/** A sketch's kernels or parameters are others now: its next plan is made whole. @param {Sketch} sketch */
+export const forgetPlan = (sketch) => lastPlans.delete(sketch);
+
 /** Make a sketch concrete for one frame. Throws a `PlanError` in a sentence.
  *  @param {Sketch} sketch @param {Shared} shared @param {State} [state] @returns {Plan} */
 export function makePlan(sketch, shared, state = {}) {

@@ -9,7 +9,7 @@ import { fits } from "./value_text.js";
 /** What can be undone: which sketch, values over its own by path of a row, repeats stopped early by path.
  *  @typedef {{index: number, edits: Map<string, Value>, steps: Map<string, number>}} Step */
 /** @typedef {{path: string, output: string, values: Object<string, Value>}} MapShown */
-/** @typedef {"values" | "sketch" | "camera" | "time" | "map"} News */
+/** @typedef {"values" | "sketch" | "camera" | "time" | "map" | "rows"} News */
 /** @typedef {ReturnType<typeof createSession>} Session */
 
 const TERRAIN = ["size", "extent", "relief", "base_elevation"];
@@ -260,6 +260,21 @@ export function createSession(sketches, first = 0) {
     follow(listener) {
       listeners.add(listener);
       return () => listeners.delete(listener);
+    },
+
+    /** The sketch has other rows now: what was set and still fits stays. */
+    renew() {
+      const fitting = (/** @type {Step} */ step) => {
+        const edits = [...step.edits].filter(([path, given]) => {
+          const row = rows.get(path);
+          return row && !row.locked && fits(row, given);
+        });
+        return { ...step, edits: new Map(edits) };
+      };
+      rows = new Map([...sketch().shown, ...terrainRows(sketch())].map((row) => [row.path, row]));
+      [before, after] = [before.map(fitting), after.map(fitting)];
+      take(fitting(now));
+      tell("rows");
     },
 
     /** What a player's state is to be, but for its frame. */

@@ -1,0 +1,117 @@
+"""A page of the book says of a work what the window, a notebook and a report say of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+from playground.lessons.library import LANGUAGES
+from playground.lessons.model import Check
+from playground.lessons.tasks.judge import Wanted, compare
+from playground.lessons.tasks.sentences import sentence_of, task_labels
+
+from ..web.node import MISSING, Node
+
+pytestmark = pytest.mark.skipif(bool(MISSING), reason=MISSING)
+
+
+@pytest.fixture(scope="module")
+def node() -> Iterator[Node]:
+    with Node() as found:
+        yield found
+
+
+def said_in_a_page(node: Node, check: Check, outcome: dict[str, Any], language: str) -> str:
+    page = {
+        "hidden": check.hidden,
+        "tolerance": check.tolerance,
+        "said": [] if check.hidden else [[path, str(value)] for path, value in check.at],
+    }
+    if check.of:
+        page["of"] = {"path": check.of, "output": check.of, "name": check.of}
+    sentence = node.call(
+        "work_words.js", "sentence", outcome, page, dict(task_labels(language)), language == "fr"
+    )
+    assert isinstance(sentence, str)
+    return sentence
+
+
+def both(node: Node, check: Check, mine: Any, wanted: Any) -> list[tuple[str, str]]:
+    """Return what Python and the page say of two textures or pictures, by language."""
+    if check.of:
+        result = compare(check, Wanted(texture=mine), Wanted(texture=wanted))
+        given = [
+            {"size": one.shape[1::-1], "channels": 1, "data": one.ravel().astype(np.float32)}
+            for one in (mine, wanted)
+        ]
+        outcome = node.call("work_check.js", "compareTextures", *given, {"tolerance": check.tolerance})
+    else:
+        result = compare(check, Wanted(picture=mine), Wanted(picture=wanted))
+        given = [
+            {
+                "size": one.shape[1::-1],
+                "data": np.dstack([one, np.full_like(one[..., :1], 255)])[::-1].ravel(),
+            }
+            for one in (mine, wanted)
+        ]
+        outcome = node.call("work_check.js", "comparePictures", *given, {"tolerance": check.tolerance})
+    assert outcome["passed"] == result.passed
+    return [
+        (sentence_of(result, language).replace("`", ""), said_in_a_page(node, check, outcome, language))
+        for language in LANGUAGES
+    ]
+
+
+PLACES = (slice(0, 8), slice(8, 16), slice(16, 24), slice(0, 24))
+
+
+@pytest.mark.parametrize("rows", PLACES)
+@pytest.mark.parametrize("columns", PLACES)
+def test_where_and_by_how_much(node: Node, rows: slice, columns: slice):
+    random = np.random.default_rng(0)
+    wanted = random.random((24, 25), dtype=np.float32)
+    mine = wanted.copy()
+    mine[rows, columns] += 0.25
+    texture = Check(tolerance=0.002, at=(("height.seed", 4), ("height.roughness", 0.3)), of="height")
+    for python, page in both(node, texture, mine, wanted):
+        assert page == python
+    levels = (200.0 * wanted[..., None] * np.ones(3)).astype(np.uint8)
+    changed = levels.copy()
+    changed[rows, columns] += 40
+    for hidden in (False, True):
+        for python, page in both(node, Check(tolerance=0.01, hidden=hidden), changed, levels):
+            assert page == python
+
+
+def test_a_picture_begins_at_the_top_and_a_texture_in_the_south(node: Node):
+    wanted = np.zeros((24, 24), np.float32)
+    mine = wanted.copy()
+    mine[:8, 16:] = 1.0
+    ((_, said), _) = both(node, Check(tolerance=0.1, of="height"), mine, wanted)
+    assert "in the south-east" in said
+    levels = np.zeros((24, 24, 3), np.uint8)
+    changed = levels.copy()
+    changed[:8, 16:] = 99
+    ((_, said), _) = both(node, Check(), changed, levels)
+    assert "at the upper right" in said
+
+
+def test_what_is_right_or_is_no_number_or_of_another_size(node: Node):
+    wanted = np.linspace(0.0, 1.0, 35, dtype=np.float32).reshape(5, 7)
+    check = Check(tolerance=0.002, of="height")
+    broken = wanted.copy()
+    broken[2, 3] = np.nan
+    for mine in (wanted, broken, np.where(wanted > 0.5, np.inf, wanted), wanted[:4], wanted + 0.00301):
+        for python, page in both(node, check, mine, wanted):
+            assert page == python
+
+
+def test_what_cannot_be_drawn_is_said_as_it_is(node: Node):
+    outcome = {"passed": False, "difference": 0.0, "mistake": "the kernel has no parameter 'a'."}
+    said = said_in_a_page(node, Check(hidden=True), outcome, "fr")
+    assert said.startswith(task_labels("fr")["hidden"]) and said.endswith(
+        ": the kernel has no parameter 'a'."
+    )
