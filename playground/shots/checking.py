@@ -16,9 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NoReturn, TypeVar
 
-import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 from playground.engine.plain_forms import PlainForms, silent
 from playground.errors import (
@@ -31,9 +29,11 @@ from playground.errors import (
 )
 from playground.gpu.context import ContextInfo
 from playground.paths import shown
+from playground.shots import soft_failures
+from playground.shots.claims import Claim, Claims, writing
 from playground.shots.plugin_constants import REFERENCE_RENDERER, SUMMARY_LINE, UNCHANGED, UNCOMPARED
 from playground.shots.recording import Recorder, typed
-from playground.shots.references import write_reference
+from playground.shots.references import reference_path, write_reference
 from playground.shots.renderer_process import RendererProcess
 from playground.shots.results import NEVER_ACCEPTED
 from playground.shots.suite import Outcome, RenderedShot, ShotCase, check
@@ -69,6 +69,7 @@ def checker_of(config: pytest.Config) -> Checker:
         checker = config.stash[_CHECKER] = Checker(config)
         config.add_cleanup(checker.close)  # also after Ctrl-C
         config.pluginmanager.register(checker)
+        config.pluginmanager.register(soft_failures)
     return config.stash[_CHECKER]
 
 
@@ -84,8 +85,9 @@ class Checker:
         renderer = "any" if not software else "either" if self.any_renderer else "software"
         self.renderer_process = RendererProcess(config.getoption("--shots-timeout"), renderer)
         self.recorder = Recorder(config)
+        self.claims = Claims(self.recorder.run)
         self._plain_forms: PlainForms | None = None
-        self._written: dict[Path, tuple[str, NDArray[np.uint8]]] = {}  # by whom, and what
+        self._written: set[Path] = set()
 
     def close(self) -> None:
         """End the child process."""
@@ -101,22 +103,33 @@ class Checker:
         self.show_what_was_printed(node)
         if isinstance(rendered, PlaygroundError):
             self._gave_none(node, case, rendered, start)
-        self.hold(node, case, rendered, renderer, start)
+        if failure := self.failure(node, case, rendered, renderer, start):
+            pytest.fail(failure, pytrace=False)
 
-    def hold(
+    def failure(
         self, node: pytest.Item, case: ShotCase, frame: RenderedShot, renderer: ContextInfo, start: float
-    ) -> None:
-        """Fail the test unless a reference matches, or ``--shots-update`` writes one.
+    ) -> str:
+        """Return why a picture fails; "" where a reference matches, or ``--shots-update`` writes one.
 
         ``start`` is when drawing began, of `time.perf_counter`.
         """
         outcome = _result_or_error(lambda: self._compare(node, case, frame, renderer))
         if isinstance(outcome, PlaygroundError):
-            self._gave_none(node, case, outcome, start)
+            return self._none_to_compare(node, case, outcome, start)
         command = self.accepting(node, outcome)
         unrecorded = self.recorder.record(node, outcome, time.perf_counter() - start, command)
-        if not outcome.ok:
-            _fail(self._explained(node, outcome), unrecorded)
+        if outcome.ok and outcome.tolerance and not (outcome.tolerated or self.updating):
+            line = f"{case}: the tolerance is not needed: the picture passes without it"
+            node.user_properties.append((SUMMARY_LINE, line))
+        return "" if outcome.ok else _joined(self._explained(node, outcome), unrecorded)
+
+    def claim(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo, own: bool) -> str:
+        """Return why a test may not check a picture under its name, which another test has; else ""."""
+        return self._refusal(Claim(case.shot.name, node.nodeid, own), case, renderer)
+
+    def _refusal(self, claim: Claim, case: ShotCase, renderer: ContextInfo) -> str:
+        references = reference_path(case.sketch, case.shot.name, renderer.slug).parent
+        return self.claims.refusal(claim, references, self.recorder.place(case))
 
     def renderer(self, node: pytest.Item, case: ShotCase) -> ContextInfo:
         """Return what draws in the child process, if it is expected; else skip the test, or fail it."""
@@ -164,7 +177,7 @@ class Checker:
     def fail(self, node: pytest.Item, case: ShotCase, message: str) -> NoReturn:
         """Fail a test in which no picture was compared, with a record that says so."""
         unrecorded = self.recorder.record_none(node, case, "error", message, 0.0)
-        _fail(message, unrecorded)
+        pytest.fail(_joined(message, unrecorded), pytrace=False)
 
     def raised(self, node: pytest.Item, case: ShotCase, error: PlaygroundError) -> PlaygroundError:
         """Return what a test is to raise for a mistake, with its word; it is recorded if the test fails."""
@@ -190,10 +203,16 @@ class Checker:
 
     def _gave_none(self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float) -> NoReturn:
         """Fail the test for a shot of which there is no picture, or that cannot be compared."""
+        pytest.fail(self._none_to_compare(node, case, error, start), pytrace=False)
+
+    def _none_to_compare(
+        self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float
+    ) -> str:
+        """Record a shot of which there is no picture, or that cannot be compared, and say why."""
         word = word_of(error)
         unrecorded = self.recorder.record_none(node, case, word, str(error), time.perf_counter() - start)
         message = f"{case}: {error}" if word == "error" else f"{case}: {word}: {error}"
-        _fail(message, unrecorded)
+        return _joined(message, unrecorded)
 
     def _compare(
         self, node: pytest.Item, case: ShotCase, frame: RenderedShot, renderer: ContextInfo
@@ -211,15 +230,15 @@ class Checker:
     def _write(self, node: pytest.Item, outcome: Outcome) -> None:
         case, pixels = outcome.case, outcome.frame.array
         path = outcome.own_path
+        if refusal := self._refusal(writing(case.shot.name, node.nodeid, pixels), case, outcome.renderer):
+            raise DataError(refusal, file=path)
         if path in self._written:
-            by, before = self._written[path]
-            if not np.array_equal(before, pixels):
-                raise DataError(f"{by} has just written another picture of that name", file=path)
             return
+        found = outcome.fingerprint
         written, removed = write_reference(
-            case.sketch, case.shot.name, outcome.renderer, pixels, outcome.fingerprint.drawn
+            case.sketch, case.shot.name, outcome.renderer, pixels, found.drawn, found.fonts
         )
-        self._written[written] = (node.nodeid, pixels)
+        self._written.add(written)
         node.user_properties.append((SUMMARY_LINE, f"wrote {shown(written)}  ({outcome.sentence})"))
         for other in removed:
             line = f"removed {shown(other)}  (it let the picture before this one pass)"
@@ -246,6 +265,6 @@ def _result_or_error(function: Callable[[], Result]) -> Result | PlaygroundError
         return error
 
 
-def _fail(message: str, unrecorded: str) -> NoReturn:
-    """Fail a test; ``unrecorded`` says why its result could not be recorded, if it could not."""
-    pytest.fail(f"{message}\n    {unrecorded}" if unrecorded else message, pytrace=False)
+def _joined(message: str, unrecorded: str) -> str:
+    """Return why a test fails; ``unrecorded`` says why its result could not be recorded, if it could not."""
+    return f"{message}\n    {unrecorded}" if unrecorded else message

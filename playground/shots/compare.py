@@ -42,11 +42,17 @@ class Comparison:
     place: tuple[int, int] | None = None  # [pixels] x and y, from the top left, of the first worst one
     actual: Colour | None = None  # what is at that place; of a blank picture, its colour
     expected: Colour | None = None  # what should be there
+    hidden: int = 0  # [pixels] that are masked, and count as equal
 
     @property
     def ok(self) -> bool:
         """Whether the picture is the one expected."""
         return self.verdict == "same"
+
+    @property
+    def share(self) -> float:
+        """Share of the pixels that are compared that differ beyond the tolerance."""
+        return self.over / (self.size[0] * self.size[1] - self.hidden)
 
     @property
     def most(self) -> int:
@@ -70,24 +76,30 @@ class Comparison:
         most = f"max difference {self.most} of 255, at x = {x}, y = {y} from the top left"
         if self.ok:
             return f"same: {most}"
-        share = 100.0 * self.over / (width * height)
-        counted = f"{self.over} of {width * height} pixels ({share:.3g} %) over {self.tolerance}"
+        compared = width * height - self.hidden
+        counted = f"{self.over} of {compared} pixels ({100.0 * self.share:.3g} %) over {self.tolerance}"
         return f"differs: {most}, {self.actual} where {self.expected} was expected; {counted}"
 
 
 def compare(
-    actual: NDArray[np.uint8], expected: NDArray[np.uint8] | None, tolerance: int = TOLERANCE
+    actual: NDArray[np.uint8],
+    expected: NDArray[np.uint8] | None,
+    tolerance: int = TOLERANCE,
+    *,
+    allow_blank: bool = False,
+    hidden: int = 0,
 ) -> Comparison:
     """Compare two pictures, uint8 (height, width, 4), top row first.
 
-    With ``expected`` None the verdict is "missing"; "blank" goes before that and before
-    "size". Raises ``DataError`` for another dtype or shape.
+    With ``expected`` None the verdict is "missing"; "blank" goes before that and before "size",
+    unless ``allow_blank``. ``hidden`` pixels are masked: the same in both, and no part of a share.
+    Raises ``DataError`` for another dtype or shape.
     """
     actual = _picture(actual)
     expected = None if expected is None else _picture(expected)
     size = _size(actual)
     expected_size = None if expected is None else _size(expected)
-    spread = _spread(actual)
+    spread = None if allow_blank else _spread(actual)
     if spread is not None:
         colour = _colour(actual, 0, 0)
         return Comparison(
@@ -99,12 +111,12 @@ def compare(
             actual=colour,
         )
     if expected is None:
-        return Comparison(verdict="missing", tolerance=tolerance, size=size)
+        return Comparison(verdict="missing", tolerance=tolerance, size=size, hidden=hidden)
     if size != expected_size:
         return Comparison(verdict="size", tolerance=tolerance, size=size, expected_size=expected_size)
     if np.array_equal(actual.ravel().view(np.uint32), expected.ravel().view(np.uint32)):
         return Comparison(
-            verdict="same", tolerance=tolerance, size=size, expected_size=expected_size
+            verdict="same", tolerance=tolerance, size=size, expected_size=expected_size, hidden=hidden
         )  # as nearly all of one build are
     difference = _difference(actual, expected)
     # Down the columns first: long runs in memory, where axis 2 would be runs of four.
@@ -122,6 +134,7 @@ def compare(
         place=(x, y),
         actual=_colour(actual, x, y),
         expected=_colour(expected, x, y),
+        hidden=hidden,
     )
 
 
@@ -185,11 +198,18 @@ def worst_window(values: NDArray[Any], side: int) -> tuple[float, tuple[int, int
 
     With x and y of its top left corner, and its width and height, which are less in a small image.
     """
+    windows = sums_of_windows(values, side)
+    y, x = divmod(int(windows.argmax()), windows.shape[1])
+    height, width = (min(side, length) for length in values.shape)
+    return float(windows[y, x]), (x, y), (width, height)
+
+
+def sums_of_windows(values: NDArray[Any], side: int) -> NDArray[np.float64]:
+    """Return the sum over each window of ``side`` × ``side`` pixels, at its top left corner; exact to 2⁵³."""
     height, width = (min(side, length) for length in values.shape)
     sums = np.zeros([length + 1 for length in values.shape], np.float64)
     np.cumsum(values, axis=0, dtype=np.float64, out=sums[1:, 1:])
     np.cumsum(sums[1:, 1:], axis=1, out=sums[1:, 1:])
     windows = sums[height:, width:] - sums[:-height, width:] - sums[height:, :-width]
     windows += sums[:-height, :-width]
-    y, x = divmod(int(windows.argmax()), windows.shape[1])
-    return float(windows[y, x]), (x, y), (width, height)
+    return windows

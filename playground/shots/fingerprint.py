@@ -15,6 +15,7 @@ means for that:
     drawn                 hash of what was drawn: sketch, shot, kernels, values, sizes, wiring,
                           files (see ``engine.picture_hash``). It never makes a comparison less strict:
                           that an edit changed the picture is what the test has to report.
+    fonts                 the files of the fonts in a figure. They decide nothing either, and explain much.
     size                  the picture's. Pictures of two sizes are never compared.
     tool                  the playground's version. It never makes a comparison less strict either:
                           a bug of the playground must not excuse itself.
@@ -47,6 +48,7 @@ _WORDS = {
     "llvm": "LLVM",
     "cpu": "processor",
     "simd": "processor's instructions",
+    "fonts": "fonts",
     "size": "size",
     "tool": "tool",
 }
@@ -64,6 +66,7 @@ class Fingerprint:
     cpu: str = ""  # who made the processor: "GenuineIntel", "AuthenticAMD", "Apple"
     simd: str = ""  # "avx fma f16c", what of them it has; "none"
     drawn: str = ""  # hash of what was drawn
+    fonts: str = ""  # "DejaVuSans.ttf, cmr10.ttf"
     size: str = ""  # [pixels] "640x360"
     tool: str = ""  # "terrain-shader-playground 0.1.0"
 
@@ -106,7 +109,9 @@ class Fingerprint:
         return tuple(found)
 
 
-def fingerprint_of(renderer: ContextInfo, size: tuple[int, int], drawn: str = "") -> Fingerprint:
+def fingerprint_of(
+    renderer: ContextInfo, size: tuple[int, int], drawn: str = "", fonts: str = ""
+) -> Fingerprint:
     """Return the fingerprint of a picture drawn on this machine; ``drawn`` as `Engine.drawn` gives it."""
     mesa, llvm = _MESA.search(renderer.version), _LLVM.search(renderer.renderer)
     cpu, simd = processor() if renderer.software else ("", "")
@@ -119,6 +124,7 @@ def fingerprint_of(renderer: ContextInfo, size: tuple[int, int], drawn: str = ""
         cpu=cpu,
         simd=simd,
         drawn=drawn,
+        fonts=fonts,
         size=f"{size[0]}x{size[1]}",
         tool=f"terrain-shader-playground {__version__}",
     )

@@ -7,12 +7,12 @@ sketch can have the same.
 
 from __future__ import annotations
 
-import re
+import sys
 import time
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
@@ -23,17 +23,27 @@ from playground.engine.frame import Frame
 from playground.errors import DataError, PlaygroundError
 from playground.gpu.context import ContextInfo, context_info
 from playground.gpu.textures import read_picture
+from playground.paths import shown
+from playground.shots.adapters import Taken, taken
 from playground.shots.checking import checker_of
+from playground.shots.levels import levels_of
+from playground.shots.mask_of_test import MaskOfTest
+from playground.shots.masking import Light
+from playground.shots.names import name_of_test, one_spelling, why_no_name
 from playground.shots.plugin_constants import USED
+from playground.shots.soft_failures import add_failure, fail_for_what_is_left
 from playground.shots.suite import RenderedShot, ShotCase
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Graph, Shot, Sketch
+from playground.sketch.tolerance import Given, tolerance_of
 
 if TYPE_CHECKING:
     import moderngl
 
     By = Engine | moderngl.Context | ContextInfo | str
+
+_HERE = str(Path(__file__).parent)
 
 
 class ShotFixture:
@@ -42,8 +52,9 @@ class ShotFixture:
     def __init__(self, node: pytest.Item) -> None:
         self._node = node
         self._checker = checker_of(node.config)
-        self._names: set[str] = set()
-        self._drawn: dict[int, tuple[Frame, ContextInfo]] = {}  # frames held, so that their ids stay theirs
+        self._names: dict[str, str] = {}  # as they were given, by the one spelling of each
+        # By id of the frame, which is held so that its id stays its own.
+        self._drawn: dict[int, tuple[Frame, ContextInfo, ShotCase]] = {}
         self._started = time.perf_counter()
         self._begun = False
 
@@ -68,7 +79,7 @@ class ShotFixture:
         fails it where ``CI`` is set, without the expected renderer.
         """
         __tracebackhide__ = True
-        own = self._case(re.sub(r"[./\\\0]", "-", self._node.name))
+        own = self._case(Shot(name_of_test(self._node.nodeid)))
         mistake: PlaygroundError
         try:
             found = sketch if isinstance(sketch, Sketch) else load(self._find(sketch))
@@ -86,52 +97,116 @@ class ShotFixture:
         except PlaygroundError as error:
             mistake = error
         else:
-            self._drawn[id(frame)] = (frame, renderer)
+            self._drawn[id(frame)] = (frame, renderer, ShotCase(prepared, wanted))
             return frame
         finally:
             self._checker.show_what_was_printed(self._node)
         # Without the frames it came through, which say nothing of the test's own mistake.
         raise self._checker.raised(self._node, own, mistake) from None
 
-    def check(self, picture: Frame | NDArray[Any], name: str, *, by: By | None = None) -> None:
-        """Fail the test unless the picture is its reference of that name, or ``--shots-update`` writes it.
+    def check(
+        self,
+        picture: object,
+        name: str = "",
+        *,
+        by: By | None = None,
+        tone: str = "",
+        tolerance: Given | None = None,
+        reason: str = "",
+        mask: object = None,
+        allow_blank: bool = False,
+    ) -> bool:
+        """Compare a picture with its reference of that name, which ``--shots-update`` writes.
 
-        ``picture`` is a frame, or an array (height, width, 3 or 4), top row first: uint8, or
-        floats of which 0..1 are shown. ``by`` is what drew it: an engine, a moderngl context,
-        or, for what OpenGL has no part in, a name for the folder of references. Frames of
-        ``shot.render`` know it. ``name`` is letters, digits, _ and -, once in a test.
+        A picture that differs fails the test when that ends, so that all of its checks are made;
+        returned is whether this one passed.
 
-        Of an engine's last frame, what went into it is looked at too: a number that is not finite
-        in a texture fails. An earlier frame of the engine is refused with ``ValueError``.
+        ``picture`` is a frame, or what holds a picture: an array (height, width, 3 or 4) or grey, top
+        row first, of uint8, uint16, or floats from 0 to 1; an image of Pillow; a framebuffer or texture
+        of moderngl; a window of moderngl-window; a figure of matplotlib; what has ``snapshot()``,
+        ``to_rgba()`` or ``__array__``. ``tone`` says what floats outside 0..1 mean: "clip", "srgb" or
+        "reinhard" (the last two of linear light).
+
+        ``by`` is what drew it: an engine, a moderngl context, or, for what OpenGL has no part in, a name
+        for the folder of references. Frames of ``shot.render``, what moderngl drew, and figures know it.
+        ``name`` is letters, digits, _ and -, once in a test; without one it is made of the test's own.
+        A picture of one colour fails, unless ``allow_blank``.
+
+        ``tolerance`` is "rounding", "edges" or "noise", levels of 255, or ``{"levels": 6, "share": 0.01}``;
+        ``reason`` says why it is needed. ``mask`` is what is not compared: a rectangle (x, y, width, height)
+        in pixels from the top left, the path of a PNG or an array that is light there, a texture of the
+        sketch that ``shot.render`` has drawn, as "water:foam", or a list of such.
+
+        Of an engine's last frame, what went into it is looked at too: a number that is not finite in a
+        texture fails. An earlier frame of the engine is refused with ``ValueError``. Raises
+        ``DataError`` for what is no picture, ``ValueError`` for a name that cannot be or is taken.
         """
         __tracebackhide__ = True
         start, self._started = self._started, time.perf_counter()
-        self._refuse_name(name)
-        case = self._case(name)
-        info = self._renderer_of(case, picture, by)
+        own, name = not name, name or name_of_test(self._node.nodeid)
+        self._refuse_name(name, own)
+        hides = MaskOfTest(mask)
+        allowed = tolerance_of(tolerance, reason)
+        case = self._case(Shot(name, tolerance=allowed, mask=hides.named, allow_blank=allow_blank))
+        found = None if isinstance(picture, Frame) else taken(picture)
+        info = self._renderer_of(case, picture, found, by)
         self._begin(case)
-        self._names.add(name)
+        self._names[one_spelling(name)] = name
+        if refusal := self._checker.claim(self._node, case, info, own):
+            raise ValueError(refusal)
         self._node.user_properties.append((USED, f"{info.slug}/{name}"))
-        self._checker.hold(self._node, case, _drawn_by(picture, by), info, start)
+        drawer = by or (found.context if found else None)
+        rendered = _drawn_by(picture, _rendered(picture, found, tone), drawer)
+        rendered = replace(rendered, masks=(*hides.arrays, *self._textures(picture, hides.textures)))
+        failure = self._checker.failure(self._node, case, rendered, info, start)
+        if failure:
+            first, _, rest = failure.partition("\n")
+            add_failure(self._node, f"{first}\n    checked at  {self._place()}\n{rest}".rstrip())
+        return not failure
+
+    def finish(self) -> None:
+        """Fail for pictures that were checked after the test itself."""
+        fail_for_what_is_left(self._node)
+
+    def _place(self) -> str:
+        """Return the line of the test that called this fixture, as "test_land.py:12"."""
+        frame = sys._getframe(1)
+        while frame.f_back is not None and frame.f_code.co_filename.startswith(_HERE):
+            frame = frame.f_back
+        return f"{shown(frame.f_code.co_filename)}:{frame.f_lineno}"
+
+    def _textures(self, picture: object, names: tuple[str, ...]) -> tuple[Light, ...]:
+        """Return the textures that hide parts of a frame that `render` gave."""
+        if not names:
+            return ()
+        if id(picture) not in self._drawn:
+            raise ValueError(f"mask = {names[0]!r}: only a frame of shot.render has textures of its sketch")
+        case = self._drawn[id(picture)][2]
+        masked = ShotCase(case.sketch, replace(case.shot, mask=names))
+        return self._checker.renderer_process.render(masked).masks
 
     def _find(self, sketch: str | Path) -> Path:
         """Return where a sketch is: in the test file's folder, or where a command would find it."""
         neighbour = self._node.path.parent / Path(sketch).expanduser()
         return find(neighbour if neighbour.exists() else sketch)
 
-    def _refuse_name(self, name: str) -> None:
-        if not re.fullmatch(r"[\w-]+", name):
-            raise ValueError(f"name = {name!r}: a picture needs a name of letters, digits, _ and -")
-        if name in self._names:
-            raise ValueError(f"a second picture named {name!r} in this test: each needs a name of its own")
+    def _refuse_name(self, name: str, own: bool) -> None:
+        if why := why_no_name(name):
+            raise ValueError(f"name = {name!r}: {why}")
+        before = self._names.get(one_spelling(name))
+        if before is not None:
+            if own:
+                raise ValueError("a second picture without a name in this test: give each one of its own")
+            same = "" if before == name else f" (the same file as {before!r} on macOS and Windows)"
+            raise ValueError(
+                f"a second picture named {name!r} in this test{same}: each needs a name of its own"
+            )
 
-    def _case(self, name: str) -> ShotCase:
-        """Return what a picture of that name is checked as: a shot of the test file."""
+    def _case(self, shot: Shot) -> ShotCase:
+        """Return what a picture is checked as: a shot of the test file."""
         # References only need a sketch's name and its place.
         file = self._node.path
-        return ShotCase(
-            Sketch(file.name, str(file), str(file.parent), Graph(file.name, str(file), ())), Shot(name)
-        )
+        return ShotCase(Sketch(file.name, str(file), str(file.parent), Graph(file.name, str(file), ())), shot)
 
     def _begin(self, case: ShotCase) -> None:
         """Remove, once, the records that this test has left in earlier runs."""
@@ -139,29 +214,35 @@ class ShotFixture:
             self._begun = True
             self._checker.recorder.forget_earlier(self._node, case)
 
-    def _renderer_of(self, case: ShotCase, picture: object, by: By | None) -> ContextInfo:
+    def _renderer_of(
+        self, case: ShotCase, picture: object, found: Taken | None, by: By | None
+    ) -> ContextInfo:
+        tool = found and found.tool
         if isinstance(by, str):  # a folder that is named is used with any OpenGL
-            if not by or ContextInfo(0, by, "", "", 0).slug != by:
+            named = ContextInfo(0, by, "", tool.version if tool else "", 0)
+            if not by or named.slug != by:
                 raise ValueError(f"by = {by!r}: a folder's name is lower-case letters, digits and -")
-            return ContextInfo(0, by, "", "", 0)
+            return named
+        if by is None and tool:
+            return tool
+        if by is None and found and found.context:
+            by = found.context
         if by is None:
-            frame, info = self._drawn.get(id(picture), (None, None))
-            if frame is None or info is None:
+            if id(picture) not in self._drawn:
                 raise TypeError(
                     "what drew this picture is not known: say by=engine, by=context (moderngl's), "
                     "or by='a name' for the folder of its references"
                 )
-            return info
+            return self._drawn[id(picture)][1]
         if isinstance(by, ContextInfo):
             return self._checker.expect(self._node, case, by)
         info = by.info if isinstance(by, Engine) else context_info(by)
         return self._checker.expect(self._node, case, info)
 
 
-def _drawn_by(picture: Frame | NDArray[Any], by: By | None) -> RenderedShot:
-    """Return a picture as the renderer process gives it, with all that is known of how it was drawn."""
-    rendered = _rendered(picture)
-    if by is None:  # drawn by the renderer process, which has looked
+def _drawn_by(picture: object, rendered: RenderedShot, by: By | None) -> RenderedShot:
+    """Return a picture with what is known of how it was drawn."""
+    if by is None:  # drawn by the renderer process, which has looked, or not by OpenGL
         return rendered
     rendered = replace(rendered, gl_error=_error_left(by))
     if not isinstance(by, Engine):
@@ -197,24 +278,14 @@ def _error_left(by: By) -> str:
     return "" if error == "GL_NO_ERROR" else error
 
 
-def _rendered(picture: Frame | NDArray[Any]) -> RenderedShot:
+def _rendered(picture: object, found: Taken | None, tone: str) -> RenderedShot:
     """Return a picture as the renderer process gives it, with what is wrong with its numbers."""
-    if isinstance(picture, RenderedShot):
-        return picture
-    if isinstance(picture, Frame):
+    if found is None:
+        assert isinstance(picture, Frame)
+        if tone:
+            raise DataError(f"tone = {tone!r} is for floats; a frame is of uint8")
+        if isinstance(picture, RenderedShot):
+            return picture
         return RenderedShot(picture.array, picture.sketch, picture.time)
-    array = np.asarray(picture)
-    if array.ndim != 3 or array.shape[2] not in (3, 4) or 0 in array.shape:
-        raise DataError(f"a picture is an array (height, width, 3 or 4); found {array.shape}")
-    wrong = ""
-    if np.issubdtype(array.dtype, np.floating):
-        bad = int(np.count_nonzero(~np.isfinite(array).all(axis=2)))
-        if bad:
-            wrong = f"{bad} of {array.shape[0] * array.shape[1]} pixels are not finite numbers"
-            array = np.where(np.isfinite(array), array, 0.0)
-        array = np.rint(np.clip(array, 0.0, 1.0) * 255.0).astype(np.uint8)
-    if array.dtype != np.uint8:
-        raise DataError(f"a picture is of uint8, or of floats from 0 to 1; found {array.dtype}")
-    if array.shape[2] == 3:
-        array = np.concatenate([array, np.full((*array.shape[:2], 1), 255, np.uint8)], axis=2)
-    return RenderedShot(np.ascontiguousarray(array), not_finite=wrong)
+    pixels, wrong = levels_of(found.values, tone)
+    return RenderedShot(pixels, not_finite=wrong, fonts=found.fonts, tone=tone)

@@ -14,11 +14,15 @@ someone accepted that picture, and for nothing else.
 Some pictures fail before anything is compared, each in its own word: an OpenGL error, a number
 that is not finite in a texture that went into it, a picture of one colour.
 
+A shot may declare a tolerance: a picture that differs from its renderer's reference passes by
+it, under the bounds of `playground.shots.tolerated`. What a mask hides is not compared.
+
 It reads no files and draws nothing.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
@@ -28,7 +32,10 @@ from numpy.typing import NDArray
 from playground.shots.compare import TOLERANCE, Comparison, compare, worst_window
 from playground.shots.fingerprint import Fingerprint
 from playground.shots.flip import TILE, flip
+from playground.shots.masking import Mask, hidden, shown_alone
 from playground.shots.references import Reference
+from playground.shots.tolerated import tolerated
+from playground.sketch.tolerance import Tolerance
 
 WORDS = (
     "same",  # it passes; all others fail
@@ -95,6 +102,20 @@ class Perceived:
     place: tuple[int, int]  # [pixels] x and y of their top left corner
 
 
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Rule:
+    """What a shot says of its comparison."""
+
+    tolerance: Tolerance | None = None
+    mask: Mask | None = None  # of the picture's size
+    allow_blank: bool = False
+
+    @property
+    def hidden(self) -> int:
+        """How many pixels are masked."""
+        return 0 if self.mask is None else int(np.count_nonzero(self.mask))
+
+
 @dataclass(frozen=True, kw_only=True)
 class Judgement:
     """Whether a picture passes, and why."""
@@ -107,6 +128,8 @@ class Judgement:
     differences: tuple[str, ...] = ()  # how its origin differs from the reference's, in words
     crowd: Crowd | None = None  # of another build's picture, where pixels differ
     perceived: Perceived | None = None  # of another renderer's
+    tolerance: Tolerance | None = None  # that the shot declares
+    tolerated: bool = False  # whether it passes by that, and would not without
 
     @property
     def ok(self) -> bool:
@@ -122,6 +145,7 @@ def judge(
     *,
     not_finite: str = "",
     gl_error: str = "",
+    rule: Rule | None = None,
 ) -> tuple[Judgement, Reference | None]:
     """Judge a picture, uint8 (height, width, 4), by its renderer's references.
 
@@ -130,8 +154,9 @@ def judge(
     reference that it is by: one that matches, else the nearest; None where there is none. Raises
     ``DataError`` for an array of another dtype or shape.
     """
-    found = _nearest(actual, fingerprint, references, others)
-    judgement, reference = found
+    rule = rule or Rule()
+    judgement, reference = _nearest(actual, fingerprint, references, others, rule)
+    judgement = replace(judgement, tolerance=rule.tolerance, sentence=_with_rule(judgement, rule))
     wrong = ""
     if gl_error:
         wrong = f"gl-error: drawing it left the OpenGL error {gl_error}, so it is not to be trusted"
@@ -140,7 +165,21 @@ def judge(
     if wrong:
         word = wrong.partition(":")[0]
         return replace(judgement, word=word, sentence=wrong, tier=""), reference
-    return found
+    return judgement, reference
+
+
+def _with_rule(judgement: Judgement, rule: Rule) -> str:
+    """Return a judgement's sentence, with what is masked, and whether a tolerance was needed."""
+    sentence = judgement.sentence
+    if judgement.ok and rule.tolerance and judgement.tier in (SAME_BUILD, OTHER_BUILD):
+        if judgement.tolerated:
+            sentence = re.sub("^(differs|crowded)", "same, by the tolerance", sentence)
+        else:
+            sentence += "; the tolerance is not needed"
+    if rule.hidden:
+        width, height = judgement.comparison.size
+        sentence += f"; {rule.hidden} pixels ({100 * rule.hidden / (width * height):.3g} %) are masked"
+    return sentence
 
 
 def unreadable(actual: NDArray[np.uint8], fingerprint: Fingerprint, reason: str) -> Judgement:
@@ -164,20 +203,29 @@ def _nearest(
     fingerprint: Fingerprint,
     references: Sequence[Reference],
     others: Sequence[Reference],
+    rule: Rule,
 ) -> tuple[Judgement, Reference | None]:
+    alone = compare(shown_alone(actual, rule.mask), None, allow_blank=rule.allow_blank, hidden=rule.hidden)
+    if rule.mask is not None and alone.verdict == "blank":
+        return Judgement(
+            word="blank",
+            comparison=alone,
+            sentence=f"{alone}, but for what is masked",
+            fingerprint=fingerprint,
+        ), next(iter((*references, *others)), None)
     if not references and others:
-        perceived = [(_judged_by_eye(actual, fingerprint, other), other) for other in others]
+        perceived = [(_judged_by_eye(actual, fingerprint, other, rule), other) for other in others]
         return min(perceived, key=lambda pair: _distance(pair[0]))
     if not references:
-        comparison = compare(actual, None)
         return Judgement(
-            word=comparison.verdict, comparison=comparison, sentence=str(comparison), fingerprint=fingerprint
+            word=alone.verdict, comparison=alone, sentence=str(alone), fingerprint=fingerprint
         ), None
     own = [fingerprint.same_build(reference.fingerprint) for reference in references]
     judged = []
     for reference, same in zip(references, own, strict=True):
         strict = same or any(own)
-        judged.append((_judged(actual, fingerprint, reference, same, strict), reference))
+        found = _judged(actual, fingerprint, reference, same, strict, rule)
+        judged.append((_with_tolerance(found, actual, reference, rule), reference))
     return min(judged, key=lambda pair: _distance(pair[0]))
 
 
@@ -187,20 +235,43 @@ def _distance(judgement: Judgement) -> tuple[bool, bool, float, int, int]:
     return not judgement.ok, found.verdict == "size", by_eye, found.over, found.most
 
 
+def _with_tolerance(
+    found: Judgement, actual: NDArray[np.uint8], reference: Reference, rule: Rule
+) -> Judgement:
+    """Return a judgement by the tolerance that a shot declares, where the usual one lets it fail."""
+    if rule.tolerance is None or found.word not in ("differs", "crowded"):
+        return found
+    visible = hidden(actual, reference.pixels, rule.mask)
+    bounds = (FLIP_MEAN, FLIP_TILE)
+    result = tolerated(visible, reference.pixels, rule.tolerance, bounds, rule.hidden)
+    if not result.why_not:
+        passed = replace(found.comparison, verdict="same")
+        return replace(found, word="same", comparison=passed, tolerated=True)
+    if result.crowded:
+        sentence = found.sentence.replace("differs", "crowded", 1)
+        return replace(found, word="crowded", sentence=f"{sentence}; {result.why_not}")
+    return replace(found, sentence=f"{found.sentence}; {result.why_not}")
+
+
 def _judged(
-    actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, same: bool, strict: bool
+    actual: NDArray[np.uint8],
+    fingerprint: Fingerprint,
+    reference: Reference,
+    same: bool,
+    strict: bool,
+    rule: Rule,
 ) -> Judgement:
     """Judge by one reference of the same renderer; ``strict`` allows one level even of another build."""
-    found = _by_pixels(actual, fingerprint, reference, SAME_BUILD if same else OTHER_BUILD)
+    found = _by_pixels(actual, fingerprint, reference, SAME_BUILD if same else OTHER_BUILD, rule)
     comparison = found.comparison
     if strict or comparison.verdict in _FINAL:
         return found
     most = f"differs: max difference {comparison.most} of 255"
     if comparison.most > OTHER_TOLERANCE:
         return replace(found, sentence=f"{found.sentence}; of another build, {OTHER_TOLERANCE} may")
-    crowd = most_crowded(_over(actual, reference.pixels))
+    crowd = most_crowded(_over(hidden(actual, reference.pixels, rule.mask), reference.pixels))
     found = replace(found, crowd=crowd)
-    share = comparison.over / (comparison.size[0] * comparison.size[1])
+    share = comparison.share
     counted = f"{comparison.over} pixels ({100 * share:.3g} %) over {TOLERANCE}"
     if share > OTHER_SHARE:
         return replace(found, sentence=f"{most}, {counted}; of another build, {100 * OTHER_SHARE:g} % may be")
@@ -219,13 +290,15 @@ def _judged(
     return replace(found, word="same", comparison=passed, sentence=sentence)
 
 
-def _judged_by_eye(actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference) -> Judgement:
+def _judged_by_eye(
+    actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, rule: Rule
+) -> Judgement:
     """Judge by a reference of another renderer."""
-    found = _by_pixels(actual, fingerprint, reference, OTHER_RENDERER)
+    found = _by_pixels(actual, fingerprint, reference, OTHER_RENDERER, rule)
     comparison = found.comparison
     if comparison.verdict in _FINAL:
         return found
-    difference = flip(actual, reference.pixels)
+    difference = flip(hidden(actual, reference.pixels, rule.mask), reference.pixels)
     tile, place = difference.worst_tile()
     perceived = Perceived(difference.mean, tile, place)
     measured = (
@@ -245,10 +318,12 @@ _FINAL = ("blank", "size", "same")  # verdicts on the pixels that no tier change
 
 
 def _by_pixels(
-    actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, tier: str
+    actual: NDArray[np.uint8], fingerprint: Fingerprint, reference: Reference, tier: str, rule: Rule
 ) -> Judgement:
     """Return the judgement by `TOLERANCE` alone."""
-    comparison = compare(actual, reference.pixels, TOLERANCE)
+    visible = hidden(actual, reference.pixels, rule.mask)
+    blank = rule.allow_blank or rule.mask is not None  # then it has been looked at
+    comparison = compare(visible, reference.pixels, TOLERANCE, allow_blank=blank, hidden=rule.hidden)
     return Judgement(
         word=comparison.verdict,
         comparison=comparison,

@@ -180,15 +180,18 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 @pytest.fixture
-def shot(request: pytest.FixtureRequest) -> ShotFixture:
+def shot(request: pytest.FixtureRequest) -> Iterator[ShotFixture]:
     """Draw sketches in a process of their own, and compare pictures with their references.
 
-    ``shot.render("hills.toml")`` gives a frame; ``shot.check(frame, "evening")`` fails unless it is
-    the reference in ``screenshots/<test file>/<renderer>/evening.png`` in the test file's folder.
+    ``shot.render("hills.toml")`` gives a frame; ``shot.check(frame, "evening")`` fails the
+    test, when that ends, unless it is the reference in ``screenshots/<test file>/<renderer>/evening.png``
+    in the test file's folder.
     """
     from playground.shots.fixture import ShotFixture
 
-    return ShotFixture(request.node)
+    fixture = ShotFixture(request.node)
+    yield fixture
+    fixture.finish()
 
 
 class Results:

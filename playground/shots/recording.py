@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.paths import shown
+from playground.shots.claims import forget_claims
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY
 from playground.shots.plugin_constants import CHECKED, SCREENSHOTS, STRUCTURE_COMPARED, UNRECORDED
 from playground.shots.references import accepted, home_of, reference_texts
@@ -29,7 +30,7 @@ from playground.shots.results import (
     read_result,
     write_result,
 )
-from playground.shots.suite import Outcome, ShotCase, images_of
+from playground.shots.suite import Outcome, RenderedShot, ShotCase, images_of
 
 _CATCHES = {
     SAME_BUILD: "The same build drew both: any change of more than one level is found",
@@ -46,7 +47,7 @@ class Recorder:
         self.root = config.invocation_params.dir
         self.folder: Path = self.root / config.getoption("--shots-output")
         # The same in all processes: xdist gives its workers one.
-        self._run = os.environ.get("PYTEST_XDIST_TESTRUNUID") or os.urandom(16).hex()
+        self.run = os.environ.get("PYTEST_XDIST_TESTRUNUID") or os.urandom(16).hex()
         self._earlier: dict[str, list[Record]] = {}  # by place: records that were there at the first look
 
     def record(self, node: pytest.Item, outcome: Outcome, seconds: float, command: str) -> str:
@@ -56,11 +57,18 @@ class Recorder:
         """
         found, perceived, reference = outcome.comparison, outcome.perceived, outcome.reference
         name, own = outcome.case.shot.name, outcome.renderer.slug
+        frame = outcome.frame if isinstance(outcome.frame, RenderedShot) else None
         record = self._begun(node, outcome.case, outcome.word, outcome.sentence, seconds)
         record = replace(
             record,
             renderer=own,
             tier=outcome.tier,
+            tolerance=str(outcome.tolerance or ""),
+            tolerated=("needed" if outcome.tolerated else "not needed")
+            if outcome.tolerance and outcome.ok
+            else "",
+            masked=outcome.masked,
+            tone=frame.tone if frame else "",
             catches=_CATCHES.get(outcome.tier, ""),
             size=found.size,
             expected_size=found.expected_size,
@@ -117,6 +125,13 @@ class Recorder:
             if path.exists():
                 yield word, path
 
+    def place(self, case: ShotCase) -> Path | None:
+        """Return the folder of a sketch's records; None where there can be none."""
+        try:
+            return self.folder / self._place(case)
+        except (DataError, OSError):
+            return None
+
     def _write(
         self, node: pytest.Item, case: ShotCase, record: Record, pictures: dict[str, NDArray[np.uint8]]
     ) -> str:
@@ -156,7 +171,7 @@ class Recorder:
             gone = [r for r in there if shots and r.shot not in shots and file_of(r, self.root) == own]
             for record in gone:
                 drop(self.folder, record)
-            self._earlier[place] = [r for r in there if r.run != self._run and r not in gone]
+            self._earlier[place] = [r for r in there if r.run != self.run and r not in gone]
         return place
 
     def _begun(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> Record:
@@ -170,7 +185,7 @@ class Recorder:
             node=typed(node),
             seconds=seconds,
             when=time.time(),
-            run=self._run,
+            run=self.run,
         )
 
 
@@ -207,8 +222,10 @@ def _numbers(outcome: Outcome) -> dict[str, float]:
     numbers: dict[str, float] = {
         "largest difference, levels of 255": found.most,
         f"pixels over {found.tolerance}": found.over,
-        f"pixels over {found.tolerance}, %": 100.0 * found.over / (found.size[0] * found.size[1]),
+        f"pixels over {found.tolerance}, %": 100.0 * found.share,
     }
+    if found.hidden:
+        numbers["pixels masked"] = found.hidden
     if outcome.crowd is not None:
         numbers["pixels in the most crowded window"] = outcome.crowd.count
     if outcome.perceived is not None:
@@ -253,6 +270,7 @@ def finish(config: pytest.Config, complete: Mapping[Path, set[str]], wanted: boo
     recorder = Recorder(config)
     page = recorder.folder / NAME
     try:
+        forget_claims(recorder.folder)
         clean(recorder.folder, recorder.root, complete)
         if not wanted and not page.exists():
             return []

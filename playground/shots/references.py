@@ -85,15 +85,20 @@ def read_reference(path: Path) -> Reference:
 
 
 def write_reference(
-    sketch: Sketch, shot: str, renderer: ContextInfo, pixels: NDArray[np.uint8], drawn: str = ""
+    sketch: Sketch,
+    shot: str,
+    renderer: ContextInfo,
+    pixels: NDArray[np.uint8],
+    drawn: str = "",
+    fonts: str = "",
 ) -> tuple[Path, list[Path]]:
     """Write a shot's first reference for its renderer, and remove the further ones that were accepted.
 
-    ``drawn`` is the hash of what was drawn, "" if that is not known. Otherwise as
+    ``drawn`` is the hash of what was drawn, ``fonts`` its fonts, "" if that is not known. Otherwise as
     `write_reference_in`.
     """
     folder = reference_path(sketch, shot, renderer.slug).parent
-    fingerprint = fingerprint_of(renderer, (pixels.shape[1], pixels.shape[0]), drawn)
+    fingerprint = fingerprint_of(renderer, (pixels.shape[1], pixels.shape[0]), drawn, fonts)
     return write_reference_in(folder, shot, fingerprint, pixels, sketch.name)
 
 

@@ -5,6 +5,7 @@
     <folder>/<sketch>/<shot>.expected.png     the reference it was held against, if there is one
     <folder>/<sketch>/<shot>.difference.png   16 times as strong
     <folder>/<sketch>/<shot>.flip.png         where an eye would see it
+    <folder>/<sketch>/<shot>.masked.png       what is not compared, under stripes, if anything is
 
 A second sketch of that name has a folder of its own next to the first's: see `result_paths`.
 
@@ -34,13 +35,13 @@ from playground.images.files import encode_png, make_folder, replacing
 from playground.json_text import read_json
 from playground.shots.plugin_constants import REPORT
 
-FORMAT = 1
+FORMAT = 2
 """What a record's ``format`` says; a record of another is refused in words."""
 
 FOLDER = REPORT
 """Where results go unless another folder is named."""
 
-PICTURES = ("actual", "expected", "difference", "flip")
+PICTURES = ("actual", "expected", "difference", "flip", "masked")
 """The pictures a record can have, in the order in which they are shown."""
 
 PASSED = "same"
@@ -63,6 +64,10 @@ class Record:
     sentence: str  # what was found, for a person
     renderer: str = ""  # slug of what drew it, as "llvmpipe"; "" where nothing was drawn
     tier: str = ""  # how strictly it was compared, in a few words
+    tolerance: str = ""  # that the shot declares, with its reason; "" for the usual one
+    tolerated: str = ""  # "needed" or "not needed" where it declares one and passed
+    masked: tuple[str, ...] = ()  # what is not compared: rectangles, images, textures
+    tone: str = ""  # how floats were shown; "" for bytes, and floats from 0 to 1
     catches: str = ""  # what that tier can catch and what it cannot, in a sentence
     numbers: dict[str, float] = field(default_factory=dict)  # what was measured, by name with its unit
     size: tuple[int, int] | None = None  # [pixels] width and height of the actual picture

@@ -23,7 +23,8 @@ from playground.gpu.context import ContextInfo
 from playground.shots.compare import difference_picture
 from playground.shots.fingerprint import fingerprint_of
 from playground.shots.flip import flip_picture
-from playground.shots.judge import Judgement, judge, unreadable
+from playground.shots.judge import Judgement, Rule, judge, unreadable
+from playground.shots.masking import Light, Mask, Rectangle, described, hidden, mask_of, striped
 from playground.shots.plugin_constants import REFERENCE_RENDERER
 from playground.shots.references import (
     Reference,
@@ -33,6 +34,7 @@ from playground.shots.references import (
 )
 from playground.sketch.load import load
 from playground.sketch.model import Shot, Sketch
+from playground.sketch.toml_comparison import MASK_ENDING
 
 
 @dataclass(frozen=True)
@@ -53,6 +55,9 @@ class RenderedShot(Frame):
     drawn: str = ""  # hash of what was drawn
     not_finite: str = ""  # the first texture that went into it with a number that is not finite, in words
     gl_error: str = ""  # what drawing it left behind
+    fonts: str = ""  # the files of the fonts in it
+    tone: str = ""  # how its floats were shown
+    masks: tuple[Light, ...] = ()  # of the picture's size
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -64,6 +69,8 @@ class Outcome(Judgement):
     path: Path  # of the reference that it was judged by, or where that would be
     renderer: ContextInfo  # that drew the frame
     reference: Reference | None = None  # that it was judged by; None: missing or unreadable
+    mask: Mask | None = None  # where it was not compared
+    masked: tuple[str, ...] = ()  # what that is made of, in words
 
     @property
     def own_path(self) -> Path:
@@ -92,14 +99,20 @@ def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
         sketch = case.sketch.for_shot(shot)
         frame = engine.render(sketch, size=shot.size, time=shot.time, steps=dict(shot.steps))
     error = engine.ctx.error
-    found = engine.not_finite()
+    found, drawn = engine.not_finite(), engine.internal.drawn()
+    textures = [item for item in shot.mask if isinstance(item, str) and not item.endswith(MASK_ENDING)]
+    masks = [
+        Light(engine.read(sketch, name, size=shot.size, time=shot.time, steps=dict(shot.steps))[::-1], name)
+        for name in textures
+    ]
     return RenderedShot(
         frame.array,
         frame.sketch,
         frame.time,
-        drawn=engine.internal.drawn(),
+        drawn=drawn,
         not_finite=str(found) if found else "",
         gl_error="" if error == "GL_NO_ERROR" else error,
+        masks=tuple(masks),
     )
 
 
@@ -110,13 +123,15 @@ def check(
 
     Without any, it is judged by those of ``reference_renderer``, a slug; of that renderer itself
     a reference that is not there is missing, even where other renderers have one. A frame of `render_shot`
-    also says what was drawn, and what was wrong with it.
+    also says what was drawn, and what was wrong with it. Raises ``DataError`` for a mask that hides
+    everything, or does not fit.
     """
     name = case.shot.name
-    drawn, not_finite, gl_error = "", "", ""
+    rule = rule_of(case, frame)
+    drawn, not_finite, gl_error, fonts = "", "", "", ""
     if isinstance(frame, RenderedShot):
-        drawn, not_finite, gl_error = frame.drawn, frame.not_finite, frame.gl_error
-    fingerprint = fingerprint_of(renderer, frame.size, drawn)
+        drawn, not_finite, gl_error, fonts = frame.drawn, frame.not_finite, frame.gl_error, frame.fonts
+    fingerprint = fingerprint_of(renderer, frame.size, drawn, fonts)
     path = reference_path(case.sketch, name, renderer.slug)
     files = accepted(case.sketch, name, renderer.slug)
     own = bool(files)
@@ -136,9 +151,15 @@ def check(
         () if own else references,
         not_finite=not_finite,
         gl_error=gl_error,
+        rule=rule,
     )
     return Outcome(
-        **vars(judgement), **origin, path=reference.path if reference else path, reference=reference
+        **vars(judgement),
+        **origin,
+        mask=rule.mask,
+        masked=tuple(map(described, _parts(case, frame))),
+        path=reference.path if reference else path,
+        reference=reference,
     )
 
 
@@ -146,13 +167,29 @@ def images_of(outcome: Outcome) -> dict[str, NDArray[np.uint8]]:
     """Return the actual image, and the expected one and the differences if there is a reference.
 
     One of those is 16 times as strong as the pixels have it, the other, of images of one size,
-    is FLIP. By the words actual, expected, difference and flip.
+    is FLIP; both are of what is not masked, and "masked" shows what is. By the words actual, expected,
+    difference, flip and masked.
     """
     actual, reference = outcome.frame.array, outcome.reference
-    if reference is None:
-        return {"actual": actual}
-    images = {"actual": actual, "expected": reference.pixels}
-    images["difference"] = difference_picture(actual, reference.pixels)
-    if actual.shape == reference.pixels.shape:
-        images["flip"] = flip_picture(actual, reference.pixels)
+    images = {"actual": actual}
+    if reference is not None:
+        visible = hidden(actual, reference.pixels, outcome.mask)
+        images["expected"] = reference.pixels
+        images["difference"] = difference_picture(visible, reference.pixels)
+        if actual.shape == reference.pixels.shape:
+            images["flip"] = flip_picture(visible, reference.pixels)
+    if outcome.mask is not None:
+        images["masked"] = striped(actual, outcome.mask)
     return images
+
+
+def _parts(case: ShotCase, frame: Frame) -> list[Rectangle | str | Light]:
+    """Return what a frame's mask is made of."""
+    own = [item for item in case.shot.mask if not isinstance(item, str) or item.endswith(MASK_ENDING)]
+    return [*own, *(frame.masks if isinstance(frame, RenderedShot) else ())]
+
+
+def rule_of(case: ShotCase, frame: Frame) -> Rule:
+    """Return how a shot's frame is compared; raise ``DataError`` for a mask that does not fit it."""
+    mask = mask_of(_parts(case, frame), frame.size, Path(case.sketch.folder))
+    return Rule(tolerance=case.shot.tolerance, mask=mask, allow_blank=case.shot.allow_blank)

@@ -29,6 +29,7 @@ from playground.sketch.technique import (
     kernels_of,
     with_inner,
 )
+from playground.sketch.tolerance import Tolerance
 
 __all__ = [
     "DEFAULT_PICTURE",
@@ -99,6 +100,9 @@ class Shot:
     supersample: int | None = None  # likewise
     steps: tuple[tuple[str, int], ...] = ()  # pass → step to stop at
     marks: tuple[str, ...] = ()  # pytest's markers of its test, as "slow"
+    allow_blank: bool = False  # whether a picture of one colour may be right
+    tolerance: Tolerance | None = None  # None: the usual one
+    mask: tuple[tuple[int, int, int, int] | str, ...] = ()  # rectangles [pixels], images, textures
     line: int = 0
 
 

@@ -79,6 +79,10 @@ SHOT: dict[str, str] = {
     "supersample": VIEW["supersample"],
     "steps": "Repeated pass → the step to stop at.",
     "marks": 'Names of pytest\'s markers, as ["slow"].',
+    "tolerance": 'What may differ: "rounding", "edges", "noise", levels, or { levels = 6, share = 0.01 }.',
+    "reason": "Why the tolerance is needed; required with one.",
+    "mask": "What is not compared: [x, y, width, height], a PNG or texture that is light there, or several.",
+    "allow_blank": "Whether a picture of one colour may be right; false without it.",
 }
 
 KEYFRAME: dict[str, str] = {

@@ -30,6 +30,7 @@ from playground.sketch.model import (
     Sketch,
 )
 from playground.sketch.toml_camera import read_camera
+from playground.sketch.toml_comparison import read_comparison
 from playground.sketch.toml_graph import Read, read_pass, read_passes, read_set
 from playground.sketch.toml_keyframes import read_keyframes
 from playground.sketch.toml_places import Place
@@ -199,6 +200,7 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
                 steps=read_steps(file, sketch, table, place),
                 marks=_marks(file, table, place),
                 line=file.line(*place),
+                **read_comparison(file, sketch, table, place),
             )
         )
     return tuple(found)

@@ -143,7 +143,7 @@ def test_a_renderer_that_is_missing_in_ci_is_on_the_page(
     )
     monkeypatch.setenv("CI", "true")
     accepted(*options).assert_outcomes(failed=3, passed=1)
-    assert words() == {"slope/plain": "error", "slope/bright": "error", "test_one.py/test_one": "error"}
+    assert words() == {"slope/plain": "error", "slope/bright": "error", "test_one.py/one": "error"}
     assert "All 3 shots failed" in headline() or "3 of 3 shots failed" in headline()
 
 
@@ -179,8 +179,8 @@ def test_what_render_raised_is_reported_in_its_word_and_on_the_page(
     message = str(end).partition("\n")[0]
     result.stdout.fnmatch_lines([f"E *Sandbox*: {word}: {message}", "test_x.py:6: *"])
     assert "playground/shots" not in result.stdout.str().replace("shots-report", "").replace("\\", "/")
-    assert words() == {"test_x.py/test_one": word}, "and not what an earlier run has found"
-    assert sentence("test_x.py/test_one") == message
+    assert words() == {"test_x.py/one": word}, "and not what an earlier run has found"
+    assert sentence("test_x.py/one") == message
     ends.clear()
     run("-k", "one").assert_outcomes(passed=1, deselected=1)
     assert words() == {"test_x.py/one": "same"} and "1 shot passed" in headline()
@@ -193,7 +193,7 @@ def test_a_sketch_with_a_mistake_is_reported_in_render_without_our_frames(run: R
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(["E *SketchError: slope.toml:6: *terrian*"])
     assert "/playground/" not in result.stdout.str()
-    assert words() == {"test_x.py/test_one": "error"} and "1 of 1 shot failed" in headline()
+    assert words() == {"test_x.py/one": "error"} and "1 of 1 shot failed" in headline()
 
 
 def test_records_of_what_is_gone_go(accepted: Run, edit: Edit) -> None:

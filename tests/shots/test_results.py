@@ -30,6 +30,10 @@ FULL = Record(
     sentence="max difference 12 of 255, at x = 3, y = 1 from the top left",
     renderer="llvmpipe",
     tier="same build",
+    tolerance="noise, 8 of 255 at 100 % of the pixels (grain)",
+    tolerated="needed",
+    masked=("4 × 2 pixels at x = 0, y = 0",),
+    tone="reinhard",
     catches="anything over one level",
     numbers={"max difference [levels]": 12, "over [%]": 0.25},
     size=(6, 4),
@@ -69,7 +73,7 @@ OTHER = replace(FULL, folder="hills & dales-1a2b3c4d")
 def test_a_record_comes_back_as_it_was(record: Record) -> None:
     text = to_json(record)
     assert from_json(text) == record
-    assert json.loads(text)["format"] == 1
+    assert json.loads(text)["format"] == 2
 
 
 def test_a_result_is_there_with_its_pictures_and_again_without(tmp_path: Path) -> None:
@@ -117,7 +121,7 @@ def test_a_stamp_distinguishes_one_result_from_the_next() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"format": 2}, "another format; this version reads format 1"),
+        ({"format": 1}, "another format; this version reads format 2"),
         ({"sketch": ".."}, "'sketch' in a record is the name of a sketch; found \"..\""),
         ({"sketch": "a/b"}, "'sketch' in a record"),
         ({"shot": "a.b"}, "'shot' in a record"),

@@ -20,7 +20,7 @@ from playground.shots.mutants.image_mutants import FINISHED
 from playground.shots.mutants.model import DoesNotApply, Mutant, Picture, Rendering
 from playground.shots.mutants.render_mutants import rendering_mutants
 from playground.shots.mutants.tiers import TIERS, judged
-from playground.shots.suite import RenderedShot, ShotCase, render_shot
+from playground.shots.suite import RenderedShot, ShotCase, render_shot, rule_of
 from playground.sketch.model import Shot, Sketch
 
 ROUNDING = 1
@@ -153,7 +153,8 @@ class Bench:
 
     def _take(self, shown: Sketch, shot: Shot, time: float) -> RenderedShot:
         # What the shot sets is set already: it must not be set over what a mutant breaks.
-        return render_shot(self.engine, ShotCase(shown, Shot(shot.name, shot.size, time, steps=shot.steps)))
+        wanted = Shot(shot.name, shot.size, time, steps=shot.steps, mask=shot.mask)
+        return render_shot(self.engine, ShotCase(shown, wanted))
 
     def _result(self, mutant: Mutant, shot: Shot) -> Result:
         expected = self.unbroken(shot)
@@ -165,7 +166,7 @@ class Bench:
             rendered = self._take(sketch, shot, shot.time + mutant.later)
         else:
             rendered = replace(expected, array=mutant.change(expected.array))
-        tiers = judged(rendered, expected, self.engine.info)
+        tiers = judged(rendered, expected, self.engine.info, rule_of(ShotCase(self.sketch, shot), expected))
         comparison = compare(rendered.array, expected.array)
         return Result(
             mutant=mutant, shot=shot.name, comparison=comparison, tiers=tiers, picture=rendered.array

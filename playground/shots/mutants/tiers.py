@@ -7,7 +7,7 @@ from pathlib import Path
 
 from playground.gpu.context import ContextInfo
 from playground.shots.fingerprint import fingerprint_of
-from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, Judgement, judge
+from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, Judgement, Rule, judge
 from playground.shots.references import Reference
 from playground.shots.suite import RenderedShot
 
@@ -15,11 +15,14 @@ TIERS = (SAME_BUILD, OTHER_BUILD, OTHER_RENDERER)
 """The tiers, the strictest first."""
 
 
-def judged(actual: RenderedShot, expected: RenderedShot, renderer: ContextInfo) -> tuple[Judgement, ...]:
+def judged(
+    actual: RenderedShot, expected: RenderedShot, renderer: ContextInfo, rule: Rule | None = None
+) -> tuple[Judgement, ...]:
     """Return the judgement of each of `TIERS` of a picture and the one that it should be.
 
     The same ``renderer`` drew both. The pixels are the same in all three tiers: what other
-    builds and renderers would draw differently by themselves comes on top.
+    builds and renderers would draw differently by themselves comes on top. ``rule`` is what the shot
+    says of its comparison.
     """
     found = []
     fingerprint = fingerprint_of(renderer, actual.size, actual.drawn)
@@ -30,5 +33,5 @@ def judged(actual: RenderedShot, expected: RenderedShot, renderer: ContextInfo) 
             origin = replace(origin, version=f"{origin.version}, {tier}")
         reference = Reference(Path(), expected.array, origin.texts())
         own, others = ((), (reference,)) if tier == OTHER_RENDERER else ((reference,), ())
-        found.append(judge(actual.array, fingerprint, own, others, **wrong)[0])
+        found.append(judge(actual.array, fingerprint, own, others, **wrong, rule=rule)[0])
     return tuple(found)

@@ -12,7 +12,13 @@ from playground.markup import Markup, tag
 from playground.shots.page.labels import meaning
 from playground.shots.results import FOLDER, NEVER_ACCEPTED, Record
 
-CAPTIONS = {"expected": "Expected", "actual": "Actual", "difference": "Difference ×16", "flip": "FLIP map"}
+CAPTIONS = {
+    "expected": "Expected",
+    "actual": "Actual",
+    "difference": "Difference ×16",
+    "flip": "FLIP map",
+    "masked": "Not compared",
+}
 """What the pictures are called on the page, in the order in which they are shown."""
 
 _ALT = {
@@ -20,6 +26,7 @@ _ALT = {
     "actual": "as it was drawn now",
     "difference": "the difference between the two, 16 times as strong; black is none",
     "flip": "the FLIP map: the brighter, the more an eye would see of the difference",
+    "masked": "as it was drawn now, with stripes over what is masked",
 }
 
 _KEYS = {
@@ -31,6 +38,7 @@ _KEYS = {
     "cpu": "Processor",
     "simd": "Its instructions",
     "drawn": "Hash of what was drawn",
+    "fonts": "Fonts",
     "size": "Size",
     "tool": "Tool",
     "sketch": "Sketch",
@@ -201,6 +209,7 @@ def _figures(record: Record) -> Markup:
         reference = f"{record.compared}, drawn by {other}" if record.compared else "none"
     if record.renderer:
         rows.append(("Reference", reference))
+    rows += [(name, value) for name, value in _rule(record) if value]
     if len(record.references) > 1:
         rows.append(("Accepted so far", ", ".join(record.references)))
     if record.node:
@@ -211,6 +220,11 @@ def _figures(record: Record) -> Markup:
         rows.append(("Checked", moment(record.when)))
     cells = [tag("tr", tag("th", name, scope="row"), tag("td", value)) for name, value in rows]
     return tag("section", tag("h3", "Figures"), tag("table", *cells), class_="figures")
+
+
+def _rule(record: Record) -> tuple[tuple[str, str], ...]:
+    """Return what the shot says of its comparison, by name; "" for what it does not say."""
+    return (("Tolerance", record.tolerance), ("Masked", "; ".join(record.masked)), ("Tone", record.tone))
 
 
 def _fingerprints(record: Record) -> Markup | None:
@@ -264,5 +278,6 @@ def row(record: Record) -> Markup:
 
 def passed_row(record: Record) -> Markup:
     """Return the line of a shot that passed."""
-    cells = (record.tier, record.sentence, f"{record.seconds:.2g} s" if record.seconds else "")
+    rule = "".join(f"; {name.lower()}: {value}" for name, value in _rule(record) if value)
+    cells = (record.tier, record.sentence + rule, f"{record.seconds:.2g} s" if record.seconds else "")
     return tag("tr", tag("th", record.name, scope="row"), *(tag("td", cell) for cell in cells))

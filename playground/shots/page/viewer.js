@@ -6,14 +6,20 @@
 "use strict";
 
 const MODES = [
-  { name: "all", label: "All", panes: ["expected", "actual", "difference", "flip"] },
+  { name: "all", label: "All", panes: ["expected", "actual", "difference", "flip", "masked"] },
   { name: "swipe", label: "Swipe", panes: ["both"] },
   { name: "onion", label: "Onion", panes: ["both"] },
   { name: "blink", label: "Blink", panes: ["both"] },
   { name: "difference", label: "Difference ×16", panes: ["difference"] },
   { name: "flip", label: "FLIP map", panes: ["flip"] },
 ];
-const LABELS = { expected: "Expected", actual: "Actual", difference: "Difference ×16", flip: "FLIP map" };
+const LABELS = {
+  expected: "Expected",
+  actual: "Actual",
+  difference: "Difference ×16",
+  flip: "FLIP map",
+  masked: "Not compared",
+};
 const LARGEST = 64; // [CSS pixels a picture pixel]
 const GRID_FROM = 10; // [CSS pixels a picture pixel] below, a grid would hide what it parts
 const NEAR = 22; // [CSS pixels] how near to the divider a finger takes it
