@@ -35,7 +35,9 @@ class Frame:
     def size(self) -> tuple[int, int]:
         """Return the width and height in pixels.
 
-        assert playground.render("l_dot_n", size=(64, 36)).size == (64, 36)
+        For example:
+
+            assert playground.render("l_dot_n", size=(64, 36)).size == (64, 36)
         """
         return self.array.shape[1], self.array.shape[0]
 
