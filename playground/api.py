@@ -31,7 +31,12 @@ def headless(
     cached textures, in bytes. What can be drawn although something is wrong
     raises Python's warning ``PlaygroundWarning``, once. ``notice`` receives the reason why a fast
     variant does not run: by default as a ``PlainFormWarning``; with a function of your own, the
-    other warnings are left out as well. Raises ``ContextError``.
+    other warnings are left out as well. An engine belongs to the thread that opens it.
+
+        with playground.headless(software=True) as engine:
+            engine.render("l_dot_n", size=(64, 36))
+
+    Raises ``ContextError`` where there is no OpenGL, for another driver, and for one that it lacks.
     """
     context = open_context(software=software, device=device)
     engine = Engine(context, driver=driver, cache_bytes=cache_bytes, owns_context=True, notice=notice)
@@ -57,6 +62,10 @@ def render(
     ``sketch`` is a loaded one or what ``load`` takes; ``size`` in pixels, ``time`` in seconds,
     ``values`` of parameters by path; ``plain`` runs every technique in its canonical form, no
     fast variant. For more than one frame, keep an engine from ``headless()``.
+
+        frame = playground.render("l_dot_n", size=(64, 36), values={"product.sun": (120.0, 20.0)})
+
+    Raises ``PlaygroundError`` for any mistake in the sketch or its values.
     """
     found = opened(sketch)
     with headless() as engine:
@@ -64,7 +73,13 @@ def render(
 
 
 def parameters(sketch: Sketch) -> dict[str, tuple[Parameter, Value]]:
-    """Return every parameter of a ``sketch`` with its value, by path."""
+    """Return every parameter of a ``sketch`` with its value, by path.
+
+    For example:
+
+        for path, (parameter, value) in playground.parameters(playground.load("l_dot_n")).items():
+            print(path, parameter.type, parameter.unit, value)
+    """
     leaves = values_of(sketch)
     return {
         shown.path: (shown.parameter, value_of(sketch, shown.path, leaves))

@@ -65,6 +65,11 @@ class PlaygroundError(Exception):
 
     ``diagnostics`` holds each mistake with its place; ``str(error)`` is all of
     them, one below the other. A ``Path`` given as the file is named as its user would name it.
+
+        try:
+            playground.load("no_such_sketch")
+        except playground.PlaygroundError as error:
+            print(error, error.diagnostics[0].file)
     """
 
     exit_status = 2
@@ -92,23 +97,66 @@ class PlaygroundError(Exception):
 
 
 class SketchError(PlaygroundError):
-    """A sketch or a technique's TOML is wrong."""
+    """A sketch or a technique's TOML is wrong.
+
+    For example:
+
+        try:
+            playground.load("diamond_sqare")
+        except playground.SketchError as error:
+            print(error)  # names the nearest: diamond_square
+    """
 
 
 class ParameterError(SketchError):
-    """A parameter's name or its value is wrong."""
+    """A parameter's name or its value is wrong.
+
+    For example:
+
+        try:
+            playground.load("l_dot_n").with_values({"product.son": (120.0, 20.0)})
+        except playground.ParameterError as error:
+            print(error)
+    """
 
 
 class ShaderError(PlaygroundError):
-    """A GLSL text is wrong."""
+    r"""A GLSL text is wrong: each of its ``diagnostics`` has a file and a line.
+
+    For example:
+
+        from pathlib import Path
+
+        Path("broken.frag").write_text("#version 330\nout vec4 c;\nvoid main() { c = vec4(1.0) }")
+        try:
+            playground.render("broken.frag", size=(64, 36))
+        except playground.ShaderError as error:
+            print(error.diagnostics[0].line)
+    """
 
 
 class DataError(PlaygroundError):
-    """An image or elevation file cannot be used."""
+    """An image or elevation file cannot be used, or a file cannot be written.
+
+    For example:
+
+        try:
+            playground.render("l_dot_n", size=(64, 36)).save("land.bmp")
+        except playground.DataError as error:
+            print(error)  # lists what can be written
+    """
 
 
 class ContextError(PlaygroundError):
-    """There is no OpenGL context, or it lacks what is needed."""
+    """There is no OpenGL context, it lacks what is needed, or it is another thread's.
+
+    For example:
+
+        try:
+            playground.headless(driver="cuda")
+        except playground.ContextError as error:
+            print(error)
+    """
 
 
 class OpenGLFault(ContextError):
@@ -116,23 +164,65 @@ class OpenGLFault(ContextError):
 
 
 class SandboxError(PlaygroundError):
-    """A worker process was stopped before it could answer."""
+    """A worker process was stopped before it could answer.
+
+    For example:
+
+        try:
+            raise playground.SandboxError("a worker process was stopped")
+        except playground.PlaygroundError as error:
+            print(error)
+    """
 
 
 class SandboxTimeout(SandboxError):
-    """A worker process took too long and was killed."""
+    """A worker process took too long and was killed.
+
+    For example:
+
+        try:
+            raise playground.SandboxTimeout("a draw took more than 10 s")
+        except playground.SandboxError as error:
+            print(error)
+    """
 
 
 class SandboxCrash(SandboxError):
-    """A worker process died: the driver or its compiler crashed, or memory ran out."""
+    """A worker process died: the driver or its compiler crashed, or memory ran out.
+
+    For example:
+
+        try:
+            raise playground.SandboxCrash("the driver crashed")
+        except playground.SandboxError as error:
+            print(error)
+    """
 
 
 class PlaygroundWarning(UserWarning):
-    """What can be drawn, but maybe not as its author intends; programs receive it as a Python warning."""
+    """What can be drawn, but maybe not as its author intends; programs receive it as a Python warning.
+
+    For example:
+
+        import warnings
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", playground.PlaygroundWarning)
+            playground.render("l_dot_n", size=(64, 36))
+    """
 
 
 class PlainFormWarning(PlaygroundWarning):
-    """A fast variant does not run: its technique's text is not the one that it was verified against."""
+    """A fast variant does not run: its technique's text is not the one that it was verified against.
+
+    For example:
+
+        import warnings
+
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", playground.PlainFormWarning)
+            playground.render("l_dot_n", size=(64, 36))
+    """
 
 
 def counted(number: int, noun: str) -> str:

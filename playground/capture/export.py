@@ -109,6 +109,13 @@ def export(
     of ``Form``; ``time``, in seconds, and ``steps`` are as in ``Engine.render``. A file of that name is
     replaced, whole or not at all. Without an ``engine`` one is opened.
 
+    Those of ``Form``: ``kind`` of the numbers, ``bits`` a number, ``span`` of a PNG's black and white,
+    ``grid`` of a mesh, its ``light``, ``techniques`` and ``language`` of a page. ``sketch`` is a loaded
+    one, or what ``load`` takes. Returns the path with a summary.
+
+        exported = playground.export("l_dot_n", "land.tif")
+        print(exported.path, exported.summary)
+
     Raises ``PlaygroundError`` for any mistake in the arguments, or a file that cannot be written.
     """
     form = Form(

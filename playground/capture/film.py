@@ -138,7 +138,12 @@ def render_video(
     ``seconds`` long, to its last keyframe unless given, from ``start``; ``size`` in pixels,
     both sides even but for ``.gif``; ``quality`` "low", "medium", "high" or "best". Without
     an ``engine`` one is opened. Needs PyAV: ``pip install "terrain-shader-playground[video]"``.
-    Raises ``PlaygroundError`` in a sentence; a file of that name is replaced at the end.
+    ``path`` is returned; a file of that name is replaced at the end. ``sketch`` is a loaded one, or
+    what ``load`` takes; ``fps`` is pictures a second.
+
+        playground.render_video("l_dot_n", "land.mp4", seconds=0.2, fps=10, size=(64, 36))
+
+    Raises ``PlaygroundError`` in a sentence.
     """
     film = film_of(sketch, seconds=seconds, fps=fps, size=size, start=start)
     with nullcontext(engine) if engine is not None else headless() as used:

@@ -137,11 +137,16 @@ def write_large(
 ) -> Path:
     """Write a picture of up to 65,536 pixels a side as a PNG, whole or not at all, and return its path.
 
-    Raises ``DataError`` for a path with another ending.
-
-    Arguments as for ``strips``; ``text`` as for ``Frame.save``. Of the picture, what is held is
+    ``size`` and ``tile`` in pixels; ``engine``, ``sketch``, ``time``, ``steps`` and ``done`` as for
+    ``strips``; ``text`` as for ``Frame.save``. Of the picture, what is held is
     one strip, ``tile[1]`` rows, about five times over: 160 MiB at 16,384 pixels of width,
     independent of the height.
+
+        with playground.headless() as engine:
+            playground.write_large(engine, "l_dot_n", "land.png", (96, 64), tile=(64, 32))
+
+    Raises ``DataError`` for a ``path`` with another ending, ``SketchError`` at a pass that cannot be drawn
+    in parts.
     """
     if Path(path).suffix.lower() != ".png":
         raise DataError(

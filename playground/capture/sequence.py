@@ -119,7 +119,12 @@ def render_sequence(
 
     Picture n is that of the time n / ``fps`` seconds; ``size`` in pixels. With ``resume``
     good files stay, whose sketch, size and time are the same. Without an ``engine`` one is
-    opened. Raises ``PlaygroundError`` in a sentence.
+    opened. ``sketch`` is a loaded one, or what ``load`` takes. Returns the paths, those that were
+    drawn and those that stayed.
+
+        written = playground.render_sequence("l_dot_n", "frames/%05d.png", range(2), fps=10, size=(64, 36))
+
+    Raises ``PlaygroundError`` in a sentence.
     """
     wanted = list(numbers)
     if not wanted or min(wanted) < 0 or max(wanted) >= MOST_FRAMES:

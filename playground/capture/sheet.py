@@ -169,7 +169,12 @@ def render_sweep(
 
     A sweep is written ``"light.sun.elevation=5..60"``, ``"light.gain=1..3,5"`` for five steps,
     ``"light.gain=1,2,4"``; ``steps`` for a range that does not say. ``size`` in pixels is that
-    of each picture, ``time`` in seconds. Raises ``ParameterError`` in a sentence.
+    of each picture, ``time`` in seconds. Without an ``engine`` one is opened. ``sketch`` is a loaded one,
+    or what ``load`` takes; ``path`` is returned.
+
+        playground.render_sweep("l_dot_n", "sheet.png", "product.sun.elevation=10,40,80", size=(64, 36))
+
+    Raises ``ParameterError`` in a sentence for what ``sweeps`` do not say right.
     """
     found = opened(sketch)
     rows = swept(found, [read_sweep(found, text, steps) for text in sweeps])

@@ -46,7 +46,7 @@ class Engine:
         sketch = playground.load("l_dot_n")
         with playground.headless() as engine:
             frame = engine.render(sketch, size=(64, 36))
-            evening = engine.render(sketch.with_values({"light.sun": (250.0, 12.0)}), size=(64, 36))
+            evening = engine.render(sketch.with_values({"product.sun": (250.0, 12.0)}), size=(64, 36))
 
     Raises ``ContextError`` for an unknown driver, and for "compute" on a context without it.
     """
@@ -68,8 +68,10 @@ class Engine:
     def ctx(self) -> moderngl.Context:
         """Return the OpenGL context, for own calls of moderngl.
 
-        with playground.headless() as engine:
-            print(engine.ctx.version_code)
+        For example:
+
+            with playground.headless() as engine:
+                print(engine.ctx.version_code)
         """
         return self.internal.ctx
 
@@ -77,8 +79,10 @@ class Engine:
     def info(self) -> ContextInfo:
         """Return what the context is: ``renderer``, ``opengl``, ``compute``, ``software``.
 
-        with playground.headless() as engine:
-            print(engine.info.renderer, engine.info.opengl)
+        For example:
+
+            with playground.headless() as engine:
+                print(engine.info.renderer, engine.info.opengl)
         """
         return self.internal.info
 
@@ -86,8 +90,10 @@ class Engine:
     def driver(self) -> str:
         """Return what runs kernels: "auto", "fragment" or "compute".
 
-        with playground.headless(driver="fragment") as engine:
-            assert engine.driver == "fragment"
+        For example:
+
+            with playground.headless(driver="fragment") as engine:
+                assert engine.driver == "fragment"
         """
         return self.internal.driver
 
@@ -193,11 +199,11 @@ class Engine:
         steps: Mapping[str, int] | None = None,
         interpolated: bool = False,
     ) -> NDArray[np.float32]:
-        """Return the values of ``pass[.inner…][:output]``; the other arguments as in ``texture``.
+        """Return the values of a texture, ``ref`` being ``pass[.inner…][:output]``.
 
         float32, (ny, nx) or (ny, nx, components), row 0 in the south; heights are 0..1
         (``metres`` gives metres), colours and light linear. What a stopped pass has not
-        computed is 0, unless ``interpolated``.
+        computed is 0, unless ``interpolated``. The other arguments are those of ``texture``.
 
             with playground.headless() as engine:
                 height = engine.read("l_dot_n", "height")
@@ -220,8 +226,8 @@ class Engine:
     ) -> NDArray[np.float32]:
         """Return heights in metres above sea level: those of ``read`` times the relief, plus the base.
 
-        float32, (ny, nx), row 0 in the south; the other arguments as in ``texture``. It is meant for
-        heights, 0..1; any texture with one number a texel is taken.
+        float32, (ny, nx), row 0 in the south; ``ref`` and the other arguments as in ``texture``. It is
+        meant for heights, 0..1; any texture with one number a texel is taken.
 
             with playground.headless() as engine:
                 metres = engine.metres("jacksboro", "height")
@@ -301,10 +307,14 @@ class Engine:
     def forget_unused(self) -> None:
         """Drop what is cached but not used for the last frame; without it, a film caches all its frames.
 
-        with playground.headless() as engine:
-            for azimuth in (120.0, 180.0, 240.0):
-                sketch = playground.load("l_dot_n").with_values({"light.sun": (azimuth, 20.0)})
-                engine.render(sketch, size=(64, 36))
-                engine.forget_unused()
+        For example:
+
+            with playground.headless() as engine:
+                for azimuth in (120.0, 180.0, 240.0):
+                    sketch = playground.load("l_dot_n").with_values({"product.sun": (azimuth, 20.0)})
+                    engine.render(sketch, size=(64, 36))
+                    engine.forget_unused()
+
+        Raises ``ContextError`` in another thread than its own.
         """
         self.internal.forget_unused()

@@ -216,6 +216,7 @@ class Internals(Recorded):
         Ask before the next frame is drawn. What it costs, and what it leaves out: see
         ``engine.non_finite``.
         """
+        self.refuse_misuse()
         return self._finite.first()
 
     def not_finite_by_pass(self) -> Iterator[NotFinite | None]:
@@ -255,6 +256,7 @@ class Internals(Recorded):
 
     def forget_unused(self) -> None:
         """Drop what is cached but not used for the last frame; without it, a film caches all its frames."""
+        self.refuse_misuse()
         self.cache.drop_unused()
 
     def stale(

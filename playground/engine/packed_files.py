@@ -10,6 +10,7 @@ from playground.engine.files import find_file
 from playground.errors import DataError
 from playground.paths import GLSL, SKETCHES, shown
 from playground.sketch.allowed_files import is_inside
+from playground.sketch.arrays import holds_array
 from playground.sketch.assign import resolve, values_of
 from playground.sketch.libraries import libraries, library_around
 from playground.sketch.load import is_technique
@@ -39,6 +40,11 @@ def contents(sketch: Sketch) -> tuple[dict[str, Path], str, list[str]]:
             files[f"{top}/{file.relative_to(folder).as_posix()}"] = file
         elif is_inside(file, (GLSL,)):
             shipped.add(file.resolve().relative_to(GLSL.resolve()).as_posix())
+        elif holds_array(file):
+            message = (
+                "it has an array, which cannot be packed: save a copy, which has it as a file, and pack that"
+            )
+            raise DataError(message, file=shown(sketch.file))
         elif not library_around(file, libraries()):
             message = f"lies outside the sketch's folder, {shown(folder)}; copy it there to pack the sketch"
             raise DataError(message, file=shown(file))

@@ -27,12 +27,13 @@ from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
 from types import MappingProxyType
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError, nearest
+from playground.images.array_pictures import array_samples, is_array
 from playground.images.bounds import refuse_bomb, refuse_too_many, webp_size
 from playground.images.extensions import VALUE_ENDINGS
 from playground.partial import partial_file
@@ -70,10 +71,11 @@ class Image:
 
 
 def read_image(path: str | Path) -> Image:
-    """Read a PNG, JPEG or WebP picture (recognised by content, not by the file's name).
+    """Read a PNG, JPEG or WebP picture, or NumPy's array of one (recognised by content, not by the name).
 
-    Palettes, grey and CMYK become RGBA; a camera's orientation mark is obeyed;
-    of an animation, the first picture counts. Alpha is straight, not premultiplied.
+    An `.npy` is (rows, cols, 1, 3 or 4), top row first: uint8, uint16, or float32 0..1. Palettes,
+    grey and CMYK become RGBA; a camera's orientation mark is obeyed; of an animation, the first
+    picture counts. Alpha is straight, not premultiplied.
 
     Raises:
         DataError: missing, not a picture, damaged or too large.
@@ -81,10 +83,12 @@ def read_image(path: str | Path) -> Image:
     path = checked_file(path)
     with reading(path) as handle:
         depth, _ = _png_header(handle)
-        if depth == 16:
-            samples = _png_samples(handle, path)
-            pixels: NDArray[np.uint8] | NDArray[np.float32]
-            pixels = _four_channels(samples).astype(np.float32) / np.float32(65535.0)
+        pixels: NDArray[np.uint8] | NDArray[np.float32]
+        if depth == 16 or is_array(handle):
+            samples = array_samples(handle, path) if is_array(handle) else _png_samples(handle, path)
+            most = np.float32(65535.0 if samples.dtype == np.uint16 else 1.0)
+            pixels = _four_channels(samples)
+            pixels = pixels.astype(np.float32) / most if samples.dtype != np.uint8 else pixels
             has_alpha = samples.shape[-1] in (2, 4)
         else:
             picture = open_picture(handle, path)
@@ -262,14 +266,13 @@ def _decoded(picture: _Picture, mode: str, raw_mode: str) -> NDArray[np.uint8]:
     return np.array(picture, dtype=np.uint8)
 
 
-def _four_channels(
-    samples: NDArray[np.uint8] | NDArray[np.uint16],
-) -> NDArray[np.uint8] | NDArray[np.uint16]:
+def _four_channels(samples: NDArray[Any]) -> NDArray[Any]:
     channels = samples.shape[-1]
     colours = samples if channels > 2 else samples[..., [0, 0, 0, *range(1, channels)]]
     if colours.shape[-1] == 4:
         return colours
-    opaque = np.full((*samples.shape[:2], 1), np.iinfo(samples.dtype).max, dtype=samples.dtype)
+    most = 1 if samples.dtype.kind == "f" else np.iinfo(samples.dtype).max
+    opaque = np.full((*samples.shape[:2], 1), most, dtype=samples.dtype)
     return np.concatenate([colours, opaque], axis=-1)
 
 

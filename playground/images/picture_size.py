@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import lru_cache
 from pathlib import Path
 
+from playground.images.array_pictures import array_shape, is_array
 from playground.images.content_hash import content_key
 from playground.images.files import checked_file, open_picture, reading
 
@@ -21,6 +22,9 @@ def picture_size(path: str | Path) -> tuple[int, int]:
 @lru_cache(maxsize=256)
 def _size(path: Path, _: str) -> tuple[int, int]:
     with reading(path) as handle:
+        if is_array(handle):
+            rows, columns = array_shape(handle, path)[0][:2]
+            return columns, rows
         picture = open_picture(handle, path)
         width, height = picture.size
         on_its_side = picture.getexif().get(_ORIENTATION) in _ON_ITS_SIDE

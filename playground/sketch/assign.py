@@ -6,6 +6,7 @@ targets inside; every inner parameter can be reached as well.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
@@ -237,7 +238,21 @@ def check_value(sketch: Settable, path: str, given: object) -> Value:
             raise ParameterError(f"{path}: {why}")
         valid = [*TERRAIN_KEYS, *all_paths(sketch.graph)]
         raise ParameterError(f"no parameter '{path}' in sketch {sketch.name}{nearest(path, valid)}")
+    if targets[0].parameter.widget.kind == "file" and _may_be_array(given):
+        from playground.sketch.arrays import stored  # loads NumPy, which few loads need
+
+        return stored(given, targets[0].parameter, _registry_at(sketch.graph, targets[0].path), path)
     return coerce(targets[0].parameter, given, path)
+
+
+def _may_be_array(given: object) -> bool:
+    is_path = isinstance(given, str | bytes | os.PathLike)
+    return not is_path and (hasattr(given, "__array__") or hasattr(given, "__array_interface__"))
+
+
+def _registry_at(graph: Graph, path: str) -> str:
+    """Return the source that makes the texels of a parameter's kernel; "" for a kernel of its own."""
+    return dict(graph.kernels)[path.rpartition(".")[0]].registry
 
 
 def effective_values(technique: Technique) -> dict[str, Value]:

@@ -64,7 +64,12 @@ def find(name: str | Path) -> Path:
 
 
 def shipped_sketches() -> list[str]:
-    """List the names of the sketches that ship."""
+    """List the names of the sketches that ship.
+
+    For example:
+
+        assert "l_dot_n" in playground.shipped_sketches()
+    """
     return sorted(path.stem for path in SKETCHES.glob("*.toml"))
 
 

@@ -77,7 +77,13 @@ DRIVERS = ("auto", "fragment", "compute")
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """An eye that orbits a point of the terrain."""
+    """An eye that orbits a point of the terrain; a frozen value.
+
+    For example:
+
+        camera = playground.Camera(azimuth=120.0, elevation=45.0)
+        sketch = playground.load("l_dot_n").with_camera(camera)
+    """
 
     azimuth: float = 200.0  # [degrees] clockwise from north: the eye, seen from the target
     elevation: float = 32.0  # [degrees] of the eye above the target's horizon, -89..89
@@ -88,7 +94,14 @@ class Camera:
 
 @dataclass(frozen=True)
 class Shot:
-    """A picture that a sketch promises."""
+    """A picture that a sketch promises: what its ``[[shot]]`` says.
+
+    For example:
+
+        sketch = playground.load("l_dot_n")
+        for shot in sketch.shots:
+            print(shot.name, shot.size, shot.time)
+    """
 
     name: str
     size: tuple[int, int] = (640, 360)  # pixels
@@ -116,7 +129,14 @@ class Preset:
 
 @dataclass(frozen=True)
 class Sketch:
-    """A whole sketch: what a user opens, shares and puts under version control."""
+    """A whole sketch: what a user opens, shares and puts under version control.
+
+    ``playground.load`` gives one. It is a frozen value that can be hashed, compared and pickled: what
+    changes it gives another sketch.
+
+        sketch = playground.load("l_dot_n")
+        assert sketch.with_values({"relief": 500.0}) != sketch
+    """
 
     name: str
     file: str  # absolute path of the TOML, or of the kernel opened alone
@@ -145,11 +165,22 @@ class Sketch:
 
     @property
     def files(self) -> tuple[str, ...]:
-        """Absolute paths of every text file the sketch is made of."""
+        """Return the absolute paths of every text file the sketch is made of.
+
+        For example:
+
+            print(playground.load("l_dot_n").files)
+        """
         return tuple(dict.fromkeys([self.file, *self.graph.files]))
 
     def shot(self, name: str) -> Shot:
-        """Return the shot of that name; raise ``SketchError`` if there is none."""
+        """Return the shot of that name; raise ``SketchError`` if there is none.
+
+        For example:
+
+            sketch = playground.load("l_dot_n")
+            assert sketch.shot(sketch.shots[0].name) == sketch.shots[0]
+        """
         for shot in self.shots:
             if shot.name == name:
                 return shot
@@ -158,10 +189,24 @@ class Sketch:
         )
 
     def with_values(self, values: Mapping[str, object]) -> Sketch:
-        """Return the sketch with parameters set, by path; text is read as on the command line.
+        """Return the sketch with ``values`` of parameters set, by path; text is read as on the command line.
 
         ``size``, ``extent``, ``relief`` and ``base_elevation`` may be set as well; a former name of a
-        parameter sets it under its present one. Raises ``ParameterError`` naming the nearest path or the
+        parameter sets it under its present one.
+
+        Where a parameter takes a file, an array does as well: NumPy's, xarray's, and what has
+        ``__array__``. It is copied, into a read-only file that goes with the last sketch that has it. A
+        grid is (ny, nx), row 0 in the south, as ``Engine.read`` gives it; NaN is no data. Of an
+        xarray.DataArray, the coordinates say which way its rows go and how far apart they are, in
+        metres, kilometres or degrees, and rioxarray's ``rio.crs`` where it lies. A picture is (ny, nx),
+        (ny, nx, 3) or (ny, nx, 4), top row first: uint8, uint16, or floats 0 to 1, sRGB.
+
+            import numpy
+
+            hills = numpy.hypot(*numpy.mgrid[-1:1:33j, -1:1:33j])
+            sketch = playground.load("jacksboro").with_values({"height.elevation": hills, "relief": 300.0})
+
+        Raises ``ParameterError`` naming the nearest path or the
         range, or a parameter that is set by both its names.
         """
         overrides, changes = dict(self.overrides), dict[str, Any]()
@@ -178,18 +223,30 @@ class Sketch:
         return replace(self, overrides=tuple(overrides.items()), **changes)
 
     def with_camera(self, camera: Camera) -> Sketch:
-        """Return the sketch seen by another camera, without the camera of its keyframes."""
+        """Return the sketch seen by another camera, without the camera of its keyframes.
+
+        For example:
+
+            sketch = playground.load("l_dot_n").with_camera(playground.Camera(elevation=60.0))
+        """
         keyframes = tuple(replace(keyframe, camera=()) for keyframe in self.keyframes)
         return replace(self, camera=camera, keyframes=keyframes)
 
     def plainly(self, plain: bool = True) -> Sketch:
-        """Return the sketch with every technique in its canonical form, or with fast variants again."""
+        """Return the sketch with every technique in its ``plain``, canonical form, or with fast variants.
+
+        For example:
+
+            assert playground.load("l_dot_n").plainly().plain
+        """
         return replace(self, plain=plain)
 
     def at(self, time: float) -> Sketch:
         """Return the sketch as its keyframes make it at a time in seconds, and without them.
 
         What the user, a preset or a shot has set stays as it was set.
+
+            sketch = playground.load("l_dot_n").at(2.0)
         """
         if not self.keyframes:
             return self
@@ -199,18 +256,36 @@ class Sketch:
 
     @property
     def duration(self) -> float:
-        """The time in seconds of the last keyframe; 0 where there is none."""
+        """Return the time in seconds of the last keyframe; 0 where there is none.
+
+        For example:
+
+            assert playground.load("l_dot_n").duration == 0.0
+        """
         return self.keyframes[-1].time if self.keyframes else 0.0
 
     def with_preset(self, name: str) -> Sketch:
-        """Return the sketch with a preset's values; raise ``ParameterError`` if there is no such preset."""
+        """Return the sketch with a preset's values; raise ``ParameterError`` if there is no such preset.
+
+        For example:
+
+            sketch = playground.load("l_dot_n")
+            for preset in sketch.presets:
+                print(sketch.with_preset(preset.name).overrides)
+        """
         for preset in self.presets:
             if preset.name == name:
                 return self.with_values(dict(preset.values))
         raise ParameterError(f"no preset '{name}'{nearest(name, [p.name for p in self.presets])}")
 
     def for_shot(self, shot: Shot) -> Sketch:
-        """Return the sketch as a shot shows it."""
+        """Return the sketch as a shot shows it.
+
+        For example:
+
+            sketch = playground.load("l_dot_n")
+            shown = sketch.for_shot(sketch.shots[0])
+        """
         sketch = self.with_preset(shot.preset) if shot.preset else self
         sketch = sketch.with_values(dict(shot.values))
         if shot.camera is not None:

@@ -69,7 +69,13 @@ def label_of(name: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """A uniform with its ``//!`` annotation."""
+    """A uniform with its ``//!`` annotation.
+
+    For example:
+
+        parameter, value = playground.parameters(playground.load("l_dot_n"))["product.sun"]
+        print(parameter.title, parameter.type, parameter.default, parameter.unit)
+    """
 
     name: str
     type: str  # GLSL: float int uint bool vec2..4 ivec2..4 uvec2..4, or sampler2D for a file
@@ -91,5 +97,11 @@ class Parameter:
 
     @property
     def title(self) -> str:
-        """Its label in a panel."""
+        """Return its label in a panel.
+
+        For example:
+
+            parameter, _ = playground.parameters(playground.load("l_dot_n"))["product.sun"]
+            assert parameter.title == "Sun"
+        """
         return self.label or label_of(self.name)

@@ -86,6 +86,8 @@ def shipped_techniques() -> list[str]:
     """List the names of the techniques in ``glsl/``: kernels, draws, sources and TOML techniques.
 
     One whose files are wrong is listed as well: it exists, and reading it raises the error.
+
+        assert "lighting/l_dot_n" in playground.shipped_techniques()
     """
     names = []
     for name in shipped_names():

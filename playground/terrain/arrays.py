@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import zipfile
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -121,12 +121,15 @@ class _Archive:
         return number
 
     def word(self, name: str) -> str:
+        return self.text(name, 256).lower()
+
+    def text(self, name: str, most: int = 2**16) -> str:
         if name not in self.members:
             return ""
         header = self.header(name)
-        if header.dtype.kind not in "US" or math.prod(header.shape) != 1 or header.dtype.itemsize > 256:
+        if header.dtype.kind not in "US" or math.prod(header.shape) != 1 or header.dtype.itemsize > most:
             raise DataError(f"'{name}' is {header.dtype} {header.shape}; expected a word", file=self.path)
-        return str(self.load(name).reshape(()).astype(str)).strip().lower()
+        return str(self.load(name).reshape(()).astype(str)).strip()
 
 
 def read_npz(path: Path) -> Found:
@@ -136,12 +139,33 @@ def read_npz(path: Path) -> Found:
         values = archive.grid()
         dx, dy = archive.number("dx"), archive.number("dy")
         x0, x1, y0, y1 = (archive.number(name) for name in ("xmin", "xmax", "ymin", "ymax"))
-        units = archive.word("units")
+        units, crs, first = archive.word("units"), archive.text("crs"), archive.word("first_row")
+    if first not in ("", "north", "south"):
+        raise DataError(f"'first_row' is {first!r}; expected 'north' or 'south'", file=path)
+    found = _placed(path, values, (dx, dy), ((x0, x1), (y0, y1)), units, crs)
+    return replace(found, south_first=first == "south" if first else None)
+
+
+def _placed(
+    path: Path,
+    values: NDArray[Any],
+    steps: tuple[float | None, float | None],
+    bounds: tuple[tuple[float | None, float | None], tuple[float | None, float | None]],
+    units: str,
+    crs: str,
+) -> Found:
+    """Return what was found of a grid, with its metres and where it lies, as far as the file says."""
+    (dx, dy), ((x0, x1), (y0, y1)) = steps, bounds
     if dx is None and dy is None:
         return in_memory(values)
     dx, dy = abs(dx or dy or 0.0), abs(dy or dx or 0.0)
     if not dx or not dy:
         raise DataError("'dx' and 'dy' are zero; expected the distance between texels", file=path)
+    if crs and x0 is not None and x1 is not None and y0 is not None and y1 is not None:
+        size = values.shape[1], values.shape[0]
+        found = _bounded((x0, x1), (y0, y1), (dx, dy), size, Crs(wkt=crs))
+        spacing, notes = found.spacing if found else (None, ())
+        return in_memory(values, spacing, in_metres=True, place=found, notes=notes)
     if x0 is None or x1 is None or y0 is None or y1 is None:
         in_degrees = False
     else:
@@ -169,11 +193,21 @@ def _place(
     x: tuple[float, float], y: tuple[float, float], step: tuple[float, float], size: tuple[int, int]
 ) -> Place | None:
     """Return where the nodes lie, on WGS 84; None where the bounds are neither areas' nor nodes'."""
+    return _bounded(x, y, step, size, Crs(((MODEL, 2), (RASTER, IS_POINT), (GEOGRAPHIC, 4326))))
+
+
+def _bounded(
+    x: tuple[float, float],
+    y: tuple[float, float],
+    step: tuple[float, float],
+    size: tuple[int, int],
+    crs: Crs,
+) -> Place | None:
+    """Return where the nodes lie; None where the bounds are neither areas' nor nodes'."""
     inside = []
     for ends, of, count in zip((x, y), step, size, strict=True):
         more = abs(ends[1] - ends[0]) / of - (count - 1)  # 1 for areas, 0 for nodes
         if min(abs(more), abs(more - 1.0)) > 0.01:
             return None
         inside.append(0.5 * of * round(more))
-    crs = Crs(((MODEL, 2), (RASTER, IS_POINT), (GEOGRAPHIC, 4326)))
     return Place(min(x) + inside[0], max(y) - inside[1], step, size, crs)

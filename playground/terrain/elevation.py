@@ -213,7 +213,8 @@ def open_elevation(
     * `.npy`; `.npz`: the array `elevation`, or the only one of two dimensions; scalars
       `dx` and `dy` give the spacing. They are degrees if `xmin`, `xmax`, `ymin`, `ymax`
       are there, look like degrees (|x| <= 360, |y| <= 90, spacing below 0.05) and no
-      string `units` says "m"; else metres.
+      string `units` says "m"; else metres. A text `crs`, the well-known text of a reference
+      system, says what they are instead; `first_row` is "north" or "south".
     * `.asc`, and `.bil` and `.flt` with an `.hdr`: ESRI's grids. A `.prj` next to them says
       whether their cells are metres or degrees.
     * `.nc`: NetCDF, read by GDAL in the extra `gis`.

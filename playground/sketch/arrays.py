@@ -1,0 +1,199 @@
+"""Take an array where a parameter takes a file: it is copied into a file, which the sketch names.
+
+So a sketch stays a frozen value of text and numbers: what is hashed, cached, sent to another process,
+exported and copied is that file. It is written once, is read-only, is named by its contents, and goes when
+no sketch of this process names it any more. A sketch that is pickled takes the contents along.
+
+A grid of heights has row 0 in the south, as all that an engine reads; rows of an xarray.DataArray go
+where its coordinates say. A picture has its top row first, as all pictures.
+"""
+
+from __future__ import annotations
+
+import atexit
+import hashlib
+import io
+import os
+import re
+import shutil
+import tempfile
+import weakref
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground.errors import ParameterError
+from playground.sketch.array_coordinates import Coordinates, coordinates_of, is_labelled
+from playground.sketch.parameter import Parameter
+
+GRIDS = ("elevation_file", "example_file", "numbers_file", "vector_file")
+"""The sources one of whose files is a grid of heights, or of other numbers."""
+
+PICTURES = ("", "mask_file")
+"""The sources whose file is a picture; "": a kernel's own image."""
+
+_VECTORS = "vectors"  # the parameter of a source of a grid that names no grid
+_SIDES = (1, 3, 4)  # numbers a pixel
+_EXACT = (np.uint8, np.uint16, np.float32)
+
+
+class ArrayFile(str):
+    """The path of a file that holds an array: the file goes with the last of it."""
+
+    __slots__ = ("__weakref__",)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        path = Path(self)
+        return _stored, (path.name.rpartition("-")[0], path.suffix, path.read_bytes())
+
+
+class _Folder:
+    """Where this process has its arrays; made with the first."""
+
+    def __init__(self) -> None:
+        self.owner = 0
+        self.files: weakref.WeakValueDictionary[str, ArrayFile] = weakref.WeakValueDictionary()
+        self._made = Path()
+
+    @property
+    def path(self) -> Path:
+        """Return the folder's path; of a process that was forked another one than its parent's."""
+        if self.owner != os.getpid():
+            self.owner, self.files = os.getpid(), weakref.WeakValueDictionary()
+            self._made = Path(tempfile.mkdtemp(prefix="playground-arrays-"))
+            atexit.register(_clear, self._made, self.owner)
+        return self._made
+
+
+def _clear(folder: Path, owner: int) -> None:
+    if owner == os.getpid():
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+_folder = _Folder()
+
+
+def holds_array(path: str | Path) -> bool:
+    """Return whether a path is that of an array's file in this process."""
+    return str(path) in _folder.files
+
+
+def stored(given: object, parameter: Parameter, registry: str, name: str) -> ArrayFile:
+    """Return the path of a file that holds an array, for a ``parameter`` of a source of ``registry``.
+
+    ``name`` is what messages call it. Raises ``ParameterError`` where it takes no array, or another one.
+    """
+    if registry in GRIDS and parameter.name != _VECTORS:
+        label, ending, data = _grid(given, name)
+    elif registry in PICTURES:
+        label, ending, data = _picture(given, name)
+    else:
+        raise ParameterError(f"{name}: takes a file of its own kind, as {parameter.default}, and no array")
+    return _stored(label, ending, data)
+
+
+def _stored(label: str, ending: str, data: bytes) -> ArrayFile:
+    digest = hashlib.blake2b(data, digest_size=16).hexdigest()
+    path = _folder.path / f"{label}-{digest}{ending}"
+    if known := _folder.files.get(str(path)):
+        return known
+    with tempfile.NamedTemporaryFile(dir=path.parent, delete=False) as handle:
+        handle.write(data)
+    Path(handle.name).chmod(0o444)
+    Path(handle.name).replace(path)
+    found = _folder.files[str(path)] = ArrayFile(path)
+    weakref.finalize(found, _remove, str(path), os.getpid()).atexit = False
+    return found
+
+
+def _remove(path: str, owner: int) -> None:
+    """Remove an array's file, but not in a process that was forked, nor where it is named again."""
+    if owner == os.getpid() and path not in _folder.files:
+        Path(path).unlink(missing_ok=True)
+
+
+def _values(given: object, name: str) -> NDArray[Any]:
+    try:
+        if isinstance(given, np.ma.MaskedArray):
+            return _without(np.asarray(given.data), np.ma.getmaskarray(given))
+        return np.asarray(given)
+    except Exception as error:  # an array of somebody else may raise anything
+        text = " ".join(str(error).split()) or type(error).__name__
+        raise ParameterError(f"{name}: this {type(given).__name__} gives no array: {text}") from None
+
+
+def _without(values: NDArray[Any], gaps: NDArray[np.bool_]) -> NDArray[Any]:
+    """Return an array with NaN in its gaps."""
+    if not gaps.any():
+        return values
+    wide = values.dtype.kind != "f" and values.dtype.itemsize > 2
+    found = values.astype(np.float64 if wide or values.dtype == np.float64 else np.float32)
+    found[gaps] = np.nan
+    return found
+
+
+def _shape(values: NDArray[Any]) -> str:
+    return f"an array of {values.dtype} {values.shape}"
+
+
+def _grid(given: object, name: str) -> tuple[str, str, bytes]:
+    """Return a label, an ending and the bytes of an ``.npz`` of a grid, which says how its rows lie."""
+    label, coordinates = "array", Coordinates()
+    values = _values(given, name)
+    if is_labelled(given):
+        values, coordinates, gap = coordinates_of(given, values, name)
+        label = str(getattr(given, "name", None) or label)
+        if gap is not None:
+            values = _without(values, values == gap)
+    if values.dtype.kind not in "iuf" or values.ndim != 2 or min(values.shape) < 2:
+        raise ParameterError(
+            f"{name} = {_shape(values)}: expected numbers (ny, nx), at least 2 x 2, row 0 in the south"
+        )
+    if values.dtype.kind == "f":
+        values = values.astype(np.float32 if values.dtype.itemsize < 4 else f"<f{min(values.itemsize, 8)}")
+        if np.isinf(values).any():
+            row, column = (int(n) for n in np.argwhere(np.isinf(values))[0])
+            raise ParameterError(f"{name}: the number at row {row}, column {column} is infinite")
+        if np.isnan(values).all():
+            raise ParameterError(f"{name}: no number of the array is there; all are NaN")
+    return _label(label), ".npz", _npz({"elevation": values, "first_row": "south", **coordinates.arrays()})
+
+
+def _picture(given: object, name: str) -> tuple[str, str, bytes]:
+    """Return a label, an ending and the bytes of an ``.npy`` of a picture, top row first."""
+    values = _values(given, name)
+    label = str(getattr(given, "name", None) or "picture") if is_labelled(given) else "picture"
+    if values.ndim == 2:
+        values = values[..., None]
+    if values.dtype.kind == "b":
+        values = values.astype(np.uint8) * np.uint8(255)
+    if values.dtype.kind == "f":
+        values = values.astype(np.float32)
+    if values.ndim != 3 or values.shape[2] not in _SIDES or 0 in values.shape or values.dtype not in _EXACT:
+        raise ParameterError(
+            f"{name} = {_shape(values)}: expected a picture (ny, nx), (ny, nx, 3) or (ny, nx, 4), top row "
+            "first: uint8, uint16, or floats from 0 to 1"
+        )
+    # A NaN is outside, too.
+    if values.dtype.kind == "f" and not (values.min() >= 0.0 and values.max() <= 1.0):
+        raise ParameterError(
+            f"{name}: numbers from {values.min():g} to {values.max():g}; a picture's floats are 0 to 1"
+        )
+    stream = io.BytesIO()
+    np.save(stream, np.ascontiguousarray(values), allow_pickle=False)
+    return _label(label), ".npy", stream.getvalue()
+
+
+def _label(name: str) -> str:
+    return re.sub(r"\W+", "_", name, flags=re.ASCII).strip("_")[:40] or "array"
+
+
+def _npz(arrays: Mapping[str, Any]) -> bytes:
+    stream = io.BytesIO()
+    # Rows as they lie in memory: in one order, so that the same numbers give the same bytes.
+    held: dict[str, Any] = {name: np.ascontiguousarray(value) for name, value in arrays.items()}
+    np.savez(stream, **held)
+    return stream.getvalue()
