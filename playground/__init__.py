@@ -44,6 +44,8 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.errors import SandboxTimeout as SandboxTimeout
     from playground.errors import ShaderError as ShaderError
     from playground.errors import SketchError as SketchError
+    from playground.notebook.show import compare as compare
+    from playground.notebook.show import widget as widget
     from playground.sketch.find import shipped_sketches as shipped_sketches
     from playground.sketch.load import load as load
     from playground.sketch.model import Camera as Camera
@@ -63,6 +65,7 @@ _NAMES = {
     "playground.engine.frame": "Frame",
     "playground.errors": "ContextError DataError ParameterError PlainFormWarning PlaygroundError "
     "PlaygroundWarning SandboxCrash SandboxError SandboxTimeout ShaderError SketchError",
+    "playground.notebook.show": "compare widget",
     "playground.sketch.find": "shipped_sketches",
     "playground.sketch.load": "load",
     "playground.sketch.model": "Camera Shot Sketch",

@@ -35,6 +35,7 @@ LAYERS = (
     ("capture", "templates"),
     ("flight",),
     ("shots",),
+    ("notebook",),
     ("web",),
     ("api",),
     ("engine",),

@@ -5,12 +5,19 @@ from __future__ import annotations
 import base64
 import gzip
 import hashlib
+import json
 from collections.abc import Mapping
+from typing import Any
 
 
 def packed(data: bytes) -> str:
     """Return bytes as packed.js unpacks them: gzip in base64; the same bytes give the same text."""
     return base64.b64encode(gzip.compress(data, compresslevel=9, mtime=0)).decode("ascii")
+
+
+def packed_json(data: Any) -> str:
+    """Return data as packed JSON; the same data give the same text."""
+    return packed(json.dumps(data, separators=(",", ":"), ensure_ascii=False).encode())
 
 
 def bytes_in_page(texts: Mapping[str, str]) -> int:

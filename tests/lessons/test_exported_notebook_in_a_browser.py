@@ -13,9 +13,9 @@ import pytest
 from nbclient import NotebookClient
 from nbconvert.exporters import HTMLExporter
 
-from playground.lessons.notebook.export import TerrainHTMLExporter
 from playground.lessons.read import read_lesson
 from playground.lessons.scenes import with_value
+from playground.notebook.export import TerrainHTMLExporter
 
 from ..report.browser import MISSING, Browser
 from .test_live_book_in_a_browser import LLVMPIPE, RIGHT, Recorder, drawn, picture

@@ -13,7 +13,7 @@ from playground.lessons import model
 from playground.lessons.book.blocks import Setting
 from playground.lessons.book.build import prepare, write_book
 from playground.lessons.book.live_blocks import beginning, block_data, lesson_data
-from playground.lessons.book.live_files import FEW, live_book, packed_json
+from playground.lessons.book.live_files import FEW, live_book
 from playground.lessons.book.live_scenes import Library, Scenes
 from playground.lessons.bugs import bug_region
 from playground.lessons.figure_renders import pictures_in
@@ -22,6 +22,7 @@ from playground.lessons.tasks.sentences import task_labels
 from playground.lessons.values import spelled_value
 from playground.sketch.assign import shown_parameters
 from playground.sketch.load import load
+from playground.web.blobs import packed_json
 from playground.web.plan import sketch_data
 from playground.web.shared import SharedData
 from playground.web.shown import row as row_data

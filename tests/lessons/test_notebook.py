@@ -101,7 +101,7 @@ def test_a_live_figure_is_not_drawn_here_as_well(opened):
     """Its browser draws; the values are there all the same, and can be set."""
     widget = opened.show("land")
     before = widget.picture
-    widget.live = True
+    widget.drawn_by = "browser"
     widget.values = {"height.smoothing": 0.05}
     assert widget.picture == before and widget.values == {"height.smoothing": 0.05}
 

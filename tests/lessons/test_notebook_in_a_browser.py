@@ -57,8 +57,7 @@ def shown(lesson, engine, monkeypatch, tmp_path):
             k: v for k, v in widget.get_state().items() if k in widget.keys and k not in ("picture", "layout")
         }
         keep = {
-            k: state[k]
-            for k in ("page", "language", "labels", "live", "alt", "controls", "values", "mistake")
+            k: state[k] for k in "page language labels kind drawn_by why alt controls values mistake".split()
         }
         folder = tmp_path / name
         folder.mkdir()
@@ -86,7 +85,7 @@ def test_a_saved_figure_is_live_without_a_kernel(shown, lesson, engine):
     scene, browser = lesson.named["land"].scene, shown("land")
     first = picture(browser, "land")
     np.testing.assert_array_equal(first, drawn(engine, scene, first))
-    assert browser.run("return model.get('live')") is True
+    assert browser.run("return model.get('drawn_by')") == "browser"
     browser.run("document.querySelector('#land .live input[type=range]').focus()")
     browser.press(*[RIGHT] * 5)
     value = browser.run("return model.get('values')['height.smoothing']")
@@ -114,4 +113,5 @@ def test_without_webgl_the_saved_picture_is_shown(shown, lesson, engine):
         "(document.querySelector('img')?.naturalWidth ? [document.querySelector('img').naturalWidth] : null)"
     )
     assert size == [draw(engine, lesson.named["land"].scene).array.shape[1]]
-    assert browser.run("return [model.get('live'), document.querySelectorAll('canvas').length]") == [False, 0]
+    assert browser.run("return model.get('drawn_by')") == "kernel"
+    assert browser.run("return document.querySelectorAll('canvas').length") == 0

@@ -13,6 +13,7 @@ TABLES = {
     "page_words.js": "PAGE_WORDS",
     "editor_words.js": "EDITOR_WORDS",
     "book_words.js": "BOOK_WORDS",
+    "notebook_words.js": "NOTEBOOK_WORDS",
 }
 FILES = {
     path: path.read_text("utf-8") for path in RUNTIME.glob("*.js") if not path.name.endswith("_words.js")

@@ -11,7 +11,6 @@ holds gzip in base64.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -22,7 +21,7 @@ from playground.lessons.book.live_scenes import Library, Scenes
 from playground.lessons.library import LANGUAGES
 from playground.lessons.model import Lesson, Named
 from playground.lessons.tasks.sentences import task_labels
-from playground.web.blobs import packed
+from playground.web.blobs import packed_json
 from playground.web.bundle import read_bundle
 
 BUNDLES = {"live.js": "book.js", "live.css": "book.css"}
@@ -96,11 +95,6 @@ def blobs_in(data: Any, library: Library) -> set[str]:
         return set()
     image = library.shared.images.data.get(data)
     return {image["blob"]} if image else {data} & library.shared.blobs.texts.keys()
-
-
-def packed_json(data: Any) -> str:
-    """Return data as packed JSON; the same data give the same text."""
-    return packed(json.dumps(data, separators=(",", ":"), ensure_ascii=False).encode())
 
 
 def script(name: str, text: str) -> str:

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import warnings
 from base64 import b64encode
-from collections.abc import Callable, Mapping
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cache
-from typing import Any, TypeVar
+from typing import Any
 
-from playground.api import headless
-from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.errors import PlaygroundWarning, SketchError, nearest
 from playground.images.picture_difference import SHARE, share_differing
@@ -30,28 +27,10 @@ from playground.lessons.tasks.tasks import checks_itself
 from playground.lessons.tasks.verdict import Verdict
 from playground.lessons.tasks.work import Work, scene_of, starter
 from playground.markup import tag
+from playground.notebook.engine_thread import on_engine
 from playground.paths import GLSL
 from playground.sketch.model import Value
 from playground.sketch.text_overrides import with_texts
-
-T = TypeVar("T")
-
-
-_THREAD = ThreadPoolExecutor(1, thread_name_prefix="lesson")
-
-
-@cache
-def _engine() -> Engine:
-    return headless()
-
-
-def on_engine(work: Callable[[Engine], T]) -> T:
-    """Run some work on the engine that all lessons of this process share, and return its result.
-
-    The engine has a thread of its own: a context draws in one thread only, and a notebook
-    answers its sliders in another than its cells run in.
-    """
-    return _THREAD.submit(lambda: work(_engine())).result()
 
 
 def open_lesson(name: str, language: str = SOURCE) -> NotebookLesson:

@@ -21,7 +21,7 @@ import { fill } from "./words.js";
  *  @property {any} plan
  *  @property {boolean} [looks]  whether its picture depends on the camera; true where it does not say
  *  @property {(onProgress?: (done: number, all: number) => void) => Promise<unknown>} load
- *  @property {() => unknown} render
+ *  @property {() => unknown} [render]  at once; only `renderSoon` where somebody else draws
  *  @property {() => Promise<unknown>} [renderSoon]  in pieces; null where a later one has overtaken it
  *  @property {(context: CanvasRenderingContext2D) => void} drawTo
  *  @property {(source: {path: string, output: string}) => any} read
@@ -108,7 +108,7 @@ export function createFigure(host, engine, page, options) {
     const scale = moving && !session.map ? quality.scale : 1;
     const size = map.size() ?? pixelsOf(box(), devicePixelRatio || 1, budget, scale);
     const live = pointer.live(size, playing);
-    Object.assign(to.state, session.state(), { frame: size, camera: framed(size), live });
+    Object.assign(to.state, session.state(), { frame: size, camera: framed(size), live, moving });
     return size;
   }
 
@@ -119,14 +119,14 @@ export function createFigure(host, engine, page, options) {
     const start = performance.now();
     again = begun !== null && !(overtaken && start - begun > PATIENT);
     if (again) return;
-    const late = Math.max(start - askedAt - FRAME, 0), inPieces = long && from.renderSoon;
+    const late = Math.max(start - askedAt - FRAME, 0), inPieces = (long || !from.render) && from.renderSoon;
     if (playing) advance(start);
     due = false;
     try {
       const size = takeState(from);
       if (inPieces) drawInPieces(from, size, start);
       else {
-        from.render();
+        from.render?.();
         show(from, size, start, late);
       }
     } catch (error) {

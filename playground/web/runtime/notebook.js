@@ -1,33 +1,80 @@
-// notebook.js -- the entry of a notebook's widget: a live figure, or pictures that the kernel draws.
+// notebook.js -- the entry of a notebook's widgets: live figures, or pictures that the kernel draws.
 //
-// Traits: those of notebook_live.js; `live` says to the kernel that nobody waits for its pictures. Without
-// widgets, as in HTML that was made of a notebook, `revive` makes a saved figure live.
+// A widget is of a block of a lesson or of sketches, as `kind` says; traits: those of notebook_live.js or
+// notebook_sketch.js. `drawn_by` says who draws. Without widgets, as in HTML that was made of a notebook,
+// `revive` makes a saved figure live.
 
 import "./with_all.js";
+import { make } from "./dom.js";
+import { lackOf } from "./lacks.js";
 import { renderLive } from "./notebook_live.js";
 import { renderPicture } from "./notebook_picture.js";
+import { renderSketch } from "./notebook_sketch.js";
+import { notebookWords } from "./notebook_words.js";
 
 export { revive } from "./notebook_saved.js";
 
-/** @param {{model: import("./notebook_live.js").Model, el: HTMLElement}} cell */
-async function render(cell) {
-  const { model, el } = cell, bytes = model.get("picture");
-  const url = URL.createObjectURL(new Blob([bytes], { type: "image/png" }));
+/** @typedef {{model: import("./notebook_live.js").Model, el: HTMLElement}} Cell */
+
+/** The picture of a model, as an address. @param {Cell} cell */
+const urlOf = ({ model }) =>
+  URL.createObjectURL(new Blob([model.get("picture")], { type: "image/png" }));
+
+/** A block of a lesson. @param {Cell} cell */
+async function renderBlock(cell) {
+  const { model, el } = cell;
+  let by = "kernel", close = () => {};
   if (model.get("page")) {
+    const url = urlOf(cell);
     try {
-      const close = await renderLive(cell, url);
-      model.set("live", true);
-      model.save_changes();
-      return () => {
-        close();
+      const end = await renderLive(cell, url);
+      by = "browser";
+      close = () => {
+        end();
         URL.revokeObjectURL(url);
       };
     } catch {
       el.replaceChildren(); // no WebGL2, or too little of it: the kernel draws
+      URL.revokeObjectURL(url);
     }
   }
-  URL.revokeObjectURL(url);
-  return renderPicture(cell);
+  if (by === "kernel") close = renderPicture(cell);
+  model.set("drawn_by", by);
+  model.save_changes();
+  return close;
 }
+
+/** Sketches; shown anew where Python shows others. @param {Cell} cell */
+async function renderSketches(cell) {
+  const { model, el } = cell;
+  let close = () => {}, number = 0;
+  async function show() {
+    const own = ++number, url = urlOf(cell);
+    close();
+    close = () => URL.revokeObjectURL(url);
+    try {
+      const end = await renderSketch(cell, url, true);
+      if (own === number) close = end;
+      else end();
+      URL.revokeObjectURL(url);
+    } catch (error) {
+      const sentence = lackOf(error, notebookWords(model.get("language")));
+      el.replaceChildren(make("img", { src: url, alt: model.get("alt") }),
+        make("p", { className: "mistake", role: "status" }, sentence));
+    }
+  }
+  const again = () => void show();
+  const events = ["change:page", "change:outline"];
+  for (const event of events) model.on(event, again);
+  await show();
+  return () => {
+    number++;
+    for (const event of events) model.off(event, again);
+    close();
+  };
+}
+
+/** @param {Cell} cell */
+const render = (cell) => (cell.model.get("kind") === "sketch" ? renderSketches(cell) : renderBlock(cell));
 
 export default { render };

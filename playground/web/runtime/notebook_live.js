@@ -10,6 +10,7 @@ import { createBookRecovery } from "./book_recovery.js";
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
+import { followTheme } from "./notebook_theme.js";
 import { unpackedJson } from "./packed.js";
 
 /** @typedef {import("./session.js").Session} Session */
@@ -104,9 +105,11 @@ export async function renderLive({ model, el }, url) {
   const engine = createEngine(document.createElement("canvas"), library, { bytes: BYTES });
   const host = make("div", { className: "live terrain-figure" }), still = stillOf(model, url);
   el.replaceChildren(host);
+  const unfollow = followTheme(host);
   const comma = /^fr/.test(language), watched = createBookRecovery(engine, language).watch(host);
   const room = { host, still, block, sketches, begin: null, engine, watched, words, comma };
   const close = () => {
+    unfollow();
     watched.end();
     engine.close();
   };

@@ -4,9 +4,10 @@ import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
 import { lackOf } from "./lacks.js";
 import { renderLive } from "./notebook_live.js";
+import { renderSketch } from "./notebook_sketch.js";
 
 /** What a widget had when its notebook was saved.
- *  @typedef {{page: string, language: string, labels: string[], alt: string,
+ *  @typedef {{kind?: string, page: string, language: string, labels: string[], alt: string,
  *             controls: Object<string, any>[], values: Object<string, number>}} Saved */
 
 /** A model as a widget has it, which nobody else listens to.
@@ -32,7 +33,9 @@ export async function revive(place, saved) {
   const image = /** @type {HTMLImageElement} */ (place.querySelector("img"));
   const words = bookWords(saved.language);
   try {
-    await renderLive({ model: modelOf({ ...saved }), el: place }, image.src);
+    const cell = { model: modelOf({ ...saved }), el: place };
+    if (saved.kind === "sketch") await renderSketch(cell, image.src, false);
+    else await renderLive(cell, image.src);
   } catch (error) {
     const sentence = make("p", { className: "mistake", role: "status" }, lackOf(error, words));
     place.replaceChildren(image, sentence);

@@ -22,7 +22,7 @@ from nbconvert.exporters import HTMLExporter
 from nbconvert.filters.markdown_mistune import IPythonRenderer, MarkdownWithMath
 from nbconvert.preprocessors import Preprocessor
 
-from playground.lessons.notebook.saved import (
+from playground.notebook.saved import (
     runtime_of,
     runtimes_in,
     saved_figure,
@@ -31,6 +31,11 @@ from playground.lessons.notebook.saved import (
 
 _VIEW = "application/vnd.jupyter.widget-view+json"
 _STATES = "application/vnd.jupyter.widget-state+json"
+_FIGURES = (
+    "notebook.widget.PictureWidget",
+    "notebook.sketch_widget.SketchWidget",
+    "notebook.sketch_widget.CompareWidget",
+)
 _SCRIPTED = ("application/javascript", "text/latex", "text/vnd.mermaid")  # by scripts from a network
 _TEMPLATE = """{%- extends 'index.html.j2' -%}
 {%- block html_head_js_requirejs -%}
@@ -155,8 +160,8 @@ def _outputs(nb: Any) -> Iterator[tuple[int, Any]]:
 
 
 def _is_figure(model: Mapping[str, Any]) -> bool:
-    """Whether a saved widget is one of a lesson's figures."""
-    return str(model.get("state", {}).get("_anywidget_id", "")).endswith("notebook.widget.PictureWidget")
+    """Whether a saved widget is a figure: of a lesson, or of sketches."""
+    return str(model.get("state", {}).get("_anywidget_id", "")).endswith(_FIGURES)
 
 
 def _shown(model: Mapping[str, Any]) -> bool:

@@ -20,14 +20,21 @@ from typing import Any
 
 from PIL import Image
 
-from playground.lessons.book.live_files import packed_json
-from playground.lessons.library import interface_labels
 from playground.markup import Markup, tag
+from playground.web.blobs import packed_json
 from playground.web.bundle import read_bundle
 
-STATE = ("page", "language", "labels", "alt", "controls", "values")
-"""The widget's traits that a live figure needs."""
+STATE = (
+    *("kind", "page", "language", "alt", "values"),
+    *("labels", "controls"),  # of a lesson's block
+    *("sides", "names", "rows", "swipe", "size", "left", "right", "camera", "time"),  # of sketches
+)
+"""The traits that a live figure needs, of those that its widget has."""
 
+_STILL = {
+    "en": "This figure stands still, because it cannot be started here: {reason}",
+    "fr": "Cette figure reste fixe, car elle ne peut pas être lancée ici : {reason}",
+}
 _QUALITY = 85  # of WebP
 _RUNTIME = re.compile(r'<script type="application/gzip" data-terrain-runtime="(\w+)">[\w+/=]*</script>')
 
@@ -58,7 +65,7 @@ def shipped_runtime() -> Runtime:
 
 
 def saved_figure(state: Mapping[str, Any], png: bytes, runtime: Runtime) -> Markup:
-    """Return a figure as HTML: ``state`` has the traits that ``STATE`` names, ``png`` is its picture."""
+    """Return a figure as HTML: ``state`` has a widget's traits, ``png`` is its picture."""
     picture = Image.open(io.BytesIO(png)).convert("RGB")
     stream = io.BytesIO()
     picture.save(stream, "WEBP", quality=_QUALITY, method=4)
@@ -70,7 +77,7 @@ def saved_figure(state: Mapping[str, Any], png: bytes, runtime: Runtime) -> Mark
         height=picture.height,
         style="max-width:100%;height:auto",
     )
-    kept = packed_json({name: state[name] for name in STATE})
+    kept = packed_json({name: state[name] for name in STATE if name in state})
     return tag(
         "div",
         tag("div", image),
@@ -78,7 +85,7 @@ def saved_figure(state: Mapping[str, Any], png: bytes, runtime: Runtime) -> Mark
         runtime.element,
         tag("script", Markup(_script())),
         data_terrain_saved=runtime.key,
-        data_still=interface_labels(state["language"])("still_here", reason="{reason}"),
+        data_still=_STILL["fr" if state["language"].startswith("fr") else "en"],
     )
 
 

@@ -1,0 +1,95 @@
+"""What a notebook calls: a sketch as an interactive picture, and two to be compared."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from playground.engine.engine import opened
+from playground.errors import DataError
+from playground.sketch.model import Sketch
+from playground.sketch.values import spell
+
+if TYPE_CHECKING:
+    from playground.notebook.sketch_widget import CompareWidget, SketchWidget
+
+_FEW = 2  # values that name a picture
+
+
+def widget(
+    sketch: Sketch | str | Path = "",
+    *,
+    size: tuple[int, int] = (640, 360),
+    sliders: Sequence[str] | None = None,
+    draws: str = "auto",
+    time: float = 0.0,
+    language: str = "en",
+) -> SketchWidget:
+    """Return an interactive picture for a notebook: sliders, orbit, playing time.
+
+    ``sketch`` is a loaded one or what ``load`` takes; ``size`` in pixels; ``sliders`` are the paths of the
+    parameters under the picture, by default those that the sketch is about; ``draws`` is "browser", "kernel",
+    or "auto": the browser where it can; ``time`` in seconds; ``language`` is "en" or "fr". Raises
+    ``PlaygroundError`` for any mistake in the sketch, and ``DataError`` without the extra ``notebook``.
+    """
+    try:
+        from playground.notebook.sketch_widget import SketchWidget
+    except ModuleNotFoundError as error:
+        raise _needed(error) from None
+    given = [opened(sketch)]
+    return SketchWidget(given, size=size, sliders=sliders, draws=draws, time=time, language=language)
+
+
+def compare(
+    a: Sketch | str | Path | Mapping[str, object],
+    b: Sketch | str | Path | Mapping[str, object],
+    *,
+    sketch: Sketch | str | Path = "",
+    swipe: bool = False,
+    names: tuple[str, str] | None = None,
+    size: tuple[int, int] = (640, 360),
+    sliders: Sequence[str] | None = None,
+    draws: str = "auto",
+    time: float = 0.0,
+    language: str = "en",
+) -> CompareWidget:
+    """Return two pictures for a notebook, seen by one camera at one time.
+
+    ``a`` and ``b`` are sketches, or values by path of ``sketch``. ``swipe`` puts one picture over the other,
+    with a line between them to move. ``names`` are written under the pictures. A slider of what is the same
+    in both moves both; what differs has a slider for each. The rest, and what is raised: as ``widget``.
+    """
+    try:
+        from playground.notebook.sketch_widget import CompareWidget
+    except ModuleNotFoundError as error:
+        raise _needed(error) from None
+    sketches = [
+        opened(sketch).with_values(one) if isinstance(one, Mapping) else opened(one) for one in (a, b)
+    ]
+    named = [_name(*of) for of in zip((a, b), sketches, ("A", "B"), strict=True)]
+    return CompareWidget(
+        sketches,
+        names=list(names or named),
+        swipe=swipe,
+        size=size,
+        sliders=sliders,
+        draws=draws,
+        time=time,
+        language=language,
+    )
+
+
+def _name(given: object, sketch: Sketch, letter: str) -> str:
+    if isinstance(given, Mapping):
+        found = ", ".join(f"{path} = {spell(value)}" for path, value in given.items())
+        return found if 0 < len(given) <= _FEW else letter
+    return f"{letter}: {sketch.title or sketch.name}"
+
+
+def _needed(error: ModuleNotFoundError) -> DataError:
+    """Return what to say of a missing module; raise the error itself for one that no extra brings."""
+    if error.name not in ("anywidget", "traitlets"):
+        raise error
+    advice = "pip install 'terrain-shader-playground[notebook]'"
+    return DataError(f"a widget needs {error.name}, which is not installed: {advice}")
