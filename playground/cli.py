@@ -31,6 +31,7 @@ from playground.commands import (
     library,
     listing,
     live,
+    lsp,
     new,
     options,
     pack,
@@ -195,6 +196,7 @@ app.command("render", help=render.HELP)(render.render)
 app.command("fly", help=fly.HELP)(fly.fly)
 app.command("export", help=export.HELP)(export.export)
 app.command("check", help=check.HELP)(check.check)
+app.command("lsp", help=lsp.HELP)(lsp.lsp)
 app.command("reduce", help=reduce.HELP)(reduce.reduce)
 app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)

@@ -27,7 +27,7 @@ LAYERS = (
     ("commands",),
     ("terminal",),
     ("signals", "streams"),
-    ("live",),
+    ("live", "lsp"),
     ("remote",),
     ("workbench",),
     ("lessons",),

@@ -42,7 +42,8 @@ SKETCH_KEYS = frozenset(toml_keys.SKETCH.keys() - toml_keys.TECHNIQUE.keys())
 """What a sketch's TOML may hold and a technique's may not."""
 
 _PAIRS = {"size": "a whole number of texels, or [x, y]", "extent": "metres, or [east, north]"}
-_DEFAULT_VIEW = "view/terrain"
+DEFAULT_VIEW = "view/terrain"
+"""What gives the frame where [view] does not say."""
 _PLAIN_VIEW = "view/map"  # of a sketch without [view]: its last pass from above
 
 
@@ -111,7 +112,7 @@ def _view(file: TomlFile, passes: tuple[PassSpec, ...], read: Read) -> tuple[Pas
         inputs = (("shown", passes[-1].name),)
         return PassSpec("view", _PLAIN_VIEW, technique, inputs, file=shown(file.path)), Camera(), 4
     file.only(table, toml_keys.VIEW, "view")
-    spec = read_pass(file, {"use": _DEFAULT_VIEW, **table}, ("view",), "view", read)
+    spec = read_pass(file, {"use": DEFAULT_VIEW, **table}, ("view",), "view", read)
     return spec, read_camera(file, table, Camera(), ("view",)), _samples(file, table, 4, ("view",))
 
 

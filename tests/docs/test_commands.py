@@ -44,6 +44,7 @@ NOT_RUN = {
     r"mkdocs .*": "serves until it is stopped, or is built by test_site.py",
     r"playground shots review.*": "serves until it is stopped: tests/report/test_review.py",
     r"playground shots accept .*": "needs a shot that failed: tests/report/test_accept.py",
+    r"playground lsp.*": "serves until its editor ends: tests/lsp",
     r"playground live -": "reads a pipe or the clipboard: tests/live/test_window_paste.py",
     r"playground reduce my-land --shot morning": "needs a reference that fails: tests/reduce/test_reduce.py",
     r"playground reduce my-land --against .*": "takes minutes: test_two_environments_that_differ does it",

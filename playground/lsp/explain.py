@@ -1,0 +1,215 @@
+"""Hover, go to definition, and the symbols of a file."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from lsprotocol import types
+
+from playground.errors import PlaygroundError
+from playground.lsp import describe
+from playground.lsp.documents import Document, Documents, Text
+from playground.lsp.shader import include_at, is_code, library_declared, shader_of, word_at
+from playground.lsp.sketch_text import SketchText
+from playground.paths import GLSL, shown
+from playground.sketch import toml_keys
+from playground.sketch.header import title_of
+from playground.sketch.outline import locals_of, outline
+from playground.sketch.reserved_names import DRIVER_BOUND, RESERVED
+from playground.sketch.source import find_include, read_source, read_text
+from playground.sketch.toml_places import Pair, Place
+from playground.sketch.wiring import inner
+
+_SYMBOLS = {
+    "function": types.SymbolKind.Function,
+    "struct": types.SymbolKind.Struct,
+    "variable": types.SymbolKind.Constant,
+    "uniform": types.SymbolKind.Variable,
+    "macro": types.SymbolKind.Constant,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A place that something leads to."""
+
+    path: Path
+    start: int
+    end: int
+
+
+# ── shaders ──────────────────────────────────────────────────────────────────
+
+
+def hover_shader(document: Document, documents: Documents, at: int) -> str:
+    """Return what is known of what stands at a place of a shader, as Markdown; "" for nothing."""
+    if include := include_at(document.text, at):
+        with documents.reading():
+            found = find_include(include.name, document.path, (document.root,))
+            if found is None:
+                return ""
+            try:
+                title = title_of(read_source(found, (document.root,)))
+            except PlaygroundError:
+                title = ""
+            return "\n\n".join(filter(None, [f"*{shown(found)}*", title]))
+    word, start = word_at(document.text, at)
+    if not word:
+        return ""
+    if not is_code(document.text, start):
+        return ""
+    shader = shader_of(document, documents)
+    function = shader.function_at(start)
+    if function is not None and word in (inside := locals_of(document.text, function)):
+        row = document.position(inside[word][0]).line
+        return describe.code(document.lines[row].strip())
+    if (parameter := shader.parameter(word)) is not None:
+        return describe.parameter(parameter)
+    if shader.is_kernel and word in (given := shader.given):
+        glsl_type, meaning = given[word]
+        brackets = "()" if word in RESERVED or word.startswith("previous") else ""
+        return f"{describe.code(f'{glsl_type} {word}{brackets}')}\n\n{meaning}"
+    found_here = [(path, one) for path, _, one in shader.declared() if one.name == word]
+    found_here.sort(key=lambda item: item[1].is_prototype)
+    if found_here:
+        return "\n\n---\n\n".join(describe.declared(one, path) for path, one in found_here[:4])
+    if word in DRIVER_BOUND and shader.is_kernel:
+        return f"A kernel may not use `{word}`: {DRIVER_BOUND[word]}"
+    for file, one in library_declared().get(word, ())[:1]:
+        return f'{describe.declared(one, GLSL / file)}\n\nneeds `#include "{file}"`'
+    return ""
+
+
+def define_shader(document: Document, documents: Documents, at: int) -> Target | None:
+    """Return where what stands at a place of a shader is declared: a file, or a name in one."""
+    if include := include_at(document.text, at):
+        with documents.reading():
+            found = find_include(include.name, document.path, (document.root,))
+        return Target(found, 0, 0) if found is not None else None
+    word, start = word_at(document.text, at)
+    if not word or not is_code(document.text, start):
+        return None
+    place = shader_of(document, documents).find(word, start)
+    return Target(place.path, place.at, place.at + place.length) if place is not None else None
+
+
+def symbols_of_shader(document: Document) -> list[types.DocumentSymbol]:
+    """Return what a shader declares."""
+    found = []
+    for one in outline(document.text):
+        whole = document.range(one.start, max(one.end, one.at + len(one.name)))
+        name = document.range(one.at, one.at + len(one.name))
+        found.append(
+            types.DocumentSymbol(one.name, _SYMBOLS[one.kind], whole, name, detail=one.signature[:120])
+        )
+    return found
+
+
+# ── sketches ─────────────────────────────────────────────────────────────────
+
+
+def hover_sketch(document: Document, documents: Documents, at: int) -> str:
+    """Return what is known of what stands at a place of a sketch, as Markdown; "" for nothing."""
+    with documents.reading():
+        sketch = SketchText(document)
+        place, pair = _pair_at(sketch, at)
+        if pair is None:
+            name = _header_at(document, sketch, at)
+            return (toml_keys.SKETCH | toml_keys.TECHNIQUE).get(name, "")
+        table, keys = _parted(place)
+        if keys[:1] == ("set",) and len(keys) > 1:
+            parameter = sketch.parameter(table, ".".join(keys[1:]))
+            return describe.parameter(parameter) if parameter is not None else ""
+        if keys == ("use",) and at >= pair.value:
+            technique = sketch.technique(table)
+            return describe.technique(sketch.value(place), technique) if technique is not None else ""
+        if keys[:1] == ("inputs",) and len(keys) > 1 and at >= pair.value:
+            name = sketch.value(place).partition(":")[0].partition(".")[0]
+            technique = sketch.technique_of(name)
+            return describe.technique(name, technique) if technique is not None else ""
+        head = str(table[0]) if table else ""
+        known = toml_keys.TABLES.get(head, {}) if head else toml_keys.SKETCH | toml_keys.TECHNIQUE
+        if keys[:1] == ("camera",) and len(keys) > 1:
+            return toml_keys.CAMERA.get(keys[1], "")
+        return known.get(keys[0], "") if len(keys) == 1 else ""
+
+
+def define_sketch(document: Document, documents: Documents, at: int) -> Target | None:
+    """Return where what stands at a place of a sketch is: a technique's file, a pass, a parameter."""
+    with documents.reading():
+        sketch = SketchText(document)
+        place, pair = _pair_at(sketch, at)
+        if pair is None:
+            return None
+        table, keys = _parted(place)
+        if keys == ("use",):
+            technique = sketch.technique(table)
+            return Target(Path(technique.path), 0, 0) if technique is not None else None
+        if keys[:1] == ("inputs",) and len(keys) > 1 and at >= pair.value:
+            where = sketch.value(place).partition(":")[0]
+            head, _, rest = where.partition(".")
+            if rest and (technique := sketch.technique_of(head)) is not None:
+                found = inner(technique, rest)
+                return Target(Path(found.path), 0, 0) if found is not None else None
+            return _table_target(document, sketch, sketch.names("pass").get(head))
+        if keys == ("preset",):
+            return _table_target(document, sketch, sketch.names("preset").get(sketch.value(place)))
+        if keys[:1] == ("set",) and len(keys) > 1:
+            parameter = sketch.parameter(table, ".".join(keys[1:]))
+            if parameter is not None and parameter.file:
+                return _line_target(Path(parameter.file), parameter.line, parameter.name)
+        return None
+
+
+def symbols_of_sketch(document: Document) -> list[types.DocumentSymbol]:
+    """Return the tables of a sketch by their names."""
+    sketch = SketchText(document)
+    found = []
+    headers = sketch.places.headers
+    tables = [place for place in sketch.places.bodies if place]
+    for header, place in zip(headers, tables, strict=False):
+        end = sketch.places.bodies[place]
+        name = sketch.value((*place, "name"))
+        title = f"{header.keys[0]} {name}".strip()
+        start = header.start
+        line = document.text.find("\n", start)
+        whole = document.range(start, max(end, start + 1))
+        head = document.range(start, min(line if line >= 0 else len(document.text), max(end, start + 1)))
+        found.append(types.DocumentSymbol(title, types.SymbolKind.Object, whole, head))
+    return found
+
+
+def _pair_at(sketch: SketchText, at: int) -> tuple[Place, Pair | None]:
+    """Return the innermost key and value that a place is in."""
+    around = [(place, pair) for place, pair in sketch.places.pairs.items() if pair.key <= at <= pair.end]
+    return max(around, key=lambda item: item[1].key, default=((), None))
+
+
+def _parted(place: Place) -> tuple[Place, tuple[str, ...]]:
+    """Return a place's table, one with a header, and the keys in it."""
+    size = 0
+    if place and place[0] in toml_keys.LISTS:
+        size = 2
+    elif len(place) > 1 and place[0] == "view":
+        size = 1
+    return place[:size], tuple(str(key) for key in place[size:])
+
+
+def _header_at(document: Document, sketch: SketchText, at: int) -> str:
+    row = document.position(at).line
+    rows = {document.position(header.start).line: header.keys[0] for header in sketch.places.headers}
+    return rows.get(row, "")
+
+
+def _table_target(document: Document, sketch: SketchText, table: Place | None) -> Target | None:
+    pair = sketch.places.pairs.get((*table, "name")) if table is not None else None
+    return Target(document.path, pair.key, pair.end) if pair is not None else None
+
+
+def _line_target(path: Path, line: int, name: str) -> Target:
+    """Return a name on a line of a file, counted from 1."""
+    text = Text(read_text(path), len)
+    start = text.line_start(line - 1)
+    found = text.text.find(name, start)
+    return Target(path, max(found, start), max(found, start) + len(name))

@@ -1,0 +1,300 @@
+"""Rename a name where that is safe, in a function or in every file that can see it; else say why not.
+
+A function's own name changes in that function alone. One of the top level changes in every shader that
+includes the file, and in what those include; a parameter's in the sketches and techniques that set it, too.
+What is outside the open folders is never changed, so a name that is used there is refused. Before anything
+is given to the editor, the shaders and sketches are read with the new texts: what could be read before
+must be readable still.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+from lsprotocol import types
+
+from playground.errors import PlaygroundError
+from playground.lsp.documents import Document, Documents, root_for
+from playground.lsp.rename_toml import Edit, edits_in_toml
+from playground.lsp.shader import Shader, is_code, shader_at, shader_of, word_at
+from playground.paths import shown
+from playground.sketch.allowed_files import FAST, SHADERS, is_file, names_below, reading_unsaved
+from playground.sketch.header import parse_kernel
+from playground.sketch.load import load_with
+from playground.sketch.outline import code_of, locals_of, outline, words
+from playground.sketch.reserved_names import GLSL_WORDS, MATCHES, PREFIX, TOWARDS, WIRED
+from playground.sketch.source import read_source, read_text
+from playground.sketch.techniques import Techniques
+from playground.sketch.uniforms import is_given
+
+_NAME = re.compile(r"[A-Za-z_]\w*", re.ASCII)
+_ENTRIES = frozenset({"main", "mainImage", "mainVR", "mainSound"})
+_PRAGMA = re.compile(
+    r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|draw|compute)\b(?:[^\n\\]|\\\n|\\[^\n])*", re.MULTILINE
+)
+_FOLLOWS = re.compile(r"//![^\n]*\bfollows\(([^)\n]*)\)")
+
+
+class Refused(Exception):
+    """Why a name is not renamed, in a sentence."""
+
+
+def prepare(document: Document, documents: Documents, at: int) -> types.Range:
+    """Return where the name at a place is; raise ``Refused`` where it cannot be renamed."""
+    name, start = _word(document, at)
+    shader = shader_of(document, documents)
+    if _local(shader, name, start) is None:
+        _top_level(shader, name)
+    return document.range(start, start + len(name))
+
+
+def rename(document: Document, documents: Documents, at: int, new: str) -> dict[Path, list[Edit]]:
+    """Return the edits, by file, that rename what is at a place; raise ``Refused`` where that is not safe."""
+    name, start = _word(document, at)
+    _check_new(new)
+    if new == name:
+        return {}
+    shader = shader_of(document, documents)
+    places = _local(shader, name, start)
+    if places is not None:
+        function = shader.function_at(start)
+        assert function is not None
+        inside = {word for word, at in words(document.text) if function.start <= at < function.end}
+        if new in inside:
+            raise Refused(f"'{new}' is a name of this function already")
+        return {document.path: [(place, place + len(name), new) for place in places]}
+    _top_level(shader, name)
+    found = _Everywhere(document, documents, shader, name, new).edits()
+    return {path: sorted(edits) for path, edits in found.items() if edits}
+
+
+def _word(document: Document, at: int) -> tuple[str, int]:
+    name, start = word_at(document.text, at)
+    if not name or not is_code(document.text, start):
+        raise Refused("there is no name here that can be renamed")
+    if name in GLSL_WORDS:
+        raise Refused(f"'{name}' is a word of GLSL itself")
+    if start and document.text[start - 1] == ".":
+        raise Refused(f"'{name}' is a component or a struct's member; those are not renamed")
+    return name, start
+
+
+def _check_new(new: str) -> None:
+    if not _NAME.fullmatch(new):
+        raise Refused(f"'{new}' is no name: letters, digits and _, and no digit first")
+    if is_given(new):
+        raise Refused(f"'{new}' is given to every kernel")
+    if new in GLSL_WORDS or new in _ENTRIES:
+        raise Refused(f"'{new}' is a word of GLSL itself")
+    if new.startswith((PREFIX, "gl_")) or "__" in new:
+        raise Refused(f"'{new}': names that begin with {PREFIX} or gl_, or hold __, are reserved")
+
+
+def _local(shader: Shader, name: str, start: int) -> list[int] | None:
+    """Return the places of a name that a function declares; None for one of the top level."""
+    function = shader.function_at(start)
+    if function is None or start == function.at or name not in locals_of(shader.text, function):
+        return None
+    for path, text, one in shader.declared():
+        if one.name == name:
+            line = text.count("\n", 0, one.at) + 1
+            raise Refused(f"'{name}' is also declared at {shown(path)}:{line}, which this function hides")
+    return [
+        place
+        for word, place in words(shader.text)
+        if word == name and function.start <= place < function.end and not _is_member(shader.text, place)
+    ]
+
+
+def _is_member(text: str, place: int) -> bool:
+    return text[:place].rstrip(" \t").endswith(".")
+
+
+def _top_level(shader: Shader, name: str) -> None:
+    """Raise ``Refused`` for a name that no text of the shader declares, or that is not its to change."""
+    if is_given(name) or name in _ENTRIES:
+        raise Refused(f"'{name}' is what the playground gives or calls; its name is fixed")
+    if any(one.name == name for one in shader.inputs):
+        raise Refused(f"'{name}' is an input: sketches that wire it name it, so it is not renamed here")
+    if not any(one.name == name for _, _, one in shader.declared()):
+        raise Refused(f"no file that this one includes declares '{name}'")
+
+
+class _Everywhere:
+    """A name of the top level, in every file that can see it."""
+
+    def __init__(self, document: Document, documents: Documents, shader: Shader, name: str, new: str) -> None:
+        self.documents = documents
+        self.name, self.new = name, new
+        self.parameter = shader.parameter(name)
+        around = [folder for folder in documents.folders if document.path.is_relative_to(folder)]
+        self.folder = around[0] if around else document.root
+        self.shader = shader
+        self.shaders: dict[Path, Shader] = {}
+
+    def edits(self) -> dict[Path, list[Edit]]:
+        users = self._users()
+        texts: dict[Path, str] = {}
+        for user in users:
+            texts |= dict(user.files)
+        found = {path: self._in_shader(path, text) for path, text in texts.items()}
+        found = {path: edits for path, edits in found.items() if edits}
+        for path, edits in found.items():
+            if not self._is_ours(path):
+                what = "is declared" if self._declares(texts[path]) else "is used"
+                raise Refused(f"'{self.name}' {what} in {shown(path)}, which is not in the open folder")
+            self._check(path, texts[path], bool(edits))
+        for user in users:
+            for path, text in user.files:
+                if any(word == self.new for word, _ in words(text)):
+                    raise Refused(f"'{self.new}' is a name in {shown(path)} already")
+        if self.parameter is not None:
+            for path, edits in self._in_sketches(found).items():
+                found[path] = edits
+        self._verify(found, users)
+        return found
+
+    def _users(self) -> list[Shader]:
+        """Return every shader that reads a file in which the name would change."""
+        everything = [self.shader, *(self._shader(path) for path in self._files(SHADERS))]
+        changed = {path for path, text in self.shader.files if self._names(text)}
+        while True:
+            users = [s for s in everything if any(path in changed for path, _ in s.files)]
+            wider = {path for s in users for path, text in s.files if self._names(text)}
+            if wider <= changed:
+                return users
+            changed |= wider
+
+    def _shader(self, path: Path) -> Shader:
+        if path not in self.shaders:
+            with self.documents.reading():
+                try:
+                    text = read_text(path)
+                except PlaygroundError:
+                    text = ""
+            self.shaders[path] = shader_at(path, text, root_for(path), self.documents)
+        return self.shaders[path]
+
+    def _files(self, endings: tuple[str, ...]) -> list[Path]:
+        names = names_below((self.folder,), endings)
+        known = {self.folder / name for name in names} | {one.path for one in self.documents}
+        return sorted(path for path in known if path.name.endswith(endings) and path != self.shader.path)
+
+    def _is_ours(self, path: Path) -> bool:
+        return path.is_relative_to(self.folder) or self.documents.is_open_folder(path)
+
+    def _names(self, text: str) -> bool:
+        return self.name in text and any(word in self._old for word, _ in words(text))
+
+    @property
+    def _old(self) -> dict[str, str]:
+        """What changes: name → new name; of a parameter that is a direction, the vector towards it too."""
+        found = {self.name: self.new}
+        if self.parameter is not None:
+            found |= {f"{prefix}{self.name}": f"{prefix}{self.new}" for prefix in (TOWARDS, WIRED, MATCHES)}
+        return found
+
+    def _declares(self, text: str) -> bool:
+        return any(one.name == self.name for one in outline(text))
+
+    def _in_shader(self, path: Path, text: str) -> list[Edit]:
+        members = [one for one in outline(text) if one.kind == "struct"]
+        code = code_of(text)
+        found = []
+        for word, place in words(text):
+            new = self._old.get(word)
+            if new is None or _is_member(text, place):
+                continue
+            after = code[place + len(word) :].lstrip()[:1]
+            if after in tuple(";,[") and any(one.body < place < one.end for one in members):
+                continue  # a struct's member of that name
+            found.append((place, place + len(word), new))
+        if self.parameter is not None:
+            found += self._in_texts(text)
+        return found
+
+    def _in_texts(self, text: str) -> list[Edit]:
+        """Return the edits in a pragma's expressions, and in annotations that follow the parameter."""
+        found = []
+        for match in (*_PRAGMA.finditer(text), *_FOLLOWS.finditer(text)):
+            for word in re.finditer(rf"(?<![\w.]){self.name}\b(?!\s*[:=])", match[0]):
+                if match[0].count('"', 0, word.start()) % 2:
+                    start = match.start() + word.start()
+                    found.append((start, start + len(self.name), self.new))
+        return found
+
+    def _check(self, path: Path, text: str, is_changed: bool) -> None:
+        for one in outline(text):
+            places = locals_of(text, one).get(self.name) if one.kind == "function" and one.body >= 0 else None
+            if places:
+                line = text.count("\n", 0, places[0]) + 1
+                raise Refused(f"'{self.name}' is hidden by another of that name at {shown(path)}:{line}")
+        if is_changed and self.parameter is not None:
+            for ending in FAST:
+                variant = path.with_name(f"{path.stem}{ending}")
+                if path.suffix == ".glsl" and is_file(variant):
+                    raise Refused(
+                        f"{shown(variant)} has the parameters of {path.name}, '{self.name}' among them"
+                    )
+
+    def _in_sketches(self, changed: Iterable[Path]) -> dict[Path, list[Edit]]:
+        assert self.parameter is not None
+        found: dict[Path, list[Edit]] = {}
+        files = set(changed)
+        with self.documents.reading():
+            for path in self._files((".toml",)):
+                try:
+                    document = self.documents.at(path) or self._unopened(path)
+                except PlaygroundError:
+                    continue
+                if document.is_ours and (
+                    edits := edits_in_toml(document, self.parameter, files, self.name, self.new)
+                ):
+                    found[path] = edits
+        return found
+
+    def _unopened(self, path: Path) -> Document:
+        return Document(read_text(path), self.documents.units, "", path, None)
+
+    def _verify(self, found: Mapping[Path, list[Edit]], users: list[Shader]) -> None:
+        """Raise ``Refused`` where something that can be read now could not be read with the edits."""
+        open_texts = {document.path: document.text for document in self.documents}
+        with self.documents.reading():
+            new = {path: _edited(read_text(path), edits) for path, edits in found.items()}
+        tomls = self._files((".toml",)) if self.parameter is not None else []
+        before = {path: why for path in tomls if (why := _load(path, open_texts)) is not None}
+        for path in tomls:
+            if path not in before and (why := _load(path, {**open_texts, **new})) is not None:
+                raise Refused(f"{shown(path)} could not be read any more: {why}")
+        for user in users:
+            if _parse(user, open_texts) is None and (why := _parse(user, {**open_texts, **new})) is not None:
+                raise Refused(f"{shown(user.path)} could not be read any more: {why}")
+
+
+def _load(path: Path, texts: Mapping[Path, str]) -> str | None:
+    """Return why a sketch cannot be loaded; None where it can, and for what is none."""
+    with reading_unsaved(texts):
+        try:
+            if not Document(read_text(path), len, "", path, None).is_ours:
+                return None
+            load_with(Techniques(), path)
+        except PlaygroundError as error:
+            return error.diagnostics[0].message
+    return None
+
+
+def _parse(shader: Shader, texts: Mapping[Path, str]) -> str | None:
+    with reading_unsaved(texts):
+        try:
+            parse_kernel("", read_source(shader.path, (shader.root,)))
+        except PlaygroundError as error:
+            return error.diagnostics[0].message
+    return None
+
+
+def _edited(text: str, edits: Iterable[Edit]) -> str:
+    for start, end, new in sorted(edits, reverse=True):
+        text = text[:start] + new + text[end:]
+    return text

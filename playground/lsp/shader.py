@@ -1,0 +1,207 @@
+"""What a shader's text names, and where: includes, parameters, functions, the names that a kernel is given.
+
+Texts are half typed most of the time. What cannot be read is left out, and the rest is still known.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from playground.errors import PlaygroundError
+from playground.gpu.name_suggestions import library
+from playground.lsp.documents import Document, Documents
+from playground.paths import GLSL
+from playground.sketch.header import parse_kernel
+from playground.sketch.model import Input, Kernel, Parameter
+from playground.sketch.outline import WORD, Declared, code_of, locals_of, outline
+from playground.sketch.reserved_names import GIVEN, MATCHES, SKIPS, TOWARDS, WIRED
+from playground.sketch.source import SourceText, find_include, read_source, read_text
+from playground.sketch.uniforms import read_uniforms
+
+_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[\"<]([^\">\n]*)", re.MULTILINE)
+_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(kernel|source|draw|compute)\b", re.MULTILINE)
+
+
+@dataclass(frozen=True, slots=True)
+class Include:
+    """An ``#include`` of a text."""
+
+    name: str
+    start: int  # of the name
+    end: int
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A name's declaration."""
+
+    path: Path
+    text: str  # of that file
+    at: int
+    length: int
+
+
+@dataclass(frozen=True)
+class Shader:
+    """What is known of a shader's text with its includes."""
+
+    path: Path
+    text: str
+    root: Path
+    files: tuple[tuple[Path, str], ...]  # every file read with its text, the shader's own first
+    parameters: tuple[Parameter, ...] = ()
+    inputs: tuple[Input, ...] = ()
+    kernel: Kernel | None = None  # None where its header cannot be read, and for a library file
+
+    @property
+    def is_kernel(self) -> bool:
+        """Whether its text has a pragma, so that it is given names."""
+        return bool(_PRAGMA.search(self.text))
+
+    @property
+    def given(self) -> dict[str, tuple[str, str]]:
+        """What a kernel is given: name → (type, meaning)."""
+        found = dict(GIVEN)
+        for one in self.inputs:
+            found[f"{WIRED}{one.name}"] = ("bool", f"whether anything is wired to the input '{one.name}'")
+            meaning = f"whether the input '{one.name}' is wired and has the size of this pass"
+            found[f"{MATCHES}{one.name}"] = ("bool", meaning)
+        for parameter in self.parameters:
+            if parameter.widget.kind == "direction":
+                meaning = f"the unit vector towards '{parameter.name}': east, north, up"
+                found[f"{TOWARDS}{parameter.name}"] = ("vec3", meaning)
+        outputs = self.kernel.outputs if self.kernel is not None else ()
+        for output in outputs if self.kernel is not None and self.kernel.kind == "kernel" else ():
+            name = "previous" if len(outputs) == 1 else f"previous_{output.name}"
+            meaning = "the texel of the step before, clamped to the edge: a function of ivec2"
+            found[name] = (output.glsl, meaning)
+        found[SKIPS] = ("bool", "a function: true in what a software renderer draws first of a kernel")
+        return found
+
+    def declared(self) -> Iterator[tuple[Path, str, Declared]]:
+        """Yield what its files declare at their top level: file, its text, what is declared."""
+        for path, text in self.files:
+            for one in outline(text):
+                yield path, text, one
+
+    def parameter(self, name: str) -> Parameter | None:
+        """Return a parameter by its name."""
+        return next((one for one in self.parameters if one.name == name), None)
+
+    def find(self, name: str, at: int) -> Place | None:
+        """Return where a name is declared that the text has at a place; None where it is not known."""
+        function = self.function_at(at)
+        if function is not None:
+            places = locals_of(self.text, function).get(name)
+            if places:
+                before = [place for place in places if place <= at]
+                return Place(self.path, self.text, before[-1] if before else places[0], len(name))
+        for prefix in (WIRED, MATCHES, TOWARDS):
+            if name.startswith(prefix) and name in self.given:
+                name = name.removeprefix(prefix)
+        found = [(path, text, one) for path, text, one in self.declared() if one.name == name]
+        found.sort(key=lambda item: item[2].is_prototype)
+        if found:
+            path, text, one = found[0]
+            return Place(path, text, one.at, len(name))
+        for file, one in library_declared().get(name, ()):
+            return Place(GLSL / file, read_text(GLSL / file), one.at, len(name))
+        return None
+
+    def function_at(self, at: int) -> Declared | None:
+        """Return the function that a place of the text is in."""
+        own = (one for one in outline(self.text) if one.kind == "function" and one.body >= 0)
+        return next((one for one in own if one.start <= at <= one.end), None)
+
+
+def shader_of(document: Document, documents: Documents) -> Shader:
+    """Return what is known of an open shader."""
+    return shader_at(document.path, document.text, document.root, documents)
+
+
+def shader_at(path: Path, text: str, root: Path, documents: Documents) -> Shader:
+    """Return what is known of a shader's file, with the texts that are open in place of the files'."""
+    with documents.reading():
+        try:
+            source = read_source(path, (root,))
+        except PlaygroundError:
+            return Shader(path, text, root, tuple(_reached(path, text, root)))
+        files = tuple((Path(file), read_text(Path(file))) for file in source.files)
+        kernel, parameters, inputs = _header(source)
+    return Shader(path, text, root, files, parameters, inputs, kernel)
+
+
+def _header(source: SourceText) -> tuple[Kernel | None, tuple[Parameter, ...], tuple[Input, ...]]:
+    """Return what a header says, as much of it as can be read."""
+    try:
+        kernel = parse_kernel("", source)
+        if kernel is not None:
+            return kernel, kernel.parameters, kernel.inputs
+    except PlaygroundError:
+        pass
+    try:
+        return (None, *read_uniforms(source))
+    except PlaygroundError:
+        return None, (), ()
+
+
+def _reached(path: Path, text: str, root: Path) -> Iterator[tuple[Path, str]]:
+    """Yield a file and what it includes, without the includes that are not there."""
+    seen, rest = {path}, [(path, text)]
+    while rest:
+        path, text = rest.pop(0)
+        yield path, text
+        for include in includes(text):
+            found = find_include(include.name, path, (root,))
+            if found is not None and found not in seen:
+                seen.add(found)
+                try:
+                    rest.append((found, read_text(found)))
+                except PlaygroundError:
+                    continue
+
+
+def includes(text: str) -> list[Include]:
+    """Return the includes of a text."""
+    return [Include(m[1], m.start(1), m.end(1)) for m in _INCLUDE.finditer(text)]
+
+
+def include_at(text: str, at: int) -> Include | None:
+    """Return the include whose name a place is in."""
+    return next((one for one in includes(text) if one.start <= at <= one.end), None)
+
+
+def word_at(text: str, at: int) -> tuple[str, int]:
+    """Return the identifier that a place is in or behind, and where it begins; ("", at) for none."""
+    line = text.rfind("\n", 0, at) + 1
+    end = text.find("\n", at)
+    for match in WORD.finditer(text, line, end if end >= 0 else len(text)):
+        if match.start() <= at <= match.end():
+            return match.group(), match.start()
+    return "", at
+
+
+def is_code(text: str, at: int) -> bool:
+    """Return whether a place, where something stands, is in the code and in no comment."""
+    return at < len(text) and code_of(text)[at] == text[at]
+
+
+@cache
+def library_declared() -> dict[str, tuple[tuple[str, Declared], ...]]:
+    """Return the functions of the library: name → the files to include, and how each declares it."""
+    found: dict[str, list[tuple[str, Declared]]] = {}
+    for name, files in library().items():
+        for file in files:
+            try:
+                own = outline(read_text(GLSL / file))
+            except PlaygroundError:
+                continue
+            for one in own:
+                if one.name == name and one.kind == "function" and not one.is_prototype:
+                    found.setdefault(name, []).append((file, one))
+                    break
+    return {name: tuple(places) for name, places in found.items()}

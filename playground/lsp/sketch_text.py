@@ -1,0 +1,197 @@
+"""What a place in a sketch's TOML is: in which table, at which key or value, of which technique.
+
+The line that is being typed is rarely TOML, so all other lines are read, and that one by itself.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from playground.errors import PlaygroundError
+from playground.lsp.documents import Document
+from playground.sketch.assign import find_targets
+from playground.sketch.load import load_with
+from playground.sketch.model import Graph, Parameter, Sketch, Technique
+from playground.sketch.techniques import Techniques
+from playground.sketch.toml_keys import LISTS
+from playground.sketch.toml_places import Pair, Place, TomlPlaces
+from playground.sketch.toml_sketch import DEFAULT_VIEW
+
+_KEY = re.compile(r"[\w.-]|\"")
+_TEXT = re.compile(r"\"((?:[^\"\\\n]|\\.)*)\"|'([^'\n]*)'")
+_PAIR = re.compile(r"\s*((?:\"[^\"]*\"|[\w.-])+)\s*=\s*(.*)$", re.DOTALL)
+
+
+@dataclass(frozen=True, slots=True)
+class Cursor:
+    """A place in a TOML text."""
+
+    table: Place  # the table with a header that it is in: ("pass", 0); () at the head
+    keys: tuple[str, ...]  # of the inline tables around it: ("set",); with it the key of a value
+    is_value: bool  # whether a value is typed there, else a key
+    is_header: bool  # whether it is in the brackets of a table's header
+    word: str  # what is typed before the place, without an opening quote
+    start: int  # where that begins
+    quoted: bool  # whether a quote was opened
+
+
+def cursor_at(text: str, at: int) -> Cursor:
+    """Return what a place is."""
+    line = text.rfind("\n", 0, at) + 1
+    end = text.find("\n", at)
+    before = text[line:at]
+    others = text[:line] + " " * ((end if end >= 0 else len(text)) - line) + (text[end:] if end >= 0 else "")
+    places = TomlPlaces(others)
+    table: Place = ()
+    counts: dict[str, int] = {}
+    for header in places.headers:
+        name = header.keys[0]
+        if header.start >= line:
+            break
+        if header.is_list:
+            counts[name] = counts.get(name, -1) + 1
+            table = (name, counts[name])
+        else:
+            table = tuple(header.keys)
+    if before.lstrip().startswith("["):
+        word = before.lstrip().lstrip("[").strip()
+        return Cursor(table, (), False, True, word, at - len(word), False)
+    keys, rest, is_value = _inside(before)
+    if not is_value and not keys and (around := _open_list(others, line)):
+        keys, is_value = around, True
+    quoted = len(re.findall(r"(?<!\\)\"", rest)) % 2 == 1
+    word = rest.rpartition('"')[2] if quoted else re.split(r"[\s,\[{=]", rest)[-1]
+    return Cursor(table, keys, is_value, False, word, at - len(word), quoted)
+
+
+def _open_list(text: str, line: int) -> tuple[str, ...]:
+    """Return the key whose list of several lines a line is in; () for none."""
+    for match in re.finditer(r"^[ \t]*([\w.-]+)[ \t]*=[ \t]*\[([^\]]*)(?:\]|\Z)", text[:line], re.MULTILINE):
+        if match.end() == line and not match[0].endswith("]"):
+            return (match[1],)
+    return ()
+
+
+def _inside(before: str) -> tuple[tuple[str, ...], str, bool]:
+    """Return of a line's part before a place: the keys around it, what is typed, whether a value."""
+    keys: list[str] = []
+    stack: list[str] = []  # opening brackets
+    piece, quote, is_value = "", "", False
+    held: list[tuple[str, bool]] = []
+    for letter in before:
+        if quote:
+            piece += letter
+            quote = "" if letter == quote else quote
+            continue
+        if letter in "\"'":
+            quote = letter
+            piece += letter
+        elif letter == "#":
+            return (), "", False
+        elif letter == "=" and not is_value:
+            keys.append(piece.strip().strip("\"'"))
+            piece, is_value = "", True
+        elif letter in "{[":
+            stack.append(letter)
+            held.append((piece, is_value))
+            piece, is_value = "", letter == "["
+        elif letter in "}]" and stack:
+            opened = stack.pop()
+            if opened == "{" and is_value and keys:
+                keys.pop()
+            piece, is_value = held.pop()
+        elif letter == ",":
+            if is_value and not (stack and stack[-1] == "["):
+                keys[-1:] = []
+                is_value = False
+            piece = ""
+        else:
+            piece += letter
+    return tuple(keys), piece.lstrip() if not piece.strip().startswith('"') else piece.strip(), is_value
+
+
+class SketchText:
+    """A sketch's or a technique's text: its passes and what fills them, as far as that can be read."""
+
+    def __init__(self, document: Document, text: str | None = None) -> None:
+        """Read it; ``text`` instead of the document's where one line of that is left out."""
+        self.path = document.path
+        self.root = document.path.parent
+        self.text = document.text if text is None else text
+        self.places = TomlPlaces(self.text)
+        self._techniques = Techniques()
+
+    def value(self, place: Place) -> str:
+        """Return a text that a key has; "" for none, and for what is no text."""
+        pair = self.places.pairs.get(place)
+        match = _TEXT.match(self.text, pair.value, pair.end) if pair is not None else None
+        return (match[1] if match[1] is not None else match[2]) if match else ""
+
+    def tables(self, key: str) -> list[Place]:
+        """Return the tables of a list: ("pass", 0), ("pass", 1)."""
+        return [place for place in self.places.bodies if len(place) == 2 and place[0] == key]
+
+    def names(self, key: str) -> dict[str, Place]:
+        """Return the names that the tables of a list have, and the place of each table."""
+        found = {self.value((*place, "name")): place for place in self.tables(key)}
+        found.pop("", None)
+        return found
+
+    def technique(self, table: Place) -> Technique | None:
+        """Return what fills the pass of a table, or the view; None where it cannot be read."""
+        use = self.value((*table, "use"))
+        if not use and table == ("view",):
+            use = DEFAULT_VIEW
+        try:
+            return self._techniques.read(use, self.path.parent, self.root) if use else None
+        except PlaygroundError:
+            return None
+
+    def technique_of(self, name: str) -> Technique | None:
+        """Return what fills a pass by its name."""
+        table = ("view",) if name == "view" else self.names("pass").get(name)
+        return self.technique(table) if table is not None else None
+
+    def parameter(self, table: Place, path: str) -> Parameter | None:
+        """Return the parameter that a path means in a table's ``set``: of its technique, or of the sketch."""
+        technique: Technique | None
+        if table[:1] in (("pass",), ("view",)):
+            technique = self.technique(table)
+        else:
+            head, _, path = path.partition(".")
+            technique = self.technique_of(head)
+        found = find_targets(technique, path) if technique is not None and path else ()
+        return found[0].parameter if found else None
+
+    def loaded(self) -> Sketch | None:
+        """Return the sketch, where its text is one."""
+        try:
+            return load_with(Techniques(), self.path, self.text)
+        except PlaygroundError:
+            return None
+
+    def settings(self) -> Iterator[tuple[Place, str, Pair]]:
+        """Yield what is set: the table, the parameter's path there, and where that is in the text."""
+        for place, pair in self.places.pairs.items():
+            if place[:1] and place[0] in (*LISTS, "view"):
+                size = 1 if place[0] == "view" else 2
+                rest = place[size:]
+                if len(rest) >= 2 and rest[0] == "set":
+                    yield place[:size], ".".join(map(str, rest[1:])), pair
+
+
+def inner_passes(technique: Technique) -> list[str]:
+    """Return the names of the passes in a technique."""
+    return [spec.name for spec in technique.passes] if isinstance(technique, Graph) else []
+
+
+def own_techniques(folder: Path) -> list[str]:
+    """Return what ``use`` may name of a folder's own files: "./noon"."""
+    endings = (".glsl", ".toml", ".frag", ".fs")
+    if not folder.is_dir():
+        return []
+    found = {path.name.rpartition(".")[0] for path in folder.iterdir() if path.name.endswith(endings)}
+    return sorted(f"./{name}" for name in found if name and not name.endswith(".fast"))

@@ -1,0 +1,335 @@
+"""Completion, hover, definitions, rename and colours, asked for by real messages."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from playground.gpu.name_suggestions import library
+from playground.paths import GLSL
+from playground.sketch import toml_keys
+from playground.sketch.load import load
+from playground.sketch.reserved_names import GIVEN
+
+from .client import Editor, Refusal
+from .conftest import KERNEL, LIBRARY, SKETCH
+
+
+def place(text: str, word: str, into: int = 0) -> tuple[int, int]:
+    """Return the line and the column of a word's first appearance; all of it is ASCII."""
+    at = text.index(word) + into
+    return text.count("\n", 0, at), at - (text.rfind("\n", 0, at) + 1)
+
+
+def labels(found: Any) -> set[str]:
+    return {item["label"] for item in found["items"]}
+
+
+def completed(editor: Editor, uri: str, text: str) -> set[str]:
+    """Return what may stand where ``text`` has a bar."""
+    at = text.index("|")
+    editor.type(uri, text.replace("|", "", 1))
+    line, column = text.count("\n", 0, at), at - (text.rfind("\n", 0, at) + 1)
+    return labels(editor.at("completion", uri, line, column))
+
+
+def applied(text: str, edits: list[dict[str, Any]]) -> str:
+    """Return a text of ASCII with edits made."""
+    starts = [0]
+    for line in text.split("\n"):
+        starts.append(starts[-1] + len(line) + 1)
+    spans = [
+        [starts[e["range"][k]["line"]] + e["range"][k]["character"] for k in ("start", "end")] for e in edits
+    ]
+    for (start, end), edit in sorted(zip(spans, edits, strict=True), key=lambda one: one[0], reverse=True):
+        text = text[:start] + edit["newText"] + text[end:]
+    return text
+
+
+# ── shaders ──────────────────────────────────────────────────────────────────
+
+
+def test_a_kernel_is_completed_with_all_that_it_may_name(editor: Editor, folder: Path) -> None:
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, KERNEL)
+    found = completed(editor, uri, KERNEL.replace("    return", "    float more = |;\n    return"))
+    assert found >= {*GIVEN, "towards_sun", "previous"}, "given names"
+    assert found >= {"rounds", "tint", "shape", "sun"}, "parameters"
+    assert found >= {"far", "texel", "kept_of"}, "what the function and its include declare"
+    found = completed(editor, uri, KERNEL.replace("    return", "    float more = r|;\n    return"))
+    assert found >= {name for name in library() if name.startswith("r")}
+    assert "random" in found and "reflect" in found
+
+
+def test_a_function_of_the_library_brings_its_include(editor: Editor, folder: Path) -> None:
+    uri = (folder / "hill.glsl").as_uri()
+    text = KERNEL.replace("    return", "    float more = rando;\n    return")
+    editor.open(uri, text)
+    line, column = place(text, "rando", 5)
+    found = {i["label"]: i for i in editor.at("completion", uri, line, column)["items"]}["random"]
+    assert found["detail"] == "float random(ivec2 point, uint seed)"
+    assert "One number in [0, 1)" in found["documentation"]["value"]
+    changed = applied(text, found["additionalTextEdits"]).replace("rando;", "random(texel, 1u);")
+    assert editor.diagnostics(uri, editor.type(uri, changed)) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ('#include "noi|', {"noise/hash.glsl", "shade.glsl"}),
+        ('#pragma kernel(output = "height:r32f", |)', {"repeat", "accepts", "visits"}),
+        ('#pragma draw(mesh = "grid", blend = "|', {"alpha", "add", "none"}),
+        ('#pragma draw(mesh = "|', {"grid", "sheet"}),
+        ("uniform vec3 extra = vec3(1.0);  //! |", {"colour", "slider", "unit()"}),
+        ("uniform vec2 extra = vec2(1.0);  //! |", {"direction", "point"}),
+        ("uniform sampler2D extra;  //! input(|)", {"linear", "white", "mipmap"}),
+    ],
+)
+def test_directives_and_annotations_are_completed(
+    editor: Editor, folder: Path, line: str, expected: set[str]
+) -> None:
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, KERNEL)
+    found = completed(editor, uri, f"// one line\n{line}\n{KERNEL}")
+    assert found >= expected
+    assert "relief" not in found, "names of code do not belong here"
+
+
+def test_a_comment_is_not_completed(editor: Editor, folder: Path) -> None:
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, KERNEL)
+    assert completed(editor, uri, f"{KERNEL}\n// the rel|\n") == set()
+
+
+@pytest.mark.parametrize(
+    ("word", "expected"),
+    [
+        ("size) - 0.5", "ivec2 size"),
+        ("towards_sun", "unit vector towards 'sun'"),
+        ("kept_of(", "The share of a value that is left after a loss."),
+        ("tint.x", "Tint of the hill"),
+        ("far)", "float far = length"),
+        ('shade.glsl"', "How a value is shaded"),
+    ],
+)
+def test_hover_says_what_a_name_is(editor: Editor, folder: Path, word: str, expected: str) -> None:
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, KERNEL)
+    assert expected in editor.at("hover", uri, *place(KERNEL, word, 1))["contents"]["value"]
+
+
+@pytest.mark.parametrize(
+    ("word", "file", "line"),
+    [
+        ('shade.glsl"', "shade.glsl", ""),
+        ("kept_of(", "shade.glsl", "float kept_of(float value"),
+        ("tint.x", "hill.glsl", "uniform vec3 tint"),
+        ("towards_sun", "hill.glsl", "uniform vec2 sun"),
+        ("far)", "hill.glsl", "float far"),
+    ],
+)
+def test_go_to_definition(editor: Editor, folder: Path, word: str, file: str, line: str) -> None:
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, KERNEL)
+    found = editor.at("definition", uri, *place(KERNEL, word, 1))
+    assert found["uri"] == (folder / file).as_uri()
+    text = (folder / file).read_text().split("\n")[found["range"]["start"]["line"]]
+    assert line in text
+
+
+def test_a_function_that_is_not_included_is_found_in_the_library(editor: Editor, folder: Path) -> None:
+    uri = (folder / "hill.glsl").as_uri()
+    text = KERNEL.replace("kept_of(", "random(")
+    editor.open(uri, text)
+    found = editor.at("definition", uri, *place(text, "random("))
+    assert found["uri"] == (GLSL / "noise/hash.glsl").as_uri()
+    assert (
+        '#include "noise/hash.glsl"' in editor.at("hover", uri, *place(text, "random("))["contents"]["value"]
+    )
+
+
+def test_symbols_are_what_a_file_declares(editor: Editor, folder: Path) -> None:
+    uri, sketch = (folder / "hill.glsl").as_uri(), (folder / "sketch.toml").as_uri()
+    editor.open(uri, KERNEL)
+    editor.open(sketch, SKETCH, "toml")
+    found = editor.ask("textDocument/documentSymbol", textDocument={"uri": uri})
+    assert [one["name"] for one in found] == ["rounds", "tint", "shape", "sun", "kernel"]
+    found = editor.ask("textDocument/documentSymbol", textDocument={"uri": sketch})
+    assert [one["name"] for one in found] == ["pass height", "preset sharp", "shot sharp"]
+
+
+# ── sketches ─────────────────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        (SKETCH + "\n[[pass]]\n|", set(toml_keys.PASS)),
+        (SKETCH + "\n[view]\n|", set(toml_keys.VIEW)),
+        (SKETCH + "\n[view]\ncamera = { | }", set(toml_keys.CAMERA)),
+        (SKETCH.replace("size = 33", "|"), {"relief", "main"}),
+        (SKETCH + "\n[|", {"pass", "shot", "view"}),
+        (SKETCH + '\n[[pass]]\nname = "a"\nuse = "|"', {"./hill", "generation/mixed", "lighting/l_dot_n"}),
+        (SKETCH.replace("{ rounds = 2,", "{ |"), {"rounds", "shape", "sun", "tint"}),
+        (SKETCH.replace("{ rounds = 2,", '{ shape = "|",'), {"round", "sharp"}),
+        (SKETCH.replace("{ rounds = 2,", "{ sun = { | },"), {"azimuth", "elevation"}),
+        (SKETCH.replace('"height.rounds" = 3', '"height.shape" = |'), {'"round"', '"sharp"'}),
+        (SKETCH.replace('preset = "sharp"', 'preset = "|"'), {"sharp"}),
+        (SKETCH.replace('["height.rounds"]', '["|"]'), {"height.rounds", "height.tint"}),
+        (
+            SKETCH + '\n[[pass]]\nname = "l"\nuse = "lighting/l_dot_n"\ninputs = { | }',
+            {"height"},
+        ),
+        (
+            SKETCH + '\n[[pass]]\nname = "l"\nuse = "lighting/l_dot_n"\ninputs = { height = "|" }',
+            {"height"},
+        ),
+        (SKETCH + '\n[[keyframe]]\ntime = 1\nease = "|"', {"smooth", "linear", "hold"}),
+    ],
+)
+def test_a_sketch_is_completed(editor: Editor, folder: Path, text: str, expected: set[str]) -> None:
+    uri = (folder / "sketch.toml").as_uri()
+    editor.open(uri, SKETCH, "toml")
+    assert completed(editor, uri, text) >= expected
+
+
+@pytest.mark.parametrize(
+    ("word", "expected"),
+    [
+        ("relief =", toml_keys.SKETCH["relief"]),
+        ("preset]]", toml_keys.SKETCH["preset"]),
+        ("./hill", "One hill, as high as its size"),
+        ("rounds = 2", "How often"),
+        ('height.shape" =', "Form of the hill"),
+    ],
+)
+def test_hover_in_a_sketch(editor: Editor, folder: Path, word: str, expected: str) -> None:
+    uri = (folder / "sketch.toml").as_uri()
+    editor.open(uri, SKETCH, "toml")
+    assert expected in editor.at("hover", uri, *place(SKETCH, word, 1))["contents"]["value"]
+
+
+def test_go_to_what_a_sketch_names(editor: Editor, folder: Path) -> None:
+    uri = (folder / "sketch.toml").as_uri()
+    editor.open(uri, SKETCH, "toml")
+    kernel = (folder / "hill.glsl").as_uri()
+    assert editor.at("definition", uri, *place(SKETCH, "./hill", 1))["uri"] == kernel
+    found = editor.at("definition", uri, *place(SKETCH, "rounds = 2", 1))
+    assert (found["uri"], found["range"]["start"]["line"]) == (kernel, 4)
+    found = editor.at("definition", uri, *place(SKETCH, 'preset = "sharp"', 11))
+    assert found["range"]["start"]["line"] == place(SKETCH, "[[preset]]")[0] + 1
+
+
+# ── rename ───────────────────────────────────────────────────────────────────
+
+
+def renamed(editor: Editor, folder: Path, word: str, new: str, text: str = KERNEL) -> dict[str, str]:
+    """Return the texts of the files that a rename changes, by name."""
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, text)
+    found = editor.at("rename", uri, *place(text, word), newName=new)["changes"]
+    named = {u.rpartition("/")[2]: edits for u, edits in found.items()}
+    texts = {"hill.glsl": text, "shade.glsl": LIBRARY, "sketch.toml": SKETCH}
+    return {name: applied(texts[name], edits) for name, edits in named.items()}
+
+
+def test_a_functions_own_name_changes_there_alone(editor: Editor, folder: Path) -> None:
+    text = KERNEL + "\nfloat other(float far) {\n    return far;\n}\n"
+    found = renamed(editor, folder, "far =", "away", text)
+    assert found == {"hill.glsl": text.replace("far =", "away =").replace("z, far)", "z, away)")}
+
+
+def test_a_function_changes_in_every_file_that_calls_it(editor: Editor, folder: Path) -> None:
+    found = renamed(editor, folder, "kept_of(", "remaining")
+    assert found == {
+        "hill.glsl": KERNEL.replace("kept_of", "remaining"),
+        "shade.glsl": LIBRARY.replace("kept_of", "remaining"),
+    }
+
+
+def test_a_parameter_changes_in_the_sketches_that_set_it(editor: Editor, folder: Path) -> None:
+    found = renamed(editor, folder, "rounds = 1", "turns")
+    assert found == {
+        "hill.glsl": KERNEL.replace("rounds", "turns"),
+        "sketch.toml": SKETCH.replace("rounds", "turns"),
+    }
+    for name, text in found.items():
+        (folder / name).write_text(text)
+    assert load(folder / "sketch.toml").main == ("height.turns",)
+
+
+def test_a_direction_takes_the_vector_towards_it_along(editor: Editor, folder: Path) -> None:
+    found = renamed(editor, folder, "sun =", "lamp")
+    assert found == {"hill.glsl": KERNEL.replace("vec2 sun", "vec2 lamp").replace("s_sun", "s_lamp")}
+
+
+@pytest.mark.parametrize(
+    ("word", "new", "why"),
+    [
+        ("texel)", "size", "given to every kernel"),
+        ("far =", "texel", "a name of this function already"),
+        ("kept_of(", "far", "is a name in"),
+        ("kept_of(", "2nd", "is no name"),
+        ("kept_of(", "vec3", "a word of GLSL"),
+        ("size) -", "extent_", "its name is fixed"),
+        ("length(", "measure", "a word of GLSL"),
+        ("kernel(ivec2", "paint", "its name is fixed"),
+        ("hill, as", "mound", "no name here"),
+        ("z, far", "w", "component"),
+    ],
+)
+def test_a_rename_that_is_not_safe_is_refused_with_a_sentence(
+    editor: Editor, folder: Path, word: str, new: str, why: str
+) -> None:
+    with pytest.raises(Refusal, match=why) as refusal:
+        renamed(editor, folder, word, new)
+    assert "Traceback" not in str(refusal.value)
+
+
+def test_what_the_library_declares_is_not_renamed_from_a_kernel(editor: Editor, folder: Path) -> None:
+    text = KERNEL.replace("#include", '#include "noise/hash.glsl"\n#include').replace("kept_of(", "random(")
+    with pytest.raises(Refusal, match="not in the open folder"):
+        renamed(editor, folder, "random(", "chance", text)
+
+
+# ── colours ──────────────────────────────────────────────────────────────────
+
+
+def test_colours_of_a_kernel_are_shown_encoded_and_written_linear(editor: Editor, folder: Path) -> None:
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, KERNEL)
+    (found,) = editor.ask("textDocument/documentColor", textDocument={"uri": uri})
+    start, end = place(KERNEL, "vec3(0.2, 0.5, 1.0)"), place(KERNEL, "vec3(0.2, 0.5, 1.0)", 19)
+    assert found["range"] == {
+        "start": {"line": start[0], "character": start[1]},
+        "end": {"line": end[0], "character": end[1]},
+    }
+    encoded = [1.055 * c ** (1 / 2.4) - 0.055 for c in (0.2, 0.5, 1.0)]  # IEC 61966-2-1
+    assert [found["color"][k] for k in ("red", "green", "blue")] == pytest.approx(encoded, abs=0.5 / 255)
+    (shown,) = editor.ask(
+        "textDocument/colorPresentation",
+        textDocument={"uri": uri},
+        range=found["range"],
+        color={"red": 0.5, "green": 0.0, "blue": 1.0, "alpha": 1.0},
+    )
+    numbers = [float(n) for n in shown["label"].removeprefix("vec3(").rstrip(")").split(",")]
+    half = round(0.5 * 255) / 255
+    assert numbers == pytest.approx([((half + 0.055) / 1.055) ** 2.4, 0.0, 1.0], abs=1e-4)
+
+
+def test_colours_of_a_sketch(editor: Editor, folder: Path) -> None:
+    uri = (folder / "sketch.toml").as_uri()
+    editor.open(uri, SKETCH, "toml")
+    (found,) = editor.ask("textDocument/documentColor", textDocument={"uri": uri})
+    assert [round(found["color"][k] * 255) for k in ("red", "green", "blue")] == [0x33, 0x66, 0x99]
+    (shown,) = editor.ask(
+        "textDocument/colorPresentation",
+        textDocument={"uri": uri},
+        range=found["range"],
+        color={"red": 1.0, "green": 0.0, "blue": 128 / 255, "alpha": 1.0},
+    )
+    changed = applied(SKETCH, [shown["textEdit"]])
+    assert tomllib.loads(changed)["pass"][0]["set"]["tint"] == "#ff0080"
