@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from playground.engine.engine import opened
+from playground.engine.internals import opened
 from playground.errors import DataError
 from playground.sketch.model import Sketch
 from playground.sketch.values import spell

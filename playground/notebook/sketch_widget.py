@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from playground.api import parameters
-from playground.engine.engine import Engine, opened
+from playground.engine.engine import Engine
+from playground.engine.internals import opened
 from playground.errors import DataError, ParameterError, PlaygroundError, nearest
 from playground.images.files import encode_png
 from playground.notebook.engine_thread import on_engine, release_engine
