@@ -34,6 +34,7 @@ pytestmark = [pytest.mark.slow, pytest.mark.skipif(bool(MISSING), reason=MISSING
 LLVMPIPE = ("--use-gl=angle", "--use-angle=gl-egl", "--ignore-gpu-blocklist")
 RIGHT, END = "\ue014", "\ue010"
 PAGE = "en/small.html"
+AWHILE = "new Promise((done) => setTimeout(() => requestAnimationFrame(done), 600))"
 TRY = (
     'solution = "So."\nsketch   = "diamond_square_steps"',
     'solution = "So."\nset = { "height.smoothing" = 0.7 }\nsketch = "diamond_square_steps"',
@@ -190,6 +191,17 @@ def test_a_live_picture_is_the_engine_s_and_follows_its_slider(page, lesson, eng
     np.testing.assert_array_equal(moved, drawn(engine, changed, moved))
     page.click("#land .reset-all")
     np.testing.assert_array_equal(picture(page, "land"), first)
+    # Out of sight nothing is drawn, and the figure goes on saying that a picture is to come.
+    page.run("scrollTo({ top: document.body.scrollHeight, behavior: 'instant' })")
+    page.run(f"return {AWHILE}")
+    page.run(
+        "const range = document.querySelector('#land .live input[type=range]'); range.value = arguments[0];"
+        "range.dispatchEvent(new Event('input'))",
+        page.run("return document.querySelector('#land .live input[type=range]').min"),
+    )
+    page.run(f"return {AWHILE}")
+    assert page.run("return document.querySelector('#land .stage').getAttribute('aria-busy')") == "true"
+    assert (picture(page, "land") != first).any()
 
 
 def test_any_iteration_can_be_shown(page, lesson, engine):
