@@ -31,6 +31,7 @@ if TYPE_CHECKING:  # the same once more, for tools that read types and run nothi
     from playground.capture.large import write_large as write_large
     from playground.capture.sequence import render_sequence as render_sequence
     from playground.capture.sheet import render_sweep as render_sweep
+    from playground.capture.sweep_data import sweep as sweep
     from playground.engine.engine import Engine as Engine
     from playground.engine.frame import Frame as Frame
     from playground.errors import ContextError as ContextError
@@ -61,6 +62,7 @@ _NAMES = {
     "playground.capture.large": "write_large",
     "playground.capture.sequence": "render_sequence",
     "playground.capture.sheet": "render_sweep",
+    "playground.capture.sweep_data": "sweep",
     "playground.engine.engine": "Engine",
     "playground.engine.frame": "Frame",
     "playground.errors": "ContextError DataError ParameterError PlainFormWarning PlaygroundError "

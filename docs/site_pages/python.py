@@ -8,6 +8,7 @@ _GROUPS = {
     "Open and draw": ("headless", "render", "load", "parameters"),
     "Values": ("Sketch", "Camera", "Parameter", "Shot", "Engine", "Frame"),
     "Files": ("export", "write_large", "render_video", "render_sequence", "render_sweep"),
+    "Research": ("sweep",),
     "What ships": ("shipped_sketches", "shipped_techniques"),
 }
 _HEAD = """# Python API

@@ -9,7 +9,7 @@ grid, the first along the rows.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from playground.errors import ParameterError, nearest
@@ -31,6 +31,14 @@ class Sweep:
     part: int | None  # which number of a vector; None: all of it
     values: tuple[Value, ...]
     labels: tuple[str, ...]  # each value as text
+    parts: tuple[str, ...] = ()  # what the numbers of a whole vector are called
+    unit: str = ""
+    texts: bool = False  # the values are paths of files, or numbers of a menu's choices
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether its values are numbers or truth values, and mean what they are."""
+        return not self.parts and not self.texts
 
 
 @dataclass(frozen=True)
@@ -69,6 +77,38 @@ def read_sweep(sketch: Sketch, text: str, steps: int = USUAL_STEPS) -> Sweep:
     return Sweep(path, whole_path, part, tuple(values), tuple(labels))
 
 
+def sweep_of(sketch: Sketch, path: str, given: object) -> Sweep:
+    """Return a sweep of values that Python has, or that a text says; raise ``ParameterError``."""
+    if isinstance(given, str):
+        found = read_sweep(sketch, f"{path}={given}")
+        whole_path, part, parameter = _target(sketch, path)
+        values, labels = list(found.values), list(found.labels)
+    else:
+        whole_path, part, parameter = _target(sketch, path)
+        if not isinstance(given, Iterable) or isinstance(given, Mapping):
+            raise ParameterError(f"sweep {path}: expected its values, as [1, 2, 4]; found {given!r}")
+        values, labels = [], []
+        for each in given:
+            value = _value(sketch, whole_path, part, parameter, each)
+            if value in values:
+                raise ParameterError(f"sweep {path}: {_label(parameter, part, value)} is there twice")
+            values.append(value)
+            labels.append(_label(parameter, part, value))
+    if not values:
+        raise ParameterError(f"sweep {path}: expected one value or more; there is none")
+    names: tuple[str, ...] = ()
+    if part is None and isinstance(values[0], tuple):
+        names = ("x", "y") if parameter is None else _parts_of(parameter)
+    kind = parameter.widget.kind if parameter is not None else ""
+    unit = parameter.unit if parameter is not None else {"relief": "m", "base_elevation": "m"}.get(path, "")
+    texts = kind in ("menu", "file")
+    return Sweep(path, whole_path, part, tuple(values), tuple(labels), names, unit, texts)
+
+
+def _parts_of(parameter: Parameter) -> tuple[str, ...]:
+    return _PARTS.get(parameter.widget.kind, tuple("xyzw"))[: length_of(parameter.type)]
+
+
 def _target(sketch: Sketch, path: str) -> tuple[str, int | None, Parameter | None]:
     """Return the parameter that a path names, and which of its numbers; raise ``ParameterError``."""
     if path in TERRAIN_KEYS:
@@ -81,7 +121,7 @@ def _target(sketch: Sketch, path: str) -> tuple[str, int | None, Parameter | Non
             continue
         if whole == path:
             return path, None, parameter
-        names = _PARTS.get(parameter.widget.kind, tuple("xyzw"))[: length_of(parameter.type)]
+        names = _parts_of(parameter)
         if last in names and len(names) > 1:
             return around, names.index(last), parameter
         hint = nearest(last, names if len(names) > 1 else ())
@@ -175,6 +215,11 @@ def _set(sketch: Sketch, chosen: Sequence[tuple[Sweep, int]]) -> Swept:
             sketch = sketch.with_values({sweep.parameter: value})
         caption.append(f"{sweep.path} = {sweep.labels[index]}")
     return Swept(sketch, tuple(caption))
+
+
+def with_one_of_each(sketch: Sketch, chosen: Iterable[tuple[Sweep, int]]) -> Sketch:
+    """Return a sketch with one value, by its place, of each sweep."""
+    return _set(sketch, list(chosen)).sketch
 
 
 def _now(sketch: Sketch, path: str) -> tuple[float, ...]:

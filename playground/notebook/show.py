@@ -30,8 +30,12 @@ def widget(
 
     ``sketch`` is a loaded one or what ``load`` takes; ``size`` in pixels; ``sliders`` are the paths of the
     parameters under the picture, by default those that the sketch is about; ``draws`` is "browser", "kernel",
-    or "auto": the browser where it can; ``time`` in seconds; ``language`` is "en" or "fr". Raises
-    ``PlaygroundError`` for any mistake in the sketch, and ``DataError`` without the extra ``notebook``.
+    or "auto": the browser where it can; ``time`` in seconds; ``language`` is "en" or "fr".
+
+        shown = playground.widget("diamond_square", size=(320, 180), sliders=["height.smoothing"])
+        shown.close()
+
+    Raises ``PlaygroundError`` for any mistake in the sketch, ``DataError`` without the extra ``notebook``.
     """
     try:
         from playground.notebook.sketch_widget import SketchWidget
@@ -58,7 +62,14 @@ def compare(
 
     ``a`` and ``b`` are sketches, or values by path of ``sketch``. ``swipe`` puts one picture over the other,
     with a line between them to move. ``names`` are written under the pictures. A slider of what is the same
-    in both moves both; what differs has a slider for each. The rest, and what is raised: as ``widget``.
+    in both moves both; what differs has a slider for each. ``size``, ``sliders``, ``draws``, ``time`` and
+    ``language`` are as in ``widget``.
+
+        smooth, rough = {"height.smoothing": 0.9}, {"height.smoothing": 0.1}
+        shown = playground.compare(smooth, rough, sketch="diamond_square", size=(320, 180))
+        shown.close()
+
+    Raises as ``widget``.
     """
     try:
         from playground.notebook.sketch_widget import CompareWidget

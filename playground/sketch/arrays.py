@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from playground.errors import ParameterError
 from playground.sketch.array_coordinates import Coordinates, coordinates_of, is_labelled
-from playground.sketch.parameter import Parameter
+from playground.sketch.parameter import LARGEST_SIDE, Parameter
 
 GRIDS = ("elevation_file", "example_file", "numbers_file", "vector_file")
 """The sources one of whose files is a grid of heights, or of other numbers."""
@@ -93,6 +93,36 @@ def stored(given: object, parameter: Parameter, registry: str, name: str) -> Arr
     else:
         raise ParameterError(f"{name}: takes a file of its own kind, as {parameter.default}, and no array")
     return _stored(label, ending, data)
+
+
+def texels(given: object, name: str) -> tuple[ArrayFile, tuple[int, int, int]]:
+    """Return a file of a texture's numbers and their shape, (ny, nx, 1, 2 or 4), row 0 in the south.
+
+    Of three numbers a texel the fourth is 1. Raises ``ParameterError`` for what is no texture.
+    """
+    values = _values(given, name)
+    if is_labelled(given):
+        values, _, gap = coordinates_of(given, values, name)
+        values = values if gap is None else _without(values, values == gap)
+    values = values[..., None] if values.ndim == 2 else values
+    if (
+        values.dtype.kind not in "iufb"
+        or values.ndim != 3
+        or values.shape[2] not in (1, 2, 3, 4)
+        or not all(1 <= side <= LARGEST_SIDE for side in values.shape[:2])
+    ):
+        raise ParameterError(
+            f"{name} = {_shape(values)}: expected numbers (ny, nx) or (ny, nx, 1 to 4), row 0 in the south"
+        )
+    values = values.astype(np.float32)
+    if not np.isfinite(values).all():
+        row, column = (int(n) for n in np.argwhere(~np.isfinite(values))[0][:2])
+        raise ParameterError(f"{name}: the number at row {row}, column {column} is not finite")
+    if values.shape[2] == 3:
+        values = np.concatenate([values, np.ones((*values.shape[:2], 1), np.float32)], axis=2)
+    stream = io.BytesIO()
+    np.save(stream, np.ascontiguousarray(values), allow_pickle=False)
+    return _stored("texels", ".npy", stream.getvalue()), values.shape
 
 
 def _stored(label: str, ending: str, data: bytes) -> ArrayFile:

@@ -222,6 +222,28 @@ class Sketch:
             changes["warnings"] = (*self.warnings, *(Diagnostic(one, severity="warning") for one in former))
         return replace(self, overrides=tuple(overrides.items()), **changes)
 
+    def with_inputs(self, arrays: Mapping[str, object]) -> Sketch:
+        """Return the sketch with ``arrays`` as the textures of inputs, by ``pass.input``.
+
+        Each is (ny, nx) or (ny, nx, 1 to 4) of finite numbers, row 0 in the south, as ``Engine.read``
+        gives them, of any size; it is copied, as by ``with_values``, and takes the place of what the input
+        was wired to. A sketch's file cannot say it, so that such a sketch is not saved or packed.
+
+            import numpy
+
+            flat = numpy.full((65, 65), 0.5)
+            sketch = playground.load("diamond_square").with_inputs({"view.height": flat})
+
+        Raises ``ParameterError`` naming the nearest input, or what is wrong with an array.
+        """
+        from playground.sketch.array_inputs import wired  # loads NumPy, which few loads need
+
+        graph, files = self.graph, dict(self.overrides)
+        for path, given in arrays.items():
+            graph, parameter, file = wired(graph, path, given)
+            files[parameter] = file
+        return replace(self, graph=graph, overrides=tuple(files.items()))
+
     def with_camera(self, camera: Camera) -> Sketch:
         """Return the sketch seen by another camera, without the camera of its keyframes.
 

@@ -32,6 +32,7 @@ from playground.sketch.save_values import (
 )
 from playground.sketch.sidecars import sidecars
 from playground.sketch.source import normalised
+from playground.sketch.technique import ARRAY
 from playground.sketch.techniques import Techniques
 from playground.sketch.toml_edit import append, drop, key_text, put, text_of
 from playground.sketch.toml_places import Place
@@ -55,6 +56,8 @@ def saved_text(text: str, file: Sketch, wanted: Sketch) -> str:
             text = put(text, (), key, written_terrain_value(value))
     for spec in wanted.graph.passes:
         was = file.graph.find(spec.name)
+        if was is None and spec.use == ARRAY:
+            raise SketchError(f"'{spec.name}' is an array, which a sketch's file cannot name", file=file.file)
         if was is None:
             text = _with_pass(text, wanted, spec)
             continue

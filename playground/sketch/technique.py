@@ -20,6 +20,9 @@ VARIANTS = ("compute", "passes")
 NOT = "not "
 """Begins a condition of a pass that an input is not wired."""
 
+ARRAY = "an array"
+"""What the pass of an array uses, which no sketch's file can name."""
+
 SHAPES = {
     "sampler2D": "",
     "samplerCube": "cube",

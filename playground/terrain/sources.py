@@ -82,6 +82,14 @@ def _make_numbers(
     return {"painted": read_numbers(Path(str(values["image"])), size)}
 
 
+def _make_array(
+    values: Mapping[str, Value], size: tuple[int, int], moment: None = None
+) -> dict[str, NDArray[np.float32]]:
+    """Return the numbers of an array that the playground itself has written: see ``sketch.arrays``."""
+    array: NDArray[np.float32] = np.load(str(values["array"]), allow_pickle=False)
+    return {"values": array[..., 0] if array.shape[2] == 1 else array}
+
+
 def _number(values: Mapping[str, Value], name: str) -> float:
     value = values[name]
     assert isinstance(value, int | float)  # the kernel's file says so
@@ -131,6 +139,13 @@ SOURCES: dict[str, SourceKind] = {
         ("image", "texels"),
         "the mask",
         picture=_mask_picture,
+    ),
+    "array_file": SourceKind(
+        lambda _: Terrain(),
+        _make_array,
+        ("array",),
+        ("array",),
+        "the array",
     ),
     "numbers_file": SourceKind(
         lambda _: Terrain(),

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from playground.engine.engine import Engine
+from playground.engine.packed_files import has_arrays
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
 from playground.web.packed import pack_data
 from playground.web.plan import FORMAT, sketch_data
@@ -43,5 +44,7 @@ def page_data(
         one["choices"] = choices
     if packed:
         for sketch, one in zip(sketches, written, strict=True):
+            if has_arrays(sketch):  # no file says them, so there is nothing to download
+                continue
             one["pack"] = pack_data(sketch, shared.texts.names, shared.blobs)
     return {"format": FORMAT, "sketches": written, "shared": shared.data()}

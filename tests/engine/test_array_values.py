@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import json
 import pickle
 import subprocess
 import sys
@@ -18,6 +19,7 @@ import playground
 from playground.sketch.arrays import GRIDS, PICTURES
 from playground.sketch.save import save_copy
 from playground.terrain.sources import SOURCES
+from playground.web.page_data import page_data
 
 # Every corner differs, and no row is another backwards.
 HEIGHTS = np.array([[0, 1, 2, 3, 4], [9, 8, 7, 5, 6], [10, 12, 11, 14, 13], [15, 18, 17, 16, 19]], np.float32)
@@ -272,4 +274,80 @@ def test_what_is_no_picture_is_refused(shown, tmp_path):
 def test_every_source_that_reads_a_file_is_judged():
     """A new one is a grid, a picture, or refuses arrays, which is what these do."""
     refusing = {name for name, kind in SOURCES.items() if kind.files} - {*GRIDS, *PICTURES}
-    assert refusing == {"model_file", "video_file", "sound_file"}
+    assert refusing == {"model_file", "video_file", "sound_file", "array_file"}
+
+
+# ── inputs ───────────────────────────────────────────────────────────────────
+
+ADDS = """#pragma kernel(output = "sum:rgba32f")
+uniform sampler2D first;  //! input
+uniform sampler2D other;  //! input("black")
+vec4 kernel(ivec2 texel) { return texelFetch(first, texel, 0) + 10.0 * texelFetch(other, texel, 0); }
+"""
+
+
+@pytest.fixture
+def adding(tmp_path: Path) -> playground.Sketch:
+    (tmp_path / "adds.glsl").write_text(ADDS)
+    (tmp_path / "k.glsl").write_text(
+        '#pragma kernel(output = "a:r32f")\nfloat kernel(ivec2 t) { return 0.5; }'
+    )
+    passes = (
+        '[[pass]]\nname = "a"\nuse = "./k"\n[[pass]]\nname = "b"\nuse = "./adds"\ninputs = { first = "a" }\n'
+    )
+    (tmp_path / "sketch.toml").write_text(f"format = 1\nsize = [5, 4]\n{passes}")
+    return playground.load(tmp_path / "sketch.toml")
+
+
+@pytest.mark.parametrize("channels", [1, 2, 3, 4])
+def test_an_input_takes_an_array_of_any_numbers(any_engine, adding, channels):
+    array = (HEIGHTS[..., None] * np.arange(1, channels + 1) - 30.0).astype(np.float32)
+    found = any_engine.read(adding.with_inputs({"b.first": array, "b.other": HEIGHTS}), "b")
+    exact = np.zeros((4, 5, 4), np.float32)
+    exact[..., 3] = 1.0  # what a texture without alpha reads
+    exact[..., :channels] = array
+    exact[..., 0] += 10.0 * HEIGHTS
+    exact[..., 3] += 10.0
+    np.testing.assert_array_equal(found, exact)
+
+
+def test_an_array_on_an_input_is_a_value_like_any_other(any_engine, adding):
+    one, same = (adding.with_inputs({"b.first": HEIGHTS}) for _ in range(2))
+    assert one == same and hash(one) == hash(same) != hash(adding)
+    assert pickle.loads(pickle.dumps(one)) == one
+    other = one.with_inputs({"b.first": HEIGHTS + 1})
+    assert len(other.graph.passes) == len(one.graph.passes), "it takes the earlier one's place"
+    marks = {any_engine.fingerprint(s, size=(8, 8)) for s in (adding, one, same, other)}
+    assert len(marks) == 3
+    np.testing.assert_array_equal(any_engine.read(other, "b")[..., 0], HEIGHTS + 1)
+    np.testing.assert_array_equal(any_engine.read(one, "b")[..., 0], HEIGHTS)
+
+
+def test_an_array_of_another_size_keeps_its_own(any_engine, adding):
+    larger = adding.with_inputs({"b.first": np.ones((7, 9))})
+    any_engine.read(larger, "b")
+    assert any_engine.internal.plan.step("b_first_array").size == (9, 7)
+
+
+def test_an_input_that_is_not_there_and_what_is_no_texture_are_refused(adding, tmp_path):
+    for path, array, sentence in (
+        ("b.frist", HEIGHTS, r"no input 'b\.frist'; did you mean 'b\.first'"),
+        ("c.first", HEIGHTS, r"no input 'c\.first'"),
+        ("b.first", np.zeros(5), r"b\.first = an array of float64 \(5,\): expected numbers"),
+        ("b.first", np.zeros((2, 2, 5)), "expected numbers"),
+        ("b.first", np.where(HEIGHTS == 8, np.nan, HEIGHTS), "row 1, column 1 is not finite"),
+    ):
+        with pytest.raises(playground.ParameterError, match=sentence):
+            adding.with_inputs({path: array})
+    changed = adding.with_inputs({"b.first": HEIGHTS})
+    with pytest.raises(playground.SketchError, match="'b_first_array' is an array, which a"):
+        save_copy(adding, changed, tmp_path)
+
+
+def test_a_web_page_has_the_arrays_and_no_sketch_to_download(engine, sketch):
+    changed = sketch.with_values({"height.elevation": np.pad(HEIGHTS, 2)})
+    lit = changed.with_inputs({"view.light": np.full((8, 9, 3), 0.5)})
+    for one in (changed, lit):
+        (found,) = page_data([one], packed=True, engine=engine)["sketches"]
+        assert "pack" not in found and "array" in json.dumps(found)
+    assert "pack" in page_data([sketch], packed=True, engine=engine)["sketches"][0]

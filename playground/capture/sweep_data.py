@@ -1,0 +1,239 @@
+"""Sweep a sketch's parameters for research: an xarray.Dataset of pictures and measures, one for each case.
+
+Cases are drawn in worker processes. Each is drawn by itself, so that what is found does not depend on how
+many there are. ``sweep`` is where what a sweep may say is read; ``sheet`` puts its pictures side by side.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+import os
+import sys
+import threading
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from itertools import product
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from playground._version import __version__
+from playground.capture.sweep import Sweep, sweep_of, with_one_of_each
+from playground.capture.sweep_case import Case, Found
+from playground.engine.internals import opened
+from playground.engine.plan_request import checked_pixels
+from playground.errors import ParameterError, PlaygroundError, SandboxCrash
+from playground.process.worker import Launch, Worker, WorkerDied
+from playground.sketch.model import LARGEST_SIDE, Sketch
+
+if TYPE_CHECKING:
+    import xarray
+
+USUAL_SIZE = (320, 180)
+"""Width and height in pixels of a picture."""
+
+MOST_BYTES = 2**32
+"""Bytes that the pictures of a sweep may take."""
+
+_MOST_WORKERS = 64
+_WAIT = 0.2  # [s] between two looks whether a process still lives
+
+
+def sweep(
+    sketch: Sketch | str | Path,
+    values: Mapping[str, Iterable[object]],
+    *,
+    textures: Sequence[str] | None = None,
+    pictures: bool = True,
+    size: tuple[int, int] = USUAL_SIZE,
+    time: float = 0.0,
+    workers: int | None = None,
+    software: bool = False,
+    progress: bool = True,
+) -> xarray.Dataset:
+    """Draw a sketch with every combination of some values; return pictures and measures of textures.
+
+    ``sketch`` is a loaded one, or what ``load`` takes. ``values`` are by path: those of a parameter, of a
+    part of a vector (``light.sun.elevation``), of ``relief``, ``extent``, ``size`` and
+    ``base_elevation``; or a text as on the command line, "10..60,6". Each path is a dimension, in
+    their order, and the values are its coordinates: numbers and truth values as they are; a vector, a
+    menu's choice and a file as the text that the command line takes, "135,25", and each number of a
+    vector is a coordinate of its own along the same dimension, ``light.sun.azimuth``.
+
+    ``picture`` is uint8 (…, row, column, channel), top row first, sRGB and alpha, of ``size`` in pixels
+    at ``time`` in seconds; without ``pictures`` it is left out. Of each of ``textures``, references as
+    ``Engine.read`` takes them (the heights that the picture shows, unless given), there are ``.mean``,
+    ``.min``, ``.max`` and ``.std`` over its texels, float64: heights in metres, all else as ``read``
+    gives it, of several numbers a texel the mean of the first three.
+
+    It is drawn in so many ``workers``, processes, as there are processors, 4 at most, unless given; the
+    result is the same for any number. ``software`` asks for the software renderer. With ``progress``
+    there is a bar where standard error is a terminal.
+
+        found = playground.sweep(
+            "diamond_square", {"height.seed": [1, 2], "relief": [200.0, 400.0]}, size=(32, 18), workers=1
+        )
+        print(found["height.max"].sel(relief=400.0).values)
+
+    Needs xarray: ``pip install "terrain-shader-playground[research]"``. Raises ``ParameterError`` for
+    what cannot be set, ``PlaygroundError`` for any mistake in the sketch, ``SandboxCrash`` where a
+    process dies.
+    """
+    made = _xarray()
+    base, pixels = opened(sketch), checked_pixels(size, LARGEST_SIDE)
+    sweeps = [sweep_of(base, path, given) for path, given in values.items()]
+    _check(sweeps, pixels if pictures else (0, 0), workers)
+    picks = list(product(*(range(len(each.values)) for each in sweeps)))
+    cases = [
+        Case(
+            with_one_of_each(base, zip(sweeps, pick, strict=True)),
+            pixels,
+            time,
+            None if textures is None else tuple(textures),
+            pictures,
+        )
+        for pick in picks
+    ]
+    count = min(len(cases), workers or min(os.cpu_count() or 1, 4))
+    found: list[Found | None] = [None] * len(cases)
+    with _bar(f"sweep of {base.name}", len(cases), shown=progress) as advance:
+        for number, one in _drawn(cases, count, software):
+            found[number] = one
+            advance()
+    results = [one for one in found if one is not None]
+    return _dataset(made, base, sweeps, results, (pixels, time))
+
+
+def _xarray() -> Any:
+    try:
+        return importlib.import_module("xarray")
+    except ImportError as error:
+        message = 'a sweep gives an xarray.Dataset: pip install "terrain-shader-playground[research]"'
+        raise PlaygroundError(f"{message} ({error})") from None
+
+
+def _check(sweeps: Sequence[Sweep], size: tuple[int, int], workers: int | None) -> None:
+    if not sweeps:
+        raise ParameterError("a sweep of nothing: expected a parameter's path with its values")
+    whole: dict[str, Sweep] = {}
+    for each in sweeps:
+        other = whole.setdefault(each.parameter, each)
+        if other is not each and None in (other.part, each.part):
+            raise ParameterError(f"sweeps of {other.path} and of {each.path}: expected one of them")
+    if workers is not None and not (isinstance(workers, int) and 1 <= workers <= _MOST_WORKERS):
+        raise ParameterError(f"workers = {workers}: expected a whole number from 1 to {_MOST_WORKERS}")
+    need = math.prod(len(each.values) for each in sweeps) * size[0] * size[1] * 4
+    if need > MOST_BYTES:
+        raise ParameterError(
+            f"the pictures would take {need / 2**30:.1f} GiB; {MOST_BYTES // 2**30} are the most: choose "
+            "smaller ones, fewer values, or pictures=False"
+        )
+
+
+# ── drawing ──────────────────────────────────────────────────────────────────
+
+
+def _drawn(cases: Sequence[Case], count: int, software: bool) -> Iterator[tuple[int, Found]]:
+    """Yield (number, what was found) of each case, as they come."""
+    answered = threading.Event()
+    launch = Launch(handler="playground.capture.sweep_case", options=software, on_answer=answered.set)
+    with ExitStack() as opened_workers:
+        workers = [Worker(launch) for _ in range(count)]
+        for worker in workers:
+            opened_workers.callback(worker.end)
+        waiting, at_work = iter(enumerate(cases)), dict[int, int]()
+
+        def give(index: int) -> None:
+            following = next(waiting, None)
+            if following is not None:
+                at_work[index] = following[0]
+                workers[index].submit(following[1])
+
+        for index in range(count):
+            give(index)
+        while at_work:
+            answered.wait(_WAIT)
+            answered.clear()
+            for index, number in list(at_work.items()):
+                try:
+                    answer = workers[index].poll()
+                except WorkerDied as died:
+                    raise SandboxCrash(f"case {number} of the sweep {died.report.cause()}") from None
+                if answer is not None:
+                    del at_work[index]
+                    found = answer.get()
+                    assert isinstance(found, Found)
+                    give(index)
+                    yield number, found
+
+
+@contextmanager
+def _bar(text: str, total: int, *, shown: bool) -> Iterator[Callable[[], None]]:
+    """Show a bar on standard error, where that is a terminal; yield what moves it on by one."""
+    if not shown or not sys.stderr.isatty():
+        yield lambda: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    columns = (
+        TextColumn(text),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("left:"),
+        TimeRemainingColumn(),
+    )
+    with Progress(*columns, console=Console(file=sys.stderr), transient=True) as bar:
+        task = bar.add_task(text, total=total)
+        yield lambda: bar.advance(task)
+
+
+# ── what is found ────────────────────────────────────────────────────────────
+
+
+def _dataset(
+    made: Any,
+    base: Sketch,
+    sweeps: Sequence[Sweep],
+    found: Sequence[Found],
+    at: tuple[tuple[int, int], float],
+) -> xarray.Dataset:
+    dims = [each.path for each in sweeps]
+    shape = tuple(len(each.values) for each in sweeps)
+    variables: dict[str, Any] = {}
+    for name, unit in found[0].units.items():
+        numbers = np.array([one.measures[name] for one in found], np.float64).reshape(shape)
+        variables[name] = (dims, numbers, {"units": unit})
+    if found[0].picture is not None:
+        stacked = np.stack([one.picture for one in found if one.picture is not None])
+        pictures = stacked.reshape(*shape, *stacked.shape[1:])
+        variables["picture"] = ([*dims, "row", "column", "channel"], pictures, {"encoding": "sRGB, alpha"})
+    coordinates: dict[str, Any] = {}
+    for each in sweeps:
+        coordinates |= _coordinates(each)
+    if "picture" in variables:
+        coordinates["channel"] = list("rgba")
+    attributes = {
+        "sketch": base.name,
+        "size": list(at[0]),
+        "time": at[1],
+        "renderer": found[0].renderer,
+        "playground": __version__,
+    }
+    dataset: xarray.Dataset = made.Dataset(variables, coordinates, attributes)
+    return dataset
+
+
+def _coordinates(each: Sweep) -> dict[str, Any]:
+    """Return the coordinates of a sweep: its values, and of vectors each number as well."""
+    if each.is_plain:
+        return {each.path: (each.path, np.array(each.values), {"units": each.unit} if each.unit else {})}
+    found: dict[str, Any] = {each.path: (each.path, np.array(each.labels, dtype=str))}
+    numbers: NDArray[Any] = np.array(each.values)
+    if numbers.ndim == 2:
+        for place, part in enumerate(each.parts):
+            found[f"{each.path}.{part}"] = (each.path, numbers[:, place])
+    return found
