@@ -158,9 +158,9 @@ function comparedRows(sessions, paths, names, words) {
   const own = sessions.map((session, at) => {
     const rest = paths.filter((path) => session.row(path) && !shared.includes(path));
     return rest.length ? [make("div", { className: "own" }, make("b", {}, names[at] ?? ""),
-      makeRows(session, rest, words))] : [];
+      makeRows(session, () => rest, words))] : [];
   });
-  return [makeRows(left, shared, words), make("div", { className: "owns" }, ...own.flat())];
+  return [makeRows(left, () => shared, words), make("div", { className: "owns" }, ...own.flat())];
 }
 
 /** Every parameter, by pass; a pass is made when it is unfolded.
@@ -175,7 +175,7 @@ function allRows(session, words) {
   };
   const passes = grouped(session.sketch.shown, ({ pass }) => pass);
   return folded(words.allParameters, () => [...passes].map(([pass, rows]) =>
-    folded(labelOf(pass), () => [makeRows(session, rows.map(({ path }) => path), words)])));
+    folded(labelOf(pass), () => [makeRows(session, () => rows.map(({ path }) => path), words)])));
 }
 
 /** Values that a sketch names. @param {Session} session @param {Words} words */
@@ -234,7 +234,7 @@ function build({ model, el }, url, sketches, { engine, by, why }, words) {
   const reset = makeReset(first, words, () => sessions.slice(1).forEach((session) => session.resetAll()));
   const said = by === "browser" ? words.byBrowser : fill(words.byKernel, { reason: why });
   host.append(timeline.element, mistake);
-  host.append(...(several ? comparedRows(sessions, rows, names, words) : [makeRows(first, rows, words)]));
+  host.append(...(several ? comparedRows(sessions, rows, names, words) : [makeRows(first, () => rows, words)]));
   host.append(make("div", { className: "foot" }, reset,
     ...(!several && first.sketch.presets.length ? [presets(first, words)] : []),
     make("small", { className: "drawn-by" }, said)));
