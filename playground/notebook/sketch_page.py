@@ -27,7 +27,7 @@ LARGEST = 24 * 2**20
 def browser_page(
     sketches: Sequence[Sketch], size: tuple[int, int], engine: Engine
 ) -> tuple[str, list[frozenset[str]]]:
-    """Return sketches as a page, packed, for a picture of ``size`` pixels; and the paths locked in each.
+    """Return sketches as a page, packed, for a picture of ``size`` pixels; and the paths fixed in each.
 
     Raises ``PlaygroundError`` for any mistake in a sketch, for what no page can run, and for what is too
     large.
@@ -37,8 +37,11 @@ def browser_page(
     if len(page) > LARGEST:
         millions = [round(number / 2**20) for number in (len(page), LARGEST)]
         raise PlaygroundError(f"its data take {millions[0]} MB; a notebook is given {millions[1]} at most")
-    locked = [{row["path"] for row in one["shown"] if row["locked"]} for one in data["sketches"]]
-    return page, list(map(frozenset, locked))
+    fixed = [
+        frozenset(row["path"] for row in one["shown"] if row["locked"] or row["widget"] == "file")
+        for one in data["sketches"]
+    ]
+    return page, fixed
 
 
 def kernel_outline(sketches: Sequence[Sketch], size: tuple[int, int], engine: Engine) -> str:

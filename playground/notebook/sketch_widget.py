@@ -158,23 +158,26 @@ class SketchesWidget(LiveWidget):
     def _made(self, sketches: Sequence[Sketch], size: tuple[int, int], draws: str) -> dict[str, Any]:
         """Return the traits that some sketches give; raise ``PlaygroundError`` for a mistake in one."""
         rows = list(dict.fromkeys(path for sketch in sketches for path in self._rows_of(sketch)))
+        if self._sliders is None and len(sketches) > 1:  # what was set of one, for one, is what differs
+            set_of_one = [path for sketch in sketches for path, _ in sketch.overrides if path not in rows]
+            rows += dict.fromkeys(set_of_one)
 
         def work(engine: Engine) -> dict[str, Any]:
             frames = [engine.render(sketch, size=size, time=self.time).array for sketch in sketches]
             made = {"page": "", "outline": "", "why": "", "picture": encode_png(np.hstack(frames))}
-            locked = [frozenset[str]()] * len(sketches)
+            fixed = [frozenset[str]()] * len(sketches)
             if draws == KERNEL:
                 made["why"] = "draws = 'kernel'"
             else:
                 try:
-                    made["page"], locked = browser_page(sketches, size, engine)
+                    made["page"], fixed = browser_page(sketches, size, engine)
                 except PlaygroundError as error:
                     if draws == BROWSER:
                         raise
                     made["why"] = str(error)
             if not made["page"]:
                 made["outline"] = kernel_outline(sketches, size, engine)
-            self._locked = locked
+            self._fixed = fixed
             return made
 
         alt = " | ".join(sketch.title or sketch.name for sketch in sketches)
@@ -191,10 +194,10 @@ class SketchesWidget(LiveWidget):
         return self._sliders
 
     def _remade(self, change: Any) -> None:
-        """Make the page anew where what has changed is locked in it: what a source gives, for one."""
+        """Make the page anew where what has changed is fixed in it: what a source gives, for one."""
         old, new = change["old"], change["new"]
-        locked = self._locked[self.SIDES.index(change["name"])]
-        if any(old.get(path) != new[path] for path in locked):
+        fixed = self._fixed[self.SIDES.index(change["name"])]
+        if any(old.get(path) != new[path] for path in fixed):
             camera, now = self.camera, list(self._now)
             self._show(lambda: now)
             self.camera = camera

@@ -10,20 +10,23 @@ import pytest
 from playground.engine.engine import Engine
 from playground.notebook import sketch_widget
 
-KERNEL = """// slope.glsl -- a plane that rises to the east.
+KERNEL = """// slope.glsl -- ground that rises to the north-east.
 #pragma kernel(output = "height:r32f")
-uniform float rise = 0.5;   //! slider(0, 1) How high the east is
+uniform float rise = 0.5;   //! slider(0, 1) How high that corner is
 uniform vec2 far = vec2(0.25, 0.75);   //! slider(0, 1) Nothing that is seen
-float kernel(ivec2 texel) { return rise * float(texel.x) / 32.0 + 0.0 * far.x; }
+float kernel(ivec2 texel) { return rise * float(texel.x * texel.y) / 1024.0 + 0.0 * far.x; }
 """
 SKETCH = """format = 1
 title = "Slope"
 size = [33, 33]
 extent = [320, 320]
 relief = 100
+main = ["height.rise"]
 [[pass]]
 name = "height"
 use = "./slope"
+[view]
+use = "view/terrain"
 """
 
 

@@ -202,6 +202,7 @@ def test_a_saved_notebook_has_the_figure_with_its_values(widget):
 def test_two_are_compared_by_their_values_or_as_sketches(engine, slope):
     both = playground.compare({"height.rise": 0.25}, {"height.rise": 0.75}, sketch=slope, size=SIZE)
     assert (both.left["height.rise"], both.right["height.rise"]) == (0.25, 0.75)
+    assert both.rows == ["height.rise"]
     assert both.names == ["height.rise = 0.25", "height.rise = 0.75"]
     left, right = (engine.render(one, size=SIZE).array for one in both.sketches)
     assert (left != right).any()

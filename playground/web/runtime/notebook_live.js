@@ -10,6 +10,7 @@ import { createBookRecovery } from "./book_recovery.js";
 import { bookWords } from "./book_words.js";
 import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
+import { keepKeys } from "./notebook_keys.js";
 import { followTheme } from "./notebook_theme.js";
 import { unpackedJson } from "./packed.js";
 
@@ -106,6 +107,7 @@ export async function renderLive({ model, el }, url) {
   const host = make("div", { className: "live terrain-figure" }), still = stillOf(model, url);
   el.replaceChildren(host);
   const unfollow = followTheme(host);
+  keepKeys(host);
   const comma = /^fr/.test(language), watched = createBookRecovery(engine, language).watch(host);
   const room = { host, still, block, sketches, begin: null, engine, watched, words, comma };
   const close = () => {

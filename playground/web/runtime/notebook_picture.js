@@ -5,6 +5,7 @@
 // picture; it comes also where the picture is the same, or there is none.
 
 import { make } from "./dom.js";
+import { keepKeys } from "./notebook_keys.js";
 
 /** @typedef {Object<string, number>} Values */
 
@@ -24,6 +25,7 @@ export function renderPicture({ model, el }) {
   const image = make("img", { alt: model.get("alt") });
   const mistake = make("p", { className: "mistake", role: "status" });
   const rows = make("div", { className: "rows" });
+  keepKeys(rows);
 
   let url = "";
   let waiting = false;

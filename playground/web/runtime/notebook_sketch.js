@@ -10,6 +10,7 @@ import { make } from "./dom.js";
 import { createEngine } from "./engine.js";
 import { grouped, labelOf } from "./labels.js";
 import { lackOf } from "./lacks.js";
+import { keepKeys } from "./notebook_keys.js";
 import { createKernelEngine } from "./notebook_kernel.js";
 import { followTheme } from "./notebook_theme.js";
 import { notebookWords } from "./notebook_words.js";
@@ -25,6 +26,7 @@ import { fill } from "./words.js";
 /** @typedef {Object<string, string>} Words */
 
 const BYTES = 384 * 2 ** 20; // of textures of one widget
+const NARROW = 360; // [CSS pixels] that rows get below a smaller picture
 const OFTEN = 200; // [ms] between two times that are told while time goes on
 
 /** Who draws: the browser where it can, else the kernel, where there is one.
@@ -44,10 +46,11 @@ function drawer(model, page, words, hasKernel) {
   return { engine: createKernelEngine(model, page.sketches), by: "kernel", why: model.get("why") };
 }
 
-/** Keep the values of a session and those of a trait alike. @param {Model} model @param {Session} session
- *  @param {string} name of the trait */
+/** Keep the values of a session and those of a trait alike. A page knows files by other names than Python:
+ *  one that changes asks for another page.
+ *  @param {Model} model @param {Session} session @param {string} name of the trait */
 function bindValues(model, session, name) {
-  const rows = session.sketch.shown;
+  const rows = session.sketch.shown.filter(({ widget }) => widget !== "file" || !model.get("page"));
   const end = session.follow((news) => {
     if (news !== "values") return;
     const now = Object.fromEntries(rows.map(({ path }) => [path, session.value(path)])), old = model.get(name);
@@ -155,9 +158,9 @@ function comparedRows(sessions, paths, names, words) {
   const own = sessions.map((session, at) => {
     const rest = paths.filter((path) => session.row(path) && !shared.includes(path));
     return rest.length ? [make("div", { className: "own" }, make("b", {}, names[at] ?? ""),
-      makeRows(session, rest, words))] : [];
+      makeRows(session, () => rest, words))] : [];
   });
-  return [makeRows(left, shared, words), make("div", { className: "owns" }, ...own.flat())];
+  return [makeRows(left, () => shared, words), make("div", { className: "owns" }, ...own.flat())];
 }
 
 /** Every parameter, by pass; a pass is made when it is unfolded.
@@ -172,7 +175,7 @@ function allRows(session, words) {
   };
   const passes = grouped(session.sketch.shown, ({ pass }) => pass);
   return folded(words.allParameters, () => [...passes].map(([pass, rows]) =>
-    folded(labelOf(pass), () => [makeRows(session, rows.map(({ path }) => path), words)])));
+    folded(labelOf(pass), () => [makeRows(session, () => rows.map(({ path }) => path), words)])));
 }
 
 /** Values that a sketch names. @param {Session} session @param {Words} words */
@@ -204,17 +207,21 @@ function build({ model, el }, url, sketches, { engine, by, why }, words) {
   const names = model.get("names") ?? [], rows = model.get("rows"), several = sketches.length > 1;
   const swiped = several && model.get("swipe"), [wide] = model.get("size");
   const host = make("div", { className: "live terrain-figure sketches" });
-  host.style.maxWidth = `${wide * (several && !swiped ? 2 : 1)}px`;
+  keepKeys(host);
   const box = make("div", { className: swiped ? "sides swiped" : "sides" });
+  const room = several && !swiped ? `calc(${2 * wide}px + 0.75rem)` : `${wide}px`;
+  box.style.maxWidth = room;
+  box.style.setProperty("--least", `min(17rem, ${wide}px)`);
+  host.style.maxWidth = `max(${room}, ${NARROW}px)`;
   const watched = createBookRecovery(/** @type {any} */ (engine), model.get("language")).watch(host);
-  const room = /** @type {any} */ ({ engine, watched, words });
+  const parts = /** @type {any} */ ({ engine, watched, words });
   const sessions = sketches.map((sketch) => createSession([sketch])), [first] = sessions;
   host.append(box);
   const figures = sessions.map((session, at) => {
     const side = make("div", { className: "side" }), poster = several ? null : make("img", { src: url });
     if (poster) poster.alt = model.get("alt");
     box.append(side);
-    const figure = makePicture(room, side, session, { poster });
+    const figure = makePicture(parts, side, session, { poster });
     figure.canvas.title = words.dragHere;
     if (names[at]) side.append(make("p", { className: "side-label" }, names[at]));
     return figure;
@@ -227,7 +234,7 @@ function build({ model, el }, url, sketches, { engine, by, why }, words) {
   const reset = makeReset(first, words, () => sessions.slice(1).forEach((session) => session.resetAll()));
   const said = by === "browser" ? words.byBrowser : fill(words.byKernel, { reason: why });
   host.append(timeline.element, mistake);
-  host.append(...(several ? comparedRows(sessions, rows, names, words) : [makeRows(first, rows, words)]));
+  host.append(...(several ? comparedRows(sessions, rows, names, words) : [makeRows(first, () => rows, words)]));
   host.append(make("div", { className: "foot" }, reset,
     ...(!several && first.sketch.presets.length ? [presets(first, words)] : []),
     make("small", { className: "drawn-by" }, said)));
