@@ -51,7 +51,7 @@ class Server(LanguageServer):
         )
         self._published: dict[Path, str] = {}  # under which URI a file's diagnostics were sent last
         for name, (answer, options) in _FEATURES.items():
-            self.feature(name, options)(_guarded(self, answer))
+            self.feature(name, options)(guarded(self, answer))
 
     def report_server_error(self, error: Exception, source: object) -> None:
         """Log what the protocol's own code cannot do in one line."""
@@ -140,7 +140,7 @@ def serve(port: int | None, *, software: bool = False, device: int | None = None
         server.checker.close()
 
 
-def _guarded(server: Server, answer: Callable[[Server, T], object]) -> Callable[[T], object]:
+def guarded(server: Server, answer: Callable[[Server, T], object]) -> Callable[[T], object]:
     """Return a handler that has the lock, and whose mistakes are no tracebacks."""
 
     def handler(params: T) -> object:
