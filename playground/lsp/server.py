@@ -18,7 +18,7 @@ from typing import Protocol, TypeVar
 
 from lsprotocol import types
 from pygls import uris
-from pygls.exceptions import JsonRpcException
+from pygls.exceptions import FeatureRequestError, JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from playground._version import __version__
@@ -54,7 +54,9 @@ class Server(LanguageServer):
             self.feature(name, options)(guarded(self, answer))
 
     def report_server_error(self, error: Exception, source: object) -> None:
-        """Log what the protocol's own code cannot do in one line."""
+        """Log what the protocol's own code cannot do in one line; a request's error is its answer."""
+        if source is FeatureRequestError:
+            return
         self.log(f"{type(error).__name__}: {str(error).partition(chr(10))[0][:300]}")
 
     def log(self, sentence: str) -> None:

@@ -321,6 +321,7 @@ def test_a_rename_that_is_not_safe_is_refused_with_a_sentence(
     with pytest.raises(Refusal, match=why) as refusal:
         renamed(editor, folder, word, new)
     assert "Traceback" not in str(refusal.value)
+    assert not [note for note in editor.notes if note["method"] == "window/logMessage"]
 
 
 def test_what_the_library_declares_is_not_renamed_from_a_kernel(editor: Editor, folder: Path) -> None:
