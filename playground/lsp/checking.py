@@ -17,6 +17,7 @@ from playground.engine.sandbox import Request, Sandbox, SandboxReport
 from playground.errors import ContextError, Diagnostic, OpenGLFault, PlaygroundError
 from playground.lsp.documents import Document, Documents
 from playground.paths import GLSL, current_folder, without_part
+from playground.process.messages import summary_of
 from playground.sketch.allowed_files import noting_places
 
 Found = Mapping[Path, tuple[Diagnostic, ...]]
@@ -148,10 +149,12 @@ class Checker:
             try:
                 report = check_file(document.path, self._sandbox)
                 diagnostics = [*report.errors, *report.warnings]
+            except Stale:
+                raise
             except PlaygroundError as error:
                 diagnostics = list(error.diagnostics)
-            except (OSError, ValueError, RecursionError, MemoryError) as error:
-                diagnostics = [Diagnostic(f"cannot be checked: {error or type(error).__name__}")]
+            except Exception as error:  # a mistake of ours must not end the thread
+                diagnostics = [Diagnostic(f"cannot be checked: {summary_of(error)}")]
             for diagnostic in diagnostics:
                 path = self.file_named(diagnostic.file) or document.path
                 found.setdefault(path, []).append(diagnostic)

@@ -18,7 +18,7 @@ from typing import Protocol, TypeVar
 
 from lsprotocol import types
 from pygls import uris
-from pygls.exceptions import JsonRpcException
+from pygls.exceptions import FeatureRequestError, JsonRpcException
 from pygls.lsp.server import LanguageServer
 
 from playground._version import __version__
@@ -51,10 +51,12 @@ class Server(LanguageServer):
         )
         self._published: dict[Path, str] = {}  # under which URI a file's diagnostics were sent last
         for name, (answer, options) in _FEATURES.items():
-            self.feature(name, options)(_guarded(self, answer))
+            self.feature(name, options)(guarded(self, answer))
 
     def report_server_error(self, error: Exception, source: object) -> None:
-        """Log what the protocol's own code cannot do in one line."""
+        """Log what the protocol's own code cannot do in one line; a request's error is its answer."""
+        if source is FeatureRequestError:
+            return
         self.log(f"{type(error).__name__}: {str(error).partition(chr(10))[0][:300]}")
 
     def log(self, sentence: str) -> None:
@@ -140,7 +142,7 @@ def serve(port: int | None, *, software: bool = False, device: int | None = None
         server.checker.close()
 
 
-def _guarded(server: Server, answer: Callable[[Server, T], object]) -> Callable[[T], object]:
+def guarded(server: Server, answer: Callable[[Server, T], object]) -> Callable[[T], object]:
     """Return a handler that has the lock, and whose mistakes are no tracebacks."""
 
     def handler(params: T) -> object:

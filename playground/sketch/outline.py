@@ -20,7 +20,7 @@ _VARIABLE = re.compile(
 )
 _STRUCT = re.compile(r"struct\s+([A-Za-z_]\w*)\s*$")
 _DEFINE = re.compile(r"[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(\([^)\n]*\))?[^\n]*")
-_DIRECTIVE = re.compile(r"[ \t]*#[^\n]*(?:\\\n[^\n]*)*")
+_DIRECTIVE = re.compile(r"[ \t]*#(?:[^\n\\]|\\\n|\\[^\n])*")  # and the lines that it goes on to
 _LOCAL = re.compile(
     r"(?<![\w.])([A-Za-z_]\w*)\s+((?:[A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?(?:=[^;]*?)?"
     r"(?:,\s*[A-Za-z_]\w*\s*(?:\[[^\]]*\]\s*)?(?:=[^;]*?)?)*)(?=;|\)|,|\{|$)"

@@ -261,6 +261,40 @@ def test_a_parameter_changes_in_the_sketches_that_set_it(editor: Editor, folder:
     assert load(folder / "sketch.toml").main == ("height.turns",)
 
 
+TECHNIQUE = """[[pass]]
+name = "a"
+use = "./hill"
+[parameters]
+%s
+[outputs]
+height = "a:height"
+"""
+
+
+@pytest.mark.parametrize(
+    ("export", "inside"),
+    [('rounds = "a.rounds"\n"*" = "*"', "rounds"), ('"*" = "*"', "turns")],
+    ids=["named", "all"],
+)
+def test_a_parameter_that_a_technique_shows_outside(
+    editor: Editor, folder: Path, export: str, inside: str
+) -> None:
+    """By a name of its own, that name stays; with all others, it is called as the parameter is."""
+    (folder / "both.toml").write_text(TECHNIQUE % export)
+    sketch = SKETCH.replace("./hill", "./both")
+    (folder / "more.toml").write_text(sketch)
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, KERNEL)
+    found = editor.at("rename", uri, *place(KERNEL, "rounds = 1"), newName="turns")["changes"]
+    for changed, edits in found.items():
+        path = folder / changed.rpartition("/")[2]
+        path.write_text(applied(path.read_text(), edits))
+    assert load(folder / "more.toml").main == (f"height.{inside}",)
+    assert (folder / "more.toml").read_text() == sketch.replace("rounds", inside)
+    for name in ("both.toml", "more.toml"):
+        (folder / name).unlink()
+
+
 def test_a_direction_takes_the_vector_towards_it_along(editor: Editor, folder: Path) -> None:
     found = renamed(editor, folder, "sun =", "lamp")
     assert found == {"hill.glsl": KERNEL.replace("vec2 sun", "vec2 lamp").replace("s_sun", "s_lamp")}
@@ -287,6 +321,7 @@ def test_a_rename_that_is_not_safe_is_refused_with_a_sentence(
     with pytest.raises(Refusal, match=why) as refusal:
         renamed(editor, folder, word, new)
     assert "Traceback" not in str(refusal.value)
+    assert not [note for note in editor.notes if note["method"] == "window/logMessage"]
 
 
 def test_what_the_library_declares_is_not_renamed_from_a_kernel(editor: Editor, folder: Path) -> None:
