@@ -137,6 +137,9 @@ def test_what_moderngl_drew_has_its_top_row_first(kind: str, samples: int) -> No
         pixels = levels_of(found.values)[0]
         assert pixels[:2].tolist() == [[[0, 0, 255, 255]] * 6] * 2
         assert np.abs(pixels[2:].astype(int) - [255, 127.5, 0, 255]).max() <= 0.5
+        window = made_in("moderngl_window", fbo=framebuffer, ctx=context)
+        app = made_in("moderngl_window", wnd=window)
+        assert taken(window).values.tolist() == taken(app).values.tolist() == found.values.tolist()
         if not samples:
             assert taken(attachment).values.tolist() == found.values.tolist()
 
