@@ -6,6 +6,7 @@
     fingerprint.py  what a picture comes from
     references.py   where references live; reading, writing, finding those that nothing uses
     judge.py        a picture, its fingerprint, references → whether it passes, in a word
+    strip.py        a few frames of a film as one picture, judged frame by frame
     suite.py        sketches → cases → frames → outcomes
     results.py      a folder with a record of each checked shot and its pictures
     result_paths.py    where in that folder each has its own; removing what is out of date

@@ -59,11 +59,13 @@ def _of_moderngl(thing: Any) -> Taken | None:
     if not _is_a(thing, "moderngl"):
         return None
     if hasattr(thing, "color_attachments"):
+        _make_current(thing.ctx)
         return Taken(_framebuffer(thing), thing.ctx)
     if not all(hasattr(thing, name) for name in ("read", "components", "dtype")):
         return None
     if getattr(thing, "samples", 0):
         raise DataError("a texture of several samples has no pixels to read: give its framebuffer")
+    _make_current(thing.ctx)
     return Taken(_pixels(thing.read(alignment=1), thing.size, thing.components, thing.dtype), thing.ctx)
 
 
@@ -71,7 +73,10 @@ def _of_moderngl_window(thing: Any) -> Taken | None:
     if not _is_a(thing, "moderngl_window"):
         return None
     window = getattr(thing, "wnd", thing)
-    return Taken(_framebuffer(window.fbo), window.ctx) if hasattr(window, "fbo") else None
+    if not hasattr(window, "fbo"):
+        return None
+    _make_current(window.ctx)
+    return Taken(_framebuffer(window.fbo), window.ctx)
 
 
 def _of_matplotlib(thing: Any) -> Taken | None:
@@ -158,6 +163,11 @@ ADAPTERS: tuple[Callable[[Any], Taken | None], ...] = (
 def _is_a(thing: object, *packages: str) -> bool:
     """Return whether a thing is of a class of a package, or of one that is derived from it."""
     return any(kind.__module__.partition(".")[0] in packages for kind in type(thing).__mro__)
+
+
+def _make_current(context: Any) -> None:
+    """Make a context current: names of objects are its own, and another one may have drawn since."""
+    context.__enter__()  # and no way back: glcontext's leaves none
 
 
 def _framebuffer(source: Any) -> NDArray[Any]:

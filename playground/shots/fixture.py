@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,7 +32,7 @@ from playground.shots.masking import Light
 from playground.shots.names import name_of_test, one_spelling, why_no_name
 from playground.shots.plugin_constants import USED
 from playground.shots.soft_failures import add_failure, fail_for_what_is_left
-from playground.shots.suite import RenderedShot, ShotCase
+from playground.shots.suite import RenderedShot, ShotCase, film_of
 from playground.sketch.find import find
 from playground.sketch.load import load
 from playground.sketch.model import Graph, Shot, Sketch
@@ -148,16 +148,75 @@ class ShotFixture:
         hides = MaskOfTest(mask)
         allowed = tolerance_of(tolerance, reason)
         case = self._case(Shot(name, tolerance=allowed, mask=hides.named, allow_blank=allow_blank))
+        rendered, info = self._rendered(case, picture, by, tone)
+        rendered = replace(rendered, masks=(*hides.arrays, *self._textures(picture, hides.textures)))
+        return self._hold(case, rendered, info, own, start)
+
+    def animation(
+        self,
+        frames: Iterable[object],
+        name: str = "",
+        *,
+        times: Sequence[float] = (),
+        by: By | None = None,
+        tone: str = "",
+        tolerance: Given | None = None,
+        reason: str = "",
+        mask: object = None,
+        allow_blank: bool = False,
+    ) -> bool:
+        """Compare a few frames of a film as one picture, a contact strip, each frame by itself.
+
+        ``frames`` are two pictures or more of one size, as `check` takes them, not all the same;
+        frames of an engine have to be drawn one after another, by a generator. ``times`` are
+        in seconds, for the sentence on the first that fails; frames of ``shot.render`` have theirs.
+        Otherwise as `check`; ``mask`` hides the same of each frame, and is no texture.
+        """
+        __tracebackhide__ = True
+        start, self._started = self._started, time.perf_counter()
+        own, name = not name, name or name_of_test(self._node.nodeid)
+        self._refuse_name(name, own)
+        hides = MaskOfTest(mask)
+        if hides.textures:
+            raise ValueError(f"mask = {hides.textures[0]!r}: a texture cannot mask an animation")
+        allowed = tolerance_of(tolerance, reason)
+        case = self._case(Shot(name, tolerance=allowed, mask=hides.named, allow_blank=allow_blank))
+        taken_frames, labels, renderers = [], [], []
+        for number, frame in enumerate(frames):
+            rendered, info = self._rendered(case, frame, by, tone)
+            taken_frames.append(rendered)
+            renderers.append(info)
+            moment = frame.time if isinstance(frame, Frame) else None
+            moment = times[number] if number < len(times) else moment
+            labels.append("" if moment is None else f"at {moment:g} s")
+        if times and len(times) != len(labels):
+            raise ValueError(f"times: {len(times)} for {len(labels)} frames")
+        strip = film_of(taken_frames, labels, hides.arrays)
+        if len(set(renderers)) > 1:
+            raise ValueError("the frames of an animation are drawn by one renderer; these are not")
+        return self._hold(case, strip, renderers[0], own, start)
+
+    def _rendered(
+        self, case: ShotCase, picture: object, by: By | None, tone: str
+    ) -> tuple[RenderedShot, ContextInfo]:
+        """Return a picture with all that is known of how it was drawn, and what drew it."""
+        __tracebackhide__ = True
         found = None if isinstance(picture, Frame) else taken(picture)
         info = self._renderer_of(case, picture, found, by)
+        drawer = by or (found.context if found else None)
+        return _drawn_by(picture, _rendered(picture, found, tone), drawer), info
+
+    def _hold(
+        self, case: ShotCase, rendered: RenderedShot, info: ContextInfo, own: bool, start: float
+    ) -> bool:
+        """Compare a picture with its reference, and record the failure for the test's end."""
+        __tracebackhide__ = True
+        name = case.shot.name
         self._begin(case)
         self._names[one_spelling(name)] = name
         if refusal := self._checker.claim(self._node, case, info, own):
             raise ValueError(refusal)
         self._node.user_properties.append((USED, f"{info.slug}/{name}"))
-        drawer = by or (found.context if found else None)
-        rendered = _drawn_by(picture, _rendered(picture, found, tone), drawer)
-        rendered = replace(rendered, masks=(*hides.arrays, *self._textures(picture, hides.textures)))
         failure = self._checker.failure(self._node, case, rendered, info, start)
         if failure:
             first, _, rest = failure.partition("\n")

@@ -7,8 +7,10 @@ calls the same four.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import hashlib
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +34,7 @@ from playground.shots.references import (
     read_reference,
     reference_path,
 )
+from playground.shots.strip import frame_size, judge_frames, repeated, strip_of
 from playground.sketch.load import load
 from playground.sketch.model import Shot, Sketch
 from playground.sketch.toml_comparison import MASK_ENDING
@@ -57,7 +60,8 @@ class RenderedShot(Frame):
     gl_error: str = ""  # what drawing it left behind
     fonts: str = ""  # the files of the fonts in it
     tone: str = ""  # how its floats were shown
-    masks: tuple[Light, ...] = ()  # of the picture's size
+    masks: tuple[Light, ...] = ()  # of the picture's size, or of each frame's
+    labels: tuple[str, ...] = ()  # of the frames of a strip, as "at 0.5 s"; none for one picture
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -116,6 +120,25 @@ def render_shot(engine: Engine, case: ShotCase) -> RenderedShot:
     )
 
 
+def film_of(frames: Sequence[RenderedShot], labels: Sequence[str], masks: tuple[Light, ...]) -> RenderedShot:
+    """Return frames as one picture, a strip, with what is wrong with any of them."""
+    strip = strip_of([frame.array for frame in frames])
+    drawn = [frame.drawn for frame in frames]
+    digest = hashlib.sha256(" ".join(drawn).encode()).hexdigest()[:32] if all(drawn) else ""
+    named = [f"frame {i} of {len(frames)}" for i in range(1, len(frames) + 1)]
+    bad = [f"{name}: {f.not_finite}" for name, f in zip(named, frames, strict=True) if f.not_finite]
+    return RenderedShot(
+        strip,
+        drawn=digest,
+        not_finite=next(iter(bad), ""),
+        gl_error=next((frame.gl_error for frame in frames if frame.gl_error), ""),
+        fonts=frames[0].fonts,
+        tone=frames[0].tone,
+        masks=masks,
+        labels=tuple(labels),
+    )
+
+
 def check(
     case: ShotCase, frame: Frame, renderer: ContextInfo, reference_renderer: str = REFERENCE_RENDERER
 ) -> Outcome:
@@ -128,10 +151,9 @@ def check(
     """
     name = case.shot.name
     rule = rule_of(case, frame)
-    drawn, not_finite, gl_error, fonts = "", "", "", ""
-    if isinstance(frame, RenderedShot):
-        drawn, not_finite, gl_error, fonts = frame.drawn, frame.not_finite, frame.gl_error, frame.fonts
-    fingerprint = fingerprint_of(renderer, frame.size, drawn, fonts)
+    if not isinstance(frame, RenderedShot):
+        frame = RenderedShot(frame.array, frame.sketch, frame.time)
+    fingerprint = fingerprint_of(renderer, frame.size, frame.drawn, frame.fonts)
     path = reference_path(case.sketch, name, renderer.slug)
     files = accepted(case.sketch, name, renderer.slug)
     own = bool(files)
@@ -144,19 +166,23 @@ def check(
             references.append(read_reference(file))
         except DataError as error:
             return Outcome(**vars(unreadable(frame.array, fingerprint, str(error))), **origin, path=file)
-    judgement, reference = judge(
+    compared_with = (references if own else [], [] if own else references)
+    count, mask = len(frame.labels), rule.mask
+    judged = partial(judge_frames, labels=frame.labels) if count else judge
+    judgement, reference = judged(
         frame.array,
         fingerprint,
-        references if own else (),
-        () if own else references,
-        not_finite=not_finite,
-        gl_error=gl_error,
+        *compared_with,
         rule=rule,
+        not_finite=frame.not_finite,
+        gl_error=frame.gl_error,
     )
+    if count and mask is not None:
+        mask = repeated(mask, count)
     return Outcome(
         **vars(judgement),
         **origin,
-        mask=rule.mask,
+        mask=mask,
         masked=tuple(map(described, _parts(case, frame))),
         path=reference.path if reference else path,
         reference=reference,
@@ -191,5 +217,7 @@ def _parts(case: ShotCase, frame: Frame) -> list[Rectangle | str | Light]:
 
 def rule_of(case: ShotCase, frame: Frame) -> Rule:
     """Return how a shot's frame is compared; raise ``DataError`` for a mask that does not fit it."""
-    mask = mask_of(_parts(case, frame), frame.size, Path(case.sketch.folder))
+    labels = frame.labels if isinstance(frame, RenderedShot) else ()
+    size = frame_size(frame.array, len(labels)) if labels else frame.size
+    mask = mask_of(_parts(case, frame), size, Path(case.sketch.folder))
     return Rule(tolerance=case.shot.tolerance, mask=mask, allow_blank=case.shot.allow_blank)

@@ -132,11 +132,16 @@ def test_what_moderngl_drew_has_its_top_row_first(kind: str, samples: int) -> No
         framebuffer = context.framebuffer([attachment])
         framebuffer.clear(1.0, 0.5, 0.0, 1.0)
         framebuffer.clear(0.0, 0.0, 1.0, 1.0, viewport=(0, 2, 6, 2))
+        other = open_context(software=True)  # is current now, and has a framebuffer of that number
+        other.simple_framebuffer(size).clear(0.3, 0.3, 0.3)
         found = taken(framebuffer)
         assert found.context is context
         pixels = levels_of(found.values)[0]
         assert pixels[:2].tolist() == [[[0, 0, 255, 255]] * 6] * 2
         assert np.abs(pixels[2:].astype(int) - [255, 127.5, 0, 255]).max() <= 0.5
+        window = made_in("moderngl_window", fbo=framebuffer, ctx=context)
+        app = made_in("moderngl_window", wnd=window)
+        assert taken(window).values.tolist() == taken(app).values.tolist() == found.values.tolist()
         if not samples:
             assert taken(attachment).values.tolist() == found.values.tolist()
 
