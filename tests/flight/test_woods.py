@@ -154,10 +154,10 @@ def pops(engine: Engine, frames: int) -> tuple[list[float], float, float]:
 
 
 @pytest.mark.slow
-def test_no_tree_pops_along_a_flight_of_600_frames(ctx: moderngl.Context) -> None:
+def test_no_tree_pops_along_a_flight_of_240_frames(ctx: moderngl.Context) -> None:
     """A crown that pops is a whole pixel; an outline that fades crosses it, √2 times its side at most."""
     with Engine(ctx, cache_bytes=128 * 2**20) as engine:
-        most, contrast, bound = pops(engine, 600)
+        most, contrast, bound = pops(engine, 240)
     assert contrast > 60.0, "there are trees"
     assert max(most) <= bound
 
@@ -167,5 +167,5 @@ def test_without_the_fade_trees_would_pop(ctx: moderngl.Context, monkeypatch: py
     read = programs._read
     monkeypatch.setattr(programs, "_read", lambda name: read(name).replace("* small *", "*"))
     with Engine(ctx, cache_bytes=128 * 2**20) as engine:
-        most, _, bound = pops(engine, 160)
+        most, _, bound = pops(engine, 120)
     assert max(most) > bound
