@@ -156,6 +156,7 @@ def test_a_missing_file_and_an_unknown_source_are_sentences(values, tmp_path):
         "example_file",
         "ranked_heights",
         "mask_file",
+        "array_file",
         "numbers_file",
         "vector_file",
         "model_file",

@@ -166,7 +166,7 @@ def test_a_repeat_ends_once_it_has_settled(pages: Pages, drawn: Engine, sketch: 
     begun(pages, whole)
     drawn.internal.cache.clear()
     frame = drawn.render(whole, size=SIZE)
-    assert 255 < drawn.record.iterations["spread"] < 300
+    assert 255 < drawn.internal.record.iterations["spread"] < 300
     assert pages.picture(whole.name).levels_off(frame.array) == 0
 
 

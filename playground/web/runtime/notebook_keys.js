@@ -1,4 +1,4 @@
-// notebook_keys.js -- keys that a figure takes, such as arrows on a slider: the notebook has meanings of its own.
+// notebook_keys.js -- keys that a figure takes, such as arrows on a slider, from the notebook.
 
 /** Keep keys pressed in an element from the notebook around it, but those held with Ctrl, Alt or Meta, Enter
  *  with Shift, and Escape. @param {HTMLElement} host */

@@ -53,7 +53,8 @@ function bindValues(model, session, name) {
   const rows = session.sketch.shown.filter(({ widget }) => widget !== "file" || !model.get("page"));
   const end = session.follow((news) => {
     if (news !== "values") return;
-    const now = Object.fromEntries(rows.map(({ path }) => [path, session.value(path)])), old = model.get(name);
+    const now = Object.fromEntries(rows.map(({ path }) => [path, session.value(path)]));
+    const old = model.get(name);
     if (rows.every(({ path }) => isSame(now[path], old[path]))) return;
     model.set(name, { ...old, ...now });
     model.save_changes();
@@ -191,9 +192,9 @@ function presets(session, words) {
   return menu;
 }
 
-/** Two pictures one over the other, and the line between them. @param {HTMLElement} box @param {Words} words */
+/** Two pictures one over the other, and the line between. @param {HTMLElement} box @param {Words} words */
 function swiper(box, words) {
-  const range = make("input", { type: "range", min: "0", max: "100", value: "50", "aria-label": words.swipe });
+  const range = make("input", { type: "range", min: 0, max: 100, value: 50, "aria-label": words.swipe });
   const show = () => box.style.setProperty("--at", `${range.value}%`);
   range.oninput = show;
   show();
@@ -234,7 +235,8 @@ function build({ model, el }, url, sketches, { engine, by, why }, words) {
   const reset = makeReset(first, words, () => sessions.slice(1).forEach((session) => session.resetAll()));
   const said = by === "browser" ? words.byBrowser : fill(words.byKernel, { reason: why });
   host.append(timeline.element, mistake);
-  host.append(...(several ? comparedRows(sessions, rows, names, words) : [makeRows(first, () => rows, words)]));
+  const own = () => [makeRows(first, () => rows, words)];
+  host.append(...(several ? comparedRows(sessions, rows, names, words) : own()));
   host.append(make("div", { className: "foot" }, reset,
     ...(!several && first.sketch.presets.length ? [presets(first, words)] : []),
     make("small", { className: "drawn-by" }, said)));
