@@ -26,9 +26,10 @@ from playground.reduce.probe import Probe
 from playground.reduce.search import Search
 from playground.reduce.variant import record_text
 from playground.shots.references import reference_path
-from playground.sketch.find import shipped_sketches
 from playground.sketch.load import load
 from playground.sketch.variant_record import NAME
+
+from ..shipped import of_each_kind
 
 ROOT = Path(__file__).resolve().parents[2]
 HEIGHT = '#pragma kernel(output = "height:r32f")\n'
@@ -503,8 +504,7 @@ NOT_INLINED = {
     "name",
     [
         pytest.param(n, marks=[] if n in WITH_VARIANTS else [pytest.mark.slow])
-        for n in shipped_sketches()
-        if n not in NOT_INLINED
+        for n in sorted({*of_each_kind(), *WITH_VARIANTS} - NOT_INLINED.keys())
     ],
 )
 def test_a_shipped_sketch_inlined_is_a_sketch_with_the_same_passes(name, tmp_path):
