@@ -33,6 +33,7 @@ def one():
     return assignments_of([read_lesson("diamond_square")])[0]
 
 
+@pytest.mark.slow
 def test_the_zip_opens_in_the_window_as_the_exercise_begins(handed_out, one, tmp_path, engine):
     zipped = tmp_path / "week3.zip"
     zipped.write_bytes(handed_out.read_bytes())
@@ -53,6 +54,7 @@ def test_the_zip_opens_in_the_window_as_the_exercise_begins(handed_out, one, tmp
     assert (changed != shown).any()
 
 
+@pytest.mark.slow
 def test_every_exercise_of_the_course_has_a_sketch_that_loads(tmp_path):
     found = assignments_of(read_lessons())
     assert len({one.name for one in found}) == len(found) > 0

@@ -628,8 +628,7 @@ def test_what_the_user_types_may_lie_anywhere(folder, tmp_path: Path):
 # Anything at all
 
 
-# A quarter of the texts every day, for they are made by chance: the others are no different.
-@pytest.mark.parametrize("seed", [7, *(pytest.param(n, marks=pytest.mark.slow) for n in (107, 207, 307))])
+@pytest.mark.parametrize("seed", [7, pytest.param(107, marks=pytest.mark.slow)])
 def test_mutated_sketches_raise_nothing_but_sentences(folder, seed):
     rng = random.Random(seed)
     folder.write("t.toml", "[[pass]]\nname = 'a'\nuse = './terrain'\n[parameters]\nsteep = 'a.rise'\n")

@@ -12,10 +12,10 @@ from playground.sketch.load import load
 from playground.web.page_data import page_data
 
 from ..cases import each
+from ..shipped import FEW
 from ..sketch_texts import map_of, passes
 from .node import Node
 from .pages import Pages
-from .shipped import FEW
 from .test_every_sketch import SIZE, small
 from .texts import kernels
 

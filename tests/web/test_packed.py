@@ -24,8 +24,8 @@ from playground.sketch.unpack import read_pack, unpacked
 from playground.sketch.values import shortest
 from playground.web.page_data import page_data
 
+from ..shipped import EACH_KIND
 from .node import Node
-from .shipped import SHIPPED
 
 ZIP = """async (page, made, store, load) => {
     const { versionFiles } = await load("my_version.js"), { zip } = await load("zip.js");
@@ -89,7 +89,7 @@ def settings(page: dict[str, Any]) -> list[list[Any]]:
     return found
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EACH_KIND)
 def test_an_unchanged_version_says_what_the_sketch_says(
     node: Node, tmp_path: Path, exporting: Engine, name: str
 ):
@@ -104,7 +104,7 @@ def test_an_unchanged_version_says_what_the_sketch_says(
     assert text.startswith(f"{name}/")
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EACH_KIND)
 def test_values_and_the_camera_come_back_exactly(node: Node, tmp_path: Path, exporting: Engine, name: str):
     sketch, page = load(name), page_of(name, exporting)
     values = settings(page)

@@ -25,8 +25,8 @@ from playground.web.plan import KINDS
 from playground.web.pressed import pressed
 
 from .. import dialect_texts, isf_texts
+from ..shipped import EACH_KIND, of_each_kind, slow_but
 from .node import Node
-from .shipped import SHIPPED
 
 STAGES = """async (shared, kernels, load) => {
     const { flatten } = await load("source.js"), { stageText } = await load("wrap.js");
@@ -61,7 +61,7 @@ def plan_of(sketch: Sketch) -> Plan:
     return Planner().plan(sketch, frame_size=(320, 180), variants=KINDS)
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EACH_KIND)
 def test_it_is_json_and_says_nothing_of_this_machine(name: str, written: Written):
     page = written(name)
     text = json.dumps(page, allow_nan=False)
@@ -70,13 +70,13 @@ def test_it_is_json_and_says_nothing_of_this_machine(name: str, written: Written
         assert str(folder) not in text
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", slow_but(sorted({*of_each_kind(), *WHOLE_SCENES})))
 def test_its_plan_and_its_texts_are_small(name: str, written: Written):
     text, _ = page_texts(written(name))
     assert len(pressed(text).encode()) < (2 if name in WHOLE_SCENES else 1) * ORDINARY
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EACH_KIND)
 def test_a_page_makes_the_engines_own_stages(node: Node, name: str, written: Written):
     check_stages(node, written(name), planned(name))
 
@@ -174,7 +174,7 @@ class Numbers:
         return name
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EACH_KIND)
 def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str, written: Written):
     [sketch] = written(name)["sketches"]
     plan = planned(name)
@@ -196,7 +196,7 @@ def test_sizes_and_counts_that_the_data_give_are_the_plans(name: str, written: W
     assert sketch["picture"] == {"path": plan.picture.path, "output": plan.picture.output}
 
 
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", EACH_KIND)
 def test_values_are_those_that_the_engine_gives(name: str, written: Written):
     """Before keyframes and what follows: those the page works out by itself."""
     [sketch], images = written(name)["sketches"], written(name)["shared"]["images"]

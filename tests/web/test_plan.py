@@ -25,10 +25,10 @@ from playground.web.blobs import Blobs
 from playground.web.plan import KINDS, _Writing, sketch_data
 from playground.web.shared import SharedData
 
+from ..shipped import SHIPPED
 from ..sketch_texts import map_of, passes
 from .node import Node
 from .random_settings import Settings, random_settings
-from .shipped import SHIPPED
 
 SETTINGS = 3
 ASK = """async (sketch, shared, states, load) => {

@@ -36,7 +36,7 @@ from playground.workbench.watcher import Watcher
 SIZE = (24, 16)
 PATIENCE = 90.0  # [s] for the session to come to rest
 LEVEL = "height.level"
-SHORT, LONG = range(8), range(8, 208)
+SHORT, LONG = range(8), range(8, 108)
 
 
 def kernel(term: str, includes: str = '#include "inc/tilt.glsl"', level: str = "level") -> str:
