@@ -31,9 +31,16 @@ from playground.gpu.context import ContextInfo
 from playground.paths import shown
 from playground.shots import soft_failures
 from playground.shots.claims import Claim, Claims, writing
-from playground.shots.plugin_constants import REFERENCE_RENDERER, SUMMARY_LINE, UNCHANGED, UNCOMPARED
+from playground.shots.fallbacks import PIXELS, Fallback, fallback_for, fallbacks_of, read_fallbacks
+from playground.shots.plugin_constants import (
+    REFERENCE_RENDERER,
+    SUMMARY_LINE,
+    UNCHANGED,
+    UNCOMPARED,
+    UPDATE_FAILED,
+)
 from playground.shots.recording import Recorder, typed
-from playground.shots.references import reference_path, write_reference
+from playground.shots.references import accepted, reference_path, write_reference
 from playground.shots.renderer_process import RendererProcess
 from playground.shots.results import NEVER_ACCEPTED
 from playground.shots.suite import Outcome, RenderedShot, ShotCase, check
@@ -79,12 +86,16 @@ class Checker:
     def __init__(self, config: pytest.Config) -> None:
         self.expected: str = config.getoption("--shots-renderer")
         self.any_renderer: bool = config.getoption("--shots-any-renderer")
-        self.updating: bool = config.getoption("--shots-update")
+        self.updating: bool = config.getoption("--shots-update") or config.getoption(UPDATE_FAILED)
+        self.fallbacks = read_fallbacks(config.getini("shots_fallbacks"))
         self.plain: bool = config.getoption("--shots-plain")
         software = ContextInfo(0, self.expected, "", "", 0).software
-        renderer = "any" if not software else "either" if self.any_renderer else "software"
+        others = self.any_renderer or self.fallbacks
+        renderer = "any" if not software else "either" if others else "software"
         self.renderer_process = RendererProcess(config.getoption("--shots-timeout"), renderer)
         self.recorder = Recorder(config)
+        # Those alone are written that failed in the run before.
+        self._failed = self.recorder.failed() if config.getoption(UPDATE_FAILED) else None
         self.claims = Claims(self.recorder.run)
         self._plain_forms: PlainForms | None = None
         self._written: set[Path] = set()
@@ -117,7 +128,8 @@ class Checker:
         if isinstance(outcome, PlaygroundError):
             return self._none_to_compare(node, case, outcome, start)
         command = self.accepting(node, outcome)
-        unrecorded = self.recorder.record(node, outcome, time.perf_counter() - start, command)
+        stands_in = self._stands_in(outcome)
+        unrecorded = self.recorder.record(node, outcome, time.perf_counter() - start, command, stands_in)
         if outcome.ok and outcome.tolerance and not (outcome.tolerated or self.updating):
             line = f"{case}: the tolerance is not needed: the picture passes without it"
             node.user_properties.append((SUMMARY_LINE, line))
@@ -144,7 +156,8 @@ class Checker:
 
     def expect(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo) -> ContextInfo:
         """Return a renderer whose pictures may be compared; else skip the test, or fail it."""
-        if renderer.slug != self.expected and not self.any_renderer:
+        may = self.any_renderer or fallbacks_of(self.fallbacks, renderer.slug)
+        if renderer.slug != self.expected and not may:
             self._without(node, case, f"OpenGL gave {renderer.renderer}")
         return renderer
 
@@ -168,7 +181,8 @@ class Checker:
         options = ["--shots-update"]
         if self.expected != REFERENCE_RENDERER:
             options.append(f"--shots-renderer={self.expected}")
-        if outcome.renderer.slug != self.expected and self.any_renderer:
+        named = fallbacks_of(self.fallbacks, outcome.renderer.slug)
+        if outcome.renderer.slug != self.expected and self.any_renderer and not named:
             options.append("--shots-any-renderer")
         return f"pytest {' '.join(options)} {shlex.quote(typed(node))}"
 
@@ -218,14 +232,45 @@ class Checker:
         self, node: pytest.Item, case: ShotCase, frame: RenderedShot, renderer: ContextInfo
     ) -> Outcome:
         """Compare a frame with its references, which are written first if that is wanted and needed."""
+        fallback = self._fallback(case, renderer)
         reference_renderer = self.expected if self.any_renderer else renderer.slug
-        outcome = check(case, frame, renderer, reference_renderer)
+        if fallback:
+            reference_renderer = fallback.references
+        strictly = fallback is not None and fallback.strictness == PIXELS
+        outcome = check(case, frame, renderer, reference_renderer, by_pixels=strictly)
         if outcome.ok and self.updating:
             node.user_properties.append((UNCHANGED, str(case)))
-        elif self.updating and outcome.word not in NEVER_ACCEPTED:
+        elif self._may_write(outcome):
             self._write(node, outcome)
-            return check(case, frame, renderer, reference_renderer)  # what was written is what will be read
+            return check(case, frame, renderer)  # what was written is what will be read
         return outcome
+
+    def _may_write(self, outcome: Outcome) -> bool:
+        """Whether a reference is to be made of a picture that does not pass."""
+        if not self.updating or outcome.word in NEVER_ACCEPTED:
+            return False
+        return self._failed is None or self.recorder.name_of(outcome.case) in self._failed
+
+    def _fallback(self, case: ShotCase, renderer: ContextInfo) -> Fallback | None:
+        """Return the line of the table by which a picture is compared; None for one's own references."""
+        if accepted(case.sketch, case.shot.name, renderer.slug):
+            return None
+        return fallback_for(
+            self.fallbacks,
+            renderer.slug,
+            lambda references: bool(accepted(case.sketch, case.shot.name, references)),
+        )
+
+    def _stands_in(self, outcome: Outcome) -> str:
+        """Return whose references stood in for those of the renderer that drew, and by what; "" for none."""
+        own = reference_path(outcome.case.sketch, outcome.case.shot.name, outcome.renderer.slug).parent
+        if outcome.reference is None or outcome.reference.path.parent == own:
+            return ""
+        fallback = self._fallback(outcome.case, outcome.renderer)
+        why = f"as shots_fallbacks has it ({fallback})" if fallback else "as --shots-any-renderer allows"
+        how = "pixel by pixel" if fallback and fallback.strictness == PIXELS else "by structure only"
+        references = outcome.reference.path.parent.name
+        return f"drawn by {outcome.renderer.slug}, compared {how} with {references}'s references, {why}"
 
     def _write(self, node: pytest.Item, outcome: Outcome) -> None:
         case, pixels = outcome.case, outcome.frame.array
@@ -246,8 +291,10 @@ class Checker:
 
     def _explained(self, node: pytest.Item, outcome: Outcome) -> str:
         lines = [f"{outcome.case}: {outcome.sentence}"]
-        if self.updating:
+        if self.updating and outcome.word in NEVER_ACCEPTED:
             lines.append("    not written: a broken picture is never a reference")
+        elif self.updating:
+            lines.append("    not written: it had not failed before")
         lines.append(f"    reference   {shown(outcome.path)}")
         lines += [f"                {line}" for line in outcome.differences]
         lines += [f"    {word:<11} {path}" for word, path in self.recorder.pictures(outcome.case)]

@@ -30,11 +30,13 @@ from playground.shots.plugin_constants import (
     CHECKED,
     REFERENCE_RENDERER,
     REPORT,
-    STRUCTURE_COMPARED,
+    SHOT,
+    STOOD_IN,
     SUMMARY_LINE,
     UNCHANGED,
     UNCOMPARED,
     UNRECORDED,
+    UPDATE_FAILED,
 )
 
 if TYPE_CHECKING:
@@ -50,6 +52,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         "--shots-update",
         action="store_true",
         help="write the references that are missing or do not match, and say which",
+    )
+    # An option of its own, for what follows --shots-update is no value of it, but a path.
+    group.addoption(
+        "--shots-update=failed",
+        dest=UPDATE_FAILED,
+        action="store_true",
+        help="write only the references of those that failed when they were last run, and say which",
     )
     group.addoption(
         "--shots-output",
@@ -89,6 +98,20 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=120.0,
         help="how long a shot may take to draw before it counts as hung (default: 120)",
     )
+    group.addoption(
+        "--shots-pictures-url",
+        metavar="URL",
+        default="",
+        help="where the folder of results will be found in the web: a step summary of GitHub shows "
+        "the pictures of failed shots from there (default: SHOTS_PICTURES_URL of the environment)",
+    )
+    parser.addini(
+        "shots_fallbacks",
+        "whose references stand in for which renderer's, where that has none of its own: "
+        "'apple-* = llvmpipe', and ', pixels' for a comparison by pixels instead of by structure",
+        type="linelist",
+        default=[],
+    )
     parser.addini(
         "shots",
         "sketches whose shots are tests, by paths and patterns from this file's folder",
@@ -109,8 +132,18 @@ def _seconds(text: str) -> float:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Register the marker, and add the sketches of the configuration to what is tested."""
-    if config.getoption("--shots-plain") and config.getoption("--shots-update"):
+    updates = config.getoption("--shots-update"), config.getoption(UPDATE_FAILED)
+    if config.getoption("--shots-plain") and any(updates):
         raise pytest.UsageError("--shots-plain compares with references; --shots-update would write others")
+    if all(updates):
+        raise pytest.UsageError("--shots-update writes all that fail, --shots-update=failed fewer: give one")
+    if config.getini("shots_fallbacks"):
+        from playground.shots.fallbacks import read_fallbacks
+
+        try:
+            read_fallbacks(config.getini("shots_fallbacks"))
+        except ValueError as error:
+            raise pytest.UsageError(f"shots_fallbacks: {error}") from None
     config.addinivalue_line("markers", "shots: compares a picture with its reference")
     config.pluginmanager.register(Results(config), "shots-results")
     if config.args_source is config.ArgsSource.ARGS or not config.getini("shots"):
@@ -201,9 +234,10 @@ class Results:
         self.config = config
         self.lines: list[str] = []
         self.left = 0  # references that --shots-update left alone
-        self.loose: Counter[str] = Counter()  # shots compared by structure only, by renderer
+        self.stood_in: Counter[str] = Counter()  # shots compared with another renderer's references, by how
         self.uncompared: Counter[str] = Counter()  # shots that were skipped, by why
         self.unrecorded: dict[str, None] = {}  # why results could not be recorded
+        self.told: list[dict[str, str]] = []  # what each checked shot tells of itself: see `properties`
         self.checked = self.failed = False  # whether a shot was checked, and whether one failed
         self.uses = used.Uses(config.rootpath, config.getoption("--shots-renderer"))
 
@@ -216,14 +250,18 @@ class Results:
             if name == SUMMARY_LINE:
                 self.lines.append(str(value))
             self.left += name == UNCHANGED
-            if name == STRUCTURE_COMPARED:
-                self.loose[str(value)] += 1
+            if name == STOOD_IN:
+                self.stood_in[str(value)] += 1
             if name == UNCOMPARED:
                 self.uncompared[str(value)] += 1
             if name == UNRECORDED:
                 self.unrecorded[str(value)] = None
             self.checked = self.checked or name in (CHECKED, UNCOMPARED)
             self.failed = self.failed or (name == CHECKED and value != "same")
+            if name == SHOT:
+                self.told.append({})
+            if name == SHOT or name.startswith(f"{SHOT}."):
+                self.told[-1][name] = str(value)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtestloop(self, session: pytest.Session) -> Generator[None, object, object]:
@@ -239,6 +277,7 @@ class Results:
                 report = pytest.TestReport(
                     node, place, {"shots": 1}, "failed", message, "call", user_properties=properties
                 )
+                session.testscollected += 1  # or pytest's progress goes beyond 100 %
                 self.config.hook.pytest_runtest_logreport(report=report)
         return result
 
@@ -248,18 +287,21 @@ class Results:
             return
         if self.left:
             self.lines.append(f"left {self.left} as they were, for they match")
-        for renderer, count in self.loose.items():
-            self.lines.append(
-                f"{count} drawn by {renderer} compared by structure only, as --shots-any-renderer allows"
-            )
+        self.lines += [f"{count} {how}" for how, count in self.stood_in.items()]
         for why, count in self.uncompared.items():
             shots = "1 shot was" if count == 1 else f"{count} shots were"
             self.lines.append(f"{shots} not compared: {why}")
+        if self.config.getoption(UPDATE_FAILED) and not any(line.startswith("wrote") for line in self.lines):
+            self.lines.append("--shots-update=failed wrote nothing: no shot failed that had failed before")
         self.lines += self.unrecorded
         if self.unrecorded:
             return
         from playground.shots.recording import finish
+        from playground.shots.step_summary import summarise
 
+        folder = self.config.invocation_params.dir / self.config.getoption("--shots-output")
+        if message := summarise(self.told, folder, self.config.getoption("--shots-pictures-url")):
+            self.lines.append(message)
         self.lines += finish(
             self.config, self.uses.complete(), self.failed or self.config.getoption("--shots-report")
         )

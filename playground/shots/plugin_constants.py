@@ -14,8 +14,14 @@ REPORT = "shots-report"
 REFERENCE_RENDERER = "llvmpipe"
 """Slug of the renderer that every shot has references of: it is the same on every machine."""
 
-SUMMARY_LINE = "shots"
+UPDATE_FAILED = "shots_update_failed"
+"""Where the option ``--shots-update=failed`` is kept."""
+
+SUMMARY_LINE = "shots-line"
 """The user property that carries a line for the summary."""
+
+SHOT = "shot"
+"""… that names a picture that was checked, as "hills/dawn"; those after it, ``shot.…``, tell of it."""
 
 UNCHANGED = "shots-left"
 """… that says that a reference was left alone."""
@@ -23,8 +29,8 @@ UNCHANGED = "shots-left"
 CHECKED = "shots-checked"
 """… with the word of a shot that was checked."""
 
-STRUCTURE_COMPARED = "shots-structure-only"
-"""… that names the renderer whose picture could only be compared by its structure."""
+STOOD_IN = "shots-stood-in"
+"""… that says whose references stood in for those of the renderer that drew, and how they were compared."""
 
 UNCOMPARED = "shots-uncompared"
 """… that says why a shot was not compared."""

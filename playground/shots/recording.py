@@ -17,7 +17,8 @@ from playground.errors import DataError
 from playground.paths import shown
 from playground.shots.claims import forget_claims
 from playground.shots.judge import OTHER_BUILD, OTHER_RENDERER, SAME_BUILD, STRUCTURE_ONLY
-from playground.shots.plugin_constants import CHECKED, SCREENSHOTS, STRUCTURE_COMPARED, UNRECORDED
+from playground.shots.plugin_constants import CHECKED, SCREENSHOTS, STOOD_IN, UNRECORDED
+from playground.shots.properties import properties_of
 from playground.shots.references import accepted, home_of, reference_texts
 from playground.shots.report import NAME, write_report
 from playground.shots.result_paths import clean, drop, file_of, place_of, records_in
@@ -50,9 +51,12 @@ class Recorder:
         self.run = os.environ.get("PYTEST_XDIST_TESTRUNUID") or os.urandom(16).hex()
         self._earlier: dict[str, list[Record]] = {}  # by place: records that were there at the first look
 
-    def record(self, node: pytest.Item, outcome: Outcome, seconds: float, command: str) -> str:
+    def record(
+        self, node: pytest.Item, outcome: Outcome, seconds: float, command: str, stands_in: str = ""
+    ) -> str:
         """Write the record of a picture that was compared, with the pictures unless it passed.
 
+        ``stands_in`` says whose references stood in for those of the picture's renderer.
         Where it cannot be written, that is returned, a sentence, and goes to the summary; else "".
         """
         found, perceived, reference = outcome.comparison, outcome.perceived, outcome.reference
@@ -69,6 +73,8 @@ class Recorder:
             else "",
             masked=outcome.masked,
             tone=frame.tone if frame else "",
+            reference=_from(self.root, reference.path) if reference else "",
+            stands_in=stands_in,
             catches=_CATCHES.get(outcome.tier, ""),
             size=found.size,
             expected_size=found.expected_size,
@@ -81,8 +87,8 @@ class Recorder:
             references=digests_of(accepted(outcome.case.sketch, name, own)),
             command=command,
         )
-        if outcome.tier == OTHER_RENDERER:
-            node.user_properties.append((STRUCTURE_COMPARED, own))
+        if stands_in:
+            node.user_properties.append((STOOD_IN, stands_in))
         return self._write(node, outcome.case, record, {} if outcome.ok else images_of(outcome))
 
     def record_none(self, node: pytest.Item, case: ShotCase, word: str, sentence: str, seconds: float) -> str:
@@ -90,6 +96,15 @@ class Recorder:
         first, _, rest = sentence.partition("\n")
         record = replace(self._begun(node, case, word, first, seconds), error=rest)
         return self._write(node, case, record, {})
+
+    def failed(self) -> frozenset[str]:
+        """Return what failed when it was last checked, before this run, as `name_of` gives it."""
+        earlier = [record for record in records_in(self.folder) if record.run != self.run]
+        return frozenset(r.name for r in earlier if r.root == str(self.root) and not r.ok)
+
+    def name_of(self, case: ShotCase) -> str:
+        """Return what a shot's record is called: its folder in the results, and its own name."""
+        return f"{self._place(case)}/{case.shot.name}"
 
     def forget(self, node: pytest.Item, case: ShotCase) -> None:
         """Remove the record of what failed without a picture, if there is one: it is not so any more."""
@@ -145,7 +160,8 @@ class Recorder:
                 if record.ok:
                     return ""
                 record = replace(record, sentence=f"{record.sentence}; {before.node} failed as well")
-            write_result(self.folder, record, pictures)
+            written = write_result(self.folder, record, pictures)
+            node.user_properties += properties_of(self.folder, written)
         except (DataError, OSError) as error:
             message = _unrecorded(error)
             node.user_properties.append((UNRECORDED, message))

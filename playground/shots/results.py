@@ -68,6 +68,8 @@ class Record:
     tolerated: str = ""  # "needed" or "not needed" where it declares one and passed
     masked: tuple[str, ...] = ()  # what is not compared: rectangles, images, textures
     tone: str = ""  # how floats were shown; "" for bytes, and floats from 0 to 1
+    reference: str = ""  # the file it was held against: from the root if it is inside, else whole
+    stands_in: str = ""  # whose references stood in for its renderer's, and by what; "" for its own
     catches: str = ""  # what that tier can catch and what it cannot, in a sentence
     numbers: dict[str, float] = field(default_factory=dict)  # what was measured, by name with its unit
     size: tuple[int, int] | None = None  # [pixels] width and height of the actual picture

@@ -140,12 +140,18 @@ def film_of(frames: Sequence[RenderedShot], labels: Sequence[str], masks: tuple[
 
 
 def check(
-    case: ShotCase, frame: Frame, renderer: ContextInfo, reference_renderer: str = REFERENCE_RENDERER
+    case: ShotCase,
+    frame: Frame,
+    renderer: ContextInfo,
+    reference_renderer: str = REFERENCE_RENDERER,
+    *,
+    by_pixels: bool = False,
 ) -> Outcome:
     """Judge a frame by the references of its renderer; any may match, else the nearest decides.
 
     Without any, it is judged by those of ``reference_renderer``, a slug; of that renderer itself
-    a reference that is not there is missing, even where other renderers have one. A frame of `render_shot`
+    a reference that is not there is missing, even where other renderers have one. Another renderer's are
+    compared by structure, or ``by_pixels``, as another build's are. A frame of `render_shot`
     also says what was drawn, and what was wrong with it. Raises ``DataError`` for a mask that hides
     everything, or does not fit.
     """
@@ -166,7 +172,8 @@ def check(
             references.append(read_reference(file))
         except DataError as error:
             return Outcome(**vars(unreadable(frame.array, fingerprint, str(error))), **origin, path=file)
-    compared_with = (references if own else [], [] if own else references)
+    strictly = own or by_pixels
+    compared_with = (references if strictly else [], [] if strictly else references)
     count, mask = len(frame.labels), rule.mask
     judged = partial(judge_frames, labels=frame.labels) if count else judge
     judgement, reference = judged(

@@ -324,6 +324,7 @@ def test_every_option_that_is_named_exists():
         "--at",
         "--strict",
         "--dist",
+        "--junitxml",
         "--check",
         "--to",
         "--execute",

@@ -224,7 +224,12 @@ def _figures(record: Record) -> Markup:
 
 def _rule(record: Record) -> tuple[tuple[str, str], ...]:
     """Return what the shot says of its comparison, by name; "" for what it does not say."""
-    return (("Tolerance", record.tolerance), ("Masked", "; ".join(record.masked)), ("Tone", record.tone))
+    return (
+        ("Tolerance", record.tolerance),
+        ("Masked", "; ".join(record.masked)),
+        ("Tone", record.tone),
+        ("References", record.stands_in),
+    )
 
 
 def _fingerprints(record: Record) -> Markup | None:
