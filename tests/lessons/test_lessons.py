@@ -22,7 +22,6 @@ from playground.sketch.source import read_text
 from .conftest import SKETCHES
 
 NAMES = [one.name for one in summaries()]
-NO_BREAK = "\u00a0\u202f"
 
 
 @pytest.fixture(scope="module", params=NAMES)
@@ -34,6 +33,20 @@ def test_they_are_numbered_in_the_order_of_the_course():
     assert [one.number for one in summaries()] == list(range(len(NAMES))) and len(NAMES) >= 12
     assert NAMES == lesson_names() and sorted(NAMES) == lesson_files()
     assert [one.title for one in read_lessons("fr")] == [one.title for one in summaries("fr")]
+
+
+def test_french_has_one_space_before_a_sign_and_a_thin_one_in_numbers():
+    """No line begins with a sign: before ; : ! ? and » stands U+00A0, and « has it after itself."""
+    lessons = list((TEXTS / "fr").glob("*.md"))
+    assert len(lessons) == len(NAMES)
+    wrong = [
+        f"{path.name}:{number}: {found[0]!r}"
+        for path in [*lessons, *TEXTS.parent.rglob("*fr.toml")]
+        for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
+        for found in re.finditer(r".?(?:[ \u202f][;:!?»](?!\S)|«[ \u202f]|(?<!\d)\u202f|\u202f(?!\d)).?", line)
+        if not re.search(r"`[^`]*$", line[: found.start() + 1])  # code is as it is typed
+    ]
+    assert not wrong
 
 
 def test_none_takes_longer_than_it_may():

@@ -355,4 +355,6 @@ def test_both_languages_say_all(task, engine):
     verdict, _ = results(engine, block, RAW.replace(FORMULA, "0.0"))
     said = sentences(verdict, "fr")
     assert "0,0001" in said[1] and "." not in said[1].replace("`", "")[:-1]
-    assert points_of(replace(verdict, points=1.5), "fr") == "1,5 points sur 3"
+    assert points_of(replace(verdict, points=1.5), "fr") == "1,5 point sur 3"
+    assert points_of(replace(verdict, points=2.0), "fr") == "2 points sur 3"
+    assert points_of(replace(verdict, points=1.0, of=2), "en") == "1 of 2 points"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from playground.errors import SketchError
+from playground.errors import SketchError, counted
 from playground.lessons.grading.duplicates import alike
 from playground.lessons.grading.handed_in import HandedIn, read_submission
 from playground.lessons.grading.handler import Request, no_mark
@@ -95,7 +95,8 @@ def _check_answers(judged: Judged, assignments: Sequence[Assignment]) -> None:
         if isinstance(mark, Mark) and mark.score is not None:
             got = f"has a score of {mark.spelled} here"
         elif isinstance(mark, Mark):
-            got = f"has {spelled_points(mark.points)} of {mark.of} points here: {'; '.join(mark.sentences)}"
+            got = f"has {spelled_points(mark.points)} of {counted(mark.of, 'point')} here"
+            got += f": {'; '.join(mark.sentences)}"
         else:
             got = "takes too long here" if mark.took_too_long else f"cannot be drawn here: it {mark.cause}"
         message = f"{one.name}: the model answer {got}; nothing was graded"

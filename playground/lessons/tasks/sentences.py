@@ -32,8 +32,9 @@ def sentences(verdict: Verdict, language: str) -> list[str]:
 
 
 def points_of(verdict: Verdict, language: str) -> str:
-    """Return the points as "1.5 of 2 points"."""
-    key = "points" if verdict.of > 1 else "point"
+    """Return the points as "1.5 of 2 points"; in French as "1,5 point sur 2": its plural begins at two."""
+    several = verdict.points >= 2 if language == "fr" else verdict.of > 1
+    key = "points" if several else "point"
     return task_labels(language)(key, got=_number(verdict.points, language), of=verdict.of)
 
 

@@ -9,7 +9,7 @@ export const BOOK_WORDS = {
   en: {
     iteration: "Iteration {now} of {all}",
     backward: "One step back",
-    forward: "One step on",
+    forward: "One step forward",
     swipe: "Swipe from one picture to the other",
     lines: "The lines with the bug",
     lineKeys: "Tab inserts spaces; press Esc, then Tab, to leave the field.",
