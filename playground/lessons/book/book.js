@@ -211,7 +211,8 @@
   if (finder) {
     let found = null;
     const search = async () => {
-      found = found || Promise.all([added(make("script", { src: "words.js" })), added(make("script", { src: "../find.js" }))]);
+      // One after the other: find.js reads what words.js has.
+      found = found || added(make("script", { src: "words.js" })).then(() => added(make("script", { src: "../find.js" })));
       try { await found; } catch { found = null; return; }
       bookFind();
     };
