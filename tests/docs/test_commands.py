@@ -310,14 +310,12 @@ def wait_for_a_picture(program: Program) -> None:
 
 
 def test_every_option_that_is_named_exists():
-    from typer.main import get_command
-
     def options(command: object) -> set[str]:
         own = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}  # type: ignore[attr-defined]
         return own.union(*map(options, getattr(command, "commands", {}).values()))
 
     plugin = (ROOT / "playground" / "shots" / "plugin.py").read_text("utf-8")
-    known = options(get_command(cli.app)) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
+    known = options(cli.command_line()) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
     known |= {
         "--help",
         "--reuse-window",
