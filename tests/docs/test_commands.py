@@ -16,6 +16,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from itertools import takewhile
 from pathlib import Path
 
 import pytest
@@ -106,8 +107,8 @@ def lines_of(kind: str, block: str) -> Iterator[str]:
 
 
 def arguments(command: str) -> list[str]:
-    """Return what a command gives to the playground; ``./play`` is ``playground``."""
-    words = shlex.split(command)[1:]
+    """Return what a command gives to the playground, without where its output goes; ``./play`` is it too."""
+    words = list(takewhile(lambda word: word != ">", shlex.split(command)[1:]))
     return [str(ROOT / word) if word.startswith("glsl/") else word for word in words]
 
 
