@@ -16,6 +16,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import nullcontext, redirect_stdout
 from itertools import takewhile
 from pathlib import Path
 
@@ -251,8 +252,11 @@ def smaller(words: list[str]) -> list[str]:
 )
 def test_it_runs(command: str, folder: Path, capsys: pytest.CaptureFixture[str]):
     furnish(folder, command)
-    status = cli.main(smaller(arguments(command)))
+    _, piped, target = command.partition(" > ")
+    with Path(target).open("w") if piped else nullcontext(sys.stdout) as out, redirect_stdout(out):
+        status = cli.main(smaller(arguments(command)))
     assert status == 0, capsys.readouterr().err
+    assert not piped or Path(target).stat().st_size > 100
 
 
 @pytest.mark.parametrize("command", WINDOWS)
