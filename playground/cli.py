@@ -44,6 +44,7 @@ from playground.commands import (
 )
 from playground.commands.arguments import Renderer, help_text, moment_of, quoted, read_device
 from playground.commands.common_options import prepared
+from playground.commands.import_name import check_package
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
 from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
@@ -86,6 +87,7 @@ def _status(given: list[str]) -> int:
     output = sys.stdout
     try:
         with _printing_warnings():
+            check_package()
             status = command_line()(given, prog_name="playground", standalone_mode=False)
         sys.stdout.flush()
     except PlaygroundError as error:
