@@ -1,9 +1,10 @@
 """The command line: where a command begins, and how a mistake ends.
 
 Standard output holds the answer (a path, a table, JSON); notes, progress and errors go to
-standard error. A mistake of the user's is one sentence, never a traceback. Exit status:
-0 well; 1 ``check`` or ``doctor`` found something; 2 a mistake in the command; 130
-interrupted; 141 the reader of a pipe has closed it; 143 and 129 ended by SIGTERM or SIGHUP.
+standard error, more with --verbose, errors alone with --quiet. A mistake of the user's is one
+sentence, never a traceback. Exit status: 0 well; 1 ``check`` or ``doctor`` found something; 2 a
+mistake in the command; 130 interrupted; 141 the reader of a pipe has closed it; 143 and 129 ended
+by SIGTERM or SIGHUP.
 
 What is heavy (NumPy, OpenGL, tables) is imported by the command that needs it.
 """
@@ -15,6 +16,7 @@ import sys
 import warnings
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import cache as cached
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -41,11 +43,13 @@ from playground.commands import (
     variants,
 )
 from playground.commands.arguments import Renderer, help_text, moment_of, quoted, read_device
+from playground.commands.common_options import prepared
+from playground.commands.import_name import check_package
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
 from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import let_go, open_streams
-from playground.terminal import complain, note
+from playground.terminal import complain, note, with_loudness
 
 MISTAKE, INTERRUPTED, BROKEN_PIPE = 2, 130, 141
 
@@ -68,14 +72,13 @@ app = typer.Typer(
     no_args_is_help=False,
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["--help", "-h"]},
 )
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     open_streams()
-    with ended_by_signals() as came:
+    with with_loudness(), ended_by_signals() as came:
         status = _status(sys.argv[1:] if arguments is None else list(arguments))
     return 128 + came[-1] if came else status
 
@@ -84,7 +87,8 @@ def _status(given: list[str]) -> int:
     output = sys.stdout
     try:
         with _printing_warnings():
-            status = app(given, prog_name="playground", standalone_mode=False)
+            check_package()
+            status = command_line()(given, prog_name="playground", standalone_mode=False)
         sys.stdout.flush()
     except PlaygroundError as error:
         for diagnostic in error.diagnostics:
@@ -204,6 +208,12 @@ app.command("pack", help=pack.HELP)(pack.pack)
 app.command("new", help=new.HELP)(new.new)
 for _group in (shots.app, lesson.app, cache.app, variants.app, library.app):
     app.add_typer(_group)
+
+
+@cached
+def command_line() -> Any:
+    """Return the whole command line: every command with the options of its own and those of all."""
+    return prepared(app)
 
 
 if __name__ == "__main__":

@@ -4,18 +4,22 @@ Colour only on a terminal, and not where NO_COLOR is set; bars and spinners only
 standard error. Tables are drawn on a terminal; in a pipe each row is a line, its columns
 separated by tabs.
 
-What is printed on standard error never ends a command: its reader may have closed it.
+What is printed on standard error never ends a command: its reader may have closed it. How much
+is printed there is the user's choice: see ``Loudness``.
 """
 
 from __future__ import annotations
 
 import json
+import logging
 import os
 import shutil
 import sys
 import textwrap
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
+from enum import Enum
 from typing import TYPE_CHECKING, TextIO
 
 from playground.streams import let_go
@@ -24,6 +28,60 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 _BAR = 24  # letters
+_LOG = "playground"  # the parent of every module's log
+
+
+class Loudness(Enum):
+    """How much is printed on standard error."""
+
+    QUIET = "errors"
+    USUAL = "errors, warnings, notes and progress"
+    VERBOSE = "all that, and what the modules log"
+
+
+_loudness = Loudness.USUAL
+
+
+def loudness() -> Loudness:
+    """Return how much is printed on standard error."""
+    return _loudness
+
+
+def choose_loudness(chosen: Loudness) -> None:
+    """Choose how much is printed on standard error, for the rest of ``with_loudness``."""
+    global _loudness
+    _loudness = chosen
+    log = logging.getLogger(_LOG)
+    if chosen is Loudness.VERBOSE and not any(isinstance(one, _Log) for one in log.handlers):
+        log.addHandler(_Log())
+        log.setLevel(logging.DEBUG)
+
+
+@contextmanager
+def with_loudness() -> Iterator[None]:
+    """Begin with the usual loudness, and return to it in the end."""
+    global _loudness
+    log = logging.getLogger(_LOG)
+    level, handlers = log.level, list(log.handlers)
+    _loudness = Loudness.USUAL
+    try:
+        yield
+    finally:
+        _loudness = Loudness.USUAL
+        log.handlers[:] = handlers
+        log.setLevel(level)
+
+
+class _Log(logging.Handler):
+    """Prints what the modules log, each with the seconds since this was asked for."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._start = time.perf_counter()
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a record."""
+        note(painted(f"{time.perf_counter() - self._start:7.3f} s  {record.getMessage()}", "2", sys.stderr))
 
 
 def has_colour(stream: TextIO) -> bool:
@@ -39,11 +97,18 @@ def painted(text: str, code: str, stream: TextIO) -> str:
 def complain(text: str, severity: str = "error") -> None:
     """Print a mistake on standard error."""
     colour = "1;31" if severity == "error" else "1;33"
-    note(f"{painted(f'{severity}:', colour, sys.stderr)} {text}")
+    if severity == "error" or _loudness is not Loudness.QUIET:
+        say(f"{painted(f'{severity}:', colour, sys.stderr)} {text}")
 
 
 def note(text: str) -> None:
-    """Print a note on standard error."""
+    """Print a note on standard error, unless only errors are wanted there."""
+    if _loudness is not Loudness.QUIET:
+        say(text)
+
+
+def say(text: str) -> None:
+    """Print on standard error what the user asked for."""
     try:
         print(text, file=sys.stderr)
     except OSError:  # its reader is gone
@@ -96,13 +161,18 @@ def print_indented(text: str) -> None:
     print(textwrap.fill(text, width, initial_indent="    ", subsequent_indent="    "))
 
 
+def has_bars() -> bool:
+    """Whether bars and spinners belong on standard error."""
+    return sys.stderr.isatty() and _loudness is not Loudness.QUIET
+
+
 @contextmanager
 def busy(text: str) -> Iterator[Callable[[str, int, int], None]]:
     """Show on a terminal that something is being done.
 
     Yields a function that adds a bar to it: of what, how many parts are done, and of how many.
     """
-    if not sys.stderr.isatty():
+    if not has_bars():
         yield lambda what, done, wanted: None
         return
     with console_for(sys.stderr).status(f"{text} …") as status:
@@ -117,7 +187,7 @@ def busy(text: str) -> Iterator[Callable[[str, int, int], None]]:
 @contextmanager
 def progress(text: str, total: int) -> Iterator[Callable[[], None]]:
     """Show a bar on a terminal; yields a function that moves it on by one."""
-    if not sys.stderr.isatty():
+    if not has_bars():
         yield lambda: None
         return
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn

@@ -6,9 +6,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from typer.main import get_command
-
-from playground.cli import app
+from playground.cli import command_line
 
 from .markdown import code, escaped, fenced, table
 
@@ -24,7 +22,7 @@ say the same in a terminal. In a checkout, `./play` is `playground` in the proje
 
 def commands() -> Iterator[tuple[str, Any]]:
     """Yield every command with its whole name, groups before what is in them."""
-    yield from _walk("playground", get_command(app))
+    yield from _walk("playground", command_line())
 
 
 def _walk(name: str, command: Any) -> Iterator[tuple[str, Any]]:

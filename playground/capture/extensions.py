@@ -42,6 +42,9 @@ PAGES = (".html",)
 
 ENDINGS = (*VALUES, *MESHES, *SHADERS, *PAGES)
 
+PIPED = tuple(ending for ending in ENDINGS if ending not in (*RAW, ".obj"))
+"""What is one file, and so can go to standard output."""
+
 
 def whole_numbers(ending: str, bits: int) -> bool:
     """Return whether numbers of so many bits are whole ones in a file of that ending."""

@@ -12,6 +12,7 @@ from playground._version import __version__
 from playground.commands import options
 from playground.commands.arguments import FAILED, Renderer, help_text
 from playground.commands.cache import usage_text
+from playground.commands.import_name import explained, other_owners
 from playground.terminal import complain, print_json
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 HELP = help_text(
     "Report what this machine offers, and what to do where something is missing.\n\n"
     "The OpenGL context, its limits, the display, the packages, the terrain cached on disk."
-    " Exit status 1 when no context opens.",
+    " Exit status 1 when no context opens, or another package with a module playground is installed.",
     "playground doctor",
     "playground doctor --software",
     "playground doctor --json",
@@ -38,9 +39,10 @@ def doctor(
     from playground.gpu.doctor import examine
 
     renderer: Renderer = ctx.obj.or_else(software, device)
+    others = other_owners()
     health = examine(software=renderer.software, device=renderer.device)
     if as_json:
-        print_json(health.as_json() | {"cache": _cache()})
+        print_json(health.as_json() | {"cache": _cache(), "other_playgrounds": others})
     else:
         findings = list(_findings(health))
         width = max(len(label) for label, _ in findings) + 2
@@ -49,7 +51,10 @@ def doctor(
         if health.trouble:
             sys.stdout.flush()
             complain(health.trouble)
-    if not health.ok:
+        if others:
+            sys.stdout.flush()
+            complain(explained(others))
+    if not health.ok or others:
         raise typer.Exit(FAILED)
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from playground.capture.extensions import ENDINGS, KINDS, USUAL_GRID
+from playground.capture.extensions import ENDINGS, KINDS, PIPED, USUAL_GRID
 from playground.commands import options
 from playground.commands.arguments import (
     Moment,
@@ -24,7 +25,9 @@ from playground.commands.arguments import (
     within,
 )
 from playground.commands.options import flag, value
-from playground.errors import ParameterError
+from playground.commands.standard_input import kept
+from playground.commands.standard_output import NAME, check_standard_output, write_file
+from playground.errors import DataError, ParameterError
 from playground.terminal import busy, complain, note
 
 if TYPE_CHECKING:
@@ -43,7 +46,9 @@ HELP = help_text(
     " and what they share) and .glsl (a fragment shader of its own) hold the picture as a shader, or with"
     " --texture one texture. What cannot leave is named, and nothing is written.\n\n"
     ".html is a web page: one file that anybody can open, without a network, in which the sketch runs, can"
-    " be turned, set and edited. With --technique the page has menus of techniques.",
+    " be turned, set and edited. With --technique the page has menus of techniques.\n\n"
+    "With --to -, one file goes to standard output, in the form that --format names. As SKETCH, - is a"
+    " shader's text from standard input, which is kept as a new file in this folder.",
     "playground export jacksboro",
     "playground export jacksboro --to terrain.png --to terrain.tif",
     "playground export dem.tif --set height.longest=16384 --to in-its-place.tif",
@@ -54,6 +59,7 @@ HELP = help_text(
     "playground export fbm --texture height --to hills.json",
     "playground export deterministic_fractal --to fractal.fs",
     "playground export jacksboro --to page.html",
+    "playground export jacksboro --to - --format tif > terrain.tif",
     "playground export fbm --technique height=generation/fbm,generation/mixed --to noise.html",
 )
 
@@ -65,10 +71,17 @@ def export(
         list[str] | None,
         value(
             "-o --to FILE",
-            f"A file to write, ending in {either(ENDINGS)}. May be repeated."
+            f"A file to write, ending in {either(ENDINGS)}, or - for standard output. May be repeated."
             " Without it, a .glb of a new name in this folder.",
         ),
     ] = None,
+    form_named: Annotated[
+        str,
+        value(
+            "--format FORM",
+            f"What --to - writes: {either([e[1:] for e in PIPED])}; glb without it.",
+        ),
+    ] = "",
     texture: Annotated[
         str,
         value(
@@ -145,9 +158,46 @@ def export(
     values, stops, seconds = read_values(settings), read_steps(steps), read_seconds(time)
     runs_by = read_driver(driver)
     moment = moment_of(
-        load(sketch).plainly(plain), shot=shot, preset=preset, values=values, steps=stops, time=seconds
+        load(kept(sketch, "export")).plainly(plain),
+        shot=shot,
+        preset=preset,
+        values=values,
+        steps=stops,
+        time=seconds,
     )
-    _write(moment, to or [], form, runs_by, ctx.obj.or_else(software, device))
+    names, renderer = to or [], ctx.obj.or_else(software, device)
+    if NAME in names:
+        _write_piped(moment, names, _read_format(form_named), form, runs_by, renderer)
+    elif form_named:
+        raise ParameterError("--format is for --to -; the name of a file says what it holds")
+    else:
+        _write(moment, names, form, runs_by, renderer)
+
+
+def _write_piped(
+    moment: Moment, names: list[str], ending: str, form: Form, driver: str, renderer: Renderer
+) -> None:
+    """Write one file to standard output, by way of a folder that is removed."""
+    from playground.capture.export import prepare, run
+    from playground.capture.export_options import check
+
+    if len(names) > 1:
+        raise ParameterError("--to - writes one file to standard output; leave the other --to out")
+    check_standard_output("--to", f"a {ending} file")
+    sketch = moment.sketch
+    with TemporaryDirectory(prefix="playground-") as folder:
+        path = Path(folder) / f"{sketch.name}{ending}"
+        check(path, form)
+        with busy(f"exporting {sketch.name}") as show, renderer.open_engine(driver=driver) as engine:
+            engine.internal.runner.works.on_progress = show
+            at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "frame": moment.size}
+            done = run(engine, prepare(engine, sketch, path, form, **at))
+        if done.sidecars:
+            raise DataError(f"{', '.join(p.name for p in done.sidecars)} belong to it; name a file with --to")
+        note(f"standard output: {done.summary}")
+        for warning in done.warnings:
+            complain(f"standard output: {warning}", "warning")
+        write_file(done.path)
 
 
 def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: Renderer) -> None:
@@ -179,6 +229,16 @@ def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: 
                 complain(f"{done.path.name}: {warning}", "warning")
             for path in (done.path, *done.sidecars):
                 print(path)
+
+
+def _read_format(text: str) -> str:
+    """Return the ending of ``--format``; raise ``ParameterError``."""
+    ending = f".{text.lower().removeprefix('.')}" if text else ".glb"
+    if ending not in PIPED:
+        more = "; it is more than one file" if ending in ENDINGS else ""
+        known = either([e[1:] for e in PIPED])
+        raise ParameterError(f"--format {text} cannot go to standard output{more}; expected {known}")
+    return ending
 
 
 def _refuse_twins(paths: list[Path]) -> None:

@@ -25,7 +25,7 @@ from playground.commands.arguments import (
 from playground.commands.options import complete_lesson, flag, value
 from playground.commands.standard_input import kept
 from playground.errors import ContextError, ParameterError, PlaygroundError
-from playground.terminal import complain, note
+from playground.terminal import complain, say
 
 REMOTE_PORT = 8765
 """Of ``--remote`` without a port."""
@@ -190,7 +190,7 @@ def open_window(
             values = with_whole_paths(load(sketch, dialect=options.get("dialect", "")), values)
     with Sandbox(software=renderer.software) as sandbox, Remotes(RemoteOptions(**(remotes or {}))) as opened:
         for sentence in opened.sentences:
-            note(sentence)
+            say(sentence)  # where it is reached was asked for
         sandbox.start()  # it is warm by the time that the window, whose parts take long to read, is there
         from playground.live.app import run
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from playground.commands import options
-from playground.commands.arguments import FAILED, Renderer, help_text, read_pixels
+from playground.commands.arguments import FAILED, Renderer, help_text, read_option, read_pixels, within
 from playground.commands.options import positional, value
 from playground.errors import counted
 from playground.paths import PLAIN_SKETCH, shown
@@ -56,12 +56,7 @@ def mutants(
     ] = "",
     size: options.Size = None,
     only: Annotated[list[str] | None, value("--mutant NAME", "Draw this one only; may be repeated.")] = None,
-    count: Annotated[
-        int,
-        typer.Option(
-            "--again", help="Draw the unbroken shot so often again.", metavar="N", min=0, show_default=False
-        ),
-    ] = 0,
+    again: Annotated[str, value("--again N", "Draw the unbroken shot so often again.")] = "",
     pictures: Annotated[
         Path | None, value("--pictures DIR", "Write every mutant's picture into this folder.")
     ] = None,
@@ -74,6 +69,7 @@ def mutants(
     from playground.shots.mutants.suite import Bench, named, shot_of
     from playground.sketch.load import load
 
+    count = read_option("--again", again, within(0, 10**6), "a whole number, as 20") or 0
     chosen = named(only or ())
     renderer: Renderer = ctx.obj.or_else(software, device)
     pixels = read_pixels(size)

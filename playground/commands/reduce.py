@@ -23,14 +23,16 @@ from playground.commands.arguments import (
     quoted,
     read_device,
     read_driver,
+    read_option,
     read_pixels,
     read_seconds,
     read_steps,
     read_values,
+    within,
 )
 from playground.commands.options import complete_driver, flag, value
 from playground.errors import ParameterError
-from playground.terminal import console_for, note
+from playground.terminal import console_for, has_bars, note
 
 if TYPE_CHECKING:
     from playground.reduce.initial_case import Question
@@ -91,9 +93,7 @@ def reduce(
         ),
     ] = "",
     path: Annotated[str, value("--pass PASS", "Look at this pass only.")] = "",
-    tolerance: Annotated[
-        float, typer.Option("--tolerance", help="How far apart two sides may be.", metavar="X", min=0.0)
-    ] = 0.0,
+    tolerance: Annotated[str, value("--tolerance X", "How far apart two sides may be; 0 by default.")] = "",
     driver: Annotated[
         str,
         value(
@@ -103,13 +103,10 @@ def reduce(
         ),
     ] = "",
     limit: Annotated[str, value("--limit SECONDS", "Stop after so many seconds.")] = "",
-    tries: Annotated[
-        int, typer.Option("--tries", help="Stop after so many tries; 0: never.", metavar="N", min=0)
-    ] = 0,
+    tries: Annotated[str, value("--tries N", "Stop after so many tries; without it, never.")] = "",
     timeout: Annotated[
-        float,
-        typer.Option("--timeout", help="Seconds that one candidate may take.", metavar="SECONDS", min=0.1),
-    ] = 10.0,
+        str, value("--timeout SECONDS", "Seconds that one candidate may take; 10 by default.")
+    ] = "",
     plain: Annotated[
         bool, flag("--plain", "Also write the shader as the driver sees it, if that still fails.")
     ] = False,
@@ -123,6 +120,9 @@ def reduce(
     """Shrink a sketch that fails to the smallest that still fails."""
     from playground.reduce.initial_case import Question
 
+    apart = read_option("--tolerance", tolerance, within(0.0, 1e9), "a number, 0 or more, as 0.01")
+    most = read_option("--tries", tries, within(0, 10**9), "a whole number; 0 for no end")
+    seconds = read_option("--timeout", timeout, within(0.1, 1e6), "seconds, 0.1 or more, as 10")
     kinds = {
         "drivers": drivers,
         "against": bool(against or against_device),
@@ -149,14 +149,14 @@ def reduce(
         command=command,
         environment=_environment(against),
         other_device=read_device(against_device),
-        tolerance=tolerance,
+        tolerance=apart or 0.0,
         anywhere=anywhere,
         software=renderer.software,
         device=renderer.device,
-        limit=timeout,
+        limit=seconds or 10.0,
     )
     folder = Path(output).expanduser() if output else Path(f"{question.sketch.name}-reduced")
-    _reduce(question, folder, read_seconds(limit) or 0.0, tries, plain)
+    _reduce(question, folder, read_seconds(limit) or 0.0, most or 0, plain)
 
 
 def _kind(chosen: Sequence[str], shot: str) -> str:
@@ -263,7 +263,7 @@ def _shown() -> Iterator[Callable[[State], None]]:
     def line(state: State) -> str:
         return f"{state.what}: {state.lines} lines left, {state.tries} tries, {_rate(state):.0f} a second"
 
-    if sys.stderr.isatty():
+    if has_bars():
         with console_for(sys.stderr).status("looking for what fails …") as status:
             yield lambda state: status.update(line(state))
         return

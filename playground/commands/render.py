@@ -29,10 +29,10 @@ from playground.commands.arguments import (
 from playground.commands.film import Series, SeriesJob, make_series, read_fps, read_frames
 from playground.commands.options import flag, value
 from playground.commands.standard_input import kept
+from playground.commands.standard_output import check_standard_output
 from playground.errors import DataError, ParameterError, counted
 from playground.images.extensions import PICTURE_ENDINGS, VALUE_ENDINGS, VIDEO_ENDINGS
 from playground.sketch.model import DEFAULT_PICTURE, LARGEST_PICTURE, MOST_SUPERSAMPLE
-from playground.streams import Nowhere
 from playground.terminal import busy, console_for, note, progress
 
 if TYPE_CHECKING:
@@ -286,10 +286,7 @@ def _target(output: Output, moment: Moment) -> AbstractContextManager[Path]:
     if output.file == "-":
         if output.texture:
             raise ParameterError(f"--texture needs a file: -o {either([f'NAME{e}' for e in endings])}")
-        if sys.stdout.isatty():
-            raise ParameterError("-o - writes a PNG to standard output, which is the terminal; redirect it")
-        if isinstance(sys.stdout, Nowhere):
-            raise ParameterError("-o - writes a PNG to standard output, which is closed; redirect it")
+        check_standard_output("-o", "a PNG")
         return nullcontext(Path("-"))
     parts = [moment.sketch.name, moment.shot.name if moment.shot else "", output.texture.replace(":", "-")]
     usual = "-".join(filter(None, parts)) + endings[0]

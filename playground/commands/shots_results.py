@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from playground.commands.arguments import help_text
+from playground.commands.arguments import help_text, read_option, within
 from playground.commands.options import flag, positional, value
 from playground.errors import PlaygroundError
 from playground.terminal import complain, note
@@ -100,9 +100,7 @@ def accept(
 
 def review(
     folder: FolderArgument = None,
-    port: Annotated[
-        int, typer.Option("--port", help="Listen on this port; 0 takes a free one.", min=0, max=65535)
-    ] = 0,
+    port: Annotated[str, value("--port PORT", "Listen on this port; without it, on a free one.")] = "",
     opened: Annotated[bool, typer.Option("--open/--no-open", help="Open the page in the browser.")] = True,
 ) -> None:
     """Look at results in the browser, and accept pictures there."""
@@ -111,7 +109,8 @@ def review(
     from playground.shots.results import FOLDER
     from playground.shots.review import Review
 
-    with Review(folder or Path(FOLDER), port) as server:
+    number = read_option("--port", port, within(0, 65535), "a port, 0 to 65535; 0 takes a free one") or 0
+    with Review(folder or Path(FOLDER), number) as server:
         print(server.url, flush=True)
         note("Ctrl+C, or Done on the page, ends it")
         if opened and not webbrowser.open(server.url):

@@ -50,6 +50,7 @@ class Cache:
         self._may_grow: set[str] = set()  # used since they were weighed
         self._sizes: dict[str, int] = {}  # [bytes] of what is cached, when last weighed
         self._total = 0  # their sum
+        self.hits = 0  # results that were taken from here
         self._latest: dict[str, tuple[str, str, int]] = {}
 
     @property
@@ -83,6 +84,7 @@ class Cache:
         """Return what is cached and mark it as used; None if there is nothing."""
         cached = self._cached.get(key)
         if cached is not None:
+            self.hits += 1
             self._cached.move_to_end(key)
             self._in_use.add(key)
             self._may_grow.add(key)

@@ -7,6 +7,7 @@ them. Programs call ``engine``; the playground's own tools use this as well.
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -46,6 +47,8 @@ from playground.sketch.model import DEFAULT_PICTURE, DRIVERS, LARGEST_PICTURE, L
 if TYPE_CHECKING:
     import moderngl
 
+_log = logging.getLogger(__name__)
+
 CACHE_BYTES = 768 * 2**20
 _POOL_SHARE = 8  # spare textures may take an eighth of what the cache may
 
@@ -66,6 +69,7 @@ class Internals(Recorded):
             raise ContextError(f"driver '{driver}': expected one of {', '.join(DRIVERS)}")
         self.ctx = ctx
         self.info: ContextInfo = context_info(ctx)
+        _log.debug("opened %s: %s (%s)", self.info.opengl, self.info.renderer, self.info.version)
         self._computes = self.info.compute  # whether there are compute shaders
         if driver == COMPUTE and not self._computes:
             raise ContextError(f"this context is {self.info.opengl}; compute needs 4.3")
@@ -107,6 +111,7 @@ class Internals(Recorded):
             return
         self._make_current()
         self._released = self._owns_context
+        self._log_counts()
         self.record = FrameRecord()
         self.cache.clear()
         self.pool.clear()
@@ -114,6 +119,15 @@ class Internals(Recorded):
         self._timer = None
         if self._owns_context:
             self.ctx.release()
+
+    def _log_counts(self) -> None:
+        """Log what ran since the engine was opened, and what was taken from caches instead."""
+        ran = ", ".join(f"{path} {times}" for path, times in self.runs.items())
+        _log.debug("times that passes ran: %s", ran or "none")
+        times = self.runner.compile_times.values()
+        _log.debug("programs compiled: %d, in %.0f ms", len(times), sum(times))
+        read = self.disk_caching.reads if self.disk_caching is not None else 0
+        _log.debug("results taken from the cache in memory: %d, from that on disk: %d", self.cache.hits, read)
 
     def plan_for(
         self,

@@ -6,6 +6,7 @@ that the driver dropped does nothing.
 
 from __future__ import annotations
 
+import logging
 import struct
 import time
 from collections import OrderedDict
@@ -15,10 +16,13 @@ from typing import TYPE_CHECKING, Any
 from playground.gpu.own_shaders import TRIANGLE
 from playground.gpu.program import compile_wrapped
 from playground.gpu.wrap import CORNER, with_choices, wrap
+from playground.paths import shown
 from playground.sketch.model import Kernel
 
 if TYPE_CHECKING:
     import moderngl
+
+_log = logging.getLogger(__name__)
 
 Choices = tuple[tuple[str, int], ...]
 """Checkboxes and menus with their values."""
@@ -120,7 +124,8 @@ class Programs:
         if text not in self._by_text:
             start = time.perf_counter()
             self._keep(text, compile_wrapped(self.ctx, wrapped))
-            self.compile_times[kernel.path] = (time.perf_counter() - start) * 1e3
+            self.compile_times[kernel.path] = milliseconds = (time.perf_counter() - start) * 1e3
+            _log.debug("compiled %s (%s) in %.0f ms", shown(kernel.path), driver, milliseconds)
         return self._used(text)
 
     def own(self, fragment: str) -> Program:

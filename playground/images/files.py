@@ -17,6 +17,7 @@ bytes; writing is done here, since a PNG without adaptive filters is four chunks
 from __future__ import annotations
 
 import io
+import logging
 import re
 import struct
 import warnings
@@ -177,8 +178,8 @@ def reason(error: BaseException) -> str:
 @contextmanager
 def reading(path: Path) -> Iterator[BinaryIO]:
     """Open a file; what a decoder raises in the block becomes a ``DataError``."""
-    # Pillow's decoders raise half a dozen kinds of exception on damaged files (OSError,
-    # SyntaxError, ValueError, struct.error, zlib.error …), and warn about odd metadata.
+    logging.getLogger(__name__).debug("read %s", shown(path))
+    # Of damaged files Pillow raises OSError, SyntaxError, ValueError, struct.error …; of odd ones it warns.
     try:
         with warnings.catch_warnings(), path.open("rb") as handle:
             warnings.simplefilter("ignore")

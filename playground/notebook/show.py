@@ -102,5 +102,5 @@ def _needed(error: ModuleNotFoundError) -> DataError:
     """Return what to say of a missing module; raise the error itself for one that no extra brings."""
     if error.name not in ("anywidget", "traitlets"):
         raise error
-    advice = "pip install 'terrain-shader-playground[notebook]'"
+    advice = 'python -m pip install "terrain-shader-playground[notebook]"'
     return DataError(f"a widget needs {error.name}, which is not installed: {advice}")

@@ -11,6 +11,7 @@ the driver gets the joined line in the first one's place, since 3.30 knows no su
 
 from __future__ import annotations
 
+import logging
 import re
 import stat
 from collections import Counter
@@ -34,6 +35,8 @@ from playground.sketch.allowed_files import (
 )
 from playground.sketch.libraries import how_to_name, libraries, library_around
 from playground.sketch.macro_calls import with_calls_joined
+
+_log = logging.getLogger(__name__)
 
 _INCLUDE = re.compile(r'\s*#\s*include\b\s*(?:"([^"]*)"|<([^>]*)>)?(.*)', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|source|draw|compute)\b")
@@ -215,6 +218,7 @@ def _text(path: Path, any_encoding: bool) -> str:
         if state.st_size > _MAX_BYTES:
             raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=path)
         data = path.read_bytes()
+        _log.debug("read %s", shown(path))
         return normalised(data.decode())
     except FileNotFoundError:
         raise SketchError("there is no such file", file=path) from None

@@ -11,6 +11,7 @@ numbers (0..65535) stay raw: which heights they mean is the sketch's choice.
 
 from __future__ import annotations
 
+import logging
 import math
 import warnings
 from collections.abc import Iterator, Mapping
@@ -25,6 +26,7 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError, nearest
 from playground.images.files import checked_file, read_samples, read_texts, reason
+from playground.paths import shown
 from playground.sketch.allowed_files import ELEVATIONS
 from playground.terrain.arrays import read_npy, read_npz
 from playground.terrain.decimate import decimate
@@ -36,6 +38,8 @@ from playground.terrain.place import Place
 from playground.terrain.raw import read_hgt, read_raw
 
 Edge = Literal["north", "south"]
+
+_log = logging.getLogger(__name__)
 
 _OVERVIEW = 2**20
 """Texels, at least, of the overview that tells how low and high a terrain is."""
@@ -238,8 +242,8 @@ def open_elevation(
     ending = path.suffix.lower()
     if ending not in ELEVATIONS:
         checked_file(path)
-        shown = f"{ending!r} is" if ending else "a name without an ending is"
-        raise DataError(f"{shown} no elevation format; readable are {', '.join(ELEVATIONS)}", file=path)
+        named = f"{ending!r} is" if ending else "a name without an ending is"
+        raise DataError(f"{named} no elevation format; readable are {', '.join(ELEVATIONS)}", file=path)
     for what, word, words in (
         ("packing", packing, ("grey", "rgb")),
         ("first row", first_row, ("north", "south")),
@@ -247,6 +251,7 @@ def open_elevation(
         if word not in words:
             raise DataError(f"no such {what}: {word!r}{nearest(str(word), words)}", file=path)
     path = checked_file(path)
+    _log.debug("read the heights of %s", shown(path))
     if packing == "rgb" and ending not in (".png", ".tif", ".tiff"):
         raise DataError(
             f"heights packed in three channels are read from PNG and TIFF, not {ending}", file=path

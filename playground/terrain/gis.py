@@ -27,7 +27,7 @@ from playground.terrain.rows import Band
 if TYPE_CHECKING:
     import rasterio.io
 
-ADVICE = "the extra gis reads it: python -m pip install 'terrain-shader-playground[gis]'"
+ADVICE = 'the extra gis reads it: python -m pip install "terrain-shader-playground[gis]"'
 
 _NETCDF = "netCDF"
 _USUAL = ("elevation", "z", "height", "altitude", "topo", "dem", "band1", "band_data")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import re
 from pathlib import Path
 
@@ -210,3 +211,66 @@ def test_a_view_that_mixes_at_every_pixel_has_no_texture_to_give(
 def test_one_file_by_two_names_is_one(folder: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["export", "rise", "--to", "a.png", "--to", str(folder / "a.png")]) == 2
     assert "would be written twice" in printed(capsys)[1] and not list(folder.glob("a.png"))
+
+
+# ── to standard output ───────────────────────────────────────────────────────
+
+
+@pytest.mark.parametrize("form", ["npy", ".TIF", "glb", ""])
+def test_standard_output_gets_the_bytes_of_the_file_and_nothing_else(
+    form: str, capfdbinary: pytest.CaptureFixture[bytes]
+):
+    chosen = ["--format", form] if form else []
+    ending = form.lower().removeprefix(".") or "glb"
+    assert cli.main(["export", "rise", "--to", f"rise.{ending}"]) == 0
+    capfdbinary.readouterr()
+    assert cli.main(["export", "rise", "--to", "-", *chosen]) == 0
+    out, err = capfdbinary.readouterr()
+    assert out == Path(f"rise.{ending}").read_bytes()
+    assert err.startswith(b"standard output: ")
+
+
+def test_a_shader_comes_in_by_a_pipe_and_leaves_by_one(
+    monkeypatch: pytest.MonkeyPatch, capfdbinary: pytest.CaptureFixture[bytes]
+):
+    text = b"// Half red\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(0.5, 0.0, 0.0, 1.0); }\n"
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(text), "utf-8"))
+    assert cli.main(["export", "-", "--to", "-", "--format", "fs", "-q"]) == 0
+    out, err = capfdbinary.readouterr()
+    assert out.startswith(b"/*{") and b"0.5, 0.0, 0.0" in out and err == b""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (
+            ["--to", "-", "--format", "obj"],
+            "cannot go to standard output; it is more than one file; expected",
+        ),
+        (
+            ["--to", "-", "--format", "r16"],
+            "cannot go to standard output; it is more than one file; expected",
+        ),
+        (["--to", "-", "--format", "bmp"], "--format bmp cannot go to standard output; expected png, tif"),
+        (["--to", "-", "--to", "a.glb"], "--to - writes one file to standard output; leave the other"),
+        (
+            ["--to", "a.glb", "--format", "glb"],
+            "--format is for --to -; the name of a file says what it holds",
+        ),
+        (["--to", "-", "--format", "webp", "--texture", "height"], "height"),
+    ],
+)
+def test_what_cannot_be_piped_is_one_sentence(
+    arguments: list[str], sentence: str, capfd: pytest.CaptureFixture[str], folder: Path
+):
+    assert cli.main(["export", "rise", *arguments]) == 2
+    out, err = capfd.readouterr()
+    assert out == "" and err.startswith("error: ") and sentence in err and err.count("\n") == 1
+    assert [path.name for path in folder.iterdir()] == ["rise"]
+
+
+def test_a_terminal_gets_no_bytes(monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]):
+    monkeypatch.setattr("sys.stdout.isatty", lambda: True)
+    assert cli.main(["export", "rise", "--to", "-"]) == 2
+    monkeypatch.undo()
+    assert "--to - writes a .glb file to standard output, which is the terminal" in capfd.readouterr().err

@@ -16,6 +16,8 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import nullcontext, redirect_stdout
+from itertools import takewhile
 from pathlib import Path
 
 import pytest
@@ -106,8 +108,8 @@ def lines_of(kind: str, block: str) -> Iterator[str]:
 
 
 def arguments(command: str) -> list[str]:
-    """Return what a command gives to the playground; ``./play`` is ``playground``."""
-    words = shlex.split(command)[1:]
+    """Return what a command gives to the playground, without where its output goes; ``./play`` is it too."""
+    words = list(takewhile(lambda word: word != ">", shlex.split(command)[1:]))
     return [str(ROOT / word) if word.startswith("glsl/") else word for word in words]
 
 
@@ -250,8 +252,11 @@ def smaller(words: list[str]) -> list[str]:
 )
 def test_it_runs(command: str, folder: Path, capsys: pytest.CaptureFixture[str]):
     furnish(folder, command)
-    status = cli.main(smaller(arguments(command)))
+    _, piped, target = command.partition(" > ")
+    with Path(target).open("w") if piped else nullcontext(sys.stdout) as out, redirect_stdout(out):
+        status = cli.main(smaller(arguments(command)))
     assert status == 0, capsys.readouterr().err
+    assert not piped or Path(target).stat().st_size > 100
 
 
 @pytest.mark.parametrize("command", WINDOWS)
@@ -310,14 +315,12 @@ def wait_for_a_picture(program: Program) -> None:
 
 
 def test_every_option_that_is_named_exists():
-    from typer.main import get_command
-
     def options(command: object) -> set[str]:
         own = {o for p in command.params for o in (*p.opts, *p.secondary_opts)}  # type: ignore[attr-defined]
         return own.union(*map(options, getattr(command, "commands", {}).values()))
 
     plugin = (ROOT / "playground" / "shots" / "plugin.py").read_text("utf-8")
-    known = options(get_command(cli.app)) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
+    known = options(cli.command_line()) | set(re.findall(r'"(--shots-[a-z-]+)"', plugin))
     known |= {
         "--help",
         "--reuse-window",

@@ -9,10 +9,9 @@ from pathlib import Path
 
 import pytest
 from site_pages import commands, gallery, glossary, keys, pages, python, shots, techniques
-from typer.main import get_command
 
 import playground
-from playground.cli import app
+from playground.cli import command_line
 from playground.lessons.glossary import alphabetical, terms
 from playground.lessons.library import LANGUAGES
 from playground.live.keys import KEYS
@@ -34,7 +33,7 @@ def test_every_command_and_each_of_its_options_is_there():
         for child, found in getattr(command, "commands", {}).items():
             walk(f"{name} {child}", found)
 
-    walk("playground", get_command(app))
+    walk("playground", command_line())
 
 
 def test_every_technique_has_a_page_with_its_parameters_and_what_it_says_of_itself():

@@ -426,7 +426,7 @@ def test_the_command_fails_where_a_defect_passes(
         (["--mutant", "no-shadows"], "no mutant 'no-shadows'; did you mean 'no-shadow'?"),
         (["--shot", "mornin"], "no shot 'mornin' in sketch jacksboro; did you mean 'morning'?"),
         (["--size", "12"], "--size 12: expected width and height"),
-        (["--again", "-1"], "invalid value for '--again'"),
+        (["--again", "-1"], "--again -1: expected a whole number"),
     ],
 )
 def test_a_mistake_is_one_sentence(arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]):

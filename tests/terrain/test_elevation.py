@@ -166,7 +166,7 @@ def test_what_neither_library_unpacks_is_a_sentence(tmp_path, monkeypatch):
     monkeypatch.setattr(gis, "has_rasters", lambda: False)
     refused(
         tmp_path / "a.tif",
-        r"float64 numbers under compression ADOBE_DEFLATE .* pip install 'terrain-shader-playground\[gis\]'",
+        r'float64 numbers under compression ADOBE_DEFLATE .* pip install "terrain-shader-playground\[gis\]"',
     )
     assert_heightmap(read_elevation(tmp_path / "b.tif"), HEIGHTMAP)
 
@@ -193,7 +193,7 @@ def test_a_compression_that_nothing_here_undoes_says_which_and_what_to_install(t
         if "damaged" in str(caught.value):
             pytest.skip("this Python undoes zstd itself")
         assert f"float64 numbers under compression {name} cannot be read here" in str(caught.value)
-        assert "python -m pip install 'terrain-shader-playground[gis]'" in str(caught.value)
+        assert 'python -m pip install "terrain-shader-playground[gis]"' in str(caught.value)
 
 
 @pytest.mark.parametrize("bands", [2, 3, 5])

@@ -79,7 +79,7 @@ def test_what_is_simple_is_read_without_the_extra(tmp_path, monkeypatch, form):
 def test_what_is_not_names_the_extra(tmp_path, monkeypatch):
     path = raster(tmp_path / "a.tif", HEIGHTS.astype("f8"), **GDALS["lerc"])
     monkeypatch.setattr(gis, "has_rasters", lambda: False)
-    with pytest.raises(DataError, match=r"under compression LERC .*'terrain-shader-playground\[gis\]'"):
+    with pytest.raises(DataError, match=r'under compression LERC .*"terrain-shader-playground\[gis\]"'):
         read_elevation(path)
     (tmp_path / "a.nc").write_bytes(b"\x89HDF")
     with pytest.raises(DataError, match=r"NetCDF is read by GDAL; the extra gis .* pip install"):

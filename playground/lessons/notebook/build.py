@@ -27,7 +27,7 @@ def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number]) -> str:
         import nbformat
     except ModuleNotFoundError:
         raise DataError(
-            "nbformat is not installed: pip install 'terrain-shader-playground[notebook]'"
+            'nbformat is not installed: python -m pip install "terrain-shader-playground[notebook]"'
         ) from None
     form: Any = nbformat  # its functions have no types
     make: Any = {"markdown": form.v4.new_markdown_cell, "code": form.v4.new_code_cell}

@@ -1,0 +1,105 @@
+"""What every command takes: --verbose, --quiet and --help; and helps without the names of types."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any
+
+import typer
+from typer.main import get_command
+
+from playground.errors import ParameterError
+from playground.terminal import Loudness, choose_loudness, loudness
+
+
+def prepared(app: typer.Typer) -> Any:
+    """Return the command of an app, in which each command has the options that all have."""
+    command = get_command(app)
+    _prepare(command, _common())
+    return command
+
+
+def _prepare(command: Any, common: list[Any]) -> None:
+    command.params.extend(common)
+    for parameter in command.params:
+        _leave_out_type(parameter)
+    for child in getattr(command, "commands", {}).values():
+        _prepare(child, common)
+
+
+def _leave_out_type(parameter: Any) -> None:
+    """Have a help show the word for a parameter's value, where it has one, and not its type in Python."""
+    if parameter.param_type_name == "argument":
+        if hasattr(parameter, "display_type_rich"):  # newer versions of typer show both
+            parameter.display_type_rich = lambda ctx: None
+    elif parameter.is_flag and parameter.metavar is None:
+        parameter.metavar = ""
+
+
+def _common() -> list[Any]:
+    """Declare the options; typer alone knows how, so they are those of a command that is not called."""
+    app = typer.Typer(add_completion=False)
+    app.command(add_help_option=False)(_declared)
+    found: list[Any] = get_command(app).params
+    for option in found:
+        option.expose_value = False  # a command's function does not take them
+    return found
+
+
+def _be_verbose(wanted: bool) -> None:
+    _choose(wanted, Loudness.VERBOSE)
+
+
+def _be_quiet(wanted: bool) -> None:
+    _choose(wanted, Loudness.QUIET)
+
+
+def _choose(wanted: bool, chosen: Loudness) -> None:
+    if not wanted:
+        return
+    if loudness() not in (Loudness.USUAL, chosen):
+        raise ParameterError("--verbose and --quiet exclude each other; choose one")
+    choose_loudness(chosen)
+
+
+def _print_help(ctx: typer.Context, wanted: bool) -> None:
+    if wanted:
+        print(ctx.get_help())
+        raise typer.Exit()
+
+
+def _declared(
+    verbose: Annotated[
+        bool,
+        typer.Option(
+            "--verbose",
+            "-v",
+            help="Tell on standard error what is done and when: files, OpenGL, compiling, caches.",
+            metavar="",
+            callback=_be_verbose,
+            is_eager=True,
+        ),
+    ] = False,
+    quiet: Annotated[
+        bool,
+        typer.Option(
+            "--quiet",
+            "-q",
+            help="Print only errors and what is asked for: no notes, warnings or progress.",
+            metavar="",
+            callback=_be_quiet,
+            is_eager=True,
+        ),
+    ] = False,
+    help_: Annotated[
+        bool,
+        typer.Option(
+            "--help",
+            "-h",
+            help="Show this message and exit.",
+            metavar="",
+            callback=_print_help,
+            is_eager=True,
+        ),
+    ] = False,
+) -> None:
+    """Declare what every command takes."""
