@@ -30,7 +30,7 @@ from playground.errors import (
 from playground.gpu.context import ContextInfo
 from playground.paths import shown
 from playground.shots import soft_failures
-from playground.shots.claims import Claim, Claims, writing
+from playground.shots.claims import Claim, Claims, keeping, writing
 from playground.shots.fallbacks import PIXELS, Fallback, fallback_for, fallbacks_of, read_fallbacks
 from playground.shots.plugin_constants import (
     REFERENCE_RENDERER,
@@ -239,6 +239,9 @@ class Checker:
         strictly = fallback is not None and fallback.strictness == PIXELS
         outcome = check(case, frame, renderer, reference_renderer, by_pixels=strictly)
         if outcome.ok and self.updating:
+            refusal = self._refusal(keeping(case.shot.name, node.nodeid), case, renderer)
+            if refusal and not check(case, frame, renderer).ok:  # it was written meanwhile
+                raise DataError(refusal, file=outcome.own_path)
             node.user_properties.append((UNCHANGED, str(case)))
         elif self._may_write(outcome):
             self._write(node, outcome)

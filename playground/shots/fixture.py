@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -157,7 +157,7 @@ class ShotFixture:
         frames: Iterable[object],
         name: str = "",
         *,
-        times: Sequence[float] = (),
+        times: Iterable[float] = (),
         by: By | None = None,
         tone: str = "",
         tolerance: Given | None = None,
@@ -181,16 +181,17 @@ class ShotFixture:
             raise ValueError(f"mask = {hides.textures[0]!r}: a texture cannot mask an animation")
         allowed = tolerance_of(tolerance, reason)
         case = self._case(Shot(name, tolerance=allowed, mask=hides.named, allow_blank=allow_blank))
+        seconds = [float(moment) for moment in times]
         taken_frames, labels, renderers = [], [], []
         for number, frame in enumerate(frames):
             rendered, info = self._rendered(case, frame, by, tone)
             taken_frames.append(rendered)
             renderers.append(info)
             moment = frame.time if isinstance(frame, Frame) else None
-            moment = times[number] if number < len(times) else moment
+            moment = seconds[number] if number < len(seconds) else moment
             labels.append("" if moment is None else f"at {moment:g} s")
-        if times and len(times) != len(labels):
-            raise ValueError(f"times: {len(times)} for {len(labels)} frames")
+        if seconds and len(seconds) != len(labels):
+            raise ValueError(f"times: {len(seconds)} for {len(labels)} frames")
         strip = film_of(taken_frames, labels, hides.arrays)
         if len(set(renderers)) > 1:
             raise ValueError("the frames of an animation are drawn by one renderer; these are not")

@@ -170,6 +170,8 @@ def test_ids_that_differ_only_in_what_no_file_can_have_get_names_that_differ() -
         "1/0",
         "1:0",
         "1\\0",
+        "a",
+        "A",
         "a::b",
         "é",
         "e\u0301",
@@ -247,6 +249,23 @@ def test_{name}(shot):
     result.stdout.fnmatch_lines([f"*{sentence}*"])
     (written,) = Path("screenshots").rglob("*.png")
     assert read_png(written)[0][0, 0, 0] == 0  # the first one's
+
+
+def test_a_reference_that_matches_is_not_written_for_another_test(
+    run: Run, pytester: pytest.Pytester
+) -> None:
+    """Else the tests would take turns in writing it, and each --shots-update would say that all is well."""
+    test = "def test_{0}(shot): shot.check(RAMP[::{1}], 'sea', by='numpy')\n"
+    both = test.format("first", 1) + test.format("second", -1)
+    pytester.makepyfile(test_sea=NAMED + both)
+    run("--shots-update", "-k", "first").assert_outcomes(passed=1, deselected=1)
+    result = run("--shots-update")
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(
+        ["test_sea.py/sea: *: test_sea.py::test_first has a picture of that name that matches: give one *"]
+    )
+    (kept,) = Path("screenshots").rglob("*.png")
+    assert read_png(kept)[0][0, 0, 0] == 0  # the first one's
 
 
 # ── several checks in a test ─────────────────────────────────────────────────
