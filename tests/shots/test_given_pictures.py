@@ -312,6 +312,34 @@ def test_all_checks_of_a_test_are_made_and_reported_together(
     assert left == ["dawn.actual.png", "dusk.actual.png"]
 
 
+def test_what_is_no_picture_is_reported_with_the_other_checks(run: Run, pytester: pytest.Pytester) -> None:
+    """And is in the report: a mask that hides everything, light that no tone is given for, a film of one."""
+    pytester.makepyfile(
+        test_day=f"""{NAMED}
+def test_day(shot):
+    assert not shot.check(RAMP * 4, "dawn", by="numpy")
+    assert not shot.check(RAMP, "noon", by="numpy", mask=(0, 0, 5, 4))
+    assert not shot.animation([RAMP], "dusk", by="numpy")
+    assert not shot.animation([RAMP, RAMP * 2], "evening", by="numpy")
+    assert shot.check(RAMP, "night", by="numpy")
+"""
+    )
+    result = run("--shots-update", "--tb=short")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            "4 pictures of this test fail:",
+            "test_day.py/dawn: a picture of floats is from 0 to 1, and this one from 0 to 4; say what *",
+            "*checked at  test_day.py:6",
+            "test_day.py/noon: mask: it hides all 5 × 4 pixels, *",
+            "test_day.py/dusk: an animation is two frames or more; found 1",
+            "test_day.py/evening: frame 2: a picture of floats is from 0 to 1, *",
+        ]
+    )
+    assert [path.name for path in Path("screenshots").rglob("*.png")] == ["night.png"]
+    assert "this one from 0 to 4" in Path("shots-report/index.html").read_text()
+
+
 @pytest.mark.parametrize("end", ["raise KeyError('tide')", "pytest.fail('tide')", "pytest.skip('tide')"])
 def test_what_a_test_raises_is_shown_with_the_pictures_that_differ(
     several: Callable[[str], pytest.RunResult], end: str
