@@ -30,7 +30,7 @@ from playground.errors import (
 from playground.gpu.context import ContextInfo
 from playground.paths import shown
 from playground.shots import soft_failures
-from playground.shots.claims import Claim, Claims, writing
+from playground.shots.claims import Claim, Claims, keeping, writing
 from playground.shots.fallbacks import PIXELS, Fallback, fallback_for, fallbacks_of, read_fallbacks
 from playground.shots.plugin_constants import (
     REFERENCE_RENDERER,
@@ -113,7 +113,7 @@ class Checker:
         rendered = _result_or_error(lambda: self.renderer_process.render(case))
         self.show_what_was_printed(node)
         if isinstance(rendered, PlaygroundError):
-            self._gave_none(node, case, rendered, start)
+            self._without_picture(node, case, rendered, start)
         if failure := self.failure(node, case, rendered, renderer, start):
             pytest.fail(failure, pytrace=False)
 
@@ -126,7 +126,7 @@ class Checker:
         """
         outcome = _result_or_error(lambda: self._compare(node, case, frame, renderer))
         if isinstance(outcome, PlaygroundError):
-            return self._none_to_compare(node, case, outcome, start)
+            return self.gave_none(node, case, outcome, start)
         command = self.accepting(node, outcome)
         stands_in = self._stands_in(outcome)
         unrecorded = self.recorder.record(node, outcome, time.perf_counter() - start, command, stands_in)
@@ -151,7 +151,7 @@ class Checker:
             self._without(node, case, str(found))
         if isinstance(found, PlaygroundError):
             self.show_what_was_printed(node)
-            self._gave_none(node, case, found, start)
+            self._without_picture(node, case, found, start)
         return self.expect(node, case, found)
 
     def expect(self, node: pytest.Item, case: ShotCase, renderer: ContextInfo) -> ContextInfo:
@@ -215,13 +215,13 @@ class Checker:
         node.user_properties.append((UNCOMPARED, message))
         pytest.skip(message)
 
-    def _gave_none(self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float) -> NoReturn:
-        """Fail the test for a shot of which there is no picture, or that cannot be compared."""
-        pytest.fail(self._none_to_compare(node, case, error, start), pytrace=False)
-
-    def _none_to_compare(
+    def _without_picture(
         self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float
-    ) -> str:
+    ) -> NoReturn:
+        """Fail the test for a shot of which there is no picture, or that cannot be compared."""
+        pytest.fail(self.gave_none(node, case, error, start), pytrace=False)
+
+    def gave_none(self, node: pytest.Item, case: ShotCase, error: PlaygroundError, start: float) -> str:
         """Record a shot of which there is no picture, or that cannot be compared, and say why."""
         word = word_of(error)
         unrecorded = self.recorder.record_none(node, case, word, str(error), time.perf_counter() - start)
@@ -239,6 +239,9 @@ class Checker:
         strictly = fallback is not None and fallback.strictness == PIXELS
         outcome = check(case, frame, renderer, reference_renderer, by_pixels=strictly)
         if outcome.ok and self.updating:
+            refusal = self._refusal(keeping(case.shot.name, node.nodeid), case, renderer)
+            if refusal and not check(case, frame, renderer).ok:  # it was written meanwhile
+                raise DataError(refusal, file=outcome.own_path)
             node.user_properties.append((UNCHANGED, str(case)))
         elif self._may_write(outcome):
             self._write(node, outcome)

@@ -6,8 +6,9 @@ only one process can make:
     <folder>/<sketch>/.names/<run>/<renderer>.<hash of the name>.json
 
 Names that are one file on macOS or Windows are one name here. Two tests may share a reference
-that both of them name, and name alike; if both write it, the pictures must be the same. A name
-that comes from a test's own is that test's alone.
+that both of them name, and name alike; if both write it, the pictures must be the same, and
+none may write it once another has found that it matches. A name that comes from a test's own is
+that test's alone.
 """
 
 from __future__ import annotations
@@ -28,6 +29,8 @@ from playground.shots.names import one_spelling
 
 _FOLDER = ".names"
 
+KEPT = "kept"
+
 
 @dataclass(frozen=True)
 class Claim:
@@ -36,13 +39,19 @@ class Claim:
     name: str
     node: str  # pytest's id of the test
     own: bool  # whether the name is the test's own, and not given
-    digest: str = ""  # SHA-256 of the picture that is written as the reference; "" before that
+    # Of the reference: SHA-256 of the picture that is written as it, KEPT where it matches; "" before that.
+    digest: str = ""
 
 
 def writing(name: str, node: str, pixels: NDArray[np.uint8]) -> Claim:
     """Return the claim of a test that writes a picture as a reference."""
     digest = hashlib.sha256(str(pixels.shape).encode() + pixels.tobytes()).hexdigest()
     return Claim(name, node, False, digest)
+
+
+def keeping(name: str, node: str) -> Claim:
+    """Return the claim of a test that leaves the reference as it is, for it matches."""
+    return Claim(name, node, False, KEPT)
 
 
 class Claims:
@@ -99,6 +108,8 @@ def _refusal(claim: Claim, first: Claim) -> str:
         )
     if first.own or claim.own:
         return f"{first.node} has a picture of that name, {claim.name!r}: give one of them another name"
+    if first.digest != claim.digest and first.digest == KEPT:
+        return f"{first.node} has a picture of that name that matches: give one of them another name"
     if first.digest != claim.digest:
         return f"{first.node} has just written another picture of that name"
     return ""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -118,8 +118,8 @@ class ShotFixture:
     ) -> bool:
         """Compare a picture with its reference of that name, which ``--shots-update`` writes.
 
-        A picture that differs fails the test when that ends, so that all of its checks are made;
-        returned is whether this one passed.
+        A picture that differs, or is none, fails the test when that ends, so that all of its checks
+        are made; returned is whether this one passed.
 
         ``picture`` is a frame, or what holds a picture: an array (height, width, 3 or 4) or grey, top
         row first, of uint8, uint16, or floats from 0 to 1; an image of Pillow; a framebuffer or texture
@@ -138,8 +138,8 @@ class ShotFixture:
         sketch that ``shot.render`` has drawn, as "water:foam", or a list of such.
 
         Of an engine's last frame, what went into it is looked at too: a number that is not finite in a
-        texture fails. An earlier frame of the engine is refused with ``ValueError``. Raises
-        ``DataError`` for what is no picture, ``ValueError`` for a name that cannot be or is taken.
+        texture fails. An earlier frame of the engine is refused with ``ValueError``, as are a name
+        that cannot be or is taken, a tolerance without a reason, and what is no mask.
         """
         __tracebackhide__ = True
         start, self._started = self._started, time.perf_counter()
@@ -148,7 +148,10 @@ class ShotFixture:
         hides = MaskOfTest(mask)
         allowed = tolerance_of(tolerance, reason)
         case = self._case(Shot(name, tolerance=allowed, mask=hides.named, allow_blank=allow_blank))
-        rendered, info = self._rendered(case, picture, by, tone)
+        try:
+            rendered, info = self._rendered(case, picture, by, tone)
+        except DataError as error:
+            return self._refuse_picture(case, error, start)
         rendered = replace(rendered, masks=(*hides.arrays, *self._textures(picture, hides.textures)))
         return self._hold(case, rendered, info, own, start)
 
@@ -157,7 +160,7 @@ class ShotFixture:
         frames: Iterable[object],
         name: str = "",
         *,
-        times: Sequence[float] = (),
+        times: Iterable[float] = (),
         by: By | None = None,
         tone: str = "",
         tolerance: Given | None = None,
@@ -181,17 +184,24 @@ class ShotFixture:
             raise ValueError(f"mask = {hides.textures[0]!r}: a texture cannot mask an animation")
         allowed = tolerance_of(tolerance, reason)
         case = self._case(Shot(name, tolerance=allowed, mask=hides.named, allow_blank=allow_blank))
+        seconds = [float(moment) for moment in times]
         taken_frames, labels, renderers = [], [], []
         for number, frame in enumerate(frames):
-            rendered, info = self._rendered(case, frame, by, tone)
+            try:
+                rendered, info = self._rendered(case, frame, by, tone)
+            except DataError as error:
+                return self._refuse_picture(case, DataError(f"frame {number + 1}: {error}"), start)
             taken_frames.append(rendered)
             renderers.append(info)
             moment = frame.time if isinstance(frame, Frame) else None
-            moment = times[number] if number < len(times) else moment
+            moment = seconds[number] if number < len(seconds) else moment
             labels.append("" if moment is None else f"at {moment:g} s")
-        if times and len(times) != len(labels):
-            raise ValueError(f"times: {len(times)} for {len(labels)} frames")
-        strip = film_of(taken_frames, labels, hides.arrays)
+        if seconds and len(seconds) != len(labels):
+            raise ValueError(f"times: {len(seconds)} for {len(labels)} frames")
+        try:
+            strip = film_of(taken_frames, labels, hides.arrays)
+        except DataError as error:
+            return self._refuse_picture(case, error, start)
         if len(set(renderers)) > 1:
             raise ValueError("the frames of an animation are drawn by one renderer; these are not")
         return self._hold(case, strip, renderers[0], own, start)
@@ -206,6 +216,13 @@ class ShotFixture:
         drawer = by or (found.context if found else None)
         return _drawn_by(picture, _rendered(picture, found, tone), drawer), info
 
+    def _refuse_picture(self, case: ShotCase, error: DataError, start: float) -> bool:
+        """Record for the test's end that what was given is no picture; return False."""
+        self._begin(case)
+        self._names[one_spelling(case.shot.name)] = case.shot.name
+        self._fail(self._checker.gave_none(self._node, case, error, start))
+        return False
+
     def _hold(
         self, case: ShotCase, rendered: RenderedShot, info: ContextInfo, own: bool, start: float
     ) -> bool:
@@ -219,9 +236,12 @@ class ShotFixture:
         self._node.user_properties.append((USED, f"{info.slug}/{name}"))
         failure = self._checker.failure(self._node, case, rendered, info, start)
         if failure:
-            first, _, rest = failure.partition("\n")
-            add_failure(self._node, f"{first}\n    checked at  {self._place()}\n{rest}".rstrip())
+            self._fail(failure)
         return not failure
+
+    def _fail(self, failure: str) -> None:
+        first, _, rest = failure.partition("\n")
+        add_failure(self._node, f"{first}\n    checked at  {self._place()}\n{rest}".rstrip())
 
     def finish(self) -> None:
         """Fail for pictures that were checked after the test itself."""
@@ -236,6 +256,7 @@ class ShotFixture:
 
     def _textures(self, picture: object, names: tuple[str, ...]) -> tuple[Light, ...]:
         """Return the textures that hide parts of a frame that `render` gave."""
+        __tracebackhide__ = True
         if not names:
             return ()
         if id(picture) not in self._drawn:
@@ -250,6 +271,7 @@ class ShotFixture:
         return find(neighbour if neighbour.exists() else sketch)
 
     def _refuse_name(self, name: str, own: bool) -> None:
+        __tracebackhide__ = True
         if why := why_no_name(name):
             raise ValueError(f"name = {name!r}: {why}")
         before = self._names.get(one_spelling(name))
@@ -276,6 +298,7 @@ class ShotFixture:
     def _renderer_of(
         self, case: ShotCase, picture: object, found: Taken | None, by: By | None
     ) -> ContextInfo:
+        __tracebackhide__ = True
         tool = found and found.tool
         if isinstance(by, str):  # a folder that is named is used with any OpenGL
             named = ContextInfo(0, by, "", tool.version if tool else "", 0)

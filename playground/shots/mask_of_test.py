@@ -16,6 +16,7 @@ class MaskOfTest:
     """What a test hides of a picture. Raises ``ValueError`` for what is no mask."""
 
     def __init__(self, mask: object) -> None:
+        __tracebackhide__ = True
         self.named: tuple[Rectangle | str, ...] = ()  # rectangles, and paths from the test file's folder
         self.textures: tuple[str, ...] = ()  # of the sketch
         self.arrays: tuple[Light, ...] = ()
@@ -26,6 +27,7 @@ class MaskOfTest:
             self._add(mask)
 
     def _add(self, item: object) -> None:
+        __tracebackhide__ = True
         rectangle = _rectangle(item)
         if rectangle:
             self.named += (rectangle,)
@@ -47,6 +49,7 @@ def _rectangle(item: object) -> Rectangle | None:
         return None
     if not all(isinstance(value, int | np.integer) for value in item):
         return None
+    __tracebackhide__ = True
     x, y, width, height = (int(value) for value in item)
     if width < 1 or height < 1:
         raise ValueError(f"mask = {item!r}: a rectangle is (x, y, width, height), of a pixel or more")

@@ -1,10 +1,11 @@
 """Name the pictures of tests in Python, so that each name is a file's on every system.
 
 A picture without a name of its own is named after its test: ``test_waves[1.0]`` gives
-``waves-1-0-4bd6c1``. Characters other than ASCII letters, digits, _ and - become -, and six
-digits of a hash then keep apart what would be one name: ``waves[1.0]`` and ``waves[1,0]``.
-What is long is cut, with the hash. The name follows from the test's id alone, so it is the
-same whichever tests run.
+``waves-1-0-e775a0``. Characters other than ASCII letters, digits, _ and - become -, and six
+digits of a hash then keep apart what would be one name: ``waves[1.0]`` and ``waves[1,0]``. So they
+do for capitals in parameters, ``waves[a]`` and ``waves[A]``, which are one file on macOS and
+Windows, and for what is long and cut. The name follows from the test's id alone, so it is
+the same whichever tests run.
 """
 
 from __future__ import annotations
@@ -30,7 +31,8 @@ def name_of_test(node: str) -> str:
     words = [*(name.removeprefix("Test") or name for name in classes), short]
     whole = "-".join(words) + (f"-{parameters.removesuffix(']')}" if bracket else "")
     safe = re.sub(r"[^A-Za-z0-9_-]+", "-", whole)
-    if safe == whole and len(whole) <= LONGEST and not _reserved(whole):
+    alone = safe == whole and parameters == parameters.lower()
+    if alone and len(whole) <= LONGEST and not _reserved(whole):
         return whole
     digest = hashlib.sha256(whole.encode("utf-8", "surrogatepass")).hexdigest()[:6]
     return f"{safe[: LONGEST - 7].rstrip('-')}-{digest}"

@@ -24,6 +24,7 @@ from playground.shots.report import NAME, write_report
 from playground.shots.result_paths import clean, drop, file_of, place_of, records_in
 from playground.shots.results import (
     FOLDER,
+    FRAMES,
     PASSED,
     PICTURES,
     Record,
@@ -31,6 +32,7 @@ from playground.shots.results import (
     read_result,
     write_result,
 )
+from playground.shots.strip import frame_size
 from playground.shots.suite import Outcome, RenderedShot, ShotCase, images_of
 
 _CATCHES = {
@@ -235,11 +237,17 @@ def _numbers(outcome: Outcome) -> dict[str, float]:
     found = outcome.comparison
     if found.verdict in ("blank", "missing", "size"):
         return {}
+    share, labels = found.share, getattr(outcome.frame, "labels", ())
+    if labels:  # of its frames, without the cells of the strip that are left over
+        width, height = frame_size(outcome.frame.array, len(labels))
+        share = found.over / (width * height * len(labels) - found.hidden)
     numbers: dict[str, float] = {
         "largest difference, levels of 255": found.most,
         f"pixels over {found.tolerance}": found.over,
-        f"pixels over {found.tolerance}, %": 100.0 * found.share,
+        f"pixels over {found.tolerance}, %": 100.0 * share,
     }
+    if labels:
+        numbers = {FRAMES: len(labels)} | numbers
     if found.hidden:
         numbers["pixels masked"] = found.hidden
     if outcome.crowd is not None:

@@ -47,6 +47,9 @@ PICTURES = ("actual", "expected", "difference", "flip", "masked")
 PASSED = "same"
 """The word of a shot that is what it should be."""
 
+FRAMES = "frames, in rows from the top left"
+"""The number that only the record of an animation has."""
+
 NEVER_ACCEPTED = frozenset({"blank", "nan", "gl-error", "crash", "hang", "error"})
 """The words of results that no reference may be made of: the picture is broken, or there is none."""
 

@@ -107,6 +107,8 @@ def judge_frames(
         word, _, rest = sentence.partition(": ")
         whose = f"frame {worst + 1} of {count}{labels[worst] and f', {labels[worst]}'}"
         sentence = f"{word}: {f'all {count} frames; of ' if found.ok else ''}{whose}: {rest}"
+        failed = sum(word != "same" for word in words)
+        sentence += f"; {failed} of the {count} frames fail" if failed > 1 else ""
     whole = _whole(strip, reference, count, rule)
     return (
         replace(

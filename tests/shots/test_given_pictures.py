@@ -170,6 +170,8 @@ def test_ids_that_differ_only_in_what_no_file_can_have_get_names_that_differ() -
         "1/0",
         "1:0",
         "1\\0",
+        "a",
+        "A",
         "a::b",
         "é",
         "e\u0301",
@@ -249,6 +251,23 @@ def test_{name}(shot):
     assert read_png(written)[0][0, 0, 0] == 0  # the first one's
 
 
+def test_a_reference_that_matches_is_not_written_for_another_test(
+    run: Run, pytester: pytest.Pytester
+) -> None:
+    """Else the tests would take turns in writing it, and each --shots-update would say that all is well."""
+    test = "def test_{0}(shot): shot.check(RAMP[::{1}], 'sea', by='numpy')\n"
+    both = test.format("first", 1) + test.format("second", -1)
+    pytester.makepyfile(test_sea=NAMED + both)
+    run("--shots-update", "-k", "first").assert_outcomes(passed=1, deselected=1)
+    result = run("--shots-update")
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(
+        ["test_sea.py/sea: *: test_sea.py::test_first has a picture of that name that matches: give one *"]
+    )
+    (kept,) = Path("screenshots").rglob("*.png")
+    assert read_png(kept)[0][0, 0, 0] == 0  # the first one's
+
+
 # ── several checks in a test ─────────────────────────────────────────────────
 
 SEVERAL = """
@@ -291,6 +310,34 @@ def test_all_checks_of_a_test_are_made_and_reported_together(
     result.stdout.fnmatch_lines(BOTH)
     left = sorted(path.name for path in Path("shots-report/test_day.py").glob("*.actual.png"))
     assert left == ["dawn.actual.png", "dusk.actual.png"]
+
+
+def test_what_is_no_picture_is_reported_with_the_other_checks(run: Run, pytester: pytest.Pytester) -> None:
+    """And is in the report: a mask that hides everything, light that no tone is given for, a film of one."""
+    pytester.makepyfile(
+        test_day=f"""{NAMED}
+def test_day(shot):
+    assert not shot.check(RAMP * 4, "dawn", by="numpy")
+    assert not shot.check(RAMP, "noon", by="numpy", mask=(0, 0, 5, 4))
+    assert not shot.animation([RAMP], "dusk", by="numpy")
+    assert not shot.animation([RAMP, RAMP * 2], "evening", by="numpy")
+    assert shot.check(RAMP, "night", by="numpy")
+"""
+    )
+    result = run("--shots-update", "--tb=short")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            "4 pictures of this test fail:",
+            "test_day.py/dawn: a picture of floats is from 0 to 1, and this one from 0 to 4; say what *",
+            "*checked at  test_day.py:6",
+            "test_day.py/noon: mask: it hides all 5 × 4 pixels, *",
+            "test_day.py/dusk: an animation is two frames or more; found 1",
+            "test_day.py/evening: frame 2: a picture of floats is from 0 to 1, *",
+        ]
+    )
+    assert [path.name for path in Path("screenshots").rglob("*.png")] == ["night.png"]
+    assert "this one from 0 to 4" in Path("shots-report/index.html").read_text()
 
 
 @pytest.mark.parametrize("end", ["raise KeyError('tide')", "pytest.fail('tide')", "pytest.skip('tide')"])

@@ -10,6 +10,7 @@ import pytest
 
 from playground.errors import DataError
 from playground.images.files import read_png
+from playground.shots.results import FRAMES, read_result
 from playground.shots.strip import frame_size, repeated, strip_of
 
 Run = Callable[..., pytest.RunResult]
@@ -51,7 +52,7 @@ def test_drawn(shot):
     ]
     shot.animation(frames, "sunrise")
 def test_given(shot):
-    shot.animation((RAMP * g for g in (0.2, 0.4)), times=(0, 2), by="numpy", MASK)
+    shot.animation((RAMP * g for g in (0.2, 0.4)), times=np.array([0, 2]), by="numpy", MASK)
 """
 
 
@@ -64,13 +65,21 @@ def test_the_first_frame_that_fails_is_named_with_its_time(
     assert strip.shape == (32, 64, 4) and not strip[16:, 32:].any()
     run("test_sun.py").assert_outcomes(passed=2)
     edit("test_sun.py", "(0.5, 0.6)", "(0.5, 0.65)")
+    edit("test_sun.py", "(1, 0.7)", "(1, 0.75)")
     edit("test_sun.py", "(0.2, 0.4)", "(0.2, 0.0)")
     result = run("test_sun.py", "--shots-update", "-k", "given")
     result.assert_outcomes(failed=1, deselected=1)
     result.stdout.fnmatch_lines(["test_sun.py/given: blank: frame 2 of 2, at 2 s: all 5 × 4 *"])
     result = run("test_sun.py", "-k", "drawn")
     result.assert_outcomes(failed=1, deselected=1)
-    result.stdout.fnmatch_lines(["test_sun.py/sunrise: differs: frame 2 of 3, at 0.5 s: max difference *"])
+    sentence = (
+        "test_sun.py/sunrise: differs: frame 2 of 3, at 0.5 s: max difference *; 2 of the 3 frames fail"
+    )
+    result.stdout.fnmatch_lines([sentence])
+    numbers = read_result(Path("shots-report/test_sun.py/sunrise.json")).numbers
+    # Of 3 frames of 32 × 16, without the fourth cell of the strip.
+    assert numbers[FRAMES] == 3
+    assert numbers["pixels over 1, %"] == pytest.approx(100 * numbers["pixels over 1"] / (3 * 32 * 16))
 
 
 def test_a_mask_hides_the_same_of_each_frame(run: Run, pytester: pytest.Pytester, edit: Edit) -> None:

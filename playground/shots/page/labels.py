@@ -49,7 +49,7 @@ MEANINGS = {
     "blank": Meaning(
         "blank",
         "Every pixel has the same colour, which is what most broken renders look like."
-        " A blank picture fails even if its reference is blank, and cannot be accepted.",
+        " A blank picture fails even if its reference is blank, unless the shot says allow_blank.",
         broken=True,
     ),
     "nan": Meaning(
@@ -65,8 +65,8 @@ MEANINGS = {
         broken=True,
     ),
     "error": Meaning(
-        "not drawn",
-        "The shot could not be drawn or compared: something is wrong with the sketch, a shader or a file.",
+        "error",
+        "The shot could not be drawn or compared: something is wrong with it, or with a shader or a file.",
         broken=True,
     ),
     "crash": Meaning(

@@ -10,7 +10,7 @@ from urllib.parse import quote
 
 from playground.markup import Markup, tag
 from playground.shots.page.labels import meaning
-from playground.shots.results import FOLDER, NEVER_ACCEPTED, Record
+from playground.shots.results import FOLDER, FRAMES, NEVER_ACCEPTED, Record
 
 CAPTIONS = {
     "expected": "Expected",
@@ -99,6 +99,7 @@ def failure(record: Record, setting: Setting) -> Markup:
         tag("p", class_="message", role="status") if setting.review else None,
         tag("p", _verdict(record), class_="verdict"),
         tag("p", " ".join(filter(None, explained)), class_="meaning") if any(explained) else None,
+        _rules(record),
         _error(record),
         tag("div", class_="viewer", hidden=True),
         _pictures(record, setting),
@@ -174,6 +175,10 @@ def _accepting(record: Record, setting: Setting) -> Markup:
         why = "No reference can be made of it: fix the sketch or the shader, then run the tests again."
         if record.word not in NEVER_ACCEPTED:
             why = "There is no picture here to accept; run the tests again."
+        elif record.word == "blank":
+            why = "No reference can be made of it, unless the shot says allow_blank."
+        elif record.word == "error":
+            why = "There is nothing to accept: put right what the sentence says, then run the tests again."
         return tag("section", tag("p", why), class_="accepting")
     parts: list[Markup] = [tag("h3", "If this is right")]
     commands = [("accepts this very picture", accept_command(record, setting.folder))]
@@ -196,10 +201,11 @@ def _accepting(record: Record, setting: Setting) -> Markup:
 
 
 def _figures(record: Record) -> Markup:
-    rows = [(name, number(value)) for name, value in record.numbers.items()]
+    rows = [(name[:1].upper() + name[1:], number(value)) for name, value in record.numbers.items()]
     if record.place:
         x, y = record.place
-        rows.append(("Worst pixel", f"x = {x}, y = {y} from the top left"))
+        whole = " of all frames" if FRAMES in record.numbers else ""
+        rows.append(("Worst pixel", f"x = {x}, y = {y} from the top left{whole}"))
     for name, size in (("Size", record.size), ("Expected size", record.expected_size)):
         if size and (name == "Size" or size != record.size):
             rows.append((name, f"{size[0]} × {size[1]} pixels"))
@@ -209,7 +215,6 @@ def _figures(record: Record) -> Markup:
         reference = f"{record.compared}, drawn by {other}" if record.compared else "none"
     if record.renderer:
         rows.append(("Reference", reference))
-    rows += [(name, value) for name, value in _rule(record) if value]
     if len(record.references) > 1:
         rows.append(("Accepted so far", ", ".join(record.references)))
     if record.node:
@@ -220,6 +225,13 @@ def _figures(record: Record) -> Markup:
         rows.append(("Checked", moment(record.when)))
     cells = [tag("tr", tag("th", name, scope="row"), tag("td", value)) for name, value in rows]
     return tag("section", tag("h3", "Figures"), tag("table", *cells), class_="figures")
+
+
+def _rules(record: Record) -> Markup | None:
+    """Return what the shot says of its comparison, with the reasons it gives."""
+    said = [(name, value) for name, value in _rule(record) if value]
+    items = [tag("li", tag("strong", name), f": {value}") for name, value in said]
+    return tag("ul", *items, class_="rules") if items else None
 
 
 def _rule(record: Record) -> tuple[tuple[str, str], ...]:
@@ -239,7 +251,8 @@ def _fingerprints(record: Record) -> Markup | None:
     if record.fingerprint:
         parts.append(tag("ul", *(tag("li", line) for line in record.fingerprint), class_="differences"))
     elif record.expected_texts:
-        parts.append(tag("p", "Both pictures were drawn by the same build, of the same sketch and shaders."))
+        alike = ", of the same sketch and shaders" if "drawn" in record.texts else ""
+        parts.append(tag("p", f"Both pictures were drawn by the same build{alike}."))
     rows = []
     for key in dict.fromkeys([*record.expected_texts, *record.texts]):
         before, now = record.expected_texts.get(key, "–"), record.texts.get(key, "–")
