@@ -43,7 +43,9 @@ def test_french_has_one_space_before_a_sign_and_a_thin_one_in_numbers():
         f"{path.name}:{number}: {found[0]!r}"
         for path in [*lessons, *TEXTS.parent.rglob("*fr.toml")]
         for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1)
-        for found in re.finditer(r".?(?:[ \u202f][;:!?»](?!\S)|«[ \u202f]|(?<!\d)\u202f|\u202f(?!\d)).?", line)
+        for found in re.finditer(
+            r".?(?:[ \u202f][;:!?»](?!\S)|«[ \u202f]|(?<!\d)\u202f|\u202f(?!\d)).?", line
+        )
         if not re.search(r"`[^`]*$", line[: found.start() + 1])  # code is as it is typed
     ]
     assert not wrong
