@@ -14,7 +14,6 @@ hides count for nothing.
 from __future__ import annotations
 
 import math
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -131,8 +130,7 @@ def _composited(picture: NDArray[np.uint8], grey: int) -> NDArray[np.uint8]:
 
 def _difference(actual: NDArray[np.uint8], expected: NDArray[np.uint8]) -> Floats:
     """Return FLIP of two opaque pictures, uint8 (height, width, 3)."""
-    with ThreadPoolExecutor(2) as threads:  # NumPy lets go of the interpreter
-        (ours, edges, points), (theirs, other_edges, other_points) = threads.map(_seen, (actual, expected))
+    (ours, edges, points), (theirs, other_edges, other_points) = _seen(actual), _seen(expected)
     colours = _colour_difference(ours, theirs)
     features = _feature_difference(edges - other_edges, points - other_points)
     return np.asarray(colours ** (1 - features), np.float32)
@@ -149,15 +147,16 @@ def _seen(picture: NDArray[np.uint8]) -> tuple[Floats, Floats, Floats]:
 
 @lru_cache(maxsize=1)
 def _matrices() -> tuple[Floats, Floats, Floats]:
-    """Return XYZ from linear sRGB, its inverse, and the white of both.
+    """Return XYZ over white from linear sRGB, then YyCxCz from that light, but for its constant, and back.
 
     From the chromaticities of IEC 61966-2-1: red, green, blue, and D65.
     """
     x, y = np.array([[0.64, 0.30, 0.15], [0.33, 0.60, 0.06]])
     primaries = np.array([x / y, np.ones(3), (1 - x - y) / y])
     white = np.array([0.3127 / 0.3290, 1.0, (1 - 0.3127 - 0.3290) / 0.3290])
-    forward = primaries * np.linalg.solve(primaries, white)
-    found = forward, np.linalg.inv(forward), white
+    relative = primaries * np.linalg.solve(primaries, white) / white[:, None]
+    opponent = np.array([[0, 116, 0], [500, -500, 0], [0, 200, -200]]) @ relative
+    found = relative, opponent, np.linalg.inv(opponent)
     return tuple(array.astype(np.float32) for array in found)  # type: ignore[return-value]
 
 
@@ -170,23 +169,34 @@ def _linear() -> Floats:
 
 def _opponent(picture: NDArray[np.uint8]) -> Floats:
     """Return YyCxCz of sRGB bytes, (3, height, width): lightness, red to green, blue to yellow."""
-    forward, _, white = _matrices()
-    light = np.take(_linear(), np.moveaxis(picture, 2, 0))
-    x, y, z = np.tensordot(forward / white[:, None], light, 1)
-    return np.stack([116 * y - 16, 500 * (x - y), 200 * (y - z)])
+    _, opponent, _ = _matrices()
+    found = _mixed(opponent, np.moveaxis(np.take(_linear(), picture), 2, 0))
+    found[0] -= 16
+    return found
+
+
+def _mixed(matrix: Floats, channels: Floats) -> Floats:
+    """Return a matrix times the three channels of each pixel, (3, height, width)."""
+    values = channels.reshape(3, -1)
+    found = np.empty(values.shape, np.float32)
+    most = _ONE_THREAD // matrix.size
+    for start in range(0, values.shape[1], most):
+        pixels = slice(start, start + most)
+        np.matmul(matrix, values[:, pixels], out=found[:, pixels])
+    return found.reshape(channels.shape)
 
 
 def _perceived(opponent: Floats) -> Floats:
     """Return L*, a*, b* of what is left after the eye's blur, (3, height, width), chroma Hunt-adjusted."""
-    luminance, red_green, blue_yellow = (
-        sum((_along(_along(channel, kernel, 0), kernel, 1) * share for kernel, share in kernels), _ZERO)
-        for channel, kernels in zip(opponent, _blurs(), strict=True)
-    )
-    forward, inverse, white = _matrices()
-    y = (luminance + 16) / 116
-    relative = np.stack([y + red_green / 500, y, y - blue_yellow / 200])  # XYZ over white
-    light = np.clip(np.tensordot(inverse * white, relative, 1), 0, 1)
-    relative = np.clip(np.tensordot(forward / white[:, None], light, 1), 0, None)
+    blurred = np.empty_like(opponent)
+    for channel, kernels, found in zip(opponent, _blurs(), blurred, strict=True):
+        found[...] = sum(
+            (_along(_along(channel, line, 0), line, 1) * share for line, share in kernels), _ZERO
+        )
+    blurred[0] += 16
+    relative, _, inverse = _matrices()
+    light = np.clip(_mixed(inverse, blurred), 0, 1)
+    relative = np.maximum(_mixed(relative, light), 0)
     # CIE 15:2004: a cube root, and near black the line that continues it.
     bend = 6 / 29
     x, y, z = np.where(relative > bend**3, np.cbrt(relative), relative / (3 * bend**2) + 4 / 29)

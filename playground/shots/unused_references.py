@@ -85,9 +85,6 @@ class Uses:
 
     def stale(self) -> dict[str, str]:
         """Return, by the node id of a test that would have found it, the unused references, as a sentence."""
-        from playground.errors import counted
-        from playground.paths import shown
-
         found: dict[str, str] = {}
         for name, file in self._files.items():
             if not file.tests or len(file.passed) != file.tests:
@@ -101,6 +98,9 @@ class Uses:
             stale += _of_files_that_are_gone(folder.parent)
             file.unused = bool(stale)
             if stale:
+                from playground.errors import counted
+                from playground.paths import shown
+
                 files = "".join(f"\n    {shown(path)}" for path in stale)
                 found[f"{name}::references"] = (
                     f"no test uses {counted(len(stale), 'reference')}; remove:{files}"
