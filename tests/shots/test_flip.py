@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from types import ModuleType
 
@@ -192,14 +191,3 @@ def test_the_ramp_grows_lighter_all_the_way_from_black() -> None:
     assert tuple(ramp()[255]) == (252, 253, 191, 255)
     assert not ramp().flags.writeable
     np.testing.assert_array_equal(coloured(np.array([[0.0, 0.5, 2.0]], np.float32))[0], ramp()[[0, 128, 255]])
-
-
-def test_a_picture_of_1280_by_720_takes_a_fraction_of_a_second() -> None:
-    """0.3 s are wanted; a slower machine may take half as long again, of this process's own time."""
-    one, other = seeded(1280, 720), seeded(1280, 720, 6)
-    took = []
-    for _ in range(3):
-        start = time.process_time()
-        flip(one, other)
-        took.append(time.process_time() - start)
-    assert min(took) < 0.45
