@@ -246,5 +246,5 @@ def test_without_anywidget_one_sentence_names_the_extra(monkeypatch):
             sys.modules, name
         )
     for call in (playground.widget, lambda: playground.compare("jacksboro", "jacksboro")):
-        with pytest.raises(DataError, match=r"needs anywidget.*'terrain-shader-playground\[notebook\]'"):
+        with pytest.raises(DataError, match=r'needs anywidget.*"terrain-shader-playground\[notebook\]"'):
             call()

@@ -171,7 +171,10 @@ export function createFigure(host, engine, page, options) {
     if (poster) poster.hidden = true;
     name();
     tell("");
-    if (moving) quality.took(took + late);
+    if (moving) {
+      quality.took(took + late);
+      settle(); // a slow picture is no rest
+    }
     const newer = pointer.drawn() && readsPointer(session.sketch);
     if (session.drawn() || newer) ask();
     waiting.splice(0).forEach((resolve) => resolve());
@@ -202,9 +205,10 @@ export function createFigure(host, engine, page, options) {
     clearTimeout(resting);
     resting = setTimeout(() => {
       if (playing) return;
+      if (begun !== null) return settle();
       moving = false;
       quality.rest();
-      ask(); // whole, also where a smaller picture is still being made
+      ask(); // whole
     }, REST);
   }
 
