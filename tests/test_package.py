@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import re
+import shlex
 import subprocess
 import sys
 import venv
@@ -15,13 +17,16 @@ from playground.images.files import read_png
 
 ROOT = Path(__file__).resolve().parent.parent
 
+MOST_BYTES = 12_000_000  # of a wheel or a source distribution; the library's measured land is 1.5 MB of it
+
 pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Give the wheel, made from the source distribution, which is next to it."""
     folder = tmp_path_factory.mktemp("wheel")
-    command = [sys.executable, "-m", "pip", "wheel", str(ROOT), "--no-deps", "--wheel-dir", str(folder)]
+    command = [sys.executable, "-m", "build", "--outdir", str(folder), str(ROOT)]
     made = subprocess.run(command, capture_output=True, text=True, timeout=300)
     _need_network(made)
     return next(folder.glob("*.whl"))
@@ -60,14 +65,28 @@ def test_the_wheel_carries_every_file_of_the_library(wheel: Path):
     assert not [name for name in inside if name.startswith(("tests/", "screenshots/"))]
 
 
+@pytest.mark.parametrize(
+    "check",
+    [("twine", "check", "--strict"), ("check_wheel_contents", "--config", str(ROOT / "pyproject.toml"))],
+)
+def test_what_is_published_passes_the_checks_of_those_who_publish(wheel: Path, check: tuple[str, ...]):
+    files = [wheel, next(wheel.parent.glob("*.tar.gz"))] if check[0] == "twine" else [wheel]
+    assert max(file.stat().st_size for file in files) < MOST_BYTES
+    done = subprocess.run(
+        [sys.executable, "-m", *check, *map(str, files)], capture_output=True, text=True, timeout=120
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
 def test_an_empty_environment_renders_the_default_sketch(wheel: Path, tmp_path: Path):
     home = tmp_path / "home"
     home.mkdir()
     environment = tmp_path / "env"
     venv.create(environment, with_pip=True)
     scripts = environment / ("Scripts" if os.name == "nt" else "bin")
-    clean = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "PLAYGROUND"))} | {
-        "HOME": str(home)
+    clean = {k: v for k, v in os.environ.items() if not k.startswith(("PYTHON", "PLAYGROUND", "DISPLAY"))} | {
+        "HOME": str(home),
+        "PATH": f"{scripts}{os.pathsep}{os.environ['PATH']}",
     }
     _need_network(
         subprocess.run(
@@ -91,3 +110,28 @@ def test_an_empty_environment_renders_the_default_sketch(wheel: Path, tmp_path: 
     array, _ = read_png(picture)
     assert array.shape == (180, 320, 4)
     assert array[..., :3].std() > 10
+    for command in readme_commands():
+        done = subprocess.run(
+            shlex.split(command), capture_output=True, text=True, env=clean, cwd=tmp_path, timeout=120
+        )
+        needs_a_screen = "There is no screen" in done.stderr and done.returncode == 2
+        assert done.returncode == 0 or needs_a_screen, f"{command}: {done.stderr}"
+    for number, text in enumerate(readme_blocks("python")):
+        (tmp_path / f"snippet_{number}.py").write_text(text, encoding="utf-8")
+        words = [str(scripts / "python"), f"snippet_{number}.py"]
+        done = subprocess.run(words, capture_output=True, text=True, env=clean, cwd=tmp_path, timeout=120)
+        assert done.returncode == 0, f"{text}: {done.stderr}"
+
+
+def readme_blocks(language: str) -> list[str]:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    return re.findall(rf"^```{language}\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+
+
+def readme_commands() -> list[str]:
+    """Return the commands of README.md that are the playground's, as one types them without a checkout."""
+    lines = [line.partition("  #")[0].strip() for block in readme_blocks("sh") for line in block.splitlines()]
+    found = [re.sub(r"^\./play\b", "playground", line) for line in lines]
+    found = [line for line in found if line.startswith("playground") and line.split()[1:2] != ["test"]]
+    assert {"playground new hills", "playground render hills -o hills.png"} <= set(found)
+    return found
