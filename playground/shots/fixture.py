@@ -263,7 +263,12 @@ class ShotFixture:
             raise ValueError(f"mask = {names[0]!r}: only a frame of shot.render has textures of its sketch")
         case = self._drawn[id(picture)][2]
         masked = ShotCase(case.sketch, replace(case.shot, mask=names))
-        return self._checker.renderer_process.render(masked).masks
+        try:
+            return self._checker.renderer_process.render(masked).masks
+        except PlaygroundError as error:
+            mistake = error
+        # Without the frames it came through, which say nothing of the test's own mistake.
+        raise type(mistake)(f"mask: {mistake}")
 
     def _find(self, sketch: str | Path) -> Path:
         """Return where a sketch is: in the test file's folder, or where a command would find it."""

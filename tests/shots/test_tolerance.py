@@ -261,3 +261,13 @@ def test_a_check_of_a_test_has_a_tolerance_and_a_mask_that_its_report_shows(
     assert (pictures["masked"][30:] != pictures["actual"][30:]).any(axis=2).all()
     assert not pictures["difference"][30:, :, :3].any() and pictures["difference"][20, 3, :3].all()
     assert "Not compared" in Path("shots-report/index.html").read_text()
+
+
+def test_a_mask_of_a_test_that_its_sketch_has_not_is_a_sentence_at_the_test_s_line(
+    run: Run, pytester: pytest.Pytester
+) -> None:
+    pytester.makepyfile(test_sea=TESTS.replace('mask="height"', 'mask="hieght"'))
+    result = run("--shots-update", "test_sea.py::test_drawn")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*SketchError: mask: no pass 'hieght' *; did you mean 'height'?"])
+    result.stdout.no_fnmatch_line("*renderer_process.py*")
