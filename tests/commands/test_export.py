@@ -187,6 +187,9 @@ def test_every_example_of_the_help_runs(folder: Path, capsys: pytest.CaptureFixt
     assert len(examples) > 4
     dem = write_geotiff(folder / "dem.tif")
     for line in examples:
+        line, piped, _ = line.partition(" > ")
+        if piped:  # to standard output: see below
+            continue
         line = re.sub("jacksboro|diamond_square", "rise/lit.toml", line).replace("size=1025", "size=33")
         assert cli.main(line.split()) == 0, printed(capsys)[1]
     dem.unlink()
