@@ -19,11 +19,14 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 
 
 def install(folder: Path, name: str, *files: str) -> None:
-    """Write what pip writes of a distribution that has these files."""
+    """Write what pip writes of a distribution that has these files, and those that are not there yet."""
     info = folder / f"{name.replace('-', '_')}-1.0.dist-info"
     info.mkdir(parents=True)
     (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
     (info / "RECORD").write_text("".join(f"{file},,\n" for file in files))
+    for file in map(folder.joinpath, files):  # Python 3.13 counts no file that is missing
+        file.parent.mkdir(exist_ok=True)
+        file.touch()
 
 
 @pytest.fixture

@@ -258,7 +258,7 @@ def test_other_formats_are_read_by_ogr_or_name_the_extra(tmp_path, monkeypatch, 
     with pytest.raises(DataError, match=f"is no {ending[1:]} file, although its name says so"):
         read_vectors(path)
     monkeypatch.setattr(vectors, "find_spec", lambda _: None)
-    with pytest.raises(DataError, match=r"is read by OGR; the extra gis .*playground\[gis\]'"):
+    with pytest.raises(DataError, match=r'is read by OGR; the extra gis .*playground\[gis\]"'):
         read_vectors(path)
 
 
