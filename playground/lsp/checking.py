@@ -130,7 +130,7 @@ class Checker:
                 self._wanted.setdefault(document.uri)
             return
         with self._news:
-            if self._documents.get(document.uri) is None:  # closed meanwhile
+            if self._documents.get(document.uri) is not document:  # closed, or typed in: that is checked next
                 return
             old = self._results.get(document.uri, _Result())
             self._results[document.uri] = result
