@@ -55,8 +55,12 @@ def widget(at):
 
 
 def picture(lab, at, side=0):
-    """Return a widget's picture at rest: of its whole size, and two readings agree."""
+    """Return a widget's picture at rest: of its whole size, and two readings agree.
+
+    It is brought into sight first, for what nobody sees is drawn only once it is seen.
+    """
     found, before = f"{widget(at)}.querySelectorAll('canvas')[{side}]", ""
+    lab.browser.run(f"{widget(at)}.scrollIntoView()")
     script = f"const c = {found}; return c.width === {SIZE[0]} ? c.toDataURL() : String(Math.random())"
     for _ in range(60):
         time.sleep(0.4)
