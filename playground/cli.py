@@ -24,6 +24,7 @@ import typer
 
 from playground._version import __version__
 from playground.commands import (
+    bench,
     cache,
     check,
     doctor,
@@ -202,6 +203,7 @@ app.command("export", help=export.HELP)(export.export)
 app.command("check", help=check.HELP)(check.check)
 app.command("lsp", help=lsp.HELP)(lsp.lsp)
 app.command("reduce", help=reduce.HELP)(reduce.reduce)
+app.command("bench", help=bench.HELP)(bench.bench)
 app.command("list", help=listing.HELP)(listing.list_)
 app.command("doctor", help=doctor.HELP)(doctor.doctor)
 app.command("pack", help=pack.HELP)(pack.pack)

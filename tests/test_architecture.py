@@ -28,6 +28,7 @@ LAYERS = (
     ("terminal",),
     ("signals", "streams"),
     ("live", "lsp"),
+    ("bench",),
     ("remote",),
     ("workbench",),
     ("lessons",),

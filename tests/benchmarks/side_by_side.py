@@ -1,18 +1,16 @@
 """Time our methods against their alternatives, in one run, and print them as tables.
 
-What the benchmarks of generation and of lighting share. A figure is the median of several
+A figure is the median of several
 runs, ours and theirs alternately, so that a busy machine slows both. Nothing compiled is timed.
 """
 
 from __future__ import annotations
 
 import argparse
-import ctypes
 import itertools
 import os
 import shutil
 import statistics
-import subprocess
 import sys
 import tempfile
 import time
@@ -28,7 +26,6 @@ from playground.gpu.context import open_context
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
-HERE = Path(__file__).resolve().parent
 SEEDS = itertools.count(1)
 CORES = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 FORMS = ("auto", "fragment", "plain")
@@ -140,16 +137,13 @@ def _growth(console: Console, costs: dict[tuple[str, int], float], sizes: list[i
 
 
 class Bench:
-    """Engines of both drivers, a folder for sketches, and methods of the thesis in C."""
-
-    source = ""  # the C file next to this one
+    """Engines of both drivers, and a folder for sketches."""
 
     def __init__(self) -> None:
         self.ctx = open_context()
         self.folder = Path(tempfile.mkdtemp(prefix="playground-bench-"))
         self.engines = {driver: Engine(self.ctx, driver=driver) for driver in ("auto", "fragment")}
         self.renderer = self.engines["auto"].info.renderer
-        self.thesis = _compiled(self.folder, HERE / self.source) if self.source else None
 
     def __enter__(self) -> Bench:
         return self
@@ -165,14 +159,3 @@ class Bench:
         path = self.folder / f"{next(SEEDS)}.toml"
         path.write_text(f"format = 1\n{text}", encoding="utf-8")
         return load(path)
-
-
-def _compiled(folder: Path, source: Path) -> ctypes.CDLL | None:
-    compiler = shutil.which("cc") or shutil.which("gcc") or shutil.which("clang")
-    if compiler is None:
-        print("no C compiler: the thesis's own methods are left out", file=sys.stderr)
-        return None
-    library = folder / "thesis.so"
-    options = ["-O2", "-shared", "-fPIC", "-o", str(library), str(source), "-lm"]
-    subprocess.run([compiler, *options], check=True)
-    return ctypes.CDLL(str(library))

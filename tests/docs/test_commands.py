@@ -54,6 +54,7 @@ NOT_RUN = {
     r"playground shots report": "names the command; tests/report/test_report.py has results to give it",
     r"playground (render --video|check --json|reduce|pack|shots mutants)": "names it; with more it is run",
     r"\./play lesson present .* --video .*": "takes minutes; test_present_film.py has a small one",
+    r"playground bench": "takes minutes: tests/bench run small parts of it",
     r"playground lesson translated": "names the command; tests/lessons have a translation to give it",
     r"playground variants renew": "writes this checkout's record; that of a folder is written",
     r"playground (live|render) diamond_square-my-version\.zip.*": "saved by a browser: web/test_my_version",
@@ -206,6 +207,8 @@ def furnish(folder: Path, command: str) -> None:
     for heightmap in ("land.png", "land.r16"):
         if f"height.elevation={heightmap}" in words:
             assert cli.main(["export", "jacksboro", "--to", heightmap]) == 0
+    if "before.json" in words and "--against" in words:
+        assert cli.main(["bench", "normalisation", "--size", "65", "--rounds", "1", "-o", "before.json"]) == 0
     if "dem.tif" in words:
         write_geotiff(folder / "dem.tif")
     if "--replay" in words:
@@ -218,7 +221,9 @@ def smaller(words: list[str]) -> list[str]:
     """Return a command's arguments with small pictures, short films, few values and one lesson."""
     found = list(words)
     for at, word in enumerate(words):
-        if word == "--size":
+        if word == "--size" and found[0] == "bench":
+            found[at + 1] = "65"
+        elif word == "--size":
             width, height = (int(n) for n in words[at + 1].split("x"))
             found[at + 1] = f"{max(width // 100, 32)}x{max(height // 100, 32)}"
         if word == "--frames" and ".." in words[at + 1]:
@@ -351,8 +356,6 @@ def run(folder: Path, words: list[str], *, timeout: float = 500) -> subprocess.C
 
 SMALL = {
     "python tests/truth": ["--size", "25"],
-    "python tests/benchmarks/generation.py": ["--size", "65", "--rounds", "1"],
-    "python tests/benchmarks/lighting.py": ["--size", "65", "--rounds", "1"],
 }
 FRAMES = "python -m tests.benchmarks.page_frames"
 IN_HILLS = [c for c in OTHERS if re.fullmatch(r"(python -m )?pytest hills.*", c)]

@@ -7,19 +7,19 @@ the full extent of the terrain. They are timed, and tell nothing about what is r
 from __future__ import annotations
 
 import math
+from contextlib import suppress
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 
-try:
-    import numba
-except ImportError:
-    numba = None
+numba: Any = None
+with suppress(ImportError):
+    numba = import_module("numba")
 
-try:
-    from topocalc.viewf import viewf
-except ImportError:
-    viewf = None
+viewf: Any = None
+with suppress(ImportError):
+    viewf = import_module("topocalc.viewf").viewf
 
 SHIFT = 16  # a line drifts by whole 65536ths of a texel a row
 

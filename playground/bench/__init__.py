@@ -1,0 +1,1 @@
+"""How fast the playground is, next to what else does the same: ``playground bench``."""

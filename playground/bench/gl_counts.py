@@ -1,0 +1,62 @@
+"""Count what a frame asks of OpenGL through moderngl: its draws, what it binds, the bytes that it moves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import moderngl
+
+_CALLS: dict[str, tuple[tuple[type, str], ...]] = {
+    "draw calls": ((moderngl.VertexArray, "render"), (moderngl.VertexArray, "render_indirect")),
+    "dispatches": ((moderngl.ComputeShader, "run"),),
+    "textures bound": ((moderngl.Texture, "use"), (moderngl.Texture, "bind_to_image")),
+    "samplers bound": ((moderngl.Sampler, "use"),),
+    "framebuffers bound": ((moderngl.Framebuffer, "use"),),
+    "mipmaps made": ((moderngl.Texture, "build_mipmaps"),),
+    "copies of framebuffers": ((moderngl.Context, "copy_framebuffer"),),
+    "waits": ((moderngl.Context, "finish"),),
+}
+_MOVED: tuple[tuple[type, str], ...] = (
+    (moderngl.Texture, "write"),
+    (moderngl.Texture, "read"),
+    (moderngl.Buffer, "write"),
+    (moderngl.Buffer, "read"),
+)
+BYTES = "bytes moved"
+
+
+@contextmanager
+def counted() -> Iterator[dict[str, int]]:
+    """Count within, by kind; what is created meanwhile, and its first texels, are not counted."""
+    counts = dict.fromkeys((*_CALLS, BYTES), 0)
+    changed: list[tuple[type, str, Any]] = []
+
+    def count(kind: str, owner: type, name: str, amount: Callable[[Any, Any], int]) -> None:
+        own = getattr(owner, name)
+
+        def call(*given: Any, **named: Any) -> Any:
+            found = own(*given, **named)
+            counts[kind] += amount(given, found)
+            return found
+
+        changed.append((owner, name, own))
+        setattr(owner, name, call)
+
+    try:
+        for kind, calls in _CALLS.items():
+            for owner, name in calls:
+                count(kind, owner, name, lambda given, found: 1)
+        for owner, name in _MOVED:
+            count(BYTES, owner, name, _size_of)
+        yield counts
+    finally:
+        for owner, name, own in changed:
+            setattr(owner, name, own)
+
+
+def _size_of(given: tuple[Any, ...], found: Any) -> int:
+    """Return the bytes that a call gave or was given."""
+    moved = found if isinstance(found, bytes) else given[1] if len(given) > 1 else b""
+    return moved.size if isinstance(moved, moderngl.Buffer) else memoryview(moved).nbytes

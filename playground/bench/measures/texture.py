@@ -1,0 +1,57 @@
+"""What one texture costs, made anew each time, next to what else makes the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from playground.bench.peers import EXTRA, Setting, made
+from playground.bench.results import Figure
+from playground.bench.room import Room, changing
+from playground.bench.rows import Row
+from playground.bench.timing import Run, alternate
+from playground.sketch.variants import any_variants
+
+FORMS = ("auto", "fragment", "plain")
+"""By compute shaders where there are any; without; and in the canonical form, without fast variants."""
+
+
+def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
+    """Yield the row's figure: each form of ours, each peer.
+
+    Keys: ``texture``, what is read; ``seeds``, ``suns`` and ``nudged``, what is new each time (see
+    ``changing``); ``forms``; and those of the sketch (see ``Room.sketch``).
+    """
+    options = row.options
+    sketch, wanted = room.sketch(options, size), str(options["texture"])
+    varied = any(any_variants(each.technique) for each in sketch.graph.passes if each.name != "height")
+    runs: dict[str, Run] = {}
+    for form in options.get("forms", FORMS):
+        if form == "plain" and not varied:
+            continue
+        engine = room.engine("auto" if form == "plain" else form)
+        change = changing(room, options)
+
+        def run(plain: bool = form == "plain", engine=engine, change=change) -> None:  # type: ignore[no-untyped-def]
+            engine.texture(change(sketch).plainly(plain), wanted)
+            engine.ctx.finish()
+
+        runs[form] = run
+    setting = Setting(room, size, options)
+    peers = [peer for given in row.peers if (peer := made(setting, given)) is not None]
+    for name in setting.missing:
+        room.options.say(f"{name} is not installed, and is left out; {EXTRA}")
+    ours = set(runs)
+    runs |= {peer.name: peer.run for peer in peers}
+    once = [peer.name for peer in peers if peer.once]
+    samples = alternate(runs, room.options.rounds, once=once)
+    yield Figure(
+        row.suite,
+        row.name,
+        row.what,
+        size,
+        "ms",
+        row.goal,
+        {name: found for name, found in samples.items() if name in ours},
+        {name: found for name, found in samples.items() if name not in ours},
+        frozenset(peer.name for peer in peers if peer.alone),
+    )

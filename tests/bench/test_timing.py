@@ -1,0 +1,45 @@
+"""Runs are timed alternately; medians, quartiles and growth are those of NumPy."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+import pytest
+
+from playground.bench.growth import growth
+from playground.bench.results import Figure, Results
+from playground.bench.rows import Goal
+from playground.bench.timing import Samples, alternate
+
+
+def test_runs_take_turns_and_the_first_rounds_do_not_count():
+    called: list[str] = []
+    runs = {name: lambda name=name: called.append(name) for name in ("ours", "theirs", "slow")}
+    found = alternate(runs, 3, once=("slow",), unmeasured=2)
+    assert called == [*["ours", "theirs"] * 2, "ours", "theirs", "slow", *["ours", "theirs"] * 2]
+    assert [len(found[name].wall) for name in runs] == [3, 3, 1]
+    assert len(found["ours"].processor) == 3
+
+
+def test_the_clock_and_the_processors_are_told_apart():
+    found = alternate({"asleep": lambda: time.sleep(0.05)}, 1, unmeasured=0)["asleep"]
+    assert found.wall[0] >= 50 > found.processor[0]
+
+
+@pytest.mark.parametrize("count", [3, 4, 7, 20])
+def test_medians_and_quartiles_are_numpys(count):
+    values = np.random.default_rng(count).random(count).tolist()
+    samples = Samples(values, [2 * value for value in values])
+    assert samples.median() == pytest.approx(np.median(values))
+    assert samples.quartiles() == pytest.approx((np.quantile(values, 0.25), np.quantile(values, 0.75)))
+    assert samples.median("processor") == pytest.approx(2 * np.median(values))
+
+
+def test_growth_is_the_cost_of_a_texel_at_the_largest_size_over_that_at_the_smallest():
+    def figure(size: int, milliseconds: float) -> Figure:
+        return Figure("s", "row", "what", size, "ms", Goal(), {"auto": Samples([milliseconds])})
+
+    results = Results("2026-01-01T00:00:00+00:00", "1", {}, 1, [figure(100, 2.0), figure(400, 64.0)])
+    assert growth(results, [100, 200, 400]) == [("row", pytest.approx(2.0))]
+    assert growth(results, [100]) == []
