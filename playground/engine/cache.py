@@ -11,6 +11,9 @@ from playground.engine.results import Pool, Result
 # Results of any size: a driver spends memory on each texture besides its texels, so that thousands
 # of small ones, one for each save of a small sketch, would grow past any bound in bytes.
 MOST = 512
+# Of one pass: whoever drags a slider leaves a version behind with every picture, and comes back to none of
+# them. Their textures are used again: to make one costs as much as to fill it (1025 x 1025: 2 ms).
+VERSIONS = 4
 _SHARE_OF_STATES = 4  # a quarter of the bytes may be earlier states of loops that follow the time
 
 
@@ -52,6 +55,8 @@ class Cache:
         self._total = 0  # their sum
         self.hits = 0  # results that were taken from here
         self._latest: dict[str, tuple[str, str, int]] = {}
+        # Keys of the versions of each pass, by its path and its size, what was used last at the end.
+        self._versions: dict[tuple[str, tuple[int, int]], OrderedDict[str, None]] = {}
 
     @property
     def bytes(self) -> int:
@@ -88,6 +93,9 @@ class Cache:
             self._cached.move_to_end(key)
             self._in_use.add(key)
             self._may_grow.add(key)
+            for versions in self._versions_of(cached):
+                if key in versions:
+                    versions.move_to_end(key)
         return cached
 
     def peek(self, key: str) -> Cached | None:
@@ -102,6 +110,12 @@ class Cache:
         self._in_use.add(key)
         self._may_grow.add(key)
         self._weigh(key)
+        for versions in self._versions_of(cached):
+            versions[key] = None
+            for old in [old for old in versions if old not in self._in_use][
+                : max(len(versions) - VERSIONS, 0)
+            ]:
+                self.drop(old)
         self.trim()
 
     def grew(self, key: str) -> None:
@@ -120,7 +134,9 @@ class Cache:
 
     def take(self, key: str) -> Result:
         """Hand over the result of a pass to the caller, and forget it."""
-        result = self._cached.pop(key).result
+        cached = self._cached.pop(key)
+        result = cached.result
+        self._forget_version(key, cached)
         self._in_use.discard(key)
         self._weigh(key)
         return result
@@ -131,6 +147,7 @@ class Cache:
         self._in_use.discard(key)
         self._weigh(key)
         if cached is not None:
+            self._forget_version(key, cached)
             cached.release_to(self._pool)
 
     def drop_unused(self) -> None:
@@ -167,6 +184,18 @@ class Cache:
         self._sizes.clear()
         self._total = 0
         self._latest.clear()
+        self._versions.clear()
+
+    def _versions_of(self, cached: Cached) -> list[OrderedDict[str, None]]:
+        """Return the versions of a pass that is cached; of a loop none, which goes on in place."""
+        if len(cached.results) != 1 or cached.iterations:
+            return []
+        ((path, result),) = cached.results.items()
+        return [self._versions.setdefault((path, result.size), OrderedDict())]
+
+    def _forget_version(self, key: str, cached: Cached) -> None:
+        for versions in self._versions_of(cached):
+            versions.pop(key, None)
 
     def _weigh_used(self) -> None:
         """Weigh what was used since the last time: mipmaps may have been made."""

@@ -49,6 +49,7 @@ class Result:
     number: int = 0  # of all that its pool has handed out: textures are used again, it is not
     surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
+    with_levels: set[str] = field(default_factory=set)  # outputs that had mipmaps when they were others'
     shaped: dict[tuple[str, str], Shaped] = field(default_factory=dict)  # copies, by output and shape
     own_bytes: int = 0  # of its textures without mipmaps; 0: not counted yet
     _framebuffer: moderngl.Framebuffer | None = None
@@ -58,10 +59,11 @@ class Result:
         """Bytes held, mipmaps and samples included."""
         if not self.own_bytes:
             self.own_bytes = sum([bytes_of(self.size, output.format) for output in self.outputs])
-        if not self.mipmapped and not self.shaped and self.surface is None:
+        levels = self.mipmapped | self.with_levels
+        if not levels and not self.shaped and self.surface is None:
             return self.own_bytes
         total = self.own_bytes
-        total += sum([bytes_of(self.size, o.format) // 3 for o in self.outputs if o.name in self.mipmapped])
+        total += sum([bytes_of(self.size, o.format) // 3 for o in self.outputs if o.name in levels])
         total += sum([copy.bytes for copy in self.shaped.values()])
         if (surface := self.surface) is not None:
             width, height = surface.size
@@ -161,6 +163,8 @@ class Pool:
                 textures = dict(zip((o.name for o in wanted), spare.textures.values(), strict=True))
                 found = Result(size, wanted, textures, number=self._taken, own_bytes=spare.own_bytes)
                 found._framebuffer = spare._framebuffer
+                pairs = zip(wanted, spare.outputs, strict=True)
+                found.with_levels = {now.name for now, before in pairs if before.name in spare.with_levels}
                 return found
         self.made += 1
         made: dict[str, moderngl.Texture] = {}
@@ -179,9 +183,13 @@ class Pool:
             result.surface.release()
             result.surface = None
         result.release_copies()
-        if result.mipmapped or result.bytes > self.limit:
-            result.release()  # levels would go stale unseen
+        if result.bytes > self.limit:
+            result.release()
             return
+        for name in result.mipmapped:  # their levels are made anew before anybody reads them
+            result.textures[name].filter = self.ctx.LINEAR, self.ctx.LINEAR
+        result.with_levels |= result.mipmapped
+        result.mipmapped = set()
         self._spare[id(result)] = result
         self._bytes += result.bytes
         while self._bytes > self.limit:

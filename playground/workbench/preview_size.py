@@ -2,8 +2,11 @@
 
 On a software renderer a picture's cost grows with its pixels. What the passes took lately says what
 the next picture will take at its whole size, at a half, a third and a quarter of the pixels a side:
-the largest is chosen that stays within a budget. Where passes cost most that do not follow the
+the largest is chosen that stays within its budget. Where passes cost most that do not follow the
 picture's size, as one that makes terrain, fewer pixels gain nothing, and it stays whole.
+
+The budget grows as the pixels go: all of them are worth having at 25 pictures a second, a half of
+each side at 10, a quarter at 5.
 """
 
 from __future__ import annotations
@@ -17,10 +20,11 @@ from playground.sketch.expressions import follows_time
 from playground.sketch.model import Sketch
 from playground.workbench.pass_costs import PassCosts
 
-BUDGET = 0.2
-"""[s] that a picture may take while something moves."""
-DIVISORS = (1, 2, 3, 4)
-"""Parts that each side may be divided by."""
+BUDGETS = {1: 0.04, 2: 0.1, 3: 0.15, 4: 0.2}
+"""[s] that a picture may take while something moves, by the parts that each side is divided by."""
+DIVISORS = tuple(BUDGETS)
+SLOW = 0.2
+"""[s] of a whole picture from which on time that runs is better paused, so that it is seen at all."""
 LEAST = 2**15
 """Pixels that a preview has at least: fewer show nothing."""
 
@@ -39,12 +43,12 @@ def chosen(expected: Mapping[int, float], current: int) -> int:
     """Return the divisor of the sides for the next picture.
 
     ``expected``: seconds by divisor; ``current``: the last picture's. The choice has hysteresis: what
-    fits stays until it takes a fifth more than the budget, and grows where a fifth is left.
+    fits stays until it takes a fifth more than its budget, and grows where a fifth is left.
     """
 
     def fits(divisor: int) -> bool:
         factor = _STAYS if divisor == current else _GROWS if divisor < current else 1.0
-        return expected[divisor] <= BUDGET * factor
+        return expected[divisor] <= BUDGETS[divisor] * factor
 
     found = [divisor for divisor in expected if fits(divisor)]
     if not found:
@@ -59,6 +63,7 @@ class PreviewSize:
     def __init__(self) -> None:
         self.divisor = 1  # of each side, of the last picture that was chosen for
         self.guessed = False  # nobody knew what that one would take
+        self.whole = 0.0  # [s] that it would take with all pixels, as far as is known
         self._costs = PassCosts()
 
     def take(self, plan: Plan, times: Mapping[str, float], *, in_full: bool) -> None:
@@ -81,7 +86,7 @@ class PreviewSize:
         A pass that runs once for another size, and then no more, is not counted. ``at``: the time and
         what else ``Engine.plan_for`` takes. Raises as that does.
         """
-        self.guessed = False
+        self.guessed, self.whole = False, 0.0
         possible = [d for d in DIVISORS if d == 1 or size[0] * size[1] >= LEAST * d * d]
         if len(possible) == 1:
             self.divisor = 1
@@ -104,6 +109,7 @@ class PreviewSize:
                     return divided(size, self.divisor)
                 found += (spent or 0.0) / 1e3
             expected[divisor] = found
+        self.whole = expected[1]
         self.divisor = chosen(expected, self.divisor)
         return divided(size, self.divisor)
 

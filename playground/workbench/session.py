@@ -450,7 +450,7 @@ class Session:
                 self.view.map = shown = None
             self._draw(shown.of(sketch) if shown else sketch, size, in_full=in_full)
             self.drafts.draw_error = None
-            if time_alone and self.picture.is_reduced:
+            if time_alone and self.picture.is_slow:
                 self._pause_once()
         except Exception as error:
             self.drafts.report(error)

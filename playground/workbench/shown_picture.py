@@ -21,7 +21,7 @@ from playground.workbench.catch_up import CatchUp
 from playground.workbench.framing import framed
 from playground.workbench.last_frame import Painter, Picture
 from playground.workbench.preview import as_preview
-from playground.workbench.preview_size import PreviewSize, Size
+from playground.workbench.preview_size import SLOW, PreviewSize, Size
 from playground.workbench.view import View
 
 if TYPE_CHECKING:
@@ -55,10 +55,10 @@ class ShownPicture:
         return self.is_preview and self._now() - self._drawn_at >= self.rest
 
     @property
-    def is_reduced(self) -> bool:
-        """Whether it has fewer pixels because all of them are known to take too long."""
+    def is_slow(self) -> bool:
+        """Whether it has fewer pixels because all of them are known to take far too long."""
         texture = self._picture.texture
-        return texture is not None and texture.size != self._drawn_size and not self._sizes.guessed
+        return texture is not None and texture.size != self._drawn_size and self._sizes.whole > SLOW
 
     @property
     def drawn_size(self) -> Size:

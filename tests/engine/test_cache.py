@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from playground.engine import cache
 from playground.engine.engine import Engine
+from playground.engine.results import Pool
 from playground.sketch.load import load
+from playground.sketch.model import Output
 
 
 def held(engine: Engine) -> int:
@@ -35,3 +39,67 @@ def test_small_results_are_bounded_in_number_too(ctx, monkeypatch):
             assert len(engine.internal.cache) <= 24
         engine.render(sketch.with_values({"height.seed": 4}), size=(16, 9))
         assert engine.internal.ran == [], "the newest are cached"
+
+
+def test_of_a_pass_that_changes_with_every_picture_few_versions_stay_and_textures_are_used_again(ctx):
+    sketch = load("diamond_square").with_values({"size": 17, "view.grid": 17})
+    with Engine(ctx) as engine:
+        made = []
+        for number in range(20):
+            engine.render(sketch.with_values({"light.sun": (10.0 * number, 30.0)}), size=(16, 9))
+            made.append(engine.internal.pool.made)
+        assert made[-1] == made[cache.VERSIONS], "no texture is made for what is dragged on"
+        engine.render(sketch.with_values({"light.sun": (170.0, 30.0)}), size=(16, 9))
+        assert "height" not in engine.internal.ran and not [p for p in engine.internal.ran if "light" in p]
+        engine.render(sketch.with_values({"light.sun": (0.0, 30.0)}), size=(16, 9))
+        assert [path for path in engine.internal.ran if "light" in path], "so long ago is forgotten"
+        assert "height" not in engine.internal.ran, "what has stayed is one version"
+
+
+def test_versions_that_a_frame_uses_stay(ctx):
+    """A sketch of which one pass is at more sizes, and one that comes again, are not taken for versions."""
+    pool = Pool(ctx, 2**20)
+    kept = cache.Cache(2**30, pool)
+    output = Output("height", "r32f")
+    kept.begin()
+    for number in range(cache.VERSIONS + 3):
+        kept.put(f"{number}", cache.Cached({"a": pool.take((4, 4), [output])}))
+    assert len(kept) == cache.VERSIONS + 3, "all are in use"
+    kept.end()
+    kept.begin()
+    kept.get("0")
+    kept.put("new", cache.Cached({"a": pool.take((4, 4), [output])}))
+    kept.put("other size", cache.Cached({"a": pool.take((8, 4), [output])}))
+    kept.end()
+    newest = [f"{number}" for number in range(cache.VERSIONS + 1, cache.VERSIONS + 3)]
+    assert {key for key in ("0", "new", "other size", *newest) if key in kept} == {
+        "0",
+        "new",
+        "other size",
+        *newest,
+    }
+    assert len(kept) == cache.VERSIONS + 1
+    kept.clear()
+    pool.clear()
+
+
+def test_a_texture_that_is_used_again_shows_nothing_of_its_old_mipmaps(ctx):
+    sketch = load("jacksboro").with_values({"size": 65, "view.grid": 33})
+    suns = [sketch.with_values({"light.sun": (20.0 * number, 15.0)}) for number in range(cache.VERSIONS + 4)]
+    with Engine(ctx) as engine, Engine(ctx) as fresh:
+        for moved in suns:
+            found = engine.render(moved, size=(80, 45)).array
+        np.testing.assert_array_equal(found, fresh.render(suns[-1], size=(80, 45)).array)
+
+
+def test_levels_of_a_texture_that_is_used_again_are_weighed(ctx):
+    pool, output = Pool(ctx, 2**20), Output("height", "r32f")
+    first = pool.take((8, 8), [output])
+    first.textures["height"].build_mipmaps()
+    first.mipmapped.add("height")
+    weight = first.bytes
+    pool.give(first)
+    again = pool.take((8, 8), [Output("light", "r32f")])
+    assert pool.made == 1 and again.bytes == weight == 256 + 256 // 3
+    assert not again.mipmapped and again.textures["light"].filter == (ctx.LINEAR, ctx.LINEAR)
+    again.release()
