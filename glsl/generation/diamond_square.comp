@@ -123,7 +123,9 @@ void make_coarse(int lane, int levels) {
             int x = 4 * i + k - y * row;
             h[k] = coarse[x <= side && y <= side ? y * pitch + x : 0];
         }
-        if (made == levels && normalise != 0) h = stretched(h, stretch_of(range, normalise), normalise);
+        if (made == levels && normalise != 0) {
+            h = stretched(h, stretch_of(range, normalise), normalise);
+        }
         height[place_of(made, levels) + i] = h;
     }
 }

@@ -1,8 +1,9 @@
 // generation/layered_noise/piece.glsl -- all layers as one polynomial along each of four columns.
 //
-//   gives    Piece, piece_at, piece_height
-//   needs    generation/layered_noise/layers.glsl, noise/hash.glsl; the parameters of
-//            generation/layered_noise/sum.glsl, declared before it
+//   gives    Piece, piece_at, piece_height, make_fours
+//   needs    generation/layered_noise/layers.glsl, generation/normalise/tell.glsl,
+//            noise/hash.glsl; the parameters of generation/layered_noise/sum.glsl, declared before
+//            it, and a buffer `height:vec4`, (size.x + 3) / 4 fours a row
 //   units    heights without unit; rows of texels
 //   source   the sum of generation/layered_noise/sum.glsl; the polynomial is derived in
 //            generation/layered_noise/bands.glsl
@@ -15,6 +16,7 @@
 #define GENERATION_LAYERED_NOISE_PIECE
 #ifdef COMPUTE_STAGE
 #include "generation/layered_noise/layers.glsl"
+#include "generation/normalise/tell.glsl"
 #include "noise/hash.glsl"
 
 // The factors of 1, v, v² and v³ in four columns, where v counts rows from the first.
@@ -35,8 +37,8 @@ vec4 curve_by_rows(float a0, float rise) {
                 -2.0 * squared * rise);
 }
 
-// The piece that begins at a row, in the columns from `x` on, and ends before `last` at the latest.
-// Columns beyond the terrain are its last one.
+// The piece that begins at a row, in the columns from `x` on, and ends before `last` at the
+// latest. Columns beyond the terrain are its last one.
 Piece piece_at(int x, int row, int last) {
     bool wraps = seams == 0 && tiles > 1;
     int first_layer = layer > 0 ? layer - 1 : left_out;
@@ -86,6 +88,29 @@ vec4 piece_height(Piece piece, float v) {
     vec4 total = piece.c0 + v * (piece.c1 + v * (piece.c2 + v * piece.c3));
     if (overflow < 2) return clamp(total, 0.0, 1.0);
     return total - mix(vec4(0.0), ceil(total) - 1.0, greaterThan(total, vec4(1.0)));
+}
+
+const int ROWS = 64;
+
+// The fours of one number in their rows, from row `y` on; what `tells` has their range told.
+void make_fours(int four, int y, bool tells) {
+    int fours = (size.x + 3) >> 2;
+    int last = min(y + ROWS, size.y);
+    if (four >= fours) return;
+    Told told = nothing_told();
+    int at = y * fours + four;
+    do {
+        Piece piece = piece_at(4 * four, y, last);
+        int begin = y;
+        do {
+            vec4 found = piece_height(piece, float(y - begin));
+            height[at] = found;
+            if (tells) told = told_also(told, found);
+            at += fours;
+            y++;
+        } while (y < piece.end);
+    } while (y < last);
+    if (tells) tell(told);
 }
 #endif
 #endif

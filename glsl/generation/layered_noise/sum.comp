@@ -1,7 +1,7 @@
 // generation/layered_noise/sum.comp -- the layers added up, along four columns of texels at once.
 //
 //   gives    height, for any terrain; not normalised
-//   needs    generation/layered_noise/{layers,piece}.glsl
+//   needs    generation/layered_noise/piece.glsl
 //   units    heights without unit, 0..1
 //   source   see generation/layered_noise/piece.glsl
 //   tested   tests/glsl/test_layered_noise.py and tests/glsl/test_fast_variants.py, against the
@@ -9,10 +9,9 @@
 //   agrees   but for roundings, as the passes of sum.fast.toml
 //
 // A thread goes along 64 rows of four columns, from one piece to the next.
-#include "generation/layered_noise/layers.glsl"
 #pragma compute(where = "fours = (size.x + 3) // 4", local = "16, 1", \
                 groups = "(fours + 15) // 16, (size.y + 63) // 64", \
-                buffers = "height:vec4:fours * size.y", aligned = "16", \
+                buffers = "height:vec4:fours * size.y; bounds:uint:2", aligned = "16", \
                 overwrites = "height", agrees = "1e-6")
 
 uniform int frequency = 4;       //! log_slider(1, 1024) As in the technique
@@ -29,22 +28,6 @@ uniform int seams = 1;           //! menu("removed", "left") As in the technique
 
 #include "generation/layered_noise/piece.glsl"
 
-const int ROWS = 64;
-
 void main() {
-    int fours = (size.x + 3) >> 2;
-    int four = int(gl_GlobalInvocationID.x);
-    int y = int(gl_WorkGroupID.y) * ROWS;
-    int last = min(y + ROWS, size.y);
-    if (four >= fours) return;
-    int at = y * fours + four;
-    do {
-        Piece piece = piece_at(4 * four, y, last);
-        int begin = y;
-        do {
-            height[at] = piece_height(piece, float(y - begin));
-            at += fours;
-            y++;
-        } while (y < piece.end);
-    } while (y < last);
+    make_fours(int(gl_GlobalInvocationID.x), int(gl_WorkGroupID.y) * ROWS, false);
 }
