@@ -22,7 +22,8 @@
 // The factors of 1, v, v² and v³ in four columns, where v counts rows from the first.
 struct Piece {
     vec4 c0, c1, c2, c3;
-    int end;  // the first row beyond it
+    int begin;  // its first row
+    int end;    // the first row beyond it
 };
 
 float curve(float a) {
@@ -37,25 +38,33 @@ vec4 curve_by_rows(float a0, float rise) {
                 -2.0 * squared * rise);
 }
 
-// The piece that begins at a row, in the columns from `x` on, and ends before `last` at the
-// latest. Columns beyond the terrain are its last one.
-Piece piece_at(int x, int row, int last) {
+// The piece that a row is in, in the columns from `x` on. It may begin before the rows of this
+// thread and end after them. Columns beyond the terrain are its last one.
+Piece piece_at(int x, int row) {
     bool wraps = seams == 0 && tiles > 1;
     int first_layer = layer > 0 ? layer - 1 : left_out;
     int end_layer = layer > 0 ? layer : octaves;
-    Piece piece = Piece(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), last);
+    int most = (size.x - 1) * tiles + 1;
+    Piece piece = Piece(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0), 0, size.y);
     int intervals = 1;
+    for (int k = 0; k < end_layer; k++) {
+        intervals = finer(intervals, frequency, most);
+        if (k < first_layer) continue;
+        int along_y = intervals_of_part(intervals, tiles, size).y;
+        int passed = quotient(row * along_y, size.y);
+        piece.begin = max(piece.begin, quotient(passed * size.y + along_y - 1, along_y));
+        piece.end = min(piece.end, quotient((passed + 1) * size.y + along_y - 1, along_y));
+    }
+    intervals = 1;
     float weight = 1.0;
     float weights = 0.0;
     for (int k = 0; k < end_layer; k++) {
-        intervals = finer(intervals, frequency, (size.x - 1) * tiles + 1);
+        intervals = finer(intervals, frequency, most);
         if (layer == 0) weight *= persistence;
         if (k < first_layer) continue;
         uint which = seed_of_layer(seed, random_layers == 1 ? k : 0);
         ivec2 own = intervals_of_part(intervals, tiles, size);
-        Nodes y = nodes_around(row, size.y, own.y, tiles, wraps);
-        int next = quotient(row * own.y, size.y) + 1;
-        piece.end = min(piece.end, quotient(next * size.y + own.y - 1, own.y));
+        Nodes y = nodes_around(piece.begin, size.y, own.y, tiles, wraps);
         vec4 south, north;
         for (int i = 0; i < 4; i++) {
             Nodes at = nodes_around(min(x + i, size.x - 1), size.x, own.x, tiles, wraps);
@@ -67,12 +76,12 @@ Piece piece_at(int x, int row, int last) {
             south[i] = between.x;
             north[i] = between.y;
         }
-        vec4 rise = weight * (north - south);
+        vec4 rise = north - south;
         vec4 powers = curve_by_rows(y.share, 1.0 / float(y.apart));
-        piece.c0 += weight * south + rise * powers.x;
-        piece.c1 += rise * powers.y;
-        piece.c2 += rise * powers.z;
-        piece.c3 += rise * powers.w;
+        piece.c0 += weight * (south + rise * powers.x);
+        piece.c1 += weight * (rise * powers.y);
+        piece.c2 += weight * (rise * powers.z);
+        piece.c3 += weight * (rise * powers.w);
         weights += weight;
     }
     if (overflow == 0 && weights > 0.0) {
@@ -100,15 +109,15 @@ void make_fours(int four, int y, bool tells) {
     Told told = nothing_told();
     int at = y * fours + four;
     do {
-        Piece piece = piece_at(4 * four, y, last);
-        int begin = y;
+        Piece piece = piece_at(4 * four, y);
+        int stop = min(piece.end, last);
         do {
-            vec4 found = piece_height(piece, float(y - begin));
+            vec4 found = piece_height(piece, float(y - piece.begin));
             height[at] = found;
             if (tells) told = told_also(told, found);
             at += fours;
             y++;
-        } while (y < piece.end);
+        } while (y < stop);
     } while (y < last);
     if (tells) tell(told);
 }
