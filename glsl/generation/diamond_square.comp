@@ -1,8 +1,8 @@
 // generation/diamond_square.comp -- diamond-square, two levels at a time, and normalised.
 //
 //   gives    height, as generation/diamond_square.toml, for 2^n + 1 texels a side
-//   needs    generation/diamond_square/{lattice,order,rows}.glsl, noise/finest.glsl,
-//            terrain/extremes.glsl
+//   needs    generation/diamond_square/{lattice,rows}.glsl, generation/normalise/stretch.glsl,
+//            noise/finest.glsl, terrain/{extremes,order}.glsl
 //   units    as the technique
 //   source   Belaiche 2010, section 4.3.1; a random number that depends on its point alone
 //            lets any part of a level be made by itself
@@ -24,9 +24,10 @@
 #include "generation/diamond_square/rows.glsl"
 #undef random
 #include "generation/diamond_square/lattice.glsl"
-#include "generation/diamond_square/order.glsl"
+#include "generation/normalise/stretch.glsl"
 #include "noise/finest.glsl"
 #include "terrain/extremes.glsl"
+#include "terrain/order.glsl"
 #pragma compute(where = "levels_left = max(log2(size.x - 1) // 2 - 2 - iteration, 0); \
                          spacings = (size.x - 1) // 4**levels_left", \
                 groups = "spacings // 256, spacings // 48 + 1", local = "32, 1", \
@@ -67,21 +68,6 @@ Lattice lattice_of(int level) {
     int side = 1 << level;
     float amplitude = 2.0 / float(side) * smoothing;
     return Lattice(side, FINEST_SIDE >> level, amplitude, random == 0, seed + DIAMOND_SQUARE_SALT);
-}
-
-// What is taken off a height, and what it is then divided by: as generation/normalise/apply.glsl
-// does.
-vec2 scale_of(vec2 range) {
-    float low = normalise == 1 ? 0.0 : range.x;
-    float span = span_of(vec2(low, range.y));
-    // A terrain without a range becomes 0, or with "max" stays as it is.
-    if (span == 0.0) span = normalise == 1 ? 1.0 : 3.4e38;
-    return vec2(low, span);
-}
-
-vec4 scaled(vec4 h, vec2 scale) {
-    vec4 share = (h - scale.x) / scale.y;
-    return normalise == 1 ? share : clamp(share, 0.0, 1.0);
 }
 
 // ── the coarse lattice ──
@@ -137,7 +123,9 @@ void make_coarse(int lane, int levels) {
             int x = 4 * i + k - y * row;
             h[k] = coarse[x <= side && y <= side ? y * pitch + x : 0];
         }
-        if (made == levels && normalise != 0) h = scaled(h, scale_of(range));
+        if (made == levels && normalise != 0) {
+            h = stretched(h, stretch_of(range, normalise), normalise);
+        }
         height[place_of(made, levels) + i] = h;
     }
 }
@@ -198,10 +186,10 @@ void two_rows(Task task, Lattice lattice, int j, int k, bool wanted, float low[6
     }
     if (normalise != 0 && task.scales) {
         for (int i = 0; i < 2; i++) {
-            even[i] = scaled(even[i], task.scale);
-            odd[i] = scaled(odd[i], task.scale);
+            even[i] = stretched(even[i], task.scale, normalise);
+            odd[i] = stretched(odd[i], task.scale, normalise);
         }
-        vec4 seam = scaled(vec4(last, last, first), task.scale);
+        vec4 seam = stretched(vec4(last, last, first), task.scale, normalise);
         last = seam.x;
         first = seam.zw;
     }
@@ -264,7 +252,8 @@ void make_two_levels(int j, int begin, int levels) {
     Lattice fine = lattice_of(level);
     int side = fine.side >> 2;
     int from = place_of(level - 2, levels);
-    vec2 scale = scale_of(vec2(height_of_key(~extremes[1]), height_of_key(extremes[0])));
+    vec2 known = vec2(height_of_key(~extremes[1]), height_of_key(extremes[0]));
+    vec2 scale = stretch_of(known, normalise);
     bool tells = normalise != 0 && (looks || iteration == last - 1);
     Task task = Task(place_of(level, levels), !looks, tells, iteration > last, scale);
     int end = works ? min(begin + ROWS, side + 1) : begin - 1;

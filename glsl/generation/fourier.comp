@@ -1,8 +1,8 @@
 // generation/fourier.comp -- the same terrain from half of its spectrum, by sixteens.
 //
 //   gives    height
-//   needs    generation/fourier/wave.glsl, maths/{complex,fourier,power,whole}.glsl,
-//            terrain/extremes.glsl
+//   needs    generation/fourier/wave.glsl, generation/normalise/stretch.glsl,
+//            maths/{complex,fourier,power,whole}.glsl, terrain/order.glsl
 //   units    heights without unit: 0..1, unless normalise says otherwise
 //   source   Belaiche 2010, section 1.3.3; two real rows as one complex row, as in W. Press and
 //            others 1992, "Numerical Recipes in C", section 12.3
@@ -30,11 +30,12 @@
 //
 // Shorter sides than 64 are repeated up to 64; all other frequencies are then 0.
 #include "generation/fourier/wave.glsl"
+#include "generation/normalise/stretch.glsl"
 #include "maths/complex.glsl"
 #include "maths/fourier.glsl"
 #include "maths/power.glsl"
 #include "maths/whole.glsl"
-#include "terrain/extremes.glsl"
+#include "terrain/order.glsl"
 #pragma compute(stages = "0, 1, 2, 3, 1, 1, 4, 5", local = "32, 1", \
                 accepts = "n up to 4097, m up to 4097", \
                 where = "numbers_x = max(size.x - size.x % 2, 64); \
@@ -222,17 +223,7 @@ void draw(Sixteen s) {
 
 // ── heights ──
 
-// A whole number that grows with a height.
-uint code_of(float height) {
-    uint found = floatBitsToUint(height);
-    return (found & 0x80000000u) != 0u ? ~found : found | 0x80000000u;
-}
-
-float height_of(uint code) {
-    return uintBitsToFloat((code & 0x80000000u) != 0u ? code & 0x7fffffffu : ~code);
-}
-
-// `bounds` are the greatest code, and the greatest complement of one: zeros are less than any.
+// `bounds` are the greatest key, and the greatest complement of one: zeros are less than any.
 void measure() {
     vec4 least = v[0];
     vec4 most = v[0];
@@ -240,21 +231,11 @@ void measure() {
         least = min(least, v[e]);
         most = max(most, v[e]);
     }
-    uint lowest = ~code_of(min(min(least.x, least.z), -max(most.y, most.w)));
-    uint highest = code_of(max(max(most.x, most.z), -min(least.y, least.w)));
+    uint lowest = ~key_of_height(min(min(least.x, least.z), -max(most.y, most.w)));
+    uint highest = key_of_height(max(max(most.x, most.z), -min(least.y, least.w)));
     // Most threads have nothing to change, and see that sooner than an atomic tells them.
     if (lowest > bounds[0]) atomicMax(bounds[0], lowest);
     if (highest > bounds[1]) atomicMax(bounds[1], highest);
-}
-
-// As generation/normalise/apply has it.
-vec4 normalised(vec4 h, vec2 range) {
-    if (normalise == 0) return h;
-    float low = normalise == 1 ? 0.0 : range.x;
-    float span = span_of(vec2(low, range.y));
-    if (span == 0.0) return normalise == 1 ? h : vec4(0.0);
-    vec4 share = (h - low) / span;
-    return normalise == 1 ? share : clamp(share, 0.0, 1.0);
 }
 
 // Four heights in each of four rows, a quarter of the count apart; `from` is the first's texel
@@ -268,13 +249,14 @@ void show(int row, int from, int at) {
         int place = (row + rows_on) * pitch + (x & (count.x - 1));
         found[j] = waves[place] * vec4(1.0, -1.0, 1.0, -1.0);
     }
-    vec2 range = vec2(height_of(~bounds[0]), height_of(bounds[1]));
+    vec2 range = vec2(height_of_key(~bounds[0]), height_of_key(bounds[1]));
+    vec2 stretch = stretch_of(range, normalise);
     int quarter = (rows >> 2) * size.x;
     int all_fours = (size.x * size.y + 3) >> 2;
     for (int g = 0; g < 4; g++) {
         if (at + g * quarter < all_fours) {
             vec4 four = vec4(found[0][g], found[1][g], found[2][g], found[3][g]);
-            height[at + g * quarter] = normalised(four, range);
+            height[at + g * quarter] = stretched(four, stretch, normalise);
         }
     }
 }

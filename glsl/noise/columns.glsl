@@ -1,7 +1,7 @@
 // noise/columns.glsl -- octaves of Perlin noise along a column of texels, as polynomials.
 //
-//   gives    perlin, by rows; Column, Rows, Span, octave_span, column_end, column_add,
-//            column_moved, column_height
+//   gives    perlin, by rows; Columns, Rows, Span, octave_span, columns_end, columns_add,
+//            columns_moved, columns_height
 //   needs    noise/gradient.glsl, noise/octaves.glsl, which it must come before
 //   units    places in cells of the first octave; rows of texels
 //   source   derived here from noise/gradient.glsl
@@ -52,15 +52,14 @@ vec3 perlin(vec2 place, uint seed) {
 
 #include "noise/octaves.glsl"
 
-// Coefficients of t^0 .. t^3 and of t^4 .. t^6, t in rows.
-struct Column {
-    vec4 low;
-    vec3 high;
+// Four columns side by side: coefficients of t^0 .. t^6, t in rows.
+struct Columns {
+    vec4 c0, c1, c2, c3, c4, c5, c6;
 };
 
-// Where a column runs: its place at row 0, and how far north the next row is.
+// Where four columns run: how far east they are, and how far north a row is of the one before.
 struct Rows {
-    vec2 start;
+    vec4 east;
     float step;
 };
 
@@ -82,32 +81,31 @@ Span octave_span(Octaves o, int from, int to) {
 }
 
 // anchor: height
-float column_height(Column c, float t) {
-    float high = c.high.x + t * (c.high.y + t * c.high.z);
-    return c.low.x + t * (c.low.y + t * (c.low.z + t * (c.low.w + t * high)));
+vec4 columns_height(Columns c, float t) {
+    vec4 high = c.c4 + t * (c.c5 + t * c.c6);
+    return c.c0 + t * (c.c1 + t * (c.c2 + t * (c.c3 + t * high)));
 }
 // end: height
 
-// The same polynomial, counted from t on: Horner's scheme, each time one coefficient shorter.
-Column column_moved(Column c, float t) {
-    vec4 a = c.low;
-    vec3 b = c.high;
-    b.y += b.z * t; b.x += b.y * t; a.w += b.x * t; a.z += a.w * t; a.y += a.z * t; a.x += a.y * t;
-    b.y += b.z * t; b.x += b.y * t; a.w += b.x * t; a.z += a.w * t; a.y += a.z * t;
-    b.y += b.z * t; b.x += b.y * t; a.w += b.x * t; a.z += a.w * t;
-    b.y += b.z * t; b.x += b.y * t; a.w += b.x * t;
-    b.y += b.z * t; b.x += b.y * t;
-    b.y += b.z * t;
-    return Column(a, b);
+// The same polynomials, counted from t on: Horner's scheme, each time one coefficient shorter.
+Columns columns_moved(Columns c, float t) {
+    c.c5 += c.c6 * t; c.c4 += c.c5 * t; c.c3 += c.c4 * t; c.c2 += c.c3 * t; c.c1 += c.c2 * t;
+    c.c0 += c.c1 * t;
+    c.c5 += c.c6 * t; c.c4 += c.c5 * t; c.c3 += c.c4 * t; c.c2 += c.c3 * t; c.c1 += c.c2 * t;
+    c.c5 += c.c6 * t; c.c4 += c.c5 * t; c.c3 += c.c4 * t; c.c2 += c.c3 * t;
+    c.c5 += c.c6 * t; c.c4 += c.c5 * t; c.c3 += c.c4 * t;
+    c.c5 += c.c6 * t; c.c4 += c.c5 * t;
+    c.c5 += c.c6 * t;
+    return c;
 }
 
 // The first row after `row` that lies beyond a lattice row of some octaves.
-int column_end(Rows rows, int row, Octaves o, Span span) {
+int columns_end(Rows rows, int row, Octaves o, Span span) {
     float frequency = span.frequency;
     float left = 1e6;
     int k = span.from;
     do {
-        float there = (rows.start.y + float(row) * rows.step) * frequency + OCTAVE_SHIFT.y;
+        float there = float(row) * rows.step * frequency + OCTAVE_SHIFT.y;
         left = min(left, (floor(there) + 1.0 - there) / frequency);
         frequency *= o.lacunarity;
         k++;
@@ -116,33 +114,42 @@ int column_end(Rows rows, int row, Octaves o, Span span) {
 }
 
 // Add some octaves, around a row.
-Column column_add(Column c, Rows rows, float row, Octaves o, Span span) {
+Columns columns_add(Columns c, Rows rows, float row, Octaves o, Span span) {
     float frequency = span.frequency;
     float strength = span.strength;
-    vec2 place = rows.start + vec2(0.0, row * rows.step);
     int k = span.from;
     do {
-        vec2 there = place * frequency + OCTAVE_SHIFT;
-        vec2 cell = floor(there);
-        vec2 part = there - cell;
+        vec4 east = rows.east * frequency + OCTAVE_SHIFT.x;
+        float north = row * rows.step * frequency + OCTAVE_SHIFT.y;
+        vec4 u = east - floor(east);
         uint seed = lattice_seed(o.seed, k);
-        uvec2 columns = lattice_columns(int(cell.x), seed);
-        uvec2 lines = lattice_rows(int(cell.y), seed);
-        vec2 south = perlin_across(columns, lines.x, part.x);
-        vec2 north = perlin_across(columns, lines.y, part.x);
-        float s = south.x + 0.5 * south.y;
-        float rise = north.x - 0.5 * north.y - s;
-        float twist = north.y - south.y;
-        Column piece = Column(
-            vec4(s + 0.5 * rise, south.y + 0.5 * twist + 1.875 * rise, 1.875 * twist, -5.0 * rise),
-            vec3(-5.0 * twist, 6.0 * rise, 6.0 * twist)
-        );
-        piece = column_moved(piece, part.y - 0.5);
+        uvec2 lines = lattice_rows(int(floor(north)), seed);
+        vec4 low, low_slope, high, high_slope;
+        for (int i = 0; i < 4; i++) {
+            uvec2 columns = lattice_columns(int(floor(east[i])), seed);
+            vec2 south = perlin_across(columns, lines.x, u[i]);
+            vec2 north_of = perlin_across(columns, lines.y, u[i]);
+            low[i] = south.x;
+            low_slope[i] = south.y;
+            high[i] = north_of.x;
+            high_slope[i] = north_of.y;
+        }
+        vec4 middle = low + 0.5 * low_slope;
+        vec4 rise = high - 0.5 * high_slope - middle;
+        vec4 twist = high_slope - low_slope;
+        Columns piece = Columns(middle + 0.5 * rise, low_slope + 0.5 * twist + 1.875 * rise,
+                                1.875 * twist, -5.0 * rise, -5.0 * twist, 6.0 * rise, 6.0 * twist);
+        piece = columns_moved(piece, north - floor(north) - 0.5);
         float pace = rows.step * frequency;
         vec4 powers = vec4(1.0, pace, pace * pace, pace * pace * pace);
-        float weight = PERLIN_SCALE * strength * octave_weight(o.texels / frequency);
-        c.low += weight * powers * piece.low;
-        c.high += weight * powers.w * powers.yzw * piece.high;
+        powers *= PERLIN_SCALE * strength * octave_weight(o.texels / frequency);
+        c.c0 += powers.x * piece.c0;
+        c.c1 += powers.y * piece.c1;
+        c.c2 += powers.z * piece.c2;
+        c.c3 += powers.w * piece.c3;
+        c.c4 += pace * powers.w * piece.c4;
+        c.c5 += pace * pace * powers.w * piece.c5;
+        c.c6 += pace * pace * pace * powers.w * piece.c6;
         frequency *= o.lacunarity;
         strength *= o.gain;
         k++;

@@ -28,7 +28,7 @@ from playground.terrain.meshes import mesh_parameters
 
 _MAX_TEXTS = 512
 _HEADER = ("kind", "outputs", "registry", "blend", "depth", "samples", "local", "buffers", "overwrites",
-           "aligned", "stages")  # fmt: skip
+           "aligned", "stages", "in_place")  # fmt: skip
 """The fields of a kernel's header that its textures depend on, besides its counts and its inputs."""
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 

@@ -3,16 +3,21 @@
 What one writes begins as zeros, except what its header says it overwrites. Buffers
 are used again by the next run: fresh memory of such a size costs more than filling it. A buffer
 with an output's name is that output, and is copied to its texture after the last iteration:
-llvmpipe takes five times as long to store texels in an image one by one.
+llvmpipe takes five times as long to store texels in an image one by one. One that works in place
+begins as the input, too.
 """
 
 from __future__ import annotations
 
+import ctypes
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from playground.engine.kernels import Job, Kernels
 from playground.engine.programs import Program
-from playground.engine.results import Result
+from playground.engine.results import UNWIRED, Result
+from playground.gpu.gl_calls import Calls
 from playground.gpu.wrap import COMPUTE
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, Number
@@ -23,6 +28,8 @@ if TYPE_CHECKING:
 
 _BYTES = {"vec2": 8, "ivec2": 8, "uvec2": 8, "vec4": 16, "ivec4": 16, "uvec4": 16}
 _MAX_BUFFER = 2**31 - 1
+_MOST_ALIGNED = 8  # bytes, of those that OpenGL fills rows up to
+_UNPACK_ROW_LENGTH, _PACK_ROW_LENGTH = 0x0CF2, 0x0D02  # GL's, in texels; 0: the texture's own
 
 
 class ComputeVariants:
@@ -51,6 +58,8 @@ class ComputeVariants:
             repeat = expressions.evaluate(kernel.repeat, names)
             for unit, declared in enumerate(kernel.buffers):
                 buffers.append(self._buffer(job, declared, names))
+                if declared.name == kernel.in_place:
+                    self._begin(job, result, declared, buffers[-1])
                 buffers[-1].bind_to_storage_buffer(unit)
             self.kernels.images(result, read=True)
             program: Program | None = None
@@ -59,9 +68,10 @@ class ComputeVariants:
                 groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
                 job.count(program, iteration, kernel.repeat, repeat)
                 program.run(max(groups[0], 1), max(groups[1], 1))
-            for declared, buffer in zip(kernel.buffers, buffers, strict=True):
-                if declared.name in result.textures:
-                    self._copy(job, result, declared, buffer)
+            for output in kernel.outputs:
+                if (held := kernel.buffer_of(output.name)) is not None:
+                    buffer = buffers[kernel.buffers.index(held)]
+                    self._copy(job, held, result.textures[output.name], buffer)
         except ExpressionError as error:
             pool.give(result)
             raise kernel.error(f"pass '{step.path}': {error}") from None
@@ -104,15 +114,47 @@ class ComputeVariants:
             found.clear()
         return found
 
-    def _copy(self, job: Job, result: Result, declared: Buffer, buffer: moderngl.Buffer) -> None:
-        """Fill an output's texture with the buffer of its name: rows from the south, aligned as it says."""
-        texture, aligned = result.textures[declared.name], job.step.kernel.aligned
-        row = texture.width * texture.components * 4
-        needed = -(-row // aligned) * aligned * texture.height
+    def _begin(self, job: Job, result: Result, declared: Buffer, buffer: moderngl.Buffer) -> None:
+        """Fill a buffer with the first input, if that has the step's size: its kernel looks at that first."""
+        kernel = job.step.kernel
+        source = job.inputs.get(kernel.inputs[0].name, UNWIRED).texture
+        if source is None or source.size != job.step.size:
+            return
+        target = result.textures[kernel.outputs[0].name]
+        if (source.dtype, source.components) != (target.dtype, target.components):
+            self.kernels.copy_texture(target, source)  # which turns its numbers into the output's
+            source = target
+        with self._rows(job, declared, target, buffer, _PACK_ROW_LENGTH) as alignment:
+            source.read_into(buffer, alignment=alignment)
+
+    def _copy(self, job: Job, declared: Buffer, texture: moderngl.Texture, buffer: moderngl.Buffer) -> None:
+        """Fill an output's texture with its buffer."""
+        with self._rows(job, declared, texture, buffer, _UNPACK_ROW_LENGTH) as alignment:
+            texture.write(buffer, alignment=alignment)
+
+    @contextmanager
+    def _rows(
+        self, job: Job, declared: Buffer, texture: moderngl.Texture, buffer: moderngl.Buffer, length: int
+    ) -> Iterator[int]:
+        """Yield OpenGL's alignment of a buffer's rows, which are those of a texture, from the south.
+
+        OpenGL fills rows up to 8 bytes at most; for more, it is told the ``length`` of a row.
+        """
+        aligned, texel = job.step.kernel.aligned, texture.components * 4
+        row = -(-texture.width * texel // aligned) * aligned
+        needed = row * texture.height
         if texture.dtype != "f4" or buffer.size < needed:
             message = f"buffer '{declared.name}' holds {buffer.size} bytes; the output needs {needed}"
             raise job.step.kernel.error(f"pass '{job.step.path}': {message}, 32 bits a number")
-        texture.write(buffer, alignment=aligned)
+        if aligned <= _MOST_ALIGNED:
+            yield aligned
+            return
+        call, kinds = Calls(self.ctx), (ctypes.c_int, ctypes.c_int)
+        call("glPixelStorei", kinds, length, row // texel)
+        try:
+            yield 4
+        finally:
+            call("glPixelStorei", kinds, length, 0)
 
     def _trim(self, newest: int) -> None:
         """Release the oldest spare buffers over the bound in bytes; those of the last run stay."""

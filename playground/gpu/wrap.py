@@ -304,9 +304,8 @@ def _variant(kernel: Kernel) -> Recipe:
         f"layout(local_size_x = {kernel.local[0]}, local_size_y = {kernel.local[1]}) in;",
     ]
     before += _given(kernel)
-    written = {buffer.name for buffer in kernel.buffers}
     for unit, output in enumerate(kernel.outputs):
-        if output.name not in written:
+        if kernel.buffer_of(output.name) is None:
             before.append(f"layout({output.format}, binding = {unit}) uniform image2D out_{output.name};")
     for unit, buffer in enumerate(kernel.buffers):
         block = f"buffer k_buffer_{buffer.name} {{ {buffer.type} {buffer.name}[]; }};"

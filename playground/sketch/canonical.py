@@ -59,6 +59,7 @@ def _of_kernel(kernel: Kernel) -> list[Any]:
     # Only where it is there, as in ``_of_graph``.
     more = [kernel.own_accepts] if kernel.own_accepts else []
     more += [kernel.instances] if kernel.instances else []
+    more += [f"in place: {kernel.in_place}"] if kernel.in_place else []
     return [header, kernel.agrees, compiled_text(kernel.source.code), *more]
 
 

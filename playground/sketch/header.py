@@ -41,7 +41,7 @@ PRAGMAS: dict[str, tuple[str, ...]] = {
     "draw": ("where", "mesh", "count", "instances", "output", "blend", "depth", "samples", "repeat"),
     "compute": (
         *("where", "accepts", "groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned"),
-        "agrees",
+        *("in_place", "agrees"),
     ),
 }
 """Kind of a pragma → its options."""
@@ -64,7 +64,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "until": ("unchanged",),
     "reads": _SOURCE_READS,
     "samples": ("0", "1"),
-    "aligned": ("4", "8"),
+    "aligned": ("4", "8", "16"),
 }
 """Option of a pragma → what it may be, where that is one of a few."""
 _BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()
@@ -290,10 +290,15 @@ def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         raise line.error(f'stages = "{options["stages"]}": expected whole numbers separated by commas')
     if stages and "repeat" in options:
         raise line.error("stages says how many steps there are; leave repeat out")
-    if options.get("aligned", "8") not in ("4", "8"):
+    if options.get("aligned", "8") not in CHOICES["aligned"]:
         raise line.error(
-            f'aligned = "{options["aligned"]}": expected 4 or 8, the bytes that rows are filled up to'
+            f'aligned = "{options["aligned"]}": expected 4, 8 or 16, the bytes that rows are filled up to'
         )
+    in_place, there = options.get("in_place", ""), [buffer.name for buffer in buffers]
+    if in_place and in_place not in there:
+        raise line.error(f"in_place: no buffer '{in_place}'{nearest(in_place, there)}")
+    if in_place and not kernel.inputs:
+        raise line.error("in_place: there is no input that the buffer could begin as")
     try:
         agrees = read_agreement(options["agrees"]) if "agrees" in options else ()
     except ValueError as error:
@@ -310,6 +315,7 @@ def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         repeat=str(len(stages)) if stages else options.get("repeat", "1"),
         stages=tuple(int(part) for part in stages),
         aligned=int(options.get("aligned", "8")),
+        in_place=in_place,
         overwrites=tuple(filter(None, (p.strip() for p in options.get("overwrites", "").split(",")))),
         agrees=agrees,
     )

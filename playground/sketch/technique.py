@@ -100,6 +100,7 @@ class Kernel:
     local: tuple[int, int] = (8, 8)
     buffers: tuple[Buffer, ...] = ()
     aligned: int = 8  # bytes that rows of an output's buffer are filled up to
+    in_place: str = ""  # of a compute variant: a buffer that begins as its first input and ends as its output
     stages: tuple[int, ...] = ()  # of a compute variant: what each of its steps does
     overwrites: tuple[str, ...] = ()  # of a compute variant: outputs and buffers that need not begin as zeros
     agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique that it replaces
@@ -120,6 +121,11 @@ class Kernel:
     def path(self) -> str:
         """Absolute path of the file."""
         return self.source.path
+
+    def buffer_of(self, output: str) -> Buffer | None:
+        """Return the buffer of a compute variant that is an output, copied to its texture; None for none."""
+        names = (output, self.in_place)
+        return next((buffer for buffer in self.buffers if buffer.name in names), None)
 
     @cached_property
     def usual(self) -> tuple[tuple[str, str], ...]:

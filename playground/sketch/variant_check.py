@@ -38,8 +38,11 @@ def _check_compute(variant: Kernel, outputs: tuple[Output, ...]) -> None:
     for name in variant.overwrites:
         if name not in written:
             raise variant.error(f"overwrites: no output or buffer '{name}'{nearest(name, written)}")
+    if variant.in_place and len(outputs) != 1:
+        raise variant.error(f"in_place: one output was expected, not {', '.join(o.name for o in outputs)}")
     for output in outputs:
-        held = next((b.type for b in variant.buffers if b.name == output.name), "")
+        buffer = variant.buffer_of(output.name)
+        held = buffer.type if buffer else ""
         if held and not (output.format.endswith("32f") and held in _HELD[output.components]):
             raise variant.error(f"a buffer of {held} cannot be the output {output.name}:{output.format}")
 

@@ -345,6 +345,83 @@ void main() {
 
 
 @pytest.mark.parametrize("size", [(19, 7), (2, 3), (64, 64)])
+def test_rows_of_a_buffer_may_be_whole_fours(any_engine, folder, size):
+    """OpenGL itself fills rows up to 8 bytes at most."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    head = '#pragma compute(groups = "(size.x + 3) // 4, size.y", local = "1, 1", aligned = "16", '
+    body = """buffers = "sums:vec4:(size.x + 3) // 4 * size.y")
+    void main() {
+        ivec2 four = ivec2(gl_GlobalInvocationID.xy);
+        vec4 x = float(4 * four.x) + vec4(0.0, 1.0, 2.0, 3.0);
+        sums[four.y * ((size.x + 3) / 4) + four.x] = x + 100.0 * float(four.y);
+    }
+    """
+    folder.write("fill.glsl", PLAIN_FILL)
+    folder.write("fill.comp", head + body)
+    sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {list(size)}")
+    y, x = np.mgrid[0 : size[1], 0 : size[0]]
+    np.testing.assert_array_equal(any_engine.read(sketch, "a"), x + 100 * y)
+
+
+IN_PLACE = """#pragma compute(groups = "size.x * size.y, 1", local = "1, 1", aligned = "4", \\
+                buffers = "held:float:size.x * size.y", in_place = "held", overwrites = "more, held")
+uniform sampler2D values; //! input
+void main() {
+    int at = int(gl_GlobalInvocationID.x);
+    held[at] = matches_values ? held[at] + 100.0 : float(textureSize(values, 0).x);
+}
+"""
+PLUS = """#pragma kernel(output = "more:r32f")
+uniform sampler2D values; //! input
+float kernel(ivec2 texel) {
+    return matches_values ? texelFetch(values, texel, 0).r + 100.0 : float(textureSize(values, 0).x);
+}
+"""
+NUMBERS = """#pragma kernel(output = "values:FORM")
+KIND kernel(ivec2 texel) { return KIND(vec4(float((texel.x + 2 * texel.y) % 5) / 5.0, 9.0, 9.0, 9.0)); }
+"""
+
+
+def in_place(folder, values=VALUES, plus=IN_PLACE, size=""):
+    folder.write("values.glsl", values)
+    folder.write("plus.glsl", PLUS)
+    folder.write("plus.comp", plus)
+    body = passes(values=("./values", size), a="./plus")
+    return folder.sketch("\n" + body, size="size = [19, 7]")
+
+
+@pytest.mark.parametrize(
+    ("form", "kind"), [("r32f", "float"), ("rgba32f", "vec4"), ("rg16f", "vec2"), ("r8", "float")]
+)
+def test_a_buffer_may_begin_as_the_input_and_end_as_the_output(any_engine, folder, ran, form, kind):
+    """Of an input in another format too, whose numbers become the output's."""
+    sketch = in_place(folder, NUMBERS.replace("FORM", form).replace("KIND", kind))
+    found = any_engine.read(sketch, "a")
+    assert ("plus.comp" in ran) == any_engine.info.compute
+    values = any_engine.read(sketch, "values").reshape(7, 19, -1)[..., 0]
+    np.testing.assert_array_equal(found, values + np.float32(100))
+    assert np.ptp(found) > 0.7
+
+
+def test_a_buffer_does_not_begin_as_an_input_of_another_size(any_engine, folder):
+    assert (any_engine.read(in_place(folder, size="size = [5, 4]"), "a") == 5.0).all()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('in_place = "held"', 'in_place = "hold"', "in_place: no buffer 'hold'; did you mean 'held'"),
+        ("uniform sampler2D values; //! input\n", "", "no input that the buffer could begin as"),
+        ("held:float", "held:int", "a buffer of int cannot be the output more:r32f"),
+    ],
+)
+def test_what_works_in_place_has_a_buffer_and_an_input(folder, old, new, message):
+    with pytest.raises(PlaygroundError, match=message):
+        in_place(folder, plus=IN_PLACE.replace(old, new))
+
+
+@pytest.mark.parametrize("size", [(19, 7), (2, 3), (64, 64)])
 def test_a_buffer_may_be_an_output(any_engine, folder, size):
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")

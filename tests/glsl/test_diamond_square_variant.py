@@ -95,7 +95,7 @@ def test_sizes_it_cannot_make_are_refused_as_the_kernel_refuses_them(fast, slow,
 
 def test_keys_are_in_the_order_of_heights(on_gpu):
     heights = np.array([-3e38, -1.0, -1e-30, -0.0, 0.0, 1e-38, 0.5, 0.50000006, 1.0, 3e38], np.float32)
-    file = "generation/diamond_square/order.glsl"
+    file = "terrain/order.glsl"
     keys = on_gpu(file, "key_of_height(h)", h=heights)
     assert (np.diff(keys.astype(np.int64)) > 0).all() and keys.min() > 0 and (~keys).min() > 0
     np.testing.assert_array_equal(on_gpu(file, "height_of_key(key_of_height(h))", h=heights), heights)

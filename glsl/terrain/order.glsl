@@ -1,4 +1,4 @@
-// generation/diamond_square/order.glsl -- heights as whole numbers in the same order.
+// terrain/order.glsl -- heights as whole numbers in the same order.
 //
 //   gives    key_of_height, height_of_key
 //   needs    nothing: pure functions, no uniforms, no textures
@@ -9,8 +9,8 @@
 //
 // The highest of several heights has the greatest key, the lowest the greatest ~key. No
 // height has the key 0 or the ~key 0, so a buffer of zeros holds nothing yet.
-#ifndef GENERATION_DIAMOND_SQUARE_ORDER
-#define GENERATION_DIAMOND_SQUARE_ORDER
+#ifndef TERRAIN_ORDER
+#define TERRAIN_ORDER
 
 uint key_of_height(float h) {
     uint bits = floatBitsToUint(h);
