@@ -279,6 +279,10 @@ def _four_channels(samples: NDArray[Any]) -> NDArray[Any]:
 
 # Writing
 
+# Of a PNG, 0 to 9. A picture of 1280 x 720 takes a third of the time that it does at zlib's usual 6, and is
+# 4 % larger.
+_COMPRESSION = 4
+
 
 def encode_png(array: NDArray[np.uint8], text: Mapping[str, str] = _NO_TEXT) -> bytes:
     """Return the bytes of a PNG: `array` is uint8 (rows, cols, 3 or 4), top row first.
@@ -295,7 +299,8 @@ def encode_png(array: NDArray[np.uint8], text: Mapping[str, str] = _NO_TEXT) -> 
     if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] not in (3, 4) or 0 in array.shape:
         raise DataError(f"a picture is a uint8 array (rows, cols, 3 or 4); found {array.dtype} {array.shape}")
     stream = io.BytesIO()
-    PIL.Image.fromarray(np.ascontiguousarray(array)).save(stream, "PNG", pnginfo=_texts(text))
+    image = PIL.Image.fromarray(np.ascontiguousarray(array))
+    image.save(stream, "PNG", pnginfo=_texts(text), compress_level=_COMPRESSION)
     return stream.getvalue()
 
 

@@ -39,8 +39,9 @@ bool is_decided(float seen) {
 float kernel(ivec2 texel) {
     vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
     if (light.z < 0.0) return 0.0;
-    // A horizon of one texel was not swept: there are no compute shaders.
-    bool swept = form == 1 && textureSize(horizon, 0).x > 1;
+    // A horizon of one texel was not swept: there are no compute shaders. A constant on a software
+    // renderer, which then has no march to go through.
+    bool swept = form == 1 && matches_horizon;
     if (swept) return texelFetch(horizon, texel, 0).r * length(light.xy) > light.z ? 0.0 : 1.0;
     ivec2 grid = textureSize(height, 0);
     vec2 place = place_on(grid, texel, size);

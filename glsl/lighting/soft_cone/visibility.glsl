@@ -68,8 +68,9 @@ bool is_decided(float part) {
 float kernel(ivec2 texel) {
     vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
     if (light.z < 0.0) return 0.0;
-    // A horizon of one texel was not swept: there are no compute shaders.
-    bool swept = form == 1 && textureSize(horizon, 0).x > 1;
+    // A horizon of one texel was not swept: there are no compute shaders. A constant on a software
+    // renderer, which then has no march to go through.
+    bool swept = form == 1 && matches_horizon;
     // anchor: swept
     float level = length(light.xy);
     if (swept) return free_part(light.z - texelFetch(horizon, texel, 0).r * level, delta_r);

@@ -39,8 +39,9 @@ uniform float diameter = 0.53;  //! slider(0.1, 20) step(0.01) group("Sun") unit
 float kernel(ivec2 texel) {
     vec3 light = sun_direction(wired_daylight, daylight, towards_sun);
     float elevation = sun_elevation(wired_daylight, daylight, sun);
-    // A horizon of one texel was not swept: there are no compute shaders.
-    bool swept = form == 1 && textureSize(horizon, 0).x > 1;
+    // A horizon of one texel was not swept: there are no compute shaders. A constant on a software
+    // renderer, which then has no march to go through.
+    bool swept = form == 1 && matches_horizon;
     if (swept) return disc_over(max(texelFetch(horizon, texel, 0).r, 0.0), elevation, diameter);
     ivec2 grid = textureSize(height, 0);
     vec2 place = place_on(grid, texel, size);

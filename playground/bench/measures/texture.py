@@ -9,6 +9,7 @@ from playground.bench.results import Figure
 from playground.bench.room import Room, changing
 from playground.bench.rows import Row
 from playground.bench.timing import Run, alternate
+from playground.engine.cache import VERSIONS
 from playground.sketch.variants import any_variants
 
 FORMS = ("auto", "fragment", "plain")
@@ -41,6 +42,9 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     for name in setting.missing:
         room.options.say(f"{name} is not installed, and is left out; {EXTRA}")
     ours = set(runs)
+    for _ in range(VERSIONS):  # from then on textures are used again, as while one drags
+        for warm_up in runs.values():
+            warm_up()
     runs |= {peer.name: peer.run for peer in peers}
     once = [peer.name for peer in peers if peer.once]
     samples = alternate(runs, room.options.rounds, once=once)
