@@ -1,9 +1,12 @@
-"""Count what a frame asks of OpenGL through moderngl: its draws, what it binds, the bytes that it moves."""
+"""Count and time what a frame asks of OpenGL through moderngl: draws, what is bound, bytes that are moved."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import moderngl
@@ -23,6 +26,13 @@ _MOVED: tuple[tuple[type, str], ...] = (
     (moderngl.Texture, "read"),
     (moderngl.Buffer, "write"),
     (moderngl.Buffer, "read"),
+)
+_OTHERS: tuple[tuple[type, str], ...] = (
+    (moderngl.Context, "enable_direct"),
+    (moderngl.Context, "disable_direct"),
+    (moderngl.Context, "disable"),
+    (moderngl.Context, "texture"),
+    (moderngl.Context, "memory_barrier"),
 )
 BYTES = "bytes moved"
 
@@ -51,6 +61,38 @@ def counted() -> Iterator[dict[str, int]]:
         for owner, name in _MOVED:
             count(BYTES, owner, name, _size_of)
         yield counts
+    finally:
+        for owner, name, own in changed:
+            setattr(owner, name, own)
+
+
+@dataclass
+class Spent:
+    """The time that calls took."""
+
+    milliseconds: float = 0.0
+
+
+@contextmanager
+def timed_calls() -> Iterator[Spent]:
+    """Time what happens inside the calls of OpenGL that drawing makes, but for those that set uniforms."""
+    spent = Spent()
+    clock = time.perf_counter
+    changed: list[tuple[type, str, Any]] = []
+    try:
+        for owner, name in (*chain(*_CALLS.values()), *_MOVED, *_OTHERS):
+            own = getattr(owner, name)
+
+            def call(*given: Any, own: Any = own, **named: Any) -> Any:
+                start = clock()
+                try:
+                    return own(*given, **named)
+                finally:
+                    spent.milliseconds += (clock() - start) * 1e3
+
+            changed.append((owner, name, own))
+            setattr(owner, name, call)
+        yield spent
     finally:
         for owner, name, own in changed:
             setattr(owner, name, own)

@@ -12,6 +12,7 @@ from __future__ import annotations
 from bisect import bisect_left, bisect_right, insort
 from collections import OrderedDict
 from dataclasses import dataclass, field
+from math import inf
 
 from playground.engine.results import Pool, Result
 
@@ -40,14 +41,15 @@ class _Kept:
 
     def least(self) -> int:
         """Return the state that is missed least: see the module."""
-
-        def cost(place: int) -> float:
-            number = self.numbers[place]
-            before = self.numbers[place - 1] if place else 0
-            after = self.numbers[place + 1] if place + 1 < len(self.numbers) else max(self.now, number)
-            return (after - before) / (abs(self.now - number) + 1)
-
-        return self.numbers[min(range(len(self.numbers)), key=cost)]
+        # A loop over places, for this is asked at every iteration.
+        numbers, now = self.numbers, self.now
+        ends, before, found, cost = (*numbers[1:], max(now, numbers[-1])), 0, numbers[0], inf
+        for number, after in zip(numbers, ends, strict=True):
+            own = (after - before) / (abs(now - number) + 1)
+            if own < cost:
+                found, cost = number, own
+            before = number
+        return found
 
 
 class KeptStates:

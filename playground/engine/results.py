@@ -118,6 +118,14 @@ def started(outputs: Sequence[Output], start: Wired) -> dict[str, moderngl.Textu
     return {outputs[0].name: start.texture, **found}
 
 
+_Shape = tuple[tuple[int, int], tuple[str, ...]]
+
+
+def _shape(size: tuple[int, int], outputs: Sequence[Output]) -> _Shape:
+    """Return the size and the formats of textures: those of another result with the same may be used."""
+    return size, tuple([output.format for output in outputs])
+
+
 class Pool:
     """Spare results, to be used again: making a texture costs more than filling it."""
 
@@ -128,7 +136,8 @@ class Pool:
         # Whether texels begin as zeros: what does not write all of them shows nothing of what others drew.
         self.clears = False
         self._taken = 0
-        self._spare: OrderedDict[int, Result] = OrderedDict()
+        self._spare: OrderedDict[int, Result] = OrderedDict()  # by identity, the oldest first
+        self._alike: dict[_Shape, list[Result]] = {}  # the same, by what may take their place
         self._bytes = 0
 
     @property
@@ -153,19 +162,19 @@ class Pool:
 
     def _take(self, size: tuple[int, int], outputs: Sequence[Output]) -> Result:
         wanted = tuple(outputs)
-        formats = [o.format for o in wanted]
         self._taken += 1
-        for number in reversed(self._spare):
-            spare = self._spare[number]
-            if spare.size == size and [o.format for o in spare.outputs] == formats:
-                del self._spare[number]
-                self._bytes -= spare.bytes
-                textures = dict(zip((o.name for o in wanted), spare.textures.values(), strict=True))
-                found = Result(size, wanted, textures, number=self._taken, own_bytes=spare.own_bytes)
-                found._framebuffer = spare._framebuffer
+        alike = self._alike.get(_shape(size, wanted))
+        if alike:
+            spare = alike.pop()
+            del self._spare[id(spare)]
+            self._bytes -= spare.bytes
+            textures = dict(zip([o.name for o in wanted], spare.textures.values(), strict=True))
+            found = Result(size, wanted, textures, number=self._taken, own_bytes=spare.own_bytes)
+            found._framebuffer = spare._framebuffer
+            if spare.with_levels:
                 pairs = zip(wanted, spare.outputs, strict=True)
                 found.with_levels = {now.name for now, before in pairs if before.name in spare.with_levels}
-                return found
+            return found
         self.made += 1
         made: dict[str, moderngl.Texture] = {}
         try:
@@ -191,9 +200,11 @@ class Pool:
         result.with_levels |= result.mipmapped
         result.mipmapped = set()
         self._spare[id(result)] = result
+        self._alike.setdefault(_shape(result.size, result.outputs), []).append(result)
         self._bytes += result.bytes
         while self._bytes > self.limit:
             _, oldest = self._spare.popitem(last=False)
+            self._alike[_shape(oldest.size, oldest.outputs)].remove(oldest)
             self._bytes -= oldest.bytes
             oldest.release()
 
@@ -202,4 +213,5 @@ class Pool:
         for result in self._spare.values():
             result.release()
         self._spare.clear()
+        self._alike.clear()
         self._bytes = 0

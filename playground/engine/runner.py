@@ -186,7 +186,7 @@ class Runner:
 
     def _given_now(self, step: Step, iteration: LoopIteration | None) -> dict[str, Any]:
         """Return what the engine gives a kernel in this frame: the very same in every iteration, if it is."""
-        if iteration is not None and iteration.frame is not None:
+        if iteration is not None and iteration.frame is not None and "time" in step.kernel.given:
             return self.given_for(step, iteration.frame)
         known, pressed, given = self._known_given.get(id(step), (None, None, {}))
         if known is not step or pressed is not self.pressed:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import time
+
 import pytest
 
 from playground.bench import measures
-from playground.bench.gl_counts import BYTES, counted
+from playground.bench.gl_counts import BYTES, counted, timed_calls
 from playground.bench.peers import PEERS
 from playground.bench.room import Options, Room
 from playground.bench.rows import chosen, suites
@@ -56,8 +58,9 @@ def test_its_sketch_has_the_texture_and_what_changes(name):
         changed |= dict.fromkeys(row.options.get("suns", ()), (120.0, 30.0))
         changed |= dict.fromkeys(row.options.get("nudged", ()), 0.5)
         assert changed, "each run is to make something new"
-        plan = room.engine().internal.plan_for(sketch.with_values(changed), (64, 36), 0.0, None, None)
-        plan.flat.ref(str(row.options["texture"]), "sketch")
+        wanted = str(row.options["texture"])
+        plan = room.engine().internal.plan_for(sketch.with_values(changed), (64, 36), 0.0, None, wanted)
+        plan.flat.ref(wanted, "sketch")
 
 
 def test_a_measured_row_has_every_form_and_what_is_missing_is_told(monkeypatch):
@@ -94,3 +97,18 @@ def test_calls_are_counted_and_moderngl_is_as_before(engine):
     assert counts["textures bound"] == 2 and counts["waits"] == 1 and counts["draw calls"] == 0
     assert counts[BYTES] == 128
     assert moderngl.VertexArray.render is before
+
+
+def test_the_time_inside_calls_is_told_apart(engine, monkeypatch):
+    import moderngl
+
+    def slow(self, location=0):
+        time.sleep(0.02)
+
+    monkeypatch.setattr(moderngl.Texture, "use", slow)
+    texture = engine.ctx.texture((4, 4), 1, dtype="f4")
+    with timed_calls() as spent:
+        texture.use(0)
+        time.sleep(0.05)
+    texture.release()
+    assert 20 <= spent.milliseconds < 50 and moderngl.Texture.use is slow
