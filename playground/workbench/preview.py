@@ -1,9 +1,9 @@
 """Draw a preview on a software renderer: what is being changed shows at once, and in full when it rests.
 
-One sample a pixel instead of several, and a mesh of a quarter of the vertices where the user
-set no number of them. Each pass before the draw stays as it is, so that the full picture differs
-from the preview along edges alone. A picture with few pixels, to be enlarged, keeps its samples:
-its edges would become stairs.
+One sample a pixel instead of several, and a mesh of a quarter of the vertices where the user set no
+number of them; of a seventh where the picture has fewer pixels too. Each pass before the draw stays
+as it is, so that the full picture differs from the preview along edges alone. A picture with few
+pixels, to be enlarged, keeps its samples: its edges would become stairs.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from playground.terrain.meshes import mesh_parameters
 Size = tuple[int, int]
 
 GRID = 129  # vertices a side
+GRID_OF_FEWER = 97  # for fewer pixels than the picture has
 _FEW = 2.5  # times fewer pixels a side
 _RESOLUTION = "grid"  # the draw's parameter that sets the resolution of its mesh
 
@@ -29,12 +30,12 @@ def as_preview(sketch: Sketch, size: Size = (1, 1), pixels: Size = (1, 1)) -> Sk
     """
     draws = [(path, k) for path, k in traits_of(sketch).draws if _RESOLUTION in mesh_parameters(k.registry)]
     values = values_of(sketch) if draws else {}
-    coarse = []
+    coarse, grid = [], GRID if pixels[0] >= size[0] else GRID_OF_FEWER
     for path, kernel in draws:
         found = kernel.parameter(_RESOLUTION)
         name = f"{path}.{_RESOLUTION}"
-        if found is not None and values[name] == found.default and int(found.default) > GRID:  # type: ignore[arg-type]
-            coarse.append((name, GRID))
+        if found is not None and values[name] == found.default and int(found.default) > grid:  # type: ignore[arg-type]
+            coarse.append((name, grid))
     samples = sketch.samples if _FEW * pixels[0] <= size[0] else 1
     if not traits_of(sketch).draws or (sketch.samples == samples and not coarse):
         return sketch

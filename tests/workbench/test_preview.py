@@ -12,7 +12,8 @@ from playground.engine.engine import Engine
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
-from playground.workbench.preview import GRID, as_preview
+from playground.workbench.enlarged import Enlarger
+from playground.workbench.preview import GRID, GRID_OF_FEWER, as_preview
 
 SKETCH = """format = 1
 size = 129
@@ -35,6 +36,35 @@ def test_it_has_one_sample_and_a_coarser_mesh(terrain: Sketch):
     assert chosen.samples == 1 and values_of(chosen)["view.land.grid"] == GRID
     assert values_of(chosen) == values_of(terrain) | {"view.land.grid": GRID}
     assert chosen.size == terrain.size
+
+
+def test_fewer_pixels_have_a_coarser_mesh_still(terrain: Sketch):
+    assert values_of(as_preview(terrain, (600, 400), (600, 400)))["view.land.grid"] == GRID
+    assert values_of(as_preview(terrain, (600, 400), (300, 200)))["view.land.grid"] == GRID_OF_FEWER
+
+
+def test_half_of_the_pixels_a_side_jump_no_more_than_stated(any_engine: Engine):
+    """docs/explanation/performance.md: half a level of 255 in the mean, and the skyline by a pixel or two."""
+    size, half = (960, 540), (480, 270)
+    sketch = load("jacksboro")
+    full = any_engine.render(sketch, size=size).array[..., :3].astype(np.float64)
+    small = any_engine.draw(as_preview(sketch, size, half), size=half)
+    with any_engine.internal.borrowed():
+        target = any_engine.ctx.simple_framebuffer(size, 4)
+        enlarger = Enlarger(any_engine.ctx)
+        enlarger.draw(small, target)
+        data = target.read(components=3, alignment=1)
+        enlarger.release()
+        target.release()
+    moving = np.frombuffer(data, np.uint8).reshape(size[1], size[0], 3)[::-1].astype(np.float64)
+    assert abs(moving.mean() - full.mean()) < 0.5
+
+    def skyline(picture: np.ndarray) -> np.ndarray:
+        steps = np.abs(np.diff(picture.mean(axis=2), axis=0)) > 18
+        return np.argmax(steps, axis=0)
+
+    shifts = np.abs(skyline(moving) - skyline(full))
+    assert np.median(shifts) <= 1 and np.percentile(shifts, 95) <= 2
 
 
 def test_few_pixels_that_are_enlarged_keep_their_samples(terrain: Sketch):
