@@ -69,6 +69,7 @@ def render(
     """
     found = opened(sketch)
     with headless() as engine:
+        engine.internal.keeps = False
         return engine.render(found.plainly(plain).with_values(values or {}), size=size, time=time)
 
 

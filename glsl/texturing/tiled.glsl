@@ -1,7 +1,7 @@
 // texturing/tiled.glsl -- an image tiled over the terrain, without visible repeats.
 //
 //   gives    colour, linear light
-//   needs    maths/land.glsl; an image that repeats
+//   needs    maths/land.glsl, texturing/tile_over_land.glsl; an image that repeats
 //   units    the image is `repeats` times side by side from west to east
 //   source   Belaiche 2010, section 2.3.3, without the second reading; less detail: section 5.5
 //   tested   tests/glsl/test_height_blend.py: so many repeats, the image's mean where they are
@@ -19,6 +19,7 @@
 //
 // rgba16f: linear light in 8 bits leaves 13 steps below the grass's mean.
 #include "maths/land.glsl"
+#include "texturing/tile_over_land.glsl"
 #pragma kernel(output = "colour:rgba16f")
 
 uniform sampler2D colour;  //! input("linear", "repeat", "mipmap")
@@ -32,20 +33,11 @@ uniform float detail = 1.0;        //! slider(0, 1) step(0.01)
                                    //! How much of each image's contrast is left. 0: its mean
                                    //! colour
 
-// 31 degrees: no whole turns bring it back onto the tiles.
-const mat2 TURNED = mat2(0.857, 0.515, -0.515, 0.857);
-const float LARGER = 0.29;
-
 vec4 kernel(ivec2 texel) {
     // Tiles are square on the ground, so a long terrain has more of them along its length.
     vec2 tile = share_of_texel(texel, size) * repeats * vec2(1.0, extent.y / extent.x);
     float texels = float(max(size.x - 1, 1)) / repeats;
-    float level = log2(float(textureSize(colour, 0).x) / texels);
-    // A whole level: a blend of two would cost twice the reads and only blur.
-    vec3 once = textureLod(colour, tile, max(floor(level + 0.5), 0.0)).rgb;
-    float finer = max(floor(level + log2(LARGER) + 0.5), 0.0);
-    vec3 again = textureLod(colour, TURNED * tile * LARGER, finer).rgb;
-    vec3 shown = mix(once, again, 0.5 * variety);
+    vec3 shown = tile_over_land(colour, tile, texels, variety);
     // The level after the last is the last: one texel, the mean.
     if (detail < 1.0) shown = mix(textureLod(colour, vec2(0.5), 99.0).rgb, shown, detail);
     return vec4(shown, 1.0);

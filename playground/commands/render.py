@@ -229,6 +229,7 @@ def _draw(engine: Engine, output: Output, moment: Moment, target: Path) -> None:
         _draw_large(engine, moment, output.size, target)
         return
     at: dict[str, Any] = {"size": output.size, "time": moment.time, "steps": moment.steps}
+    engine.internal.keeps, engine.internal.looks_early = False, True
     with busy(f"rendering {moment.sketch.name}") as show:
         engine.internal.runner.works.on_progress = show
         if output.profile:

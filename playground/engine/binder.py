@@ -143,6 +143,9 @@ class Binder:
         if texture is None:
             return self.constant(declared.fallback or "black")
         if declared.sampling.mipmap and (result is None or output not in result.mipmapped):
+            if result is not None:
+                # Mesa moves the texels to make room for the levels: a framebuffer would hold the old ones.
+                result.release_framebuffer()
             texture.build_mipmaps()
             if result is not None:
                 result.mipmapped.add(output)

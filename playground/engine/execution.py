@@ -6,7 +6,7 @@ belongs to the cache. A pass inside a loop that does not change with it runs onc
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
 from playground.engine.cache import Cache, Cached
@@ -35,6 +35,8 @@ class Execution:
         self.compute = compute
         self.timed: Timed | None = None
         self.deadline: Deadline | None = None  # of loops that follow the time
+        self.ended: Callable[[Step, Result], None] | None = None  # called with each step that was computed
+        self.last_uses: Mapping[str, Sequence[Step]] = {}  # what to drop once a node has run, by its path
         self.results: dict[str, Result] = {}  # by the step's path; valid until the next frame
         self._done: set[int] = set()  # identities of nodes that change with no loop, and have run
         self._fed_from: dict[Fed, tuple[Step, str]] = {}  # the output that a loop feeds back
@@ -46,8 +48,18 @@ class Execution:
         for node in nodes:
             if not self.keys.changes[id(node)]:
                 self._run_once(node)
+                for step in self.last_uses.get(node.path, ()):
+                    self._drop(step)
             elif isinstance(node, LoopStep):
                 self.run(node.body)
+
+    def _drop(self, step: Step) -> None:
+        """Drop the textures of a step, and what else has the same ones."""
+        found = self.results.get(step.path)
+        for key in {self.keys.steps[step.path], self.keys.raw[step.path]}:
+            self.cache.drop(key)
+        for path in [path for path, result in self.results.items() if result is found]:
+            del self.results[path]
 
     def _run_once(self, node: PlanNode) -> None:
         """Run a node that changes with no loop, unless it has run for this frame."""
@@ -94,6 +106,8 @@ class Execution:
         inputs = {name: self._wired(source, {}) for name, source in step.inputs}
         with self.timed(step.path, key) if self.timed else nullcontext():
             found = self.compute(step, inputs, None, earlier)
+        if self.ended is not None:
+            self.ended(step, found)
         self.cache.put(key, Cached({step.path: found}))
         if goes_on:
             self.cache.note_progress(step.path, unfinished, key, step.repeat)

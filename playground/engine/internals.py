@@ -19,10 +19,12 @@ from typing import TYPE_CHECKING, Any
 
 from playground.engine.cache import Cache
 from playground.engine.cache_keys import KeyMaker, Keys
+from playground.engine.disk_cache_choice import choose
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.execution import Execution, would_run
 from playground.engine.eye_height import EyeHeight
 from playground.engine.frame_record import FrameRecord, Recorded
+from playground.engine.last_use import last_uses
 from playground.engine.non_finite import FiniteCheck, NotFinite
 from playground.engine.painted_images import PaintedFiles
 from playground.engine.picture_hash import PictureHasher
@@ -79,6 +81,10 @@ class Internals(Recorded):
         self.profiling = False
         # [s] after which loops that follow the time, and sources at work, raise ``Unfinished``
         self.patience: float | None = None
+        self.keeps = (
+            True  # textures for later frames; else each is dropped once it was read for the last time
+        )
+        self.looks_early = False  # for numbers that are not finite, where nothing is kept
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
         self.painted = PaintedFiles()  # painted in this process, in place of their files
@@ -319,7 +325,9 @@ class Internals(Recorded):
         self.runner.works.waits = self.patience is None
         self.runner.works.keep(record.keys.raw)
         with self.borrowed():
-            if self.disk_caching is not None:
+            if not self.keeps:
+                self._run_once(execution, plan, ref)
+            elif self.disk_caching is not None:
                 execution.run(self.disk_caching.begin(execution, plan, ref))
             else:
                 execution.run(needed(plan.nodes, ref))
@@ -327,6 +335,16 @@ class Internals(Recorded):
         record.results = execution.results
         self.warnings.look(plan)
         return execution.results[ref.path].textures[ref.output]
+
+    def _run_once(self, execution: Execution, plan: Plan, ref: Ref) -> None:
+        """Run what a texture needs, and drop what is read no more."""
+        keys, needs = execution.keys, needed(plan.nodes, ref)
+        found = choose(keys, needs, ref, self.cache.get, lambda _: False, skips=True)
+        self.record.results = execution.results = found.taken
+        if self.looks_early:
+            execution.ended = lambda step, result: self._finite.look_early(step, result, keys.raw[step.path])
+        execution.last_uses = last_uses(plan, found.nodes, keys, ref)
+        execution.run(found.nodes)
 
     @contextmanager
     def borrowed(self) -> Iterator[None]:

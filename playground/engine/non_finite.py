@@ -5,8 +5,9 @@ a `max` swallows them, and what is left is a black spot or none. So every textur
 point that the last frame went through is looked at, in the order in which the passes ran.
 
 Passes that write bytes themselves (nearly every view does, and weights of textures) hide
-theirs: such a pass is run once more into textures of floating point, and what it writes there
-is looked at. It need be done only for one that has run anew; of terrain that stays, and is lit
+theirs: such a pass is run once more into textures of half floats, and what it writes there is
+looked at. What is not finite there may only be too large for a half: then the pass is run into
+32 bits as well. It need be done only for one that has run anew; of terrain that stays, and is lit
 anew, only the light is looked at again. Left as they are: passes inside a loop, kernels that
 repeat, compute variants (whose kernels give the same), and draws that go on from another one's samples.
 
@@ -18,7 +19,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -27,10 +28,13 @@ from numpy.typing import NDArray
 from playground.engine.frame_record import FrameSource
 from playground.engine.plan import LoopStep, Plan, Step, every_node
 from playground.engine.results import Result, Wired
-from playground.gpu.textures import read_raw, split_format
+from playground.gpu.textures import read_bands, split_format
 from playground.gpu.wrap import FRAGMENT
 from playground.sketch.flat import Ref
 from playground.sketch.model import Kernel
+
+if TYPE_CHECKING:
+    import moderngl
 
 # All bits of the exponent are set in NaN and infinity, and in nothing else (IEEE 754).
 _EXPONENTS: dict[np.dtype[Any], tuple[str, int]] = {
@@ -72,11 +76,16 @@ class FiniteCheck:
         self.looked_at = 0  # textures read for the last frame
         # What was found of each result, and after how many iterations: some go on in place.
         self._checked: WeakKeyDictionary[Result, tuple[int, NotFinite | None]] = WeakKeyDictionary()
-        self._wide: dict[int, tuple[Kernel, Kernel]] = {}  # kernels with outputs of floating point
+        self._wide: dict[tuple[int, str], tuple[Kernel, Kernel]] = {}  # kernels whose outputs are floats
+        self._early: dict[tuple[str, str], NotFinite | None] = {}  # as passes ran, by the step's path and key
 
     def first(self) -> NotFinite | None:
         """Return what is not finite in the first such texture of the last frame; None if all is."""
         return next((found for found in self.looks() if found is not None), None)
+
+    def look_early(self, step: Step, result: Result, key: str) -> None:
+        """Look at what a step outside of loops has just given: it will not be there when the frame ends."""
+        self._early[step.path, key] = self._look(step, result, within=False)
 
     def looks(self) -> Iterator[NotFinite | None]:
         """Look at the last frame, a pass at a time: yield after each what is not finite in it.
@@ -86,6 +95,10 @@ class FiniteCheck:
         self.looked_at = 0
         record = self.source.record
         for step, within in _steps(record.plan):
+            early = step.path, record.keys.raw.get(step.path, "")
+            if early in self._early:
+                yield self._early[early]
+                continue
             now = self.source.record
             if now.plan is not record.plan or now.results is not record.results:
                 return
@@ -104,16 +117,17 @@ class FiniteCheck:
         for output in result.outputs:
             if output.format.endswith("f"):
                 self.looked_at += 1
-                found = not_finite_in(read_raw(result.textures[output.name]))
+                found = _not_finite(result.textures[output.name])
                 if found is not None:
                     return replace(found, path=step.path, output=output.name)
         if within or all(output.format.endswith("f") for output in result.outputs):
             return None
-        return self._look_beneath(step, result)
+        found = self._look_beneath(step, result, "16f")
+        return found if found is None else self._look_beneath(step, result, "32f")
 
-    def _look_beneath(self, step: Step, result: Result) -> NotFinite | None:
-        """Look at what a pass that writes bytes would have written."""
-        again = self._again(step)
+    def _look_beneath(self, step: Step, result: Result, form: str) -> NotFinite | None:
+        """Look at what a pass that writes bytes would have written, in floats of a form."""
+        again = self._again(step, form)
         if again is None:
             return None
         wide, inputs = again
@@ -124,14 +138,14 @@ class FiniteCheck:
             for output in result.outputs:
                 if not output.format.endswith("f"):
                     self.looked_at += 1
-                    found = not_finite_in(read_raw(made.textures[output.name]))
+                    found = _not_finite(made.textures[output.name])
                     if found is not None:
                         return replace(found, path=step.path, output=output.name)
         finally:
             runner.pool.give(made)
         return None
 
-    def _again(self, step: Step) -> tuple[Step, Mapping[str, Wired]] | None:
+    def _again(self, step: Step, form: str) -> tuple[Step, Mapping[str, Wired]] | None:
         """Return a step that writes floats, and what it reads; None if it is left as it is."""
         kernel = step.kernel
         if kernel.kind not in ("kernel", "draw", "plain_fragment") or kernel.repeat != "1":
@@ -145,16 +159,28 @@ class FiniteCheck:
             if found is None or (kernel.kind == "draw" and name == "initial" and found.surface is not None):
                 return None
             inputs[name] = Wired(found, found.textures[source.output], source.output)
-        return replace(step, kernel=self._widened(kernel)), inputs
+        return replace(step, kernel=self._widened(kernel, form)), inputs
 
-    def _widened(self, kernel: Kernel) -> Kernel:
-        known = self._wide.get(id(kernel))
+    def _widened(self, kernel: Kernel, form: str) -> Kernel:
+        known = self._wide.get((id(kernel), form))
         if known is None:
-            outputs = tuple(replace(o, format=_widened(o.format)) for o in kernel.outputs)
-            known = self._wide[id(kernel)] = kernel, replace(kernel, outputs=outputs)
+            outputs = tuple(replace(o, format=_widened(o.format, form)) for o in kernel.outputs)
+            known = self._wide[id(kernel), form] = kernel, replace(kernel, outputs=outputs)
             while len(self._wide) > 64:
                 self._wide.pop(next(iter(self._wide)))
         return known[1]
+
+
+def _not_finite(texture: moderngl.Texture) -> NotFinite | None:
+    """Return where numbers of a texture are not finite; a large one is read a part at a time."""
+    first, count = None, 0
+    for south, values in read_bands(texture):
+        found = not_finite_in(values)
+        if found is not None:
+            count += found.count
+            first = first or replace(found, texel=(found.texel[0], south + found.texel[1]))
+    width, height = texture.size
+    return first and replace(first, count=count, size=(width, height))
 
 
 def not_finite_in(values: NDArray[Any]) -> NotFinite | None:
@@ -175,9 +201,9 @@ def not_finite_in(values: NDArray[Any]) -> NotFinite | None:
     return NotFinite("", "", (x, y), name, int(np.count_nonzero(texels)), (texels.shape[1], texels.shape[0]))
 
 
-def _widened(form: str) -> str:
+def _widened(form: str, wanted: str) -> str:
     components, _ = split_format(form)
-    return form if form.endswith("f") else {1: "r32f", 2: "rg32f", 4: "rgba32f"}[components]
+    return form if form.endswith("f") else {1: "r", 2: "rg", 4: "rgba"}[components] + wanted
 
 
 def _steps(plan: Plan | None) -> Iterator[tuple[Step, bool]]:

@@ -77,6 +77,12 @@ class Result:
             self._framebuffer = make_framebuffer(ctx, [self.textures[o.name] for o in self.outputs])
         return self._framebuffer
 
+    def release_framebuffer(self) -> None:
+        """Release what draws to its textures; it is made again where one is drawn to."""
+        if self._framebuffer is not None:
+            self._framebuffer.release()
+            self._framebuffer = None
+
     def release_copies(self) -> None:
         """Release what was copied into other shapes."""
         for copy in self.shaped.values():
@@ -86,9 +92,7 @@ class Result:
     def release(self) -> None:
         """Release its textures and what draws to them."""
         self.release_copies()
-        if self._framebuffer is not None:
-            self._framebuffer.release()
-            self._framebuffer = None
+        self.release_framebuffer()
         for texture in self.textures.values():
             texture.release()
         if self.surface is not None:

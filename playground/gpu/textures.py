@@ -6,7 +6,7 @@ errors: asking waits for the driver, so it stays out of what happens every frame
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
@@ -26,6 +26,7 @@ _NUMPY: dict[str, np.dtype[Any]] = {
     "f4": np.dtype("f4"),
 }
 _LARGEST_HALF = 65504.0
+_BAND = 2**26  # [bytes] of a texture that is read, or of numbers that are written, at once
 
 
 @cache
@@ -106,7 +107,14 @@ def write_texture(texture: moderngl.Texture, values: NDArray[Any]) -> None:
     r8 and r16 formats take 0..1, or whole numbers of their own kind; what is not a number
     becomes 0 there. Half floats stop at their largest.
     """
-    texture.write(texel_bytes(values, _NUMPY[texture.dtype]), alignment=1)
+    wanted = _NUMPY[texture.dtype]
+    width, height = texture.size
+    rows = max(_BAND // (width * texture.components * wanted.itemsize), 1)
+    if len(values) != height or rows >= height:
+        texture.write(texel_bytes(values, wanted), alignment=1)
+        return
+    for south in range(0, height, rows):  # copies of all of a large one would be as large
+        write_texels(texture, (0, south), values[south : south + rows])
 
 
 def write_texels(texture: moderngl.Texture, corner: tuple[int, int], values: NDArray[Any]) -> None:
@@ -129,7 +137,7 @@ def texel_bytes(values: NDArray[Any], wanted: np.dtype[Any]) -> bytes:
         elif wanted == np.float16:
             values = np.clip(values, -_LARGEST_HALF, _LARGEST_HALF)
     with np.errstate(under="ignore"):
-        return np.ascontiguousarray(values.astype(wanted)).tobytes()
+        return np.ascontiguousarray(values.astype(wanted, copy=False)).tobytes()
 
 
 def read_texture(texture: moderngl.Texture) -> NDArray[np.float32]:
@@ -166,6 +174,23 @@ def read_block(texture: moderngl.Texture, corner: tuple[int, int], size: tuple[i
         return framebuffer.read((*corner, *size), texture.components, alignment=1, dtype=texture.dtype)
     finally:
         framebuffer.release()
+
+
+def read_bands(texture: moderngl.Texture) -> Iterator[tuple[int, NDArray[Any]]]:
+    """Yield a texture's rows as ``read_raw`` has them, with the number of the first of each band.
+
+    A texture of up to ``_BAND`` bytes is one band.
+    """
+    width, height = texture.size
+    dtype, components = _NUMPY[texture.dtype], texture.components
+    rows = max(_BAND // (width * components * dtype.itemsize), 1)
+    if rows >= height:
+        yield 0, read_raw(texture)
+        return
+    for south in range(0, height, rows):
+        high = min(rows, height - south)
+        raw: NDArray[Any] = np.frombuffer(read_block(texture, (0, south), (width, high)), dtype)
+        yield south, raw.reshape((high, width) if components == 1 else (high, width, components))
 
 
 def read_picture(texture: moderngl.Texture) -> NDArray[np.uint8]:

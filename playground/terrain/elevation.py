@@ -110,9 +110,10 @@ class ElevationFile:
         """Return all heights; raise ``DataError`` for more than fit."""
         check_grid(self.found.rows.shape, self.found.rows.dtype, self.path)
         heights = np.empty(self.found.rows.shape, np.float32)
+        in_order = heights if self.south_first else heights[::-1]
         with _damage_explained(self.path):
             for start, band in self.found.rows.bands():
-                heights[start : start + len(band)] = self._heights(start, band)
+                in_order[start : start + len(band)] = self._heights(start, band)
         return self._finished(heights, self.found.spacing)
 
     def read_at(self, size: tuple[int, int]) -> Elevation:
@@ -138,7 +139,8 @@ class ElevationFile:
         if extent is not None:
             spacing = extent[0] / (size[0] - 1), extent[1] / (size[1] - 1)
         span = self.lowest_and_highest if self.found.overviews else (made.lowest, made.highest)
-        return replace(self._finished(made.heights, spacing), range=span)
+        heights = made.heights if self.south_first else np.ascontiguousarray(made.heights[::-1])
+        return replace(self._finished(heights, spacing), range=span)
 
     @cached_property
     def lowest_and_highest(self) -> tuple[float, float]:
@@ -171,8 +173,6 @@ class ElevationFile:
         found, path = self.found, self.path
         if np.isnan(heights).all():
             raise self._nothing()
-        if not self.south_first:
-            heights = np.ascontiguousarray(heights[::-1])
         notes, dtype = found.notes, found.rows.dtype
         if dtype.itemsize > 2 and dtype != np.float32:
             low, high = float(np.nanmin(heights)), float(np.nanmax(heights))

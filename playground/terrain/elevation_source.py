@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -30,6 +31,9 @@ LARGE = 2**24
 USUAL_SIDE = 4097
 """Texels of the longer side of terrain from a large file, where nothing says how many."""
 
+KEPT = 2**26
+"""Texels above which heights are not kept in memory once a texture was made of them."""
+
 Asked = tuple[str, str, tuple[int, int] | None, Packing, Voids, Edge]
 """A file's path, what changes whenever its contents do, and what its parameters say."""
 
@@ -39,15 +43,15 @@ def describe(values: Mapping[str, Value]) -> Terrain:
     asked = _asked(values)
     file = _opened(asked)
     size = _size(file, values)
-    elevation = _at(asked, size)
-    low, high = elevation.lowest, elevation.highest
+    known = _known(asked, size)
+    low, high = known.lowest, known.highest
     metres = values["metres"]  # of the file's lowest and highest codes; equal: nothing is known
     relief = base = None
     if isinstance(metres, tuple) and metres[0] != metres[1]:
-        codes = elevation.code_range or (low, high)
+        codes = known.code_range or (low, high)
         scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
         base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
-    elif elevation.in_metres:
+    elif known.in_metres:
         base, relief = low, high - low
     return Terrain(size, file.extent, relief, base, file.found.place)
 
@@ -63,14 +67,18 @@ def make(
     asked = _asked(values)
     own = _size(_opened(asked), values)
     elevation = _at(asked, own if all(2 * a <= b for a, b in zip(size, own, strict=True)) else size)
-    low, span = elevation.lowest, elevation.highest - elevation.lowest
+    low, span, made = elevation.lowest, elevation.highest - elevation.lowest, elevation.size
     with _memory_explained(Path(str(values["elevation"]))):
-        heights = (
-            (elevation.heights - np.float32(low)) / np.float32(span)
-            if span > 0
-            else np.zeros_like(elevation.heights)
-        )
-        if size != elevation.size:
+        if span > 0:
+            heights = elevation.heights - np.float32(low)
+            heights /= np.float32(span)
+        else:
+            heights = np.zeros_like(elevation.heights)
+        if math.prod(made) > KEPT:
+            _whole.cache_clear()
+            _large.cache_clear()
+        del elevation
+        if size != made:
             heights = resample(heights, size, within=(0.0, 1.0))
     return {"height": heights}
 
@@ -80,7 +88,7 @@ def notes(values: Mapping[str, Value]) -> tuple[str, ...]:
     asked = _asked(values)
     file = _opened(asked)
     size = _size(file, values)
-    found = _at(asked, size).notes
+    found = _known(asked, size).notes
     if not values.get("longest") and size != file.size:
         texels, fewer = (f"{x} x {y}" for x, y in (file.size, size))
         found += (f"has {texels} texels; unless a size or `longest` says how many, {fewer} are read",)
@@ -111,6 +119,23 @@ def _opened(asked: Asked) -> ElevationFile:
     path, _, raw_size, packing, _, first_row = asked
     with _memory_explained(Path(path)):
         return open_elevation(path, raw_size=raw_size, packing=packing, first_row=first_row)
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What is known of an elevation besides its heights."""
+
+    lowest: float
+    highest: float
+    code_range: tuple[float, float] | None
+    in_metres: bool
+    notes: tuple[str, ...]
+
+
+@lru_cache(maxsize=16)
+def _known(asked: Asked, size: tuple[int, int]) -> _Known:
+    found = _at(asked, size)
+    return _Known(found.lowest, found.highest, found.code_range, found.in_metres, found.notes)
 
 
 def _at(asked: Asked, size: tuple[int, int]) -> Elevation:

@@ -44,7 +44,8 @@ def test_by_heights_what_is_higher_comes_through(engine, make_sketch):
     given = 'size = 65\nset = {{ blend = "{}", contrast = 20.0, variety = 0, repeats = 1 }}\n'
     alike = WEIGHTS.format("vec4(0.5, 0.0, 0.5, 0.0)")
     make = {"size": 65, "extent": 640.0, "weights": alike, **GRAINY}
-    sketch = make_sketch(SPLAT.format(given.format("by heights")), **make)
+    # The plain form: odds of e to the 20 show whether layers were rounded as those that are read below.
+    sketch = make_sketch(SPLAT.format(given.format("by heights")), **make).plainly()
     found = engine.read(sketch, "colour").astype(float)[..., 0]
     one, other = (engine.read(sketch, f"colour.{name}").astype(float)[..., 0] for name in ("grass", "snow"))
     means = engine.read(sketch, "colour.means").ravel().astype(float)

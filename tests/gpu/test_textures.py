@@ -11,7 +11,9 @@ from playground.gpu.textures import (
     drain,
     make_framebuffer,
     make_texture,
+    read_bands,
     read_picture,
+    read_raw,
     read_texture,
     split_format,
     write_texture,
@@ -41,6 +43,22 @@ def test_what_is_written_is_read(ctx, form, size):
     )
     assert texture.size == size
     texture.release()
+
+
+@each("form", FORMATS)
+def test_a_large_texture_is_written_and_read_in_bands_of_the_same_bits(ctx, form, monkeypatch):
+    components, _ = split_format(form)
+    shape = (7, 5) if components == 1 else (7, 5, components)
+    values = np.random.default_rng(2).random(shape).astype(np.float32)
+    whole, parts = make_texture(ctx, (5, 7), form), make_texture(ctx, (5, 7), form)
+    write_texture(whole, values)
+    monkeypatch.setattr("playground.gpu.textures._BAND", bytes_of((5, 3), form))
+    write_texture(parts, values)
+    bands = list(read_bands(parts))
+    assert [south for south, _ in bands] == [0, 3, 6]
+    np.testing.assert_array_equal(np.concatenate([band for _, band in bands]), read_raw(whole))
+    whole.release()
+    parts.release()
 
 
 def test_the_first_row_is_the_south_and_a_picture_s_the_north(ctx):

@@ -184,6 +184,22 @@ def test_what_a_texture_of_bytes_hides_is_found(
     assert (found.path, found.texel, found.value) == ("middle", (5, 3), name)
 
 
+@pytest.mark.parametrize("form", ["r8", "r16"])
+def test_what_is_too_large_for_a_half_is_finite_beneath_bytes(
+    drawing: Engine, folder: Path, form: str
+) -> None:
+    write(folder, f"middle:{form}", ILL, "1e9")
+    assert found_in(drawing, folder) is None
+
+
+def test_large_textures_are_looked_at_in_bands(
+    drawing: Engine, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(folder, "middle:r32f", ILL.replace("texel == at", "texel.y > 2 && texel.x == 5"), NAN)
+    monkeypatch.setattr("playground.gpu.textures._BAND", 5 * 16 * 4)
+    assert found_in(drawing, folder) == NotFinite("middle", "middle", (5, 3), "NaN", 13, (16, 16))
+
+
 def test_what_the_view_hides_is_found(drawing: Engine, folder: Path) -> None:
     (folder / "bytes.glsl").write_text(BYTES.replace("VALUE", NAN))
     assert found_in(drawing, folder, {"view.broken": 0.0}) is None

@@ -12,6 +12,7 @@ from playground.errors import DataError, SketchError
 from playground.images.content_hash import content_key
 from playground.paths import GLSL
 from playground.sketch.techniques import read_technique
+from playground.terrain import elevation_source
 from playground.terrain.known import Terrain
 from playground.terrain.sources import SOURCES, source_kind
 
@@ -133,6 +134,21 @@ def test_a_file_that_does_not_change_is_read_once(values, tmp_path, monkeypatch)
     first = KIND.make(given, (3, 2))["height"]
     monkeypatch.setattr(Path, "open", None)
     np.testing.assert_array_equal(KIND.make(given, (3, 2))["height"], first)
+
+
+def test_large_heights_are_not_kept_once_a_texture_was_made_and_are_known_all_the_same(
+    values, tmp_path, monkeypatch
+):
+    os.utime(tmp_path / "a.npy", (0, 0))
+    given = values()
+    known, kept = KIND.describe(given), KIND.make(given, (3, 2))["height"]
+    monkeypatch.setattr("playground.terrain.elevation_source.KEPT", 1)
+    np.testing.assert_array_equal(KIND.make(given, (3, 2))["height"], kept)
+    assert elevation_source._whole.cache_info().currsize == 0
+    monkeypatch.setattr(Path, "open", None)
+    assert KIND.describe(given) == known
+    with pytest.raises(DataError):
+        KIND.make(given, (3, 2))
 
 
 def test_a_large_file_is_not_read_to_be_known(tmp_path, monkeypatch):
