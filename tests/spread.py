@@ -13,8 +13,8 @@ from pathlib import Path
 
 import pytest
 
-FOLDERS = tuple(Path(__file__).parent / name for name in ("engine", "glsl"))
-MANY = 6  # cases of a function that are all for every day
+TESTS = Path(__file__).parent
+MANY = 3  # cases of a function that are all for every day
 SHARE = 4  # of more, one in so many
 
 
@@ -26,7 +26,7 @@ class Spread:
         """Mark what is left to the slow run; the first case of a function never is."""
         cases = defaultdict(list)
         for item in items:
-            if any(map(item.path.is_relative_to, FOLDERS)) and item.get_closest_marker("slow") is None:
+            if item.path.is_relative_to(TESTS) and item.get_closest_marker("slow") is None:
                 cases[item.nodeid.partition("[")[0]].append(item)
         for found in cases.values():
             if len(found) > MANY:

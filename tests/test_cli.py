@@ -112,6 +112,7 @@ def well(done: subprocess.CompletedProcess[str]) -> subprocess.CompletedProcess[
 # ── what it must not cost ────────────────────────────────────────────────────
 
 
+@pytest.mark.slow
 def test_what_only_prints_loads_no_opengl():
     code = (
         "import sys; from playground.cli import main\n"
@@ -268,6 +269,7 @@ def _receive_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
+@pytest.mark.slow
 def test_control_c_ends_with_130_and_no_words(tmp_path: Path):
     process = subprocess.Popen(
         [sys.executable, "-m", "playground", "check", str(GLSL)],
@@ -303,6 +305,7 @@ def test_colour_is_for_terminals_that_want_it(no_colour: bool, monkeypatch: pyte
     assert re.sub(r"\033\[[\d;]*m", "", text).startswith("error: no command 'rendre'")
 
 
+@pytest.mark.slow
 def test_a_pipe_gets_no_colour_and_one_line_a_row(capsys: pytest.CaptureFixture[str]):
     assert cli.main(["list", "sketches"]) == 0
     out = capsys.readouterr().out
@@ -434,6 +437,7 @@ for words in sys.argv[1:]:
 """
 
 
+@pytest.mark.slow
 def test_without_compute_everything_but_compute_works(slope: Path, tmp_path: Path):
     (tmp_path / "toy.comp").write_text(PLAIN_COMPUTE)
     commands = ["doctor", "render slope --size 16x16", "render slope --driver compute"]
@@ -526,6 +530,7 @@ def test_check_takes_a_compute_variant_with_its_kernel(run: Run, tmp_path: Path)
     assert {e["file"] for e in reports["fill.comp"]["errors"]} == {"fill.comp"}
 
 
+@pytest.mark.slow
 def test_a_file_of_each_kind_that_ships_passes(run: Run):
     names = ["noise/hash.glsl", "generation/white_noise.glsl", "lighting/l_dot_n.glsl", "view/map.glsl"]
     names += ["generation/multiply.toml", "sketches/diamond_square.toml"]
@@ -555,6 +560,7 @@ def test_a_file_is_checked_once_however_often_it_is_named(slope: Path, monkeypat
 # ── list ─────────────────────────────────────────────────────────────────────
 
 
+@pytest.mark.slow
 def test_list_as_json_holds_every_sketch_and_technique(capsys: pytest.CaptureFixture[str]):
     assert cli.main(["list", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)
@@ -627,6 +633,7 @@ def test_where_a_window_would_open(system: str, environ: dict[str, str], shown: 
 # ── new ──────────────────────────────────────────────────────────────────────
 
 
+@pytest.mark.slow
 def test_a_new_sketch_passes_its_check_renders_and_is_never_overwritten(run: Run, tmp_path: Path):
     done = well(run("new", "my-land"))
     made = [tmp_path / line for line in done.stdout.split()]

@@ -66,6 +66,7 @@ def test_an_edit_changes_the_picture_and_one_line_says_what_does_not_run(folder,
     assert notes == []
 
 
+@pytest.mark.slow
 def test_check_says_it_and_tries_it_all_the_same(folder, capsys):
     (folder / "terrain.glsl").write_text(KERNEL.replace("rise *", "0.2 * rise *"))
     assert main(["check", "--json", "terrain"]) == 0

@@ -98,6 +98,7 @@ def begun(folder: Path) -> subprocess.Popen[bytes]:
     return process
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_a_large_picture_that_is_ended_leaves_nothing(tmp_path: Path, name: str):
@@ -109,6 +110,7 @@ def test_a_large_picture_that_is_ended_leaves_nothing(tmp_path: Path, name: str)
     assert names(tmp_path) == ["plain.frag"]
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
 def test_what_a_killed_picture_left_goes_with_the_next(tmp_path: Path):
     process = begun(tmp_path)

@@ -169,6 +169,7 @@ def in_thread(work: Any) -> Any:
     return found[0]
 
 
+@pytest.mark.slow
 def test_a_call_from_another_thread_is_refused_in_a_sentence(any_engine):
     sketch = playground.load("diamond_square").with_values({"size": 33})
     wanted = any_engine.render(sketch, size=(32, 18)).array
@@ -190,6 +191,7 @@ def test_a_call_from_another_thread_is_refused_in_a_sentence(any_engine):
     np.testing.assert_array_equal(any_engine.render(sketch, size=(32, 18)).array, wanted)
 
 
+@pytest.mark.slow
 def test_one_engine_draws_many_sketches_and_each_thread_has_its_own(any_engine):
     square = playground.load("diamond_square")
     names = (9, 17, 33)

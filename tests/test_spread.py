@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import product
 from types import SimpleNamespace
 
-from .spread import FOLDERS, MANY, Spread
+from .spread import MANY, TESTS, Spread
 
 
 class Case(SimpleNamespace):
@@ -19,8 +19,8 @@ class Case(SimpleNamespace):
 
 
 def every_day(names: list[str], folder: int = 0) -> list[str]:
-    """Return the cases that are left, of a test in a folder whose cases are spread, or in the one above."""
-    path = (FOLDERS[0] if folder == 0 else FOLDERS[0].parent) / "test_a.py"
+    """Return the cases that are left, of a test among the tests (0), or in a folder beside them (1)."""
+    path = (TESTS if folder == 0 else TESTS.parent) / "test_a.py"
     cases = [Case(nodeid=f"a.py::test[{name}]", path=path, marks=[]) for name in names]
     Spread().pytest_collection_modifyitems(cases)  # type: ignore[arg-type]
     return [name for name, case in zip(names, cases, strict=True) if not case.marks]
@@ -40,7 +40,7 @@ def test_of_many_a_quarter_run_among_them_the_first_and_every_value_of_each_para
 
 
 def test_what_is_slow_is_not_counted_and_stays_slow():
-    marked = [Case(nodeid=f"a.py::test[{i}]", path=FOLDERS[0] / "a.py", marks=["slow"]) for i in range(60)]
-    first = Case(nodeid="a.py::test[first]", path=FOLDERS[0] / "a.py", marks=[])
+    marked = [Case(nodeid=f"a.py::test[{i}]", path=TESTS / "a.py", marks=["slow"]) for i in range(60)]
+    first = Case(nodeid="a.py::test[first]", path=TESTS / "a.py", marks=[])
     Spread().pytest_collection_modifyitems([*marked, first])  # type: ignore[arg-type]
     assert first.marks == [] and all(case.marks == ["slow"] for case in marked)

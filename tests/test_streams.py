@@ -88,6 +88,7 @@ def test_a_name_that_is_no_text_keeps_its_bytes():
 # ── closed streams ───────────────────────────────────────────────────────────
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="needs a shell that closes streams")
 @pytest.mark.parametrize("closed", [">&-", "2>&-", "<&- >&- 2>&-"])
 def test_a_closed_stream_changes_no_outcome(start, tmp_path: Path, closed: str):
@@ -119,6 +120,7 @@ def broken_pipe() -> int:
     return write_end
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("arguments", "status"),
     [(["--help"], 141), (["list", "lighting"], 141), (["nosuch"], 2)],

@@ -242,7 +242,7 @@ def _draw(engine: Engine, output: Output, moment: Moment, target: Path) -> None:
 
 
 def _write_texture(engine: Engine, sketch: Sketch, texture: str, target: Path, at: dict[str, Any]) -> None:
-    from playground.images.files import write_values
+    from playground.images.values import write_values
 
     clamped = write_values(target, engine.read(sketch, texture, **at))
     if clamped:

@@ -46,6 +46,7 @@ class Cache:
 
     def __init__(self, limit: int, pool: Pool) -> None:
         self.limit = limit  # [bytes]
+        self.versions = VERSIONS  # kept of one pass; more where many are drawn in turn
         self.states = KeptStates(limit // _SHARE_OF_STATES, pool)
         self._pool = pool
         self._cached: OrderedDict[str, Cached] = OrderedDict()
@@ -113,7 +114,7 @@ class Cache:
         for versions in self._versions_of(cached):
             versions[key] = None
             for old in [old for old in versions if old not in self._in_use][
-                : max(len(versions) - VERSIONS, 0)
+                : max(len(versions) - self.versions, 0)
             ]:
                 self.drop(old)
         self.trim()

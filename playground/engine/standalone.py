@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from playground.gpu.own_shaders import own_shader
-from playground.images.files import write_values
+from playground.images.values import write_values
 from playground.paths import shown
 from playground.sketch.assign import values_of
 from playground.sketch.model import (

@@ -1,9 +1,7 @@
-"""Move pictures and grids of values between files and NumPy arrays.
+"""Move pictures between files and NumPy arrays; grids of values: playground.images.values.
 
-Pictures have their top (north) row first, in the file and in the array; grids
-of values have row 0 in the south, as in the engine, and are flipped where
-a format is an image. A file is written whole or not at all: a temporary file
-in the same folder takes the name only when it is complete.
+Pictures have their top (north) row first, in the file and in the array. A file is written whole or
+not at all: a temporary file in the same folder takes the name only when it is complete.
 
 It does not decode sRGB (`playground.sketch.colour` does), does not apply ICC
 profiles, and knows nothing of metres (`playground.terrain.elevation` does).
@@ -36,7 +34,6 @@ from numpy.typing import NDArray
 from playground.errors import DataError, nearest
 from playground.images.array_pictures import array_samples, is_array
 from playground.images.bounds import refuse_bomb, refuse_too_many, webp_size
-from playground.images.extensions import VALUE_ENDINGS
 from playground.partial import partial_file
 from playground.paths import shown
 
@@ -47,7 +44,7 @@ if TYPE_CHECKING:
     _Picture = PIL.Image.Image
 
 PNG_START = b"\x89PNG\r\n\x1a\n"
-_PNG_KINDS = {1: 0, 3: 2, 4: 6}  # colour type by channels
+PNG_KINDS = {1: 0, 3: 2, 4: 6}  # colour type by channels
 _WITH_ALPHA = frozenset({"RGBA", "RGBa", "LA", "La", "PA"})
 _NO_TEXT: Mapping[str, str] = MappingProxyType({})
 
@@ -340,7 +337,7 @@ def encode_samples(
     lines[:, 0] = 2
     lines[0, 1:] = stored[0]
     np.subtract(stored[1:], stored[:-1], out=lines[1:, 1:])
-    header = struct.pack(">IIBBBBB", cols, rows, depth, _PNG_KINDS[channels], 0, 0, 0)
+    header = struct.pack(">IIBBBBB", cols, rows, depth, PNG_KINDS[channels], 0, 0, 0)
     body = zlib.compress(lines.tobytes(), 6)
     chunks = [chunk(b"IHDR", header), *text_chunks(text), chunk(b"IDAT", body), chunk(b"IEND", b"")]
     return PNG_START + b"".join(chunks)
@@ -355,77 +352,6 @@ def write_png(path: str | Path, array: NDArray[np.uint8], *, text: Mapping[str, 
     data = encode_png(array, text)
     with replacing(path) as handle:
         handle.write(data)
-
-
-def write_values(path: str | Path, array: NDArray[np.float32]) -> str:
-    """Write a grid of values, whole or not at all, in the format the name's ending says.
-
-    `array` is (ny, nx) or (ny, nx, 1 to 4), **row 0 in the south** as in the engine.
-
-    * `.npy`: float32, exactly these values in this order, so row 0 stays in the south;
-    * `.png`: 16 bits, 0..1 as 0..65535 rounded to nearest and clamped, north row on top;
-      1, 3 or 4 channels (grey, RGB, RGBA), no transfer curve;
-    * `.tif`, `.tiff`: float32, uncompressed, exactly these values, north row on top.
-
-    Returns a sentence on what was clamped, or `""`.
-
-    Raises:
-        DataError: another ending or shape, a value that is not finite (PNG only),
-            a missing folder, no permission, a full disk.
-    """
-    path = Path(path)
-    ending = path.suffix.lower()
-    if ending not in VALUE_ENDINGS:
-        raise DataError(f"values cannot be written as {ending!r}{nearest(ending, VALUE_ENDINGS)}", file=path)
-    values = np.asarray(array)
-    if values.dtype.kind not in "fiu" or values.ndim not in (2, 3) or 0 in values.shape:
-        raise DataError(
-            f"values are numbers (ny, nx) or (ny, nx, channels); found {values.dtype} {values.shape}",
-            file=path,
-        )
-    if values.ndim == 3 and values.shape[2] > 4:
-        raise DataError(f"{values.shape[2]} channels are too many; the most is 4", file=path)
-    with np.errstate(all="ignore"):
-        values = values.astype(np.float32)
-    if ending == ".npy":
-        with replacing(path) as handle:
-            np.lib.format.write_array(handle, values, allow_pickle=False)
-        return ""
-    image = np.ascontiguousarray(values[::-1])  # north on top
-    if image.ndim == 3 and image.shape[2] == 1:
-        image = image[..., 0]
-    if ending != ".png":
-        import tifffile
-
-        with replacing(path) as handle:
-            tifffile.imwrite(handle, image, photometric="minisblack", metadata=None, software=False)
-        return ""
-    data, clamped = _values_as_png(image, path)
-    with replacing(path) as handle:
-        handle.write(data)
-    return clamped
-
-
-def _values_as_png(image: NDArray[np.float32], path: Path) -> tuple[bytes, str]:
-    channels = 1 if image.ndim == 2 else image.shape[2]
-    if channels not in _PNG_KINDS:
-        raise DataError(
-            f"a PNG holds 1, 3 or 4 channels; found {channels}, which .npy and .tif can hold", file=path
-        )
-    unusable = int(np.count_nonzero(~np.isfinite(image)))
-    if unusable:
-        raise DataError(
-            f"{unusable} of {image.size} values are not finite, which a PNG cannot hold; .npy and .tif can",
-            file=path,
-        )
-    low, high = float(image.min()), float(image.max())
-    outside = int(np.count_nonzero((image < 0.0) | (image > 1.0)))
-    note = ""
-    if outside:
-        note = f"{outside} of {image.size} values are outside 0..1 (from {low:.6g} to {high:.6g}); clamped."
-    with np.errstate(all="ignore"):
-        scaled = np.rint(np.clip(image, 0.0, 1.0).astype(np.float64) * 65535.0)
-    return encode_samples(scaled.astype(np.uint16)), note
 
 
 def chunk(kind: bytes, data: bytes) -> bytes:

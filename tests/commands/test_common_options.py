@@ -47,6 +47,7 @@ def test_every_help_has_these_options_and_names_no_type(
     assert not found, found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [["-v", "render"], ["render", "-v"], ["render", "--verbose"]])
 def test_verbose_tells_files_driver_compiling_and_caches_with_their_times(
     order: list[str], kernel: Path, capsys: pytest.CaptureFixture[str]
@@ -71,6 +72,7 @@ def test_it_holds_for_one_command_only(kernel: Path, capsys: pytest.CaptureFixtu
     assert not logging.getLogger("playground").handlers
 
 
+@pytest.mark.slow
 def test_quiet_leaves_what_was_asked_for_and_errors(kernel: Path, capsys: pytest.CaptureFixture[str]):
     kernel.write_text(KERNEL.replace("0.5", "0.0 / float(texel.x * 0)"))
     arguments = ["render", str(kernel), "--size", "32x18", "-o", "a.png"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from playground.engine import cache
 from playground.engine.engine import Engine
@@ -15,6 +16,7 @@ def held(engine: Engine) -> int:
     return sum(cached.bytes for cached in engine.internal.cache._cached.values())
 
 
+@pytest.mark.slow
 def test_bytes_are_those_of_what_is_cached(ctx):
     sketch = load("jacksboro").with_values({"size": 65, "view.grid": 33})
     with Engine(ctx, cache_bytes=3 * 2**20) as engine:

@@ -84,6 +84,7 @@ def test_render_and_export_print_each_once(sketch, capsys):
             assert f"warning: sketch.toml:3: {SECOND}" in printed
 
 
+@pytest.mark.slow
 def test_check_shows_them_and_fails_for_none(sketch, capsys):
     assert cli.main(["check", "."]) == 0
     out = capsys.readouterr().out

@@ -14,7 +14,7 @@ from playground.engine.engine import Engine
 from playground.engine.plan import Plan, every_node
 from playground.engine.planner import Planner
 from playground.errors import DataError
-from playground.images.files import write_values
+from playground.images.values import write_values
 from playground.sketch.assign import resolve, shown_parameters
 from playground.sketch.load import load
 from playground.sketch.model import Sketch, Value
@@ -134,6 +134,7 @@ def test_another_file_of_the_terrain_plans_anew(tmp_path):
         planner.plan(sketch, frame_size=SIZE)
 
 
+@pytest.mark.slow
 def test_what_is_used_is_weighed_twice_a_frame_at_most(ctx, monkeypatch):
     weighed: Counter[str] = Counter()
     weigh = Cache._weigh

@@ -273,6 +273,7 @@ def test_the_pass_that_takes_too_long_is_the_one_that_is_named(sandbox, folder, 
     assert report.error.diagnostics[0].file.endswith("slow.glsl")
 
 
+@pytest.mark.slow
 def test_submit_never_waits_and_the_newest_wins(folder):
     # Large requests: a pipe that is not read would fill.
     padding = "\n".join(f"// {i} {'x' * 100}" for i in range(3000))
@@ -295,6 +296,7 @@ def test_submit_never_waits_and_the_newest_wins(folder):
         assert sandbox.poll() is None
 
 
+@pytest.mark.slow
 def test_a_worker_that_takes_long_has_a_spare_that_takes_its_place(folder):
     with Sandbox(limit_seconds=3600.0) as sandbox:
         assert sandbox.run(TrySketch(folder.one(GOOD))).ok
@@ -388,6 +390,7 @@ def two(folder):
     return folder.path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "pipe"),
     [

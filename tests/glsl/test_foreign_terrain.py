@@ -97,6 +97,7 @@ def test_a_filter_is_laid_over_the_frame(folder: Path, any_engine: Engine) -> No
     np.testing.assert_array_equal(found[..., :3], 255 - plain[..., :3])
 
 
+@pytest.mark.slow
 def test_other_tools_files_are_in_the_chooser(folder: Path) -> None:
     (folder / "broken.frag").write_text('void mainImage(\n#include "nothing.glsl"\n')
     sketch = load(folder)

@@ -119,6 +119,7 @@ def test_the_distance_to_a_segment_is_that_to_the_nearest_of_its_points(on_gpu):
     np.testing.assert_allclose(found, np.linalg.norm(points - place, axis=-1).min(axis=0), atol=3e-3)
 
 
+@pytest.mark.slow
 def test_a_way_through_a_rectangle_is_where_its_places_are_inside(on_gpu):
     place, ahead = RNG.uniform(-8, 8, (300, 2)), RNG.uniform(-1, 1, (300, 2))
     ahead[:20, 0] = 0.0

@@ -87,6 +87,7 @@ float kernel(ivec2 texel) { return 2 * texel.x < size.x ? 0.125 : 1.5; }
 """
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*accumulation.comp is left out:playground.errors.PlainFormWarning")
 def test_rain_makes_a_steady_state_of_discharges(engine, make_sketch):
     """S = (U / K) Q^-m where Q is the rain above; where it is even, that is another K: within 1 % both."""
@@ -194,6 +195,7 @@ coarse_level = "rivers:height"
         assert kept > 0.8 * total and bent > 0.5 * total
 
 
+@pytest.mark.slow
 def test_twice_as_hard_is_half_as_erodible_and_uplift_is_a_factor(worn):
     values = {"steps": 12, "finer_steps": 2, "erodibility": 8.0}
     factor = 'inputs = { height = "low", INPUT = "two" }'
@@ -207,6 +209,7 @@ def test_twice_as_hard_is_half_as_erodible_and_uplift_is_a_factor(worn):
         assert np.abs(wanted - worn(65, **values)[0]).mean() > 10
 
 
+@pytest.mark.slow
 def test_a_terrain_grows_with_its_age(worn):
     values = {"steps": 20, **ONE_LEVEL}
     young, _, _, low = worn(65, age=0.02, **values)
@@ -216,6 +219,7 @@ def test_a_terrain_grows_with_its_age(worn):
     assert (np.diff(means) > 0).all()
 
 
+@pytest.mark.slow
 def test_hillsides_stand_no_steeper_than_they_may(worn):
     values = {"rise": 5.0, "creep": 0.0, "slides": 30, **ONE_LEVEL}
     height, *_ = worn(65, steepest=30.0, **values)

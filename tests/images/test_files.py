@@ -22,8 +22,8 @@ from playground.images.files import (
     read_png,
     read_samples,
     write_png,
-    write_values,
 )
+from playground.images.values import write_values
 
 RNG = np.random.default_rng(5)
 KINDS = {1: 0, 2: 4, 3: 2, 4: 6}

@@ -38,6 +38,7 @@ def presented(language: str) -> list[tuple[Lesson, tuple[Beat, ...]]]:
     return [(lesson, beats_of(lesson)) for lesson in lessons]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_every_lesson_is_told_whole_and_in_its_order(language: str) -> None:
     for lesson, beats in presented(language):

@@ -367,6 +367,7 @@ def figures():
     return thesis_figures()
 
 
+@pytest.mark.slow
 def test_every_figure_of_the_thesis_has_its_pictures(figures):
     numbers = [figure.number for figure in figures]
     chapters = {"1": 36, "2": 9, "3": 11, "4": 8, "5": 15}

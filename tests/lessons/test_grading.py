@@ -466,6 +466,7 @@ def test_the_same_class_in_another_order_gets_the_same_points(class_of_20, one, 
     }
 
 
+@pytest.mark.slow
 def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
     """A kernel that writes nothing has no points, however right what was drawn before it is.
 
@@ -496,6 +497,7 @@ def test_no_texel_of_another_s_work_is_left_in_a_picture(ctx, monkeypatch):
     assert mark.points == 0.0 and "differs by" in mark.sentences[0]
 
 
+@pytest.mark.slow
 def test_a_challenge_has_a_score_in_its_column_and_no_points(ctx, monkeypatch):
     """Its picture has 100, what is handed out 0, between them it grows with the slider that was moved."""
     one = next(x for x in assignments_of([read_lesson("slopes", "fr")]) if isinstance(x.task, Challenge))

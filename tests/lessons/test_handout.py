@@ -67,6 +67,7 @@ def test_every_exercise_of_the_course_has_a_sketch_that_loads(tmp_path):
         assert sketch.shots == () and sketch.presets == () and (folder / one.file).is_file()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lesson", ["diamond_square", "first_height"])
 def test_no_answer_is_in_the_zip(lesson, handed_out, tmp_path):
     """Neither a line of a model answer that its starter lacks, nor of a solution, nor of an earlier step."""
@@ -102,12 +103,14 @@ def test_the_page_has_every_exercise_and_needs_no_network(handed_out):
     assert "playground live diamond_square-dimension" in readme
 
 
+@pytest.mark.slow
 def test_the_same_lessons_give_the_same_bytes(handed_out, tmp_path):
     again = tmp_path / "week3.zip"
     assert main(["lesson", "handout", "diamond_square", "--hints", "-o", str(again)]) == 0
     assert again.read_bytes() == handed_out.read_bytes()
 
 
+@pytest.mark.slow
 def test_in_french_without_hints(tmp_path):
     path = tmp_path / "semaine 3 (été).zip"
     assert main(["lesson", "handout", "diamond_square", "--lang", "fr", "-o", str(path)]) == 0

@@ -29,6 +29,7 @@ def shipped(request):
     return {language: read_lesson(request.param, language, SKETCHES) for language in LANGUAGES}
 
 
+@pytest.mark.slow
 def test_they_are_numbered_in_the_order_of_the_course():
     assert [one.number for one in summaries()] == list(range(len(NAMES))) and len(NAMES) >= 12
     assert NAMES == lesson_names() and sorted(NAMES) == lesson_files()

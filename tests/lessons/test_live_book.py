@@ -111,6 +111,7 @@ def compare_scenes(node, lesson):
     return count, data
 
 
+@pytest.mark.slow
 def test_the_lessons_of_a_book_share_texts_and_kernels(sky_light, of_sky_light):
     library, first = of_sky_light
     once = len(library.kernels), len(library.data()["files"])
@@ -197,6 +198,7 @@ def test_iterations_that_only_a_source_reads_stay_pictures(any_engine, tmp_path)
     assert found[0] is None and found[1]["passes"] == ["free"]
 
 
+@pytest.mark.slow
 def test_values_that_a_processor_makes_are_listed_ones(delaunay):
     """Between ten and twenty points of a triangulation a page knows of none."""
     block = held_in(delaunay.files["data/delaunay.js"])["blocks"]["points"]

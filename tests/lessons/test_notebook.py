@@ -147,6 +147,7 @@ def test_the_sun_is_dragged_by_azimuth_and_elevation(opened):
     assert dict(scene_at(block, {"light.sun:0": 9.0, "light.sun:1": 8.0}).values)["light.sun"] == (9.0, 8.0)
 
 
+@pytest.mark.slow
 def test_every_slider_of_a_shipped_lesson_can_be_dragged():
     for name in lesson_files():
         for block in read_lesson(name, "en", SKETCHES).blocks:

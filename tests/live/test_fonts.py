@@ -48,6 +48,7 @@ def missing(text: str, font: imgui.ImFont) -> str:
     return " ".join(f"{c} U+{ord(c):04X}" for c in sorted(seen) if not font.is_glyph_in_font(ord(c)))
 
 
+@pytest.mark.slow
 def test_messages_and_labels_can_be_shown(theme: Theme):
     # Any module's: what the engine or a file's reader has to say appears in the panel.
     modules = (ROOT / "playground").rglob("*.py")

@@ -112,6 +112,7 @@ def attempts():
     return read_progress(progress_file()).attempts
 
 
+@pytest.mark.slow
 def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
     monkeypatch = pytest.MonkeyPatch()
     desk.click("Start##start")

@@ -255,6 +255,7 @@ sys.stdin.read()
 """
 
 
+@pytest.mark.slow
 @linux
 @pytest.mark.parametrize(
     ("request_name", "pipe", "limit"),

@@ -113,6 +113,7 @@ float kernel(ivec2 texel) {{
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("layers", [1, pytest.param(16, marks=pytest.mark.slow)])
 def test_of_many_lines_the_one_that_makes_nan_stays(sketch, worker, tmp_path, layers):
     text = layered(layers)
@@ -125,6 +126,7 @@ def test_of_many_lines_the_one_that_makes_nan_stays(sketch, worker, tmp_path, la
     assert search.confirmed() is not None
 
 
+@pytest.mark.slow
 def test_a_nan_of_another_making_is_not_taken_for_it(sketch, worker, tmp_path):
     """Without the line that keeps the divisor from zero there is NaN too, at another texel."""
     text = f"""{HEIGHT}
@@ -340,6 +342,7 @@ def run(*arguments: str) -> int:
     return main(["reduce", *arguments])
 
 
+@pytest.mark.slow
 def test_a_command_judges_and_the_folder_says_how(sketch, tmp_path, capsys):
     path = sketch(MAGIC)
     assert run(str(path), "--pass", "height", "--command", GREP) == 0

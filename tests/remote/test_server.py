@@ -347,6 +347,7 @@ def test_events_tell_of_values_saves_and_errors(desk: Desk, tmp_path: Path):
     assert reloaded["milliseconds"] > 0 and fixed["errors"] == []
 
 
+@pytest.mark.slow
 def test_ten_thousand_values_lose_neither_the_last_nor_an_error(desk: Desk):
     url = opened(desk)
     count, frames = 10_000, 0

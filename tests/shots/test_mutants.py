@@ -104,6 +104,7 @@ def noise_like(shape: tuple[int, int] = (90, 160)) -> Picture:
 # ── what the suite is there for ──────────────────────────────────────────────
 
 
+@pytest.mark.slow
 def test_the_same_build_catches_every_defect_of_jacksboro(results: list[Result]):
     assert survivors(results, 0) == []
     caught, of = kill_rate(results, 0)

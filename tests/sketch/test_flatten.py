@@ -419,6 +419,7 @@ def test_an_edited_file_is_wired_anew(make):
     assert (first["light"]["height"], second["light"]["height"]) == ("b:height", "a:height")
 
 
+@pytest.mark.slow
 @each(("name", "variants"), list(itertools.product(shipped_sketches(), [(), ("passes",), VARIANTS])))
 def test_every_shipped_sketch_runs_in_the_order_of_its_wires(name, variants):
     done: set[str] = set()

@@ -54,6 +54,7 @@ def some(places: Iterable[Place], count: int) -> list[Place]:
     return random.Random(len(found)).sample(found, min(len(found), count))
 
 
+@pytest.mark.slow
 @few_or_many
 @each_shipped
 def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alone(
@@ -76,6 +77,7 @@ def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alon
         assert dict(leaves(tomllib.loads(changed))) == {**found, place: [7, 8]}
 
 
+@pytest.mark.slow
 @few_or_many
 @each_shipped
 def test_any_value_of_any_shipped_file_can_be_added_and_taken_out(path: Path, count: int) -> None:

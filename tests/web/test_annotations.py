@@ -26,6 +26,7 @@ def written(node: Node, *raw: str) -> list[dict[str, Any]]:
     return found
 
 
+@pytest.mark.slow
 def test_every_parameter_of_the_library(node: Node):
     compared = 0
     for kernel in kernels().values():

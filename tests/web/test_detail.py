@@ -91,6 +91,7 @@ def coming_in(rng: np.random.Generator, case: Case) -> Case:
     return replace(case, errors=np.full_like(case.errors, error), tolerance=tolerance)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("detail", [1, 2], ids=["geomipmap", "morph"])
 def test_random_terrain_from_random_eyes(node: Node, detail: int):
     rng = np.random.default_rng(detail)

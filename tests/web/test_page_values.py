@@ -82,6 +82,7 @@ def some_value(parameter: Parameter) -> Value:
     return tuple(found) if count > 1 else found[0]
 
 
+@pytest.mark.slow
 def test_there_are_parameters_of_every_widget():
     kinds = {parameter.widget.kind for _, _, parameter, _ in parameters()}
     assert kinds >= {

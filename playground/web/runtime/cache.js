@@ -9,6 +9,7 @@ import { createKeptStates } from "./kept_states.js";
 /** @typedef {ReturnType<typeof createCache>} Cache */
 
 const MOST = 1024; // results of any size: a driver spends memory on each texture besides its texels
+const VERSIONS = 4; // of one pass: whoever drags a slider comes back to none of them
 const SHARE_OF_STATES = 4; // a quarter of the budget may be earlier states of loops
 
 /** @param {number} limit bytes @param {import("./textures.js").Textures} textures */
@@ -28,6 +29,19 @@ export const createCache = (limit, textures) => {
   const drop = (key) => {
     known.get(key)?.results.forEach(textures.give);
     known.delete(key);
+  };
+
+  /** Of a pass that was just computed, drop the versions that were used least recently; a loop goes on in
+   *  place. @param {Cached} cached */
+  const dropVersions = (cached) => {
+    if (cached.results.size !== 1 || cached.iterations) return;
+    const [[path, { size }]] = cached.results;
+    const versions = [...known].filter(([, { results, iterations }]) => {
+      const other = results.size === 1 && !iterations ? results.get(path) : undefined;
+      return other && other.size[0] === size[0] && other.size[1] === size[1];
+    }).map(([key]) => key);
+    const over = Math.max(versions.length - VERSIONS, 0);
+    versions.filter((key) => !isPinned(key)).slice(0, over).forEach(drop);
   };
 
   const bytes = () => {
@@ -75,6 +89,7 @@ export const createCache = (limit, textures) => {
       if (before) cached.results.forEach(textures.give);
       known.set(key, found);
       used.add(key);
+      dropVersions(found);
       trim();
       return found;
     },
