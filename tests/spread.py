@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 
 TESTS = Path(__file__).parent
-MANY = 3  # cases of a function that are all for every day
+MANY = 2  # cases of a function that are all for every day
 SHARE = 4  # of more, one in so many
 
 

@@ -76,6 +76,7 @@ def test_a_sketch_is_a_value(sketch: playground.Sketch):
     assert hash(sketch.with_values({"height.seed": 3})) == hash(sketch.with_values({"height.seed": 3}))
 
 
+@pytest.mark.slow
 def test_one_call_renders_a_shipped_sketch():
     frame = playground.render("jacksboro", size=(96, 54), values={"size": 65})
     assert frame.array[..., :3].std() > 5
@@ -114,6 +115,7 @@ def test_numbers_of_numpy_will_do(any_engine, sketch):
     assert frame.array.shape == (36, 64, 4)
 
 
+@pytest.mark.slow
 def test_a_sketch_may_be_named_to_an_engine(any_engine):
     by_name = any_engine.read("diamond_square", "height")
     np.testing.assert_array_equal(any_engine.read(playground.load("diamond_square"), "height"), by_name)

@@ -592,6 +592,7 @@ def test_list_of_a_folder_lists_its_techniques(capsys: pytest.CaptureFixture[str
 # ── doctor ───────────────────────────────────────────────────────────────────
 
 
+@pytest.mark.slow
 def test_doctor_prints_the_context_as_text_and_as_json(run: Run):
     done = well(run("doctor"))
     assert re.search(r"^context +OpenGL \d\.\d$", done.stdout, re.MULTILINE)
@@ -602,6 +603,7 @@ def test_doctor_prints_the_context_as_text_and_as_json(run: Run):
     assert health["display"] == ""
 
 
+@pytest.mark.slow
 def test_doctor_without_a_context_says_what_to_do_and_leaves_with_1(run: Run):
     done = run("doctor", "--json", "--device", "99")
     assert done.returncode == 1

@@ -100,6 +100,7 @@ def test_renew_records_what_agrees_in_its_folder_and_refuses_the_rest(folder, ca
     assert json.loads((folder / NAME).read_text())["variants"] == {}
 
 
+@pytest.mark.slow
 def test_variants_that_ship_are_named_as_techniques_are(capsys):
     assert main(["variants", "list", "generation/fault_formation", "--json"]) == 0
     rows = json.loads(capsys.readouterr().out)
@@ -120,6 +121,7 @@ def test_nothing_to_verify_is_a_sentence(capsys, what, words):
     assert words in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_every_shipped_sketch_runs_its_fast_variants():
     """None of those that ship is left out: the record is that of the texts."""
     from playground.sketch.load import load_with
@@ -133,6 +135,7 @@ def test_every_shipped_sketch_runs_its_fast_variants():
     )
 
 
+@pytest.mark.slow
 def test_a_technique_that_has_a_folder_of_its_own_is_meant_by_its_name(capsys):
     assert main(["variants", "list", "generation/diamond_square"]) == 0
     assert "generation/diamond_square.comp" in capsys.readouterr().out

@@ -138,6 +138,7 @@ def test_a_reader_that_leaves_is_no_mistake(tmp_path: Path, arguments: list[str]
         assert both or (done.stderr == b"") == (status == 141)
 
 
+@pytest.mark.slow
 def test_notes_without_a_reader_do_not_end_a_command(tmp_path: Path):
     (tmp_path / "a.glsl").write_text(f"// a.glsl -- beyond 1, which is clamped\n{KERNEL}", encoding="utf-8")
     (tmp_path / "sketch.toml").write_text(SKETCH, encoding="utf-8")

@@ -89,6 +89,7 @@ def test_the_bound_is_the_environments(
         )
 
 
+@pytest.mark.slow
 def test_the_doctor_says_size_and_place(cached: Path, capsys: pytest.CaptureFixture[str]):
     assert cli.main(["doctor", "--json"]) == 0
     found = json.loads(capsys.readouterr().out)["cache"]

@@ -62,6 +62,7 @@ def test_a_record_becomes_pictures_whose_paths_are_printed(
     assert (pictures[0] != pictures[2]).any()
 
 
+@pytest.mark.slow
 def test_plain_flies_over_the_plain_form_of_every_technique(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -56,6 +56,7 @@ def run(site: Path) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_a_package_that_has_overwritten_this_one_is_named(site: Path):
     assert run(site).returncode == 0
     install(site, "swings-and-slides", "playground/__init__.py", "playground/swing.py")
@@ -69,6 +70,7 @@ def test_a_package_that_has_overwritten_this_one_is_named(site: Path):
     )
 
 
+@pytest.mark.slow
 def test_a_package_that_was_uninstalled_and_took_the_shared_file_with_it(site: Path):
     (site / "playground" / "__init__.py").unlink()
     done = run(site)
@@ -76,6 +78,7 @@ def test_a_package_that_was_uninstalled_and_took_the_shared_file_with_it(site: P
     assert done.stderr.endswith(f": python -m pip install --force-reinstall --no-deps {DISTRIBUTION}\n")
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_doctor_finds_one_that_does_no_harm_yet(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -50,6 +50,7 @@ def run(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
     return out.splitlines()
 
 
+@pytest.mark.slow
 def test_a_video(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("av")
     from playground.capture.video import count_pictures
@@ -158,6 +159,7 @@ def film(folder: Path) -> Iterator[subprocess.Popen[str]]:
         stream.close()
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
 def test_ctrl_c_leaves_a_shorter_video(folder: Path, film: subprocess.Popen[str]) -> None:

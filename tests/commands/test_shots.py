@@ -62,6 +62,7 @@ def test_json_names_the_files(mine: Path, capsys: pytest.CaptureFixture[str]):
     ]
 
 
+@pytest.mark.slow
 def test_without_a_sketch_it_lists_all_that_ship(capsys: pytest.CaptureFixture[str]):
     assert cli.main(["shots", "list"]) == 0
     rows = [line.split("\t") for line in capsys.readouterr().out.splitlines()]

@@ -122,6 +122,7 @@ with playground.headless() as engine:
 """
 
 
+@pytest.mark.slow
 def test_another_process_has_the_array_though_its_file_is_gone(any_engine, sketch):
     array = HEIGHTS * np.float32(2.25)
     changed = given(sketch, array)

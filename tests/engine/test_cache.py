@@ -17,6 +17,7 @@ def held(engine: Engine) -> int:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_bytes_are_those_of_what_is_cached(ctx):
     sketch = load("jacksboro").with_values({"size": 65, "view.grid": 33})
     with Engine(ctx, cache_bytes=3 * 2**20) as engine:
@@ -32,6 +33,7 @@ def test_bytes_are_those_of_what_is_cached(ctx):
         assert engine.internal.cache.bytes == held(engine) == 0
 
 
+@pytest.mark.slow
 def test_small_results_are_bounded_in_number_too(ctx, monkeypatch):
     monkeypatch.setattr(cache, "MOST", 24)
     sketch = load("diamond_square").with_values({"size": 17, "view.grid": 17})
@@ -43,6 +45,7 @@ def test_small_results_are_bounded_in_number_too(ctx, monkeypatch):
         assert engine.internal.ran == [], "the newest are cached"
 
 
+@pytest.mark.slow
 def test_of_a_pass_that_changes_with_every_picture_few_versions_stay_and_textures_are_used_again(ctx):
     sketch = load("diamond_square").with_values({"size": 17, "view.grid": 17})
     with Engine(ctx) as engine:
@@ -85,6 +88,7 @@ def test_versions_that_a_frame_uses_stay(ctx):
     pool.clear()
 
 
+@pytest.mark.slow
 def test_a_texture_that_is_used_again_shows_nothing_of_its_old_mipmaps(ctx):
     sketch = load("jacksboro").with_values({"size": 65, "view.grid": 33})
     suns = [sketch.with_values({"light.sun": (20.0 * number, 15.0)}) for number in range(cache.VERSIONS + 4)]

@@ -312,6 +312,7 @@ def test_a_text_that_replaces_the_file_is_read_as_its_dialect(any_engine, folder
     assert traits_of(changed).moves and not traits_of(load(path)).moves
 
 
+@pytest.mark.slow
 def test_check_names_the_dialect_and_the_line(folder):
     with Sandbox() as sandbox:
         good = check_file(folder.write("good.frag", TEXTS["toy"]), sandbox)

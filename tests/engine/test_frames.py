@@ -111,6 +111,7 @@ def test_what_reads_neither_time_nor_what_is_fed_back_runs_once(any_engine, sket
     assert any_engine.internal.ran == [], "the same frame"
 
 
+@pytest.mark.slow
 def test_the_picture_is_a_function_of_time_and_size_alone(ctx, sketch):
     def cold(time, size):
         with Engine(ctx) as engine:

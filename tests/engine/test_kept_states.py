@@ -58,6 +58,7 @@ def steps_of(engine: Engine, sketch, frame: int) -> int:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_any_order_of_times_gives_the_bits_that_a_cold_engine_gives(ctx, sketch, seed):
     with Engine(ctx) as cold:
@@ -73,6 +74,7 @@ def test_any_order_of_times_gives_the_bits_that_a_cold_engine_gives(ctx, sketch,
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_going_back_frame_by_frame_runs_few_frames(any_engine, sketch):
     assert steps_of(any_engine, sketch, 600) == 601
     back = [steps_of(any_engine, sketch, frame) for frame in range(599, -1, -1)]
@@ -82,6 +84,7 @@ def test_going_back_frame_by_frame_runs_few_frames(any_engine, sketch):
     assert steps_of(any_engine, sketch, 600) < 601, "and what lies ahead is not forgotten"
 
 
+@pytest.mark.slow
 def test_a_jump_back_costs_a_share_of_its_distance(any_engine, sketch):
     steps_of(any_engine, sketch, 3000)
     assert steps_of(any_engine, sketch, 2000) <= 500

@@ -176,6 +176,7 @@ one.release()
 """
 
 
+@pytest.mark.slow
 def test_each_engine_draws_in_its_own_context(sketch):
     done = subprocess.run(
         [sys.executable, "-c", TWO_CONTEXTS, sketch.file],

@@ -85,6 +85,7 @@ def test_render_and_export_print_each_once(sketch, capsys):
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_check_shows_them_and_fails_for_none(sketch, capsys):
     assert cli.main(["check", "."]) == 0
     out = capsys.readouterr().out
@@ -96,6 +97,7 @@ def test_check_shows_them_and_fails_for_none(sketch, capsys):
     assert report["ok"] and SECOND in [w["message"] for w in report["warnings"]]
 
 
+@pytest.mark.slow
 def test_a_former_name_of_a_parameter_is_reported_once(folder, monkeypatch, capsys):
     renamed = KERNEL.replace("slider(0, 2)", 'slider(0, 2) was("lazy")').replace("return 1.0", "return idle")
     loaded = folder.one(renamed.replace("#line 7\n", ""), more="set = { lazy = 2.0 }")
@@ -126,6 +128,7 @@ def test_a_file_that_goes_while_its_picture_is_shown_is_no_mistake_of_the_list(a
     assert Warnings(lambda kernel: ()).of(loaded, any_engine.internal.plan) == []
 
 
+@pytest.mark.slow
 def test_a_hidden_default_is_reported_by_render_and_check(folder, monkeypatch, capsys):
     folder.one(
         KERNEL.replace("return 1.0", "return idle").replace("#line 7\n", ""), more="set = { idle = 2.0 }"

@@ -187,6 +187,7 @@ def test_a_crash_says_how_and_where(sandbox, folder, number, message):
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
+@pytest.mark.slow
 def test_a_worker_that_died_is_replaced_before_it_is_needed(sandbox, folder):
     report = sandbox.run(TrySketch(folder.one(CRASH)))
     assert isinstance(report.error, SandboxCrash)
@@ -252,6 +253,7 @@ def test_what_takes_too_long_is_stopped(sandbox, folder, monkeypatch):
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
+@pytest.mark.slow
 def test_the_pass_that_takes_too_long_is_the_one_that_is_named(sandbox, folder, monkeypatch):
     """A driver draws later than it is called: the quick passes after a slow one are not to blame."""
     reads = "uniform sampler2D from; //! input\n"
@@ -273,6 +275,7 @@ def test_the_pass_that_takes_too_long_is_the_one_that_is_named(sandbox, folder, 
     assert report.error.diagnostics[0].file.endswith("slow.glsl")
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_submit_never_waits_and_the_newest_wins(folder):
     # Large requests: a pipe that is not read would fill.
@@ -296,6 +299,7 @@ def test_submit_never_waits_and_the_newest_wins(folder):
         assert sandbox.poll() is None
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_a_worker_that_takes_long_has_a_spare_that_takes_its_place(folder):
     with Sandbox(limit_seconds=3600.0) as sandbox:
@@ -391,6 +395,7 @@ def two(folder):
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "pipe"),
     [
@@ -415,6 +420,7 @@ def test_a_parent_that_is_stopped_leaves_no_worker(two, number, pipe):
             os.kill(int(pid), signal.SIGKILL)
 
 
+@pytest.mark.slow
 def test_no_module_of_the_user_s_folder_is_run(two):
     """A sketch is data: what lies in its folder is never imported, under any name."""
     for name in ("numpy", "struct", "playground"):

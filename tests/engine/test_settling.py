@@ -80,6 +80,7 @@ def test_a_flood_ends_few_steps_after_it_has_settled(engine, flood, size, waits)
     assert engine.internal.runner.kernels.settling.compared <= 2 * isqrt(ran) + 2
 
 
+@pytest.mark.slow
 def test_its_bits_are_those_of_every_step_run(ctx, engine, flood):
     blur = SPREAD.replace("max(previous(texel), max(", "max(0.5 * previous(texel), 0.999 * max(")
     found = engine.read(flood(blur), "a").copy()
@@ -156,6 +157,7 @@ def test_what_may_change_after_a_step_that_did_not_is_refused(flood, change, com
     assert raised.value.diagnostics[0].line == 1
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_in_a_loop_each_run_of_it_ends_by_itself(ctx, engine, folder, flood):
     flood()

@@ -321,6 +321,7 @@ def test_it_is_cached_on_disk(ctx, sketch, turned, tmp_path, waits):
         assert len(turned.materials) == 1
 
 
+@pytest.mark.slow
 def test_the_sandbox_takes_no_time_for_it(tmp_path: Path):
     """Only shaders are tried there: terrain of pieces by the thousand is not made."""
     (tmp_path / "sketch.toml").write_text(

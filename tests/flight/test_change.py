@@ -120,6 +120,7 @@ def test_the_time_of_day_stays_unless_the_sketch_says_another(any_engine: Engine
         assert changed(flight, at("12.0")) == 12.0
 
 
+@pytest.mark.slow
 def test_nothing_is_left_on_the_graphics_card(ctx: Any, alive: Any, tmp_path: Path) -> None:
     sketches = [sketch_of(tmp_path, TERRAIN.replace("0.25", number)) for number in ("0.25", "0.5")]
     held = []

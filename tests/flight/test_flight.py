@@ -128,6 +128,7 @@ def test_a_record_that_is_not_there_or_is_no_text_says_so(tmp_path):
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_a_replay_gives_the_same_bits_from_cold_and_from_warm_and_however_often_one_looks(
     ctx, terrain_of, tmp_path
 ):
@@ -221,6 +222,7 @@ def rows_below_horizon(flight, size):
     )
 
 
+@pytest.mark.slow
 def test_there_is_no_hole_below_the_horizon_near_the_eye(flight):
     """Drawn over magenta, at every attitude: none of it where a ray meets height 0 within the parts made."""
     holes = looked = drawn = 0
@@ -246,6 +248,7 @@ def test_the_hole_finder_finds_a_hole(flight):
     assert np.count_nonzero(magenta & (rows_below_horizon(flight, SIZE) < 1.8 * flight.plot.width)) > 50
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("skirt", [None, 0.0])
 def test_no_crack_shows_between_levels_and_without_skirts_some_would(
     small_engine, terrain_of, monkeypatch, skirt

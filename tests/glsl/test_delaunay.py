@@ -210,6 +210,7 @@ def test_a_triangulation_that_does_not_fit_has_a_sentence(any_engine, make_sketc
     assert caught.value.diagnostics[0].line == 5
 
 
+@pytest.mark.slow
 def test_opengl_3_3_is_enough(any_engine, terrain, tmp_path):
     kinds = {kernel.kind for _, kernel in kernels_of(read_technique("generation/delaunay", GLSL, GLSL))}
     assert kinds == {"source", "draw", "kernel"}

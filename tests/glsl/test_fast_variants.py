@@ -82,6 +82,7 @@ def with_edit(text):
     return f"{head}return 0.2 * ({value.replace(';', ');', 1)}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sketch", "file"),
     [("diamond_square", "generation/diamond_square/raw.glsl"), ("fourier", "generation/fourier/filter.glsl")],

@@ -132,6 +132,7 @@ def test_the_dye_is_carried_fades_and_is_added_at_the_stirrers(engine, sketch, f
     np.testing.assert_allclose(found, expected, atol=fine(before, found))
 
 
+@pytest.mark.slow
 def test_there_is_never_more_dye_anywhere_than_was_put_in(engine, sketch):
     for frame in (0, 10, 60, 300):
         dye = state(engine, sketch, "dyed", frame)[..., :3]

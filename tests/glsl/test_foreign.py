@@ -86,6 +86,7 @@ def music(
     return texels("spectrum", size, f"number = {number}{content}", time=time)[..., 0]
 
 
+@pytest.mark.slow
 def test_a_made_up_sound_has_tones_a_beat_and_a_wave(texels):
     times = np.arange(0.0, 6.0, 0.05)
     found = np.stack([music(texels, time) for time in times])

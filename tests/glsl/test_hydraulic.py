@@ -108,6 +108,7 @@ def test_rock_and_water_are_conserved_in_a_thousand_steps_with_closed_edges(engi
     assert np.abs(bed - rock).mean() > 1 and load.max() > 0.1, "it is worn"
 
 
+@pytest.mark.slow
 def test_what_leaves_through_open_edges_is_accounted_for(engine, eroded):
     heights = hills((33, 29), 1)
     sketch = eroded(heights, (4000.0, 3500.0), evaporation=0.0, hours=5000, capacity=8.0)

@@ -100,6 +100,7 @@ def test_it_is_guarded(name):
     assert guard.group(1) == re.sub(r"\W", "_", name.removesuffix(".glsl")).upper()
 
 
+@pytest.mark.slow
 @each("name", pure_files)
 def test_it_compiles_alone(ctx, name):
     text, code = (GLSL / name).read_text(encoding="utf-8"), read_source(GLSL / name, (GLSL,)).code
@@ -129,6 +130,7 @@ def test_a_driver_takes_what_this_asks_of_it(ctx):
     _ = ctx.error
 
 
+@pytest.mark.slow
 def test_what_makes_and_lights_the_terrain_does_not_follow_the_camera():
     """A name that the engine gives makes a pass follow it, even where it names a variable or a field."""
     folders = ("generation/", "erosion/", "texturing/", "lighting/")

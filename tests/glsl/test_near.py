@@ -273,6 +273,7 @@ def test_wet_ground_gives_back_what_its_film_lets_out(on_gpu):
     assert np.all(found < dry)
 
 
+@pytest.mark.slow
 def test_snow_covers_hollows_first_and_everything_at_last(on_gpu):
     file = "scene/near/snow.glsl"
     over = np.linspace(-0.6, 0.4, 41).astype(np.float32)

@@ -56,6 +56,7 @@ def test_all_salts_differ_by_more_than_seeds_do():
         assert min(apart, 2**32 - apart) > WINDOW, (one, other)
 
 
+@pytest.mark.slow
 def test_whoever_draws_has_a_salt():
     """Kernels, not the library that they include; the technique's name begins as the file's does."""
     seen = 0

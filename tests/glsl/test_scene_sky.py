@@ -86,6 +86,7 @@ def test_colours_fade_by_the_air_in_front_of_them(any_engine, scene):
     assert checked > 25
 
 
+@pytest.mark.slow
 def test_where_no_clouds_are_drawn_they_throw_no_shadows(any_engine, scene):
     """All ground is in the light of daylight's even cover, and so is the air in front of it."""
     scene = scene.with_values({"view.clouds": "none"})

@@ -162,6 +162,7 @@ def test_between_walls_without_end(read, angle):
 # The exact K
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [real, cone], ids=["real", "cone"])
 def test_k_is_close_to_the_exact_one(read, make):
     terrain = make(49)

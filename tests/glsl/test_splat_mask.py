@@ -106,17 +106,20 @@ def refused(folder: Path, text: str) -> str:
     return sentence
 
 
+@pytest.mark.slow
 def test_an_alpha_map_of_another_size_than_stated(paint, tmp_path):
     found = refused(tmp_path, PASS.format(paint(random_bytes(20, 20)), ", texels = [64, 64]", ""))
     assert "sketch.toml" in found and "mask.png" in found
     assert "has 20 x 20 texels; 64 x 64 were expected" in found
 
 
+@pytest.mark.slow
 def test_an_alpha_map_of_other_proportions(paint, tmp_path):
     found = refused(tmp_path, PASS.format(paint(random_bytes(20, 40)), "", "size = [64, 64]\n"))
     assert "mask.png" in found and "40 x 20" in found and "64 x 64" in found
 
 
+@pytest.mark.slow
 def test_a_missing_image(paint, tmp_path):
     paint(random_bytes(4, 4))
     found = refused(tmp_path, PASS.format("masks.png", "", ""))
@@ -150,6 +153,7 @@ def test_base_images_may_be_files_decoded_to_linear_light(any_engine, make_sketc
     np.testing.assert_allclose(found, (128 * dark + 127 * light) / 255, atol=2e-3)
 
 
+@pytest.mark.slow
 def test_a_missing_base_image(paint, tmp_path):
     mask = paint(random_bytes(9, 9))
     text = SPLAT.format(mask) + "".join(LAYERS.format(n, "mask.png") for n in ("grass", "rock", "snow"))

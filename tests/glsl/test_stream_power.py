@@ -67,6 +67,7 @@ def slopes_of(height, receiver, spacing):
     return np.where(length > 0, drop / np.maximum(length, 1e-9), np.nan)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("power", [0.4, 0.5])
 def test_slopes_of_a_steady_state_follow_the_law(worn, power):
     """U = K A^m S, so S A^m K / U is 1 and log S falls with log A by m: both within 1 %."""
@@ -87,6 +88,7 @@ float kernel(ivec2 texel) { return 2 * texel.x < size.x ? 0.125 : 1.5; }
 """
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*accumulation.comp is left out:playground.errors.PlainFormWarning")
 def test_rain_makes_a_steady_state_of_discharges(engine, make_sketch):
@@ -149,6 +151,7 @@ vec4 kernel(ivec2 texel) {
     np.testing.assert_allclose(found, wanted, rtol=2e-6)
 
 
+@pytest.mark.slow
 def test_nothing_is_under_lakes_and_all_areas_arrive(worn):
     height, receiver, area, low = worn([97, 130], extent=[9600.0, 12900.0])
     edge = edge_of(height.shape)
@@ -158,6 +161,7 @@ def test_nothing_is_under_lakes_and_all_areas_arrive(worn):
     np.testing.assert_allclose(height[edge], low[edge], atol=2e-4, err_msg="edges stay")
 
 
+@pytest.mark.slow
 def test_rivers_of_a_coarse_grid_are_those_of_the_fine_one(engine, make_sketch):
     passes = (
         PASSES.replace("[[pass]]", '[[pass]]\nsize = "(size.x - 1) // 2 + 1"')
@@ -196,6 +200,7 @@ coarse_level = "rivers:height"
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_twice_as_hard_is_half_as_erodible_and_uplift_is_a_factor(worn):
     values = {"steps": 12, "finer_steps": 2, "erodibility": 8.0}
     factor = 'inputs = { height = "low", INPUT = "two" }'
@@ -210,6 +215,7 @@ def test_twice_as_hard_is_half_as_erodible_and_uplift_is_a_factor(worn):
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_a_terrain_grows_with_its_age(worn):
     values = {"steps": 20, **ONE_LEVEL}
     young, _, _, low = worn(65, age=0.02, **values)
@@ -219,6 +225,7 @@ def test_a_terrain_grows_with_its_age(worn):
     assert (np.diff(means) > 0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_hillsides_stand_no_steeper_than_they_may(worn):
     values = {"rise": 5.0, "creep": 0.0, "slides": 30, **ONE_LEVEL}
@@ -266,6 +273,7 @@ vec4 kernel(ivec2 texel) { return vec4((texel.x + texel.y) % 2 == 0 ? 0.51 : 0.4
 BOARD = LOW.replace("return 0.1", "return ((texel.x + texel.y) % 2 == 0 ? 20.0 / 1200.0 : 0.0) + 0.1")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("low", "values"), [(LOW, ONE_LEVEL), (BOARD, {})], ids=["one level", "from a board"]
 )

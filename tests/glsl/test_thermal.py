@@ -166,6 +166,7 @@ def test_what_is_not_too_steep_stays_to_the_last_bit(engine, fallen):
     np.testing.assert_array_equal(engine.read(sketch, "worn"), heights)
 
 
+@pytest.mark.slow
 def test_terrains_of_several_sizes_fall_alike(engine, make_sketch):
     """From coarse to fine the long ways are gone on the same grids, whatever the size.
 

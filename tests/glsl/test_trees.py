@@ -91,6 +91,7 @@ def test_none_stands_in_water_and_all_others_stay(kept, ctx, make_sketch, level)
     assert rows(table(kept, sketch)[0]) == dry
 
 
+@pytest.mark.slow
 def test_farther_away_fewer_are_kept_by_a_known_share(kept, ctx, make_sketch):
     sketch = placed(make_sketch, "all_round = true, whole = 150, reach = 1200, trees = 200000")
     tree, key = table(kept, sketch)

@@ -115,6 +115,7 @@ def test_a_stand_has_one_mean_colour_at_every_distance(kept, ctx, make_sketch, m
     np.testing.assert_allclose(found, np.broadcast_to(found[0], (4, 3)), rtol=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("trees", [4096, 512])
 def test_a_stand_has_that_colour_whatever_there_is_room_for(kept, ctx, make_sketch, trees):
     """Of more trees than a list has room for some are drawn, and larger: the ground has the rest.
@@ -237,6 +238,7 @@ set = { sun = [270, 11] }
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_a_wood_shades_the_meadow_beside_it_and_lights_none(kept, ctx, make_sketch):
     sketch = make_sketch(CANOPY, size=[129, 97], extent=[900.0, 800.0], relief=60.0, wood=WOOD)
     density, canopy = kept.read(sketch, "wood:density").copy(), kept.read(sketch, "canopy:canopy").copy()
@@ -268,6 +270,7 @@ def test_where_all_trees_have_needles_their_wood_has_the_light_of_needles(kept, 
     np.testing.assert_allclose(high, only, rtol=2e-3)
 
 
+@pytest.mark.slow
 def test_single_trees_end_where_their_table_ends(kept, ctx, make_sketch):
     """The table has no more than 1024 cells each way: what is beyond is in the ground, none is lacking."""
     found, sides = [], []

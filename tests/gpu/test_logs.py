@@ -326,6 +326,7 @@ def test_line_numbers_survive_any_source_number(wording: str) -> None:
 
 
 # A quarter of the texts every day, for they are made by chance: the others are no different.
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [7, *(pytest.param(n, marks=pytest.mark.slow) for n in (107, 207, 307))])
 def test_no_text_makes_the_reader_raise(seed: int) -> None:
     rng = random.Random(seed)

@@ -229,6 +229,7 @@ def test_a_page_has_few_landmarks(book):
     assert set(named) <= headings and len(named) >= 3
 
 
+@pytest.mark.slow
 def test_a_second_build_removes_what_is_no_more_and_nothing_else(book, lesson, engine, make_lesson):
     own = book / "my-notes.txt"
     own.write_text("mine", encoding="utf-8")

@@ -106,6 +106,7 @@ def test_a_live_figure_is_not_drawn_here_as_well(opened):
     assert widget.picture == before and widget.values == {"height.smoothing": 0.05}
 
 
+@pytest.mark.slow
 def test_a_widget_holds_its_figure(opened, lesson):
     """All of it, so that it runs without a kernel; what no page can run is drawn by the kernel."""
     for name, labels in (

@@ -344,6 +344,7 @@ def test_a_score_is_linear_between_the_beginning_and_the_picture_asked_for():
         score(target, begin, target[:4])
 
 
+@pytest.mark.slow
 def test_both_languages_say_all(task, engine):
     english, french = task_labels("en"), task_labels("fr")
     assert english.keys() == french.keys()

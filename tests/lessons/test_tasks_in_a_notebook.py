@@ -32,6 +32,7 @@ def opened(task, engine, process, monkeypatch):
     return lambda *given: NotebookLesson(task(*given).lesson)
 
 
+@pytest.mark.slow
 def test_a_verdict_has_points_marks_and_pictures_of_what_is_shown_only(opened):
     lesson = opened(KERNEL)
     checked = lesson.check("third", RAW.replace(FORMULA, "number * smoothing"))

@@ -82,6 +82,7 @@ def notices_of(bench: Bench) -> str:
     return "\n".join(notice.text for notice in bench.notices.items)
 
 
+@pytest.mark.slow
 def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: Bench) -> None:
     bench.session.drafts.set("height.level", 0.2)
     bench.session.clock.time = 1.5
@@ -104,6 +105,7 @@ def test_a_picture_is_what_the_window_shows_with_all_that_is_set_by_hand(bench: 
     assert larger != made and read_png(larger)[0].shape == (120, 160, 4)
 
 
+@pytest.mark.slow
 def test_what_stops_leaves_nothing_and_the_window_may_close_meanwhile(bench: Bench) -> None:
     bench.captures.wish = Wish(PICTURE, multiple=0, size=(6000, 6000))
     bench.captures.start()

@@ -141,6 +141,7 @@ def test_every_pass_is_read_exactly_where_the_ray_meets_the_terrain(
     assert dict(engine.internal.runs) == runs and session.draws == draws  # nothing was drawn for it
 
 
+@pytest.mark.slow
 def test_in_a_map_it_is_the_texel_that_the_pixel_shows(session: Session, inspector: Inspector) -> None:
     session.frame(SIZE)
     session.show("height:other")

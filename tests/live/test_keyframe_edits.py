@@ -85,6 +85,7 @@ def test_what_is_seen_is_keyed_and_is_no_longer_set_by_hand(bench: Bench, path: 
     assert not np.array_equal(draw_frame(bench), first) and not np.array_equal(draw_frame(bench), second)
 
 
+@pytest.mark.slow
 def test_each_step_is_undone_and_done_again_in_the_file_too(bench: Bench, path: Path) -> None:
     texts = [path.read_text(encoding="utf-8")]
 
@@ -142,6 +143,7 @@ def test_a_second_at_the_same_time_goes_into_the_first(bench: Bench, path: Path)
     )
 
 
+@pytest.mark.slow
 def test_an_invalid_edit_is_reported_and_nothing_is_written(bench: Bench, path: Path) -> None:
     assert not bench.keyframes.add_here([], camera=False)
     assert "choose what the keyframe sets" in bench.notices.items[-1].text
@@ -164,6 +166,7 @@ def test_the_whole_terrain_is_given_in_metres(bench: Bench, path: Path) -> None:
     assert plan is not None and dict(found.camera)["distance"] == pytest.approx(plan.eye.distance, abs=0.01)
 
 
+@pytest.mark.slow
 def test_a_sketch_that_ships_offers_a_copy(any_engine: Engine, tmp_path: Path) -> None:
     session = Session(any_engine, "l_dot_n", values={"size": 33})
     bench = Bench(session, WindowControls(lambda: None), folder=tmp_path)

@@ -113,6 +113,7 @@ def attempts():
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
     monkeypatch = pytest.MonkeyPatch()
     desk.click("Start##start")
@@ -257,6 +258,7 @@ def test_the_solution_s_picture_is_that_of_the_model_answer(desk, tasks):
     assert not desk.session.drafts.texts
 
 
+@pytest.mark.slow
 def test_values_are_set_with_sliders_and_checked(desk, tasks):
     desk.reader.go(1)
     desk.run_frames(4)
@@ -275,6 +277,7 @@ def test_values_are_set_with_sliders_and_checked(desk, tasks):
     assert attempts()["after/rough"].values == {"height.smoothing": 0.8}
 
 
+@pytest.mark.slow
 def test_a_score_follows_the_picture_and_the_best_is_kept(desk, tasks):
     desk.reader.go(1)
     desk.run_frames(4)

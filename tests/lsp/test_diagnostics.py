@@ -24,6 +24,7 @@ def places(found: list[dict[str, Any]]) -> list[tuple[int, int]]:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_what_is_typed_has_the_diagnostics_of_check(editor: Editor, folder: Path) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, KERNEL)
@@ -181,6 +182,7 @@ float kernel(ivec2 texel) {{ float x = float(texel.x); return M18; }}
 """
 
 
+@pytest.mark.slow
 def test_an_endless_loop_does_not_hold_up_what_is_typed_next(editor: Editor, folder: Path) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, KERNEL)

@@ -256,6 +256,7 @@ sys.stdin.read()
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 @linux
 @pytest.mark.parametrize(
     ("request_name", "pipe", "limit"),

@@ -114,6 +114,7 @@ float kernel(ivec2 texel) {{
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 @pytest.mark.parametrize("layers", [1, pytest.param(16, marks=pytest.mark.slow)])
 def test_of_many_lines_the_one_that_makes_nan_stays(sketch, worker, tmp_path, layers):
     text = layered(layers)
@@ -126,6 +127,7 @@ def test_of_many_lines_the_one_that_makes_nan_stays(sketch, worker, tmp_path, la
     assert search.confirmed() is not None
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_a_nan_of_another_making_is_not_taken_for_it(sketch, worker, tmp_path):
     """Without the line that keeps the divisor from zero there is NaN too, at another texel."""
@@ -184,6 +186,7 @@ def test_not_finite_means_the_same_kind_in_no_new_place():
 # ── what the compiler refuses ────────────────────────────────────────────────
 
 
+@pytest.mark.slow
 def test_a_compile_error_in_an_include_is_isolated(sketch, worker, tmp_path):
     path = sketch(
         f'#include "noise/hash.glsl"\n#include "own.glsl"\n{HEIGHT}float kernel(ivec2 t) {{\n'
@@ -342,6 +345,7 @@ def run(*arguments: str) -> int:
     return main(["reduce", *arguments])
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_a_command_judges_and_the_folder_says_how(sketch, tmp_path, capsys):
     path = sketch(MAGIC)

@@ -229,6 +229,7 @@ def test_the_picture_is_the_windows_or_one_of_a_size(desk: Desk):
         assert "expected" in picture(query)
 
 
+@pytest.mark.slow
 def test_a_picture_waits_for_the_frames_before_it_and_does_not_hold_the_window_up(
     desk: Desk, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -347,6 +348,7 @@ def test_events_tell_of_values_saves_and_errors(desk: Desk, tmp_path: Path):
     assert reloaded["milliseconds"] > 0 and fixed["errors"] == []
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_ten_thousand_values_lose_neither_the_last_nor_an_error(desk: Desk):
     url = opened(desk)

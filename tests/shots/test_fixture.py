@@ -93,6 +93,7 @@ def test_earlier(shot, engine):
 """
 
 
+@pytest.mark.slow
 def test_what_went_into_an_engines_last_frame_is_looked_at(
     run: Run, edit: Edit, pytester: pytest.Pytester
 ) -> None:
@@ -212,6 +213,7 @@ def test_references_of_a_test_file_that_is_gone_or_compares_nothing_any_more_fai
     result.stdout.fnmatch_lines(["no test uses 3 references; remove:", "*test_slope.py/numpy/ramp.png"])
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 @pytest.mark.parametrize("dist", ["loadfile", pytest.param("each", marks=pytest.mark.slow)])
 def test_workers_of_xdist_tell_what_they_wrote_and_used(

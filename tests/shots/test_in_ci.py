@@ -57,6 +57,7 @@ def test_a_path_after_the_option_is_a_path(accepted: Run) -> None:
 # ── Progress ─────────────────────────────────────────────────────────────────
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("workers", [(), ("-n", "1", "--dist", "loadfile")])
 def test_the_progress_ends_at_a_hundred_percent(run: Run, workers: tuple[str, ...]) -> None:
     """Unused references are reported as a test that was not collected."""

@@ -105,6 +105,7 @@ def noise_like(shape: tuple[int, int] = (90, 160)) -> Picture:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_the_same_build_catches_every_defect_of_jacksboro(results: list[Result]):
     assert survivors(results, 0) == []
     caught, of = kill_rate(results, 0)
@@ -165,6 +166,7 @@ def test_a_comparison_that_forgets_alpha_is_seen(bench: Bench, monkeypatch: pyte
 # ── the machinery breaks what it says, and nothing else ──────────────────────
 
 
+@pytest.mark.slow
 def test_texts_read_again_with_comments_draw_the_same_bits(bench: Bench):
     shot = shot_of(bench.sketch, size=SIZE)
     expected = bench.unbroken(shot)
@@ -324,6 +326,7 @@ HARMLESS = Process(
 )
 
 
+@pytest.mark.slow
 def test_what_must_not_matter_does_not(mine: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setattr(repeatability_module, "processes", lambda count, drivers: [HARMLESS])
     bench = Bench(any_engine, load(mine))
@@ -339,6 +342,7 @@ def test_nor_does_it_to_jacksboro(bench: Bench, jacksboro: Sketch, monkeypatch: 
     assert [(one.refused, one.identical) for one in found] == [("", True), ("", True)]
 
 
+@pytest.mark.slow
 def test_a_process_that_fails_counts_as_refused(mine: Path, any_engine: Engine):
     bench = Bench(any_engine, load(mine))
     shot = shot_of(bench.sketch)
@@ -391,6 +395,7 @@ def test_no_false_alarm_in_many_drawings(bench: Bench, jacksboro: Sketch):
 # ── the command ──────────────────────────────────────────────────────────────
 
 
+@pytest.mark.slow
 def test_the_command_prints_a_row_a_mutant_and_writes_pictures(
     mine: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ):

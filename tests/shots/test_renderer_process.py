@@ -240,6 +240,7 @@ ENDS = {
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_each_end_has_its_message_and_the_next_shot_is_drawn(fake: RendererProcess) -> None:
     for name, (kind, words) in ENDS.items():
         with pytest.raises(kind, match=words):
@@ -248,6 +249,7 @@ def test_each_end_has_its_message_and_the_next_shot_is_drawn(fake: RendererProce
     assert "drew next" in fake.printed()
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_a_draw_that_hangs_is_stopped_and_the_next_is_drawn(fake: RendererProcess) -> None:
     assert fake.render(made_up("first")).drawn == "first"
@@ -272,6 +274,7 @@ def test_a_worker_that_cannot_start_is_tried_twice_and_no_more(fake: RendererPro
         assert other.render(made_up("first")).drawn == "first"
 
 
+@pytest.mark.slow
 def test_a_worker_that_died_between_two_shots_is_nobodys_crash_and_closing_ends_the_next(
     fake: RendererProcess,
 ) -> None:
@@ -287,6 +290,7 @@ def test_a_worker_that_died_between_two_shots_is_nobodys_crash_and_closing_ends_
     assert "drew second" in fake.printed()
 
 
+@pytest.mark.slow
 def test_a_worker_ends_with_its_parent_in_the_middle_of_a_draw(fake: RendererProcess, tmp_path: Path) -> None:
     os.mkfifo("lives")
     (tmp_path / "parent.py").write_text(PARENT)
@@ -307,6 +311,7 @@ ENDING = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_how_a_worker_ends_is_reported_by_the_plugin(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch

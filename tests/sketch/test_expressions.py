@@ -57,6 +57,7 @@ def grown(rng: random.Random, depth: int) -> tuple[str, Fraction]:
     return {"+": (f"({a} + {b})", x + y), "-": (f"({a} - {b})", x - y), "*": (f"({a} * {b})", x * y)}[kind]
 
 
+@pytest.mark.slow
 def test_random_expressions_agree_with_exact_arithmetic():
     rng = random.Random(4)
     exact = 0

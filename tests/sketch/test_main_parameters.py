@@ -62,6 +62,7 @@ def test_of_a_technique_opened_alone_all_its_own_are_main(folder):
     assert load(folder.path / "terrain.glsl").main == ("height.rise",)
 
 
+@pytest.mark.slow
 @each("name", sorted(shipped_sketches()))
 def test_a_shipped_sketch_says_what_it_is_about(name):
     sketch = load(SKETCHES / f"{name}.toml")

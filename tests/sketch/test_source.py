@@ -254,6 +254,7 @@ def test_names_that_no_file_can_have_are_sentences(write, name):
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_a_few_lines_cannot_fill_the_memory(write):
     for i in range(40):
         write(f"l{i}.glsl", f'#include "l{i + 1}.glsl"\n#include "l{i + 1}.glsl"\n')
@@ -300,6 +301,7 @@ def test_reading_imports_no_opengl():
     assert done.stdout.strip() == "[]"
 
 
+@pytest.mark.slow
 def test_any_bytes_are_read_or_refused(write):
     rng = random.Random(6)
     write("lib.glsl", "x\n")

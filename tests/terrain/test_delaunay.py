@@ -90,6 +90,7 @@ def test_every_circle_is_empty(rules, by_flips):
         assert all(depth(made, triangle, point) <= 0 for point in others)
 
 
+@pytest.mark.slow
 def test_the_circles_of_many_triangles_are_empty_of_their_neighbours():
     """Where no neighbour's corner lies in a circle, no point at all does (Delaunay's lemma)."""
     made = triangulate(Rules(points=1500, random_weights=True))
@@ -279,6 +280,7 @@ def test_sides_are_as_given_and_lattice_numbers_are_floats(proportion):
     assert made.places[3].tolist() == list(made.sides)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("proportion", [1.0, LONGEST])
 def test_no_point_comes_near_an_edge(proportion):
     """As many as there may be: each stood a lattice spacing and more from the edges of its triangle."""

@@ -291,6 +291,7 @@ def test_places_are_read_once_however_often_they_are_used(read, monkeypatch):
     assert sorted(seen) == [(3, 2), (3 * MOST_TRIANGLES, 12)]
 
 
+@pytest.mark.slow
 def test_parts_and_numbers_have_bounds(read):
     with pytest.raises(DataError, match=f"has more than {MOST_PARTS} parts"):
         read(much(nodes=MOST_PARTS // 64 + 1, parts=64))

@@ -129,6 +129,7 @@ def test_what_goes_far_beyond_the_terrain_is_drawn_where_it_is_on_it():
     assert draw([], grid, 5.0, filled=True).max() == 0.0
 
 
+@pytest.mark.slow
 def test_a_long_and_winding_line_is_drawn_in_a_moment():
     walk = 300 + RNG.standard_normal((50_000, 2)).cumsum(0)
     made = draw([Shape("line", (walk,))], Grid((601, 601), (10.0, 10.0)), 15.0, filled=True)

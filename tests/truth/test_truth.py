@@ -209,6 +209,7 @@ def test_a_point_sun_is_the_limit_of_small_discs():
     assert 0.01 < (point[0] == 0).mean() < 0.5
 
 
+@pytest.mark.slow
 def test_few_strips_do():
     terrain = LANDS["real"](49)
     fine, coarse = (sunlight(terrain, 250.0, 5.0, count=c) for c in (64, 16))
@@ -277,6 +278,7 @@ def test_a_sky_that_brightens_upwards():
 # Light between places
 
 
+@pytest.mark.slow
 def test_what_is_not_sky_is_terrain():
     for terrain in (bowl(17, rim=45.0), valley(17)):
         matrix = exchange(terrain)
@@ -299,6 +301,7 @@ def test_views_are_mutual():
     assert there == pytest.approx(back, rel=0.1) and there > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("colour", [0.3, 0.8])
 def test_in_a_bowl_all_bounces_add_up_to_the_closed_form(colour):
     """Stewart and Langer's K / (1 - C (1 - K)) is exact inside a sphere: all its places are alike."""
@@ -309,6 +312,7 @@ def test_in_a_bowl_all_bounces_add_up_to_the_closed_form(colour):
     np.testing.assert_allclose(found[np.hypot(x, y) < 0.8], k / (1 - colour * (1 - k)), atol=0.012)
 
 
+@pytest.mark.slow
 def test_a_valleys_walls_light_each_other():
     """Across an endless valley two faces exchange half the difference of the sines of their angles."""
     a, n, colour = np.radians(40), 25, 0.6
@@ -331,6 +335,7 @@ def test_a_valleys_walls_light_each_other():
     )
 
 
+@pytest.mark.slow
 def test_bounces_converge_and_add():
     terrain = bowl(9)
     direct = sky_visibility(terrain)

@@ -60,6 +60,7 @@ AFTER = """async (around, states, load) => {
 }"""
 
 
+@pytest.mark.slow
 def test_choices_are_written_as_the_engine_writes_them(node: Node):
     cases = []
     for name, kernel in kernels().items():
@@ -103,6 +104,7 @@ def test_few_choices_are_remembered(node: Node):
     assert node.run(AFTER, around, [])[-1] == [True, 0, 8]
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_what_is_drawn_often_has_a_program_for_what_is_chosen(pages: Pages, drawn: Engine, tmp_path: Path):
     (tmp_path / "height.glsl").write_text(CHOICES, "utf-8")

@@ -212,6 +212,7 @@ def test_work_in_slices_gives_the_same_and_an_estimate(pages: Pages, drawn: Engi
     assert estimate["isKnown"] and estimate["milliseconds"] > 0
 
 
+@pytest.mark.slow
 def test_large_passes_are_cut_into_bands(pages: Pages, drawn: Engine, sketch: Made):
     """What was never measured begins with a band of it; the bits are those of one draw."""
     whole = sketch(CHAIN).with_values({"size": "700"})
@@ -293,6 +294,7 @@ def test_an_edited_text_is_drawn_and_a_wrong_one_told_by_line(pages: Pages, draw
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_a_context_that_was_lost_comes_back(pages: Pages):
     one = load("geomipmap").with_values({"size": "65"})
     begun(pages, one, size=(160, 90))
@@ -313,6 +315,7 @@ def test_a_context_that_was_lost_comes_back(pages: Pages):
     assert len(again.ran) == len(before.ran)
 
 
+@pytest.mark.slow
 @pytest.mark.slow
 def test_a_device_that_filters_no_floats_is_filtered_by_hand(pages: Pages, sketch: Made):
     toy, land = sketch(CHAIN), load("geomipmap").with_values({"size": "65"})
@@ -407,6 +410,7 @@ def test_nothing_is_left_behind_by_a_thousand_changes(pages: Pages, sketch: Made
     assert bytes_after <= 1.05 * bytes_before
 
 
+@pytest.mark.slow
 def test_a_closed_engine_has_released_everything(pages: Pages, sketch: Made):
     begun(pages, sketch(CHAIN), load("geomipmap").with_values({"size": "65"}))
     for name in ("toy", "geomipmap"):

@@ -32,6 +32,7 @@ def es(node: Node, text: str, **options: object) -> str:
     return found
 
 
+@pytest.mark.slow
 def test_every_program_of_the_library_compiles_as_es(node: Node, ctx: moderngl.Context):
     if "GL_ARB_ES3_compatibility" not in ctx.extensions:
         pytest.skip("this driver compiles no GLSL ES")

@@ -75,6 +75,7 @@ def written(chance: random.Random, deep: int) -> str:
     return f"{chance.choice(['min', 'max'])}({one}, {other}, {third})"
 
 
+@pytest.mark.slow
 def test_a_thousand_expressions_give_what_pythons_give(node: Node):
     chance = random.Random(1)
     texts = [written(chance, chance.randint(1, 5)) for _ in range(1500)]

@@ -83,6 +83,7 @@ def some_value(parameter: Parameter) -> Value:
 
 
 @pytest.mark.slow
+@pytest.mark.slow
 def test_there_are_parameters_of_every_widget():
     kinds = {parameter.widget.kind for _, _, parameter, _ in parameters()}
     assert kinds >= {
@@ -279,6 +280,7 @@ def test_frames_of_time_are_the_windows(node: Node):
 # ── what a panel lists ───────────────────────────────────────────────────────
 
 
+@pytest.mark.slow
 def test_main_parameters_have_the_windows_labels(node: Node):
     script = """async (rows, load) => {
         const { mainLabels, mainRows } = await load("labels.js");

@@ -154,6 +154,7 @@ def test_a_kernel_of_ones_own_may_be_as_loose_as_desktops_are(pages: Pages, draw
 EYES = "#version 330\nuniform vec2 eye; out vec4 colour;\nvoid main() { colour = vec4(eye, 0.5, 1.0); }\n"
 
 
+@pytest.mark.slow
 def test_only_a_picture_that_the_camera_changes_is_steered(pages: Pages, tmp_path: Path):
     """A kernel that names what the engine gives of a camera; a plain shader may call anything `eye`."""
     (tmp_path / "eyes.frag").write_text(EYES, "utf-8")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pytest
 from pathlib import Path
 from typing import Any
 
@@ -82,6 +83,7 @@ def test_texts_are_refused_where_python_refuses_them(node: Node, tmp_path: Path)
     assert refused > 12 and len(TEXTS) - refused > 4
 
 
+@pytest.mark.slow
 def test_no_program_of_the_library_is_refused(node: Node):
     for kernel in kernels().values():
         lines = [{"code": line.code, "raw": line.text, "file": "", "line": 1} for line in kernel.source.lines]

@@ -26,6 +26,7 @@ def initial_of(parameter: Parameter) -> object:
     return list(value) if isinstance(value, tuple) else value
 
 
+@pytest.mark.slow
 def test_every_parameter_of_the_library(node: Node):
     compared = 0
     for kernel in kernels().values():

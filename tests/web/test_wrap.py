@@ -25,6 +25,7 @@ def made(node: Node, recipe: Recipe, folder: Path, file: str) -> dict[str, objec
     return found
 
 
+@pytest.mark.slow
 def test_every_program_of_the_library(node: Node):
     script = """async (stages, shared, load) => {
       const { stageText } = await load("wrap.js"), { flatten } = await load("source.js");

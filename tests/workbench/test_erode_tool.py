@@ -113,6 +113,7 @@ def waves(engine: Engine, tmp_path: Path, texels: int) -> tuple[Sculpture, float
     return on, spacing
 
 
+@pytest.mark.slow
 def test_a_brush_of_as_many_metres_erodes_alike_on_coarse_and_fine_grids(any_engine: Engine, tmp_path: Path):
     lost = {}
     for texels in (3, 16, 24, 30, 31, 47):

@@ -62,6 +62,7 @@ def test_a_gesture_moves_the_camera_as_it_is_seen_and_leaves_its_field_of_view()
     assert across(seen, NARROW, target)[0] * NARROW[0] / 2 == pytest.approx(100.0, rel=1e-3)
 
 
+@pytest.mark.slow
 def test_the_window_opens_a_view_and_a_render_does_not(any_engine: Engine, tmp_path: Path) -> None:
     session = Session(any_engine, find("low_detail"))
     session.frame((48, 48))
