@@ -93,7 +93,6 @@ def test_both_drivers_give_the_same_bytes(engine: Engine, tmp_path: Path):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "zoomed"),
     [
@@ -121,7 +120,6 @@ def test_a_mesh_differs_in_few_pixels_and_at_no_seam(any_engine: Engine, name: s
     assert apart[seams].mean() < 0.02, "no more there than elsewhere"
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_crowns_have_the_same_bits_in_every_part(any_engine: Engine):
     """But where another one is seen: depths and edges of squares are rounded as those of any mesh."""

@@ -106,7 +106,6 @@ def test_what_is_in_it_and_nothing_else(folder: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_the_command_takes_references_and_gives_the_same_bytes_again(
     folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

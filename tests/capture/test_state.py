@@ -69,7 +69,6 @@ def test_a_film_that_begins_later_runs_what_is_before_it_once(any_engine: Engine
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_film_rendered_twice_has_the_same_bytes(ctx, sketch, tmp_path: Path):
     film, written = film_of(sketch, seconds=1, fps=30, size=SIZE), set()
     for name in ("one", "two"):

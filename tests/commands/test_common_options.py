@@ -48,7 +48,6 @@ def test_every_help_has_these_options_and_names_no_type(
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("order", [["-v", "render"], ["render", "-v"], ["render", "--verbose"]])
 def test_verbose_tells_files_driver_compiling_and_caches_with_their_times(
     order: list[str], kernel: Path, capsys: pytest.CaptureFixture[str]
@@ -73,7 +72,6 @@ def test_it_holds_for_one_command_only(kernel: Path, capsys: pytest.CaptureFixtu
     assert not logging.getLogger("playground").handlers
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_quiet_leaves_what_was_asked_for_and_errors(kernel: Path, capsys: pytest.CaptureFixture[str]):
     kernel.write_text(KERNEL.replace("0.5", "0.0 / float(texel.x * 0)"))

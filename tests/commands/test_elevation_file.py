@@ -30,7 +30,6 @@ def test_a_file_is_rendered_exported_checked_and_packed(tmp_path, monkeypatch, c
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_page_of_a_file_has_its_sketch_to_edit(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     write_geotiff(tmp_path / "dem.tif")

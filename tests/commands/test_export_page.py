@@ -87,7 +87,6 @@ def test_one_file_is_written_and_a_line_says_what_it_holds(folder: Path, capfd: 
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_page_has_its_language(folder: Path):
     """Its data are the same: names and notes are the sketch's."""
     for name, more in (("a.html", []), ("b.html", ["--lang", "en"]), ("c.html", ["--lang", "fr"])):
@@ -100,7 +99,6 @@ def test_a_page_has_its_language(folder: Path):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_shot_with_its_values_time_and_size_and_the_poster_of_it(folder: Path):
     assert cli.main(["export", "rise", "--shot", "quarter", "--to", "a.html"]) == 0
     [sketch] = page_in(folder / "a.html")["sketches"]
@@ -112,7 +110,6 @@ def test_a_shot_with_its_values_time_and_size_and_the_poster_of_it(folder: Path)
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_values_presets_and_steps_go_into_the_page(folder: Path):
     arguments = ["export", "diamond_square_steps", "--set", "size=33", "--to", "a.html"]
     assert cli.main([*arguments, "--steps", "height=3"]) == 0
@@ -122,14 +119,12 @@ def test_values_presets_and_steps_go_into_the_page(folder: Path):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_the_same_sketch_gives_the_same_file(folder: Path):
     for name in ("a.html", "b.html"):
         assert cli.main(["export", "rise", "--shot", "quarter", "--to", name]) == 0
     assert (folder / "a.html").read_bytes() == (folder / "b.html").read_bytes()
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 @pytest.mark.parametrize("wanted", ["height=./flat", pytest.param("height", marks=pytest.mark.slow)])
 def test_a_menu_of_techniques_has_a_sketch_for_each(folder: Path, wanted: str):
@@ -149,7 +144,6 @@ def test_a_menu_of_techniques_has_a_sketch_for_each(folder: Path, wanted: str):
     assert any("preset 'half' leaves height.rise out" in note for note in flat["notes"])
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_two_menus_have_a_sketch_for_each_pair(folder: Path):
     (folder / "rise" / "red.glsl").write_text(COLOUR.replace("0.5", "0.5, 0.0, 0.0, 1.0"))

@@ -56,7 +56,6 @@ def run(site: Path) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_package_that_has_overwritten_this_one_is_named(site: Path):
     assert run(site).returncode == 0
     install(site, "swings-and-slides", "playground/__init__.py", "playground/swing.py")
@@ -78,7 +77,6 @@ def test_a_package_that_was_uninstalled_and_took_the_shared_file_with_it(site: P
     assert done.stderr.endswith(f": python -m pip install --force-reinstall --no-deps {DISTRIBUTION}\n")
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_doctor_finds_one_that_does_no_harm_yet(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -160,7 +160,6 @@ def film(folder: Path) -> Iterator[subprocess.Popen[str]]:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.skipif(sys.platform == "win32", reason="signals differ there")
 def test_ctrl_c_leaves_a_shorter_video(folder: Path, film: subprocess.Popen[str]) -> None:
     pytest.importorskip("av")

@@ -37,7 +37,6 @@ def test_every_command_and_each_of_its_options_is_there():
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_every_technique_has_a_page_with_its_parameters_and_what_it_says_of_itself():
     named = {entry.name for entries in techniques.entries().values() for entry in entries}
     assert named == {entry.name for entry in listed()} and len(named) > 60

@@ -17,7 +17,6 @@ def held(engine: Engine) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_bytes_are_those_of_what_is_cached(ctx):
     sketch = load("jacksboro").with_values({"size": 65, "view.grid": 33})
     with Engine(ctx, cache_bytes=3 * 2**20) as engine:

@@ -58,7 +58,6 @@ def steps_of(engine: Engine, sketch, frame: int) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_any_order_of_times_gives_the_bits_that_a_cold_engine_gives(ctx, sketch, seed):
     with Engine(ctx) as cold:
@@ -73,7 +72,6 @@ def test_any_order_of_times_gives_the_bits_that_a_cold_engine_gives(ctx, sketch,
         np.testing.assert_array_equal(after(one, sketch, int(frames[0])), truth[frames[0]])
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_going_back_frame_by_frame_runs_few_frames(any_engine, sketch):
     assert steps_of(any_engine, sketch, 600) == 601

@@ -85,7 +85,6 @@ def test_render_and_export_print_each_once(sketch, capsys):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_check_shows_them_and_fails_for_none(sketch, capsys):
     assert cli.main(["check", "."]) == 0
     out = capsys.readouterr().out

@@ -135,7 +135,6 @@ def test_another_file_of_the_terrain_plans_anew(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_what_is_used_is_weighed_twice_a_frame_at_most(ctx, monkeypatch):
     weighed: Counter[str] = Counter()
     weigh = Cache._weigh

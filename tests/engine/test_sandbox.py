@@ -276,7 +276,6 @@ def test_the_pass_that_takes_too_long_is_the_one_that_is_named(sandbox, folder, 
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_submit_never_waits_and_the_newest_wins(folder):
     # Large requests: a pipe that is not read would fill.
     padding = "\n".join(f"// {i} {'x' * 100}" for i in range(3000))
@@ -299,7 +298,6 @@ def test_submit_never_waits_and_the_newest_wins(folder):
         assert sandbox.poll() is None
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_a_worker_that_takes_long_has_a_spare_that_takes_its_place(folder):
     with Sandbox(limit_seconds=3600.0) as sandbox:
@@ -394,7 +392,6 @@ def two(folder):
     return folder.path
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "pipe"),

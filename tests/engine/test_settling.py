@@ -158,7 +158,6 @@ def test_what_may_change_after_a_step_that_did_not_is_refused(flood, change, com
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_in_a_loop_each_run_of_it_ends_by_itself(ctx, engine, folder, flood):
     flood()
     loop = '[[pass]]\nname = "again"\nuse = "./spread"\ninputs = { wall = "wall" }\nrepeat = 3\n'

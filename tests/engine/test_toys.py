@@ -147,7 +147,6 @@ def test_a_sampler_says_how_a_buffer_is_read(any_engine, opened):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_cube_map_pass_is_read_by_direction_by_later_passes_and_by_itself(any_engine, opened):
     image = "void mainImage(out vec4 c, in vec2 p) {{ c = texture(iChannel0, {}); }}"
     wire = {"id": 41, "ctype": "cubemap", "channel": 0}

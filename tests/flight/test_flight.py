@@ -128,7 +128,6 @@ def test_a_record_that_is_not_there_or_is_no_text_says_so(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_replay_gives_the_same_bits_from_cold_and_from_warm_and_however_often_one_looks(
     ctx, terrain_of, tmp_path
 ):

@@ -103,7 +103,6 @@ def test_a_part_that_comes_again_has_the_same_bits_and_was_dropped_between(small
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_memory_is_bounded_and_the_farthest_go_first(parts):
     for step in range(0, 16, 2):
         parts.look(*middle(parts.plot, (step, 0)), 1.57)

@@ -66,7 +66,6 @@ def planted(small_engine, terrain_of) -> Iterator:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_trees_stand_by_the_world_s_cells_and_meet_at_the_borders_of_parts(planted):
     """Each tree of two parts against the twin: none is missing, none is twice, wherever the border is."""
     plot, plant = planted

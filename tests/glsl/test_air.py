@@ -293,7 +293,6 @@ _TABLES: dict[float, object] = {}
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_light_scattered_often_is_that_of_a_finer_sum(engine, make_sketch):
     turbidity, ground = 3.0, 0.3
     sketch = make_sketch(f"{SKETCH}set = {{ turbidity = {turbidity}, ground = {ground} }}\n")

@@ -98,7 +98,6 @@ def test_a_filter_is_laid_over_the_frame(folder: Path, any_engine: Engine) -> No
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_other_tools_files_are_in_the_chooser(folder: Path) -> None:
     (folder / "broken.frag").write_text('void mainImage(\n#include "nothing.glsl"\n')
     sketch = load(folder)

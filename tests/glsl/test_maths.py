@@ -120,7 +120,6 @@ def test_the_distance_to_a_segment_is_that_to_the_nearest_of_its_points(on_gpu):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_way_through_a_rectangle_is_where_its_places_are_inside(on_gpu):
     place, ahead = RNG.uniform(-8, 8, (300, 2)), RNG.uniform(-1, 1, (300, 2))
     ahead[:20, 0] = 0.0

@@ -127,7 +127,6 @@ grass = "first.colour"
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("samples", [1, 4])
 def test_only_where_two_parts_tie_in_depth_the_many_draws_differ(any_engine, make_sketch, tmp_path, samples):
     """At crests, along which the slope beyond begins at the depth of the one in front: both are blended."""

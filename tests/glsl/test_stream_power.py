@@ -89,7 +89,6 @@ float kernel(ivec2 texel) { return 2 * texel.x < size.x ? 0.125 : 1.5; }
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*accumulation.comp is left out:playground.errors.PlainFormWarning")
 def test_rain_makes_a_steady_state_of_discharges(engine, make_sketch):
     """S = (U / K) Q^-m where Q is the rain above; where it is even, that is another K: within 1 % both."""
@@ -200,7 +199,6 @@ coarse_level = "rivers:height"
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_twice_as_hard_is_half_as_erodible_and_uplift_is_a_factor(worn):
     values = {"steps": 12, "finer_steps": 2, "erodibility": 8.0}
     factor = 'inputs = { height = "low", INPUT = "two" }'
@@ -215,7 +213,6 @@ def test_twice_as_hard_is_half_as_erodible_and_uplift_is_a_factor(worn):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_terrain_grows_with_its_age(worn):
     values = {"steps": 20, **ONE_LEVEL}
     young, _, _, low = worn(65, age=0.02, **values)
@@ -225,7 +222,6 @@ def test_a_terrain_grows_with_its_age(worn):
     assert (np.diff(means) > 0).all()
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_hillsides_stand_no_steeper_than_they_may(worn):
     values = {"rise": 5.0, "creep": 0.0, "slides": 30, **ONE_LEVEL}

@@ -238,7 +238,6 @@ set = { sun = [270, 11] }
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_wood_shades_the_meadow_beside_it_and_lights_none(kept, ctx, make_sketch):
     sketch = make_sketch(CANOPY, size=[129, 97], extent=[900.0, 800.0], relief=60.0, wood=WOOD)
     density, canopy = kept.read(sketch, "wood:density").copy(), kept.read(sketch, "canopy:canopy").copy()

@@ -92,7 +92,6 @@ def test_nothing_stands_on_a_path(kept, ctx, make_sketch, wired):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_meadow_is_as_light_with_grass_as_without(kept, ctx, make_sketch):
     """From 2 m above it, with the sun from each side."""
     tufts = ', tufts = "tufts:density"'

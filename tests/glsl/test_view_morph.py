@@ -295,7 +295,6 @@ def jumps(engine, sketch, detail: str, step: float) -> float:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_the_less_the_eye_moves_the_less_the_terrain_does(engine, shown, all_seen):
     sketch = shown(tolerance=4.0)
     large, small = (jumps(engine, sketch, "morph", step) for step in (0.008, 0.0005))

@@ -166,7 +166,6 @@ def mirrored_by_slopes(to_eye, slope, variance, steps=801):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_rough_surface_mirrors_what_its_visible_slopes_do(on_gpu):
     """From straight above down to 3 degrees, up to a gale."""
     for elevation, bound in [

@@ -68,7 +68,6 @@ def sketch(tmp_path_factory):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_an_older_context_draws_the_same(sketch):
     """4.1 is what macOS has, 3.3 the least that will do: no compute, the same bits."""
     found = {}

@@ -49,7 +49,6 @@ def missing(text: str, font: imgui.ImFont) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_messages_and_labels_can_be_shown(theme: Theme):
     # Any module's: what the engine or a file's reader has to say appears in the panel.
     modules = (ROOT / "playground").rglob("*.py")

@@ -113,7 +113,6 @@ def attempts():
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_kernel_is_begun_checked_and_kept_over_a_restart(desk, tasks):
     monkeypatch = pytest.MonkeyPatch()
     desk.click("Start##start")

@@ -33,7 +33,6 @@ def test_a_port_that_is_none_is_refused(port: str, capsys: pytest.CaptureFixture
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_port_that_is_taken_is_a_sentence() -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         command = [sys.executable, "-m", "playground", "lsp", "--tcp", str(taken.getsockname()[1])]

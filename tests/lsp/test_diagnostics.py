@@ -24,7 +24,6 @@ def places(found: list[dict[str, Any]]) -> list[tuple[int, int]]:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_what_is_typed_has_the_diagnostics_of_check(editor: Editor, folder: Path) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, KERNEL)

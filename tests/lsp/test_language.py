@@ -53,7 +53,6 @@ def applied(text: str, edits: list[dict[str, Any]]) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_kernel_is_completed_with_all_that_it_may_name(editor: Editor, folder: Path) -> None:
     uri = (folder / "hill.glsl").as_uri()
     editor.open(uri, KERNEL)

@@ -140,7 +140,6 @@ def test_a_changed_sketch_is_shown_and_a_mistake_leaves_the_last_good_one(widget
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_what_a_page_cannot_change_is_changed_with_another_page(engine):
     """Elevations are made when the page is: a value of theirs asks for another."""
     widget = playground.widget("jacksboro", size=SIZE)

@@ -32,7 +32,6 @@ def test_a_process_that_is_gone_waits_for_nothing():
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @needs_counts
 def test_processes_that_share_one_processor_wait_for_each_other():
     """Three on one: each waits about two thirds of the time, so together twice as long as passes."""

@@ -256,7 +256,6 @@ sys.stdin.read()
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @linux
 @pytest.mark.parametrize(
     ("request_name", "pipe", "limit"),

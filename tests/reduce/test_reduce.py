@@ -114,7 +114,6 @@ float kernel(ivec2 texel) {{
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("layers", [1, pytest.param(16, marks=pytest.mark.slow)])
 def test_of_many_lines_the_one_that_makes_nan_stays(sketch, worker, tmp_path, layers):
     text = layered(layers)
@@ -127,7 +126,6 @@ def test_of_many_lines_the_one_that_makes_nan_stays(sketch, worker, tmp_path, la
     assert search.confirmed() is not None
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_a_nan_of_another_making_is_not_taken_for_it(sketch, worker, tmp_path):
     """Without the line that keeps the divisor from zero there is NaN too, at another texel."""
@@ -345,7 +343,6 @@ def run(*arguments: str) -> int:
     return main(["reduce", *arguments])
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_a_command_judges_and_the_folder_says_how(sketch, tmp_path, capsys):
     path = sketch(MAGIC)

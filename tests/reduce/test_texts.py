@@ -30,7 +30,6 @@ float kernel(ivec2 texel) {
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @each("path", sorted(GLSL.rglob("*.glsl")), ids=lambda p: p.stem)
 def test_tidying_changes_no_token_and_is_done_once(path: Path):
     text = path.read_text(encoding="utf-8").replace("\\\n", "")

@@ -123,7 +123,6 @@ def test_a_value_does_not_jump_but_is_taken_over_where_the_knob_passes_it(desk: 
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_each_widget_has_a_range(desk: Desk, device: Device):
     """Truth: the middle and the ends of each widget's range, by its own definition."""
     for number, (path, part, middle, ends) in enumerate(
@@ -143,7 +142,6 @@ def test_each_widget_has_a_range(desk: Desk, device: Device):
     assert desk.value("height.rocks") is False
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_the_parts_of_a_vector_have_a_knob_each(desk: Desk, device: Device):
     device.learn("height.sun", "elevation", KNOB)
@@ -337,7 +335,6 @@ def test_a_device_that_is_connected_later_is_found_and_one_pulled_out_is_no_erro
     assert not midi._thread.is_alive()
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_a_flood_of_a_knob_loses_not_the_last_position(desk: Desk, device: Device):
     device.learn("height.level")

@@ -349,7 +349,6 @@ def test_events_tell_of_values_saves_and_errors(desk: Desk, tmp_path: Path):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_ten_thousand_values_lose_neither_the_last_nor_an_error(desk: Desk):
     url = opened(desk)
     count, frames = 10_000, 0

@@ -214,7 +214,6 @@ def test_references_of_a_test_file_that_is_gone_or_compares_nothing_any_more_fai
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("dist", ["loadfile", pytest.param("each", marks=pytest.mark.slow)])
 def test_workers_of_xdist_tell_what_they_wrote_and_used(
     run: Run, pytester: pytest.Pytester, dist: str

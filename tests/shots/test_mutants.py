@@ -105,7 +105,6 @@ def noise_like(shape: tuple[int, int] = (90, 160)) -> Picture:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_the_same_build_catches_every_defect_of_jacksboro(results: list[Result]):
     assert survivors(results, 0) == []
     caught, of = kill_rate(results, 0)

@@ -240,7 +240,6 @@ ENDS = {
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_each_end_has_its_message_and_the_next_shot_is_drawn(fake: RendererProcess) -> None:
     for name, (kind, words) in ENDS.items():
         with pytest.raises(kind, match=words):
@@ -249,7 +248,6 @@ def test_each_end_has_its_message_and_the_next_shot_is_drawn(fake: RendererProce
     assert "drew next" in fake.printed()
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_a_draw_that_hangs_is_stopped_and_the_next_is_drawn(fake: RendererProcess) -> None:
     assert fake.render(made_up("first")).drawn == "first"
@@ -311,7 +309,6 @@ ENDING = (
 )
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_how_a_worker_ends_is_reported_by_the_plugin(
     pytester: pytest.Pytester, monkeypatch: pytest.MonkeyPatch

@@ -420,7 +420,6 @@ def test_an_edited_file_is_wired_anew(make):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @each(("name", "variants"), list(itertools.product(shipped_sketches(), [(), ("passes",), VARIANTS])))
 def test_every_shipped_sketch_runs_in_the_order_of_its_wires(name, variants):
     done: set[str] = set()

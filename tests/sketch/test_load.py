@@ -629,7 +629,6 @@ def test_what_the_user_types_may_lie_anywhere(folder, tmp_path: Path):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", [7, pytest.param(107, marks=pytest.mark.slow)])
 def test_mutated_sketches_raise_nothing_but_sentences(folder, seed):
     rng = random.Random(seed)

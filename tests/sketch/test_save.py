@@ -55,7 +55,6 @@ def some(places: Iterable[Place], count: int) -> list[Place]:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @few_or_many
 @each_shipped
 def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alone(
@@ -78,7 +77,6 @@ def test_every_value_of_every_shipped_file_is_found_and_can_be_written_over_alon
         assert dict(leaves(tomllib.loads(changed))) == {**found, place: [7, 8]}
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 @few_or_many
 @each_shipped

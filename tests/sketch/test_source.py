@@ -254,7 +254,6 @@ def test_names_that_no_file_can_have_are_sentences(write, name):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_few_lines_cannot_fill_the_memory(write):
     for i in range(40):
         write(f"l{i}.glsl", f'#include "l{i + 1}.glsl"\n#include "l{i + 1}.glsl"\n')

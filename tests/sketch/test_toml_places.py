@@ -122,7 +122,6 @@ def test_what_is_not_toml_gives_what_there_is(text):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("seed", [2, pytest.param(102, marks=pytest.mark.slow)])
 def test_any_text_ends_soon_and_raises_nothing(seed):
     rng = random.Random(seed)

@@ -27,7 +27,6 @@ def written(node: Node, *raw: str) -> list[dict[str, Any]]:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_every_parameter_of_the_library(node: Node):
     compared = 0
     for kernel in kernels().values():

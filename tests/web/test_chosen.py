@@ -105,7 +105,6 @@ def test_few_choices_are_remembered(node: Node):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_what_is_drawn_often_has_a_program_for_what_is_chosen(pages: Pages, drawn: Engine, tmp_path: Path):
     (tmp_path / "height.glsl").write_text(CHOICES, "utf-8")
     body = passes(height="./height") + map_of("height")

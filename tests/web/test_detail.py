@@ -92,7 +92,6 @@ def coming_in(rng: np.random.Generator, case: Case) -> Case:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("detail", [1, 2], ids=["geomipmap", "morph"])
 def test_random_terrain_from_random_eyes(node: Node, detail: int):
     rng = np.random.default_rng(detail)

@@ -39,7 +39,6 @@ void kernel(ivec2 texel, out float list, out vec4 seen, out vec2 more) {
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("samples", [1, 4])
 def test_outputs_instances_and_what_goes_on_are_the_engines(
     pages: Pages, drawn: Engine, tmp_path: Path, samples: int

@@ -294,7 +294,6 @@ def test_an_edited_text_is_drawn_and_a_wrong_one_told_by_line(pages: Pages, draw
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_context_that_was_lost_comes_back(pages: Pages):
     one = load("geomipmap").with_values({"size": "65"})
     begun(pages, one, size=(160, 90))
@@ -315,7 +314,6 @@ def test_a_context_that_was_lost_comes_back(pages: Pages):
     assert len(again.ran) == len(before.ran)
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_a_device_that_filters_no_floats_is_filtered_by_hand(pages: Pages, sketch: Made):
     toy, land = sketch(CHAIN), load("geomipmap").with_values({"size": "65"})

@@ -258,7 +258,6 @@ createImageBitmap(new Blob([bytes], { type: "image/webp" }),
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.skipif(bool(browsers.MISSING), reason=browsers.MISSING)
 def test_a_browser_decodes_an_image_to_the_engines_texels(tmp_path: Path):
     page = page_data([load("drape")])

@@ -61,7 +61,6 @@ def judged(text: str) -> Iterator[int]:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("step", [5, pytest.param(1, marks=pytest.mark.slow)])
 def test_every_shipped_text_is_coloured_as_by_pygments(node: Node, step: int):
     assert len(FILES) > 200

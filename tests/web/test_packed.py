@@ -202,7 +202,6 @@ def test_data_that_are_too_large_for_a_page_are_listed_in_the_zip(node: Node):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "file", "old", "new"),
     [

@@ -175,7 +175,6 @@ def test_a_browser_runs_the_runtime_and_nothing_that_was_put_in(tmp_path: Path, 
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.skipif(bool(browsers.MISSING), reason=browsers.MISSING)
 def test_a_server_that_names_another_encoding_does_no_harm(tmp_path: Path, evil: dict[str, Any]):
     body = page_of(evil).encode()

@@ -177,7 +177,6 @@ def test_a_hostile_link_does_no_harm(node: Node, text: str):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("step", [18, pytest.param(6, marks=pytest.mark.slow)])
 def test_what_is_copied_is_what_python_takes(node: Node, exporting: Engine, step: int):
     """Three parameters of some shipped sketches, changed: as --set, and as a preset of the file."""

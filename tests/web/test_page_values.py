@@ -83,7 +83,6 @@ def some_value(parameter: Parameter) -> Value:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_there_are_parameters_of_every_widget():
     kinds = {parameter.widget.kind for _, _, parameter, _ in parameters()}
     assert kinds >= {

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import pytest
 from pathlib import Path
 from typing import Any
+
+import pytest
 
 from playground.errors import ShaderError
 from playground.gpu.wrap import FRAGMENT, wrap

@@ -37,7 +37,6 @@ def lines_of(source: SourceText, folder: Path, prefix: str = "") -> list[list[ob
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_every_program_of_the_library(node: Node):
     found = node.run(MANY, [shared_files(GLSL), list(kernels()), {}])
     assert len(found) > 120
@@ -81,7 +80,6 @@ def hostile(rng: np.random.Generator, lengths: tuple[int, int]) -> str:
     return "".join(rng.choice(wanted) for _ in range(rng.integers(*lengths)))
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_random_texts_are_flattened_as_python_does_and_refused_where_python_refuses_them(
     node: Node, tmp_path: Path

@@ -240,7 +240,6 @@ def test_a_shader_of_several_passes_is_saved_as_a_sketch_too(folder: Path, any_e
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_kernel_alone_is_saved_as_a_sketch_too(folder: Path, any_engine: Engine) -> None:
     file = folder / "alone" / "flat.glsl"
     file.write_text(KERNEL, "utf-8")

@@ -198,7 +198,6 @@ raise SystemExit(7)
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_process_that_ends_has_written_the_last_state(tmp_path: Path) -> None:
     path = tmp_path / "last.tif"
     done = subprocess.run([sys.executable, "-c", ENDS, str(path)], capture_output=True, text=True)

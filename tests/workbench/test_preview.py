@@ -44,7 +44,6 @@ def test_fewer_pixels_have_a_coarser_mesh_still(terrain: Sketch):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_half_of_the_pixels_a_side_jump_no_more_than_stated(any_engine: Engine):
     """docs/explanation/performance.md: half a level of 255 in the mean, and the skyline by a pixel or two."""
     size, half = (960, 540), (480, 270)

@@ -74,7 +74,6 @@ def machine(tmp_path: Path) -> Iterator[Machine]:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_everything_is_there_again_the_picture_to_the_bit(machine: Machine) -> None:
     session = machine.session
     session.clock.time = 0.4

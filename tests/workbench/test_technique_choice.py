@@ -57,7 +57,6 @@ def folder(tmp_path: Path) -> Path:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_what_gives_the_same_outputs_and_can_be_wired_is_offered(folder: Path) -> None:
     sketch = load(folder)
     first, second, colour = (choices(sketch, name) for name in ("height", "upper", "colour"))
@@ -128,7 +127,6 @@ def test_a_view_is_not_replaced_by_linear_light() -> None:
     assert not {"view/land", "view/sky", "view/sea"} & set(offered)
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_one_technique_is_known_to_fit_without_the_others(folder: Path) -> None:
     sketch = load(folder)

@@ -110,7 +110,6 @@ def test_a_second_save_within_50_ms_is_seen(watched: Watched) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_saving_what_was_there_is_no_change(watched: Watched) -> None:
     for save in WAYS:
         save(watched.file, "one")
@@ -119,7 +118,6 @@ def test_saving_what_was_there_is_no_change(watched: Watched) -> None:
     assert watched.sees_nothing()
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_a_change_that_is_undone_before_it_is_taken_is_none(watched: Watched) -> None:
     save_in_place(watched.file, "two")
@@ -145,7 +143,6 @@ def test_a_new_shader_next_to_a_watched_one_is_reported(watched: Watched) -> Non
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_what_is_followed_may_change_at_any_time(watched: Watched) -> None:
     other = watched.folder / "other" / "sketch.toml"
     other.parent.mkdir()
@@ -168,7 +165,6 @@ def test_a_change_between_reading_and_following_is_not_lost(watched: Watched) ->
     assert watched.sees(other)
 
 
-@pytest.mark.slow
 @pytest.mark.slow
 def test_what_a_reader_saw_and_was_never_reported_is_reported(watched: Watched) -> None:
     """It was away for a moment, just when another save had it read: deleted and created is no change."""
