@@ -167,6 +167,7 @@ def test_the_lowest_layers_import_no_opengl():
             assert not found, f"{path.relative_to(ROOT)} imports {found}"
 
 
+@pytest.mark.slow
 def test_only_live_has_a_window():
     for path in modules():
         if layer_of(path) != "live":
@@ -335,6 +336,7 @@ def test_what_is_public_is_documented():
     assert not missing, "\n".join(missing)
 
 
+@pytest.mark.slow
 def test_only_the_command_prints():
     """A function that prints and returns cannot be used by another program."""
     wrong = []
@@ -347,6 +349,7 @@ def test_only_the_command_prints():
     assert not wrong, f"print in {', '.join(wrong)}"
 
 
+@pytest.mark.slow
 def test_nothing_is_evaluated():
     """A sketch is data: no way leads from its text to Python's own evaluation."""
     wrong = []

@@ -505,6 +505,7 @@ def test_check_finds_what_is_wrong_and_where(run: Run, slope: Path, tmp_path: Pa
     assert done.stdout.endswith("2 files checked, 1 failed\n")
 
 
+@pytest.mark.slow
 def test_check_tries_both_drivers(run: Run, tmp_path: Path):
     (tmp_path / "half.glsl").write_text(
         '#pragma kernel(output = "height:r32f")\n'
@@ -516,6 +517,7 @@ def test_check_tries_both_drivers(run: Run, tmp_path: Path):
     assert json.loads(done.stdout)["errors"][0]["line"] == 4
 
 
+@pytest.mark.slow
 def test_check_takes_a_compute_variant_with_its_kernel(run: Run, tmp_path: Path):
     (tmp_path / "fill.glsl").write_text(
         '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.5; }\n'

@@ -70,6 +70,7 @@ def test_what_an_encoding_lacks_is_spelled(run, encoding: str):
     assert missing.returncode == 2 and b"->" in missing.stderr and b"Traceback" not in missing.stderr
 
 
+@pytest.mark.slow
 def test_json_in_another_encoding_is_the_same_json(run, start):
     plain = start("list", "soft_cone", "--json", PYTHONIOENCODING="ascii")  # in a process of its own for once
     whole = run("utf-8", "list", "soft_cone", "--json")

@@ -16,7 +16,7 @@ from playground.engine.check import find_files
 from playground.engine.engine import Engine
 from playground.engine.packed_files import contents
 from playground.errors import DataError
-from playground.images.files import write_values
+from playground.images.values import write_values
 from playground.live.drops import Drops, opened_from
 from playground.paths import GLSL
 from playground.sketch import unpack

@@ -76,6 +76,7 @@ def page_in(path: Path) -> dict[str, Any]:
     return page
 
 
+@pytest.mark.slow
 def test_one_file_is_written_and_a_line_says_what_it_holds(folder: Path, capfd: pytest.CaptureFixture[str]):
     status = cli.main(["export", "rise", "--to", "a.html"])
     out, error = capfd.readouterr()
@@ -208,6 +209,7 @@ def test_a_page_that_would_be_too_large_is_refused(
     assert not (folder / "a.html").exists()
 
 
+@pytest.mark.slow
 def test_an_older_page_stays_when_another_cannot_be_written(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ):

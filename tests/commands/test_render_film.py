@@ -63,6 +63,7 @@ def test_a_video(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert count_pictures(folder / "c.webm") == (4, Fraction(4))
 
 
+@pytest.mark.slow
 def test_numbered_pictures_and_resume(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     words = ("--frames", "3..5", "--fps", "10", "-o", "new/f%03d.png", "--size", "64x36")
     paths = [Path(line) for line in run(capsys, *words)]

@@ -45,6 +45,7 @@ def test_a_text_is_rendered_and_kept(
     assert tuple(read_png(here / "half_red.png")[0][0, 0, :3]) == (128, 0, 0)
 
 
+@pytest.mark.slow
 def test_a_mistake_is_reported_at_its_line_of_the_file(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -75,6 +75,7 @@ def test_yaml_is_yaml(block: Block):
     assert yaml.safe_load(block.text)
 
 
+@pytest.mark.slow
 def test_the_first_kernel_fits_the_sketch_that_new_writes(any_engine: Engine, tmp_path: Path):
     """As the README says: save waves.glsl, use it, remove the preset of my_land, add a tilt."""
     folder = make_sketch(tmp_path / "hills")

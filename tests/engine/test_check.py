@@ -127,6 +127,7 @@ def test_a_sketch_may_have_no_hole_at_all(folder, sandbox):
     assert check_file(sketch, sandbox).ok
 
 
+@pytest.mark.slow
 def test_a_file_that_the_child_does_not_survive_is_not_read_here(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -68,6 +68,7 @@ def test_a_plain_shader_s_macro_calls_keep_their_lines_too(folder, any_engine):
     assert placed(caught.value.diagnostics[0]) == ("t.frag", 9)
 
 
+@pytest.mark.slow
 def test_a_line_directive_moves_no_error_and_is_a_warning(folder, sandbox, any_engine):
     text = f"{KERNEL}#line 100\nfloat kernel(ivec2 texel) {{ return 1.0; }}\n"
     report = checked(folder.write("a.glsl", text), sandbox)

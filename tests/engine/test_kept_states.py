@@ -107,6 +107,7 @@ def of_bytes(count: int) -> dict[str, Result]:
     return {"a": Sized((count // 4, 1), (), {})}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("last", [600, 36_000])
 def test_gaps_grow_with_the_distance(last):
     kept = KeptStates(10**9, FakePool())  # type: ignore[arg-type]

@@ -76,6 +76,7 @@ def test_an_error_of_another_kind_comes_back_as_it_is(any_engine: Engine, tmp_pa
     assert all_errors(error, any_engine, sketch, size=(32, 18)) is error
 
 
+@pytest.mark.slow
 def test_the_sandbox_reports_all(tmp_path: Path) -> None:
     sketch = load(sketch_in(tmp_path, "first_name", "second_name"))
     with Sandbox(limit_seconds=60.0) as sandbox:

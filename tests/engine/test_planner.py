@@ -77,6 +77,7 @@ def test_a_renewed_plan_is_the_one_made_from_nothing(name):
     assert planner.made_whole < 41, "some were renewed"
 
 
+@pytest.mark.slow
 def test_a_slider_that_no_size_names_plans_no_pass(monkeypatch):
     planned: Counter[str] = Counter()
     plan_node = planner_module._Planning._node

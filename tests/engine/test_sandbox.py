@@ -73,6 +73,7 @@ def sandbox():
         yield made
 
 
+@pytest.mark.slow
 def test_a_good_sketch_is_good_by_both_drivers(sandbox, folder):
     report = sandbox.run(TrySketch(folder.one(GOOD), drivers=("fragment", "compute")))
     assert report.ok, report.error
@@ -169,6 +170,7 @@ def at_work(sandbox: Sandbox) -> int:
     raise AssertionError("it did not begin")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "message"),
     [
@@ -197,6 +199,7 @@ def test_a_worker_that_died_is_replaced_before_it_is_needed(sandbox, folder):
     assert sandbox._workers.worker.pid == pid
 
 
+@pytest.mark.slow
 def test_a_worker_that_dies_idle_costs_nobody_an_answer(sandbox, folder):
     """It is dead when it is handed something, or dies just then: another is asked."""
     assert sandbox.run(TrySketch(folder.one(GOOD))).ok
@@ -324,6 +327,7 @@ def test_an_older_answer_is_not_given(folder, sandbox):
     assert wait(sandbox).ok
 
 
+@pytest.mark.slow
 def test_memory_has_a_limit(folder):
     hungry = (
         GOOD.replace('r32f"', 'rgba32f"')
@@ -338,6 +342,7 @@ def test_memory_has_a_limit(folder):
         assert sandbox.run(TrySketch(folder.one(GOOD))).ok
 
 
+@pytest.mark.slow
 def test_close_leaves_no_process(folder):
     sandbox = Sandbox()
     sandbox.start()
@@ -439,6 +444,7 @@ def test_the_errors_old_names_are_read_with_a_note():
             assert getattr(playground, f"Trial{kind}") is getattr(playground, f"Sandbox{kind}")
 
 
+@pytest.mark.slow
 def test_an_answer_is_announced(tmp_path: Path) -> None:
     path = tmp_path / "a.glsl"
     path.write_text("float twice(float x) { return 2.0 * x; }\n", encoding="utf-8")

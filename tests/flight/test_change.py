@@ -98,6 +98,7 @@ def test_what_cannot_be_flown_over_leaves_the_flight_as_it_is(
         flight.step()
 
 
+@pytest.mark.slow
 def test_the_time_of_day_stays_unless_the_sketch_says_another(any_engine: Engine, tmp_path: Path) -> None:
     daylight = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = { hour = HOUR }\n[view]'
 

@@ -146,6 +146,7 @@ def test_a_replay_gives_the_same_bits_from_cold_and_from_warm_and_however_often_
     assert picture.shape == (90, 160, 4) and len({p for p in seen[0]}) == 4
 
 
+@pytest.mark.slow
 def test_what_was_flown_and_written_down_flies_the_same_way_again(small_engine, terrain_of, tmp_path):
     """Live, parts come by time and not by number: the way flown does not know of it."""
     sketch, record = terrain_of(), weave(6.0)
@@ -238,6 +239,7 @@ def test_there_is_no_hole_below_the_horizon_near_the_eye(flight):
     assert holes == 0 and looked > 20_000 and drawn > 40
 
 
+@pytest.mark.slow
 def test_the_hole_finder_finds_a_hole(flight):
     part = flight.parts.part_at(flight.craft.east, flight.craft.north)
     ahead = (part[0], part[1] + 1)
@@ -277,6 +279,7 @@ def test_what_is_not_made_yet_is_neither_black_nor_magenta(small_engine, terrain
         assert not ((picture[..., 0] > 200) & (picture[..., 1] < 60)).any()
 
 
+@pytest.mark.slow
 def test_where_the_terrain_ends_nothing_is_seen_of_it(flight):
     """Parts wholly beyond what one sees may shine as they like; any part nearer would be noticed."""
     flight.craft = replace(flight.craft, up=1100.0, pitch=-0.35, heading=0.4)

@@ -88,6 +88,7 @@ def test_the_nearest_are_made_first_and_those_in_view_before_those_behind(parts)
     assert max(far) <= 3.0 and len(parts.wanted) == 29
 
 
+@pytest.mark.slow
 def test_a_part_that_comes_again_has_the_same_bits_and_was_dropped_between(small_engine, terrain_of):
     with Engine(small_engine.ctx, cache_bytes=2**20) as forgetful:
         parts = Parts(forgetful, plot_of(terrain_of(), forgetful), 2.0)

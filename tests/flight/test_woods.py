@@ -94,6 +94,7 @@ def test_trees_stand_by_the_world_s_cells_and_meet_at_the_borders_of_parts(plant
         assert abs(share - found[:, 5].mean()) < 4 * np.sqrt(0.24 / many)
 
 
+@pytest.mark.slow
 def test_a_part_that_is_made_again_has_the_same_trees(planted):
     _, plant = planted
     np.testing.assert_array_equal(plant((3, -2)), plant((3, -2)))

@@ -157,6 +157,7 @@ def photons_out(depth, edges, count=60_000):
     return [np.histogram(sign * cosines, edges)[0] / count / solid for sign in (-1, 1)]
 
 
+@pytest.mark.slow
 def test_an_even_layer_sends_back_and_on_what_photons_do(any_engine, make_sketch):
     """Brightness is by energy: 900 m of cloud under the sun, seen from above and below, to a fifth."""
     text = TERRAIN + '[[pass]]\nname = "daylight"\nuse = "./told"\nsize = [16, 1]\n'
@@ -205,6 +206,7 @@ def test_without_clouds_it_is_the_sky_and_the_sun(any_engine, outdoors, drawn):
     assert (found[sun > np.radians(1.5)] < 2 * wanted[above].max()).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drawn", ["flat", "heaped"])
 def test_no_cloud_is_brighter_than_what_it_receives_and_none_lights_up_at_night(any_engine, outdoors, drawn):
     rest = SKY + f'set = {{ clouds = "{drawn}" }}\n'

@@ -22,6 +22,7 @@ def dense_part(thick, steps=200):
     return total
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("size", "seed"),
     [

@@ -90,6 +90,7 @@ def almanac(elevation):
     return next(10 ** (a + x * (b + x * (c + x * d))) for low, a, b, c, d in pieces if elevation >= low)
 
 
+@pytest.mark.slow
 def test_it_is_as_bright_as_the_almanac_says_from_noon_to_night(any_engine, day):
     """Over eight powers of ten, within the 1.6 that one clear day is from another."""
     sketch = day(turbidity=2.5)
@@ -150,6 +151,7 @@ def test_the_sky_s_light_is_the_sum_of_all_its_directions(any_engine, day, eleva
     np.testing.assert_allclose(row[3, :3], overhead, rtol=1e-4)
 
 
+@pytest.mark.slow
 def test_colours_are_those_of_a_day(any_engine, day):
     sketch = day(turbidity=2.5)
     rows = {e: row_of(any_engine, under(sketch, e)) for e in (90, 60, 40, 20, 10, 5, 2, -6)}

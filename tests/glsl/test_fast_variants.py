@@ -60,6 +60,7 @@ def test_every_file_that_is_one_by_its_name_is_one(those_that_ship):
 
 
 # One of the places has rain, which that one does not read: the plain form runs there, as it says.
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:.*accumulation.comp is left out:playground.errors.PlainFormWarning")
 @pytest.mark.parametrize(
     "name",

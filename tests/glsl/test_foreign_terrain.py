@@ -119,6 +119,7 @@ void main() {
 """
 
 
+@pytest.mark.slow
 def test_an_isf_filter_takes_the_frame(folder: Path, any_engine: Engine) -> None:
     (folder / "negative.fs").write_text(ISF)
     sketch = load(folder)

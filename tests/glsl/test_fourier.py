@@ -271,6 +271,7 @@ def test_the_terrain_is_scipys(engine, sketch_of, size, roughness):
     np.testing.assert_allclose(engine.read(sketch, "terrain"), minmax(terrain), atol=4e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [(512, 512), (1025, 257), (1024, 1024), (4096, 16), (17, 4097)], ids=str)
 def test_larger_terrains_are_scipys(any_engine, sketch_of, size):
     sketch = sketch_of(size, seed=4)

@@ -177,6 +177,7 @@ def test_a_checkerboard_in_a_lake_decays(engine, eroded):
     assert swings[3] < 1e-3
 
 
+@pytest.mark.slow
 def test_a_worn_terrain_has_no_checkerboard(engine, eroded):
     """Spectra of terrains fall with the wave number: waves of the grid's size carry no more than longer ones.
 

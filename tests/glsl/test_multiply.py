@@ -95,6 +95,7 @@ def roughness(terrain):
     return slope[terrain <= low].mean() / slope[terrain >= high].mean()
 
 
+@pytest.mark.slow
 def test_valleys_become_smoother_than_ridges(any_engine, make_sketch):
     for seed in range(20):
         sketch = make_sketch(LANDS.format(2 * seed, 2 * seed + 1), size=129)

@@ -59,6 +59,7 @@ def read(engine, sketch, grey, name="view.shaded"):
     return engine.read(sketch.with_values({"colour.grey": grey}), name, size=SIZE).astype(np.float64)
 
 
+@pytest.mark.slow
 def test_colours_fade_by_the_air_in_front_of_them(any_engine, scene):
     """What brighter ground adds has gone through air and mist; black ground shows what they add."""
     scene = scene.with_values({"view.mist": 0.3, "view.mist_top": 200.0})

@@ -106,6 +106,7 @@ def test_pictures_without_water_in_sight_stay_as_they_are(any_engine, scene, lev
     np.testing.assert_array_equal(after[land], before[land])
 
 
+@pytest.mark.slow
 def test_clouds_that_no_drift_places_are_none(any_engine, scene):
     given = "wind = 2.0, gain = 1.0, ambient = 0.5, clouds = 1"
     grey = '[[pass]]\nname = "grey"\nuse = "./grey"\n'
@@ -186,6 +187,7 @@ def test_the_table_of_the_sky_knows_its_directions(on_gpu):
     np.testing.assert_allclose(back, (texel + np.array([0.5, 48.5])) / [96, 144], atol=1e-5)
 
 
+@pytest.mark.slow
 def test_a_picture_in_parts_is_the_whole_picture(any_engine, scene):
     sketch = scene(given="wind = 5.0, foam = 1.0")
     whole = any_engine.render(sketch, size=SIZE).array

@@ -23,6 +23,7 @@ SHARES = "s.x * s.y, (1.0 - s.x) * s.y, s.x * (1.0 - s.y), (1.0 - s.x) * (1.0 - 
 PLANE = WEIGHTS.replace("return {}", f"vec2 s = vec2(texel) / vec2(size - 1); return vec4({SHARES})").format()
 
 
+@pytest.mark.slow
 def test_the_mixture_is_each_layer_by_its_weight_in_linear_light(engine, make_sketch):
     sketch = make_sketch(SPLAT.format("size = [40, 30]\n"), size=[17, 9], weights=PLANE, **FLAT)
     found = engine.read(sketch, "colour").astype(float)

@@ -132,6 +132,7 @@ def test_a_seventeenth_material_is_refused_in_one_sentence(make_sketch):
 # ── tiles ────────────────────────────────────────────────────────────────────
 
 
+@pytest.mark.slow
 def test_the_atlas_holds_every_tile(engine, make_sketch):
     sketch = make_sketch(MANY.format(""), size=33, terrain=EASTWARD, **NOISE).with_values({})
     atlas = engine.read(sketch, "colour.atlas")
@@ -154,6 +155,7 @@ def _between(tile):
     return (1 - part) ** 2 * tile + part * (1 - part) * (west + south) + part**2 * both
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("number", "repeats"), [(5, 4), (15, 32)])
 def test_a_tile_repeats_and_meets_its_own_copy(any_engine, make_sketch, number, repeats):
     """Waves whose period is the tile go on across it: nothing of the cells beside it is read."""

@@ -126,6 +126,7 @@ def test_a_missing_image(paint, tmp_path):
     assert "no such file" in found and "did you mean 'mask.png'" in found
 
 
+@pytest.mark.slow
 def test_a_fifth_layer(tmp_path):
     text = '[[pass]]\nname = "weights"\nuse = "texturing/alpha_map_file"\nset = { layers = 5 }\n'
     found = refused(tmp_path, text)

@@ -77,6 +77,7 @@ def test_where_one_layer_lies_it_is_the_terrain_of_that_colour(any_engine, make_
     np.testing.assert_allclose(found, expected, atol=1.01)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("samples", [1, 4])
 def test_many_draws_blended_give_the_picture_of_one(any_engine, make_sketch, samples):
     one, many = (

@@ -148,6 +148,7 @@ def test_far_more_tiles_than_texels_are_the_mean(any_engine, laid):
     )
 
 
+@pytest.mark.slow
 def test_a_mixture_by_height_in_hexagons_has_the_colours_of_the_one_in_tiles(any_engine, make_sketch):
     ramp = '#pragma kernel(output = "height:r32f")\n'
     ramp += "float kernel(ivec2 texel) { return float(texel.x) / float(size.x - 1); }\n"

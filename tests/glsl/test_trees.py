@@ -254,6 +254,7 @@ def test_clearings_take_their_share_of_the_ground(kept, ctx, make_sketch):
         assert abs(1 - found.mean() - share) < 0.1
 
 
+@pytest.mark.slow
 def test_nothing_pops_as_the_eye_comes_nearer(kept, ctx, make_sketch):
     """A hundredth nearer each step: no tree jumps, and those of one place cover as much."""
     sketch = placed(make_sketch, "all_round = true, whole = 200, reach = 1200, trees = 200000")

@@ -260,6 +260,7 @@ def test_a_wood_shades_the_meadow_beside_it_and_lights_none(kept, ctx, make_sket
     np.testing.assert_allclose(metres, canopy, atol=1e-3)
 
 
+@pytest.mark.slow
 def test_where_all_trees_have_needles_their_wood_has_the_light_of_needles(kept, ctx, make_sketch):
     """Above `needles_from`, as with needles only; 2000 m above sea level here, far beyond single trees."""
     high, only = (
@@ -372,6 +373,7 @@ def test_beyond_the_square_of_tree_shadows_the_wood_shades_as_one_body(kept, ctx
     assert beyond.sum() > 1000 and (share[beyond] < 0.5).mean() > 0.05
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("day", "from_zero", "distance"), [(292, 291, 1000.0), (366, 0, 6000.0)])
 def test_leaves_have_the_season_of_the_daylight(kept, ctx, make_sketch, day, from_zero, distance):
     """One day for sun and leaves: daylight counts from 1, the parameter of trees from 0."""

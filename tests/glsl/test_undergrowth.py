@@ -81,6 +81,7 @@ def on_path(make_sketch, wired, view=ALL, elevation=12.0, sun=135.0, values=""):
     return make_sketch(text, size=65, extent=256.0, relief=4.0, path=PATH)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("wired", ['paths = "land:band"', 'weights = "land:layers"'])
 def test_nothing_stands_on_a_path(kept, ctx, make_sketch, wired):
     sketch = on_path(make_sketch, wired)

@@ -119,6 +119,7 @@ def true_errors(tiles: np.ndarray, level: int) -> np.ndarray:
     return worst
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "size"),
     [

@@ -204,6 +204,7 @@ def holes(picture: np.ndarray) -> int:
     return int((ndimage.binary_fill_holes(~sky, np.ones((3, 3))) & sky).sum())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("tolerance", "size"), [(1.0, 257), (8.0, 257), (2.0, [300, 130])])
 def test_no_background_shows_through_on_a_flight(engine, shown, tolerance, size):
     sketch = shown(size, tolerance)
@@ -224,6 +225,7 @@ def test_the_background_would_show_if_levels_met_too_early(engine, shown, monkey
     assert sum(holes(engine.render(sketch.with_camera(c), size=SIZE).array) for c in flight(12)) > 10
 
 
+@pytest.mark.slow
 def test_what_is_left_out_is_nowhere_in_the_picture(engine, shown, monkeypatch):
     left_out = 0
     for camera in list(flight(12))[::2]:
@@ -262,6 +264,7 @@ def pixels(view: sight.View, truth: np.ndarray) -> np.ndarray:
     return np.where(inside, moved, 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerance", [1.0, 2.0, 8.0])
 @pytest.mark.parametrize("detail", ["morph", "geomipmap"])
 def test_no_place_is_drawn_further_from_the_terrain_than_the_tolerance(

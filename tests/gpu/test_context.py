@@ -87,6 +87,7 @@ def test_an_older_context_draws_the_same(sketch):
     assert 20 < found[""]["mean"] < 250
 
 
+@pytest.mark.slow
 def test_compute_that_is_not_there_is_a_sentence(sketch):
     script = """
     import sys

@@ -30,6 +30,8 @@ from playground.lessons.present.spoken import LEAST, LETTERS, cues_of, plain_tex
 from playground.lessons.read import read_lesson, summaries
 from playground.lessons.scenes import Sketches
 
+pytestmark = pytest.mark.slow
+
 
 @cache
 def presented(language: str) -> list[tuple[Lesson, tuple[Beat, ...]]]:
@@ -38,7 +40,6 @@ def presented(language: str) -> list[tuple[Lesson, tuple[Beat, ...]]]:
     return [(lesson, beats_of(lesson)) for lesson in lessons]
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_every_lesson_is_told_whole_and_in_its_order(language: str) -> None:
     for lesson, beats in presented(language):

@@ -255,6 +255,7 @@ def test_a_build_that_was_stopped_begins_again(tmp_path, lesson, engine):
     assert (folder / "en/small.html").is_file()
 
 
+@pytest.mark.slow
 def test_a_manifest_that_names_files_outside_removes_none(book, lesson, engine, tmp_path):
     victim = tmp_path / "victim.txt"
     victim.write_text("keep", encoding="utf-8")
@@ -378,6 +379,7 @@ def test_every_figure_of_the_thesis_has_its_pictures(figures):
         assert figure.captions.keys() == {"en", "fr"}
 
 
+@pytest.mark.slow
 def test_a_figure_says_its_parameters_and_its_command(figures):
     figure = next(figure for figure in figures if figure.number == "1.16")
     (drawn,) = figure.pictures

@@ -100,6 +100,7 @@ def test_pictures_are_written(texts, tmp_path, capsys):
     assert len(printed) == len(list((tmp_path / "out").glob("*.png"))) == 1 + 6 + 3 + 2 + 2 + 1
 
 
+@pytest.mark.slow
 def test_a_book_in_one_language_and_a_refused_folder(texts, tmp_path, capsys):
     run("translated", "small", "--lang", "fr")
     assert run("build", "small", "-o", str(tmp_path / "book"), "--lang", "fr") == 0

@@ -19,6 +19,8 @@ from playground.lessons.tasks.work import Work, scene_of
 from playground.sketch.load import load
 from playground.sketch.unpack import unpacked_beside
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def handed_out(tmp_path_factory):
@@ -33,7 +35,6 @@ def one():
     return assignments_of([read_lesson("diamond_square")])[0]
 
 
-@pytest.mark.slow
 def test_the_zip_opens_in_the_window_as_the_exercise_begins(handed_out, one, tmp_path, engine):
     zipped = tmp_path / "week3.zip"
     zipped.write_bytes(handed_out.read_bytes())
@@ -54,7 +55,6 @@ def test_the_zip_opens_in_the_window_as_the_exercise_begins(handed_out, one, tmp
     assert (changed != shown).any()
 
 
-@pytest.mark.slow
 def test_every_exercise_of_the_course_has_a_sketch_that_loads(tmp_path):
     found = assignments_of(read_lessons())
     assert len({one.name for one in found}) == len(found) > 0
@@ -67,7 +67,6 @@ def test_every_exercise_of_the_course_has_a_sketch_that_loads(tmp_path):
         assert sketch.shots == () and sketch.presets == () and (folder / one.file).is_file()
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("lesson", ["diamond_square", "first_height"])
 def test_no_answer_is_in_the_zip(lesson, handed_out, tmp_path):
     """Neither a line of a model answer that its starter lacks, nor of a solution, nor of an earlier step."""
@@ -103,14 +102,12 @@ def test_the_page_has_every_exercise_and_needs_no_network(handed_out):
     assert "playground live diamond_square-dimension" in readme
 
 
-@pytest.mark.slow
 def test_the_same_lessons_give_the_same_bytes(handed_out, tmp_path):
     again = tmp_path / "week3.zip"
     assert main(["lesson", "handout", "diamond_square", "--hints", "-o", str(again)]) == 0
     assert again.read_bytes() == handed_out.read_bytes()
 
 
-@pytest.mark.slow
 def test_in_french_without_hints(tmp_path):
     path = tmp_path / "semaine 3 (été).zip"
     assert main(["lesson", "handout", "diamond_square", "--lang", "fr", "-o", str(path)]) == 0

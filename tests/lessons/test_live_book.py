@@ -30,6 +30,9 @@ from playground.web.shown import row as row_data
 from ..sketch_texts import map_of, passes
 from .conftest import SKETCHES
 
+pytestmark = pytest.mark.slow
+
+
 SCRIPT = re.compile(r'\(globalThis\.bookData\?\?=\{\}\)\["([\w/]+)"\]="([A-Za-z0-9+/=]+)";\n')
 
 
@@ -76,7 +79,6 @@ def written_alone(scene):
     return sketch_data(scene.sketch, SharedData(), frame=scene.pixels, time=scene.time, steps=steps)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", ["sky_light", "delaunay"])
 def test_every_scene_of_a_lesson_is_its_sketch_with_its_setting(node, name):
     count, data = compare_scenes(node, read_lesson(name, "en", SKETCHES))
@@ -111,7 +113,6 @@ def compare_scenes(node, lesson):
     return count, data
 
 
-@pytest.mark.slow
 def test_the_lessons_of_a_book_share_texts_and_kernels(sky_light, of_sky_light):
     library, first = of_sky_light
     once = len(library.kernels), len(library.data()["files"])
@@ -198,7 +199,6 @@ def test_iterations_that_only_a_source_reads_stay_pictures(any_engine, tmp_path)
     assert found[0] is None and found[1]["passes"] == ["free"]
 
 
-@pytest.mark.slow
 def test_values_that_a_processor_makes_are_listed_ones(delaunay):
     """Between ten and twenty points of a triangulation a page knows of none."""
     block = held_in(delaunay.files["data/delaunay.js"])["blocks"]["points"]

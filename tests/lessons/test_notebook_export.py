@@ -149,6 +149,7 @@ def test_a_figure_in_another_widget_keeps_its_state(opened):
     assert {"box", turns.model_id} <= rest.keys() and land.model_id not in rest
 
 
+@pytest.mark.slow
 def test_a_page_has_formulas_without_a_script_and_asks_for_nothing(opened, caplog):
     nb = notebook_of([opened.show("land")])
     text = "So $\\sigma^2$ and\n\n$$h = \\sqrt{x}$$\n\nand $\\unheard{x}$."

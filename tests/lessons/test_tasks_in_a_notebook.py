@@ -45,6 +45,7 @@ def test_a_verdict_has_points_marks_and_pictures_of_what_is_shown_only(opened):
     assert str(right).startswith("3 of 3 points\n✓ ") and "<img" not in right._repr_html_()
 
 
+@pytest.mark.slow
 def test_values_are_checked_and_a_picture_is_matched(opened):
     values = opened(VALUES)
     assert values.check("third", {"height.smoothing": 0.6}).verdict.passed

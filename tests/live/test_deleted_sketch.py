@@ -112,6 +112,7 @@ def test_a_folder_that_was_moved_away_says_so(folder: Path, any_engine: Engine) 
     session.release()
 
 
+@pytest.mark.slow
 def test_the_current_folder_may_be_deleted_under_a_session(tmp_path: Path) -> None:
     script = """
 import os, shutil, sys

@@ -95,6 +95,7 @@ def test_break_it_and_fix_it_are_buttons(desk):
     assert not desk.bench.files.editing and desk.reader.bugs.state["quarter"] == "shown"
 
 
+@pytest.mark.slow
 def test_a_bug_is_fixed_by_typing_in_the_copy(desk):
     before = FILE.read_bytes()
     desk.open(3)

@@ -322,6 +322,7 @@ def test_a_sketch_that_is_dropped_opens(bare: Bare, folder: Path) -> None:
     assert "picture.png is neither" in notices_of(bare)
 
 
+@pytest.mark.slow
 def test_an_elevation_file_that_is_dropped_opens_where_nothing_takes_it_and_is_saved_beside_it(
     bare: Bare, folder: Path
 ) -> None:

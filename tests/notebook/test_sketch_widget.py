@@ -216,6 +216,7 @@ def test_two_are_compared_by_their_values_or_as_sketches(engine, slope):
     assert "no shipped sketch 'nothing'" in named.mistake
 
 
+@pytest.mark.slow
 def test_closing_the_last_releases_what_all_hold(slope):
     """The engine of all widgets, with its context; the next one opens another."""
     one, other = (playground.widget(slope, size=SIZE) for _ in range(2))

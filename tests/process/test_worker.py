@@ -226,6 +226,7 @@ def test_another_starts_where_one_died_or_the_spare_takes_over(handler: str, ali
     assert workers.worker is None and workers.spare is None
 
 
+@pytest.mark.slow
 def test_many_at_once_answer_for_themselves(handler: str, alive: Alive):
     launch = Launch(handler=handler)
     workers = [Worker(launch) for _ in range(6)]

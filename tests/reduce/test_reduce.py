@@ -144,6 +144,7 @@ float kernel(ivec2 texel) {{
     assert "texel.x" not in text_of(search)
 
 
+@pytest.mark.slow
 def test_let_go_anywhere_the_terrain_goes_too(sketch, worker, tmp_path):
     text = f"""{HEIGHT}
 float kernel(ivec2 texel) {{

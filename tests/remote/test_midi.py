@@ -92,6 +92,7 @@ def device(desk: Desk, fake_backend: None) -> Device:
     return Device(desk)
 
 
+@pytest.mark.slow
 def test_a_knob_is_learned_goes_over_the_range_and_is_remembered(desk: Desk, device: Device):
     device.learn("height.level")
     file = file_of(desk.session.path)
@@ -107,6 +108,7 @@ def test_a_knob_is_learned_goes_over_the_range_and_is_remembered(desk: Desk, dev
     assert desk.bench.undo.history.can_undo
 
 
+@pytest.mark.slow
 def test_a_value_does_not_jump_but_is_taken_over_where_the_knob_passes_it(desk: Desk, device: Device):
     device.learn("height.level")
     device.turn(KNOB, 20)
@@ -184,6 +186,7 @@ def test_notes_switch_step_and_strike(desk: Desk, device: Device):
     assert desk.value("height.rocks") is True
 
 
+@pytest.mark.slow
 def test_a_button_is_pressed_by_a_note_and_where_a_control_rises(desk: Desk, device: Device):
     pressed = desk.pressed()
     device.learn("height.fire")
@@ -318,6 +321,7 @@ def test_without_a_device_or_a_package_one_sentence_says_so(desk: Desk, monkeypa
     assert desk.notices[-1].endswith('python -m pip install "terrain-shader-playground[midi]"')
 
 
+@pytest.mark.slow
 def test_a_device_that_is_connected_later_is_found_and_one_pulled_out_is_no_error(
     desk: Desk, device: Device, monkeypatch: pytest.MonkeyPatch
 ):

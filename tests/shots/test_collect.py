@@ -29,6 +29,7 @@ def listing(run: Run, *arguments: str) -> list[str]:
 SLOPE = ["slope.toml::plain", "slope.toml::bright", "slope.toml::references"]
 
 
+@pytest.mark.slow
 def test_a_sketch_on_the_command_line_gives_a_test_for_each_shot(run: Run) -> None:
     assert listing(run, "slope.toml") == SLOPE
     assert listing(run, "slope.toml::bright") == ["slope.toml::bright"]
@@ -92,6 +93,7 @@ def test_a_pattern_that_matches_nothing_is_a_mistake(run: Run) -> None:
     result.stderr.fnmatch_lines(["ERROR: shots: no sketch (*) matches 'sketchs/[*].toml' in *"])
 
 
+@pytest.mark.slow
 def test_what_is_no_sketch_fails_in_a_sentence_and_the_others_run(run: Run, edit: Edit) -> None:
     Path("pyproject.toml").write_text('[project]\nname = "x"\n')
     edit("slope.toml", 'use = "./terrain"', 'use = "./terrian"')

@@ -178,6 +178,7 @@ def test_without_the_expected_renderer_what_opengl_drew_is_skipped(tests: Run) -
 STALE = ["no test uses 1 reference; remove:", "    screenshots/test_slope.py/llvmpipe/seven.png"]
 
 
+@pytest.mark.slow
 def test_a_reference_that_no_test_uses_fails_when_all_tests_of_its_file_ran(tests: Run, edit: Edit) -> None:
     edit("test_slope.py", '"seven"', '"eight"')
     result = tests("--shots-update")

@@ -39,6 +39,7 @@ def sentence(name: str) -> str:
     return found
 
 
+@pytest.mark.slow
 def test_sketches_of_one_name_do_not_hide_each_others_failures(run: Run, edit: Edit) -> None:
     for folder in ("a", "b"):
         Path(folder).mkdir()
@@ -244,6 +245,7 @@ def test_where_results_cannot_be_recorded_one_sentence_says_so(accepted: Run, ed
     assert Path("taken").read_text() == "mine"
 
 
+@pytest.mark.slow
 def test_from_a_subfolder_the_command_that_accepts_names_the_file_from_there(
     accepted: Run, edit: Edit, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -110,6 +110,7 @@ def test_a_shot_obeys_each_of_its_settings(
         assert bright[name] == pytest.approx(255 * value, abs=0.51), name
 
 
+@pytest.mark.slow
 def test_this_process_keeps_its_environment_and_its_context(
     cases: dict[str, ShotCase], ctx: moderngl.Context
 ) -> None:
@@ -140,6 +141,7 @@ def test_a_mistake_of_the_sketch_crosses_over_and_the_next_shot_still_runs(
     assert warm_renderer.render(cases["plain"]).size == (48, 32)
 
 
+@pytest.mark.slow
 def test_a_missing_software_renderer_is_reported_each_time(
     monkeypatch: pytest.MonkeyPatch, cases: dict[str, ShotCase]
 ) -> None:
@@ -260,6 +262,7 @@ def test_a_draw_that_hangs_is_stopped_and_the_next_is_drawn(fake: RendererProces
     assert fake.render(made_up("next")).drawn == "next"
 
 
+@pytest.mark.slow
 def test_a_worker_that_cannot_start_is_tried_twice_and_no_more(fake: RendererProcess) -> None:
     Path("cannot start").touch()
     words = r"starting the process that draws crashed: the process was ended by SIGABRT\n    \| LLVM ERROR"

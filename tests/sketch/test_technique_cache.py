@@ -133,6 +133,7 @@ def test_a_circle_that_closes_through_a_cached_technique_is_found(files: Files):
         load_with(techniques.begin(), files.folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_after_any_saves_it_gives_what_a_reading_anew_gives(files: Files, seed: int):
     rng = random.Random(seed)

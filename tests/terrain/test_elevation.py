@@ -14,7 +14,8 @@ import tifffile
 from PIL import Image as PillowImage
 
 from playground.errors import DataError
-from playground.images.files import encode_samples, write_values
+from playground.images.files import encode_samples
+from playground.images.values import write_values
 from playground.terrain import geotiff as geotiff_reader
 from playground.terrain import gis
 from playground.terrain.elevation import Elevation, read_elevation

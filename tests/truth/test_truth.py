@@ -179,6 +179,7 @@ def test_a_sun_half_behind_a_wall_is_half_seen():
     assert share[1, 0] == pytest.approx(0.5, abs=2e-4)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("elevation", "distance", "thin"), [(5.0, 1250.0, 5.0), (25.0, 222.0, 0.5)])
 def test_a_walls_shadow_ends_and_its_penumbra_is_as_wide_as_the_sun(elevation, distance, thin):
     """A straight edge x radii above the middle leaves (acos(x) - x sqrt(1 - x²)) / pi of a disc.
@@ -232,6 +233,7 @@ def test_an_inclined_plane_sees_its_share(angle, way):
     np.testing.assert_allclose(sky_visibility(terrain), (1 + np.cos(a)) / 2, atol=2e-3)
 
 
+@pytest.mark.slow
 def test_a_valleys_walls_see_what_lies_between_the_rims():
     """Without an end, cos² a; with rims, (1 + cos(a + e)) / 2, e being the far rim's elevation."""
     a = np.radians(35)
@@ -245,6 +247,7 @@ def test_a_valleys_walls_see_what_lies_between_the_rims():
     assert found[21] == pytest.approx(np.cos(a) ** 2, abs=0.03)
 
 
+@pytest.mark.slow
 def test_every_place_in_a_bowl_sees_as_much_sky():
     """Inside a sphere every piece counts alike: K is the missing cap's share, (1 + cos rim) / 2."""
     terrain = bowl(65, rim=45.0)
@@ -263,6 +266,7 @@ def test_an_even_sky_is_what_the_closed_form_says():
     )
 
 
+@pytest.mark.slow
 def test_a_sky_that_brightens_upwards():
     """L = sin(e) on flat terrain: 2 ∫ sin² e cos e de = 2/3; a hemisphere bright to the east only: half."""
     flat = plane(0, 0)
@@ -290,6 +294,7 @@ def test_what_is_not_sky_is_terrain():
             np.testing.assert_allclose(inner, 1, atol=1e-3)
 
 
+@pytest.mark.slow
 def test_views_are_mutual():
     """Equal faces see as much of each other: the share times the receiver's area is symmetric."""
     terrain = bowl(21, rim=50.0)

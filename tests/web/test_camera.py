@@ -7,6 +7,7 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
+import pytest
 
 from playground.sketch.model import Camera
 from playground.terrain import camera as cameras
@@ -39,6 +40,7 @@ def bits(array: np.ndarray) -> list[int]:
     return array.astype(np.float32).view(np.uint32).ravel().tolist()
 
 
+@pytest.mark.slow
 def test_matrices_are_the_same_to_the_last_bit(node: Node):
     rng = np.random.default_rng(0)
     scenes = [random_scene(rng) for _ in range(2_000)]

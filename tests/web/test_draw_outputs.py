@@ -13,6 +13,9 @@ from playground.web.page_data import page_data
 from ..sketch_texts import map_of, passes
 from .pages import PageError, Pages
 
+pytestmark = pytest.mark.slow
+
+
 SIZE = (96, 64)
 DOTS = """#pragma draw(mesh = "sheet", instances = "min(list.x, most)", \\
                output = "seen:rgba32f, more:rg16f")
@@ -38,7 +41,6 @@ void kernel(ivec2 texel, out float list, out vec4 seen, out vec2 more) {
 """
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("samples", [1, 4])
 def test_outputs_instances_and_what_goes_on_are_the_engines(
     pages: Pages, drawn: Engine, tmp_path: Path, samples: int

@@ -16,6 +16,9 @@ from ..cases import each
 from .node import Node, NodeError
 from .texts import kernels
 
+pytestmark = pytest.mark.slow
+
+
 PRECISION = "precision highp float; precision highp int;"
 
 VERTEX = "#version 300 es\nvoid main() { gl_Position = vec4(0.0); }\n"
@@ -32,7 +35,6 @@ def es(node: Node, text: str, **options: object) -> str:
     return found
 
 
-@pytest.mark.slow
 def test_every_program_of_the_library_compiles_as_es(node: Node, ctx: moderngl.Context):
     if "GL_ARB_ES3_compatibility" not in ctx.extensions:
         pytest.skip("this driver compiles no GLSL ES")
@@ -45,7 +47,6 @@ def test_every_program_of_the_library_compiles_as_es(node: Node, ctx: moderngl.C
             raise AssertionError(name) from error
 
 
-@pytest.mark.slow
 def test_every_program_of_another_tool_that_ships_compiles_as_es(node: Node, ctx: moderngl.Context):
     if "GL_ARB_ES3_compatibility" not in ctx.extensions:
         pytest.skip("this driver compiles no GLSL ES")

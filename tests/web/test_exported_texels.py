@@ -123,6 +123,7 @@ def test_a_sources_own_parameters_are_locked_and_no_others():
     assert [path for path, row in found.items() if not row["locked"]]
 
 
+@pytest.mark.slow
 def test_what_a_source_was_made_of_is_locked_with_it(any_engine: Engine):
     """A page does not draw the passes that only the source read, and says why they cannot be changed."""
     [data] = page_data([load("from_example")], engine=any_engine)["sketches"]

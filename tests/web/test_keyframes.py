@@ -49,6 +49,7 @@ def as_data(one: Track) -> dict[str, Any]:
     return {name: getattr(one, name) for name in ("times", "values", "eases", "holds", "angles")}
 
 
+@pytest.mark.slow
 def test_tracks_of_every_kind_give_the_same_to_the_last_bit(node: Node):
     chance = random.Random(3)
     tracks = [track(chance) for _ in range(400)]

@@ -159,6 +159,7 @@ def library_files(name: str) -> list[str]:
     return sorted({files[0], files[len(files) // 2], files[-1], max(files, key=there.count)})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["delaunay", "diamond_square", "jacksboro", "sun_flight"])
 def test_an_edited_text_is_that_of_every_pass_that_reads_it(node: Node, tmp_path: Path, name: str):
     page, sketch = page_of(name), load(name)

@@ -29,6 +29,9 @@ from playground.workbench.sun_drag import turned
 
 from .node import Node
 
+pytestmark = pytest.mark.slow
+
+
 RANDOM = np.random.default_rng(16)
 
 
@@ -82,7 +85,6 @@ def some_value(parameter: Parameter) -> Value:
     return tuple(found) if count > 1 else found[0]
 
 
-@pytest.mark.slow
 def test_there_are_parameters_of_every_widget():
     kinds = {parameter.widget.kind for _, _, parameter, _ in parameters()}
     assert kinds >= {
@@ -279,7 +281,6 @@ def test_frames_of_time_are_the_windows(node: Node):
 # ── what a panel lists ───────────────────────────────────────────────────────
 
 
-@pytest.mark.slow
 def test_main_parameters_have_the_windows_labels(node: Node):
     script = """async (rows, load) => {
         const { mainLabels, mainRows } = await load("labels.js");

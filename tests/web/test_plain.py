@@ -74,6 +74,7 @@ def agree(pages: Pages, drawn: Engine, sketch: Any, *times: float, size: tuple[i
     pages.run("figures[arguments[0]].close()", sketch.name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("files", "opens"), params())
 def test_another_tools_shader_is_drawn_with_the_engines_bits(
     pages: Pages, drawn: Engine, tmp_path: Path, files: dict[str, str], opens: str

@@ -184,6 +184,7 @@ def test_other_values_wait_for_nothing(session: Session) -> None:
     assert not session.drafts.testing
 
 
+@pytest.mark.slow
 def test_the_sandbox_says_what_is_wrong_with_a_bomb(folder: Path, any_engine: Engine) -> None:
     from playground.engine.sandbox import Sandbox, TrySketch
     from playground.sketch.load import load

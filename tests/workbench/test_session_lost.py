@@ -95,6 +95,7 @@ def test_everything_is_there_again_the_picture_to_the_bit(machine: Machine) -> N
     assert session.error is None and any("was reset" in note for note in session.notes)
 
 
+@pytest.mark.slow
 def test_what_is_coming_and_what_is_wrong_stay(machine: Machine) -> None:
     before = machine.picture()
     machine.save("* 0.5", "* undeclared")
@@ -124,6 +125,7 @@ def test_what_costs_the_context_is_not_drawn_again(machine: Machine) -> None:
     assert machine.session.error is None
 
 
+@pytest.mark.slow
 def test_a_value_that_costs_two_contexts_waits_for_another(machine: Machine) -> None:
     machine.picture()
     machine.session.drafts.set("height.level", 0.75)

@@ -382,6 +382,7 @@ def is_data(name: str) -> bool:
     return name.endswith((".png", ".npy"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SHORT)
 def test_every_save_is_shown_in_the_end(
     tmp_path: Path, any_engine: Engine, seed: int, shared_sandbox: Sandbox

@@ -54,6 +54,7 @@ def test_the_first_edit_that_the_readme_proposes_shows(any_engine: Engine, folde
     session.release()
 
 
+@pytest.mark.slow
 def test_a_set_of_the_sketch_is_named_with_its_line(any_engine: Engine, folder: Path):
     change(folder / "sketch.toml", 'use  = "./my_land"', 'use  = "./my_land"\nset  = { frequency = 5 }')
     session = Session(any_engine, folder)
@@ -66,6 +67,7 @@ def test_a_set_of_the_sketch_is_named_with_its_line(any_engine: Engine, folder: 
     session.release()
 
 
+@pytest.mark.slow
 def test_what_the_panel_sets_is_named_too(any_engine: Engine, folder: Path):
     session = Session(any_engine, folder)
     saved(session)

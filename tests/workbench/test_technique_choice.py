@@ -13,6 +13,9 @@ from playground.sketch.replace_technique import choices, fits, nearest_fitting, 
 
 from ..sketch_texts import map_of, passes
 
+pytestmark = pytest.mark.slow
+
+
 FLAT = """// flat.glsl -- level terrain
 #pragma kernel(output = "height:r32f")
 uniform float level = 0.5; //! slider(0, 1)
@@ -56,7 +59,6 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
-@pytest.mark.slow
 def test_what_gives_the_same_outputs_and_can_be_wired_is_offered(folder: Path) -> None:
     sketch = load(folder)
     first, second, colour = (choices(sketch, name) for name in ("height", "upper", "colour"))
@@ -127,7 +129,6 @@ def test_a_view_is_not_replaced_by_linear_light() -> None:
     assert not {"view/land", "view/sky", "view/sea"} & set(offered)
 
 
-@pytest.mark.slow
 def test_one_technique_is_known_to_fit_without_the_others(folder: Path) -> None:
     sketch = load(folder)
     offered = choices(sketch, "height")

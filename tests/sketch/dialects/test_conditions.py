@@ -107,6 +107,7 @@ def test_deep_nesting_is_no_crash():
     assert live(f"#if {'(' * 3000}1{')' * 3000}\nx\n#endif")
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(shutil.which("cpp") is None, reason="there is no C preprocessor")
 def test_it_agrees_with_the_preprocessor_of_c():
     chance = random.Random(7)
