@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -55,9 +56,10 @@ def watched(
     is counts inside the sketch's folder and the library only: nothing else is likely to come
     from elsewhere.
     """
-    roots = (path.resolve().parent, GLSL)
+    # As texts: hundreds of places are compared at each save, and parts of paths take ten times as long.
+    roots = tuple(os.path.join(os.path.normcase(root), "") for root in (path.resolve().parent, GLSL))
     found = {path}
-    found |= {p for p, there in places.items() if there or any(p.is_relative_to(r) for r in roots)}
+    found |= {p for p, there in places.items() if there or os.path.normcase(p).startswith(roots)}
     for sketch in sketches:
         found |= files_of(sketch)
     for error in errors:

@@ -23,9 +23,10 @@ class Follower:
         ``own`` are files that this process writes itself and shows already.
         """
         changed = self.watcher.take() - set(own)
-        if not changed or not (self.session.error or changed & self.session.drafts.files):
+        known = changed & self.session.drafts.files if changed else changed
+        if not changed or not (self.session.error or known):
             return False
-        self.session.drafts.reload(changed & self.session.drafts.files)
+        self.session.drafts.reload(known)
         return True
 
     def follow(self) -> None:

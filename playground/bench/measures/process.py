@@ -34,11 +34,22 @@ except ImportError:
 def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     """Yield the figure of a process that runs the Python text ``code``.
 
-    In it, ``{out}`` is a file that it may write and ``{size}`` the texels a side; ``takes`` is "time" or
-    "memory"; ``cold`` gives each run an empty shader cache.
+    In it, ``{out}`` is a file that it may write, ``{cache}`` a folder of all runs, and ``{size}`` the texels a
+    side; ``prepare`` runs once before, untimed; ``takes`` is "time" or "memory"; ``cold`` gives each run an
+    empty shader cache.
     """
     options = row.options
-    code = str(options["code"]).replace("{out}", str(room.folder / "out.png")).replace("{size}", str(size))
+    names = {"{out}": room.folder / "out.png", "{cache}": room.folder / row.name, "{size}": size}
+
+    def text_of(key: str) -> str:
+        text = str(options[key])
+        for name, what in names.items():
+            text = text.replace(name, str(what))
+        return text
+
+    code = text_of("code")
+    if "prepare" in options:
+        spent([sys.executable, "-c", text_of("prepare") + _SPENT], dict(os.environ))
     found = Samples()
     memory = options.get("takes") == "memory"
     rounds = 1 if memory else room.options.rounds
