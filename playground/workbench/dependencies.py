@@ -57,7 +57,7 @@ def watched(
     from elsewhere.
     """
     # As texts: hundreds of places are compared at each save, and parts of paths take ten times as long.
-    roots = tuple(os.path.join(os.path.normcase(root), "") for root in (path.resolve().parent, GLSL))
+    roots = tuple(os.path.normcase(f"{root}{os.sep}") for root in (path.resolve().parent, GLSL))
     found = {path}
     found |= {p for p, there in places.items() if there or os.path.normcase(p).startswith(roots)}
     for sketch in sketches:

@@ -34,9 +34,9 @@ except ImportError:
 def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     """Yield the figure of a process that runs the Python text ``code``.
 
-    In it, ``{out}`` is a file that it may write, ``{cache}`` a folder of all runs, and ``{size}`` the texels a
-    side; ``prepare`` runs once before, untimed; ``takes`` is "time" or "memory"; ``cold`` gives each run an
-    empty shader cache.
+    In it, ``{out}`` is a file that it may write, ``{cache}`` a folder of all runs, and ``{size}`` the texels
+    a side; ``prepare`` runs once before, untimed; ``takes`` is "time" or "memory"; ``cold`` gives each run
+    an empty shader cache.
     """
     options = row.options
     names = {"{out}": room.folder / "out.png", "{cache}": room.folder / row.name, "{size}": size}
