@@ -22,6 +22,7 @@ from playground.errors import ContextError
 from playground.gpu.gl_calls import mirror
 from playground.gpu.shapes import FACES, Shaped, copied, shaped_size
 from playground.gpu.textures import check_size, drain
+from playground.gpu.wrap import reads_unwired
 from playground.images.content_hash import content_hash
 from playground.images.files import read_image
 from playground.paths import shown
@@ -37,6 +38,7 @@ if TYPE_CHECKING:
 
 _SRGB8_ALPHA8 = 0x8C43  # GL_SRGB8_ALPHA8: the sampler decodes, before it filters
 _MAX_FILES = 32
+_MOST_READ_BACK = 2**16  # texels of an input whose fixed ones become uniforms
 _ANISOTROPY = 8.0  # of textures with mipmaps; on a software renderer it costs a hundred times as much
 _CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
 
@@ -102,6 +104,8 @@ class Binder:
         keep their values, and only the textures of the inputs are bound.
         """
         wires = wires_of(step, inputs) if wires is None else wires
+        if program.fixed:
+            program.set_all(fixed_texels_of(program, step.kernel, inputs))
         bound = program.bound
         if isinstance(bound, _Bound) and bound.step is step and bound.given is given and bound.wires == wires:
             for declared, unit in bound.units:
@@ -283,6 +287,29 @@ def wires_of(step: Step, inputs: Mapping[str, Wired]) -> tuple[int, ...]:
         texture = inputs.get(declared.name, NOT_WIRED).texture
         found.append(_OPEN if texture is None else _MATCHING if texture.size == step.size else _WIRED)
     return tuple(found)
+
+
+def is_read_back(name: str, inputs: Mapping[str, Wired]) -> bool:
+    """Return whether texels of an input can be read back: few texels, of floats, whose bits stay the same."""
+    result, texture, _ = inputs.get(name, NOT_WIRED)
+    if result is None or texture is None or result.surface is not None:
+        return False
+    return texture.width * texture.height <= _MOST_READ_BACK and texture.dtype in ("f2", "f4")
+
+
+def fixed_texels_of(
+    program: Program, kernel: Kernel, inputs: Mapping[str, Wired]
+) -> dict[str, tuple[float, ...]]:
+    """Return the values of a program's uniforms that are texels of inputs."""
+    found = {}
+    unwired = reads_unwired(kernel) and has_unwired(kernel, inputs)
+    for uniform, name, x, y in program.fixed:
+        result, _, output = inputs[name]
+        assert result is not None, "only such an input is written so: see is_read_back"
+        if unwired and result.size == (1, 1):  # where one input is unwired, so it goes with each of one texel
+            x = y = 0
+        found[uniform] = result.texel(output, x, y)
+    return found
 
 
 def has_unwired(kernel: Kernel, inputs: Mapping[str, Wired]) -> bool:

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from playground.engine.binder import Binder, has_unwired, wires_of
+from playground.engine.binder import Binder, has_unwired, is_read_back, wires_of
 from playground.engine.costly_rest import CostlyRest
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
@@ -23,10 +23,12 @@ from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
 from playground.sketch import expressions
 from playground.sketch.expressions import FRAME_RATE, ExpressionError, Number, counts_frames
+from playground.sketch.fixed_texels import fixed_texels
 from playground.sketch.model import Kernel, Sampling
 from playground.sketch.reserved_names import (
     DEPTH,
     ELEMENT,
+    FIXED,
     MATCHES,
     PART,
     PRESSED,
@@ -150,6 +152,9 @@ class Kernels:
                 choices.append((f"{MATCHES}{name}", int(matches)))
         if reads_unwired(kernel):
             choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
+        if job.loop_iteration is None:  # in a loop, each iteration would wait for what it reads back
+            inputs = {texel.input for texel in fixed_texels(kernel.source)}
+            choices += [(f"{FIXED}{name}", 1) for name in sorted(inputs) if is_read_back(name, job.inputs)]
         return self.programs.get(kernel, driver, (*choices, *more))
 
     def draw_own(
@@ -340,6 +345,7 @@ class Kernels:
     def _in_place(self, job: Job, program: Program, state: Mapping[str, moderngl.Texture]) -> Result:
         step, kernel = job.step, job.step.kernel
         result = job.start or self._untouched(step, state)
+        result.texels.clear()
         self.images(result, read=True)
         for iteration in range(result.iterations, step.repeat):
             job.count(program, iteration, kernel.repeat, step.whole)

@@ -10,12 +10,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from playground.gpu.shapes import Shaped
-from playground.gpu.textures import bytes_of, make_framebuffer, make_texture
+from playground.gpu.textures import bytes_of, make_framebuffer, make_texture, read_texture
 from playground.sketch.model import Output
 
 if TYPE_CHECKING:
     import moderngl
+    from numpy.typing import NDArray
 
 
 @dataclass(eq=False)
@@ -51,6 +54,7 @@ class Result:
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
     with_levels: set[str] = field(default_factory=set)  # outputs that had mipmaps when they were others'
     shaped: dict[tuple[str, str], Shaped] = field(default_factory=dict)  # copies, by output and shape
+    texels: dict[str, NDArray[np.float32]] = field(default_factory=dict)  # read back, by output
     own_bytes: int = 0  # of its textures without mipmaps; 0: not counted yet
     _framebuffer: moderngl.Framebuffer | None = None
 
@@ -70,6 +74,16 @@ class Result:
             colours = sum([bytes_of(surface.size, form) for form in surface.formats])
             total += (colours + 4 * width * height) * surface.samples
         return total
+
+    def texel(self, output: str, x: int, y: int) -> tuple[float, ...]:
+        """Return a texel as a shader fetches it, zeros outside: of floats, read back once."""
+        texels = self.texels.get(output)
+        if texels is None:
+            texels = self.texels[output] = read_texture(self.textures[output])
+        if x >= self.size[0] or y >= self.size[1]:
+            return (0.0, 0.0, 0.0, 0.0)
+        found = np.atleast_1d(texels[y, x]).astype(float).tolist()
+        return tuple([*found, *(0.0, 0.0, 0.0, 1.0)[len(found) :]])
 
     def framebuffer(self, ctx: moderngl.Context) -> moderngl.Framebuffer:
         """Return the framebuffer that draws to all of its textures."""

@@ -68,9 +68,9 @@ def test_half_of_the_pixels_a_side_jump_no_more_than_stated(any_engine: Engine):
     assert np.median(shifts) <= 1 and np.percentile(shifts, 95) <= 2
 
 
-def test_few_pixels_that_are_enlarged_keep_their_samples(terrain: Sketch):
-    assert as_preview(terrain, (600, 400), (300, 200)).samples == 1
-    assert as_preview(terrain, (600, 400), (200, 133)).samples == terrain.samples > 1
+@pytest.mark.parametrize("pixels", [(600, 400), (300, 200), (150, 100)])
+def test_a_preview_has_one_sample_however_few_its_pixels(terrain: Sketch, pixels: tuple[int, int]):
+    assert as_preview(terrain, (600, 400), pixels).samples == 1 < terrain.samples
 
 
 @pytest.mark.parametrize("grid", [2, 100, 256, 1025])

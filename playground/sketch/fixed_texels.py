@@ -1,0 +1,126 @@
+"""Find the texels that a kernel fetches at a place written as numbers: the same for all that it computes.
+
+    texelFetch(daylight, ivec2(5, 0), 0)
+
+A function may fetch from a sampler that it is handed: then every call, up the chain of calls, must hand
+it the input of that name, else the text does not say which texture is read. What a macro writes is left
+alone.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+
+from playground.sketch.outline import Declared, outline
+from playground.sketch.source import SourceText
+
+_FETCH = re.compile(
+    r"\btexelFetch[ \t]*\([ \t]*([A-Za-z_]\w*)[ \t]*,[ \t]*"
+    r"ivec2[ \t]*\([ \t]*(\d{1,4})[ \t]*(?:,[ \t]*(\d{1,4})[ \t]*)?\)[ \t]*,[ \t]*0[ \t]*\)"
+)
+_BRACKETS = re.compile(r"[()\[\],]")
+_DIRECTIVE = re.compile(
+    r"^[ \t]*#(?:[^\n\\]|\\\n|\\[^\n])*", re.MULTILINE
+)  # and the lines that it goes on to
+
+
+@dataclass(frozen=True, slots=True)
+class FixedTexel:
+    """One fetch of a text: which texel of which input, and where the text has it."""
+
+    input: str
+    x: int  # [texels]
+    y: int  # [texels]
+    line: int  # of the text, from 0
+    start: int  # column, from 0
+    end: int  # behind it
+
+
+@lru_cache(maxsize=256)
+def fixed_texels(source: SourceText) -> tuple[FixedTexel, ...]:
+    """Return the fetches of a flattened text that read one texel of a uniform sampler, in its order."""
+    if "texelFetch" not in source.names:
+        return ()
+    found = [(match.start(), match) for match in _FETCH.finditer(source.code)]
+    if not found:
+        return ()
+    text = _Text(source.code)
+    texels = []
+    for at, match in found:
+        if not text.reads_uniform(match[1], at):
+            continue
+        line_start = source.code.rfind("\n", 0, at) + 1
+        line, x = source.code.count("\n", 0, at), int(match[2])
+        y = x if match[3] is None else int(match[3])
+        texels.append(FixedTexel(match[1], x, y, line, at - line_start, match.end() - line_start))
+    return tuple(texels)
+
+
+class _Text:
+    """The functions of a text, and what their samplers stand for."""
+
+    def __init__(self, code: str) -> None:
+        directives = list(_DIRECTIVE.finditer(code))
+        self.directives = [match.span() for match in directives]
+        self.code = _DIRECTIVE.sub(lambda match: re.sub(r"[^\n]", " ", match.group()), code)
+        self.of_macros = " ".join([match.group() for match in directives])
+        self.functions: list[Declared] = [one for one in outline(code) if one.kind == "function"]
+
+    def reads_uniform(self, sampler: str, at: int, seen: frozenset[str] = frozenset()) -> bool:
+        """Return whether a name in some place stands for the uniform of that name, and for nothing else."""
+        if any(start <= at < end for start, end in self.directives):
+            return False
+        if re.search(rf"\bdefine[ \t]+(?:{sampler}|texelFetch|ivec2)\b", self.of_macros):
+            return False
+        around = next((one for one in self.functions if one.body >= 0 and one.start <= at < one.end), None)
+        if around is None:
+            return False
+        arguments = _arguments(around.signature)
+        if sampler not in arguments:
+            return True
+        if around.name in seen:
+            return True  # a recursion, which is judged where it is entered
+        alike = [one for one in self.functions if one.name == around.name and one.body >= 0]
+        if len(alike) > 1 or re.search(rf"\b{around.name}\b", self.of_macros):
+            return False
+        return self._is_handed(around, arguments.index(sampler), sampler, seen | {around.name})
+
+    def _is_handed(self, function: Declared, index: int, sampler: str, seen: frozenset[str]) -> bool:
+        """Return whether each call hands a function the uniform of a name as its argument of that index."""
+        declared = {one.at for one in self.functions if one.name == function.name}
+        for call in re.finditer(rf"\b{function.name}\b", self.code):
+            if call.start() in declared:
+                continue
+            given = _given(self.code, call.end())
+            if len(given) <= index or given[index] != sampler:
+                return False
+            if not self.reads_uniform(sampler, call.start(), seen):
+                return False
+        return True
+
+
+def _arguments(signature: str) -> list[str]:
+    """Return the names of a function's arguments; "" for one without."""
+    inside = signature[signature.index("(") + 1 : signature.rindex(")")]
+    return [(re.findall(r"[A-Za-z_]\w*", part) or [""])[-1] for part in inside.split(",")]
+
+
+def _given(code: str, at: int) -> list[str]:
+    """Return the arguments of the call whose bracket opens at a place, or behind white space there."""
+    opens = re.compile(r"\s*\(").match(code, at)
+    if opens is None:
+        return []
+    found, depth, start = [], 1, opens.end()
+    for mark in _BRACKETS.finditer(code, opens.end()):
+        if mark.group() in "([":
+            depth += 1
+        elif mark.group() in ")]":
+            depth -= 1
+        if depth == 0 or (depth == 1 and mark.group() == ","):
+            found.append(code[start : mark.start()].strip())
+            start = mark.end()
+        if depth == 0:
+            return found
+    return []

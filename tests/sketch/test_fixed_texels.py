@@ -1,0 +1,98 @@
+"""Which fetches of a text read one texel of an input, whatever is computed, and which only look so."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from playground.sketch.fixed_texels import fixed_texels
+from playground.sketch.source import read_source
+
+HEAD = """uniform sampler2D sun;
+uniform sampler2D moon;
+"""
+FOUND = {
+    "in the kernel": ("float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r; }", [("sun", 3, 3)]),
+    "two places on a line": (
+        "float kernel(ivec2 t) { return texelFetch(sun, ivec2(2, 5), 0).r"
+        " + texelFetch( moon,ivec2(0) , 0 ).g; }",
+        [("sun", 2, 5), ("moon", 0, 0)],
+    ),
+    "by a function that is handed it under its own name": (
+        "float at(sampler2D sun) { return texelFetch(sun, ivec2(1, 0), 0).r; }\n"
+        "float kernel(ivec2 t) { return at(sun) * at( sun ); }",
+        [("sun", 1, 0)],
+    ),
+    "down a chain of functions": (
+        "float at(int k, sampler2D sun) { return texelFetch(sun, ivec2(1, 0), 0).r; }\n"
+        "float twice(sampler2D sun, vec2 p[2]) { return at(int(p[0].x), sun) * 2.0; }\n"
+        "float kernel(ivec2 t) { return twice(sun, vec2[2](vec2(1.0, 2.0), vec2(0.0))); }",
+        [("sun", 1, 0)],
+    ),
+    "by a function that a prototype announces": (
+        "float at(sampler2D sun);\nfloat kernel(ivec2 t) { return at(sun); }\n"
+        "float at(sampler2D sun) { return texelFetch(sun, ivec2(4), 0).r; }",
+        [("sun", 4, 4)],
+    ),
+    "by a function that calls itself": (
+        "float at(sampler2D sun, int n) { return n > 0 ? at(sun, n - 1) : texelFetch(sun, ivec2(7), 0).r; }\n"
+        "float kernel(ivec2 t) { return at(sun, 3); }",
+        [("sun", 7, 7)],
+    ),
+}
+LEFT = {
+    "at a place that is worked out": "float kernel(ivec2 t) { return texelFetch(sun, ivec2(0, t.y), 0).r; }",
+    "of another level": "float kernel(ivec2 t) { return texelFetch(sun, ivec2(0), 1).r; }",
+    "in a comment": "float kernel(ivec2 t) { return 1.0; } // texelFetch(sun, ivec2(0), 0)",
+    "by a function that is handed another": (
+        "float at(sampler2D sun) { return texelFetch(sun, ivec2(1, 0), 0).r; }\n"
+        "float kernel(ivec2 t) { return at(sun) * at(moon); }"
+    ),
+    "by a function that is handed another further up": (
+        "float at(sampler2D sun) { return texelFetch(sun, ivec2(1, 0), 0).r; }\n"
+        "float twice(sampler2D sun) { return at(sun) * 2.0; }\n"
+        "float kernel(ivec2 t) { return twice(moon); }"
+    ),
+    "by a function whose argument has a name of its own": (
+        "float at(sampler2D which) { return texelFetch(which, ivec2(1, 0), 0).r; }\n"
+        "float kernel(ivec2 t) { return at(sun); }"
+    ),
+    "by one of two functions of a name": (
+        "float at(sampler2D sun) { return texelFetch(sun, ivec2(1, 0), 0).r; }\n"
+        "float at(sampler2D moon, int n) { return 1.0; }\n"
+        "float kernel(ivec2 t) { return at(sun) + at(moon, 2); }"
+    ),
+    "by a macro": (
+        "#define AT(sun) \\\n    texelFetch(sun, ivec2(0), 0)\nfloat kernel(ivec2 t) { return AT(moon).r; }"
+    ),
+    "by a function that a macro calls": (
+        "float at(sampler2D sun) { return texelFetch(sun, ivec2(1, 0), 0).r; }\n#define AT at\n"
+        "float kernel(ivec2 t) { return AT(moon) + at(sun); }"
+    ),
+    "of a name that a macro changes": (
+        "#define sun moon\nfloat kernel(ivec2 t) { return texelFetch(sun, ivec2(0), 0).r; }"
+    ),
+}
+
+
+def texels(folder: Path, text: str) -> list[tuple[str, int, int]]:
+    path = folder / "k.glsl"
+    path.write_text(HEAD + text + "\n", encoding="utf-8")
+    source = read_source(path, (folder,))
+    found = fixed_texels(source)
+    for one in found:
+        written = source.lines[one.line].code[one.start : one.end]
+        assert written.startswith("texelFetch") and written.endswith(")") and one.input in written
+    return [(one.input, one.x, one.y) for one in found]
+
+
+@pytest.mark.parametrize("where", FOUND)
+def test_a_fetch_of_one_texel_of_an_input_is_found(tmp_path: Path, where: str):
+    text, expected = FOUND[where]
+    assert texels(tmp_path, text) == expected
+
+
+@pytest.mark.parametrize("where", LEFT)
+def test_what_may_be_another_texel_is_left_alone(tmp_path: Path, where: str):
+    assert texels(tmp_path, LEFT[where]) == []
