@@ -28,6 +28,7 @@ class Traits:
     devices: bool  # a source reads a microphone or a camera
     files: tuple[tuple[str, Parameter], ...]  # parameters that name files, by the paths of the leaves
     draws: tuple[tuple[str, Kernel], ...]  # kernels that draw meshes
+    faster: tuple[tuple[str, Kernel], ...]  # kernels with a menu of which previews have another choice
     arcs: bool  # an angle follows a direction until it is set
 
 
@@ -63,6 +64,11 @@ def _traits(key: Identity[Graph]) -> Traits:
         devices=any(not _DEVICES.isdisjoint(kernel.depends) for _, kernel in kernels),
         files=tuple(files),
         draws=tuple((path, kernel) for path, kernel in kernels if kernel.kind == "draw"),
+        faster=tuple(
+            (path, kernel)
+            for path, kernel in kernels
+            if any(p.preview is not None for p in kernel.parameters)
+        ),
         arcs=any(p.follows for _, k in kernels for p in k.parameters),
     )
 

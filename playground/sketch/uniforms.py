@@ -51,7 +51,9 @@ _LONGEST_LITERAL = 64
 _TYPES = frozenset(SCALARS + VECTORS)
 _ROLES = WIDGETS.keys() - {"number"} | {"input"}
 _BARE = frozenset(word for word in _ROLES if word == "input" or WIDGETS[word].bare)
-MODIFIERS = frozenset({"step", "unit", "group", "label", "parts", "values", "follows", "was", "erode"})
+MODIFIERS = frozenset(
+    {"step", "unit", "group", "label", "parts", "values", "follows", "was", "erode", "preview"}
+)
 """Words of an annotation that may follow its widget."""
 
 Calls = dict[str, list[str]]
@@ -266,9 +268,10 @@ def _parameter(
     if kind == "button" and default:
         raise line.error(f"the default of '{name}' must be false: a button is true while it is pressed")
     try:
-        return replace(parameter, default=values.coerce(parameter, default))
+        parameter = replace(parameter, default=values.coerce(parameter, default))
     except ParameterError as error:
         raise line.error(f"the default of {error.diagnostics[0].message}") from None
+    return replace(parameter, preview=_preview(parameter, calls, line))
 
 
 def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tuple[str, ...]:
@@ -284,6 +287,20 @@ def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tu
         wanted = f"{count} different names, as parts({example})" if count > 1 else "a vector"
         raise line.error(f"parts of '{name}', a {glsl_type}: expected {wanted}")
     return found
+
+
+def _preview(parameter: Parameter, calls: Calls, line: Line) -> Value | None:
+    """Return the choice of a menu that previews have; None for what is the same there."""
+    if "preview" not in calls:
+        return None
+    found = calls["preview"]
+    if parameter.widget.kind != "menu" or len(found) != 1:
+        example = 'preview("fast")'
+        raise line.error(f"preview of '{parameter.name}': expected one choice of a menu, as {example}")
+    try:
+        return values.coerce(parameter, found[0])
+    except ParameterError as error:
+        raise line.error(f"the preview of {error.diagnostics[0].message}") from None
 
 
 def _menu_values(name: str, widget: Widget, calls: Calls, line: Line) -> tuple[int, ...]:

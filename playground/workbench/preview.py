@@ -4,14 +4,17 @@ One sample a pixel instead of several, and a mesh of a quarter of the vertices w
 number of them; of a seventh where the picture has fewer pixels too. Each pass before the draw stays
 as it is, so that the full picture differs from the preview along edges alone. Samples go first:
 for what four of them cost in a third of the pixels a side, half of the pixels a side are drawn with one.
+Of a pass that runs anyway, as one of shadows while the sun is dragged, a menu has the choice that its
+annotation gives for previews, unless somebody set that menu or something of the same group.
 """
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from playground.sketch.assign import values_of
-from playground.sketch.model import Sketch
+from playground.sketch.model import Kernel, Sketch, Value
 from playground.sketch.traits import traits_of
 from playground.terrain.meshes import mesh_parameters
 
@@ -22,19 +25,41 @@ GRID_OF_FEWER = 97  # for fewer pixels than the picture has
 _RESOLUTION = "grid"  # the draw's parameter that sets the resolution of its mesh
 
 
-def as_preview(sketch: Sketch, size: Size = (1, 1), pixels: Size = (1, 1)) -> Sketch:
+def as_preview(
+    sketch: Sketch, size: Size = (1, 1), pixels: Size = (1, 1), faster: Collection[str] = ()
+) -> Sketch:
     """Return a sketch to draw as a preview; the same object where that would make no difference.
 
-    ``pixels`` are drawn of a picture of a ``size``, and enlarged.
+    ``pixels`` are drawn of a picture of a ``size``, and enlarged; ``faster`` are the paths of passes
+    whose menus have the choices of previews.
     """
-    draws = [(path, k) for path, k in traits_of(sketch).draws if _RESOLUTION in mesh_parameters(k.registry)]
-    values = values_of(sketch) if draws else {}
-    coarse, grid = [], GRID if pixels[0] >= size[0] else GRID_OF_FEWER
+    traits = traits_of(sketch)
+    draws = [(path, k) for path, k in traits.draws if _RESOLUTION in mesh_parameters(k.registry)]
+    quick = [(path, k) for path, k in traits.faster if path in faster]
+    values = values_of(sketch) if draws or quick else {}
+    coarse: list[tuple[str, Value]] = []
+    grid = GRID if pixels[0] >= size[0] else GRID_OF_FEWER
     for path, kernel in draws:
         found = kernel.parameter(_RESOLUTION)
         name = f"{path}.{_RESOLUTION}"
         if found is not None and values[name] == found.default and int(found.default) > grid:  # type: ignore[arg-type]
             coarse.append((name, grid))
-    if not traits_of(sketch).draws or (sketch.samples == 1 and not coarse):
+    chosen = [pair for path, kernel in quick for pair in _choices(path, kernel, values)]
+    samples = 1 if traits.draws else sketch.samples
+    if sketch.samples == samples and not coarse and not chosen:
         return sketch
-    return replace(sketch, samples=1, overrides=(*sketch.overrides, *coarse))
+    return replace(sketch, samples=samples, overrides=(*sketch.overrides, *coarse, *chosen))
+
+
+def _choices(path: str, kernel: Kernel, values: Mapping[str, Value]) -> list[tuple[str, Value]]:
+    """Return the choices that a preview has of a kernel's menus, by path.
+
+    Who has set something of a menu's group wants to see what that does, and another form may not read it.
+    """
+    found: list[tuple[str, Value]] = []
+    for parameter in kernel.parameters:
+        group = [p for p in kernel.parameters if p is parameter or (p.group and p.group == parameter.group)]
+        unset = all(values[f"{path}.{p.name}"] == p.default for p in group)
+        if parameter.preview is not None and unset:
+            found.append((f"{path}.{parameter.name}", parameter.preview))
+    return found

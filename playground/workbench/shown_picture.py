@@ -42,6 +42,7 @@ class ShownPicture:
         self._picture = Picture(self._painter)
         self._sizes = PreviewSize()
         self._drawn_size: Size = (0, 0)  # before it was enlarged
+        self._faster: frozenset[str] = frozenset()  # passes that have run in a preview since it was in full
         self._drawn_at = 0.0
 
     @property
@@ -96,16 +97,20 @@ class ShownPicture:
         Raises as ``Engine.draw``.
         """
         previews = engine.info.software and not in_full
-        chosen = as_preview(sketch) if previews else sketch
-        pixels = size
-        if previews and not self.needs_all_pixels and view.map is None:
+        sized = previews and not self.needs_all_pixels and view.map is None
+        moves = previews and engine.info.compute and self.texture is not None and not coming
+        pixels, faster = size, self._faster if moves else frozenset()
+        if sized or (moves and traits_of(sketch).faster):
             at = _at(view, sketch, time, coming=coming)
             changed = self._changed(engine, sketch, view, size, at)
+            faster |= frozenset(changed if moves else ())
+        chosen = as_preview(sketch, faster=faster) if previews else sketch
+        if sized:
             if changed or self.texture is None or self.texture.size != size:
                 pixels = self._sizes.choose(engine, _framed(chosen, view, time, size), size, changed, **at)
             else:
                 pixels = self._drawn_size
-            chosen = as_preview(sketch, size, pixels)
+            chosen = as_preview(sketch, size, pixels, faster)
 
         def drawn_at(time: float) -> moderngl.Texture:
             at = _at(view, sketch, time, coming=coming)
@@ -123,7 +128,7 @@ class ShownPicture:
             return False
         with engine.internal.borrowed():
             self._picture.copy(texture, size)
-        self.is_preview = chosen is not sketch or pixels != size
+        self.is_preview, self._faster = chosen is not sketch or pixels != size, faster
         # Nobody waits for what was drawn small because its cost was not known.
         self.rest = 0.0 if pixels != size and self._sizes.guessed else REST
         self._drawn_size, self._drawn_at = pixels, self._now()
@@ -139,7 +144,7 @@ class ShownPicture:
     ) -> list[str]:
         """Return the passes that would run if a sketch were drawn as the last picture was, by path."""
         pixels = self._drawn_size if self.texture is not None and self.texture.size == size else size
-        chosen = as_preview(sketch, size, pixels) if self.is_preview else sketch
+        chosen = as_preview(sketch, size, pixels, self._faster) if self.is_preview else sketch
         with pointed_at(engine.internal.runner, size, pixels):
             return engine.internal.stale(_framed(chosen, view, at["time"], size), size=pixels, **at)
 

@@ -171,6 +171,11 @@ def test_brackets_and_commas_in_a_menu_s_names(parameter):
     assert found.widget.choices == ("plain (thesis)", "a, b", "c) d") and found.tooltip == "Which"
 
 
+def test_the_choice_of_previews_is_one_of_the_menu_s(parameter):
+    assert parameter('uniform int a = 0; //! menu("x", "y") preview("y") Which').preview == 1
+    assert parameter('uniform int a = 0; //! menu("x", "y") Which').preview is None
+
+
 def test_a_library_file_declares_nothing(parse):
     assert parse("float f(float x) { return x; }\n#pragma optimize(on)\n") is None
     assert parse("") is None
@@ -364,6 +369,10 @@ def test_mistakes_in_a_pragma(refused, text, words):
         ('uniform int a; //! menu("x")', "needs its choices"),
         ('uniform int a; //! menu("x", "x")', "a choice twice"),
         ('uniform int a = 2; //! menu("x", "y")', "the default of a = 2: expected one of x, y"),
+        ('uniform int a; //! menu("x", "y") preview("z")', "the preview of a = 'z': expected one of x, y"),
+        ('uniform int a; //! menu("x", "y") preview()', 'expected one choice of a menu, as preview("fast")'),
+        ('uniform int a; //! menu("x", "y") preview("x", "y")', "expected one choice of a menu"),
+        ("uniform float a; //! slider(0, 1) preview(0.5)", "expected one choice of a menu"),
         ("uniform float a; //! input", "input is for a sampler2D"),
         ('uniform float a; //! file("x")', "file is for a sampler2D"),
         ("uniform sampler2D a; //! slider(0, 1)", "slider is not for a sampler2D"),

@@ -8,7 +8,7 @@
 #ifndef LIGHTING_PARAMETERS_FORM
 #define LIGHTING_PARAMETERS_FORM
 uniform sampler2D horizon;  //! input
-uniform int form = 0;       //! menu("march", "sweep") group("March")
+uniform int form = 0;       //! menu("march", "sweep") preview("sweep") group("March")
                             //! March from every texel, or sweep the terrain once along lines,
                             //! which is faster and nearly the same; without compute shaders the
                             //! sweep is slow, and a march is made instead

@@ -36,7 +36,8 @@ const WIDGETS = {
   input: { types: /^sampler2D$/ },
 };
 const ROLES = Object.keys(WIDGETS).filter((word) => word !== "number");
-const WORDS = [...ROLES, "step", "unit", "group", "label", "parts", "values", "follows", "was", "erode"];
+const MODIFIERS = ["step", "unit", "group", "label", "parts", "values", "follows", "was", "erode", "preview"];
+const WORDS = [...ROLES, ...MODIFIERS];
 const BARE = ROLES.filter((word) => !["range", "choices"].includes(WIDGETS[word].takes ?? ""));
 const ANNOTATION = /^\s*\/\/!(.*)$/;
 const WORD = /\s*([A-Za-z_]\w*)(\s*\()?/y;

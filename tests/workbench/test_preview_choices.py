@@ -1,0 +1,140 @@
+"""Menus that have another choice in previews: only of what runs anyway, and never at rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from playground.engine.engine import Engine
+from playground.gpu.context import ContextInfo
+from playground.sketch.assign import values_of
+from playground.sketch.load import load
+from playground.workbench.preview import as_preview
+from playground.workbench.session import Session
+
+SIZE = (160, 90)
+SKETCH = """format = 1
+size = 65
+extent = 640
+relief = 200
+[[pass]]
+name = "height"
+use = "generation/diamond_square"
+[[pass]]
+name = "light"
+use = "lighting/ray_cast"
+[view]
+use = "view/terrain"
+"""
+FORM = "light.visibility.form"
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    (tmp_path / "shadow.toml").write_text(SKETCH, encoding="utf-8")
+    return tmp_path / "shadow.toml"
+
+
+@pytest.fixture
+def session(path: Path, any_engine: Engine, monkeypatch) -> Iterator[Session]:
+    monkeypatch.setattr(ContextInfo, "software", True)
+    with Engine(any_engine.ctx) as engine:
+        found = Session(engine, path)
+        found.clock.playing = False
+        found.frame(SIZE)
+        found.read()
+        yield found
+        found.release()
+
+
+def form(session: Session) -> object:
+    """Return the form by which the last picture's shadow was made."""
+    assert session.plan is not None
+    return session.plan.step("light.visibility").values["form"]
+
+
+def test_only_passes_that_are_named_have_it(path: Path):
+    sketch = load(path)
+    assert values_of(as_preview(sketch))[FORM] == 0
+    assert values_of(as_preview(sketch, faster={"light.light", "height"}))[FORM] == 0
+    assert values_of(as_preview(sketch, faster={"light.visibility"}))[FORM] == 1
+
+
+@pytest.mark.parametrize("of_the_group", [{"light.step_length": 2.0}, {"light.sampling": "cut down"}])
+def test_not_while_something_of_its_group_is_set(path: Path, of_the_group: dict[str, object]):
+    sketch = load(path).with_values(of_the_group)
+    assert values_of(as_preview(sketch, faster={"light.visibility"}))[FORM] == 0
+
+
+def test_it_alone_makes_a_preview(path: Path):
+    sketch = replace(load(path), samples=1).with_values({"view.grid": 20})
+    assert as_preview(sketch) is sketch
+    chosen = as_preview(sketch, faster={"light.visibility"})
+    assert values_of(chosen) == values_of(sketch) | {FORM: 1}
+
+
+def test_a_dragged_sun_sweeps_and_one_at_rest_marches(session: Session, any_engine: Engine):
+    sketch = load(session.path).with_values({"light.sun": (200.0, 20.0)})
+    full = any_engine.render(sketch, size=SIZE).array
+    runs = session.engine.internal.runs
+    session.drafts.set("light.sun", (200.0, 20.0))
+    session.frame(SIZE)
+    assert session.error is None and session.is_preview and form(session) == 1
+    before = runs["light.visibility"]
+    session.drafts.set_camera(replace(session.sketch.camera, azimuth=31.0))
+    session.frame(SIZE)
+    assert form(session) == 1 and runs["light.visibility"] == before, "nothing of the shadow has changed"
+    session.drafts.set_camera(None)
+    np.testing.assert_array_equal(session.read().array, full)
+    assert form(session) == 0 and not session.is_preview
+
+
+def test_a_camera_that_moves_leaves_the_shadow_as_it_is(session: Session):
+    before = session.engine.internal.runs["light.visibility"]
+    for azimuth in (10.0, 11.0, 12.0):
+        session.drafts.set_camera(replace(session.sketch.camera, azimuth=azimuth))
+        session.frame(SIZE)
+        assert session.is_preview and form(session) == 0
+    assert session.engine.internal.runs["light.visibility"] == before
+
+
+def test_a_preview_that_rests_runs_nothing_until_it_is_drawn_in_full(session: Session):
+    session.drafts.set("light.sun", (200.0, 20.0))
+    session.frame(SIZE)
+    before = dict(session.engine.internal.runs)
+    session.frame(SIZE)
+    assert session.engine.internal.runs == before
+
+
+def test_without_compute_shaders_it_marches(session: Session, monkeypatch):
+    monkeypatch.setattr(ContextInfo, "compute", False)
+    session.drafts.set("light.sun", (200.0, 20.0))
+    session.frame(SIZE)
+    assert session.is_preview and form(session) == 0
+
+
+def test_a_save_shows_what_is_written(session: Session, path: Path):
+    """Somebody who edits the march looks at it."""
+    path.write_text(SKETCH.replace("relief = 200", "relief = 260"), encoding="utf-8")
+    session.drafts.reload([path])
+    session.frame(SIZE)
+    assert session.plan is not None and session.plan.terrain.relief == 260.0
+    assert form(session) == 0
+
+
+@pytest.mark.parametrize("use", ["ray_cast", "soft_cone", "sun_disc"])
+def test_the_sweep_of_a_preview_jumps_no_more_than_stated(tmp_path: Path, any_engine: Engine, use: str):
+    """lighting/sun_sweep: of hard shadows 0.6 % of the texels at most, of soft ones 0.006 on average."""
+    text = SKETCH.replace("ray_cast", use).replace("size = 65", "size = 257")
+    (tmp_path / "soft.toml").write_text(text, encoding="utf-8")
+    sketch = load(tmp_path / "soft.toml").with_values({"light.sun": (200.0, 15.0)})
+    found = [
+        any_engine.read(each, "light.visibility")
+        for each in (sketch, as_preview(sketch, faster={"light.visibility"}))
+    ]
+    far = np.abs(found[0] - found[1])
+    assert far.any() and far.mean() <= 0.006
