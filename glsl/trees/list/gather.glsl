@@ -2,11 +2,13 @@
 //
 //   gives    tree: foot and height as in trees/place, the height as the distance makes it; 0 after
 //            the last
-//   needs    trees/level.glsl; a table of trees and keys; counts and starts of its blocks; a limit
+//   needs    maths/whole.glsl, trees/level.glsl; a table of trees and keys; counts and starts of
+//            its blocks; a limit
 //   units    metres
 //   source   Ziegler, Tevs, Theobalt and Seidel 2006, "On-the-fly Point Clouds through Histogram
 //            Pyramids" (VMV): each place of the list looks for its tree, by binary search
 //   tested   tests/glsl/test_trees.py, as a set against the table
+#include "maths/whole.glsl"
 #include "trees/level.glsl"
 #pragma kernel(output = "tree:rgba32f")
 
@@ -18,7 +20,10 @@ uniform sampler2D limit;  //! input("white")
 
 const int DEEPEST = 24;  // the starts of 2^24 blocks
 
-ivec2 block_of(int k, int across) { return ivec2(k % across, k / across); }
+ivec2 block_of(int k, int across) {
+    int row = quotient(k, across);
+    return ivec2(k - row * across, row);
+}
 
 vec4 kernel(ivec2 texel) {
     float which = float(texel.y * size.x + texel.x);
@@ -37,17 +42,13 @@ vec4 kernel(ivec2 texel) {
     ivec2 cells = textureSize(table, 0);
     ivec2 block = (cells + blocks - 1) / blocks;
     float most = texelFetch(limit, ivec2(0), 0).r;
-    for (int k = 0; k < block.x * block.y; k++) {
-        ivec2 from = at * block + ivec2(k % block.x, k / block.x);
-        if (any(greaterThanEqual(from, cells))) continue;
-        vec2 found = texelFetch(key, from, 0).rg;
-        if (found.r >= most) continue;
-        if (rest < 0.5) {
-            vec4 tree = texelFetch(table, from, 0);
-            float tall = tree.w * shrunk(found.r, found.g, most) * pow(most, GROWTH);
-            return vec4(tree.xyz, tall);
-        }
-        rest -= 1.0;
+    ivec2 from = at * block;
+    vec2 found = vec2(0.0);
+    for (int k = 0; k < block.x * block.y && rest >= 0.0; k++) {
+        from = at * block + block_of(k, block.x);
+        found = any(greaterThanEqual(from, cells)) ? vec2(most) : texelFetch(key, from, 0).rg;
+        if (found.r < most) rest -= 1.0;
     }
-    return vec4(0.0);
+    vec4 tree = texelFetch(table, from, 0);
+    return vec4(tree.xyz, tree.w * shrunk(found.r, found.g, most) * pow(most, GROWTH));
 }

@@ -25,14 +25,15 @@ uniform float margin = 60.0;       //! slider(0, 500) unit("m")
                                    //! How far outside the picture trees are drawn: shadows come in
 uniform uint seed = 5u;            //! slider(0, 9999) Which trees
 
-// Whether a place, anywhere between two heights, may be in the picture or `margin` beside it.
-bool may_be_seen(vec2 place, float low, float high) {
+// Whether a place, anywhere between two heights, may be in the picture, or so many metres beside
+// it.
+bool may_be_seen(vec2 place, float low, float high, float beside) {
     mat4 rows = transpose(clip_from_world);
     for (int k = 0; k < 4; k++) {
         vec4 plane = rows[3] + ((k & 1) == 0 ? rows[k >> 1] : -rows[k >> 1]);
         float level = dot(plane.xy, place) + plane.w;
         float inside = level + max(plane.z * low, plane.z * high);
-        if (inside < -margin * length(plane.xyz)) return false;
+        if (inside < -beside * length(plane.xyz)) return false;
     }
     return true;
 }
@@ -41,13 +42,17 @@ void kernel(ivec2 texel, out vec4 tree, out vec2 key) {
     tree = vec4(0.0);
     key = vec2(2.0, 1.0);
     ivec2 here = ivec2(floor(eye.xy / cell)) + texel - size / 2;
+    // Nearly all of the cells end here, and their neighbours with them: wherever in it the tree
+    // stands, a cell beside the terrain or the picture has none.
+    vec2 middle = (vec2(here) + 0.5) * cell;
+    float top = max(relief + 2.0 * tallest, 0.0);
+    if (any(lessThan(middle, vec2(-cell))) || any(greaterThan(middle, extent + cell))) return;
+    if (!all_round && !may_be_seen(middle, min(relief, 0.0), top, margin + cell)) return;
+    if (skips_rest()) return;
     Rooted own = tree_in(here, seed);
     vec2 place = (vec2(here) + 0.5 + own.off) * cell;
     vec2 share = place / extent;
     if (any(lessThan(share, vec2(0.0))) || any(greaterThan(share, vec2(1.0)))) return;
-    // Nearly all of the cells end here, and their neighbours with them.
-    float top = relief + 2.0 * tallest;
-    if (!all_round && !may_be_seen(place, min(relief, 0.0), max(top, 0.0))) return;
     float wanted = 1.0;
     if (wired_density) wanted = height_at(density, share * vec2(textureSize(density, 0) - 1));
     if (own.chance >= wanted) return;
@@ -57,7 +62,7 @@ void kernel(ivec2 texel, out vec4 tree, out vec2 key) {
     float end = end_of_table(reach, cell, size);
     float kept = kept_share(away, whole, end);
     if (own.rank >= drawn_share(kept)) return;
-    if (!all_round && !may_be_seen(place, up, up + 2.0 * tallest)) return;
+    if (!all_round && !may_be_seen(place, up, up + 2.0 * tallest, margin)) return;
     float tall = tallest * mix(shortest, 1.0, own.size);
     tree = vec4(place, up, tall * growth_of_kept(away, whole, end));
     key = vec2(own.rank / drawn_share(kept), drawn_part(kept));
