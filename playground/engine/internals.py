@@ -35,7 +35,7 @@ from playground.engine.planner import Planner
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.runner import Runner
 from playground.engine.supersampling import drawn_size
-from playground.engine.unfinished import Deadline
+from playground.engine.unfinished import Deadline, Piece
 from playground.engine.window import windowed
 from playground.errors import ContextError, Diagnostic, OpenGLFault
 from playground.gpu.context import ContextInfo, context_info
@@ -81,6 +81,7 @@ class Internals(Recorded):
         self.profiling = False
         # [s] after which loops that follow the time, and sources at work, raise ``Unfinished``
         self.patience: float | None = None
+        self.piece: Callable[[], bool] | None = None  # whether a picture is to stop between passes
         self.keeps = (
             True  # textures for later frames; else each is dropped once it was read for the last time
         )
@@ -88,6 +89,7 @@ class Internals(Recorded):
         self.pool = Pool(ctx, cache_bytes // _POOL_SHARE)
         self.cache = Cache(cache_bytes, self.pool)
         self.painted = PaintedFiles()  # painted in this process, in place of their files
+        self._piece = Piece(None, ctx.finish)
         self.runner = Runner(ctx, self.info, self.pool, self.painted)
         self.planner = Planner()
         self.warnings = PlanWarnings(lambda: self.runner.inputs)
@@ -322,6 +324,7 @@ class Internals(Recorded):
         record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
         execution = Execution(record.keys, self.cache, self.runner, self._compute)
         execution.deadline = Deadline(self.patience, self.ctx.finish)
+        self._piece = Piece(self.piece, self.ctx.finish)
         self.runner.works.waits = self.patience is None
         self.runner.works.keep(record.keys.raw)
         with self.borrowed():
@@ -366,6 +369,8 @@ class Internals(Recorded):
         start: Result | None,
     ) -> Result:
         """Run a step, and record that and how it ran."""
+        if iteration is None:
+            self._piece.check()
         record, runner, first = self.record, self.runner, (start.settled or start.iterations) if start else 0
         continued = record.plan is not None and step.path in record.plan.continued
         objects, drawn = self.pool.made + runner.programs.compiled, runner.draws.drawn

@@ -1,4 +1,4 @@
-"""Stop a long run of a loop that follows the time, so that a window can answer before it goes on."""
+"""Stop a long run of passes, or of a loop that follows the time, so that a window can answer meanwhile."""
 
 from __future__ import annotations
 
@@ -15,6 +15,30 @@ class Unfinished(Exception):
         super().__init__(f"{done} of {wanted} iterations have run")
         self.done = done
         self.wanted = wanted
+
+
+class PassesUnfinished(Exception):
+    """A picture was stopped between two passes by an engine's ``piece``: the next goes on."""
+
+
+class Piece:
+    """What stops a picture between two passes: where ``over`` says that time is; with None nothing.
+
+    One pass runs at least. ``finish`` waits for the graphics card.
+    """
+
+    def __init__(self, over: Callable[[], bool] | None, finish: Callable[[], None]) -> None:
+        self._over = over
+        self._finish = finish
+        self._ran = False
+
+    def check(self) -> None:
+        """Raise ``PassesUnfinished`` before a pass runs, where another did and time is over."""
+        if self._over is not None and self._ran:
+            self._finish()
+            if self._over():
+                raise PassesUnfinished
+        self._ran = True
 
 
 class Deadline:

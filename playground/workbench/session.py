@@ -357,7 +357,7 @@ class Session:
             if wanted != self._drawn or self.catch_up.behind is not None:
                 self._draw_shown(drafts.shown.sketch, wanted, size)
             elif due:
-                self._draw_shown(drafts.shown.sketch, wanted, size, in_full=True)
+                self._draw_shown(drafts.shown.sketch, wanted, size, in_full=True, in_pieces=True)
         return self.picture.texture
 
     def read(self) -> Frame | None:
@@ -438,8 +438,9 @@ class Session:
         self._drawn = None if self.view.map is not None else self._wanted(size)
 
     def _draw_shown(
-        self, sketch: Sketch, wanted: tuple[object, ...], size: tuple[int, int], *, in_full: bool = False
+        self, sketch: Sketch, wanted: tuple[object, ...], size: tuple[int, int], **how: bool
     ) -> None:
+        """Draw the sketch that is shown; ``how``: as ``_draw`` takes it."""
         if self.drafts.sandboxed and self.reads_new_data(sketch):
             return  # the last good picture stays
         time_alone = self._drawn is not None and wanted[:-1] == self._drawn[:-1]
@@ -448,37 +449,29 @@ class Session:
             if shown is not None and not self.can_show(shown.ref):
                 self.notes.append(f"{shown.ref} is gone, so the sketch's own view is shown")
                 self.view.map = shown = None
-            self._draw(shown.of(sketch) if shown else sketch, size, in_full=in_full)
+            self._draw(shown.of(sketch) if shown else sketch, size, **how)
             self.drafts.draw_error = None
             if time_alone and self.picture.is_slow:
                 self._pause_once()
         except Exception as error:
             self.drafts.report(error)
 
-    def _draw(
-        self, sketch: Sketch, size: tuple[int, int], *, in_full: bool = False, coming: bool = False
-    ) -> None:
+    def _draw(self, sketch: Sketch, size: tuple[int, int], **how: bool) -> None:
+        """Draw a sketch; ``how``: ``in_full``, ``in_pieces``, ``coming``: see ``ShownPicture.draw``."""
         engine, traits = self.engine, traits_of(sketch)
         if self.drafts.opening:
             self.picture.forget()
         drawn = self.picture.draw(
-            engine,
-            sketch,
-            self.view,
-            self.catch_up,
-            size=size,
-            time=self.clock.time,
-            in_full=in_full,
-            coming=coming,
+            engine, sketch, self.view, self.catch_up, size=size, time=self.clock.time, **how
         )
+        if engine.internal.profiling:
+            self.times |= engine.internal.times
         if traits.files and self._data_of is not sketch:
             self.data.take(sketch)
             self._data_of = sketch
         if not drawn:
             return
         self.draws += 1
-        if engine.internal.profiling:
-            self.times |= engine.internal.times
         self.plan = engine.internal.plan
         if engine.internal.eye_height.message:
             self._note_once("ground", engine.internal.eye_height.message)

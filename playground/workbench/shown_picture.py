@@ -2,7 +2,8 @@
 
 On a software renderer what changes is drawn with one sample a pixel and a coarser mesh (see
 ``preview``), and with as few pixels as it takes to follow the hand (see ``preview_size``), enlarged to
-the size of the picture. What is read from it, saved or compared at rest is drawn in full.
+the size of the picture. What is read from it, saved or compared at rest is drawn in full. At rest that goes
+on in pieces, so that the window answers meanwhile; until the last pass has run the preview stays.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
 from playground.engine.runner import Runner
+from playground.engine.unfinished import PassesUnfinished
 from playground.sketch.model import Sketch
 from playground.sketch.traits import traits_of
 from playground.workbench.catch_up import CatchUp
@@ -28,6 +30,10 @@ if TYPE_CHECKING:
     import moderngl
 
 REST = 0.2  # [s] without a change after which a preview is drawn again in full
+PIECE = 0.15
+"""[s] that passes of a full picture run before the window answers."""
+STEADY = 40
+"""Pieces of that length; then each is twice as long as the last, so that one ends which no cache holds."""
 
 
 class ShownPicture:
@@ -42,6 +48,7 @@ class ShownPicture:
         self._picture = Picture(self._painter)
         self._sizes = PreviewSize()
         self._drawn_size: Size = (0, 0)  # before it was enlarged
+        self._pieces = 0  # of a full picture that have run, and not the last one
         self._faster: frozenset[str] = frozenset()  # passes that have run in a preview since it was in full
         self._drawn_at = 0.0
 
@@ -88,12 +95,14 @@ class ShownPicture:
         *,
         size: Size,
         time: float,
-        in_full: bool,
-        coming: bool,
+        in_full: bool = False,
+        coming: bool = False,
+        in_pieces: bool = False,
     ) -> bool:
         """Draw a sketch, on a software renderer as a preview unless ``in_full``; return whether that is done.
 
-        ``coming``: it is opened or read again, and the view is the one that it will have.
+        ``coming``: it is opened or read again, and the view is the one that it will have. ``in_pieces``:
+        only a piece of its passes runs, and the next call goes on.
         Raises as ``Engine.draw``.
         """
         previews = engine.info.software and not in_full
@@ -116,8 +125,17 @@ class ShownPicture:
             at = _at(view, sketch, time, coming=coming)
             return engine.draw(_framed(chosen, view, time, size), size=pixels, **at)
 
-        with _timed(engine), pointed_at(engine.internal.runner, size, pixels):
-            texture = catch_up.draw(engine, time, drawn_at, in_full=in_full)
+        end = self._now() + PIECE * 2 ** max(self._pieces - STEADY, 0)
+        engine.internal.piece = (lambda: self._now() > end) if in_pieces else None
+        try:
+            with _timed(engine), pointed_at(engine.internal.runner, size, pixels):
+                texture = catch_up.draw(engine, time, drawn_at, in_full=in_full)
+        except PassesUnfinished:
+            self._pieces, self.rest = self._pieces + 1, 0.0  # it goes on at once
+            return False
+        finally:
+            engine.internal.piece = None
+        self._pieces = 0
         if engine.info.software and engine.internal.plan is not None:
             self._sizes.take(
                 engine.internal.plan,
