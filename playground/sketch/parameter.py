@@ -89,7 +89,8 @@ class Parameter:
     sampling: Sampling = AS_IT_IS  # of a file
     painted: bool = False  # a file that may be painted on in the window
     erode: str = ""  # the technique that the brush erodes with, as ``use`` names it; "": it does not
-    preview: Value | None = None  # of a menu: in a preview on a software renderer, while it is not set
+    preview: Value | None = None  # in a preview on a software renderer, while it is not set; a number
+    # where that has fewer pixels
     follows: Follows | None = None  # where its value comes from while it is not set
     parts: tuple[str, ...] = ()  # what a vector's components are, one name each; (): x, y, z, w
     former: tuple[str, ...] = ()  # names that it had, which are still read

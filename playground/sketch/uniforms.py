@@ -290,12 +290,12 @@ def _parts(name: str, glsl_type: str, kind: str, calls: Calls, line: Line) -> tu
 
 
 def _preview(parameter: Parameter, calls: Calls, line: Line) -> Value | None:
-    """Return the choice of a menu that previews have; None for what is the same there."""
+    """Return the choice of a menu, or the number, that previews have; None for what is the same there."""
     if "preview" not in calls:
         return None
     found = calls["preview"]
-    if parameter.widget.kind != "menu" or len(found) != 1:
-        example = 'preview("fast")'
+    if parameter.widget.kind not in ("menu", "slider", "log_slider") or len(found) != 1:
+        example = 'preview("fast"), or a slider\'s number'
         raise line.error(f"preview of '{parameter.name}': expected one choice of a menu, as {example}")
     try:
         return values.coerce(parameter, found[0])

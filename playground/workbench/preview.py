@@ -5,7 +5,8 @@ number of them; of a seventh where the picture has fewer pixels too. Each pass b
 as it is, so that the full picture differs from the preview along edges alone. Samples go first:
 for what four of them cost in a third of the pixels a side, half of the pixels a side are drawn with one.
 Of a pass that runs anyway, as one of shadows while the sun is dragged, a menu has the choice that its
-annotation gives for previews, unless somebody set that menu or something of the same group.
+annotation gives for previews, unless somebody set that menu or something of the same group. A number
+has the one for previews where these have fewer pixels than the picture.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import replace
 
 from playground.sketch.assign import values_of
-from playground.sketch.model import Kernel, Sketch, Value
+from playground.sketch.model import Kernel, Parameter, Sketch, Value
 from playground.sketch.traits import traits_of
 from playground.terrain.meshes import mesh_parameters
 
@@ -35,31 +36,36 @@ def as_preview(
     """
     traits = traits_of(sketch)
     draws = [(path, k) for path, k in traits.draws if _RESOLUTION in mesh_parameters(k.registry)]
-    quick = [(path, k) for path, k in traits.faster if path in faster]
+    fewer = pixels[0] < size[0]
+    quick = [(path, k) for path, k in traits.faster if path in faster or fewer]
     values = values_of(sketch) if draws or quick else {}
     coarse: list[tuple[str, Value]] = []
-    grid = GRID if pixels[0] >= size[0] else GRID_OF_FEWER
+    grid = GRID_OF_FEWER if fewer else GRID
     for path, kernel in draws:
         found = kernel.parameter(_RESOLUTION)
         name = f"{path}.{_RESOLUTION}"
         if found is not None and values[name] == found.default and int(found.default) > grid:  # type: ignore[arg-type]
             coarse.append((name, grid))
-    chosen = [pair for path, kernel in quick for pair in _choices(path, kernel, values)]
+    chosen = [
+        (f"{path}.{parameter.name}", parameter.preview)
+        for path, kernel in quick
+        for parameter in kernel.parameters
+        if parameter.preview is not None
+        and (path in faster if parameter.widget.kind == "menu" else fewer)
+        and _is_unset(path, parameter, kernel, values)
+    ]
     samples = 1 if traits.draws else sketch.samples
     if sketch.samples == samples and not coarse and not chosen:
         return sketch
     return replace(sketch, samples=samples, overrides=(*sketch.overrides, *coarse, *chosen))
 
 
-def _choices(path: str, kernel: Kernel, values: Mapping[str, Value]) -> list[tuple[str, Value]]:
-    """Return the choices that a preview has of a kernel's menus, by path.
+def _is_unset(path: str, parameter: Parameter, kernel: Kernel, values: Mapping[str, Value]) -> bool:
+    """Return whether a parameter has its default, and of a menu all else of its group has.
 
     Who has set something of a menu's group wants to see what that does, and another form may not read it.
     """
-    found: list[tuple[str, Value]] = []
-    for parameter in kernel.parameters:
-        group = [p for p in kernel.parameters if p is parameter or (p.group and p.group == parameter.group)]
-        unset = all(values[f"{path}.{p.name}"] == p.default for p in group)
-        if parameter.preview is not None and unset:
-            found.append((f"{path}.{parameter.name}", parameter.preview))
-    return found
+    group = [p for p in kernel.parameters if p.group and p.group == parameter.group]
+    if parameter.widget.kind != "menu" or not group:
+        group = [parameter]
+    return all(values[f"{path}.{p.name}"] == p.default for p in group)

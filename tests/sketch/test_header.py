@@ -174,6 +174,7 @@ def test_brackets_and_commas_in_a_menu_s_names(parameter):
 def test_the_choice_of_previews_is_one_of_the_menu_s(parameter):
     assert parameter('uniform int a = 0; //! menu("x", "y") preview("y") Which').preview == 1
     assert parameter('uniform int a = 0; //! menu("x", "y") Which').preview is None
+    assert parameter("uniform int a = 9; //! slider(0, 20) preview(5) Many").preview == 5
 
 
 def test_a_library_file_declares_nothing(parse):
@@ -372,7 +373,9 @@ def test_mistakes_in_a_pragma(refused, text, words):
         ('uniform int a; //! menu("x", "y") preview("z")', "the preview of a = 'z': expected one of x, y"),
         ('uniform int a; //! menu("x", "y") preview()', 'expected one choice of a menu, as preview("fast")'),
         ('uniform int a; //! menu("x", "y") preview("x", "y")', "expected one choice of a menu"),
-        ("uniform float a; //! slider(0, 1) preview(0.5)", "expected one choice of a menu"),
+        ("uniform float a; //! slider(0, 1) preview(2)", "the preview of a = 2 is outside its range"),
+        ("uniform float a; //! slider(0, 1) preview(x)", "the preview of a = 'x': expected"),
+        ("uniform vec3 a; //! colour preview(#ffffff)", "expected one choice of a menu"),
         ("uniform float a; //! input", "input is for a sampler2D"),
         ('uniform float a; //! file("x")', "file is for a sampler2D"),
         ("uniform sampler2D a; //! slider(0, 1)", "slider is not for a sampler2D"),
