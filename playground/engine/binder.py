@@ -130,9 +130,11 @@ class Binder:
             uniforms[f"{WIRED}{declared.name}"] = wire != _OPEN
             uniforms[f"{MATCHES}{declared.name}"] = wire == _MATCHING
             if declared.name in program.uniforms:
-                units.append((declared, unit, self.sampler(declared.sampling)))
-                texture = self.wired(declared, inputs)
-                unit = self.texture(program, declared.name, unit, texture, declared.sampling)
+                sampler = self.sampler(declared.sampling)
+                units.append((declared, unit, sampler))
+                program.set(declared.name, unit)
+                self.use(unit, self.wired(declared, inputs), sampler)
+                unit += 1
         program.set_all(uniforms)
         if not has_files:
             program.bound = Bound(step, given, wires, tuple(units), unit)

@@ -278,7 +278,7 @@ class Execution:
         try:
             for step in steps:
                 now.append(pool.take(step.size, step.kernel.outputs))
-            with replay.running():
+            with self.runner.kernels.filling:
                 for iteration in range(first, loop.repeat):
                     replay.run(_at(loop, iteration, frame), before, now)
                     before, now, state.iterations = now, before, iteration + 1

@@ -7,8 +7,7 @@ lattice ever more closely fills, in fragment, as small a part of its textures as
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -83,6 +82,28 @@ class Job:
         return found | {k: v for k, v in self.step.values.items() if isinstance(v, int | float)}
 
 
+class Filling:
+    """Within it, a context draws over the whole of a framebuffer.
+
+    With a logic operation enabled, whose default is to copy, llvmpipe compiles a text
+    once, not a second time for tiles whose old texels it need not load: half of what a
+    save waits for. Blending "all of the new, nothing of the old" would do as well, but
+    there it works out (new - old) + old, which is not the new.
+    """
+
+    def __init__(self, ctx: moderngl.Context, *, software: bool) -> None:
+        self.ctx = ctx
+        self.software = software
+
+    def __enter__(self) -> None:
+        if self.software:
+            self.ctx.enable_direct(_COLOR_LOGIC_OP)
+
+    def __exit__(self, *_: object) -> None:
+        if self.software:
+            self.ctx.disable_direct(_COLOR_LOGIC_OP)
+
+
 class Kernels:
     """Runs kernels and plain shaders on one context."""
 
@@ -94,6 +115,7 @@ class Kernels:
         self.programs = programs
         self.binder = binder
         self.pool = pool
+        self.filling = Filling(ctx, software=software)
         self.costly_rest = CostlyRest(ctx)
         self.settling = Settling(ctx, programs, binder, pool, software=software)
         # Programs of this frame's steps, by the step's identity; the step is held with it.
@@ -256,7 +278,7 @@ class Kernels:
         shift = 0
         watch = self.settling.watch(iteration, unit + len(kernel.outputs)) if kernel.until else None
         previous = self.binder.previous_units(program, kernel, unit)
-        with self.filling():
+        with self.filling:
             while iteration < step.repeat:
                 count = min(at_once, step.repeat - iteration)
                 result = spare or self.pool.take(step.size, kernel.outputs)
@@ -296,7 +318,7 @@ class Kernels:
                 unit = self.binder.bind(part, step, job.given, job.inputs, wires)
                 self.binder.previous(self.binder.previous_units(part, step.kernel, unit), state)
                 job.count(part, 0, step.kernel.repeat, step.whole)
-                with self.filling():
+                with self.filling:
                     part.fill()
         result.iterations = step.repeat
         return result
@@ -315,24 +337,6 @@ class Kernels:
             return expressions.evaluate(text, job.numbers(**more))
         except ExpressionError as error:
             raise job.step.kernel.error(f"pass '{job.step.path}': {what} {error}") from None
-
-    @contextmanager
-    def filling(self) -> Iterator[None]:
-        """Prepare the context for draws over the whole of a framebuffer.
-
-        With a logic operation enabled, whose default is to copy, llvmpipe compiles a text
-        once, not a second time for tiles whose old texels it need not load: half of what a
-        save waits for. Blending "all of the new, nothing of the old" would do as well, but
-        there it works out (new - old) + old, which is not the new.
-        """
-        if not self.software:
-            yield
-            return
-        self.ctx.enable_direct(_COLOR_LOGIC_OP)
-        try:
-            yield
-        finally:
-            self.ctx.disable_direct(_COLOR_LOGIC_OP)
 
     def bound_for(self, step: Step, driver: str, inputs: Mapping[str, Wired]) -> tuple[Program, Bound] | None:
         """Return the program of a step that has just run, and what it is bound for.

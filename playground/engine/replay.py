@@ -9,8 +9,7 @@ a size of its own in some iteration, or mipmaps of what the loop makes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -55,14 +54,11 @@ class Replay:
         self._kernels = kernels
         self._passes = passes
 
-    @contextmanager
-    def running(self) -> Iterator[None]:
-        """Set what all iterations draw with."""
-        with self._kernels.filling():
-            yield
-
     def run(self, at: LoopIteration, before: Sequence[Result], now: Sequence[Result]) -> None:
-        """Run an iteration: what reads that ``before`` it, and writes ``now``; of each pass one."""
+        """Run an iteration: it reads results of the one ``before`` it, and writes ``now``, one of each pass.
+
+        It is called within the kernels' ``filling``.
+        """
         use, number = self._kernels.binder.use, at.number
         for one, target in zip(self._passes, now, strict=True):
             for unit, texture, sampler in one.fixed:

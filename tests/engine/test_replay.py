@@ -96,6 +96,8 @@ def drawn(engine: Engine, sketch, frame: int):
 @pytest.mark.parametrize("name", SKETCHES)
 @pytest.mark.parametrize("driver", ["fragment", "compute"])
 def test_a_loop_gives_the_same_replayed_or_not(ctx, written, driver, name, monkeypatch):
+    if driver == "compute" and ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
     replays = []
     usual = Replay.run
     monkeypatch.setattr(Replay, "run", lambda self, *given: replays.append(self) or usual(self, *given))
