@@ -7,7 +7,7 @@ replace what is not wired.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -40,6 +40,7 @@ _SRGB8_ALPHA8 = 0x8C43  # GL_SRGB8_ALPHA8: the sampler decodes, before it filter
 _MAX_FILES = 32
 _MOST_READ_BACK = 2**16  # texels of an input whose fixed ones become uniforms
 _ANISOTROPY = 8.0  # of textures with mipmaps; on a software renderer it costs a hundred times as much
+_EXACT = Sampling()  # what reads one texel as it is
 _CONSTANTS = {"white": (1, 1, 1, 1), "black": (0, 0, 0, 1), "zero": (0, 0, 0, 0)}
 
 
@@ -47,13 +48,13 @@ _OPEN, _WIRED, _MATCHING = range(3)  # of an input: nothing is wired, something,
 
 
 @dataclass(frozen=True, slots=True)
-class _Bound:
+class Bound:
     """What a program's uniforms and samplers are set for."""
 
     step: Step
     given: Mapping[str, Any]
     wires: tuple[int, ...]
-    units: tuple[tuple[Input, int], ...]  # of textures, by input
+    units: tuple[tuple[Input, int, moderngl.Sampler], ...]  # of textures, by input
     unit: int  # the next free one
 
 
@@ -68,7 +69,7 @@ class Binder:
         self._shaped: dict[tuple[str, str], Shaped] = {}  # constants, by name and shape
         self._files: OrderedDict[tuple[str, bool, bool, bool], moderngl.Texture] = OrderedDict()
         self._units = 0  # texture units used in this frame
-        self._on_units: dict[int, Sampling] = {}  # whose samplers are on them
+        self._on_units: dict[int, moderngl.Sampler] = {}  # the samplers on them
 
     def release(self) -> None:
         """Release every texture and sampler."""
@@ -107,9 +108,9 @@ class Binder:
         if program.fixed:
             program.set_all(fixed_texels_of(program, step.kernel, inputs))
         bound = program.bound
-        if isinstance(bound, _Bound) and bound.step is step and bound.given is given and bound.wires == wires:
-            for declared, unit in bound.units:
-                self.unit(unit, self.wired(declared, inputs), declared.sampling)
+        if isinstance(bound, Bound) and bound.step is step and bound.given is given and bound.wires == wires:
+            for declared, unit, sampler in bound.units:
+                self.use(unit, self.wired(declared, inputs), sampler)
             return bound.unit
         program.bound = None
         kernel, uniforms, unit = step.kernel, {**given, "size": step.whole_size}, 0
@@ -128,17 +129,19 @@ class Binder:
         has_files = unit > 0
         if UNWIRED in program.uniforms:
             uniforms[UNWIRED] = has_unwired(kernel, inputs)
-        units: list[tuple[Input, int]] = []
+        units: list[tuple[Input, int, moderngl.Sampler]] = []
         for declared, wire in zip(kernel.inputs, wires, strict=True):
             uniforms[f"{WIRED}{declared.name}"] = wire != _OPEN
             uniforms[f"{MATCHES}{declared.name}"] = wire == _MATCHING
             if declared.name in program.uniforms:
-                units.append((declared, unit))
-                texture = self.wired(declared, inputs)
-                unit = self.texture(program, declared.name, unit, texture, declared.sampling)
+                sampler = self.sampler(declared.sampling)
+                units.append((declared, unit, sampler))
+                program.set(declared.name, unit)
+                self.use(unit, self.wired(declared, inputs), sampler)
+                unit += 1
         program.set_all(uniforms)
         if not has_files:
-            program.bound = _Bound(step, given, wires, tuple(units), unit)
+            program.bound = Bound(step, given, wires, tuple(units), unit)
         return unit
 
     def wired(self, declared: Input, inputs: Mapping[str, Wired]) -> moderngl.Texture:
@@ -174,15 +177,22 @@ class Binder:
             copy.build_mipmaps()
         return copy, shaped_size(shape, texture.size)
 
-    def previous(
-        self, program: Program, kernel: Kernel, state: Mapping[str, moderngl.Texture], unit: int
-    ) -> None:
-        """Bind the textures of the iteration before; zeros where there is none."""
+    def previous_units(self, program: Program, kernel: Kernel, unit: int) -> list[tuple[str, int]]:
+        """Return on which unit the texture of the iteration before goes, by output, where it is read."""
+        found: list[tuple[str, int]] = []
         for output in kernel.outputs:
             name = f"k_previous_{output.name}"
             if name in program.uniforms:
-                texture = state.get(output.name) or self.constant("zero")
-                unit = self.texture(program, name, unit, texture, Sampling())
+                program.set(name, unit)
+                found.append((output.name, unit))
+                unit += 1
+        return found
+
+    def previous(self, units: Sequence[tuple[str, int]], state: Mapping[str, moderngl.Texture]) -> None:
+        """Bind the textures of the iteration before; zeros where there is none."""
+        sampler = self.sampler(_EXACT)
+        for output, unit in units:
+            self.use(unit, state.get(output) or self.constant("zero"), sampler)
 
     def texture(self, program: Program, name: str, unit: int, texture: Readable, sampling: Sampling) -> int:
         """Bind one texture to a sampler; return the next free unit."""
@@ -191,16 +201,24 @@ class Binder:
 
     def unit(self, unit: int, texture: Readable, sampling: Sampling) -> int:
         """Bind one texture to a unit; return the next free one."""
-        texture.use(unit)
-        if self._on_units.get(unit) is not sampling:
-            sampler = self._samplers.get(sampling)
-            if sampler is None:
-                sampler = self._samplers[sampling] = self._new_sampler(sampling)
-                self._on_units.clear()  # making one may have taken another off its unit
-            sampler.use(unit)
-            self._on_units[unit] = sampling
-            self._units = max(self._units, unit + 1)
+        self.use(unit, texture, self.sampler(sampling))
         return unit + 1
+
+    def sampler(self, sampling: Sampling) -> moderngl.Sampler:
+        """Return the sampler that reads textures so: the same for samplings that are equal."""
+        found = self._samplers.get(sampling)
+        if found is None:
+            found = self._samplers[sampling] = self._new_sampler(sampling)
+            self._on_units.clear()  # making one may have taken another off its unit
+        return found
+
+    def use(self, unit: int, texture: Readable, sampler: moderngl.Sampler) -> None:
+        """Bind one texture to a unit, and the sampler that reads it unless it is there."""
+        texture.use(unit)
+        if self._on_units.get(unit) is not sampler:
+            sampler.use(unit)
+            self._on_units[unit] = sampler
+            self._units = max(self._units, unit + 1)
 
     def file(self, program: Program, parameter: Parameter, value: Value, unit: int) -> int:
         """Bind an image file's texture to a sampler, in linear light; return the next free unit."""

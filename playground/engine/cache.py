@@ -23,6 +23,8 @@ class Cached:
 
     results: dict[str, Result]  # by the pass's path
     iterations: int = 0  # done, of a loop
+    # Keys of the versions of its pass, what was used last at the end; of a loop none, which goes on in place.
+    versions: OrderedDict[str, None] | None = None
 
     @property
     def result(self) -> Result:
@@ -56,7 +58,7 @@ class Cache:
         self._total = 0  # their sum
         self.hits = 0  # results that were taken from here
         self._latest: dict[str, tuple[str, str, int]] = {}
-        # Keys of the versions of each pass, by its path and its size, what was used last at the end.
+        # Of each pass, by its path and its size: see ``Cached``.
         self._versions: dict[tuple[str, tuple[int, int]], OrderedDict[str, None]] = {}
 
     @property
@@ -94,9 +96,8 @@ class Cache:
             self._cached.move_to_end(key)
             self._in_use.add(key)
             self._may_grow.add(key)
-            for versions in self._versions_of(cached):
-                if key in versions:
-                    versions.move_to_end(key)
+            if cached.versions is not None:
+                cached.versions.move_to_end(key)
         return cached
 
     def peek(self, key: str) -> Cached | None:
@@ -111,7 +112,9 @@ class Cache:
         self._in_use.add(key)
         self._may_grow.add(key)
         self._weigh(key)
-        for versions in self._versions_of(cached):
+        if len(cached.results) == 1 and not cached.iterations:
+            ((path, result),) = cached.results.items()
+            versions = cached.versions = self._versions.setdefault((path, result.size), OrderedDict())
             versions[key] = None
             for old in [old for old in versions if old not in self._in_use][
                 : max(len(versions) - self.versions, 0)
@@ -137,7 +140,8 @@ class Cache:
         """Hand over the result of a pass to the caller, and forget it."""
         cached = self._cached.pop(key)
         result = cached.result
-        self._forget_version(key, cached)
+        if cached.versions is not None:
+            del cached.versions[key]
         self._in_use.discard(key)
         self._weigh(key)
         return result
@@ -148,7 +152,8 @@ class Cache:
         self._in_use.discard(key)
         self._weigh(key)
         if cached is not None:
-            self._forget_version(key, cached)
+            if cached.versions is not None:
+                del cached.versions[key]
             cached.release_to(self._pool)
 
     def drop_unused(self) -> None:
@@ -187,17 +192,6 @@ class Cache:
         self._latest.clear()
         self._versions.clear()
 
-    def _versions_of(self, cached: Cached) -> list[OrderedDict[str, None]]:
-        """Return the versions of a pass that is cached; of a loop none, which goes on in place."""
-        if len(cached.results) != 1 or cached.iterations:
-            return []
-        ((path, result),) = cached.results.items()
-        return [self._versions.setdefault((path, result.size), OrderedDict())]
-
-    def _forget_version(self, key: str, cached: Cached) -> None:
-        for versions in self._versions_of(cached):
-            versions.pop(key, None)
-
     def _weigh_used(self) -> None:
         """Weigh what was used since the last time: mipmaps may have been made."""
         for key in self._may_grow:
@@ -207,7 +201,11 @@ class Cache:
     def _weigh(self, key: str) -> None:
         """Add what one key holds now to the total."""
         cached = self._cached.get(key)
-        now = cached.bytes if cached is not None else 0
-        self._total += now - self._sizes.pop(key, 0)
+        now, before = cached.bytes if cached is not None else 0, self._sizes.get(key, 0)
+        if now == before:
+            return
+        self._total += now - before
         if now:
             self._sizes[key] = now
+        else:
+            del self._sizes[key]

@@ -6,6 +6,9 @@ their contents, and the keys of what it reads. Inside a loop, what is fed back h
 in place of a key: a loop's key is the same at every iteration, so a loop can go on from the
 iteration that is cached. Likewise the time, the mouse and all else that belongs to a frame are in no key
 where a loop counts frames: they are those of its iterations.
+
+Of a plan with the passes of the last one, keys are computed again for those nodes only that are others, that
+are given something else or read another file, and for what reads a node whose key has changed.
 """
 
 from __future__ import annotations
@@ -13,17 +16,20 @@ from __future__ import annotations
 import hashlib
 import re
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from copy import copy
 from dataclasses import dataclass, field
+from heapq import heappop, heappush
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_version, sources_of, walk
 from playground.images.content_hash import content_hash
 from playground.sketch.expressions import counts_frames
-from playground.sketch.flat import Fed, Source
+from playground.sketch.flat import Fed, Ref, Shape, Source
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import CLOCKED, PRESSED, TOWARDS
+from playground.sketch.reserved_names import CLOCKED, GIVEN, PRESSED, TOWARDS
+from playground.terrain.known import Terrain
 from playground.terrain.meshes import mesh_parameters
 
 _MAX_TEXTS = 512
@@ -31,6 +37,8 @@ _HEADER = ("kind", "outputs", "registry", "blend", "depth", "samples", "local", 
            "aligned", "stages", "in_place")  # fmt: skip
 """The fields of a kernel's header that its textures depend on, besides its counts and its inputs."""
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
+_FIXED = frozenset(GIVEN) - {"time", "clip_from_world", "world_from_clip", "eye"}
+"""Given names that the same passes of the same terrain are given in every frame."""
 
 
 @dataclass
@@ -43,6 +51,12 @@ class Keys:
     loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, likewise
     # The paths of the loops around a node whose iterations change it, by the node's identity.
     changes: dict[int, frozenset[str]] = field(default_factory=dict)
+
+    def copy(self) -> Keys:
+        """Return the same keys, to be changed."""
+        return Keys(
+            self.steps.copy(), self.raw.copy(), self.unfinished.copy(), self.loops.copy(), self.changes.copy()
+        )
 
 
 class KeyMaker:
@@ -59,21 +73,35 @@ class KeyMaker:
         self._text = text
         self._content = content
         self._texts: dict[int, tuple[Kernel, _Text]] = {}
-        self._last: dict[int, _StepKeys] = {}  # of the last plan, by the step's identity
+        self._last: _PlanKeys | None = None  # of the last plan
 
     def keys_of(
         self, plan: Plan, driver: Callable[[Step], str], given: Callable[[Step], Mapping[str, Any]]
     ) -> Keys:
-        """Return the keys of a plan.
+        """Return the keys of a plan; they are not to be changed.
 
-        ``driver`` chooses what a step runs by, ``given`` returns what the engine gives it besides its
-        parameters.
+        ``driver`` chooses what a step runs by, always the same; ``given`` returns what the engine gives it
+        besides its parameters: of a kernel, what its text names, and which of its buttons are pressed.
         """
-        computation = _KeyComputation(self.text_of, self._content, driver, given, plan.continued, self._last)
-        for node in plan.nodes:
-            computation.add(node, _NO_LOOP, {}, {})
-        self._last = computation.found
-        return computation.keys
+        last = self._last
+        found = last.copy() if last is not None and last.is_like(plan) else _PlanKeys(plan)
+        computation = _KeyComputation(self.text_of, self._content, driver, given, found)
+        waiting = found.doubtful(plan.nodes)  # places of nodes, the first on top
+        known, stale = set(waiting), set[int]()
+        while waiting:
+            place = heappop(waiting)
+            before = found.parts[place]
+            if before is None or place in stale or computation.differs(before, plan.nodes[place]):
+                part = computation.part(plan.nodes[place], before)
+                found.put(place, part)
+                if before is None or part.shown != before.shown:
+                    for reader in found.readers[place]:
+                        stale.add(reader)
+                        if reader not in known:
+                            known.add(reader)
+                            heappush(waiting, reader)
+        self._last = found
+        return found.keys
 
     def text_of(self, kernel: Kernel) -> _Text:
         """Return what a kernel's text says, worked out once: texts are long, and kernels seldom change."""
@@ -93,6 +121,7 @@ class _Text:
 
     digest: str
     used: frozenset[str]  # names in the text besides their declaration, or in its header
+    is_moving: bool  # the same plan of the same terrain may give it something else in the next frame
 
 
 def _read_text(kernel: Kernel, text: str) -> _Text:
@@ -116,7 +145,13 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
         used |= {p.name for p in kernel.parameters}
     if kernel.kind == "draw":
         used |= set(mesh_parameters(kernel.registry))
-    return _Text(_digest([header, text]), frozenset(used))
+    is_moving = (
+        kernel.kind not in ("kernel", "compute")
+        or bool(kernel.file_parameters)
+        or not _FIXED.issuperset(kernel.given)
+        or any(parameter.widget.kind == "button" for parameter in kernel.parameters)
+    )
+    return _Text(_digest([header, text]), frozenset(used), is_moving)
 
 
 class _Loops(NamedTuple):
@@ -151,8 +186,73 @@ class _StepKeys:
     shown: str
 
 
+class _Part(NamedTuple):
+    """A node of a plan whose keys are known, with what is inside it."""
+
+    node: PlanNode
+    steps: Mapping[int, _StepKeys]  # by the step's identity
+    moving: tuple[Step, ...]  # steps that the same plan may give something else in the next frame
+    given: str  # what they were given
+    shown: list[tuple[str, frozenset[str]]]  # what the nodes that read it see of it: see ``_KeyComputation``
+
+
+class _PlanKeys:
+    """The keys of one plan, and what is needed to compute those of the next one from them."""
+
+    def __init__(self, plan: Plan) -> None:
+        self.shape: Shape = plan.flat.shape
+        self.terrain: Terrain = plan.terrain
+        self.continued = plan.continued
+        self.keys = Keys()
+        self.varies: dict[str, frozenset[str]] = {}  # loops that a step changes with, for its next reader
+        self.parts: list[_Part | None] = [None] * len(plan.nodes)
+        self.moving: set[int] = set()  # places of the nodes with moving steps
+        self.readers = _readers(plan.nodes)  # places of the nodes that read each node
+
+    def is_like(self, plan: Plan) -> bool:
+        """Return whether a plan has the same passes, wired so, of the same terrain."""
+        return self.shape is plan.flat.shape and self.terrain == plan.terrain
+
+    def copy(self) -> _PlanKeys:
+        """Return the same, to be changed."""
+        found = copy(self)
+        found.keys, found.varies = self.keys.copy(), self.varies.copy()
+        found.parts, found.moving = self.parts.copy(), self.moving.copy()
+        return found
+
+    def doubtful(self, nodes: Sequence[PlanNode]) -> list[int]:
+        """Return the places of nodes whose keys may be others now, ascending."""
+        pairs = enumerate(zip(nodes, self.parts, strict=True))
+        others = {place for place, (node, part) in pairs if part is None or part.node is not node}
+        return sorted(others | self.moving)
+
+    def put(self, place: int, part: _Part) -> None:
+        """Set the keys of the node at a place."""
+        self.parts[place] = part
+        if part.moving:
+            self.moving.add(place)
+        else:
+            self.moving.discard(place)
+
+
+def _inside(node: PlanNode) -> list[PlanNode]:
+    """Return a step, or a loop and what it runs in all of its iterations."""
+    return [node] if isinstance(node, Step) else every_version((node,))
+
+
+def _readers(nodes: Sequence[PlanNode]) -> list[frozenset[int]]:
+    """Return the places of the nodes that read each node, by its place."""
+    home = {step.path: place for place, node in enumerate(nodes) for step in walk((node,))}
+    found: list[set[int]] = [set() for _ in nodes]
+    for place, node in enumerate(nodes):
+        for source in sources_of(node):
+            if isinstance(source, Ref) and home[source.path] != place:
+                found[home[source.path]].add(place)
+    return [frozenset(places) for places in found]
+
+
 class _KeyComputation:
-    """Computes the keys of one plan; ``before`` are those of the last one."""
+    """Computes keys of nodes of one plan, into ``whole``."""
 
     def __init__(
         self,
@@ -160,19 +260,42 @@ class _KeyComputation:
         content: Callable[[Path], str],
         driver: Callable[[Step], str],
         given: Callable[[Step], Mapping[str, Any]],
-        continued: frozenset[str],
-        before: Mapping[int, _StepKeys],
+        whole: _PlanKeys,
     ) -> None:
-        self.keys = Keys()
-        self.before = before
+        self.keys = whole.keys
+        self.varies = whole.varies
+        self.continued = whole.continued
+        self.before: Mapping[int, _StepKeys] = {}
         self.found: dict[int, _StepKeys] = {}
         self.sized: dict[tuple[str, bool], frozenset[str]] = {}  # see ``_note_sized``
-        self.varies: dict[str, frozenset[str]] = {}  # loops that a step changes with, for its next reader
         self.text_of = text_of
         self.content = content
         self.driver = driver
         self.given = given
-        self.continued = continued
+
+    def differs(self, part: _Part, node: PlanNode) -> bool:
+        """Return whether a node is another than it was, or its moving steps are given something else."""
+        return part.node is not node or (bool(part.moving) and part.given != self._given_to(part.moving))
+
+    def part(self, node: PlanNode, before: _Part | None) -> _Part:
+        """Compute the keys of a node and of what is inside it; ``before``: those of the last plan."""
+        self.before, self.found = before.steps if before else {}, {}
+        if before is not None:
+            for old in _inside(before.node):
+                self.keys.changes.pop(id(old), None)
+        self.add(node, _NO_LOOP, {}, {})
+        steps = [one for one in _inside(node) if isinstance(one, Step)]
+        moving = tuple([step for step in steps if self.text_of(step.kernel).is_moving])
+        shown = [(self.keys.steps[step.path], self.varies[step.path]) for step in steps]
+        return _Part(node, self.found, moving, self._given_to(moving) if moving else "", shown)
+
+    def _given_to(self, steps: Sequence[Step]) -> str:
+        return repr([(self._files_of(step), self.given(step)) for step in steps])
+
+    def _files_of(self, step: Step) -> list[str]:
+        """Return what tells the contents of a step's files from others."""
+        named = step.kernel.file_parameters
+        return [self.content(Path(str(step.values[p.name]))) for p in named] if named else []
 
     def add(
         self, node: PlanNode, loops: _Loops, fed: Mapping[Fed, str], varying: Mapping[Fed, frozenset[str]]
@@ -183,8 +306,7 @@ class _KeyComputation:
             return
         kernel, path = node.kernel, node.path
         sources = [(name, self._source(source, fed) if source else "") for name, source in node.inputs]
-        named = kernel.file_parameters
-        files = [self.content(Path(str(node.values[p.name]))) for p in named] if named else []
+        files = self._files_of(node)
         given, clocked = self.given(node), frozenset[str]()
         if loops.frames or counts_frames(kernel.repeat):
             clocked = _clocked(node, given)

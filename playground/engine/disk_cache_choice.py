@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
+from functools import lru_cache
 from pathlib import Path
 
 from playground.engine.cache import Cached
@@ -31,6 +32,7 @@ from playground.engine.results import Result
 from playground.gpu.textures import bytes_of
 from playground.sketch.expressions import follows_time
 from playground.sketch.flat import Ref
+from playground.sketch.identity import Identity
 from playground.sketch.reserved_names import OF_THE_TERRAIN
 
 _PASSING = ("time", "clip_from_world", "world_from_clip", "eye")  # given names that change while one looks
@@ -43,12 +45,23 @@ def passing(plan: Plan, painted: Collection[Path] = ()) -> frozenset[str]:
     stopped before its last iteration or gone on from by a later draw, or reads a file that is
     ``painted`` in this process, which no other one knows by its version; and each that reads such a one.
     """
+    return _passing(Identity(plan.nodes), plan.frame_size, plan.continued, frozenset(painted))
+
+
+@lru_cache(maxsize=2)
+def _passing(
+    key: Identity[tuple[PlanNode, ...]],
+    frame_size: tuple[int, int],
+    continued: frozenset[str],
+    painted: frozenset[Path],
+) -> frozenset[str]:
+    """Return what ``passing`` does, worked out once for the frames that have the same passes."""
     found: set[str] = set()
-    for node in plan.nodes:
+    for node in key.object:
         reads = {source.path for source in sources_of(node) if isinstance(source, Ref)}
         steps = list(walk((node,)))
         loops = [loop for loop in every_node((node,)) if isinstance(loop, LoopStep)]
-        own = any(_passes(step, plan) or _reads_one(step, painted) for step in steps)
+        own = any(_passes(step, frame_size, continued) or _reads_one(step, painted) for step in steps)
         if own or reads & found or any(_stops(loop) for loop in loops):
             found |= {node.path, *(step.path for step in steps)}
     return frozenset(found)
@@ -63,16 +76,16 @@ def _stops(loop: LoopStep) -> bool:
     return follows_time(loop.spec.repeat) or loop.repeat != loop.whole
 
 
-def _passes(step: Step, plan: Plan) -> bool:
+def _passes(step: Step, frame_size: tuple[int, int], continued: Collection[str]) -> bool:
     kernel = step.kernel
     if (
         kernel.kind.startswith("plain")
         or not set(kernel.depends) <= set(OF_THE_TERRAIN)
-        or step.path in plan.continued
+        or step.path in continued
         or step.window is not None
     ):
         return True
-    if step.size == plan.frame_size or step.repeat != step.whole:
+    if step.size == frame_size or step.repeat != step.whole:
         return True
     if follows_time(kernel.repeat):
         return True
@@ -108,9 +121,9 @@ def choose(
     taken: dict[str, Result] = {}
     skipped: set[str] = set()
     for node in reversed(known):
-        inside = {step.path: step for step in walk((node,))}
         here = _in_memory(node, keys, held)
         if here is None:
+            inside = {step.path: step for step in walk((node,))}
             # Of a loop that was read, each step that others read is cached by itself.
             missing = [step for path, step in inside.items() if path in wanted and not held(keys.steps[path])]
             if all(read(step) for step in missing):

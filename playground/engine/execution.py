@@ -12,6 +12,7 @@ from contextlib import AbstractContextManager, nullcontext
 from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, walk
+from playground.engine.replay import Replay, replay_of
 from playground.engine.results import UNWIRED, Result, Wired, started
 from playground.engine.runner import Runner
 from playground.engine.unfinished import Deadline
@@ -24,17 +25,29 @@ Compute = Callable[[Step, Mapping[str, Wired], LoopIteration | None, Result | No
 Timed = Callable[[str, str], AbstractContextManager[None]]
 """Measures what the step or the loop of that path and that key takes."""
 
+_REPLAYED_FROM = 2  # the iteration from which on a loop's run as the one before: what is fed back is its own
+
 
 class Execution:
     """One frame's run over a plan."""
 
-    def __init__(self, keys: Keys, cache: Cache, runner: Runner, compute: Compute) -> None:
+    def __init__(
+        self,
+        keys: Keys,
+        cache: Cache,
+        runner: Runner,
+        compute: Compute,
+        driver_for: Callable[[Step], str],
+    ) -> None:
         self.keys = keys
         self.cache = cache
         self.runner = runner
         self.compute = compute
+        self.driver_for = driver_for
         self.timed: Timed | None = None
         self.deadline: Deadline | None = None  # of loops that follow the time
+        # Called with steps of a loop and how often they ran since; None: each is computed by itself.
+        self.replayed: Callable[[Sequence[Step], int], None] | None = None
         self.ended: Callable[[Step, Result], None] | None = None  # called with each step that was computed
         self.last_uses: Mapping[str, Sequence[Step]] = {}  # what to drop once a node has run, by its path
         self.results: dict[str, Result] = {}  # by the step's path; valid until the next frame
@@ -204,15 +217,17 @@ class Execution:
             state.results = self._initial(loop, self._changing(loop, 0), fed)
         self.results |= state.results
         first_run = state.iterations
-        for iteration in range(state.iterations, loop.repeat):
+        for iteration in range(first_run, loop.repeat):
             if iteration > 0:
                 for name, _, ref in loop.feedback:
                     fed[Fed(loop.path, name)] = self._wired(ref, fed)
-            at = LoopIteration(iteration, loop.whole, iteration if loop.counts_frames else frame)
+            if iteration == max(first_run + 1, _REPLAYED_FROM) and (replay := self._replay_of(loop, fed)):
+                self._replay(replay, loop, state, first_run, frame)
+                return
             computed: dict[str, Result] = {}
             try:
                 for node in self._changing(loop, iteration):
-                    self._run_inside(node, fed, at, computed)
+                    self._run_inside(node, fed, _at(loop, iteration, frame), computed)
             except BaseException:
                 Cached(computed).release_to(self.runner.pool)
                 raise
@@ -220,18 +235,69 @@ class Execution:
                 for name, _, _ in loop.feedback:
                     if zeros := self._zeros.pop(Fed(loop.path, name), None):
                         self.runner.pool.give(zeros)
-            if self.keys.changes[id(loop)]:
-                state.release_to(self.runner.pool)
-            else:
+            if self._is_kept(loop, state.iterations):
                 self._set_aside(loop, state)
+            else:
+                state.release_to(self.runner.pool)
             state.results, state.iterations = computed, iteration + 1
             self.results |= computed
-            if (
-                self.deadline is not None
-                and follows_time(loop.spec.repeat)
-                and not self.keys.changes[id(loop)]
-            ):
-                self.deadline.check(iteration + 1 - first_run, iteration + 1, loop.repeat)
+            self._check_deadline(loop, iteration + 1, first_run)
+
+    def _check_deadline(self, loop: LoopStep, done: int, first_run: int) -> None:
+        """Stop a loop that follows the time where the deadline has passed."""
+        if self.deadline is not None and self._keeps_states(loop):
+            self.deadline.check(done - first_run, done, loop.repeat)
+
+    def _keeps_states(self, loop: LoopStep) -> bool:
+        """Return whether states of a loop are kept: it follows the time, and changes with no other loop."""
+        return follows_time(loop.spec.repeat) and not self.keys.changes[id(loop)]
+
+    def _is_kept(self, loop: LoopStep, iterations: int) -> bool:
+        """Return whether the state of a loop after so many iterations is kept while it goes on."""
+        if not iterations or not self._keeps_states(loop):
+            return False
+        return self.cache.states.is_due(loop.path, self.keys.loops[loop.path], iterations, loop.repeat)
+
+    def _replay_of(self, loop: LoopStep, fed: Mapping[Fed, Wired]) -> Replay | None:
+        """Return what runs a loop's next iterations as its last one ran, if they do."""
+        runner = self.runner
+        if self.replayed is None or runner.before_step is not None or runner.pool.clears:
+            return None
+        nodes = self._changing(loop, 0)
+        return replay_of(
+            loop, nodes, lambda source: self._wired(source, fed), runner.kernels, self.driver_for
+        )
+
+    def _replay(
+        self, replay: Replay, loop: LoopStep, state: Cached, first_run: int, frame: int | None
+    ) -> None:
+        """Run the rest of a loop's iterations: two sets of textures change places."""
+        pool, steps, first = self.runner.pool, replay.steps, state.iterations
+        before, now = [state.results[step.path] for step in steps], list[Result]()
+        fed = {ref.path for _, _, ref in loop.feedback}
+        try:
+            for step in steps:
+                now.append(pool.take(step.size, step.kernel.outputs))
+            with self.runner.kernels.filling:
+                for iteration in range(first, loop.repeat):
+                    replay.run(_at(loop, iteration, frame), before, now)
+                    before, now, state.iterations = now, before, iteration + 1
+                    if self._is_kept(loop, iteration):
+                        kept: dict[str, Result] = {}
+                        for place, step in enumerate(steps):
+                            if step.path in fed:
+                                kept[step.path] = now[place]
+                                now[place] = pool.take(step.size, step.kernel.outputs)
+                        key = self.keys.loops[loop.path]
+                        self.cache.states.keep(loop.path, key, iteration, kept, loop.repeat)
+                    self._check_deadline(loop, iteration + 1, first_run)
+        finally:
+            state.results = {step.path: result for step, result in zip(steps, before, strict=True)}
+            self.results |= state.results
+            for result in now:
+                pool.give(result)
+            if self.replayed is not None:
+                self.replayed(steps, state.iterations - first)
 
     def _changing(self, loop: LoopStep, iteration: int) -> list[PlanNode]:
         """Return what an iteration of a loop computes anew."""
@@ -286,6 +352,11 @@ class Execution:
             if texture is not None and ref.path in found:
                 self.runner.kernels.copy_texture(found[ref.path].textures[ref.output], texture)
         return found
+
+
+def _at(loop: LoopStep, iteration: int, frame: int | None) -> LoopIteration:
+    """Return where a loop's steps are in one of its iterations; ``frame`` as ``_run_loop`` takes it."""
+    return LoopIteration(iteration, loop.whole, iteration if loop.counts_frames else frame)
 
 
 def would_run(keys: Keys, cache: Cache, nodes: Iterable[PlanNode], plan: Plan) -> list[str]:

@@ -100,8 +100,8 @@ def _place_of(plan: Plan) -> tuple[float, float] | None:
 
 
 def _terrain_of(plan: Plan) -> Ref | None:
-    for step in plan.walk():
-        if step.kernel.kind == "draw" and isinstance(source := dict(step.inputs).get("height"), Ref):
+    for step in plan.draws:
+        if isinstance(source := dict(step.inputs).get("height"), Ref):
             if step.kernel.reads("relief") and step.kernel.reads("clip_from_world"):
                 return source
     return None

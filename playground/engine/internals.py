@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import threading
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from hashlib import blake2b
@@ -322,7 +322,8 @@ class Internals(Recorded):
         self.runner.look_at(plan)
         self.runner.programs.frame += 1
         record.keys = self._keys.keys_of(plan, self.driver_for, self.runner.given_for_key)
-        execution = Execution(record.keys, self.cache, self.runner, self._compute)
+        execution = Execution(record.keys, self.cache, self.runner, self._compute, self.driver_for)
+        execution.replayed = None if self.profiling else self._count_replayed
         execution.deadline = Deadline(self.patience, self.ctx.finish)
         self._piece = Piece(self.piece, self.ctx.finish)
         self.runner.works.waits = self.patience is None
@@ -397,6 +398,15 @@ class Internals(Recorded):
         record.texels += step.size[0] * step.size[1] * max(steps, 1)
         record.triangles += runner.draws.drawn - drawn
         return result
+
+    def _count_replayed(self, steps: Sequence[Step], times: int) -> None:
+        """Record that steps of a loop ran so often, once in each iteration."""
+        record = self.record
+        for step in steps:
+            self.runs[step.path] += times
+            record.iterations[step.path] += times
+            record.texels += step.size[0] * step.size[1] * times
+        record.ran += [step.path for step in steps] * times
 
     def driver_for(self, step: Step) -> str:
         """Choose by which driver the kernel of a step runs."""

@@ -79,6 +79,16 @@ class KeptStates:
         place = bisect_right(kept.numbers, most) if kept else 0
         return kept.numbers[place - 1] if kept and place else 0
 
+    def is_due(self, path: str, key: str, number: int, now: int) -> bool:
+        """Return whether to keep a state after some iterations, while a loop runs on to ``now``.
+
+        One that lies closer to the state before it than states will that are spread evenly in the logarithm
+        of their distance from the end is one of those that would go.
+        """
+        share = now ** (1 / MOST_STATES) - 1
+        before = self.latest(path, key, number)
+        return number > before and number - before >= share * (now - number)
+
     def take(self, path: str, key: str, number: int) -> State:
         """Hand over a state that there is; it is the caller's."""
         return self._kept[path][key].pop(number)

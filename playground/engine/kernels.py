@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from playground.engine.binder import Binder, has_unwired, is_read_back, wires_of
+from playground.engine.binder import Binder, Bound, has_unwired, is_read_back, wires_of
 from playground.engine.costly_rest import CostlyRest
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
@@ -84,6 +84,28 @@ class Job:
         return found | {k: v for k, v in self.step.values.items() if isinstance(v, int | float)}
 
 
+class Filling:
+    """Within it, a context draws over the whole of a framebuffer.
+
+    With a logic operation enabled, whose default is to copy, llvmpipe compiles a text
+    once, not a second time for tiles whose old texels it need not load: half of what a
+    save waits for. Blending "all of the new, nothing of the old" would do as well, but
+    there it works out (new - old) + old, which is not the new.
+    """
+
+    def __init__(self, ctx: moderngl.Context, *, software: bool) -> None:
+        self.ctx = ctx
+        self.software = software
+
+    def __enter__(self) -> None:
+        if self.software:
+            self.ctx.enable_direct(_COLOR_LOGIC_OP)
+
+    def __exit__(self, *_: object) -> None:
+        if self.software:
+            self.ctx.disable_direct(_COLOR_LOGIC_OP)
+
+
 class Kernels:
     """Runs kernels and plain shaders on one context."""
 
@@ -95,6 +117,7 @@ class Kernels:
         self.programs = programs
         self.binder = binder
         self.pool = pool
+        self.filling = Filling(ctx, software=software)
         self.costly_rest = CostlyRest(ctx)
         self.settling = Settling(ctx, programs, binder, pool, software=software)
         # Programs of this frame's steps, by the step's identity; the step is held with it.
@@ -252,43 +275,37 @@ class Kernels:
         self, job: Job, program: Program, driver: str, state: Mapping[str, moderngl.Texture], unit: int
     ) -> Result:
         step, kernel = job.step, job.step.kernel
-        groups = (-(-step.size[0] // LOCAL), -(-step.size[1] // LOCAL))
-        before, result = job.start, None  # two sets of textures that change places
+        before, spare = job.start, None  # two sets of textures that change places
         iteration = before.iterations if before else 0
         at_once = 1 if kernel.at_once == "1" else max(self._evaluated("at_once", kernel.at_once, job), 1)
         # Where there is something to begin with, texels off the lattice count as well.
         lattice = bool(kernel.stride) and driver == FRAGMENT and not state
         shift = 0
         watch = self.settling.watch(iteration, unit + len(kernel.outputs)) if kernel.until else None
-        while iteration < step.repeat:
-            count = min(at_once, step.repeat - iteration)
-            result = self.pool.take(step.size, kernel.outputs)
-            self.binder.previous(program, kernel, state, unit)
-            job.count(program, iteration, kernel.repeat, step.whole, count)
-            if driver == COMPUTE:
-                self.images(result, read=False)
-                program.run(*groups)
-            else:
-                program.set("k_previous_shift", shift)
-                shift = self._shift(job, iteration) if lattice else 0
-                program.set("k_shift", shift)
-                framebuffer = result.framebuffer(self.ctx)
-                framebuffer.use()
-                if shift:
-                    width, height = [((side - 1) >> shift) + 1 for side in step.size]
-                    self.ctx.viewport = (0, 0, width, height)
-                self._fill(program)
-                if shift:
-                    self.ctx.viewport = (0, 0, *step.size)
-            iteration += count
-            if before is not None:
-                if watch and watch.has_settled(iteration, result, before):
+        previous = self.binder.previous_units(program, kernel, unit)
+        with self.filling:
+            while iteration < step.repeat:
+                count = min(at_once, step.repeat - iteration)
+                result = spare or self.pool.take(step.size, kernel.outputs)
+                self.binder.previous(previous, state)
+                job.count(program, iteration, kernel.repeat, step.whole, count)
+                if driver == FRAGMENT:
+                    program.set("k_previous_shift", shift)
+                    shift = self._shift(job, iteration) if lattice else 0
+                    program.set("k_shift", shift)
+                self.write(program, driver, result, shift)
+                iteration += count
+                if before is not None and watch and watch.has_settled(iteration, result, before):
                     result.settled = iteration
-                self.pool.give(before)
-            before, state = result, result.textures
-            if result.settled:
-                break
+                before, spare, state = result, before, result.textures
+                if self.pool.clears and spare is not None:
+                    self.pool.give(spare)
+                    spare = None
+                if result.settled:
+                    break
         assert before is not None
+        if spare is not None:
+            self.pool.give(spare)
         if shift:  # each texel of the lattice goes to its place, with zeros between
             close, before = before, self.drawn_own("spread.frag", before, k_shift=shift)
             self.pool.give(close)
@@ -304,9 +321,10 @@ class Kernels:
         with self.costly_rest.target(result):
             for part in (self.program(job, FRAGMENT, (SKIPS, 1)), program):
                 unit = self.binder.bind(part, step, job.given, job.inputs, wires)
-                self.binder.previous(part, step.kernel, state, unit)
+                self.binder.previous(self.binder.previous_units(part, step.kernel, unit), state)
                 job.count(part, 0, step.kernel.repeat, step.whole)
-                self._fill(part)
+                with self.filling:
+                    part.fill()
         result.iterations = step.repeat
         return result
 
@@ -325,22 +343,38 @@ class Kernels:
         except ExpressionError as error:
             raise job.step.kernel.error(f"pass '{job.step.path}': {what} {error}") from None
 
-    def _fill(self, program: Program) -> None:
-        """Draw over the whole of the bound framebuffer.
+    def bound_for(self, step: Step, driver: str, inputs: Mapping[str, Wired]) -> tuple[Program, Bound] | None:
+        """Return the program of a step that has just run, and what it is bound for.
 
-        With a logic operation enabled, whose default is to copy, llvmpipe compiles a text
-        once, not a second time for tiles whose old texels it need not load: half of what a
-        save waits for. Blending "all of the new, nothing of the old" would do as well, but
-        there it works out (new - old) + old, which is not the new.
+        To run it again, only textures and counts need be set. None where another step has taken the program
+        since, where it reads image files or its own last iteration, or is drawn in two parts.
         """
-        if not self.software:
-            program.fill()
+        wires = wires_of(step, inputs)
+        _, program = self._known.get((id(step), driver, wires), (None, None))
+        if program is None or (driver == FRAGMENT and self.software and self.costly_rest.has(step)):
+            return None
+        bound = program.bound
+        if not isinstance(bound, Bound) or bound.step is not step or bound.wires != wires:
+            return None
+        reads_itself = any(f"k_previous_{output.name}" in program.uniforms for output in step.kernel.outputs)
+        return None if reads_itself else (program, bound)
+
+    def write(self, program: Program, driver: str, result: Result, shift: int = 0) -> None:
+        """Run a program over all texels of a result, or where they lie 2**shift apart.
+
+        Fragments are drawn within ``filling``.
+        """
+        width, height = result.size
+        if driver == COMPUTE:
+            self.images(result, read=False)
+            program.run(-(-width // LOCAL), -(-height // LOCAL))
             return
-        self.ctx.enable_direct(_COLOR_LOGIC_OP)
-        try:
-            program.fill()
-        finally:
-            self.ctx.disable_direct(_COLOR_LOGIC_OP)
+        result.framebuffer(self.ctx).use()
+        if shift:
+            self.ctx.viewport = (0, 0, ((width - 1) >> shift) + 1, ((height - 1) >> shift) + 1)
+        program.fill()
+        if shift:
+            self.ctx.viewport = (0, 0, width, height)
 
     def _in_place(self, job: Job, program: Program, state: Mapping[str, moderngl.Texture]) -> Result:
         step, kernel = job.step, job.step.kernel

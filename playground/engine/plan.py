@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 from playground.engine.between import Between
 from playground.sketch.expressions import counts_frames
 from playground.sketch.flat import Flat, Ref, Source
+from playground.sketch.identity import Identity
 from playground.sketch.model import Kernel, PassSpec, Sketch, Value
 from playground.terrain.camera import Eye
 from playground.terrain.known import Terrain
+
+_MOST_PLANS = 2  # of so many what follows from their passes alone is remembered: more would live long
 
 
 class LoopIteration(NamedTuple):
@@ -99,18 +102,22 @@ class Plan:
 
     def walk(self) -> list[Step]:
         """Return every step, those inside loops included."""
-        return walk(self.nodes)
+        return list(_steps(Identity(self.nodes)))
 
     @cached_property
     def picture(self) -> Ref:
         """The texture that is the picture."""
         return next(iter(self.flat.outputs["view"].values()))
 
-    @cached_property
+    @property
+    def draws(self) -> tuple[Step, ...]:
+        """The steps that draw meshes, those inside loops included."""
+        return _draws(Identity(self.nodes))
+
+    @property
     def continued(self) -> frozenset[str]:
         """The paths of the draws that a later draw goes on from, with their samples and depth."""
-        inputs = [each for step in self.walk() if step.kernel.kind == "draw" for each in step.inputs]
-        return frozenset([s.path for name, s in inputs if name == "initial" and isinstance(s, Ref)])
+        return _continued(Identity(self.nodes))
 
     def step(self, path: str) -> Step | None:
         """Return the step of that path, if there is one."""
@@ -130,6 +137,23 @@ def walk(nodes: tuple[PlanNode, ...]) -> list[Step]:
         else:
             found.append(node)
     return found
+
+
+@lru_cache(maxsize=_MOST_PLANS)
+def _steps(key: Identity[tuple[PlanNode, ...]]) -> tuple[Step, ...]:
+    """Return every step of a plan's nodes, worked out once for them: most frames have those of the last."""
+    return tuple(walk(key.object))
+
+
+@lru_cache(maxsize=_MOST_PLANS)
+def _draws(key: Identity[tuple[PlanNode, ...]]) -> tuple[Step, ...]:
+    return tuple([step for step in _steps(key) if step.kernel.kind == "draw"])
+
+
+@lru_cache(maxsize=_MOST_PLANS)
+def _continued(key: Identity[tuple[PlanNode, ...]]) -> frozenset[str]:
+    inputs = [each for step in _draws(key) for each in step.inputs]
+    return frozenset([s.path for name, s in inputs if name == "initial" and isinstance(s, Ref)])
 
 
 def every_node(nodes: tuple[PlanNode, ...]) -> list[PlanNode]:
@@ -172,14 +196,19 @@ def most_iterations(nodes: tuple[PlanNode, ...]) -> dict[str, int]:
 
 def needed(nodes: tuple[PlanNode, ...], ref: Ref) -> list[PlanNode]:
     """Return the nodes that a texture depends on, in order."""
+    return list(_needed(Identity(nodes), ref))
+
+
+@lru_cache(maxsize=_MOST_PLANS)
+def _needed(key: Identity[tuple[PlanNode, ...]], ref: Ref) -> tuple[PlanNode, ...]:
     wanted = {ref.path}
     found: list[PlanNode] = []
-    for node in reversed(nodes):
+    for node in reversed(key.object):
         inside = [node] if isinstance(node, Step) else walk(node.body)
         if not wanted.isdisjoint([step.path for step in inside]):
             found.append(node)
             wanted.update([source.path for source in sources_of(node) if isinstance(source, Ref)])
-    return found[::-1]
+    return tuple(found[::-1])
 
 
 def sources_of(node: PlanNode) -> list[Source]:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import lru_cache
 from pathlib import Path
 
-from playground.engine.plan import Plan, Step, most_iterations
+from playground.engine.plan import Plan, PlanNode, Step, most_iterations, walk
 from playground.errors import DataError, Diagnostic
 from playground.media.live_inputs import LiveInputs
 from playground.paths import GLSL, shown
@@ -14,7 +15,8 @@ from playground.sketch.dialects.foreign import unfed_warnings
 from playground.sketch.dialects.passes import stand_in_paths
 from playground.sketch.dialects.shader import STAND_INS
 from playground.sketch.flat import Ref, Source
-from playground.sketch.model import Graph, Kernel, kernels_of
+from playground.sketch.identity import Identity
+from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
 from playground.terrain.sources import source_kind
 
@@ -27,12 +29,15 @@ class PlanWarnings:
         self.report: Callable[[Diagnostic], None] | None = None  # None: nothing is reported
         self._reported: set[tuple[str, str]] = set()  # about what, and of which file
         self._graph: Graph | None = None  # whose kernels were looked at last
+        self._sketch: Sketch | None = None  # whose former names were looked at last
 
     def look(self, plan: Plan) -> None:
         """Report the warnings of a plan that were not reported yet."""
         if self.report is None:
             return
-        found = [*former_names_used(plan.sketch), *source_warnings(plan, self.inputs())]
+        found = list(former_names_used(plan.sketch)) if self._names_anew(plan.sketch) else []
+        self._sketch = plan.sketch
+        found += source_warnings(plan, self.inputs())
         if plan.sketch.graph is not self._graph:
             self._graph = plan.sketch.graph
             found += kernel_warnings(plan.sketch.graph, unheeded)
@@ -40,6 +45,11 @@ class PlanWarnings:
             self.once(warning, warning.message)
         for path, warning in _stops_past_the_end(plan):
             self.once(warning, f"steps of {path}")  # in a film each frame would have another number
+
+    def _names_anew(self, sketch: Sketch) -> bool:
+        """Return whether a sketch may name parameters otherwise than the last one did."""
+        last = self._sketch
+        return last is None or sketch.graph is not last.graph or sketch.warnings is not last.warnings
 
     def once(self, warning: Diagnostic, about: str) -> None:
         """Report a warning, unless one of its file about the same was reported."""
@@ -76,7 +86,7 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
     """
     live = inputs or LiveInputs()
     found: dict[str, Diagnostic] = {}
-    for step in plan.walk():
+    for step in _fed_from_outside(Identity(plan.nodes)):
         if step.kernel.dialect:
             for warning in unfed_warnings(step.kernel, _wired(plan, step)):
                 found.setdefault(f"{step.kernel.path} {warning.message}", warning)
@@ -92,6 +102,12 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
                 note = note.removeprefix(f"{Path(file).name}: ")  # of a file that was opened itself
                 found.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
     return tuple(found.values())
+
+
+@lru_cache(maxsize=2)
+def _fed_from_outside(key: Identity[tuple[PlanNode, ...]]) -> tuple[Step, ...]:
+    """Return the steps of sources, and of other tools' shaders."""
+    return tuple([step for step in walk(key.object) if step.kernel.dialect or step.kernel.kind == "source"])
 
 
 def _readers(plan: Plan, source: Step) -> str:

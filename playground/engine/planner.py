@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import OrderedDict
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
-from itertools import zip_longest
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -107,7 +107,9 @@ class Planner:
 
         found = None
         if known := self._plans.pop(place, None):
-            now = flat(known.refusals, known.plan.flat)
+            now = known.plan.flat  # most frames set no value
+            if sketch.overrides is not known.plan.sketch.overrides:
+                now = flat(known.refusals, now)
             found = _Planning(sketch, now, request, seconds, known=known).renewed()
         if found is None:
             self.made_whole += 1
@@ -166,23 +168,40 @@ class _Planning:
         ] = {}  # iterations in all of each repeat, by path; the most where they differ
         self._made: dict[tuple[object, ...], PlanNode] = {}  # each once, whatever iterations have it
         self._bodies: dict[tuple[int, ...], tuple[PlanNode, ...]] = {}
-        self._values: dict[str, Mapping[str, Value]] = {}
-        before = self.known.values if self.known else {}
-        same = self.known.plan.flat.leaves if self.known else ()
-        for leaf, earlier in zip_longest(flat.leaves, same):
-            values = before[leaf.path] if leaf is earlier else {}
-            if leaf is not earlier or leaf.kernel.file_parameters:
-                now = given_values(leaf, sketch, flat)  # a file may have come that is found first
-                values = values if values == now else now
-            self._values[leaf.path] = values
-        self.terrain = described(sketch, flat, self._values)
+        self.values = self._values_now()
+        self.terrain = described(sketch, flat, self.values)
+        self.own = dict(own_sizes(sketch, flat, self.values))
+        self._after = after
+
+    def _values_now(self) -> Mapping[str, Mapping[str, Value]]:
+        """Return the values of each leaf, by its path: the last plan's own where none is another."""
+        known, flat, sketch = self.known, self.flat, self.sketch
+        if known is None:
+            return {leaf.path: given_values(leaf, sketch, flat) for leaf in flat.leaves}
+        # Of the same values a file may have come that is found first.
+        doubtful, changed = [(leaf, True) for leaf in flat.with_files], dict[str, Mapping[str, Value]]()
+        if flat is not known.plan.flat:
+            pairs = zip(flat.leaves, known.plan.flat.leaves, strict=True)
+            found = [(leaf, leaf is earlier) for leaf, earlier in pairs]
+            doubtful = [pair for pair in found if not pair[1] or pair[0].kernel.file_parameters]
+        for leaf, is_same in doubtful:
+            now = given_values(leaf, sketch, flat)
+            if not is_same or now != known.values[leaf.path]:
+                changed[leaf.path] = now
+        return {**known.values, **changed} if changed else known.values
+
+    @cached_property
+    def sizes(self) -> PassSizes:
+        """What works out sizes and counts."""
         assert self.terrain.size is not None
-        own = dict(own_sizes(sketch, flat, self._values))
-        self.sizes = PassSizes(sketch, flat, request, time, self.terrain.size, self._values, own)
-        if after is not None:
-            copied = after.flat.shape.copied
-            self.sizes.named = {copied.get(path, path) for path in after.sizes.named}
-            self.sizes.by_time = after.sizes.by_time
+        found = PassSizes(
+            self.sketch, self.flat, self.request, self.time, self.terrain.size, self.values, self.own
+        )
+        if self._after is not None:
+            copied = self._after.flat.shape.copied
+            found.named = {copied.get(path, path) for path in self._after.sizes.named}
+            found.by_time = self._after.sizes.by_time
+        return found
 
     def renewed(self) -> _LastPlan | None:
         """Return the known plan with the values of now; None where it has to be made whole."""
@@ -190,19 +209,19 @@ class _Planning:
         if (
             known is None
             or known.plan.terrain != self.terrain
-            or known.own != self.sizes.own
+            or known.own != self.own
             or (known.by_time and known.plan.time != self.time)
         ):
             return None
         plan, now, before = known.plan, self.flat.values, known.plan.flat.values
-        if [path for path in known.named if now[path] is not before[path]]:
+        if now is not before and [path for path in known.named if now[path] is not before[path]]:
             return None
         if any(picture_size(file) != size for file, size in known.pictures.items()):
             return None
         eye = plan.eye if plan.sketch.camera == self.sketch.camera else self._eye()
-        nodes = self._all_renewed(plan.nodes, {})
+        nodes = plan.nodes if self.values is known.values else self._all_renewed(plan.nodes, {})
         plan = replace(plan, sketch=self.sketch, nodes=nodes, flat=self.flat, eye=eye, time=self.time)
-        return replace(known, plan=plan, values=self._values)
+        return replace(known, plan=plan, values=self.values)
 
     def _all_renewed(self, nodes: tuple[PlanNode, ...], done: dict[int, Any]) -> tuple[PlanNode, ...]:
         """Return nodes with the values of now; ``done``: what was returned for nodes and for several."""
@@ -219,8 +238,8 @@ class _Planning:
                 bodies = tuple([self._all_renewed(body, done) for body in node.bodies])
                 if any([now is not before for now, before in zip(bodies, node.bodies, strict=True)]):
                     done[id(node)] = replace(node, bodies=bodies)
-            elif node.values is not self._values[node.path]:
-                done[id(node)] = replace(node, values=self._values[node.path])
+            elif node.values is not self.values[node.path]:
+                done[id(node)] = replace(node, values=self.values[node.path])
         return done[id(node)]  # type: ignore[no-any-return]
 
     def whole(self, refused: Mapping[str, str]) -> _LastPlan:
@@ -250,7 +269,7 @@ class _Planning:
         )
         sizes = self.sizes
         named = frozenset(sizes.named & self.flat.values.keys())
-        return _LastPlan(plan, self._values, named, sizes.by_time, sizes.pictures, refused, sizes.own)
+        return _LastPlan(plan, self.values, named, sizes.by_time, sizes.pictures, refused, sizes.own)
 
     def refusals(self, before: Collection[str]) -> dict[str, str]:
         """Return a sentence for each technique whose fast variant does not take its size, by its path.
@@ -285,7 +304,7 @@ class _Planning:
             return self._made.setdefault((node.path, run, whole, *map(id, bodies)), loop)
         kernel = node.kernel
         size = self._size_of_leaf(node)
-        values = self._values[node.path]
+        values = self.values[node.path]
         self._refuse(node, size)
         check_shapes(node, self.flat, self.sizes.size_of_source)
         numbers: dict[str, Number] = {"size.x": size[0], "size.y": size[1], **self.sizes.clocks()}

@@ -19,15 +19,14 @@ Values = Mapping[str, Mapping[str, Value]]
 
 def known_by_sources(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
     """Return what the first source that knows anything of the terrain says of it."""
-    for leaf in flat.leaves:
-        if leaf.kernel.kind == "source":
-            _check_source(leaf)
-            try:
-                known = source_kind(leaf.kernel.registry).describe(values[leaf.path])
-            except DataError as error:
-                raise placed(error, sketch, flat.user(leaf.path)) from error
-            if known != Terrain():
-                return known
+    for leaf in flat.sources:
+        _check_source(leaf)
+        try:
+            known = source_kind(leaf.kernel.registry).describe(values[leaf.path])
+        except DataError as error:
+            raise placed(error, sketch, flat.user(leaf.path)) from error
+        if known != Terrain():
+            return known
     return Terrain()
 
 
@@ -54,8 +53,8 @@ def described(sketch: Sketch, flat: Flat, values: Values) -> Terrain:
 
 def own_sizes(sketch: Sketch, flat: Flat, values: Values) -> Iterator[tuple[str, tuple[int, int]]]:
     """Yield the texels that sources have by themselves, such as a film, where their passes say none."""
-    for leaf in flat.leaves:
-        if leaf.kernel.kind == "source" and leaf.spec.size is None and leaf.path != "view":
+    for leaf in flat.sources:
+        if leaf.spec.size is None and leaf.path != "view":
             try:
                 size = source_kind(leaf.kernel.registry).size(values[leaf.path])
             except DataError as error:

@@ -77,11 +77,26 @@ class Flat:
         """Every leaf, those inside loops included."""
         return leaves_of(self.nodes)
 
+    @cached_property
+    def sources(self) -> list[Leaf]:
+        """Every leaf that is a source."""
+        return [leaf for leaf in self.leaves if leaf.kernel.kind == "source"]
+
+    @cached_property
+    def with_files(self) -> list[Leaf]:
+        """Every leaf with parameters that name files."""
+        return [leaf for leaf in self.leaves if leaf.kernel.file_parameters]
+
+    @cached_property
+    def _accepts(self) -> list[str]:
+        """Which sizes of terrain kernels take, those of the view left out."""
+        own = [leaf for leaf in self.leaves if leaf.kernel.accepts and leaf.spec.size is None]
+        return [leaf.kernel.accepts for leaf in own if leaf.path.partition(".")[0] != "view"]
+
     def accepted(self, size: tuple[int, int]) -> tuple[int, int]:
         """Return the size of terrain, or the next larger one, that every kernel of the terrain accepts."""
-        for leaf in self.leaves:
-            accepts = leaf.kernel.accepts if leaf.spec.size is None else ""
-            if accepts and leaf.path.partition(".")[0] != "view" and not is_accepted(accepts, size):
+        for accepts in self._accepts:
+            if not is_accepted(accepts, size):
                 size = nearest_accepted(accepts, size)[-1]
         return size
 

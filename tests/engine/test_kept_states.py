@@ -121,6 +121,22 @@ def test_gaps_grow_with_the_distance(last):
         assert number - before <= 1 + share * (last - number + 1)
 
 
+@pytest.mark.parametrize("last", [40, 600, 36_000])
+def test_of_a_long_run_few_states_are_due_and_their_gaps_grow_with_the_distance(last):
+    kept = KeptStates(10**9, FakePool())  # type: ignore[arg-type]
+    due = [n for n in range(1, last) if kept.is_due("loop", "key", n, last) and not kept_at(kept, n, last)]
+    assert due == list(kept.numbers("loop", "key")), "none is kept that would go again"
+    # Evenly in the logarithm, each state would be q times as far away as the next.
+    share = last ** (1 / MOST_STATES) - 1
+    for before, number in itertools.pairwise((0, *due, last)):
+        assert number - before <= 1 + share * (last - number + 1)
+    assert not any(kept.is_due("loop", "key", number, last) for number in due), "it is there"
+
+
+def kept_at(kept: KeptStates, number: int, last: int) -> None:
+    kept.keep("loop", "key", number, of_bytes(4), last)
+
+
 def test_states_are_bounded_in_bytes_and_of_the_last_two_keys():
     pool = FakePool()
     kept = KeptStates(100, pool)  # type: ignore[arg-type]

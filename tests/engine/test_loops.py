@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
+from playground.engine.kept_states import MOST_STATES
 from playground.engine.programs import Program
 
 from ..sketch_texts import passes
@@ -414,7 +415,9 @@ def test_an_iteration_sets_only_what_changes(engine, rain, monkeypatch):
 
 def test_five_hundred_iterations_need_no_more_memory_than_a_hundred(any_engine, rain):
     sketch = rain("floor(time)")
-    any_engine.texture(sketch, "rain:water", time=100.0)  # as many states are kept as may be
+    for time in range(MOST_STATES + 2):
+        any_engine.texture(sketch, "rain:water", time=float(time))  # as many states are kept as may be
+    any_engine.texture(sketch, "rain:water", time=100.0)
     made, cached = any_engine.internal.pool.made, any_engine.internal.cache.bytes
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     any_engine.texture(sketch, "rain:water", time=500.0)
@@ -424,20 +427,22 @@ def test_five_hundred_iterations_need_no_more_memory_than_a_hundred(any_engine, 
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 8 * 1024  # [KiB]
 
 
-def test_an_iteration_that_fails_leaves_the_last_good_one(any_engine, rain, monkeypatch):
+@pytest.mark.parametrize("good", [0, 1, 2, 4])
+def test_an_iteration_that_fails_leaves_the_last_good_one(any_engine, rain, monkeypatch, good):
     sketch = rain("floor(time)")
     any_engine.texture(sketch, "rain:water", time=2.0)
-    run, calls = any_engine.internal.runner.run, []
+    write, moves = any_engine.internal.runner.kernels.write, []
 
-    def fails_once(step, *arguments, **named):
-        calls.append(step.path)
-        if step.path == "rain.move" and calls.count("rain.move") == 2:
-            raise RuntimeError("on purpose")
-        return run(step, *arguments, **named)
+    def fails_once(program, driver, result, *more):
+        if result.outputs[0].name == "moved":
+            moves.append(result)
+            if len(moves) == good + 1:
+                raise RuntimeError("on purpose")
+        write(program, driver, result, *more)
 
-    monkeypatch.setattr(any_engine.internal.runner, "run", fails_once)
+    monkeypatch.setattr(any_engine.internal.runner.kernels, "write", fails_once)
     with pytest.raises(RuntimeError, match="on purpose"):
-        any_engine.texture(sketch, "rain:water", time=6.0)
+        any_engine.texture(sketch, "rain:water", time=9.0)
     monkeypatch.undo()
-    np.testing.assert_allclose(any_engine.read(sketch, "rain:water", time=6.0), expected(6)[0], rtol=1e-6)
-    assert any_engine.internal.ran.count("rain.move") == 3, "three iterations were good"
+    np.testing.assert_allclose(any_engine.read(sketch, "rain:water", time=9.0), expected(9)[0], rtol=1e-6)
+    assert any_engine.internal.ran.count("rain.move") == 7 - good
