@@ -51,6 +51,12 @@ def session(path: Path, any_engine: Engine, monkeypatch) -> Iterator[Session]:
         found.release()
 
 
+@pytest.fixture
+def compute(any_engine: Engine) -> None:
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+
+
 def form(session: Session) -> object:
     """Return the form by which the last picture's shadow was made."""
     assert session.plan is not None
@@ -77,6 +83,7 @@ def test_it_alone_makes_a_preview(path: Path):
     assert values_of(chosen) == values_of(sketch) | {FORM: 1}
 
 
+@pytest.mark.usefixtures("compute")
 def test_a_dragged_sun_sweeps_and_one_at_rest_marches(session: Session, any_engine: Engine):
     sketch = load(session.path).with_values({"light.sun": (200.0, 20.0)})
     full = any_engine.render(sketch, size=SIZE).array
@@ -126,6 +133,7 @@ def test_a_save_shows_what_is_written(session: Session, path: Path):
     assert form(session) == 0
 
 
+@pytest.mark.usefixtures("compute")
 @pytest.mark.parametrize("use", ["ray_cast", "soft_cone", "sun_disc"])
 def test_the_sweep_of_a_preview_jumps_no_more_than_stated(tmp_path: Path, any_engine: Engine, use: str):
     """lighting/sun_sweep: of hard shadows 0.6 % of the texels at most, of soft ones 0.006 on average."""
