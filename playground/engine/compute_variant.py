@@ -1,7 +1,8 @@
 """Run compute variants: compute shaders that write their images and buffers themselves.
 
 What one writes begins as zeros, except what its header says it overwrites. Buffers
-are used again by the next run: fresh memory of such a size costs more than filling it. A buffer
+are used again by the next run, for what needs as much or a little less: fresh memory of such a size costs
+more than filling it. A buffer
 with an output's name is that output, and is copied to its texture after the last iteration:
 llvmpipe takes five times as long to store texels in an image one by one. One that works in place
 begins as the input, too.
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 
 _BYTES = {"vec2": 8, "ivec2": 8, "uvec2": 8, "vec4": 16, "ivec4": 16, "uvec4": 16}
 _MAX_BUFFER = 2**31 - 1
+_MOST_SPARE = 1.25  # of the bytes needed: those that passes of one size ask for differ a little
 _MOST_ALIGNED = 8  # bytes, of those that OpenGL fills rows up to
 _UNPACK_ROW_LENGTH, _PACK_ROW_LENGTH = 0x0CF2, 0x0D02  # GL's, in texels; 0: the texture's own
 
@@ -60,7 +62,7 @@ class ComputeVariants:
                 buffers.append(self._buffer(job, declared, names))
                 if declared.name == kernel.in_place:
                     self._begin(job, result, declared, buffers[-1])
-                buffers[-1].bind_to_storage_buffer(unit)
+                buffers[-1].bind_to_storage_buffer(unit, size=self._size(declared, names))
             self.kernels.images(result, read=True)
             program: Program | None = None
             for iteration in range(repeat):
@@ -100,19 +102,24 @@ class ComputeVariants:
 
     def _buffer(self, job: Job, declared: Buffer, names: dict[str, Number]) -> moderngl.Buffer:
         kernel: Kernel = job.step.kernel
-        size = max(expressions.evaluate(declared.count, names), 1) * _BYTES.get(declared.type, 4)
+        size = self._size(declared, names)
         if size > _MAX_BUFFER:
             message = f"buffer '{declared.name}' would be {size / 2**20:.0f} MiB; 2048 at most"
             raise kernel.error(f"pass '{job.step.path}': {message}")
-        for found in reversed(self._spare):
-            if found.size == size:
-                self._spare.remove(found)
-                break
+        fitting = [spare for spare in self._spare if size <= spare.size <= size * _MOST_SPARE]
+        if fitting:
+            found = min(reversed(fitting), key=lambda spare: spare.size)
+            self._spare.remove(found)
         else:
             found = self.ctx.buffer(reserve=size)
         if declared.name not in kernel.overwrites:
             found.clear()
         return found
+
+    @staticmethod
+    def _size(declared: Buffer, names: dict[str, Number]) -> int:
+        """Return the bytes of a buffer."""
+        return max(expressions.evaluate(declared.count, names), 1) * _BYTES.get(declared.type, 4)
 
     def _begin(self, job: Job, result: Result, declared: Buffer, buffer: moderngl.Buffer) -> None:
         """Fill a buffer with the first input, if that has the step's size: its kernel looks at that first."""

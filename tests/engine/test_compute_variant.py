@@ -220,6 +220,20 @@ def test_a_spare_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engin
         any_engine.internal.runner.compute_variants.release()
 
 
+def test_a_spare_buffer_serves_what_needs_a_little_less(any_engine, folder):
+    """19 x 19 numbers, then 18 x 18, and the shader knows of no more; of 12 x 12 too much would be idle."""
+    folder.write("fill.glsl", PLAIN_FILL)
+    text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
+    folder.write("fill.comp", text.replace("+= 1.0", "+= float(work.length())"))
+    spare = any_engine.internal.runner.compute_variants._spare
+    found = []
+    for side in (19, 18, 12):
+        sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
+        assert (any_engine.read(sketch, "a") == side * side).all()
+        found.append([buffer.size for buffer in spare])
+    assert found[0] == found[1] == [19 * 19 * 4] and found[2] == [19 * 19 * 4, 12 * 12 * 4]
+
+
 def test_overwrites_names_an_output_or_a_buffer(folder):
     folder.write("fill.glsl", PLAIN_FILL)
     folder.write("fill.comp", FILL.replace("OPTION", ', overwrites = "wrok"'))
