@@ -182,7 +182,7 @@ class Cache:
     def make_room(self, more: int) -> None:
         """Drop what was used least recently until so many bytes more are within the bound.
 
-        Its textures can be used again for what is made, which is quicker than to drop it afterwards, and never
+        Its textures can be used again for what is made: that is quicker than to drop it afterwards, and never
         needs the memory of both.
         """
         for key in [key for key in self._cached if key not in self._in_use]:
