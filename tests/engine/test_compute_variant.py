@@ -238,7 +238,11 @@ def test_a_spare_buffer_serves_what_needs_a_little_less(any_engine, folder):
 def test_of_spare_buffers_over_the_bound_the_largest_stays_while_it_is_used(any_engine, folder, monkeypatch):
     """A frame's smaller passes do not have it made anew each time; once none asks for it, it goes."""
     folder.write("fill.glsl", PLAIN_FILL)
-    folder.write("fill.comp", FILL.replace("OPTION", "").replace("500", "size.x * size.y"))
+    again = "uniform float again = 0.0; //! slider(0, 9)\n"
+    text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
+    folder.write(
+        "fill.comp", text.replace("void main() {", f"{again}void main() {{ if (again > 99.0) return;")
+    )
     monkeypatch.setattr(any_engine.internal.pool, "limit", 0)
     spare = any_engine.internal.runner.compute_variants._spare
 
