@@ -208,6 +208,8 @@ float kernel(ivec2 texel) { return 1.0 + 0.0 * again; }
 
 def test_a_spare_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engine, folder):
     """The buffer of the run before is used again, so a variant that adds to it shows what it began with."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
     for option, second in (("", 1.0), (', overwrites = "work"', 2.0)):
         folder.write("fill.glsl", PLAIN_FILL)
         again = "uniform float again = 0.0; //! slider(0, 9)\n"
@@ -223,6 +225,8 @@ def test_a_spare_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engin
 
 def test_a_spare_buffer_serves_what_needs_a_little_less(any_engine, folder):
     """19 x 19 numbers, then 18 x 18, and the shader knows of no more; of 12 x 12 too much would be idle."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
     folder.write("fill.glsl", PLAIN_FILL)
     text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
     folder.write("fill.comp", text.replace("+= 1.0", "+= float(work.length())"))
@@ -237,6 +241,8 @@ def test_a_spare_buffer_serves_what_needs_a_little_less(any_engine, folder):
 
 def test_of_spare_buffers_over_the_bound_the_largest_stays_while_it_is_used(any_engine, folder, monkeypatch):
     """A frame's smaller passes do not have it made anew each time; once none asks for it, it goes."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
     folder.write("fill.glsl", PLAIN_FILL)
     again = "uniform float again = 0.0; //! slider(0, 9)\n"
     text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
