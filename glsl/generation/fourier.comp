@@ -160,7 +160,9 @@ vec2 root(int e) {
 
 void higher(Digit digit, int p) {
     find_roots(digit.low, p);
-    for (int e = 0; e < 32; e++) v[e] = both_products(waves[digit.base + e * digit.apart], root(e));
+    for (int e = 0; e < 32; e++) {
+        v[e] = both_products(waves[digit.base + e * digit.apart], root(e));
+    }
     transform32(v);
     for (int e = 0; e < 32; e++) waves[digit.base + e * digit.apart] = v[place32(e)];
 }
@@ -170,7 +172,9 @@ void low_x(Digit digit) {
     for (int e = 0; e < 32; e++) v[e] = waves[digit.base + e];
     transform_blocks(v, levels);
     int block = ~((1 << levels) - 1);
-    for (int e = 0; e < 32; e++) waves[digit.base + ((e & block) | block_number(e, levels))] = v[e];
+    for (int e = 0; e < 32; e++) {
+        waves[digit.base + ((e & block) | block_number(e, levels))] = v[e];
+    }
 }
 
 void top_y(int job) {
@@ -266,7 +270,7 @@ void show_fours(int row, int from, int at) {
     }
 }
 
-// One such job of those of so many rows, of which the first has row 0 of `waves` and is row `first`.
+// One such job of `many` rows: row 0 of `waves` is the terrain's row `first`.
 void show(int job, int first, int many) {
     int fours = (size.x + 3) >> 2;
     int row = quotient(job, fours);
