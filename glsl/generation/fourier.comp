@@ -1,4 +1,4 @@
-// generation/fourier.comp -- the same terrain from half of its spectrum, by sixteens.
+// generation/fourier.comp -- the same terrain from half of its spectrum, 32 numbers at a time.
 //
 //   gives    height
 //   needs    generation/fourier/wave.glsl, generation/normalise/stretch.glsl,
@@ -13,8 +13,8 @@
 //
 // Rows y, y + n/4, y + n/2 and y + 3n/4 of the terrain are two complex rows, and both lie in one
 // row of `waves`, a vec4 a texel. A place along an axis of 2^n has the digits of its number in
-// base 16: the top one, one more where n > 8, and a lowest of 1 to 4 bits. Each stage takes
-// sixteen numbers that differ in one digit, transforms them and puts them back where they were:
+// base 32: the top one, one more where n > 10, and a lowest of 1 to 5 bits. Each stage takes
+// 32 numbers that differ in one digit, transforms them and puts them back where they were:
 //   DRAW      the waves, weighed, and the lowest digit of y
 //   HIGHER    a middle digit, or the top one of x
 //   TOP_Y     the top digit of y, and two complex rows from the spectra of four real ones
@@ -28,7 +28,10 @@
 // these two and their opposites. Frequencies 0 and n/2 are their own opposites and have the
 // columns beyond the last instead.
 //
-// Shorter sides than 64 are repeated up to 64; all other frequencies are then 0.
+// Nearly all of a stage's time is spent to read and to write, on a processor: so a thread takes
+// as many numbers as it can hold, and two stages do for an axis of 1024.
+//
+// Shorter sides than 128 are repeated up to 128; all other frequencies are then 0.
 #include "generation/fourier/wave.glsl"
 #include "generation/normalise/stretch.glsl"
 #include "maths/complex.glsl"
@@ -37,11 +40,14 @@
 #include "maths/whole.glsl"
 #include "terrain/order.glsl"
 #pragma compute(stages = "0, 1, 2, 3, 1, 1, 4, 5", local = "32, 1", \
-                accepts = "n up to 4097, m up to 4097", \
-                where = "numbers_x = max(size.x - size.x % 2, 64); \
-                         numbers_y = max(size.y - size.y % 2, 64); \
-                         a_group = 512 if iteration == 6 else 2048", \
-                groups = "(max(size.x, 64) + 4) * max(size.y, 64) // a_group + 1, 1", \
+                accepts = "n up to 8193, m up to 8193", \
+                where = "numbers_x = max(size.x - size.x % 2, 128); \
+                         numbers_y = max(size.y - size.y % 2, 128); \
+                         skipped = numbers_y < 2048 if iteration == 1 else \
+                                   numbers_x < 2048 if iteration == 4 else \
+                                   (size.y + 1) % 2 if iteration == 7 else 0; \
+                         a_group = 4096", \
+                groups = "1 if skipped else (numbers_x + 4) * numbers_y // a_group + 1, 1", \
                 buffers = "waves:vec4:(numbers_x + 4) * numbers_y // 4; bounds:uint:2; \
                            height:vec4:(size.x * size.y + 3) // 4", \
                 overwrites = "waves, height", aligned = "4", agrees = "1e-5")
@@ -51,57 +57,58 @@ uniform uint seed = 7u;        //! slider(0, 9999) As in the technique
 uniform int normalise = 2;     //! menu("none", "max", "minmax") As in the technique
 
 const int DRAW = 0, HIGHER = 1, TOP_Y = 2, LOW_X = 3, SHOW = 4, SHOW_LAST_ROW = 5;
+const int SHOWN = 8;  // jobs of a thread
 
 ivec2 period;  // texels after which the terrain repeats
 ivec2 count;   // of the numbers transformed, along each axis
 ivec2 bits;    // log2(count)
 int rows;      // of `waves`
 int pitch;     // from one of its rows to the next
-vec4 v[16];
+vec4 v[32];
 
 // ── where things lie ──
 
 int lowest_digit(int n) {
-    return n < 8 ? n - 4 : n == 8 ? 4 : n - 8;
+    return n < 11 ? n - 5 : n - 10;
 }
 
 int frequency_of(int place, int n) {
-    int low = max(n - 8, 0);
-    int rest = place & ((1 << (n - 4)) - 1);
-    return (place >> (n - 4)) + ((rest >> low) << 4) + ((rest & ((1 << low) - 1)) << 8);
+    int low = max(n - 10, 0);
+    int rest = place & ((1 << (n - 5)) - 1);
+    return (place >> (n - 5)) + ((rest >> low) << 5) + ((rest & ((1 << low) - 1)) << 10);
 }
 
-// The place of the frequency 16 k along x.
-int place_of_sixteenfold(int k) {
-    int low = max(bits.x - 8, 0);
-    return ((k & 15) << low) | (k >> 4);
+// The place of the frequency 32 k along x.
+int place_of_multiple(int k) {
+    int low = max(bits.x - 10, 0);
+    return ((k & 31) << low) | (k >> 5);
 }
 
 // The four columns of a pair of frequencies along x, and those frequencies. The pairs are
-// half the spectrum: neighbours among the places whose top digit is 1 to 7, or 8 in its lower
-// half, whose opposites lie mirrored in those of 15 to 8; then those whose top digit is 0.
+// half the spectrum: neighbours among the places whose top digit is 1 to 15, or 16 in its lower
+// half, whose opposites lie mirrored in those of 31 to 16; then those whose top digit is 0.
 ivec4 columns_of(int pair, out ivec2 frequencies) {
     int n = bits.x;
-    int simple = 15 * (count.x >> 6);
+    int simple = 31 * (count.x >> 7);
     if (pair < simple) {
-        int place = (count.x >> 4) + 2 * pair;
-        int below = (1 << (n - 4)) - 1;
-        int opposite = ((16 - (place >> (n - 4))) << (n - 4)) | (below - (place & below));
+        int place = (count.x >> 5) + 2 * pair;
+        int below = (1 << (n - 5)) - 1;
+        int opposite = ((32 - (place >> (n - 5))) << (n - 5)) | (below - (place & below));
         frequencies = ivec2(frequency_of(place, n), frequency_of(place + 1, n));
         return ivec4(place, opposite, place + 1, opposite - 1);
     }
     int k = 2 * (pair - simple);
-    int all_k = count.x >> 4;
-    frequencies = 16 * ivec2(k, k + 1);
-    ivec4 found = ivec4(place_of_sixteenfold(k), place_of_sixteenfold((all_k - k) & (all_k - 1)),
-                        place_of_sixteenfold(k + 1), place_of_sixteenfold(all_k - k - 1));
+    int all_k = count.x >> 5;
+    frequencies = 32 * ivec2(k, k + 1);
+    ivec4 found = ivec4(place_of_multiple(k), place_of_multiple((all_k - k) & (all_k - 1)),
+                        place_of_multiple(k + 1), place_of_multiple(all_k - k - 1));
     if (k == 0) found.y = count.x;
     if (2 * k == all_k) found.yzw = count.x + ivec3(1, 2, 3);
     return found;
 }
 
-// Sixteen numbers of one digit, whose lowest bit is bit p of the place.
-struct Sixteen {
+// The 32 numbers of one digit, whose lowest bit is bit p of the place.
+struct Digit {
     int base;           // of the first, in `waves`
     int apart;          // from one to the next
     int place;          // of the first
@@ -109,84 +116,86 @@ struct Sixteen {
     ivec2 frequencies;  // of the two columns along x, for numbers along y
 };
 
-Sixteen along_x(int job, int p) {
-    Sixteen s;
-    int mine = job & ((count.x >> 4) - 1);
-    s.low = mine & ((1 << p) - 1);
-    s.place = ((mine >> p) << (p + 4)) | s.low;
-    s.base = (job >> (bits.x - 4)) * pitch + s.place;
-    s.apart = 1 << p;
-    s.frequencies = ivec2(0);
-    return s;
+Digit along_x(int job, int p) {
+    Digit digit;
+    int mine = job & ((count.x >> 5) - 1);
+    digit.low = mine & ((1 << p) - 1);
+    digit.place = ((mine >> p) << (p + 5)) | digit.low;
+    digit.base = (job >> (bits.x - 5)) * pitch + digit.place;
+    digit.apart = 1 << p;
+    digit.frequencies = ivec2(0);
+    return digit;
 }
 
 // The top two bits of a place along y are the column of four.
-Sixteen along_y(int job, int p) {
-    Sixteen s;
+Digit along_y(int job, int p) {
+    Digit digit;
     int pairs = (count.x >> 2) + 1;
     int mine = quotient(job, pairs);
-    ivec4 columns = columns_of(job - mine * pairs, s.frequencies);
-    s.low = mine & ((1 << p) - 1);
-    s.place = ((mine >> p) << (p + 4)) | s.low;
-    int quarter = s.place >> (bits.y - 2);
+    ivec4 columns = columns_of(job - mine * pairs, digit.frequencies);
+    digit.low = mine & ((1 << p) - 1);
+    digit.place = ((mine >> p) << (p + 5)) | digit.low;
+    int quarter = digit.place >> (bits.y - 2);
     ivec2 half_of_them = quarter < 2 ? columns.xy : columns.zw;
     int column = (quarter & 1) == 0 ? half_of_them.x : half_of_them.y;
-    s.base = (s.place & (rows - 1)) * pitch + column;
-    s.apart = pitch << p;
-    return s;
+    digit.base = (digit.place & (rows - 1)) * pitch + column;
+    digit.apart = pitch << p;
+    return digit;
 }
 
 // ── the stages ──
 
-vec2 near_roots[4], far_roots[4];
+vec2 near_roots[4], far_roots[8];
 
-// For root(e) = exp(-2 pi i e low / 2^(p + 4)): a product of two, so that no error grows.
+// For root(e) = exp(-2 pi i e low / 2^(p + 5)): a product of two, so that no error grows.
 void find_roots(int low, int p) {
     near_roots[0] = far_roots[0] = vec2(1.0, 0.0);
-    for (int k = 1; k < 4; k++) {
-        near_roots[k] = conjugate(root_of_one(k * low, 16 << p));
-        far_roots[k] = conjugate(root_of_one(4 * k * low, 16 << p));
-    }
+    for (int k = 1; k < 4; k++) near_roots[k] = conjugate(root_of_one(k * low, 32 << p));
+    for (int k = 1; k < 8; k++) far_roots[k] = conjugate(root_of_one(4 * k * low, 32 << p));
 }
 
 vec2 root(int e) {
     return complex_product(near_roots[e & 3], far_roots[e >> 2]);
 }
 
-void higher(Sixteen s, int p) {
-    find_roots(s.low, p);
-    for (int e = 0; e < 16; e++) v[e] = both_products(waves[s.base + e * s.apart], root(e));
-    transform16(v);
-    for (int e = 0; e < 16; e++) waves[s.base + e * s.apart] = v[place16(e)];
+void higher(Digit digit, int p) {
+    find_roots(digit.low, p);
+    for (int e = 0; e < 32; e++) {
+        v[e] = both_products(waves[digit.base + e * digit.apart], root(e));
+    }
+    transform32(v);
+    for (int e = 0; e < 32; e++) waves[digit.base + e * digit.apart] = v[place32(e)];
 }
 
-void low_x(Sixteen s) {
+void low_x(Digit digit) {
     int levels = lowest_digit(bits.x);
-    for (int e = 0; e < 16; e++) v[e] = waves[s.base + e];
+    for (int e = 0; e < 32; e++) v[e] = waves[digit.base + e];
     transform_blocks(v, levels);
     int block = ~((1 << levels) - 1);
-    for (int e = 0; e < 16; e++) waves[s.base + ((e & block) | block_number(e, levels))] = v[e];
+    for (int e = 0; e < 32; e++) {
+        waves[digit.base + ((e & block) | block_number(e, levels))] = v[e];
+    }
 }
 
 void top_y(int job) {
     int pairs = (count.x >> 2) + 1;
-    int p = bits.y - 4;
+    int p = bits.y - 5;
     int low = quotient(job, pairs);
     ivec2 unused;
     ivec4 columns = columns_of(job - low * pairs, unused);
     find_roots(low, p);
-    for (int e = 0; e < 16; e++) {
-        int row = ((e & 3) << p) | low;
-        v[e] = both_products(waves[row * pitch + columns[e >> 2]], root(e));
+    for (int e = 0; e < 32; e++) {
+        int row = ((e & 7) << p) | low;
+        v[e] = both_products(waves[row * pitch + columns[e >> 3]], root(e));
     }
-    transform16(v);
+    transform32(v);
     // Conjugates: of Z[k] = R[k] + i S[k] and of Z[-k] = conj R[k] + i conj S[k].
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 8; i++) {
         int base = ((i << p) | low) * pitch;
-        vec4 a = v[place16(i)];
-        vec4 b = v[place16(i + 4)];
-        vec4 c = v[place16(i + 8)];
-        vec4 d = v[place16(i + 12)];
+        vec4 a = v[place32(i)];
+        vec4 b = v[place32(i + 8)];
+        vec4 c = v[place32(i + 16)];
+        vec4 d = v[place32(i + 24)];
         waves[base + columns.x] = vec4(a.x + b.y, a.y - b.x, c.x + d.y, c.y - d.x);
         waves[base + columns.y] = vec4(a.x - b.y, -a.y - b.x, c.x - d.y, -c.y - d.x);
         waves[base + columns.z] = vec4(a.z + b.w, a.w - b.z, c.z + d.w, c.w - d.z);
@@ -198,27 +207,27 @@ void top_y(int job) {
 vec2 weighed(ivec2 frequency) {
     ivec2 along = frequency - count * ivec2(greaterThan(2 * frequency, count));
     // Of a short side that is repeated, waves that do not end where it ends are 0.
-    ivec2 copies = count / period;
-    ivec2 waves = along / copies;
-    if (waves * copies != along) return vec2(0.0);
-    vec2 f = vec2(waves) * float(max(period.x, period.y)) / vec2(period);
+    ivec2 copies = bits - ivec2(findMSB(period.x), findMSB(period.y));  // a power of two
+    ivec2 waves = along >> copies;
+    if (waves << copies != along) return vec2(0.0);
+    vec2 f = vec2(waves) * (float(max(period.x, period.y)) / vec2(period));
     float squared = dot(f, f);
     float weight = squared > 0.0 ? power(squared, -0.5 * roughness) : 1.0;
     weight *= inversesqrt(float(period.x) * float(period.y));
     return wave_number(waves, period, seed) * weight;
 }
 
-void draw(Sixteen s) {
+void draw(Digit digit) {
     int levels = lowest_digit(bits.y);
     int block = ~((1 << levels) - 1);
-    for (int e = 0; e < 16; e++) {
-        int l = frequency_of(s.place | (e & block) | block_number(e, levels), bits.y);
-        vec2 one = weighed(ivec2(s.frequencies.x, l));
-        vec2 other = weighed(ivec2(s.frequencies.y, l));
+    for (int e = 0; e < 32; e++) {
+        int l = frequency_of(digit.place | (e & block) | block_number(e, levels), bits.y);
+        vec2 one = weighed(ivec2(digit.frequencies.x, l));
+        vec2 other = weighed(ivec2(digit.frequencies.y, l));
         v[e] = vec4(one, other) * vec4(1.0, -1.0, 1.0, -1.0);
     }
     transform_blocks_back(v, levels);
-    for (int e = 0; e < 16; e++) waves[s.base + e * s.apart] = v[e];
+    for (int e = 0; e < 32; e++) waves[digit.base + e * digit.apart] = v[e];
 }
 
 // ── heights ──
@@ -227,7 +236,7 @@ void draw(Sixteen s) {
 void measure() {
     vec4 least = v[0];
     vec4 most = v[0];
-    for (int e = 1; e < 16; e++) {
+    for (int e = 1; e < 32; e++) {
         least = min(least, v[e]);
         most = max(most, v[e]);
     }
@@ -241,7 +250,7 @@ void measure() {
 // Four heights in each of four rows, a quarter of the count apart; `from` is the first's texel
 // along the row, and `at` its place among the fours of `height`. A row's last four may go on
 // in the next row, but not a quarter's, which is a multiple of four rows.
-void show(int row, int from, int at) {
+void show_fours(int row, int from, int at) {
     vec4 found[4];
     for (int j = 0; j < 4; j++) {
         int rows_on = int(from + j >= size.x) + int(from + j >= 2 * size.x);
@@ -261,9 +270,18 @@ void show(int row, int from, int at) {
     }
 }
 
+// One such job of `many` rows: row 0 of `waves` is the terrain's row `first`.
+void show(int job, int first, int many) {
+    int fours = (size.x + 3) >> 2;
+    int row = quotient(job, fours);
+    int start = (first + row) * size.x;
+    int at = ((start + 3) >> 2) + job - row * fours;
+    if (row < many && 4 * at - start < size.x) show_fours(row, 4 * at - start, at);
+}
+
 void main() {
     period = size - (size & 1);
-    count = max(period, ivec2(64));
+    count = max(period, ivec2(128));
     bits = ivec2(findMSB(count.x), findMSB(count.y));
     rows = count.y >> 2;
     pitch = count.x + 4;
@@ -272,27 +290,22 @@ void main() {
     bool x_axis = iteration > 2;
     bool top = iteration == 5;
     int n = x_axis ? bits.x : bits.y;
-    int p = top ? n - 4 : n - 8;
-    int jobs = x_axis ? count.x * rows >> 4 : ((count.x >> 2) + 1) * (count.y >> 4);
+    int p = top ? n - 5 : n - 10;
+    int jobs = x_axis ? count.x * rows >> 5 : ((count.x >> 2) + 1) * (count.y >> 5);
     if (stage == HIGHER && p <= 0) jobs = 0;
-    int fours = (size.x + 3) >> 2;
-    if (stage == SHOW) jobs = fours * rows;
-    if (stage == SHOW_LAST_ROW) jobs = size.y > count.y ? fours : 0;
-    if (job >= jobs) return;
+    if (job >= jobs && stage < SHOW) return;
 
     if (stage == DRAW) draw(along_y(job, 0));
     if (stage == TOP_Y) top_y(job);
     if (stage == LOW_X) low_x(along_x(job, 0));
     if (stage == HIGHER) {
-        Sixteen sixteen = along_x(job, p);
-        if (!x_axis) sixteen = along_y(job, p);
-        higher(sixteen, p);
+        Digit digit = along_x(job, p);
+        if (!x_axis) digit = along_y(job, p);
+        higher(digit, p);
         if (top) measure();
     }
-    if (stage == SHOW || stage == SHOW_LAST_ROW) {
-        int row = stage == SHOW ? quotient(job, fours) : 0;
-        int start = (stage == SHOW ? row : count.y) * size.x;
-        int at = ((start + 3) >> 2) + job - row * fours;
-        if (4 * at - start < size.x) show(row, 4 * at - start, at);
+    if (stage == SHOW) {
+        for (int k = 0; k < SHOWN; k++) show((job & ~31) * SHOWN + (job & 31) + 32 * k, 0, rows);
     }
+    if (stage == SHOW_LAST_ROW && size.y > count.y) show(job, count.y, 1);
 }

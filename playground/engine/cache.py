@@ -48,9 +48,13 @@ class Cache:
 
     def __init__(self, limit: int, pool: Pool) -> None:
         self.limit = limit  # [bytes]
+        # [bytes] that may be held while a frame is drawn: what the last one used stays until its textures are
+        # used again, or else a terrain of which one frame needs more than the limit would make them all anew.
+        self._bound = limit
         self.versions = VERSIONS  # kept of one pass; more where many are drawn in turn
         self.states = KeptStates(limit // _SHARE_OF_STATES, pool)
         self._pool = pool
+        pool.make_room = self.make_room
         self._cached: OrderedDict[str, Cached] = OrderedDict()
         self._in_use: set[str] = set()
         self._may_grow: set[str] = set()  # used since they were weighed
@@ -81,11 +85,15 @@ class Cache:
     def begin(self) -> None:
         """Begin a frame: nothing is in use yet."""
         self._weigh_used()
+        self._bound = self.limit
+        if self._total > self.limit:
+            self._bound = max(self.limit, sum([self._sizes.get(key, 0) for key in self._in_use]))
         self._in_use.clear()
 
     def end(self) -> None:
         """End a frame: what it used is weighed, and what is over the bounds goes."""
         self._weigh_used()
+        self._bound = self.limit
         self.trim()
 
     def get(self, key: str) -> Cached | None:
@@ -176,8 +184,19 @@ class Cache:
         while not self._holds() and self.states.thin():
             pass
 
-    def _holds(self) -> bool:
-        return self._total + self.states.bytes <= self.limit and len(self._cached) <= MOST
+    def make_room(self, more: int) -> None:
+        """Drop what was used least recently until so many bytes more are within the bound.
+
+        Its textures can be used again for what is made: that is quicker than to drop it afterwards, and never
+        needs the memory of both.
+        """
+        for key in [key for key in self._cached if key not in self._in_use]:
+            if self._holds(more):
+                return
+            self.drop(key)
+
+    def _holds(self, more: int = 0) -> bool:
+        return self._total + self.states.bytes + more <= self._bound and len(self._cached) <= MOST
 
     def clear(self) -> None:
         """Drop everything."""

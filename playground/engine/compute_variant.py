@@ -1,7 +1,8 @@
 """Run compute variants: compute shaders that write their images and buffers themselves.
 
 What one writes begins as zeros, except what its header says it overwrites. Buffers
-are used again by the next run: fresh memory of such a size costs more than filling it. A buffer
+are used again by the next run, for what needs as much or a little less: fresh memory of such a size costs
+more than filling it. A buffer
 with an output's name is that output, and is copied to its texture after the last iteration:
 llvmpipe takes five times as long to store texels in an image one by one. One that works in place
 begins as the input, too.
@@ -12,7 +13,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from playground.engine.kernels import Job, Kernels
 from playground.engine.programs import Program
@@ -28,8 +29,17 @@ if TYPE_CHECKING:
 
 _BYTES = {"vec2": 8, "ivec2": 8, "uvec2": 8, "vec4": 16, "ivec4": 16, "uvec4": 16}
 _MAX_BUFFER = 2**31 - 1
+_MOST_SPARE = 1.25  # of the bytes needed: those that passes of one size ask for differ a little
+_RECENT = 32  # runs: those of one picture, of a sketch with many
 _MOST_ALIGNED = 8  # bytes, of those that OpenGL fills rows up to
 _UNPACK_ROW_LENGTH, _PACK_ROW_LENGTH = 0x0CF2, 0x0D02  # GL's, in texels; 0: the texture's own
+
+
+class Spare(NamedTuple):
+    """A buffer that is used again."""
+
+    buffer: moderngl.Buffer
+    run: int  # the last one that it was part of, of all runs
 
 
 class ComputeVariants:
@@ -38,12 +48,13 @@ class ComputeVariants:
     def __init__(self, ctx: moderngl.Context, kernels: Kernels) -> None:
         self.ctx = ctx
         self.kernels = kernels
-        self._spare: list[moderngl.Buffer] = []  # newest last
+        self._spare: list[Spare] = []  # newest last
+        self._runs = 0
 
     def release(self) -> None:
         """Release every spare buffer."""
-        for buffer in self._spare:
-            buffer.release()
+        for spare in self._spare:
+            spare.buffer.release()
         self._spare.clear()
 
     def run(self, job: Job) -> Result:
@@ -60,7 +71,7 @@ class ComputeVariants:
                 buffers.append(self._buffer(job, declared, names))
                 if declared.name == kernel.in_place:
                     self._begin(job, result, declared, buffers[-1])
-                buffers[-1].bind_to_storage_buffer(unit)
+                buffers[-1].bind_to_storage_buffer(unit, size=self._size(declared, names))
             self.kernels.images(result, read=True)
             program: Program | None = None
             for iteration in range(repeat):
@@ -79,8 +90,9 @@ class ComputeVariants:
             pool.give(result)
             raise
         finally:
-            self._spare += buffers
-            self._trim(len(buffers))
+            self._runs += 1
+            self._spare += [Spare(buffer, self._runs) for buffer in buffers]
+            self._trim()
         return result
 
     def _program(self, job: Job, iteration: int, bound: Program | None) -> Program:
@@ -100,19 +112,25 @@ class ComputeVariants:
 
     def _buffer(self, job: Job, declared: Buffer, names: dict[str, Number]) -> moderngl.Buffer:
         kernel: Kernel = job.step.kernel
-        size = max(expressions.evaluate(declared.count, names), 1) * _BYTES.get(declared.type, 4)
+        size = self._size(declared, names)
         if size > _MAX_BUFFER:
             message = f"buffer '{declared.name}' would be {size / 2**20:.0f} MiB; 2048 at most"
             raise kernel.error(f"pass '{job.step.path}': {message}")
-        for found in reversed(self._spare):
-            if found.size == size:
-                self._spare.remove(found)
-                break
+        fitting = [spare for spare in self._spare if size <= spare.buffer.size <= size * _MOST_SPARE]
+        if fitting:
+            taken = min(reversed(fitting), key=_bytes)
+            self._spare.remove(taken)
+            found = taken.buffer
         else:
             found = self.ctx.buffer(reserve=size)
         if declared.name not in kernel.overwrites:
             found.clear()
         return found
+
+    @staticmethod
+    def _size(declared: Buffer, names: dict[str, Number]) -> int:
+        """Return the bytes of a buffer."""
+        return max(expressions.evaluate(declared.count, names), 1) * _BYTES.get(declared.type, 4)
 
     def _begin(self, job: Job, result: Result, declared: Buffer, buffer: moderngl.Buffer) -> None:
         """Fill a buffer with the first input, if that has the step's size: its kernel looks at that first."""
@@ -156,10 +174,23 @@ class ComputeVariants:
         finally:
             call("glPixelStorei", kinds, length, 0)
 
-    def _trim(self, newest: int) -> None:
-        """Release the oldest spare buffers over the bound in bytes; those of the last run stay."""
-        held = sum([buffer.size for buffer in self._spare])
-        while len(self._spare) > newest and held > self.kernels.pool.limit:
-            oldest = self._spare.pop(0)
-            held -= oldest.size
-            oldest.release()
+    def _trim(self) -> None:
+        """Release the oldest spare buffers over the bound in bytes.
+
+        Those of the last run stay, and the largest of the others, as long as runs need it again and again.
+        """
+        older = [spare for spare in self._spare if spare.run < self._runs]
+        recent = [spare for spare in older if spare.run > self._runs - _RECENT]
+        largest = max(recent, key=_bytes, default=None)
+        held = sum([spare.buffer.size for spare in self._spare])
+        for spare in older:
+            if held <= self.kernels.pool.limit:
+                return
+            if spare is not largest:
+                self._spare.remove(spare)
+                held -= spare.buffer.size
+                spare.buffer.release()
+
+
+def _bytes(spare: Spare) -> int:
+    return int(spare.buffer.size)

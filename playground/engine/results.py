@@ -6,7 +6,7 @@ A ``Result`` is the textures of one pass; the ``Pool`` keeps spare ones.
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -145,11 +145,15 @@ def _shape(size: tuple[int, int], outputs: Sequence[Output]) -> _Shape:
 
 
 class Pool:
-    """Spare results, to be used again: making a texture costs more than filling it."""
+    """Spare results, to be used again: making a texture costs more than filling it.
+
+    Before it makes one, it calls ``make_room`` with its bytes, for others to give what they can do without.
+    """
 
     def __init__(self, ctx: moderngl.Context, limit: int) -> None:
         self.ctx = ctx
         self.limit = limit  # [bytes]
+        self.make_room: Callable[[int], None] = lambda _: None
         self.made = 0  # how often a texture was made anew
         # Whether texels begin as zeros: what does not write all of them shows nothing of what others drew.
         self.clears = False
@@ -157,6 +161,7 @@ class Pool:
         self._spare: OrderedDict[int, Result] = OrderedDict()  # by identity, the oldest first
         self._alike: dict[_Shape, list[Result]] = {}  # the same, by what may take their place
         self._bytes = 0
+        self._awaited = 0  # [bytes] over the limit, of a result that waits for one like it to be given
 
     @property
     def bytes(self) -> int:
@@ -181,8 +186,7 @@ class Pool:
     def _take(self, size: tuple[int, int], outputs: Sequence[Output]) -> Result:
         wanted = tuple(outputs)
         self._taken += 1
-        alike = self._alike.get(_shape(size, wanted))
-        if alike:
+        if alike := self._alike.get(_shape(size, wanted)) or self._given(size, wanted):
             spare = alike.pop()
             del self._spare[id(spare)]
             self._bytes -= spare.bytes
@@ -204,13 +208,25 @@ class Pool:
             raise
         return Result(size, wanted, made, number=self._taken)
 
+    def _given(self, size: tuple[int, int], outputs: Sequence[Output]) -> list[Result]:
+        """Return the spare results of a shape of which there was none, once others have made room."""
+        self._awaited = sum([bytes_of(size, output.format) for output in outputs])
+        try:
+            self.make_room(self._awaited)
+        finally:
+            self._awaited = 0
+        alike = self._alike.get(_shape(size, outputs), [])
+        if not alike:
+            self._trim()
+        return alike
+
     def give(self, result: Result) -> None:
         """Take a result that is no longer read; it may be released at once."""
         if result.surface is not None:
             result.surface.release()
             result.surface = None
         result.release_copies()
-        if result.bytes > self.limit:
+        if result.bytes > self.limit + self._awaited:
             result.release()
             return
         for name in result.mipmapped:  # their levels are made anew before anybody reads them
@@ -220,7 +236,11 @@ class Pool:
         self._spare[id(result)] = result
         self._alike.setdefault(_shape(result.size, result.outputs), []).append(result)
         self._bytes += result.bytes
-        while self._bytes > self.limit:
+        self._trim()
+
+    def _trim(self) -> None:
+        """Release the oldest until the bound holds."""
+        while self._bytes > self.limit + self._awaited:
             _, oldest = self._spare.popitem(last=False)
             self._alike[_shape(oldest.size, oldest.outputs)].remove(oldest)
             self._bytes -= oldest.bytes

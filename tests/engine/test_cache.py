@@ -87,6 +87,27 @@ def test_versions_that_a_frame_uses_stay(ctx):
     pool.clear()
 
 
+@pytest.mark.parametrize(("passes", "made"), [("a", 3), ("abcd", 4)])
+def test_large_textures_of_the_last_frame_are_used_again(ctx, passes, made):
+    """One texture fits three times, but no spare one; of a frame of four, the fourth is over the bound."""
+    output, one = Output("height", "r32f"), 64 * 64 * 4
+    pool = Pool(ctx, one // 8)
+    kept = cache.Cache(3 * one, pool)
+    for number in range(6):
+        kept.begin()
+        for name in passes:
+            kept.put(f"{name} {number}", cache.Cached({name: pool.take((64, 64), [output])}))
+            assert kept.bytes + pool.bytes <= max(3, len(passes)) * one, "never more than a frame needs"
+        kept.end()
+        assert pool.made <= made, number
+    kept.begin()
+    kept.put("small", cache.Cached({"small": pool.take((4, 4), [output])}))
+    kept.end()
+    assert kept.bytes <= 3 * one and pool.bytes <= pool.limit, "a frame of less has the bound hold again"
+    kept.clear()
+    pool.clear()
+
+
 @pytest.mark.slow
 def test_a_texture_that_is_used_again_shows_nothing_of_its_old_mipmaps(ctx):
     sketch = load("jacksboro").with_values({"size": 65, "view.grid": 33})

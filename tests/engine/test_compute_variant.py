@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from playground.engine.compute_variant import _RECENT
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 
@@ -207,6 +208,8 @@ float kernel(ivec2 texel) { return 1.0 + 0.0 * again; }
 
 def test_a_spare_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engine, folder):
     """The buffer of the run before is used again, so a variant that adds to it shows what it began with."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
     for option, second in (("", 1.0), (', overwrites = "work"', 2.0)):
         folder.write("fill.glsl", PLAIN_FILL)
         again = "uniform float again = 0.0; //! slider(0, 9)\n"
@@ -218,6 +221,47 @@ def test_a_spare_buffer_begins_as_zeros_again_unless_it_is_overwritten(any_engin
         assert (any_engine.read(sketch, "a") == 1.0).all()
         assert (any_engine.read(sketch.with_values({"a.again": 1.0}), "a") == second).all()
         any_engine.internal.runner.compute_variants.release()
+
+
+def test_a_spare_buffer_serves_what_needs_a_little_less(any_engine, folder):
+    """19 x 19 numbers, then 18 x 18, and the shader knows of no more; of 12 x 12 too much would be idle."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    folder.write("fill.glsl", PLAIN_FILL)
+    text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
+    folder.write("fill.comp", text.replace("+= 1.0", "+= float(work.length())"))
+    spare = any_engine.internal.runner.compute_variants._spare
+    found = []
+    for side in (19, 18, 12):
+        sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
+        assert (any_engine.read(sketch, "a") == side * side).all()
+        found.append([one.buffer.size for one in spare])
+    assert found[0] == found[1] == [19 * 19 * 4] and found[2] == [19 * 19 * 4, 12 * 12 * 4]
+
+
+def test_of_spare_buffers_over_the_bound_the_largest_stays_while_it_is_used(any_engine, folder, monkeypatch):
+    """A frame's smaller passes do not have it made anew each time; once none asks for it, it goes."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    folder.write("fill.glsl", PLAIN_FILL)
+    again = "uniform float again = 0.0; //! slider(0, 9)\n"
+    text = FILL.replace("OPTION", "").replace("500", "size.x * size.y")
+    folder.write(
+        "fill.comp", text.replace("void main() {", f"{again}void main() {{ if (again > 99.0) return;")
+    )
+    monkeypatch.setattr(any_engine.internal.pool, "limit", 0)
+    spare = any_engine.internal.runner.compute_variants._spare
+
+    def sizes_after(*sides):
+        for number, side in enumerate(sides):
+            sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
+            any_engine.read(sketch.with_values({"a.again": number / 9}), "a")
+        return [one.buffer.size // 4 for one in spare]
+
+    assert sizes_after(19, 12, 4) == [19 * 19, 4 * 4], "of two the larger stays, and the last run's"
+    kept = spare[0].buffer
+    assert sizes_after(5, 19, 6) == [19 * 19, 6 * 6] and spare[0].buffer is kept
+    assert sizes_after(*[3, 5] * (_RECENT // 2 + 1)) == [3 * 3, 5 * 5]
 
 
 def test_overwrites_names_an_output_or_a_buffer(folder):

@@ -468,21 +468,41 @@ def test_sides_too_long_for_the_fast_variant_have_the_plain_form_run(ctx, sketch
         pytest.skip("this context has no compute shaders")
     notices = []
     with Engine(ctx, notice=notices.append) as engine:
-        wide = sketch_of((8192, 2))
+        wide = sketch_of((16384, 2))
         found = engine.read(wide, "terrain")
         np.testing.assert_array_equal(found, engine.read(wide.plainly(), "terrain"))
         engine.read(wide.with_values({"terrain.seed": 8}), "terrain")
         assert notices == [
-            "terrain: fourier.comp takes n up to 4097, m up to 4097 texels a side, not 8192 x 2; "
+            "terrain: fourier.comp takes n up to 8193, m up to 8193 texels a side, not 16384 x 2; "
             "the plain form runs"
         ]
-        engine.read(sketch_of((4097, 2)), "terrain")
+        engine.read(sketch_of((8193, 2)), "terrain")
         assert engine.internal.ran == ["terrain"] and len(notices) == 1, "by the fast variant"
 
 
+@pytest.mark.parametrize("seed", [3, 8])
+@pytest.mark.parametrize(
+    "size", [(2048, 16), (17, 2049), (8192, 4), (8193, 33), (2, 8193), (65, 8192), (2048, 2048)], ids=str
+)
+def test_long_sides_of_the_fast_variant_are_scipys(ctx, sketch_of, size, seed):
+    """Sides whose places have three digits, along one axis and along both, of the waves that are drawn."""
+    if ctx.version_code < 430:
+        pytest.skip("this context has no compute shaders")
+    nx, ny = even(size)
+    with Engine(ctx) as engine:
+        found = engine.read(sketch_of(size, seed=seed), "terrain")
+        assert engine.internal.ran == ["terrain"], "by the fast variant"
+        waves = as_complex(engine.read(sketch_of(size, seed=seed), "terrain.waves"))
+    f = frequencies(nx, ny)
+    f[0, 0] = 1.0
+    terrain = minmax(scipy.fft.ifft2(waves / f**2).real)
+    terrain = np.pad(terrain, [(0, side % 2) for side in size[::-1]], mode="wrap")
+    np.testing.assert_allclose(found, terrain, atol=2e-6)
+
+
 @pytest.fixture
-def sixteen(ctx):
-    """Give ``sixteen(call, numbers)``: maths/fourier.glsl's ``call`` on each row, as v[16]."""
+def of_32(ctx):
+    """Give ``of_32(call, numbers)``: maths/fourier.glsl's ``call`` on each row, as v[32]."""
     if ctx.version_code < 430:
         pytest.skip("this context has no compute shaders")
     code = read_source(GLSL / "maths/fourier.glsl", (GLSL,)).code
@@ -491,9 +511,9 @@ def sixteen(ctx):
         text = (
             f"#version 430\nlayout(local_size_x = 1) in;\n{code}\n"
             "layout(std430, binding = 0) buffer k_numbers { vec4 numbers[]; };\n"
-            "void main() { vec4 v[16]; int row = 16 * int(gl_WorkGroupID.x);\n"
-            f"for (int i = 0; i < 16; i++) v[i] = numbers[row + i];\n{call};\n"
-            "for (int i = 0; i < 16; i++) numbers[row + i] = v[i]; }\n"
+            "void main() { vec4 v[32]; int row = 32 * int(gl_WorkGroupID.x);\n"
+            f"for (int i = 0; i < 32; i++) v[i] = numbers[row + i];\n{call};\n"
+            "for (int i = 0; i < 32; i++) numbers[row + i] = v[i]; }\n"
         )
         pairs = np.stack([numbers.real, numbers.imag, -numbers.imag, numbers.real], axis=-1)  # z and i z
         buffer = ctx.buffer(pairs.astype(np.float32).tobytes())
@@ -513,25 +533,26 @@ def reversed_bits(number, bits):
     return int(f"{number:0{bits}b}"[::-1], 2) if bits else 0
 
 
-def test_sixteen_numbers(sixteen):
-    numbers = np.random.default_rng(2).standard_normal((9, 16, 2)) @ [1, 1j]
-    found = sixteen("transform16(v)", numbers)
-    places = [(k % 4) * 4 + k // 4 for k in range(16)]
-    np.testing.assert_allclose(found[:, places], np.fft.fft(numbers), atol=3e-6)
+def test_32_numbers(of_32):
+    numbers = np.random.default_rng(2).standard_normal((9, 32, 2)) @ [1, 1j]
+    told = of_32("for (int i = 0; i < 32; i++) v[i] = vec4(place32(i)) * vec4(1, 0, 0, 1)", numbers)
+    places = told[0].real.astype(int)
+    assert sorted(places) == list(range(32))
+    np.testing.assert_allclose(of_32("transform32(v)", numbers)[:, places], np.fft.fft(numbers), atol=3e-6)
 
 
-@pytest.mark.parametrize("levels", range(5))
-def test_blocks_of_numbers(sixteen, levels):
+@pytest.mark.parametrize("levels", range(6))
+def test_blocks_of_numbers(of_32, levels):
     count = 2**levels
-    numbers = np.random.default_rng(3).standard_normal((9, 16, 2)) @ [1, 1j]
-    wanted = np.fft.fft(numbers.reshape(9, -1, count)).reshape(9, 16)
-    places = [place - place % count + reversed_bits(place % count, levels) for place in range(16)]
-    found = sixteen(f"transform_blocks(v, {levels})", numbers)
+    numbers = np.random.default_rng(3).standard_normal((9, 32, 2)) @ [1, 1j]
+    wanted = np.fft.fft(numbers.reshape(9, -1, count)).reshape(9, 32)
+    places = [place - place % count + reversed_bits(place % count, levels) for place in range(32)]
+    found = of_32(f"transform_blocks(v, {levels})", numbers)
     np.testing.assert_allclose(found[:, places], wanted, atol=3e-6)
-    found = sixteen(f"transform_blocks_back(v, {levels})", numbers[:, places])
+    found = of_32(f"transform_blocks_back(v, {levels})", numbers[:, places])
     np.testing.assert_allclose(found, wanted, atol=3e-6)
-    told = sixteen(
-        f"for (int i = 0; i < 16; i++) v[i] = vec4(block_number(i, {levels})) * vec4(1, 0, 0, 1)",
+    told = of_32(
+        f"for (int i = 0; i < 32; i++) v[i] = vec4(block_number(i, {levels})) * vec4(1, 0, 0, 1)",
         numbers,
     )
-    np.testing.assert_array_equal(told[0].real, [reversed_bits(p % count, levels) for p in range(16)])
+    np.testing.assert_array_equal(told[0].real, [reversed_bits(p % count, levels) for p in range(32)])
