@@ -93,7 +93,9 @@ class Internals(Recorded):
         self.warnings = PlanWarnings(lambda: self.runner.inputs)
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
-        self.plain_forms = PlainForms(notice, self._computes and driver != FRAGMENT)
+        self.plain_forms = PlainForms(
+            notice, compute=self._computes and driver != FRAGMENT, software=self.info.software
+        )
         self._keys = KeyMaker(content=self.painted.content)
         self._hasher = PictureHasher()
         self._finite = FiniteCheck(self)
@@ -151,7 +153,7 @@ class Internals(Recorded):
             opened(sketch),
             frame_size=size,
             time=time,
-            variants=self.plain_forms.kinds,
+            variants=self.plain_forms.kinds_for(min(opened(sketch).samples, self.info.max_samples)),
             steps=steps,
             wanted=wanted,
             interpolated=interpolated,

@@ -20,11 +20,19 @@ def silent(sentence: str) -> None:
 
 
 class PlainForms:
-    """Calls ``notice`` for each fast variant that does not run; ``compute`` says whether all kinds could."""
+    """Calls ``notice`` for each fast variant that does not run.
 
-    def __init__(self, notice: Callable[[str], None], compute: bool) -> None:
+    ``compute`` and ``software`` say whether there are compute shaders, and no GPU.
+    """
+
+    def __init__(self, notice: Callable[[str], None], *, compute: bool, software: bool) -> None:
         self.notice = notice
-        self.kinds = tuple(kind for kind in VARIANTS if compute or kind != "compute")
+        lacking = {"compute": not compute, "draws": not software}
+        self.kinds = tuple(kind for kind in VARIANTS if not lacking.get(kind))
+
+    def kinds_for(self, samples: int) -> tuple[str, ...]:
+        """Return the kinds of fast variants that may run where a pixel has so many samples."""
+        return self.kinds if samples == 1 else tuple(kind for kind in self.kinds if kind != "draws")
         self._reported: set[str] = set()
 
     def report(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:

@@ -109,8 +109,9 @@ class Plan:
     @cached_property
     def continued(self) -> frozenset[str]:
         """The paths of the draws that a later draw goes on from, with their samples and depth."""
-        inputs = [each for step in self.walk() if step.kernel.kind == "draw" for each in step.inputs]
-        return frozenset([s.path for name, s in inputs if name == "initial" and isinstance(s, Ref)])
+        draws = [step for step in self.walk() if step.kernel.kind == "draw"]
+        sources = [s for step in draws for name, s in step.inputs if name in ("initial", step.kernel.over)]
+        return frozenset([source.path for source in sources if isinstance(source, Ref)])
 
     def step(self, path: str) -> Step | None:
         """Return the step of that path, if there is one."""

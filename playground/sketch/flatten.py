@@ -303,7 +303,8 @@ class _Flattener:
     def _body(self, spec: PassSpec, path: str, wires: Mapping[str, Source | None]) -> list[Node]:
         technique = spec.technique
         variant = self._active(technique, path)
-        if isinstance(technique, Kernel) and any(wires.get(name) for name in initial_names(technique)):
+        starts = initial_names(technique) if isinstance(technique, Kernel) else {}
+        if any(wires.get(name) for name in starts) and not (variant and variant.kind == "draws"):
             variant = None  # only the canonical form takes an initial state
         lacking = sorted(name for name in _lacking(technique, variant) if wires.get(name)) if variant else []
         if variant and lacking:
