@@ -38,7 +38,7 @@ from playground.engine.supersampling import drawn_size
 from playground.engine.unfinished import Deadline
 from playground.engine.window import windowed
 from playground.errors import ContextError, Diagnostic, OpenGLFault
-from playground.gpu.context import ContextInfo, context_info
+from playground.gpu.context import ContextInfo, context_info, keep_freed_memory
 from playground.gpu.timers import Timer
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import shown
@@ -72,6 +72,8 @@ class Internals(Recorded):
         self.ctx = ctx
         self.info: ContextInfo = context_info(ctx)
         _log.debug("opened %s: %s (%s)", self.info.opengl, self.info.renderer, self.info.version)
+        if self.info.software:
+            keep_freed_memory()
         self._computes = self.info.compute  # whether there are compute shaders
         if driver == COMPUTE and not self._computes:
             raise ContextError(f"this context is {self.info.opengl}; compute needs 4.3")
