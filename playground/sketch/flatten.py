@@ -58,6 +58,7 @@ def flatten(
     A variant gives its technique's outputs only, and after the last step: it does not replace
     a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
     or a parameter inside that is set and that it does not have, or an input that it does not have,
+    or a draw of which a parameter that it does not have is not at its default,
     nor one that is itself among the ``stopped`` or the ``refused``, or whose initial state is wired.
     Leaves of ``before``, an earlier result, are reused where their values are the same objects.
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
@@ -74,6 +75,11 @@ def flatten(
         for target in shape.targets[path]:
             values[target] = value
     follow(shape.rules, values)
+    if plain := {path for path, name, default in shape.lacking if values[_join(path, name)] != default}:
+        more = (*refused, *sorted(plain))
+        return flatten(
+            sketch, variants=variants, opened=opened, stopped=stopped, refused=more, before=before
+        )
     values |= shape.constants | {path: values[source] for path, source in shape.copied.items()}
     nodes, stale = shape.nodes, None
     if before is not None and before.shape is shape and before.folder == sketch.folder:
@@ -134,6 +140,7 @@ def _shape(
         rules=rules,
         readers=readers,
         withheld=tuple(maker.withheld.values()),
+        lacking=tuple(maker.lacking),
     )
 
 
@@ -186,6 +193,7 @@ class _Flattener:
         # Pass → what gives its outputs: the passes of its fast variant, or its own where that steps back.
         self.inside: dict[str, dict[str, Ref]] = {}
         self.withheld: dict[str, str] = {}
+        self.lacking: list[tuple[str, str, Value]] = []
         self.opened: set[str] = set()
         if kinds:
             for path in (*opened, *stopped):
@@ -315,6 +323,11 @@ class _Flattener:
             if isinstance(technique, Graph):
                 self.opened.add(path)
                 self.inside[path] = self._outputs_of(technique, path)
+        if variant and variant.kind == "draws":
+            known = {parameter.name for parameter in variant.technique.parameters}
+            for one in technique.parameters if isinstance(technique, Kernel) else ():
+                if one.name not in known:
+                    self.lacking.append((path, one.name, one.default))
         if variant and isinstance(variant.technique, Graph):
             return self._passes(variant.technique, spec, path, wires)
         if isinstance(technique, Kernel):
