@@ -216,7 +216,9 @@ class Draws:
         wired = job.inputs.get(name, Wired())
         earlier = wired.result.surface if wired.result is not None else None
         if earlier is None or (earlier.size, earlier.samples) != (surface.size, surface.samples):
-            what = f"a draw of {surface.size[0]} x {surface.size[1]} pixels and {surface.samples} samples each"
+            what = (
+                f"a draw of {surface.size[0]} x {surface.size[1]} pixels and {surface.samples} samples each"
+            )
             raise job.step.spec.error(f"pass '{job.step.path}' draws over '{name}', which needs to be {what}")
         copy_depth(self.ctx, surface.framebuffer, earlier.framebuffer, surface.size)
 

@@ -148,14 +148,21 @@ class Internals(Recorded):
         wanted: str = "",
         largest: int = LARGEST_SIDE,
         interpolated: bool | None = None,
+        *,
+        in_parts: bool = False,
     ) -> Plan:
-        """Make a sketch, or that of a name or path, concrete for this engine; see ``Planner.plan``."""
+        """Make a sketch, or that of a name or path, concrete for this engine; see ``Planner.plan``.
+
+        A picture to be drawn ``in_parts`` has draws in their plain form: windows are cut out of those.
+        """
         self.refuse_misuse()
+        found = opened(sketch)
+        samples = 0 if in_parts else min(found.samples, self.info.max_samples)
         return self.planner.plan(
-            opened(sketch),
+            found,
             frame_size=size,
             time=time,
-            variants=self.plain_forms.kinds_for(min(opened(sketch).samples, self.info.max_samples)),
+            variants=self.plain_forms.kinds if samples == 1 else self.plain_forms.kinds_without_draws,
             steps=steps,
             wanted=wanted,
             interpolated=interpolated,
@@ -219,8 +226,9 @@ class Internals(Recorded):
     ) -> Plan:
         """Make a sketch concrete for a window of a picture; raise as ``draw_window`` does."""
         found, (width, height) = opened(sketch), window.whole
-        plan = self.plan_for(found, window.whole, time, steps, largest=LARGEST_PICTURE)
-        other = self.plan_for(found, (width + 1, height + 1), time, steps, largest=LARGEST_PICTURE + 1)
+        plan = self.plan_for(found, window.whole, time, steps, largest=LARGEST_PICTURE, in_parts=True)
+        larger = width + 1, height + 1
+        other = self.plan_for(found, larger, time, steps, largest=LARGEST_PICTURE + 1, in_parts=True)
         return windowed(plan, other, window)
 
     def texture_of(self, plan: Plan, ref: Ref) -> moderngl.Texture:

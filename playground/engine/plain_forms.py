@@ -29,10 +29,8 @@ class PlainForms:
         self.notice = notice
         lacking = {"compute": not compute, "draws": not software}
         self.kinds = tuple(kind for kind in VARIANTS if not lacking.get(kind))
-
-    def kinds_for(self, samples: int) -> tuple[str, ...]:
-        """Return the kinds of fast variants that may run where a pixel has so many samples."""
-        return self.kinds if samples == 1 else tuple(kind for kind in self.kinds if kind != "draws")
+        # Those that may run where a pixel has several samples, or a picture is drawn in parts.
+        self.kinds_without_draws = tuple(kind for kind in self.kinds if kind != "draws")
         self._reported: set[str] = set()
 
     def report(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:

@@ -77,9 +77,7 @@ def flatten(
     follow(shape.rules, values)
     if plain := {path for path, name, default in shape.lacking if values[_join(path, name)] != default}:
         more = (*refused, *sorted(plain))
-        return flatten(
-            sketch, variants=variants, opened=opened, stopped=stopped, refused=more, before=before
-        )
+        return flatten(sketch, variants=variants, opened=opened, stopped=stopped, refused=more, before=before)
     values |= shape.constants | {path: values[source] for path, source in shape.copied.items()}
     nodes, stale = shape.nodes, None
     if before is not None and before.shape is shape and before.folder == sketch.folder:
