@@ -7,11 +7,11 @@
 //   source   none: packing made here
 //   tested   tests/glsl/test_view_ground.py, by what comes back
 //
-// East and north; the distance; and in the last number how far a pixel moves over the terrain, east
-// and north, as two floats of 16 bits, or below 0 the mark of a cut wall or of what is no number,
-// neither of which has a texture. A renderer without a GPU chooses a texture's level by the larger
-// of the two movements, to the right and up, in the longer axis: those two numbers say the same.
-// Their 7 bits move a level by 1/256 at most.
+// East and north; the distance; and in the last number how far the next pixel lies on the terrain,
+// east and north, as two floats of 16 bits, or below 0 the mark of a cut wall or of what is no
+// number, neither of which has a texture. The next pixel is that to the right or above, whichever
+// lies further: without a GPU that alone says which level of a texture is read, where its texels
+// are as wide as high. The 7 bits move a level by 1/256 at most.
 #ifndef VIEW_GROUND_TEXEL
 #define VIEW_GROUND_TEXEL
 #ifdef FRAGMENT_STAGE
@@ -21,7 +21,7 @@
 struct Ground {
     vec2 place;      // east and north  [m]
     float distance;  // to the eye  [m]
-    vec2 change;     // east and north, from a pixel to the next  [m]
+    vec2 change;     // east and north, to the next pixel, without sign  [m]
     float mark;      // as place_of_vertex gives it
 };
 
@@ -39,7 +39,8 @@ vec2 unpacked_pair(float number) {
 }
 
 vec4 ground_texel(vec3 position, float mark) {
-    vec2 change = max(abs(dFdx(position.xy)), abs(dFdy(position.xy)));
+    vec2 right = dFdx(position.xy), above = dFdy(position.xy);
+    vec2 change = abs(dot(right, right) > dot(above, above) ? right : above);
     float last = mark > 0.0 ? -clamp(mark, 1e-6, 1.0) : mark < BROKEN ? IS_BROKEN
                  : packed_pair(clamp(change, 1e-20, 1e20));
     return vec4(position.xy, distance(eye, position), last);
@@ -52,8 +53,7 @@ Ground ground_of_texel(vec4 texel) {
 
 // A texture at `uv`, which moves by so much from a pixel to the next; `sharper` as SHARPER is.
 vec4 texture_on_ground(sampler2D image, vec2 uv, vec2 change, float sharper) {
-    vec2 moves = change * exp2(sharper);
-    return textureGrad(image, uv, vec2(moves.x, 0.0), vec2(0.0, moves.y));
+    return textureGrad(image, uv, change * exp2(sharper), vec2(0.0));
 }
 
 // A texture that lies over the terrain, at a share of it.
