@@ -322,10 +322,7 @@ class _Flattener:
                 self.opened.add(path)
                 self.inside[path] = self._outputs_of(technique, path)
         if variant and variant.kind == "draws":
-            known = {parameter.name for parameter in variant.technique.parameters}
-            for one in technique.parameters if isinstance(technique, Kernel) else ():
-                if one.name not in known:
-                    self.lacking.append((path, one.name, one.default))
+            self.lacking += [(path, *own) for own in _defaults_of_lacking(technique, variant.technique)]
         if variant and isinstance(variant.technique, Graph):
             return self._passes(variant.technique, spec, path, wires)
         if isinstance(technique, Kernel):
@@ -431,6 +428,13 @@ def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]
     return all(
         target in wires for export in technique.inputs if export.name == name for target in export.targets
     )
+
+
+def _defaults_of_lacking(technique: Technique, variant: Technique) -> list[tuple[str, Value]]:
+    """Return where the values of a technique are that its fast variant lacks, by paths inside, and defaults."""
+    values, known = effective_values(technique), {one.name for one in variant.parameters}
+    names = [one.name for one in technique.parameters if one.name not in known]
+    return [(target.path, values[target.path]) for name in names for target in resolve(technique, name)]
 
 
 def _own(technique: Technique, path: str, name: str) -> str:

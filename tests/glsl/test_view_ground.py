@@ -165,7 +165,28 @@ def test_what_the_variant_lacks_has_the_plain_draw_run(any_engine, make_sketch, 
     text = f'[view]\nuse = "view/terrain"\nsamples = {samples}\nset = {{ grid = 17 }}\n'
     sketch = make_sketch('[[pass]]\nname = "height"\nuse = "./terrain"\n' + text, terrain=HILLS)
     any_engine.render(sketch.with_values(values), size=(48, 30))
-    assert "view.land" in [step.path for step in any_engine.internal.plan.walk()]
+    assert not [step.path for step in any_engine.internal.plan.walk() if ".fast." in step.path]
     any_engine.render(replace(sketch, samples=1), size=(48, 30))  # and back
     paths = [step.path for step in any_engine.internal.plan.walk()]
-    assert ("view.land.fast.ground" in paths) == any_engine.info.software
+    assert ("view.fast.ground" in paths) == any_engine.info.software
+
+
+@pytest.mark.parametrize("sea", ["false", "true"])
+@pytest.mark.parametrize("view", ["view/terrain", "view/splat"])
+def test_the_sky_is_there_where_nothing_else_is(software, make_sketch, view, sea):
+    """In the whole view's variant the terrain comes first; the picture has sky, sea and terrain as before."""
+    more = f', haze = 0.3, sea = {sea}, sea_level = 60, zenith = "#103080"'
+    text = real_terrain(view, 1, more)
+    sketch = make_sketch(text, size=65, relief=200.0)
+    for look in LOOKS:
+        seen = sketch.with_camera(look)
+        found = software.render(seen, size=SIZE).array.astype(int)
+        assert "view.fast.sky" in [step.path for step in software.internal.plan.walk()]
+        plain = software.render(seen.plainly(), size=SIZE).array.astype(int)
+        ground = software.read(seen.plainly(), "view.land", size=SIZE)
+        sky = software.read(seen.plainly(), "view.sky", size=SIZE)
+        empty = (ground == sky).all(axis=-1)[::-1]
+        assert empty.mean() > 0.1
+        # Rays to a pixel's middle, which are interpolated or of whole numbers.
+        np.testing.assert_allclose(found[empty], plain[empty], atol=1)
+        assert np.sqrt(((found - plain) ** 2).mean()) < 0.02 * 255
