@@ -9,8 +9,8 @@
 //   tested   tests/glsl/test_view_ground.py, against the plane of level ground in float64
 //
 // The first of two draws. A software renderer shades whole blocks of pixels for each triangle that
-// touches one, so that a mesh of small triangles costs several times its pixels: here a block costs
-// little. The second draw (view/splat/shaded) works each pixel out once.
+// touches one, so that a mesh of small triangles costs several times its pixels: here a block
+// costs little. The second draw (view/shaded, view/splat/shaded) works each pixel out once.
 #include "view/ground_texel.glsl"
 #include "view/vertices.glsl"
 #pragma draw(mesh = "land", output = "ground:rgba32f", samples = 1)

@@ -1,7 +1,7 @@
 // view/ground_texel.glsl -- what of the terrain a pixel shows, in one texel.
 //
-//   gives    Ground, ground_of_texel, texture_on_ground, draped_on_ground; in a draw's fragment stage only, and
-//            ground_texel, with derivatives
+//   gives    Ground, ground_texel, ground_of_texel, texture_on_ground, draped_on_ground; in a
+//            draw's fragment stage only
 //   needs    maths/drape.glsl, view/surface.glsl; eye
 //   units    metres
 //   source   none: packing made here

@@ -35,7 +35,8 @@ class PlainForms:
 
     def report(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:
         """Report what is new of a sketch that is drawn; ``lacking`` are sentences of its plan."""
-        for sentence in (*left_out(sketch, self.kinds), *lacking):
+        kinds = self.kinds if sketch.samples == 1 else self.kinds_without_draws
+        for sentence in (*left_out(sketch, kinds), *lacking):
             if sentence not in self._reported:
                 self._reported.add(sentence)
                 self.notice(sentence)

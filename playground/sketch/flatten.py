@@ -431,7 +431,7 @@ def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]
 
 
 def _defaults_of_lacking(technique: Technique, variant: Technique) -> list[tuple[str, Value]]:
-    """Return where the values of a technique are that its fast variant lacks, by paths inside, and defaults."""
+    """Return the values that a technique has and its fast variant lacks: paths inside, and defaults."""
     values, known = effective_values(technique), {one.name for one in variant.parameters}
     names = [one.name for one in technique.parameters if one.name not in known]
     return [(target.path, values[target.path]) for name in names for target in resolve(technique, name)]

@@ -1,8 +1,9 @@
 // view/splat/shaded.glsl -- the splatted terrain, shaded once at each pixel that shows it.
 //
 //   gives    frame, linear light, over an earlier frame
-//   needs    texturing/splat_weights.glsl, view/ground_texel.glsl, view/surface.glsl; what view/ground gives, weights as of texturing/alpha_map, four
-//            tiles; a light and texturing/splat/means if there are
+//   needs    texturing/splat_weights.glsl, view/ground_texel.glsl, view/surface.glsl; what
+//            view/ground gives, weights as of texturing/alpha_map, four tiles; a light and
+//            texturing/splat/means if there are
 //   units    metres; colours linear; a tile is so many times side by side from west to east
 //   source   as view/splat/land.glsl, whose picture it is
 //   tested   tests/glsl/test_view_ground.py, against view/splat/land
