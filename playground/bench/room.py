@@ -83,6 +83,7 @@ class Room:
     def sketch(self, given: Mapping[str, Any], size: int) -> Sketch:
         """Return a row's sketch: one of the library by ``sketch``, or of the text of its ``passes``.
 
+        ``first`` is the text of passes before those, which rows may share.
         ``texel`` is the metres between two texels; ``relief`` is in metres; ``even`` takes the
         even number below an odd size; ``set`` are values by path.
         """
@@ -96,7 +97,8 @@ class Room:
                 head += f"extent = {(side - 1) * float(given['texel'])}\n"
             if "relief" in given:
                 head += f"relief = {float(given['relief'])}\n"
-            found = load(self.written(f"{next(self.numbers)}.toml", head + str(given["passes"])))
+            text = head + str(given.get("first", "")) + str(given["passes"])
+            found = load(self.written(f"{next(self.numbers)}.toml", text))
             values = {}
         values |= given.get("set", {})
         return found.with_values(values) if values else found

@@ -23,6 +23,7 @@ from playground.engine.plan import Window
 from playground.engine.programs import Program
 from playground.engine.results import Result, Surface, Wired, started
 from playground.errors import ContextError, SketchError
+from playground.gpu.gl_calls import copy_depth
 from playground.gpu.textures import drain, make_framebuffer, read_texture, split_format
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError
@@ -76,14 +77,15 @@ class Draws:
         loaded, array = self._array(program, job)
         instances = instances_of(job, self._texels) if step.repeat else 0
         chosen = self._chosen(job) if loaded.places is not None and step.repeat else None
-        surface = self._surface(step.size, tuple([o.format for o in kernel.outputs]), job.samples)
-        self._start_from(job, surface)
-        surface.framebuffer.use()
-        if step.window is not None:
-            self._look_through(step.window, program)
-        self.kernels.binder.bind(program, step, job.given, job.inputs)
+        pool = self.kernels.pool
+        result = pool.take(step.size, kernel.outputs) if job.samples == 1 else None
         try:
-            _enable(ctx, kernel.depth, kernel.blend)
+            surface = self._target(result) if result is not None else self._surface(job)
+            self._begin(job, surface)
+            if step.window is not None:
+                self._look_through(step.window, program)
+            self.kernels.binder.bind(program, step, job.given, job.inputs)
+            _enable(ctx, "over" if kernel.over else kernel.depth, kernel.blend)
             for iteration in range(step.repeat):
                 job.count(program, iteration, kernel.repeat, step.whole)
                 if chosen is None:
@@ -93,9 +95,16 @@ class Draws:
                 else:
                     self.triangles = loaded.render(array, chosen)
                     self.drawn += self.triangles
+        except Exception:
+            if result is not None:
+                pool.give(result)
+            raise
         finally:
             _enable(ctx, "none", "none")
-        result = self.kernels.pool.take(step.size, kernel.outputs)
+        if result is not None:
+            result.surface = surface if job.keeps_surface else None
+            return result
+        result = pool.take(step.size, kernel.outputs)
         ctx.copy_framebuffer(result.framebuffer(ctx), surface.framebuffer)
         if job.keeps_surface:
             result.surface = surface
@@ -119,36 +128,68 @@ class Draws:
         moved = (wide - 2 * x - width) / width, (tall - 2 * y - height) / height
         program.set(ZOOM, (wide / width, tall / height, *moved))
 
-    def _surface(self, size: tuple[int, int], formats: tuple[str, ...], samples: int) -> Surface:
-        """Return something to draw on: a spare surface if there is one."""
+    def _surface(self, job: Job) -> Surface:
+        """Return something to draw several samples a pixel on: a spare surface if there is one."""
+        size, samples = job.step.size, job.samples
+        formats = tuple([output.format for output in job.step.kernel.outputs])
         for spare in self._surfaces:
             if (spare.size, spare.formats, spare.samples) == (size, formats, samples):
                 self._surfaces.remove(spare)
                 return spare
         return self._new_surface(size, formats, samples)
 
+    def _target(self, result: Result) -> Surface:
+        """Return a result's own textures to draw on, with a depth that stays theirs.
+
+        What has one sample a pixel needs nothing resolved: no copy of the picture.
+        """
+        if result.target is None:
+            formats = tuple([output.format for output in result.outputs])
+            textures = tuple([result.textures[output.name] for output in result.outputs])
+            result.target = self._made(result.size, formats, 1, textures)
+        return result.target
+
     def _new_surface(self, size: tuple[int, int], formats: tuple[str, ...], samples: int) -> Surface:
-        many = samples if samples > 1 else 0
-        drain(self.ctx)
         kinds = [split_format(form) for form in formats]
-        colours = [self.ctx.renderbuffer(size, parts, samples=many, dtype=dtype) for parts, dtype in kinds]
-        depth = self.ctx.depth_renderbuffer(size, samples=many)
+        drain(self.ctx)
+        colours = [self.ctx.renderbuffer(size, parts, samples=samples, dtype=dtype) for parts, dtype in kinds]
+        return self._made(size, formats, samples, tuple(colours))
+
+    def _made(
+        self,
+        size: tuple[int, int],
+        formats: tuple[str, ...],
+        samples: int,
+        colours: tuple[moderngl.Renderbuffer | moderngl.Texture, ...],
+    ) -> Surface:
+        """Return a new surface of some colours, which are a result's textures where there is one sample."""
+        own = () if samples == 1 else colours
+        depth = self.ctx.depth_renderbuffer(size, samples=samples if samples > 1 else 0)
         error = self.ctx.error
         try:
             if error != "GL_NO_ERROR":
                 raise RuntimeError(error)
             framebuffer = make_framebuffer(self.ctx, colours, depth)
         except Exception as refusal:  # moderngl raises its own Error for an incomplete framebuffer
-            for buffer in (*colours, depth):
+            for buffer in (*own, depth):
                 buffer.release()
             what = f"{size[0]} x {size[1]} {', '.join(formats)} with {samples} samples"
             raise ContextError(f"the driver refused to draw {what}: {refusal}") from None
-        return Surface(framebuffer, tuple(colours), depth, size, formats, samples)
+        return Surface(framebuffer, colours, depth, size, formats, samples, is_target=samples == 1)
+
+    def _begin(self, job: Job, surface: Surface) -> None:
+        """Give a surface what a draw begins with, and bind it."""
+        surface.framebuffer.depth_mask = not job.step.kernel.over
+        if job.step.kernel.over:
+            self._take_depth(job, surface)
+        self._start_from(job, surface)
+        surface.framebuffer.use()
 
     def _start_from(self, job: Job, surface: Surface) -> None:
         """Begin with an earlier draw's samples and depth, with a texture's colours, or with nothing."""
         wired = job.inputs.get("initial", Wired())
-        earlier = wired.result.surface if wired.result is not None else None
+        # Of what a draw over another's pixels starts from, the depth is that draw's.
+        earlier = wired.result.surface if wired.result is not None and not job.step.kernel.over else None
         if earlier is not None and (earlier.size, earlier.samples) == (surface.size, surface.samples):
             _refuse_others(job, wired)
             self.ctx.copy_framebuffer(surface.framebuffer, earlier.framebuffer)
@@ -168,6 +209,18 @@ class Draws:
         for unit, output in enumerate(job.step.kernel.outputs):
             if output.name in begun:
                 self._copy_into(surface, unit, begun[output.name])
+
+    def _take_depth(self, job: Job, surface: Surface) -> None:
+        """Begin with the depth of the draw whose pixels are drawn over; it is read and not written."""
+        name = job.step.kernel.over
+        wired = job.inputs.get(name, Wired())
+        earlier = wired.result.surface if wired.result is not None else None
+        if earlier is None or (earlier.size, earlier.samples) != (surface.size, surface.samples):
+            what = (
+                f"a draw of {surface.size[0]} x {surface.size[1]} pixels and {surface.samples} samples each"
+            )
+            raise job.step.spec.error(f"pass '{job.step.path}' draws over '{name}', which needs to be {what}")
+        copy_depth(self.ctx, surface.framebuffer, earlier.framebuffer, surface.size)
 
     def _copy_into(self, surface: Surface, unit: int, texture: moderngl.Texture) -> None:
         """Begin one of the outputs with a texture, nearest texel for nearest."""
@@ -260,9 +313,12 @@ def _mesh_values(job: Job) -> dict[str, Value]:
 
 
 def _enable(ctx: Any, depth: str, blend: str) -> None:
-    """Switch depth test and blending as a draw's header says; with "none" twice, restore the defaults."""
+    """Switch depth test and blending as a draw's header says; with "none" twice, restore the defaults.
+
+    "over" is for the far plane: where another draw has drawn, there it lies behind.
+    """
     ctx.enable_only((ctx.DEPTH_TEST if depth != "none" else 0) | (ctx.BLEND if blend != "none" else 0))
-    ctx.depth_func = "==" if depth == "equal" else "<"
+    ctx.depth_func = {"equal": "==", "over": ">"}.get(depth, "<")
     if blend == "add":
         ctx.blend_func = ctx.ONE, ctx.ONE
     elif blend == "alpha":

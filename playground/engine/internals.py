@@ -38,7 +38,7 @@ from playground.engine.supersampling import drawn_size
 from playground.engine.unfinished import Deadline, Piece
 from playground.engine.window import windowed
 from playground.errors import ContextError, Diagnostic, OpenGLFault
-from playground.gpu.context import ContextInfo, context_info
+from playground.gpu.context import ContextInfo, context_info, keep_freed_memory
 from playground.gpu.timers import Timer
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import shown
@@ -72,6 +72,8 @@ class Internals(Recorded):
         self.ctx = ctx
         self.info: ContextInfo = context_info(ctx)
         _log.debug("opened %s: %s (%s)", self.info.opengl, self.info.renderer, self.info.version)
+        if self.info.software:
+            keep_freed_memory()
         self._computes = self.info.compute  # whether there are compute shaders
         if driver == COMPUTE and not self._computes:
             raise ContextError(f"this context is {self.info.opengl}; compute needs 4.3")
@@ -95,7 +97,9 @@ class Internals(Recorded):
         self.warnings = PlanWarnings(lambda: self.runner.inputs)
         self.disk_caching: DiskCaching | None = None  # None: nothing is cached on disk
         self.eye_height = EyeHeight()  # over the terrain, in the last frame
-        self.plain_forms = PlainForms(notice, self._computes and driver != FRAGMENT)
+        self.plain_forms = PlainForms(
+            notice, compute=self._computes and driver != FRAGMENT, software=self.info.software
+        )
         self._keys = KeyMaker(content=self.painted.content)
         self._hasher = PictureHasher()
         self._finite = FiniteCheck(self)
@@ -146,14 +150,21 @@ class Internals(Recorded):
         wanted: str = "",
         largest: int = LARGEST_SIDE,
         interpolated: bool | None = None,
+        *,
+        in_parts: bool = False,
     ) -> Plan:
-        """Make a sketch, or that of a name or path, concrete for this engine; see ``Planner.plan``."""
+        """Make a sketch, or that of a name or path, concrete for this engine; see ``Planner.plan``.
+
+        A picture to be drawn ``in_parts`` has draws in their plain form: windows are cut out of those.
+        """
         self.refuse_misuse()
+        found = opened(sketch)
+        samples = 0 if in_parts else min(found.samples, self.info.max_samples)
         return self.planner.plan(
-            opened(sketch),
+            found,
             frame_size=size,
             time=time,
-            variants=self.plain_forms.kinds,
+            variants=self.plain_forms.kinds if samples == 1 else self.plain_forms.kinds_without_draws,
             steps=steps,
             wanted=wanted,
             interpolated=interpolated,
@@ -217,8 +228,9 @@ class Internals(Recorded):
     ) -> Plan:
         """Make a sketch concrete for a window of a picture; raise as ``draw_window`` does."""
         found, (width, height) = opened(sketch), window.whole
-        plan = self.plan_for(found, window.whole, time, steps, largest=LARGEST_PICTURE)
-        other = self.plan_for(found, (width + 1, height + 1), time, steps, largest=LARGEST_PICTURE + 1)
+        plan = self.plan_for(found, window.whole, time, steps, largest=LARGEST_PICTURE, in_parts=True)
+        larger = width + 1, height + 1
+        other = self.plan_for(found, larger, time, steps, largest=LARGEST_PICTURE + 1, in_parts=True)
         return windowed(plan, other, window)
 
     def texture_of(self, plan: Plan, ref: Ref) -> moderngl.Texture:

@@ -20,16 +20,23 @@ def silent(sentence: str) -> None:
 
 
 class PlainForms:
-    """Calls ``notice`` for each fast variant that does not run; ``compute`` says whether all kinds could."""
+    """Calls ``notice`` for each fast variant that does not run.
 
-    def __init__(self, notice: Callable[[str], None], compute: bool) -> None:
+    ``compute`` and ``software`` say whether there are compute shaders, and no GPU.
+    """
+
+    def __init__(self, notice: Callable[[str], None], *, compute: bool, software: bool) -> None:
         self.notice = notice
-        self.kinds = tuple(kind for kind in VARIANTS if compute or kind != "compute")
+        lacking = {"compute": not compute, "draws": not software}
+        self.kinds = tuple(kind for kind in VARIANTS if not lacking.get(kind))
+        # Those that may run where a pixel has several samples, or a picture is drawn in parts.
+        self.kinds_without_draws = tuple(kind for kind in self.kinds if kind != "draws")
         self._reported: set[str] = set()
 
     def report(self, sketch: Sketch, lacking: Iterable[str] = ()) -> None:
         """Report what is new of a sketch that is drawn; ``lacking`` are sentences of its plan."""
-        for sentence in (*left_out(sketch, self.kinds), *lacking):
+        kinds = self.kinds if sketch.samples == 1 else self.kinds_without_draws
+        for sentence in (*left_out(sketch, kinds), *lacking):
             if sentence not in self._reported:
                 self._reported.add(sentence)
                 self.notice(sentence)

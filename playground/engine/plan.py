@@ -152,8 +152,9 @@ def _draws(key: Identity[tuple[PlanNode, ...]]) -> tuple[Step, ...]:
 
 @lru_cache(maxsize=_MOST_PLANS)
 def _continued(key: Identity[tuple[PlanNode, ...]]) -> frozenset[str]:
-    inputs = [each for step in _draws(key) for each in step.inputs]
-    return frozenset([s.path for name, s in inputs if name == "initial" and isinstance(s, Ref)])
+    draws = _draws(key)
+    sources = [s for step in draws for name, s in step.inputs if name in ("initial", step.kernel.over)]
+    return frozenset([source.path for source in sources if isinstance(source, Ref)])
 
 
 def every_node(nodes: tuple[PlanNode, ...]) -> list[PlanNode]:

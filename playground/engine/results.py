@@ -26,16 +26,24 @@ class Surface:
     """What a draw draws on: samples of colour and depth."""
 
     framebuffer: moderngl.Framebuffer
-    colours: tuple[moderngl.Renderbuffer, ...]  # of each output
+    colours: tuple[moderngl.Renderbuffer | moderngl.Texture, ...]  # of each output
     depth: moderngl.Renderbuffer
     size: tuple[int, int]
     formats: tuple[str, ...]  # of each output
     samples: int  # 1: without multisampling
+    is_target: bool = False  # its colours are a result's textures, which release themselves
+
+    @property
+    def bytes(self) -> int:
+        """Bytes held, without textures of a result."""
+        width, height = self.size
+        colours = 0 if self.is_target else sum([bytes_of(self.size, form) for form in self.formats])
+        return (colours + 4 * width * height) * self.samples
 
     def release(self) -> None:
-        """Release its framebuffer and renderbuffers."""
+        """Release its framebuffer, depth and, unless they are a result's, colours."""
         self.framebuffer.release()
-        for colour in self.colours:
+        for colour in () if self.is_target else self.colours:
             colour.release()
         self.depth.release()
 
@@ -51,6 +59,7 @@ class Result:
     settled: int = 0  # the steps that ran, of one that was stopped since they changed nothing more
     number: int = 0  # of all that its pool has handed out: textures are used again, it is not
     surface: Surface | None = None  # a draw's samples and depth, where a later draw goes on from it
+    target: Surface | None = None  # what draws of one sample a pixel draw on: its textures, and a depth
     mipmapped: set[str] = field(default_factory=set)  # outputs whose mipmaps are made
     with_levels: set[str] = field(default_factory=set)  # outputs that had mipmaps when they were others'
     shaped: dict[tuple[str, str], Shaped] = field(default_factory=dict)  # copies, by output and shape
@@ -64,15 +73,15 @@ class Result:
         if not self.own_bytes:
             self.own_bytes = sum([bytes_of(self.size, output.format) for output in self.outputs])
         levels = self.mipmapped | self.with_levels
-        if not levels and not self.shaped and self.surface is None:
+        if not levels and not self.shaped and self.surface is None and self.target is None:
             return self.own_bytes
         total = self.own_bytes
         total += sum([bytes_of(self.size, o.format) // 3 for o in self.outputs if o.name in levels])
         total += sum([copy.bytes for copy in self.shaped.values()])
-        if (surface := self.surface) is not None:
-            width, height = surface.size
-            colours = sum([bytes_of(surface.size, form) for form in surface.formats])
-            total += (colours + 4 * width * height) * surface.samples
+        if self.surface is not None and self.surface is not self.target:
+            total += self.surface.bytes
+        if self.target is not None:
+            total += self.target.bytes
         return total
 
     def texel(self, output: str, x: int, y: int) -> tuple[float, ...]:
@@ -107,11 +116,18 @@ class Result:
         """Release its textures and what draws to them."""
         self.release_copies()
         self.release_framebuffer()
+        self.release_surface()
+        if self.target is not None:
+            self.target.release()
+            self.target = None
         for texture in self.textures.values():
             texture.release()
-        if self.surface is not None:
+
+    def release_surface(self) -> None:
+        """Release what a later draw would go on from; its target stays, to be drawn on again."""
+        if self.surface is not None and self.surface is not self.target:
             self.surface.release()
-            self.surface = None
+        self.surface = None
 
 
 class Wired(NamedTuple):
@@ -192,7 +208,7 @@ class Pool:
             self._bytes -= spare.bytes
             textures = dict(zip([o.name for o in wanted], spare.textures.values(), strict=True))
             found = Result(size, wanted, textures, number=self._taken, own_bytes=spare.own_bytes)
-            found._framebuffer = spare._framebuffer
+            found._framebuffer, found.target = spare._framebuffer, spare.target
             if spare.with_levels:
                 pairs = zip(wanted, spare.outputs, strict=True)
                 found.with_levels = {now.name for now, before in pairs if before.name in spare.with_levels}
@@ -222,9 +238,7 @@ class Pool:
 
     def give(self, result: Result) -> None:
         """Take a result that is no longer read; it may be released at once."""
-        if result.surface is not None:
-            result.surface.release()
-            result.surface = None
+        result.release_surface()
         result.release_copies()
         if result.bytes > self.limit + self._awaited:
             result.release()

@@ -26,6 +26,8 @@ VERSIONS = (430, 410, 330)
 _MAX_DEVICES = 15
 _SOFTWARE = re.compile(r"llvmpipe|softpipe|swrast|software|SwiftShader|Microsoft Basic Render", re.IGNORECASE)
 _OTHER_DEVICES = re.compile(r"requested device index -?\d+, but found ([1-9]\d*)")  # glcontext's words
+_TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # glibc's M_TRIM_THRESHOLD and M_MMAP_THRESHOLD
+_MOST_OF_GLIBC = 2**25  # [bytes] that glibc raises the latter to by itself, and the former to twice that
 _MESA_VENDOR = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 
 
@@ -193,6 +195,20 @@ class _Functions:
 
     def release(self) -> None:
         """Leave the context to the window."""
+
+
+def keep_freed_memory() -> None:
+    """Let the C library keep what it frees, as far as it does of itself after it freed a block of 32 MiB.
+
+    llvmpipe allocates the triangles of each frame and frees them. Given back to the system, their pages
+    are made anew in the next frame: 7 of 69 ms of a draw of 133,000 triangles. glibc only.
+    """
+    if not sys.platform.startswith("linux"):
+        return
+    setter = getattr(ctypes.CDLL(None), "mallopt", None)
+    if setter is not None:
+        setter(_MMAP_THRESHOLD, _MOST_OF_GLIBC)
+        setter(_TRIM_THRESHOLD, 2 * _MOST_OF_GLIBC)
 
 
 def prefer_software() -> None:

@@ -14,6 +14,7 @@ _ACTIVE, _TEXTURE0 = "glActiveTexture", 0x84C0
 _SAMPLER_BINDING = 0x8919
 _WRAPS = (0x2802, 0x2803, 0x8072)  # GL_TEXTURE_WRAP_S, T and R
 _MIRRORED = 0x8370
+_READ_FRAMEBUFFER, _DEPTH_BUFFER_BIT, _NEAREST = 0x8CA8, 0x0100, 0x2600
 
 
 class Calls:
@@ -32,6 +33,25 @@ class Calls:
     def activate(self, unit: int) -> None:
         """Make a texture unit the one that other calls mean."""
         self(_ACTIVE, (ctypes.c_int,), _TEXTURE0 + unit)
+
+
+def copy_depth(
+    ctx: moderngl.Context,
+    target: moderngl.Framebuffer,
+    source: moderngl.Framebuffer,
+    size: tuple[int, int],
+) -> None:
+    """Copy the depth of a framebuffer to another of its size and samples, and no colour; ``target`` is bound.
+
+    moderngl copies depth with each of the colours.
+    """
+    call, (width, height) = Calls(ctx), size
+    target.use()
+    call("glBindFramebuffer", (ctypes.c_uint, ctypes.c_uint), _READ_FRAMEBUFFER, source.glo)
+    area = (0, 0, width, height)
+    kinds = (*(ctypes.c_int,) * 8, ctypes.c_uint, ctypes.c_uint)
+    call("glBlitFramebuffer", kinds, *area, *area, _DEPTH_BUFFER_BIT, _NEAREST)
+    target.use()
 
 
 def mirror(ctx: moderngl.Context, sampler: moderngl.Sampler) -> None:

@@ -132,6 +132,9 @@ class Shape:
     rules: tuple[Rule, ...]  # of parameters that follow others until they are set
     readers: dict[str, set[str]]  # path of a value → the leaves that have it
     withheld: tuple[str, ...]  # a sentence for each fast variant that lacks an input that is wired
+    # Of techniques with a fast variant that draws, each parameter that it lacks: the technique's path, that
+    # of the value inside it, its default.
+    lacking: tuple[tuple[str, str, Value], ...]
     targets: dict[str, tuple[str, ...]] = field(default_factory=dict)  # of each override so far
 
 

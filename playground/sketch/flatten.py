@@ -58,6 +58,7 @@ def flatten(
     A variant gives its technique's outputs only, and after the last step: it does not replace
     a technique that holds one of the paths ``opened``, or a pass inside that something is wired to,
     or a parameter inside that is set and that it does not have, or an input that it does not have,
+    or a draw of which a parameter that it does not have is not at its default,
     nor one that is itself among the ``stopped`` or the ``refused``, or whose initial state is wired.
     Leaves of ``before``, an earlier result, are reused where their values are the same objects.
     Raises ``SketchError`` at the pass that is wrong, with the nearest valid name.
@@ -74,6 +75,9 @@ def flatten(
         for target in shape.targets[path]:
             values[target] = value
     follow(shape.rules, values)
+    if plain := {path for path, name, default in shape.lacking if values[_join(path, name)] != default}:
+        more = (*refused, *sorted(plain))
+        return flatten(sketch, variants=variants, opened=opened, stopped=stopped, refused=more, before=before)
     values |= shape.constants | {path: values[source] for path, source in shape.copied.items()}
     nodes, stale = shape.nodes, None
     if before is not None and before.shape is shape and before.folder == sketch.folder:
@@ -134,6 +138,7 @@ def _shape(
         rules=rules,
         readers=readers,
         withheld=tuple(maker.withheld.values()),
+        lacking=tuple(maker.lacking),
     )
 
 
@@ -186,6 +191,7 @@ class _Flattener:
         # Pass → what gives its outputs: the passes of its fast variant, or its own where that steps back.
         self.inside: dict[str, dict[str, Ref]] = {}
         self.withheld: dict[str, str] = {}
+        self.lacking: list[tuple[str, str, Value]] = []
         self.opened: set[str] = set()
         if kinds:
             for path in (*opened, *stopped):
@@ -303,7 +309,8 @@ class _Flattener:
     def _body(self, spec: PassSpec, path: str, wires: Mapping[str, Source | None]) -> list[Node]:
         technique = spec.technique
         variant = self._active(technique, path)
-        if isinstance(technique, Kernel) and any(wires.get(name) for name in initial_names(technique)):
+        starts = initial_names(technique) if isinstance(technique, Kernel) else {}
+        if any(wires.get(name) for name in starts) and not (variant and variant.kind == "draws"):
             variant = None  # only the canonical form takes an initial state
         lacking = sorted(name for name in _lacking(technique, variant) if wires.get(name)) if variant else []
         if variant and lacking:
@@ -314,6 +321,8 @@ class _Flattener:
             if isinstance(technique, Graph):
                 self.opened.add(path)
                 self.inside[path] = self._outputs_of(technique, path)
+        if variant and variant.kind == "draws":
+            self.lacking += [(path, *own) for own in _defaults_of_lacking(technique, variant.technique)]
         if variant and isinstance(variant.technique, Graph):
             return self._passes(variant.technique, spec, path, wires)
         if isinstance(technique, Kernel):
@@ -419,6 +428,13 @@ def _covered(technique: Technique, name: str, wires: Mapping[str, Source | None]
     return all(
         target in wires for export in technique.inputs if export.name == name for target in export.targets
     )
+
+
+def _defaults_of_lacking(technique: Technique, variant: Technique) -> list[tuple[str, Value]]:
+    """Return the values that a technique has and its fast variant lacks: paths inside, and defaults."""
+    values, known = effective_values(technique), {one.name for one in variant.parameters}
+    names = [one.name for one in technique.parameters if one.name not in known]
+    return [(target.path, values[target.path]) for name in names for target in resolve(technique, name)]
 
 
 def _own(technique: Technique, path: str, name: str) -> str:

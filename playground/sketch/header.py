@@ -38,7 +38,9 @@ _IMAGE = re.compile(
 PRAGMAS: dict[str, tuple[str, ...]] = {
     "kernel": ("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once", "until"),
     "source": ("name", "output", "reads"),
-    "draw": ("where", "mesh", "count", "instances", "output", "blend", "depth", "samples", "repeat"),
+    "draw": (
+        *("where", "mesh", "count", "instances", "output", "blend", "depth", "over", "samples", "repeat"),
+    ),
     "compute": (
         *("where", "accepts", "groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned"),
         *("in_place", "agrees"),
@@ -261,8 +263,11 @@ def _draw(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
     if instances:
         texels = [f"{declared.name}.{component}" for declared in kernel.inputs for component in "xyzw"]
         _check("instances", instances, (*_SIZE, *_numbers(kernel), *texels), line)
+    over, inputs = options.get("over", ""), [declared.name for declared in kernel.inputs]
+    if over and over not in inputs:
+        raise line.error(f"over: there is no input '{over}'{nearest(over, inputs)}")
     kernel = replace(kernel, registry=options["mesh"], blend=blend, depth=depth, count=count)
-    kernel = replace(kernel, instances=instances)
+    kernel = replace(kernel, instances=instances, over=over)
     return replace(kernel, samples=int(samples), repeat=options.get("repeat", "1"))
 
 

@@ -13,8 +13,12 @@ from playground.sketch.parameter import AS_IT_IS, Parameter, Sampling, Value
 from playground.sketch.reserved_names import GIVEN, PLAIN_UNIFORMS
 from playground.sketch.source import Line, SourceText
 
-VARIANTS = ("compute", "passes")
-"""The kinds of fast variants: a ``.comp`` needs compute shaders, a ``.fast.toml`` does not."""
+VARIANTS = ("compute", "passes", "draws")
+"""The kinds of fast variants: a ``.comp`` needs compute shaders, a ``.fast.toml`` does not.
+
+One that replaces a draw runs on a software renderer, where a pixel has one sample: what is fast there
+is slow on a GPU.
+"""
 
 
 NOT = "not "
@@ -93,6 +97,7 @@ class Kernel:
     depends: tuple[str, ...] = ()  # of a source: what its texels depend on besides its parameters, as time
     blend: str = "none"
     depth: str = "less"
+    over: str = ""  # of a draw: the input whose pixels it draws over, those that its draw has drawn
     count: str = ""  # of a draw: elements of a mesh that has no size of its own
     instances: str = ""  # of a draw: how often its mesh is drawn, perhaps by the first texel of an input
     samples: int = 0  # of a draw: samples a pixel; 0: the view's
@@ -306,7 +311,9 @@ class Variant:
     @property
     def kind(self) -> str:
         """One of ``VARIANTS``."""
-        return "passes" if isinstance(self.technique, Graph) else "compute"
+        if not isinstance(self.technique, Graph):
+            return "compute"
+        return "draws" if any(kernel.over for _, kernel in self.technique.kernels) else "passes"
 
     @property
     def path(self) -> str:

@@ -159,7 +159,7 @@ class Techniques:
         if kernel is None:
             return None
         _check_files(kernel, folder)
-        if path.suffix == ".glsl" and kernel.kind == "kernel":
+        if path.suffix == ".glsl" and kernel.kind in ("kernel", "draw"):
             variants = self._variants(path, kernel, folder)
             return replaced(kernel, variants=variants) if variants else kernel
         return kernel

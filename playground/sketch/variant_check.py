@@ -6,7 +6,7 @@ from playground.errors import SketchError, nearest
 from playground.paths import shown
 from playground.sketch.agreement import Bound
 from playground.sketch.model import Graph, Kernel, Output, Technique
-from playground.sketch.wiring import outputs_with_formats
+from playground.sketch.wiring import initial_names, outputs_with_formats
 
 INSIDE = "fast"
 """Name of the place, inside a technique, that the passes of its fast variant are in."""
@@ -16,8 +16,9 @@ _HELD = {1: ("float", "vec4"), 2: ("vec2", "vec4"), 4: ("vec4",)}  # types of a 
 
 def check_shape(variant: Technique, of: Technique) -> None:
     """Raise ``SketchError`` or ``ShaderError`` where a fast variant has what its technique has not."""
-    for declared, there in ((variant.parameters, of.parameters), (variant.inputs, of.inputs)):
-        valid = [one.name for one in there]
+    starts = initial_names(of) if isinstance(of, Kernel) and of.kind == "draw" else ()
+    names = [one.name for one in of.parameters], [*(one.name for one in of.inputs), *starts]
+    for declared, valid in zip((variant.parameters, variant.inputs), names, strict=True):
         for one in declared:
             if one.name not in valid:
                 message = f"'{one.name}' is not among the parameters and inputs of {of.name}"

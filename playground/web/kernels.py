@@ -146,6 +146,8 @@ def _refuse(kernel: Kernel) -> None:
         return
     if name := lacking(kernel.source.code):
         raise kernel.error(f"{_name(kernel)} names {name}, which the GLSL of web pages has not")
+    if kernel.over:
+        raise kernel.error(f"{_name(kernel)} draws over the pixels of another draw, which no web page does")
     if kernel.blend != "none" and any(split_format(o.format)[1] == "f4" for o in kernel.outputs):
         raise kernel.error(f"{_name(kernel)} blends 32-bit floats, which many browsers cannot; 16f can")
     names = [declared.name for declared in kernel.inputs]

@@ -95,6 +95,8 @@ class PreviewSize:
         smaller = engine.internal.plan_for(sketch, divided(size, 2), **at)
         sizes, halved = _texels(whole), _texels(smaller)
         following = {path for path, texels in sizes.items() if halved.get(path) != texels}
+        if not sizes.keys() >= set(changed):  # of the picture in full, which has fast variants of its own
+            changed = engine.internal.stale(sketch, size=size, **at)
         if not _goes_on(whole).isdisjoint(following):
             self.divisor = 1  # it would begin anew at each size
             return size

@@ -380,3 +380,72 @@ def test_a_mesh_as_large_as_it_gets_is_not_cached_for_ever(any_engine, folder):
     draws = any_engine.internal.runner.draws
     assert len(draws._meshes) <= 8
     assert sum(len(p.arrays) for p in any_engine.internal.runner.programs._by_text.values()) <= 8 + 2
+
+
+OVER = """#pragma draw(mesh = "sheet", output = "frame:rgba32f", over = "below")
+uniform sampler2D below;  //! input
+vec4 vertex(vec3 corner, out vec2 pixel) {
+    pixel = corner.xy * vec2(size);
+    return vec4(corner.xy * 2.0 - 1.0, 1.0, 1.0);
+}
+vec4 fragment(vec2 pixel) { return texelFetch(below, ivec2(pixel), 0) + vec4(0.0, 0.5, 0.0, 0.0); }
+"""
+
+
+def over_sketch(folder, wired='initial = "back", below = "one"'):
+    """Return a sketch of a plate, a draw over its pixels, and a plate behind both that goes on from that."""
+    folder.write("back.glsl", BACK)
+    folder.write("plate.glsl", PLATE.replace("{more}", ""))
+    folder.write("over.glsl", OVER)
+    return folder.sketch(
+        f"""
+[[pass]]
+name = "back"
+use = "./back"
+[[pass]]
+name = "one"
+use = "./plate"
+set = {{ right = 0.0, depth = 0.2 }}
+[[pass]]
+name = "shaded"
+use = "./over"
+inputs = {{ {wired} }}
+[[pass]]
+name = "far"
+use = "./plate"
+inputs = {{ initial = "shaded" }}
+set = {{ depth = 0.5, colour = [0.0, 0.0, 1.0, 1.0] }}
+""",
+        size="size = 16",
+    )
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_a_draw_over_another_is_where_that_has_drawn_and_has_its_depth(any_engine, folder, samples):
+    sketch = replace(over_sketch(folder), samples=samples)
+    back = any_engine.read(sketch, "back")
+    shaded, far = any_engine.read(sketch, "shaded"), any_engine.read(sketch, "far")
+    np.testing.assert_array_equal(shaded[:, :8], np.broadcast_to((1.0, 0.5, 0.0, 1.0), (16, 8, 4)))
+    np.testing.assert_array_equal(shaded[:, 8:], back[:, 8:])
+    np.testing.assert_array_equal(far[:, :8], shaded[:, :8])
+    np.testing.assert_array_equal(far[:, 8:], np.broadcast_to((0.0, 0.0, 1.0, 1.0), (16, 8, 4)))
+
+
+def test_a_draw_over_another_leaves_its_depth_as_it_is(any_engine, folder):
+    """Also where it begins with the colours of a draw that has a depth of its own."""
+    sketch = over_sketch(folder, 'initial = "one", below = "one"')
+    for value in (1.0, 0.5):
+        changed = sketch.with_values({"one.colour": (value, 0.0, 0.0, 1.0)})
+        far = any_engine.read(changed, "far")
+        np.testing.assert_array_equal(far[:, :8], np.broadcast_to((value, 0.5, 0.0, 1.0), (16, 8, 4)))
+        np.testing.assert_array_equal(far[:, 8:], np.broadcast_to((0.0, 0.0, 1.0, 1.0), (16, 8, 4)))
+
+
+def test_a_draw_goes_over_no_kernel_and_no_other_input(any_engine, folder):
+    with pytest.raises(
+        PlaygroundError, match="draws over 'below', which needs to be a draw of 16 x 16 pixels"
+    ):
+        any_engine.read(over_sketch(folder, 'initial = "back", below = "back"'), "shaded")
+    folder.write("over.glsl", OVER.replace('over = "below"', 'over = "blow"'))
+    with pytest.raises(PlaygroundError, match="over: there is no input 'blow'; did you mean 'below'"):
+        folder.sketch('[[pass]]\nname = "one"\nuse = "./over"', size="size = 16")

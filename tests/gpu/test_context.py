@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import json
 import os
 import subprocess
@@ -206,3 +207,33 @@ except Exception as error:
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=clean)
     assert "found 0 devices" in done.stdout
     assert "__EGL_VENDOR_LIBRARY_FILENAMES" not in done.stdout
+
+
+KEEPS = """
+import ctypes, resource, sys
+from playground.gpu.context import keep_freed_memory
+libc = ctypes.CDLL(None)
+libc.malloc.restype, libc.free.argtypes = ctypes.c_void_p, (ctypes.c_void_p,)
+if sys.argv[1] == "keeps":
+    keep_freed_memory()
+def once():
+    blocks = [libc.malloc(65536) for _ in range(400)]
+    for block in blocks:
+        ctypes.memset(block, 1, 65536)
+    for block in reversed(blocks):
+        libc.free(block)
+once()
+before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt
+once()
+print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)
+"""
+
+
+@pytest.mark.skipif(not hasattr(ctypes.CDLL(None), "mallopt"), reason="another C library")
+def test_memory_that_is_freed_and_taken_again_has_its_pages():
+    """Blocks as llvmpipe's, 25 MiB of them: 6400 pages."""
+    faults = [
+        int(subprocess.run([sys.executable, "-c", KEEPS, how], capture_output=True, check=True).stdout)
+        for how in ("keeps", "as it is")
+    ]
+    assert faults[0] < 200 < 5000 < faults[1]

@@ -14,6 +14,7 @@ from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.workbench.enlarged import Enlarger
 from playground.workbench.preview import GRID, GRID_OF_FEWER, as_preview
+from playground.workbench.session import Session
 
 SKETCH = """format = 1
 size = 129
@@ -100,3 +101,23 @@ def test_the_preview_shows_the_same_land(terrain: Sketch, any_engine: Engine):
     full = any_engine.render(terrain, size=(160, 90)).array.astype(np.float64)
     far = np.abs(preview - full).max(axis=2) > 32
     assert (preview != full).any() and far.mean() < 0.1
+
+
+def test_it_has_its_own_fast_variants_when_a_full_picture_starts_to_move(terrain: Sketch, any_engine: Engine):
+    """What would run of the full picture is no pass of the preview, where the terrain is drawn first."""
+    session = Session(any_engine, terrain.file)
+    try:
+        session.clock.playing = False
+        session.frame((640, 360))
+        session.read()  # in full
+        assert session.sketch is not None and session.error is None
+        camera = session.sketch.camera
+        for number in range(1, 4):
+            session.drafts.set_camera(replace(camera, azimuth=camera.azimuth + number))
+            session.frame((640, 360))
+            assert session.error is None
+            assert session.is_preview == any_engine.info.software
+        ran = set(any_engine.internal.ran)
+        assert ("view.fast.land" if any_engine.info.software else "view.land") in ran
+    finally:
+        session.release()

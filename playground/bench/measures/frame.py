@@ -20,7 +20,8 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
 
     Keys: ``draw``, the pass that is timed, else the whole picture; ``before``, the texture that it
     draws over, made untimed; ``beside``, keys of another frame that is the peer; ``camera``; ``shader``, the
-    text of a draw that ``passes`` use as "./screen"; and those of the sketch.
+    text of a draw that ``passes`` use as "./screen"; and those of the sketch, of which the peer has ``first``
+    and what else it does not say itself.
     """
     options = row.options
     if "shader" in options:
