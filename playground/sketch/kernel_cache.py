@@ -50,7 +50,13 @@ def replaced(kernel: Kernel, **changes: Any) -> Kernel:
 
 
 def _identity(value: Any) -> Any:
-    """Return what a value is known by: techniques are large, so those of fast variants by which they are."""
+    """Return what a value is known by: kernels are large, so those of fast variants by which they are.
+
+    Passes of a variant are read anew with each sketch, so they are known by what they are made of.
+    """
     if isinstance(value, tuple):
         return tuple(_identity(one) for one in value)
-    return (id(value.technique), value.verified, value.record) if isinstance(value, Variant) else value
+    if not isinstance(value, Variant):
+        return value
+    technique = id(value.technique) if isinstance(value.technique, Kernel) else value.technique
+    return technique, value.verified, value.record
