@@ -24,5 +24,8 @@ uniform vec3 nadir = vec3(0.125, 0.19, 0.27);     //! colour group("Sky")
 
 vec4 kernel(ivec2 texel) {
     bool by_day = sky == 1 && wired_daylight;
-    return vec4(sky_seen(vec2(texel) + 0.5, by_day, daylight, zenith, horizon, nadir), 1.0);
+    SkyView view = SkyView(world_from_clip, eye, vec2(size),
+                           0.001 * max(base_elevation + eye.z, 0.0));
+    vec3 seen = sky_seen(view, vec2(texel) + 0.5, by_day, daylight, zenith, horizon, nadir);
+    return vec4(seen, 1.0);
 }

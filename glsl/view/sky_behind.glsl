@@ -31,5 +31,8 @@ vec4 vertex(vec3 corner, out vec2 pixel) {
 
 vec4 fragment(vec2 pixel) {
     bool by_day = sky == 1 && wired_daylight;
-    return vec4(sky_seen(pixel, by_day, daylight, zenith, horizon, nadir), 1.0);
+    SkyView view = SkyView(world_from_clip, eye, vec2(size),
+                           0.001 * max(base_elevation + eye.z, 0.0));
+    vec3 seen = sky_seen(view, pixel, by_day, daylight, zenith, horizon, nadir);
+    return vec4(seen, 1.0);
 }

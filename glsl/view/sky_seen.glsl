@@ -1,8 +1,8 @@
 // view/sky_seen.glsl -- the colour of the sky at a pixel.
 //
-//   gives    sky_seen
+//   gives    SkyView, sky_seen
 //   needs    lighting/daylight_reading.glsl, lighting/daylight_sky.glsl, lighting/sun_image.glsl;
-//            the camera, size and base_elevation; the daylight comes as an argument
+//            the camera and the daylight come as arguments
 //   units    colours linear; pixels from the picture's south-west corner
 //   source   the colours: none, a backdrop; the sky: see lighting/daylight/dome
 //   tested   tests/glsl/test_view.py and tests/glsl/test_daylight.py, by view/sky
@@ -12,9 +12,16 @@
 #include "lighting/daylight_sky.glsl"
 #include "lighting/sun_image.glsl"
 
-vec3 direction_of(vec2 pixel) {
-    vec4 away = world_from_clip * vec4(pixel / vec2(size) * 2.0 - 1.0, 1.0, 1.0);
-    return normalize(away.xyz / away.w - eye);
+struct SkyView {
+    mat4 world_from_clip;
+    vec3 eye;
+    vec2 size;      // of the picture, in pixels
+    float height;   // of the eye  [km above sea level]
+};
+
+vec3 direction_of(SkyView view, vec2 pixel) {
+    vec4 away = view.world_from_clip * vec4(pixel / view.size * 2.0 - 1.0, 1.0, 1.0);
+    return normalize(away.xyz / away.w - view.eye);
 }
 
 // How much of a pixel the sun's disc covers.
@@ -23,8 +30,7 @@ float disc_in(vec3 towards, vec3 sun, float pixel, float height) {
             : clamp((radians(SUN_RADIUS) - distance(towards, sun)) / pixel + 0.5, 0.0, 1.0);
 }
 
-vec3 daylight_in(sampler2D daylight, vec3 towards, float pixel, vec3 nadir) {
-    float height = 0.001 * max(base_elevation + eye.z, 0.0);
+vec3 daylight_in(sampler2D daylight, vec3 towards, float pixel, float height, vec3 nadir) {
     vec3 seen = sky_towards(daylight, towards, height);
     Sunlight from = sunlight(true, daylight, vec3(0.0), vec2(0.0), vec3(0.0), vec3(0.0));
     vec3 disc = sun_image(from.sun, SUN_OVER_WHITE);
@@ -34,14 +40,15 @@ vec3 daylight_in(sampler2D daylight, vec3 towards, float pixel, vec3 nadir) {
 }
 
 // Three colours, or by day the sky of a daylight with the sun in it.
-vec3 sky_seen(vec2 pixel, bool by_day, sampler2D daylight, vec3 zenith, vec3 horizon, vec3 nadir) {
-    vec3 towards = direction_of(pixel);
+vec3 sky_seen(SkyView view, vec2 pixel, bool by_day, sampler2D daylight, vec3 zenith, vec3 horizon,
+              vec3 nadir) {
+    vec3 towards = direction_of(view, pixel);
     // Both halves leave the horizon at the same pace, so that no line is seen there.
     float share = 1.0 - exp(-3.0 * abs(towards.z));
     vec3 seen = mix(horizon, towards.z > 0.0 ? zenith : nadir, share);
     if (by_day) {
-        float wide = distance(towards, direction_of(pixel + vec2(0.0, 1.0)));
-        seen = daylight_in(daylight, towards, max(wide, 1e-6), nadir);
+        float wide = distance(towards, direction_of(view, pixel + vec2(0.0, 1.0)));
+        seen = daylight_in(daylight, towards, max(wide, 1e-6), view.height, nadir);
     }
     return seen;
 }

@@ -298,8 +298,8 @@ class Kernels:
                 if before is not None and watch and watch.has_settled(iteration, result, before):
                     result.settled = iteration
                 before, spare, state = result, before, result.textures
-                if self.pool.clears and spare is not None:
-                    self.pool.give(spare)
+                if spare is not None and (self.pool.clears or spare is job.start):
+                    self.pool.give(spare)  # what was read of a start, as mipmaps, would be its own still
                     spare = None
                 if result.settled:
                     break
@@ -379,7 +379,7 @@ class Kernels:
     def _in_place(self, job: Job, program: Program, state: Mapping[str, moderngl.Texture]) -> Result:
         step, kernel = job.step, job.step.kernel
         result = job.start or self._untouched(step, state)
-        result.texels.clear()
+        result.rewrite(self.ctx)
         self.images(result, read=True)
         for iteration in range(result.iterations, step.repeat):
             job.count(program, iteration, kernel.repeat, step.whole)

@@ -100,6 +100,15 @@ class Result:
             self._framebuffer = make_framebuffer(ctx, [self.textures[o.name] for o in self.outputs])
         return self._framebuffer
 
+    def rewrite(self, ctx: moderngl.Context) -> None:
+        """Forget what was made of its textures, which are about to be written again."""
+        self.texels.clear()
+        self.release_copies()
+        for name in self.mipmapped:  # their levels are made anew before anybody reads them
+            self.textures[name].filter = ctx.LINEAR, ctx.LINEAR
+        self.with_levels |= self.mipmapped
+        self.mipmapped = set()
+
     def release_framebuffer(self) -> None:
         """Release what draws to its textures; it is made again where one is drawn to."""
         if self._framebuffer is not None:
@@ -239,14 +248,10 @@ class Pool:
     def give(self, result: Result) -> None:
         """Take a result that is no longer read; it may be released at once."""
         result.release_surface()
-        result.release_copies()
+        result.rewrite(self.ctx)
         if result.bytes > self.limit + self._awaited:
             result.release()
             return
-        for name in result.mipmapped:  # their levels are made anew before anybody reads them
-            result.textures[name].filter = self.ctx.LINEAR, self.ctx.LINEAR
-        result.with_levels |= result.mipmapped
-        result.mipmapped = set()
         self._spare[id(result)] = result
         self._alike.setdefault(_shape(result.size, result.outputs), []).append(result)
         self._bytes += result.bytes

@@ -40,7 +40,13 @@ def standalone_sketch(
     """
     wanted = technique.needs_inputs if isinstance(technique, Kernel) else [e.name for e in technique.inputs]
     line = technique.pragma.number if isinstance(technique, Kernel) and technique.pragma else 0
-    passes = [PassSpec(name, "a placeholder", _TERRAIN, values=((SEED, seed),)) for name in wanted]
+    over = technique.over if isinstance(technique, Kernel) else ""
+    passes = [
+        PassSpec(name, "a placeholder", _DRAWN)
+        if name == over
+        else PassSpec(name, "a placeholder", _TERRAIN, values=((SEED, seed),))
+        for name in wanted
+    ]
     return with_pictures(shown_alone(technique, subject, passes, folder, line), picture)
 
 
@@ -96,6 +102,14 @@ _TERRAIN = Kernel(
     source=text_of(own_shader("placeholder_terrain.glsl")),
     outputs=(Output("value", "rgba32f"),),
     parameters=(Parameter(SEED, "uint", 0),),
+)
+_DRAWN = Kernel(
+    name="a placeholder",
+    kind="draw",
+    source=text_of(own_shader("placeholder_draw.glsl")),
+    outputs=(Output("value", "rgba32f"),),
+    registry="sheet",
+    samples=1,
 )
 _COPY = Kernel(
     name="a copy",

@@ -27,7 +27,10 @@ _MAX_DEVICES = 15
 _SOFTWARE = re.compile(r"llvmpipe|softpipe|swrast|software|SwiftShader|Microsoft Basic Render", re.IGNORECASE)
 _OTHER_DEVICES = re.compile(r"requested device index -?\d+, but found ([1-9]\d*)")  # glcontext's words
 _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # glibc's M_TRIM_THRESHOLD and M_MMAP_THRESHOLD
-_MOST_OF_GLIBC = 2**25  # [bytes] that glibc raises the latter to by itself, and the former to twice that
+_MAPPED = (
+    2**23
+)  # [bytes] from which a block is the system's again as soon as it is freed: a picture is smaller
+_KEPT = 6 * 2**23  # [bytes] of freed blocks that stay: a frame's triangles are some 30 MiB
 _MESA_VENDOR = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 
 
@@ -198,7 +201,7 @@ class _Functions:
 
 
 def keep_freed_memory() -> None:
-    """Let the C library keep what it frees, as far as it does of itself after it freed a block of 32 MiB.
+    """Let the C library keep what it frees, up to 48 MiB of blocks below 8 MiB each.
 
     llvmpipe allocates the triangles of each frame and frees them. Given back to the system, their pages
     are made anew in the next frame: 7 of 69 ms of a draw of 133,000 triangles. glibc only.
@@ -207,8 +210,8 @@ def keep_freed_memory() -> None:
         return
     setter = getattr(ctypes.CDLL(None), "mallopt", None)
     if setter is not None:
-        setter(_MMAP_THRESHOLD, _MOST_OF_GLIBC)
-        setter(_TRIM_THRESHOLD, 2 * _MOST_OF_GLIBC)
+        setter(_MMAP_THRESHOLD, _MAPPED)
+        setter(_TRIM_THRESHOLD, _KEPT)
 
 
 def prefer_software() -> None:

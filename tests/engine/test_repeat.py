@@ -426,3 +426,26 @@ def test_going_on_step_by_step_makes_no_more_textures(engine, folder):
     for count in range(6, 40):
         engine.texture(sketch.with_values({"a.count": count}), "a:a")
     assert engine.internal.pool.made == made
+
+
+MEAN = """#pragma kernel(output = "mean:r32f")
+uniform sampler2D a; //! input("linear", "mipmap")
+float kernel(ivec2 texel) { return textureLod(a, vec2(0.5), 10.0).r; }
+"""
+VISITED = """#pragma kernel(output = "a:r32f", repeat = "count", visits = "size.x, size.y")
+uniform int count = 5; //! slider(0, 50)
+ivec2 visit(ivec2 cell) { return cell; }
+float kernel(ivec2 texel) { return float(iteration) + 1.0; }
+"""
+
+
+@pytest.mark.parametrize(("kernel", "value"), [(COUNT, counted), (VISITED, float)], ids=["all", "visited"])
+def test_what_goes_on_from_fewer_iterations_has_mipmaps_of_its_own(any_engine, folder, kernel, value):
+    """Each stop is two iterations or more after the last, whose texture, mipmaps and all, is used again."""
+    folder.write("one.glsl", kernel)
+    folder.write("mean.glsl", MEAN)
+    sketch = folder.sketch(passes(a="./one", mean="./mean"), size="size = 16").with_values({"a.count": 9})
+    for stop in (1, 3, 9):
+        found = any_engine.read(sketch, "mean", steps={"a": stop})
+        expected = value(stop) if kernel is VISITED else value(stop, 9)
+        np.testing.assert_allclose(found, expected, rtol=1e-6)
