@@ -82,10 +82,10 @@ class KeptStates:
     def is_due(self, path: str, key: str, number: int, now: int) -> bool:
         """Return whether to keep a state after some iterations, while a loop runs on to ``now``.
 
-        One that lies closer to the state before it than states will that are spread evenly in the logarithm
-        of their distance from the end is one of those that would go.
+        All of a short run are, for there is room. Of a longer one, a state that lies closer to the one before it
+        than states will that are spread evenly in the logarithm of their distance from the end would go.
         """
-        share = now ** (1 / MOST_STATES) - 1
+        share = now ** (1 / MOST_STATES) - 1 if now > MOST_STATES else 0.0
         before = self.latest(path, key, number)
         return number > before and number - before >= share * (now - number)
 
