@@ -131,6 +131,8 @@ class Internals(Recorded):
         self._timer = None
         if self._owns_context:
             self.ctx.release()
+        elif (bound := self.ctx.fbo) is None or not _is_alive(bound):
+            self._default.use()  # later calls of others bind again what is bound
 
     def _log_counts(self) -> None:
         """Log what ran since the engine was opened, and what was taken from caches instead."""

@@ -82,7 +82,7 @@ class KeptStates:
     def is_due(self, path: str, key: str, number: int, now: int) -> bool:
         """Return whether to keep a state after some iterations, while a loop runs on to ``now``.
 
-        All of a short run are, for there is room. Of a longer one, a state that lies closer to the one before it
+        All of a short run are, for there is room. Of a longer one, a state that lies closer to the one before
         than states will that are spread evenly in the logarithm of their distance from the end would go.
         """
         share = now ** (1 / MOST_STATES) - 1 if now > MOST_STATES else 0.0
