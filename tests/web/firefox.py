@@ -14,6 +14,7 @@ import re
 import shutil
 import subprocess
 import time
+from collections.abc import Mapping
 from itertools import count
 from pathlib import Path
 from types import TracebackType
@@ -81,8 +82,12 @@ class Firefox:
             raise
 
     def open(self, url: str) -> None:
-        """Load a page."""
-        self._ask("browsingContext.navigate", context=self._context, url=url, wait="complete")
+        """Load a page; once more where Firefox does not say that it has, as was seen once."""
+        load = {"context": self._context, "url": url, "wait": "complete"}
+        try:
+            self._loop.run_until_complete(self._answer("browsingContext.navigate", load, GENEROUS / 3))
+        except TimeoutError:
+            self._ask("browsingContext.navigate", **load)
 
     def run(self, script: str, *arguments: object) -> Any:
         """Return what a function's body returns in the page, promises awaited, as JSON."""
@@ -178,10 +183,10 @@ class Firefox:
     def _ask(self, method: str, **parameters: object) -> Any:
         return self._loop.run_until_complete(self._answer(method, parameters))
 
-    async def _answer(self, method: str, parameters: dict[str, object]) -> Any:
+    async def _answer(self, method: str, parameters: Mapping[str, object], seconds: float = GENEROUS) -> Any:
         number = next(self._numbers)
         await self._socket.send_json({"id": number, "method": method, "params": parameters})
-        async with asyncio.timeout(GENEROUS):
+        async with asyncio.timeout(seconds):
             while True:
                 told = await self._socket.receive_json()
                 if told.get("method") == "log.entryAdded" and told["params"]["level"] == "error":
