@@ -24,7 +24,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import lru_cache
-from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, Any
 
@@ -176,9 +176,12 @@ def disk_cache_for(renderer: ContextInfo, limit: int, folder: Path | None = None
 def tool() -> str:
     """Return a hash of what decides a texture besides the driver: our own files, what reads images."""
     found: list[object] = [__version__]
-    for package in ("moderngl", "numpy", "pillow", "tifffile"):
-        with suppress(metadata.PackageNotFoundError):
-            found.append((package, metadata.version(package)))
+    # Another version of a package is another file; importlib.metadata takes 30 ms to be imported.
+    for package in ("moderngl", "numpy", "PIL", "tifffile"):
+        spec = find_spec(package)
+        if spec is not None and spec.origin is not None:
+            status = Path(spec.origin).stat()
+            found.append((spec.origin, status.st_size, status.st_mtime_ns))
     home = Path(paths.__file__).parent
     for path in sorted(path for layer in _LAYERS for path in (home / layer).glob("*.py")):
         status = path.stat()

@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import moderngl
@@ -388,6 +389,21 @@ def test_the_tool_is_its_own_files(monkeypatch, tmp_path):
     before = store_module.tool.__wrapped__()
     assert store_module.tool.__wrapped__() == before
     file.write_text("12")
+    assert store_module.tool.__wrapped__() != before
+
+
+def test_another_version_of_a_package_is_another_tool(monkeypatch, tmp_path):
+    monkeypatch.setattr(store_module.paths, "__file__", str(tmp_path / "paths.py"))
+    package = tmp_path / "__init__.py"
+    package.write_text("1")
+
+    def spec_of(name: str) -> ModuleSpec | None:
+        return ModuleSpec(name, None, origin=str(package)) if name == "numpy" else None
+
+    monkeypatch.setattr(store_module, "find_spec", spec_of)
+    before = store_module.tool.__wrapped__()
+    assert store_module.tool.__wrapped__() == before
+    package.write_text("12")
     assert store_module.tool.__wrapped__() != before
 
 
