@@ -32,7 +32,8 @@ from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
 from playground.gpu.context import ContextInfo
-from playground.gpu.textures import read_raw
+from playground.gpu.gl_calls import read_mipmap
+from playground.gpu.textures import levels_of, read_raw
 from playground.images.files import write_png
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -217,6 +218,53 @@ def test_reopened_textures_of_every_format_have_the_same_bits(shelf, folder):
         assert len(np.unique(made[form])) > 100, f"{form}: these are bits"
     floats = made["rgba32f"]
     assert np.isnan(floats).any() and (floats.view(np.uint32) & 0x7F800000 == 0).any()
+
+
+def test_reopened_mipmaps_of_every_format_have_the_same_bits_and_are_not_made_anew(
+    shelf, folder, monkeypatch
+):
+    if not shelf.engine().info.software:
+        pytest.skip("a graphics card makes them anew")
+    passes, sums = "", ""
+    for form in FORMATS:
+        folder.write(f"{form}.glsl", text_of_bits(form))
+        passes += f'[[pass]]\nname = "{form}"\nuse = "./{form}"\n'
+        sums += f"    sum += abs(textureLod({form}, vec2(0.4, 0.6), 2.0).r);\n"
+    inputs = "".join(f'uniform sampler2D {form}; //! input("linear", "mipmap")\n' for form in FORMATS)
+    text = f'#pragma kernel(output = "v:r32f")\n{inputs}float kernel(ivec2 texel) {{\n    float sum = 0.0;\n'
+    folder.write("all.glsl", f"{text}{sums}    return 1.0 / sum;\n}}\n")
+    wires = ", ".join(f'{form} = "{form}"' for form in FORMATS)
+    passes += f'[[pass]]\nname = "all"\nuse = "./all"\nsize = [64, 36]\ninputs = {{ {wires} }}\n'
+    sketch = folder.sketch(passes, size="size = [67, 41]")
+    first = shelf.engine()
+    seen = picture(first, sketch)
+    made = {form: levels(first, form) for form in FORMATS}
+    shelf.keep(first)
+    build, anew = moderngl.Texture.build_mipmaps, list[tuple[int, int]]()
+    monkeypatch.setattr(
+        moderngl.Texture, "build_mipmaps", lambda texture: [anew.append(texture.size), build(texture)]
+    )
+    second = shelf.engine()
+    assert picture(second, sketch) == seen
+    assert (67, 41) not in anew, "they are on disk"
+    assert second.internal.ran == ["all", "view"]
+    for form in FORMATS:
+        assert levels(second, form) == made[form], form
+        assert len(made[form]) == 7 and len(made[form][-1]) == len(made[form][0]) // (67 * 41)
+    for each in listed(shelf.folder):
+        each.path.unlink()
+    second.internal.disk_caching._is_new = True
+    shelf.keep(second)  # what came from there is read back as well
+    third = shelf.engine()
+    assert picture(third, sketch) == seen and third.internal.ran == ["all", "view"]
+    assert shelf.ctx.error == "GL_NO_ERROR"
+
+
+def levels(engine: Engine, form: str) -> list[bytes]:
+    """Return the texels of a pass, and of each of its mipmaps."""
+    texture = engine.internal.results[form].textures["bits"]
+    sizes = levels_of(texture.size)
+    return [read_mipmap(texture, level, size) for level, size in enumerate(sizes)]
 
 
 @pytest.mark.slow
