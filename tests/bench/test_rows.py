@@ -61,6 +61,11 @@ def test_its_sketch_has_the_texture_and_what_changes(name):
         wanted = str(row.options["texture"])
         plan = room.engine().internal.plan_for(sketch.with_values(changed), (64, 36), 0.0, None, wanted)
         plan.flat.ref(wanted, "sketch")
+        if "part" in row.options:
+            assert row.options["part"] != wanted
+            engine = room.engine()
+            engine.texture(sketch.with_values(changed), row.options["part"])
+            assert "a" not in engine.internal.ran, "the part is made without what is measured"
 
 
 def test_a_measured_row_has_every_form_and_what_is_missing_is_told(monkeypatch):
