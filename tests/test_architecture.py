@@ -217,6 +217,7 @@ OF_LESSONS = [
     "playground.live.lesson.panel",
     "playground.live.present.slide",
     "latex2mathml",
+    "markdown_it",
     "PIL",
     "pygments",
 ]
