@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 FLOOR = 20.0  # [ms] that a read must save: less is not visible
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
+MIPMAPS = 90.0  # [ms] that llvmpipe takes in each process to compile what makes the first mipmaps of a format
 REST = 1.0  # [s] without another piece of terrain before one is written
 PIECE = 4 * 2**20  # [bytes] read back at once
 _MOST_COSTS = 4096
@@ -180,8 +181,11 @@ class DiskCaching:
 
     def _write_all(self, source: FrameSource, plan: Plan, keys: Keys) -> Iterator[None]:
         """Write what is worth it, a piece at a time; ends early where a texture is gone."""
-        passes = passing(plan, source.runner.painted)
-        for worth in worth_caching(plan, keys, plan.picture, passes, self._costs, read_time, self.floor):
+        passes, costs = passing(plan, source.runner.painted), self._costs
+        more: dict[str, float] = {}
+        if source.runner.info.software:  # one texture whose mipmaps are made anew has that compiled again
+            more = {path: MIPMAPS for path, result in source.record.results.items() if result.mipmapped}
+        for worth in worth_caching(plan, keys, plan.picture, passes, costs, read_time, self.floor, more):
             if source.record.keys.steps.get(worth.path) != worth.key:
                 self._is_new = True  # another sketch was drawn since
                 return

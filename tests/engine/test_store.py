@@ -28,7 +28,7 @@ from playground.engine.disk_cache import (
     listed,
     trim,
 )
-from playground.engine.disk_caching import DiskCaching
+from playground.engine.disk_caching import MIPMAPS, DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
 from playground.gpu.context import ContextInfo
@@ -647,6 +647,7 @@ def test_a_texture_of_another_size_is_not_taken(cached, folder):
 def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeypatch):
     costs = {"terrain": 500.0, "worn": 1.0, "light": 100.0}
     monkeypatch.setattr("playground.engine.disk_caching.read_time", lambda size: 4.0)
+    monkeypatch.setattr("playground.engine.disk_caching.MIPMAPS", 0.0)
 
     def cached_with(floor: float, **more: float) -> set[str]:
         clear(any_shelf.folder)
@@ -666,6 +667,20 @@ def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeyp
     assert cached_with(600.0) == set()
     assert cached_with(20.0, terrain=1.0, light=1.0) == set()
     assert cached_with(0.0, terrain=1.0, light=1.0) == set(), "to read takes longer"
+
+
+def test_what_has_mipmaps_is_worth_more_on_a_software_renderer(any_shelf, worn, monkeypatch):
+    """To make the first of a format is compiled anew in each process, unless no texture needs it."""
+    engine = any_shelf.engine(MIPMAPS / 2)
+    if not engine.info.software:
+        pytest.skip("a graphics card has nothing to compile")
+    picture(engine, worn)
+    assert "height" in engine.internal.results["terrain"].mipmapped
+    for key in engine.internal.disk_caching._costs:
+        engine.internal.disk_caching._costs[key] = 1.0
+    any_shelf.keep(engine)
+    (found,) = [each.textures for each in listed(any_shelf.folder)]
+    assert found.made_for.endswith("worn.add") and found.cost == pytest.approx(2.0)
 
 
 def test_costs_are_measured_where_terrain_is_made_and_a_loop_counts_as_one(any_shelf, worn):
