@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import re
-import secrets
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
@@ -66,7 +65,7 @@ def remove_left_over(folder: Path) -> None:
 
 def _made(path: Path) -> Partial:
     while True:
-        partial = path.with_name(f".{path.name[:40]}.{secrets.token_hex(6)}.part")
+        partial = path.with_name(f".{path.name[:40]}.{os.urandom(6).hex()}.part")
         handle = partial.open("xb")
         try:
             _locked(handle, wait=True)

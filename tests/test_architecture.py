@@ -196,6 +196,50 @@ def test_importing_loads_nothing_that_is_slow():
     assert heavy == "", f"importing playground imports {heavy}"
 
 
+RARE = """
+import sys
+import playground
+from playground.engine import disk_cache, engine
+from playground.workbench import disk_caching, session
+playground.load("jacksboro")
+disk_cache.tool()
+"""
+WINDOW = """
+import sys
+import playground.live.app
+"""
+PRINTED = """
+readers = "playground.sketch.dialects."
+print(",".join(name for name in sys.modules if name in rare or name.startswith(readers)))
+"""
+OF_MISTAKES = ["playground.gpu.driver_log", "playground.gpu.name_suggestions"]
+OF_LESSONS = [
+    "playground.live.lesson.panel",
+    "playground.live.present.slide",
+    "latex2mathml",
+    "markdown_it",
+    "PIL",
+    "pygments",
+]
+
+
+@pytest.mark.parametrize(
+    ("opened", "rare"),
+    [(RARE, [*OF_MISTAKES, "importlib.metadata", "email"]), (WINDOW, [*OF_MISTAKES, *OF_LESSONS])],
+    ids=["sketch", "window"],
+)
+def test_it_opens_without_what_only_mistakes_lessons_and_other_tools_shaders_need(opened, rare):
+    """They take a fifth of the time that the imports of a first picture take, and a third of a window's."""
+    done = subprocess.run(
+        [sys.executable, "-c", f"{opened}rare = {rare}{PRINTED}"],
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    assert done.stdout.strip() == ""
+
+
 def test_every_public_name_comes_from_the_module_that_the_list_gives():
     """The table that is run, the imports that type checkers read, and what is there, are the same."""
     import playground

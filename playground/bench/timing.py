@@ -58,6 +58,14 @@ def alternate(
     return found
 
 
+def beyond(whole: Samples, part: Samples) -> Samples:
+    """Return what each run took beyond that of a part of it in the same round."""
+    return Samples(
+        [one - other for one, other in zip(whole.wall, part.wall, strict=True)],
+        [one - other for one, other in zip(whole.processor, part.processor, strict=True)],
+    )
+
+
 def timed(run: Run) -> tuple[float, float]:
     """Return the milliseconds that a run takes, on the clock and of this process's processors."""
     start, busy = time.perf_counter(), time.process_time()

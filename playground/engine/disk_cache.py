@@ -22,9 +22,9 @@ import time
 import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from importlib import metadata
+from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, Any
 
@@ -34,7 +34,7 @@ from playground.errors import ParameterError, PlaygroundError
 from playground.folders import cache_folder
 from playground.gpu.build import build_of
 from playground.gpu.context import ContextInfo
-from playground.gpu.textures import bytes_of
+from playground.gpu.textures import bytes_of, levels_of
 from playground.images.files import replacing
 from playground.json_text import read_json
 
@@ -61,11 +61,17 @@ class CachedTextures:
     cost: float  # [ms] that they took to compute, with all that they depend on
     made_for: str = ""  # sketch and pass, for people: the key knows neither
     data: tuple[memoryview, ...] = field(default=(), repr=False)  # of each output; none where only listed
+    mipmapped: frozenset[str] = frozenset()  # outputs whose texels are followed by those of their mipmaps
 
     @property
     def bytes(self) -> int:
-        """Bytes of its texels."""
-        return sum(bytes_of(self.size, form) for _, form in self.outputs)
+        """Bytes of its texels, mipmaps included."""
+        return sum(self.bytes_of_output(name, form) for name, form in self.outputs)
+
+    def bytes_of_output(self, name: str, form: str) -> int:
+        """Bytes of an output's texels, mipmaps included."""
+        levels = levels_of(self.size) if name in self.mipmapped else [self.size]
+        return sum(bytes_of(level, form) for level in levels)
 
 
 @dataclass(frozen=True)
@@ -176,9 +182,12 @@ def disk_cache_for(renderer: ContextInfo, limit: int, folder: Path | None = None
 def tool() -> str:
     """Return a hash of what decides a texture besides the driver: our own files, what reads images."""
     found: list[object] = [__version__]
-    for package in ("moderngl", "numpy", "pillow", "tifffile"):
-        with suppress(metadata.PackageNotFoundError):
-            found.append((package, metadata.version(package)))
+    # Another version of a package is another file; importlib.metadata takes 30 ms to be imported.
+    for package in ("moderngl", "numpy", "PIL", "tifffile"):
+        spec = find_spec(package)
+        if spec is not None and spec.origin is not None:
+            status = Path(spec.origin).stat()
+            found.append((spec.origin, status.st_size, status.st_mtime_ns))
     home = Path(paths.__file__).parent
     for path in sorted(path for layer in _LAYERS for path in (home / layer).glob("*.py")):
         status = path.stat()
@@ -261,6 +270,7 @@ def _written(key: str, textures: CachedTextures) -> Iterator[bytes | memoryview]
             "outputs": textures.outputs,
             "cost": round(textures.cost, 3),
             "made_for": textures.made_for,
+            "mipmapped": sorted(textures.mipmapped),
         }
     ).encode()
     checksum = 0
@@ -284,7 +294,10 @@ def _head(file: IO[bytes]) -> tuple[bytes, CachedTextures, str]:
         table: dict[str, Any] = read_json(header)
         width, height = (int(side) for side in table["size"])
         outputs = tuple((str(name), str(form)) for name, form in table["outputs"])
-        textures = CachedTextures((width, height), outputs, float(table["cost"]), str(table["made_for"]))
+        mipmapped = frozenset(str(name) for name in table.get("mipmapped", ()))
+        textures = CachedTextures(
+            (width, height), outputs, float(table["cost"]), str(table["made_for"]), mipmapped=mipmapped
+        )
         if min(width, height) < 1 or textures.bytes < 1:
             raise ValueError("no texels")
         return start + header, textures, str(table["key"])
@@ -306,8 +319,8 @@ def _read(file: IO[bytes], key: str) -> CachedTextures | None:
     if zlib.crc32(body[:-4], zlib.crc32(head)) != struct.unpack("<I", body[-4:])[0]:
         return None
     parts, start = [], 0
-    for _, form in textures.outputs:
-        length = bytes_of(textures.size, form)
+    for name, form in textures.outputs:
+        length = textures.bytes_of_output(name, form)
         parts.append(body[start : start + length])
         start += length
-    return CachedTextures(textures.size, textures.outputs, textures.cost, textures.made_for, tuple(parts))
+    return replace(textures, data=tuple(parts))

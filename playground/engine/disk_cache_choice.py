@@ -15,6 +15,7 @@ from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from types import MappingProxyType
 
 from playground.engine.cache import Cached
 from playground.engine.cache_keys import Keys
@@ -176,11 +177,13 @@ def worth_caching(
     costs: Mapping[str, float],
     read_time: Callable[[int], float],
     floor: float,
+    more: Mapping[str, float] = MappingProxyType({}),
 ) -> list[Worth]:
     """Return the steps of a texture's frame that are worth caching: those of the frontier that cost enough.
 
     ``passes``: as ``passing`` returns them. ``costs`` [ms] of what ran, by the key of the step or the
     loop; ``read_time(bytes)`` [ms]. To read must save at least ``floor`` [ms].
+    ``more`` [ms] is what else steps cost that are computed in another process, by path.
     """
     nodes = needed(plan.nodes, ref)
     home = {step.path: number for number, node in enumerate(nodes) for step in walk((node,))}
@@ -194,7 +197,8 @@ def worth_caching(
     is_read: list[bool] = []
     for number, node in enumerate(nodes):
         key = keys.loops[node.path] if isinstance(node, LoopStep) else keys.steps[node.path]
-        way, whole = {(True, key): costs.get(key, 0.0)}, {key: costs.get(key, 0.0)}
+        whole = {key: costs.get(key, 0.0)}
+        way = {(True, key): whole[key] + max(more.get(step.path, 0.0) for step in walk((node,)))}
         for path in sources[number]:
             before = home[path]
             whole |= wholes[before]

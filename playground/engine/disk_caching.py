@@ -3,7 +3,8 @@
 What passes cost is measured as they run. Once the terrain has not changed for a moment, the textures
 that are worth it are read back a piece at a time, and the disk cache's own thread writes them: no
 frame waits for either. The next time, an engine with this disk cache reads them and does not run
-the passes at all; a pass in between that is needed after all, runs then.
+the passes at all; a pass in between that is needed after all, runs then. On a software renderer
+their mipmaps are cached too: a graphics card makes them faster than a disk is read.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable, Collection, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
@@ -21,11 +24,16 @@ from playground.engine.disk_cache_choice import choose, passing, worth_caching
 from playground.engine.execution import Execution
 from playground.engine.frame_record import FrameSource
 from playground.engine.plan import Plan, PlanNode, Step, needed
-from playground.gpu.textures import bytes_of, read_block
+from playground.gpu.gl_calls import read_mipmap, write_mipmaps
+from playground.gpu.textures import bytes_of, levels_of, read_block
 from playground.sketch.flat import Ref
+
+if TYPE_CHECKING:
+    import moderngl
 
 FLOOR = 20.0  # [ms] that a read must save: less is not visible
 RATE = 250e3  # [bytes/ms] from a slow disk to the graphics card, checksum included
+MIPMAPS = 90.0  # [ms] that llvmpipe takes in each process to compile what makes the first mipmaps of a format
 REST = 1.0  # [s] without another piece of terrain before one is written
 PIECE = 4 * 2**20  # [bytes] read back at once
 _MOST_COSTS = 4096
@@ -118,7 +126,12 @@ class DiskCaching:
             return False
         result = execution.runner.pool.take(step.size, outputs)
         for output, data in zip(outputs, cached.data, strict=True):
-            result.textures[output.name].write(data, alignment=1)
+            texture, own = result.textures[output.name], bytes_of(step.size, output.format)
+            texture.write(data[:own], alignment=1)
+            if output.name in cached.mipmapped:
+                result.release_framebuffer()  # the texels move, as where mipmaps are made
+                write_mipmaps(texture, levels_of(step.size)[1:], data[own:])
+                result.mipmapped.add(output.name)
         execution.cache.put(key, Cached({step.path: result}))
         self._note(key, cached.cost)
         self.reads += 1
@@ -168,34 +181,47 @@ class DiskCaching:
 
     def _write_all(self, source: FrameSource, plan: Plan, keys: Keys) -> Iterator[None]:
         """Write what is worth it, a piece at a time; ends early where a texture is gone."""
-        passes = passing(plan, source.runner.painted)
-        for worth in worth_caching(plan, keys, plan.picture, passes, self._costs, read_time, self.floor):
+        passes, costs = passing(plan, source.runner.painted), self._costs
+        more: dict[str, float] = {}
+        if source.runner.info.software:  # one texture whose mipmaps are made anew has that compiled again
+            more = {path: MIPMAPS for path, result in source.record.results.items() if result.mipmapped}
+        for worth in worth_caching(plan, keys, plan.picture, passes, costs, read_time, self.floor, more):
             if source.record.keys.steps.get(worth.path) != worth.key:
                 self._is_new = True  # another sketch was drawn since
                 return
             result = source.record.results.get(worth.path)
             if result is None or worth.key in self.store:
                 continue
-            size = sum(bytes_of(result.size, o.format) for o in result.outputs)
-            if not self.store.fits(size):
+            mipmapped = frozenset(result.mipmapped if source.runner.info.software else ())
+            outputs = tuple((o.name, o.format) for o in result.outputs)
+            made_for = f"{plan.sketch.name}: {worth.path}"
+            cached = CachedTextures(result.size, outputs, worth.cost, made_for, mipmapped=mipmapped)
+            if not self.store.fits(cached.bytes):
                 continue
             parts: list[memoryview] = []
-            for output in result.outputs:
-                whole = bytearray(bytes_of(result.size, output.format))
-                row = len(whole) // result.size[1]
-                rows = max(PIECE // row, 1)
-                for south in range(0, result.size[1], rows):
+            for name, form in outputs:
+                whole, at = bytearray(cached.bytes_of_output(name, form)), 0
+                for level, south, north in _pieces(result.size, form, mipmapped=name in mipmapped):
                     if source.record.results.get(worth.path) is not result:
                         self._is_new = True  # another frame was made, and the texture may be another's by now
                         return
-                    north = min(south + rows, result.size[1])
-                    rows_here = (result.size[0], north - south)
-                    part = read_block(result.textures[output.name], (0, south), rows_here)
-                    whole[south * row : north * row] = part
+                    part = _read_piece(result.textures[name], level, south, north)
+                    whole[at : at + len(part)] = part
+                    at += len(part)
                     yield
                 parts.append(memoryview(whole).toreadonly())
-            outputs = tuple((o.name, o.format) for o in result.outputs)
-            made_for = f"{plan.sketch.name}: {worth.path}"
-            self.store.write(
-                worth.key, CachedTextures(result.size, outputs, worth.cost, made_for, tuple(parts))
-            )
+            self.store.write(worth.key, replace(cached, data=tuple(parts)))
+
+
+def _pieces(size: tuple[int, int], form: str, *, mipmapped: bool) -> Iterator[tuple[int, int, int]]:
+    """Yield how a texture is read back: rows of it, then each mipmap whole, as level, first row and end."""
+    rows = max(PIECE * size[1] // bytes_of(size, form), 1)
+    yield from ((0, south, min(south + rows, size[1])) for south in range(0, size[1], rows))
+    if mipmapped:
+        yield from ((level, 0, high) for level, (_, high) in enumerate(levels_of(size)[1:], 1))
+
+
+def _read_piece(texture: moderngl.Texture, level: int, south: int, north: int) -> bytes:
+    if level:
+        return read_mipmap(texture, level, levels_of(texture.size)[level])
+    return read_block(texture, (0, south), (texture.size[0], north - south))

@@ -1,16 +1,54 @@
-"""Find the files that a sketch's parameters name."""
+"""Find the files that a sketch's parameters name.
+
+Every frame asks, for a file may have come, gone or been replaced since. To follow links takes a tenth of a
+millisecond, so what was found is remembered, and holds while the file is there and none is in the places that
+are looked at first.
+"""
 
 from __future__ import annotations
 
+import stat
+from collections import OrderedDict
 from pathlib import Path
+from typing import NamedTuple
 
 from playground.errors import DataError, nearest
 from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL, shown
 from playground.sketch.allowed_files import ELEVATIONS, VECTORS, outside_sidecar
+from playground.sketch.sidecars import sidecar_places
 
 _IMAGES = (".jpg", ".jpeg", ".webp")
 _DATA = {*_IMAGES, *ELEVATIONS, *VECTORS, *VIDEO_FILES, *SOUND_FILES}
+_MOST = 256
+
+
+class _Found(NamedTuple):
+    """A file that was found, and where."""
+
+    earlier: tuple[Path, ...]  # places that are looked at before, where there was no file
+    place: Path
+    file: Path  # the place, its links followed
+    identity: tuple[int, int]
+
+    def holds(self) -> bool:
+        """Return whether it would be found again."""
+        if any(_identity(place) is not None for place in self.earlier):
+            return False
+        places = (self.place,) if self.place == self.file else (self.place, self.file)
+        return all(_identity(place) == self.identity for place in places)
+
+
+_found: OrderedDict[tuple[str, str, str], _Found] = OrderedDict()
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """Return what tells a file from every other; None where there is none."""
+    try:
+        status = path.stat()
+    except (OSError, ValueError):
+        return None
+    return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None
 
 
 def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
@@ -22,13 +60,17 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
     """
     if not text:
         raise DataError(f"{parameter} names no file")
+    key = (text, folder, declared_in)
+    known = _found.get(key)
+    if known is not None and known.holds():
+        return known.file
     path = Path(text)
     places = [Path(folder), Path(declared_in).parent, GLSL]
     if path.is_absolute():
         if path.is_file():
             return path
         places = []
-    for place in places:
+    for number, place in enumerate(places):
         candidate = (place / path).resolve()
         if candidate.is_file() and any(
             candidate.is_relative_to(root.resolve()) for root in (Path(folder), GLSL)
@@ -37,6 +79,12 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
             if outside is not None:
                 message = f"{parameter}: {outside.name} next to it leads out of the sketch's folder"
                 raise DataError(message, file=shown(candidate))
+            identity = _identity(candidate)
+            if identity is not None and not sidecar_places(candidate):  # those may come, and lead elsewhere
+                earlier = tuple([before / path for before in places[:number]])
+                _found[key] = _Found(earlier, place / path, candidate, identity)
+                while len(_found) > _MOST:
+                    _found.popitem(last=False)
             return candidate
     folders = [(place / path).parent for place in places] or [path.parent]
     near = sorted(

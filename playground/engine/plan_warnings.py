@@ -11,9 +11,6 @@ from playground.engine.plan import Plan, PlanNode, Step, most_iterations, walk
 from playground.errors import DataError, Diagnostic
 from playground.media.live_inputs import LiveInputs
 from playground.paths import GLSL, shown
-from playground.sketch.dialects.foreign import unfed_warnings
-from playground.sketch.dialects.passes import stand_in_paths
-from playground.sketch.dialects.shader import STAND_INS
 from playground.sketch.flat import Ref, Source
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
@@ -88,6 +85,8 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
     found: dict[str, Diagnostic] = {}
     for step in _fed_from_outside(Identity(plan.nodes)):
         if step.kernel.dialect:
+            from playground.sketch.dialects.foreign import unfed_warnings
+
             for warning in unfed_warnings(step.kernel, _wired(plan, step)):
                 found.setdefault(f"{step.kernel.path} {warning.message}", warning)
         if step.kernel.kind == "source":
@@ -119,6 +118,8 @@ def _readers(plan: Plan, source: Step) -> str:
 
 def _wired(plan: Plan, step: Step) -> set[str]:
     """Return the inputs that something feeds besides the stand-ins that another tool's shader comes with."""
+    from playground.sketch.dialects.passes import stand_in_paths
+    from playground.sketch.dialects.shader import STAND_INS
 
     def is_stand_in(name: str, source: Source) -> bool:
         if not isinstance(source, Ref) or source.path not in stand_in_paths(step.path, name):

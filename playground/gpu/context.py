@@ -100,9 +100,11 @@ def _open(device: int | None = None, environment: Mapping[str, str] | None = Non
         options["backend"] = "egl"
         if device is not None:
             options["device_index"] = device
-        if not ctypes.util.find_library("EGL"):
-            # Without ldconfig nothing is found by name; the names with a version need no -dev package.
-            options |= {"libegl": "libEGL.so.1", "libgl": "libGL.so.1"}
+        # The names with a version need no -dev package. To be found by another, each takes a process of
+        # ldconfig, and without that nothing is found.
+        names = {"libegl": "libEGL.so.1", "libgl": "libGL.so.1"}
+        if all(map(_loads, names.values())) or not ctypes.util.find_library("EGL"):
+            options |= names
     elif device is not None:
         raise ContextError("--device picks an EGL device, which only Linux has")
     cause = ""
@@ -121,6 +123,15 @@ def _open(device: int | None = None, environment: Mapping[str, str] | None = Non
         raise ContextError(f"--device {device}: there is no such EGL device; {rest}")
     theirs = os.environ if environment is None else environment
     raise ContextError(f"{advice(cause, sys.platform, theirs)} ({cause})")
+
+
+def _loads(library: str) -> bool:
+    """Return whether a library can be loaded; it stays so, for what opens a context loads it next."""
+    try:
+        ctypes.CDLL(library)
+    except OSError:
+        return False
+    return True
 
 
 def _open_software(device: int | None) -> moderngl.Context:

@@ -12,7 +12,6 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from playground.errors import Diagnostic
-from playground.gpu.driver_log import parse_log
 from playground.gpu.program import diagnostic_of
 from playground.gpu.wrap import Wrapped
 
@@ -33,6 +32,8 @@ def warnings_of(ctx: moderngl.Context, wrapped: Wrapped) -> tuple[Diagnostic, ..
     does not compile, and where OpenGL's functions cannot be reached: they are taken from where
     moderngl takes them, which is not part of its interface.
     """
+    from playground.gpu.driver_log import parse_log
+
     load = getattr(getattr(ctx.mglo, "_context", None), "load_opengl_function", None)
     found: dict[tuple[str, int, str], Diagnostic] = {}
     if load is None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from playground.errors import ContextError
@@ -14,6 +15,10 @@ _ACTIVE, _TEXTURE0 = "glActiveTexture", 0x84C0
 _SAMPLER_BINDING = 0x8919
 _WRAPS = (0x2802, 0x2803, 0x8072)  # GL_TEXTURE_WRAP_S, T and R
 _MIRRORED = 0x8370
+_TEXTURE_2D, _INTERNAL_FORMAT = 0x0DE1, 0x1003
+_PACK_ALIGNMENT, _UNPACK_ALIGNMENT = 0x0D05, 0x0CF5
+_CHANNELS = {1: 0x1903, 2: 0x8227, 4: 0x1908}  # GL_RED, GL_RG, GL_RGBA
+_NUMBERS = {"f1": 0x1401, "nu2": 0x1403, "f2": 0x140B, "f4": 0x1406}  # by moderngl's name of a kind of number
 _READ_FRAMEBUFFER, _DEPTH_BUFFER_BIT, _NEAREST = 0x8CA8, 0x0100, 0x2600
 
 
@@ -52,6 +57,49 @@ def copy_depth(
     kinds = (*(ctypes.c_int,) * 8, ctypes.c_uint, ctypes.c_uint)
     call("glBlitFramebuffer", kinds, *area, *area, _DEPTH_BUFFER_BIT, _NEAREST)
     target.use()
+
+
+def read_mipmap(texture: moderngl.Texture, level: int, size: tuple[int, int]) -> bytes:
+    """Return the texels of a mipmap, whose size is given; moderngl reads none that it has not made."""
+    ctx = texture.ctx
+    call = Calls(ctx)
+    found = ctypes.create_string_buffer(size[0] * size[1] * _texel(texture))
+    texture.use(ctx.default_texture_unit)
+    call("glPixelStorei", (ctypes.c_int, ctypes.c_int), _PACK_ALIGNMENT, 1)
+    kinds = (*(ctypes.c_int,) * 4, ctypes.c_void_p)
+    call("glGetTexImage", kinds, _TEXTURE_2D, level, *_kind(texture), ctypes.addressof(found))
+    return found.raw
+
+
+def write_mipmaps(texture: moderngl.Texture, sizes: Sequence[tuple[int, int]], data: memoryview) -> None:
+    """Give a texture the mipmaps that another of its format had; ``sizes`` without its own.
+
+    The bytes of the largest are first. moderngl writes none where none were made, and to have llvmpipe make
+    the first of a format takes a tenth of a second: what draws them is compiled in each process.
+    """
+    ctx, form = texture.ctx, ctypes.c_int()
+    call, start = Calls(ctx), 0
+    texture.use(ctx.default_texture_unit)
+    query = (ctypes.c_int, ctypes.c_int, ctypes.c_int, ctypes.c_void_p)
+    call("glGetTexLevelParameteriv", query, _TEXTURE_2D, 0, _INTERNAL_FORMAT, ctypes.addressof(form))
+    call("glPixelStorei", (ctypes.c_int, ctypes.c_int), _UNPACK_ALIGNMENT, 1)
+    kinds = (*(ctypes.c_int,) * 8, ctypes.c_char_p)
+    for level, (width, height) in enumerate(sizes, 1):
+        texels = bytes(data[start : start + width * height * _texel(texture)])
+        start += len(texels)
+        place = (_TEXTURE_2D, level, form.value, width, height, 0)
+        call("glTexImage2D", kinds, *place, *_kind(texture), texels)
+    texture.filter = ctx.LINEAR_MIPMAP_LINEAR, ctx.LINEAR
+
+
+def _kind(texture: moderngl.Texture) -> tuple[int, int]:
+    """Return the channels and the kind of number of a texture's texels, as OpenGL names them."""
+    return _CHANNELS[texture.components], _NUMBERS[texture.dtype]
+
+
+def _texel(texture: moderngl.Texture) -> int:
+    """Return the bytes of a texel."""
+    return texture.components * int(texture.dtype[-1])
 
 
 def mirror(ctx: moderngl.Context, sampler: moderngl.Sampler) -> None:

@@ -1,4 +1,7 @@
-"""Compile wrapped kernels; map a driver's messages to their file, line and column."""
+"""Compile wrapped kernels; map a driver's messages to their file, line and column.
+
+What reads those messages is imported with the first of them: most programs have none.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +11,6 @@ from typing import TYPE_CHECKING
 from unicodedata import name as name_of
 
 from playground.errors import Diagnostic, ShaderError
-from playground.gpu.driver_log import LogEntry, hint, parse_log, source_column, split_moderngl
-from playground.gpu.name_suggestions import guess
 from playground.gpu.stage_recipe import version_line
 from playground.gpu.wrap import COMPUTE, FRAGMENT, ShaderStage, Wrapped, wrap_library
 from playground.paths import shown
@@ -19,6 +20,8 @@ from playground.sketch.source import Line, SourceText
 
 if TYPE_CHECKING:
     import moderngl
+
+    from playground.gpu.driver_log import LogEntry
 
 FOREIGN = "the character U+{0}, {1}, is none of GLSL's: only comments may have it"
 """Sentence for a character beyond ASCII; {0} is its number, {1} its name."""
@@ -57,6 +60,8 @@ def compile_library(ctx: moderngl.Context, source: SourceText) -> None:
 
 def explain(text: str, wrapped: Wrapped) -> ShaderError:
     """Convert moderngl's error text to diagnostics in the kernel's own files."""
+    from playground.gpu.driver_log import parse_log, split_moderngl
+
     stage_name, log = split_moderngl(text)
     stage = wrapped.stages.get(stage_name) or wrapped.stages.get("fragment") or wrapped.stages["compute"]
     found: dict[tuple[str, int, str], Diagnostic] = {}
@@ -79,6 +84,9 @@ def explain(text: str, wrapped: Wrapped) -> ShaderError:
 
 def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diagnostic:
     """Return one complaint of a driver in the kernel's own files, with its hint."""
+    from playground.gpu.driver_log import hint, source_column
+    from playground.gpu.name_suggestions import guess
+
     for name, ours in sorted(FETCHES.items(), reverse=True):  # the longer first
         entry = replace(entry, message=entry.message.replace(ours, name))
     line = stage.locate(entry.line) if entry.line else _defined(entry.message, stage.source)

@@ -43,6 +43,11 @@ def bytes_of(size: tuple[int, int], form: str) -> int:
     return size[0] * size[1] * components * _NUMPY[dtype].itemsize
 
 
+def levels_of(size: tuple[int, int]) -> list[tuple[int, int]]:
+    """Return the sizes of a texture's mipmaps, from itself down to one texel."""
+    return [(max(size[0] >> k, 1), max(size[1] >> k, 1)) for k in range(max(size).bit_length())]
+
+
 def make_texture(
     ctx: moderngl.Context, size: tuple[int, int], form: str, data: bytes | None = None
 ) -> moderngl.Texture:

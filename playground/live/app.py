@@ -7,6 +7,7 @@ is drawn. Each part of a frame has a guard: one that fails is left out, and the 
 
 from __future__ import annotations
 
+import gc
 import time
 from collections.abc import Callable, Mapping
 from contextlib import ExitStack, suppress
@@ -117,6 +118,8 @@ def run(
     if software:
         prefer_software()
     with ExitStack() as stack:
+        gc.freeze()  # what was imported stays: no collection while pictures move goes through it
+        stack.callback(gc.unfreeze)
         if sandbox is None:
             sandbox = stack.enter_context(Sandbox(software=software))
             sandbox.start()

@@ -16,7 +16,6 @@ from playground.live.theme import Theme
 from playground.live.widgets import IMAGES
 from playground.sketch.allowed_files import SHADERS, VECTORS, is_elevation
 from playground.sketch.dialects import is_export
-from playground.sketch.dialects.shadertoy_folder import image_of
 from playground.sketch.find import find
 from playground.sketch.model import Parameter, Sketch, Value
 from playground.sketch.unpack import is_pack, unpacked_beside
@@ -42,6 +41,8 @@ def opened_from(sketch: Path) -> tuple[Path, str]:
 def _is_sketch(path: Path) -> bool:
     """Return whether a file or a folder opens as a sketch."""
     if path.is_dir():
+        from playground.sketch.dialects.shadertoy_folder import image_of
+
         return (path / "sketch.toml").is_file() or image_of(path) is not None
     with suppress(PlaygroundError):
         return path.suffix == ".toml" or path.suffix in SHADERS or is_export(path)

@@ -17,7 +17,6 @@ from functools import lru_cache
 from playground.errors import PlaygroundError, SketchError, nearest
 from playground.paths import GLSL, shown
 from playground.sketch.assign import find_targets
-from playground.sketch.dialects.shader import SIZES, SIZES_OF_SHAPES, STAND_IN_SIZE
 from playground.sketch.find import shipped_names
 from playground.sketch.flat import Ref, Source, leaves_of
 from playground.sketch.flatten import flatten
@@ -276,6 +275,8 @@ def _size(
 
     A sound has no size: its texels are as many as those of a made-up one ``before``.
     """
+    from playground.sketch.dialects.shader import SIZES, SIZES_OF_SHAPES, STAND_IN_SIZE
+
     kernel = technique if isinstance(technique, Kernel) else None
     if kernel is not None and kernel.registry in _OWN_SIZE:
         return None

@@ -18,7 +18,6 @@ from playground.sketch.allowed_files import (
     is_variant,
 )
 from playground.sketch.dialects import EXPORT, is_export
-from playground.sketch.dialects.shadertoy_folder import image_of
 from playground.sketch.unpack import is_pack, unpacked
 
 
@@ -35,8 +34,11 @@ def find(name: str | Path) -> Path:
         is_folder = False
     if is_folder and is_file(path / "sketch.toml"):
         return path / "sketch.toml"
-    if is_folder and (image := image_of(path)) is not None:
-        return image
+    if is_folder:
+        from playground.sketch.dialects.shadertoy_folder import image_of
+
+        if (image := image_of(path)) is not None:
+            return image
     if is_file(path):
         if is_pack(path):
             return unpacked(path)

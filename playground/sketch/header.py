@@ -403,8 +403,10 @@ def _refuse_misspelt(lines: list[Line]) -> None:
 
 
 def _refuse_redefined(source: SourceText) -> None:
+    if "define" not in source.names:
+        return
     for line in source.lines:
-        match = _DEFINE.match(line.code)
+        match = _DEFINE.match(line.code) if "define" in line.code else None
         if match and is_given(match.group(1)):
             check_name(match.group(1), line, "macro")
 
@@ -419,6 +421,8 @@ def _refuse_code(source: SourceText) -> None:
 
 
 def _refuse_driver_bound(source: SourceText) -> None:
+    if not any(name in DRIVER_BOUND or name.startswith("gl_") for name in source.names):
+        return
     for line in source.lines:
         for match in re.finditer(r"[A-Za-z_]\w*", line.code):
             word = match.group()

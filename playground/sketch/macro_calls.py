@@ -21,7 +21,7 @@ def with_calls_joined(codes: Sequence[str]) -> list[str]:
         return found
     macros: set[str] = set()
     for index, code in enumerate(found):
-        if define := _DEFINE.match(code):
+        if "define" in code and (define := _DEFINE.match(code)):
             name, bracket, meaning = define.groups()
             if bracket == "(" or meaning in macros:
                 macros.add(name)

@@ -256,6 +256,7 @@ class _Reader:
         self.includes = 0
         self.named: dict[tuple[str, str], str] = {}  # file and what it writes → the file that it includes
         self.asked: set[str] = set()  # libraries that were looked for by name
+        self._shown: dict[Path, str] = {}
 
     @cached_property
     def libraries(self) -> dict[str, Path]:
@@ -279,7 +280,8 @@ class _Reader:
             )
             self.lines.append(line)
             after = number + split.lines
-            self.lines += [Line(raw[i - 1], "", "", file, i, chain) for i in range(number + 1, after)]
+            if split.lines > 1:
+                self.lines += [Line(raw[i - 1], "", "", file, i, chain) for i in range(number + 1, after)]
             if len(self.lines) > _MAX_LINES:
                 raise line.error(
                     f"more than {_MAX_LINES} lines with its includes; is something included over and over?"
@@ -287,6 +289,12 @@ class _Reader:
             if split.include:
                 self.include(split.include, line, path, chain, stack)
             number = after
+
+    def shown(self, path: Path) -> str:
+        """Return a path as people read it, worked out once."""
+        if path not in self._shown:
+            self._shown[path] = shown(path)
+        return self._shown[path]
 
     def include(
         self, match: re.Match[str], line: Line, path: Path, chain: tuple[str, ...], stack: tuple[str, ...]
@@ -315,7 +323,7 @@ class _Reader:
                     via = (*chain, f"{shown(path)}:{line.number}")
                     raise ShaderError(diagnostics=[replace(found, chain=via)]) from None
                 raise line.error(f"'{name}': {found.message}") from None
-        place = f"{shown(path)}:{line.number}"
+        place = f"{self.shown(path)}:{line.number}"
         self.flatten(target, self.texts[key], (*chain, place), (*stack, key))
 
     def read(self, path: Path) -> str:
@@ -396,11 +404,15 @@ def _split(text: str) -> tuple[_Split, ...]:
     while index < len(lines):
         joined, count = _joined(lines, index)
         code, comment, in_block = _split_comments(joined, in_block)
-        include = _INCLUDE.match(code)
-        pragma = code.strip() if _OWN_PRAGMA.match(code) else ""
-        left_out = bool(_LINE.match(code))
-        blank = include or pragma or left_out
-        code = "" if blank else _BEYOND_ASCII.sub("?", code.translate(_WHITE))
+        include, pragma, left_out = None, "", False
+        if "#" in code:
+            include = _INCLUDE.match(code)
+            pragma = code.strip() if _OWN_PRAGMA.match(code) else ""
+            left_out = bool(_LINE.match(code))
+        if include or pragma or left_out:
+            code = ""
+        elif not (code.isascii() and code.isprintable()):
+            code = _BEYOND_ASCII.sub("?", code.translate(_WHITE))
         found.append(_Split(code, comment, include, pragma, left_out, count))
         index += count
     return tuple(found)
@@ -418,6 +430,8 @@ def _joined(lines: list[str], index: int) -> tuple[str, int]:
 
 def _split_comments(raw: str, in_block: bool) -> tuple[str, str, bool]:
     """Return (code with comments blanked, text after // or "", whether a block comment goes on)."""
+    if not in_block and "/" not in raw and '"' not in raw:
+        return raw.rstrip(), "", False
     code = ""
     position = 0
     while True:

@@ -73,6 +73,8 @@ def read_uniforms(
     seen: dict[str, Line] = {}
     following: list[tuple[int, list[str], Line]] = []  # which parameter, what it follows
     for index, line in enumerate(source.lines):
+        if "uniform" not in line.code:  # most lines: a text with its includes has a thousand
+            continue
         match = _UNIFORM.match(_LAYOUT.sub("", line.code) if plain else line.code)
         if not plain:
             _check_declaration(line, match)
@@ -143,14 +145,16 @@ def is_given(name: str) -> bool:
 
 def check_name(name: str, line: Line, what: str) -> None:
     """Raise ``ShaderError`` for a name that GLSL or the engine has taken."""
-    found = re.search(rf"\b{re.escape(name)}\b", line.code)
-    column = found.start() + 1 if found else 0
     if is_given(name):
-        raise line.error(f"'{name}' is given to every kernel; name the {what} something else", column)
-    if name.startswith((PREFIX, "gl_")) or "__" in name:
-        raise line.error(f"'{name}': names that begin with {PREFIX} or gl_, or hold __, are reserved", column)
-    if name in GLSL_WORDS:
-        raise line.error(f"'{name}' is a word of GLSL itself; name the {what} something else", column)
+        message = f"'{name}' is given to every kernel; name the {what} something else"
+    elif name.startswith((PREFIX, "gl_")) or "__" in name:
+        message = f"'{name}': names that begin with {PREFIX} or gl_, or hold __, are reserved"
+    elif name in GLSL_WORDS:
+        message = f"'{name}' is a word of GLSL itself; name the {what} something else"
+    else:
+        return
+    found = re.search(rf"\b{re.escape(name)}\b", line.code)
+    raise line.error(message, found.start() + 1 if found else 0)
 
 
 def _refuse_given_elsewhere(name: str, initial: str | None, line: Line) -> None:

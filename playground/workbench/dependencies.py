@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from pathlib import Path
 
 from playground.engine.files import find_file
@@ -21,7 +22,13 @@ def files_of(sketch: Sketch) -> frozenset[Path]:
 
     A file that is missing is among them, where it is expected.
     """
-    return frozenset({Path(name) for name in sketch.files}) | data_files(sketch)
+    return _paths(sketch.files) | data_files(sketch)
+
+
+@lru_cache(maxsize=16)
+def _paths(names: tuple[str, ...]) -> frozenset[Path]:
+    """Return paths: the same objects for the same names, whose hashes are worked out once."""
+    return frozenset(map(Path, names))
 
 
 def data_files(sketch: Sketch) -> frozenset[Path]:

@@ -6,12 +6,16 @@ time, and which of them made it would not be found.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from playground.engine.disk_cache import disk_cache_for
 from playground.engine.disk_caching import DiskCaching
 from playground.engine.engine import Engine
-from playground.workbench.inspect.toggles import Inspection
-from playground.workbench.non_finite import FiniteWatch
-from playground.workbench.session import Session
+
+if TYPE_CHECKING:
+    from playground.workbench.inspect.toggles import Inspection
+    from playground.workbench.non_finite import FiniteWatch
+    from playground.workbench.session import Session
 
 
 class SessionCaching:

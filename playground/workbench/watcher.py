@@ -79,7 +79,7 @@ class Watcher:
         then. A file new to the set that changed after that is reported at once, and so is any
         whose reader saw what was never reported: so no save falls in between.
         """
-        wanted = {Path(f) for f in files}
+        wanted = set(files)
         read = read or {}
         with self._lock:
             folders = _folders(self._real) if wanted != self._followed.keys() else None

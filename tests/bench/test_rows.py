@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import time
+from dataclasses import replace
 
 import pytest
 
 from playground.bench import measures
 from playground.bench.gl_counts import BYTES, counted, timed_calls
+from playground.bench.measures.engine_cost import unchanging
 from playground.bench.peers import PEERS
 from playground.bench.room import Options, Room
 from playground.bench.rows import chosen, suites
@@ -61,6 +63,22 @@ def test_its_sketch_has_the_texture_and_what_changes(name):
         wanted = str(row.options["texture"])
         plan = room.engine().internal.plan_for(sketch.with_values(changed), (64, 36), 0.0, None, wanted)
         plan.flat.ref(wanted, "sketch")
+        if "part" in row.options:
+            assert row.options["part"] != wanted
+            engine = room.engine()
+            engine.texture(sketch.with_values(changed), row.options["part"])
+            assert "a" not in engine.internal.ran, "the part is made without what is measured"
+
+
+@pytest.mark.parametrize(("name", "read"), [("unchanged", 1), ("unchanged_chain", 7)])
+def test_the_picture_of_unchanged_passes_reads_one_or_their_chain(name, read):
+    with Room(Options()) as room:
+        engine, sketch = room.engine(), unchanging(ROWS[name], room, 7)
+        engine.draw(sketch, size=(16, 9))
+        assert sum(path.startswith("p") for path in engine.internal.ran) == read
+        turned = sketch.with_camera(replace(sketch.camera, azimuth=sketch.camera.azimuth + 1.0))
+        engine.draw(turned, size=(16, 9))
+        assert engine.internal.ran and not any(path.startswith("p") for path in engine.internal.ran)
 
 
 def test_a_measured_row_has_every_form_and_what_is_missing_is_told(monkeypatch):

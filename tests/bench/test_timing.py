@@ -10,7 +10,7 @@ import pytest
 from playground.bench.growth import growth
 from playground.bench.results import Figure, Results
 from playground.bench.rows import Goal
-from playground.bench.timing import Samples, alternate
+from playground.bench.timing import Samples, alternate, beyond
 
 
 def test_runs_take_turns_and_the_first_rounds_do_not_count():
@@ -25,6 +25,11 @@ def test_runs_take_turns_and_the_first_rounds_do_not_count():
 def test_the_clock_and_the_processors_are_told_apart():
     found = alternate({"asleep": lambda: time.sleep(0.05)}, 1, unmeasured=0)["asleep"]
     assert found.wall[0] >= 50 > found.processor[0]
+
+
+def test_a_part_is_taken_off_round_by_round():
+    found = beyond(Samples([9.0, 19.0], [7.0, 8.0]), Samples([4.0, 13.0], [3.0, 3.5]))
+    assert found.wall == [5.0, 6.0] and found.processor == [4.0, 4.5]
 
 
 @pytest.mark.parametrize("count", [3, 4, 7, 20])

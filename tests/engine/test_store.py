@@ -10,6 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from importlib.machinery import ModuleSpec
 from pathlib import Path
 
 import moderngl
@@ -27,11 +28,12 @@ from playground.engine.disk_cache import (
     listed,
     trim,
 )
-from playground.engine.disk_caching import DiskCaching
+from playground.engine.disk_caching import MIPMAPS, DiskCaching
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
 from playground.gpu.context import ContextInfo
-from playground.gpu.textures import read_raw
+from playground.gpu.gl_calls import read_mipmap
+from playground.gpu.textures import levels_of, read_raw
 from playground.images.files import write_png
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -218,6 +220,53 @@ def test_reopened_textures_of_every_format_have_the_same_bits(shelf, folder):
     assert np.isnan(floats).any() and (floats.view(np.uint32) & 0x7F800000 == 0).any()
 
 
+def test_reopened_mipmaps_of_every_format_have_the_same_bits_and_are_not_made_anew(
+    shelf, folder, monkeypatch
+):
+    if not shelf.engine().info.software:
+        pytest.skip("a graphics card makes them anew")
+    passes, sums = "", ""
+    for form in FORMATS:
+        folder.write(f"{form}.glsl", text_of_bits(form))
+        passes += f'[[pass]]\nname = "{form}"\nuse = "./{form}"\n'
+        sums += f"    sum += abs(textureLod({form}, vec2(0.4, 0.6), 2.0).r);\n"
+    inputs = "".join(f'uniform sampler2D {form}; //! input("linear", "mipmap")\n' for form in FORMATS)
+    text = f'#pragma kernel(output = "v:r32f")\n{inputs}float kernel(ivec2 texel) {{\n    float sum = 0.0;\n'
+    folder.write("all.glsl", f"{text}{sums}    return 1.0 / sum;\n}}\n")
+    wires = ", ".join(f'{form} = "{form}"' for form in FORMATS)
+    passes += f'[[pass]]\nname = "all"\nuse = "./all"\nsize = [64, 36]\ninputs = {{ {wires} }}\n'
+    sketch = folder.sketch(passes, size="size = [67, 41]")
+    first = shelf.engine()
+    seen = picture(first, sketch)
+    made = {form: levels(first, form) for form in FORMATS}
+    shelf.keep(first)
+    build, anew = moderngl.Texture.build_mipmaps, list[tuple[int, int]]()
+    monkeypatch.setattr(
+        moderngl.Texture, "build_mipmaps", lambda texture: [anew.append(texture.size), build(texture)]
+    )
+    second = shelf.engine()
+    assert picture(second, sketch) == seen
+    assert (67, 41) not in anew, "they are on disk"
+    assert second.internal.ran == ["all", "view"]
+    for form in FORMATS:
+        assert levels(second, form) == made[form], form
+        assert len(made[form]) == 7 and len(made[form][-1]) == len(made[form][0]) // (67 * 41)
+    for each in listed(shelf.folder):
+        each.path.unlink()
+    second.internal.disk_caching._is_new = True
+    shelf.keep(second)  # what came from there is read back as well
+    third = shelf.engine()
+    assert picture(third, sketch) == seen and third.internal.ran == ["all", "view"]
+    assert shelf.ctx.error == "GL_NO_ERROR"
+
+
+def levels(engine: Engine, form: str) -> list[bytes]:
+    """Return the texels of a pass, and of each of its mipmaps."""
+    texture = engine.internal.results[form].textures["bits"]
+    sizes = levels_of(texture.size)
+    return [read_mipmap(texture, level, size) for level, size in enumerate(sizes)]
+
+
 @pytest.mark.slow
 def test_bits_are_the_same_where_there_is_no_compute():
     """As on macOS: OpenGL 4.1, in a process of its own."""
@@ -388,6 +437,21 @@ def test_the_tool_is_its_own_files(monkeypatch, tmp_path):
     before = store_module.tool.__wrapped__()
     assert store_module.tool.__wrapped__() == before
     file.write_text("12")
+    assert store_module.tool.__wrapped__() != before
+
+
+def test_another_version_of_a_package_is_another_tool(monkeypatch, tmp_path):
+    monkeypatch.setattr(store_module.paths, "__file__", str(tmp_path / "paths.py"))
+    package = tmp_path / "__init__.py"
+    package.write_text("1")
+
+    def spec_of(name: str) -> ModuleSpec | None:
+        return ModuleSpec(name, None, origin=str(package)) if name == "numpy" else None
+
+    monkeypatch.setattr(store_module, "find_spec", spec_of)
+    before = store_module.tool.__wrapped__()
+    assert store_module.tool.__wrapped__() == before
+    package.write_text("12")
     assert store_module.tool.__wrapped__() != before
 
 
@@ -583,6 +647,7 @@ def test_a_texture_of_another_size_is_not_taken(cached, folder):
 def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeypatch):
     costs = {"terrain": 500.0, "worn": 1.0, "light": 100.0}
     monkeypatch.setattr("playground.engine.disk_caching.read_time", lambda size: 4.0)
+    monkeypatch.setattr("playground.engine.disk_caching.MIPMAPS", 0.0)
 
     def cached_with(floor: float, **more: float) -> set[str]:
         clear(any_shelf.folder)
@@ -602,6 +667,20 @@ def test_only_what_costs_more_than_to_read_it_is_cached(any_shelf, worn, monkeyp
     assert cached_with(600.0) == set()
     assert cached_with(20.0, terrain=1.0, light=1.0) == set()
     assert cached_with(0.0, terrain=1.0, light=1.0) == set(), "to read takes longer"
+
+
+def test_what_has_mipmaps_is_worth_more_on_a_software_renderer(any_shelf, worn, monkeypatch):
+    """To make the first of a format is compiled anew in each process, unless no texture needs it."""
+    engine = any_shelf.engine(MIPMAPS / 2)
+    if not engine.info.software:
+        pytest.skip("a graphics card has nothing to compile")
+    picture(engine, worn)
+    assert "height" in engine.internal.results["terrain"].mipmapped
+    for key in engine.internal.disk_caching._costs:
+        engine.internal.disk_caching._costs[key] = 1.0
+    any_shelf.keep(engine)
+    (found,) = [each.textures for each in listed(any_shelf.folder)]
+    assert found.made_for.endswith("worn.add") and found.cost == pytest.approx(2.0)
 
 
 def test_costs_are_measured_where_terrain_is_made_and_a_loop_counts_as_one(any_shelf, worn):

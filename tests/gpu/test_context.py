@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import ctypes
+import ctypes.util
 import json
 import os
 import subprocess
@@ -115,6 +115,26 @@ def test_compute_that_is_not_there_is_a_sentence(sketch):
     lines = done.stdout.strip().split("\n")
     assert lines[0] == "this context is OpenGL 4.1; compute needs 4.3", done.stderr
     assert lines[1].endswith("is a compute shader; this context is OpenGL 4.1, and compute needs 4.3")
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="EGL is Linux's")
+def test_libraries_are_loaded_by_their_names_without_a_process_of_ldconfig(monkeypatch):
+    """Three of them took as long as the context itself."""
+    if not all(map(module._loads, ("libEGL.so.1", "libGL.so.1"))):
+        pytest.skip("the libraries of this system have other names")
+    monkeypatch.setattr(subprocess, "Popen", lambda *_, **__: pytest.fail("a process is started"))
+    monkeypatch.setattr("ctypes.util.find_library", lambda name: pytest.fail(f"{name} is looked for"))
+    open_context().release()
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="EGL is Linux's")
+def test_libraries_of_other_names_are_looked_for(monkeypatch):
+    looked_for = []
+    monkeypatch.setattr(module, "_loads", lambda name: False)
+    find = ctypes.util.find_library
+    monkeypatch.setattr("ctypes.util.find_library", lambda name: looked_for.append(name) or find(name))
+    open_context().release()
+    assert "EGL" in looked_for
 
 
 def test_one_that_is_too_old_says_what_it_offers():

@@ -11,6 +11,7 @@ from playground.bench.room import Room, changing
 from playground.bench.rows import Row
 from playground.bench.timing import Samples, alternate, timed
 from playground.engine.plan import LoopStep, Plan
+from playground.sketch.model import Sketch
 
 
 def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
@@ -42,14 +43,13 @@ def _steps_of(plan: Plan, path: str) -> int:
 
 
 def _unchanged(row: Row, room: Room, size: int) -> Iterator[Figure]:
-    """Yield the time of a frame in which only the camera has moved a pass that takes nothing, by passes."""
+    """Yield the time of a frame in which only the camera has moved a pass that takes nothing, by passes.
+
+    In a ``chain`` each reads the one before it, and the picture the last; otherwise it reads only the first.
+    """
     engine = room.engine()
     for passes in row.options["counts"]:
-        text = '[[pass]]\nname = "p0"\nuse = "./flat"\nsize = 4\n'
-        for number in range(1, passes):
-            text += f'[[pass]]\nname = "p{number}"\nuse = "./flat"\nsize = 4\n'
-        room.written("flat.glsl", str(row.options["shader"]))
-        sketch = room.sketch({**row.options, "passes": text + str(row.options["view"])}, 0)
+        sketch = unchanging(row, room, passes)
 
         def run(sketch=sketch) -> None:  # type: ignore[no-untyped-def]
             look = sketch.camera  # turned further each time: else its picture would be known
@@ -60,6 +60,18 @@ def _unchanged(row: Row, room: Room, size: int) -> Iterator[Figure]:
         samples = alternate({"auto": run}, room.options.rounds, unmeasured=3)
         name, what = f"{row.name}-{passes}", row.what.replace("N", str(passes))
         yield Figure(row.suite, name, what, 0, "ms", row.goal, samples)
+
+
+def unchanging(row: Row, room: Room, passes: int) -> Sketch:
+    """Return a sketch of so many passes of the kernel ``shader``, for the row's ``view`` of @."""
+    chain, text = bool(row.options.get("chain")), ""
+    room.written("flat.glsl", str(row.options["shader"]))
+    for number in range(passes):
+        text += f'[[pass]]\nname = "p{number}"\nuse = "./flat"\nsize = 4\n'
+        if chain and number:
+            text += f'inputs = {{ height = "p{number - 1}" }}\n'
+    view = str(row.options["view"]).replace("@", f"p{passes - 1 if chain else 0}")
+    return room.sketch({**row.options, "passes": text + view}, 0)
 
 
 def _calls(row: Row, room: Room, size: int) -> Iterator[Figure]:

@@ -1,4 +1,8 @@
-"""What whole processes take: from their start to their end, and of memory."""
+"""What whole processes take: from their start to their end or to a picture, and of memory.
+
+Python's compiled modules are in a folder of all runs, even where the environment has none written: with an
+installed playground they are there.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +10,9 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 import time
-from collections.abc import Iterator, Sequence
-from typing import Any
+from collections.abc import Iterator, Mapping
 
 from playground.bench.results import Figure
 from playground.bench.room import Room
@@ -17,26 +21,30 @@ from playground.bench.timing import Samples
 from playground.errors import PlaygroundError
 
 MIB = 2**20
-# A process prints what its children and it took as JSON, last: seconds of processors, bytes at most.
+_MARK = "spent "
+# A process prints what it took so far as JSON: seconds of processors, bytes at most.
 _SPENT = """
-import json, sys
-try:
-    import resource
-    own = resource.getrusage(resource.RUSAGE_SELF)
-    most = own.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
-    print(json.dumps([own.ru_utime + own.ru_stime, most]))
-except ImportError:
-    import time
-    print(json.dumps([time.process_time(), 0]))
+def spent():
+    import json, sys
+    try:
+        import resource
+        own = resource.getrusage(resource.RUSAGE_SELF)
+        most = own.ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+        found = [own.ru_utime + own.ru_stime, most]
+    except ImportError:
+        import time
+        found = [time.process_time(), 0]
+    print("spent", json.dumps(found), flush=True)
 """
+_ENDS = "\nspent()\n"
 
 
 def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     """Yield the figure of a process that runs the Python text ``code``.
 
     In it, ``{out}`` is a file that it may write, ``{cache}`` a folder of all runs, and ``{size}`` the texels
-    a side; ``prepare`` runs once before, untimed; ``takes`` is "time" or "memory"; ``cold`` gives each run
-    an empty shader cache.
+    a side; where it calls ``spent()``, the time ends there, else with the process. ``prepare`` runs once
+    before, untimed; ``takes`` is "time" or "memory"; ``cold`` gives each run an empty shader cache.
     """
     options = row.options
     names = {"{out}": room.folder / "out.png", "{cache}": room.folder / row.name, "{size}": size}
@@ -47,20 +55,18 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
             text = text.replace(name, str(what))
         return text
 
-    code = text_of("code")
+    usual = environment_of(room)
     if "prepare" in options:
-        spent([sys.executable, "-c", text_of("prepare") + _SPENT], dict(os.environ))
+        spent(text_of("prepare"), usual)
     found = Samples()
     memory = options.get("takes") == "memory"
     rounds = 1 if memory else room.options.rounds
     for number in range(0 if memory or options.get("cold") else -1, rounds):
-        environment = dict(os.environ)
+        environment = dict(usual)
         if options.get("cold"):
             cache = room.folder / f"cache{next(room.numbers)}"
             environment |= {"MESA_SHADER_CACHE_DIR": str(cache), "PLAYGROUND_CACHE": "0"}
-        start = time.perf_counter()
-        seconds, most = spent([sys.executable, "-c", code + _SPENT], environment)
-        wall = time.perf_counter() - start
+        wall, seconds, most = spent(text_of("code"), environment)
         if number < 0:
             continue
         found.wall.append(most / MIB if memory else wall * 1e3)
@@ -73,11 +79,36 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     yield Figure(row.suite, row.name, row.what, size, unit, row.goal, {"auto": found})
 
 
-def spent(command: Sequence[str], environment: dict[str, str]) -> tuple[float, float]:
-    """Run a process and return what it printed last: seconds of processors, and bytes at most."""
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
-    if done.returncode:
-        last = (done.stderr.strip().splitlines() or ["it said nothing"])[-1]
-        raise PlaygroundError(f"a process of the benchmark failed: {last}")
-    found: Any = json.loads(done.stdout.strip().splitlines()[-1])
-    return float(found[0]), float(found[1])
+def environment_of(room: Room) -> dict[str, str]:
+    """Return this process's environment, in which compiled modules are written and found."""
+    own = {"PYTHONDONTWRITEBYTECODE": "", "PYTHONPYCACHEPREFIX": str(room.folder / "modules")}
+    return {**os.environ, **own}
+
+
+def spent(code: str, environment: Mapping[str, str]) -> tuple[float, float, float]:
+    """Run Python text in a process; return seconds on the clock, of processors, and bytes at most.
+
+    Raises ``PlaygroundError`` with its last words where it fails.
+    """
+    ends = "spent()" not in code
+    command = [sys.executable, "-c", _SPENT + code + (_ENDS if ends else "")]
+    start, wall, found = time.perf_counter(), 0.0, [0.0, 0.0]
+    with (
+        tempfile.TemporaryFile("w+", encoding="utf-8") as errors,
+        subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=errors, text=True, env=dict(environment)
+        ) as process,
+    ):
+        assert process.stdout is not None
+        for line in process.stdout:
+            if line.startswith(_MARK):
+                wall = time.perf_counter() - start
+                found = json.loads(line.removeprefix(_MARK))
+        process.wait()
+        if ends:
+            wall = time.perf_counter() - start
+        if process.returncode:
+            errors.seek(0)
+            last = (errors.read().strip().splitlines() or ["it said nothing"])[-1]
+            raise PlaygroundError(f"a process of the benchmark failed: {last}")
+    return wall, float(found[0]), float(found[1])

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 from playground.bench.peers import EXTRA, Setting, made
 from playground.bench.results import Figure
 from playground.bench.room import Room, changing
 from playground.bench.rows import Row
-from playground.bench.timing import Run, alternate
+from playground.bench.timing import Run, alternate, beyond
 from playground.engine.cache import VERSIONS
 from playground.sketch.variants import any_variants
 
@@ -20,28 +21,33 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     """Yield the row's figure: each form of ours, each peer.
 
     Keys: ``texture``, what is read; ``seeds``, ``suns`` and ``nudged``, what is new each time (see
-    ``changing``); ``forms``; and those of the sketch (see ``Room.sketch``).
+    ``changing``); ``forms``; and those of the sketch (see ``Room.sketch``). ``part`` is a texture that it is
+    made of, whose own time is taken off: each round makes one of another terrain as well.
     """
     options = row.options
     sketch, wanted = room.sketch(options, size), str(options["texture"])
     varied = any(any_variants(each.technique) for each in sketch.graph.passes if each.name != "height")
     runs: dict[str, Run] = {}
+    parts: dict[str, Run] = {}
     for form in options.get("forms", FORMS):
         if form == "plain" and not varied:
             continue
         engine = room.engine("auto" if form == "plain" else form)
         change = changing(room, options)
 
-        def run(plain: bool = form == "plain", engine=engine, change=change) -> None:  # type: ignore[no-untyped-def]
-            engine.texture(change(sketch).plainly(plain), wanted)
+        def run(of: str, plain: bool = form == "plain", engine=engine, change=change) -> None:  # type: ignore[no-untyped-def]
+            engine.texture(change(sketch).plainly(plain), of)
             engine.ctx.finish()
 
-        runs[form] = run
+        runs[form] = partial(run, wanted)
+        if "part" in options:
+            parts[_part_of(form)] = partial(run, str(options["part"]))
     setting = Setting(room, size, options)
     peers = [peer for given in row.peers if (peer := made(setting, given)) is not None]
     for name in setting.missing:
         room.options.say(f"{name} is not installed, and is left out; {EXTRA}")
-    ours = set(runs)
+    ours = list(runs)
+    runs |= parts
     for _ in range(VERSIONS):  # from then on textures are used again, as while one drags
         for warm_up in runs.values():
             warm_up()
@@ -55,7 +61,12 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
         size,
         "ms",
         row.goal,
-        {name: found for name, found in samples.items() if name in ours},
-        {name: found for name, found in samples.items() if name not in ours},
+        {name: beyond(samples[name], samples[_part_of(name)]) if parts else samples[name] for name in ours},
+        {peer.name: samples[peer.name] for peer in peers},
         frozenset(peer.name for peer in peers if peer.alone),
     )
+
+
+def _part_of(form: str) -> str:
+    """Return the name of the run that makes the part, of a form."""
+    return f"{form}, part"

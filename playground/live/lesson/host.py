@@ -1,15 +1,21 @@
-"""Lessons next to the picture: what the window calls in each frame."""
+"""Lessons next to the picture: what the window calls in each frame.
+
+What draws them is imported with the first that is shown: a window may show none.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
-from playground.live.lesson.panel import LessonPanel
 from playground.live.theme import Theme
 from playground.workbench.autosave import Autosave
 from playground.workbench.bench import Bench
 from playground.workbench.lesson.progress import open_progress, progress_file
 from playground.workbench.lesson.reader import Reader
+
+if TYPE_CHECKING:
+    from playground.live.lesson.panel import LessonPanel
 
 
 class Lessons:
@@ -20,7 +26,7 @@ class Lessons:
         progress, complaint = open_progress(file)
         bench.session.notes.extend(filter(None, [complaint]))
         self.reader = Reader(bench, progress, file, self._store_own, autosave.open)
-        self._panel = LessonPanel()
+        self._panel: LessonPanel | None = None
         self._autosave = autosave
         self._remember = remember
         bench.lessons.toggle, bench.lessons.turn_page = self.reader.toggle, self.reader.turn_page
@@ -38,6 +44,12 @@ class Lessons:
 
     def draw(self, look: Theme) -> float:
         """Draw the panel; return the width it takes, in the window's units."""
+        if self._panel is None:
+            if self.reader.lesson is None:
+                return 0.0
+            from playground.live.lesson.panel import LessonPanel
+
+            self._panel = LessonPanel()
         return self._panel.draw(self.reader, look)
 
     def update(self, *, idle: bool) -> None:
@@ -48,7 +60,8 @@ class Lessons:
 
     def release(self) -> None:
         """Release what was made in the session's context; it is made again where it is needed."""
-        self._panel.release()
+        if self._panel is not None:
+            self._panel.release()
         self.reader.tasks.close()
 
     def _store_own(self) -> None:

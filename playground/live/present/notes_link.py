@@ -7,7 +7,6 @@ from typing import Any
 
 from playground.errors import DataError, ParameterError
 from playground.lessons.present.beat import Beat
-from playground.live.present.told import told
 from playground.remote.notes import Notes
 from playground.workbench.lesson.presenter import Presenter
 
@@ -58,6 +57,8 @@ class NotesLink:
         coming = self._filled(presenter.following) if presenter.following is not None else None
         key = presenter.on, presenter.at, beat, presenter.blank, clock.running, clock.begun
         if key != self._told:
+            from playground.live.present.told import told
+
             self._told = key
             self.notes.tell(told(presenter, beat, coming, language))
 

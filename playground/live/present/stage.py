@@ -1,9 +1,13 @@
-"""A presentation in the window: its keys and mouse, what is written over the picture, the teacher's notes."""
+"""A presentation in the window: its keys and mouse, what is written over the picture, the teacher's notes.
+
+What typesets slides is imported with the first of them: most windows show none.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from imgui_bundle import ImVec2, imgui
 
@@ -15,11 +19,13 @@ from playground.live.present.keys import act_on_presentation_keys, help_rows
 from playground.live.present.notes_link import NotesLink
 from playground.live.present.overlays import Overlays
 from playground.live.present.pen import Pen
-from playground.live.present.slide import Gauge, Sizes, board_of, gauges_of, help_of, plate_of, strip_of
 from playground.workbench.bench import Bench
 from playground.workbench.lesson.presented_pictures import PresentedPictures, Row
 from playground.workbench.lesson.presenter import Presenter
 from playground.workbench.lesson.reader import Reader
+
+if TYPE_CHECKING:
+    from playground.live.present.slide import Sizes
 
 _CLICK = 5.0  # units that the mouse may move while it is pressed, and it is a click all the same
 _HIDES = 2.5  # [s] without a move after which the mouse is hidden
@@ -126,6 +132,8 @@ class Stage:
 
     def area(self, pixels: tuple[int, int]) -> tuple[int, int, int, int]:
         """Return where the picture is: x, y from below, width, height [pixels]."""
+        from playground.live.present.slide import Sizes
+
         sizes = Sizes(*pixels)
         return 0, sizes.height - sizes.picture[1], *sizes.picture
 
@@ -151,6 +159,8 @@ class Stage:
 
     def draw(self, pixels: tuple[int, int], density: float, area: Area) -> None:
         """Draw what is over the picture, which is in ``area``, and the strip below it."""
+        from playground.live.present.slide import Sizes
+
         presenter, sizes = self.presenter, Sizes(*pixels)
         if not presenter.on:
             return
@@ -181,6 +191,8 @@ class Stage:
 
     def _write(self, sizes: Sizes, rows: list[Row]) -> None:
         """Have images of what is written, where another is due."""
+        from playground.live.present.slide import Gauge, board_of, gauges_of, help_of, plate_of, strip_of
+
         presenter, ctx, overlays = self.presenter, self.bench.session.engine.ctx, self._overlays
         beat = self._filled(presenter.beat)
         place = presenter.at + 1, len(presenter.beats)

@@ -1,7 +1,8 @@
 """Read shaders of other tools, unchanged, as sketches: a table of dialects, by their signs.
 
 A reader returns an ordinary ``Graph`` of plain shaders. The file's lines stay where they are, so that a
-driver's complaint names them.
+driver's complaint names them. Each reader is imported with the first file that shows its signs: most
+sketches have none.
 """
 
 from __future__ import annotations
@@ -11,14 +12,16 @@ from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from playground.errors import ParameterError, nearest
-from playground.sketch.dialects import isf, main, shadertoy, shadertoy_export, shadertoy_folder, vscode
-from playground.sketch.dialects.passes import Read, graph_of_shaders
-from playground.sketch.dialects.reading import Files
-from playground.sketch.dialects.shader import Made, Shader
 from playground.sketch.model import Graph
 from playground.sketch.source import read_text
+
+if TYPE_CHECKING:
+    from playground.sketch.dialects.passes import Read
+    from playground.sketch.dialects.reading import Files
+    from playground.sketch.dialects.shader import Made, Shader
 
 OWN = "own"
 EXPORT = ".json"
@@ -49,29 +52,53 @@ class Dialect:
     # No shader: the file runs as it is, as a plain shader.
 
 
+def _isf(files: Files) -> Sequence[Shader]:
+    from playground.sketch.dialects import isf
+
+    return isf.shaders(files)
+
+
+def _export(files: Files) -> Sequence[Shader]:
+    from playground.sketch.dialects import shadertoy_export
+
+    return shadertoy_export.shaders(files)
+
+
+def _main(files: Files) -> Sequence[Shader | Made]:
+    from playground.sketch.dialects import main
+
+    return main.shaders(files)
+
+
 def _shadertoy(files: Files) -> Sequence[Shader]:
     """Return the passes of a file, and of the folder where it is one of several."""
+    from playground.sketch.dialects import shadertoy, shadertoy_folder
+
     if shadertoy_folder.has_more(files):
         return shadertoy_folder.shaders(files)
     return shadertoy.shaders(files)
 
 
 def _vscode(files: Files) -> Sequence[Shader]:
+    from playground.sketch.dialects import shadertoy_folder, vscode
+
     return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files) else vscode.shaders(files)
 
 
 def _without_picture(files: Files) -> Sequence[Shader]:
     """Return the passes of the folder that a file is one of; raise ``ShaderError`` for one alone."""
+    from playground.sketch.dialects import shadertoy, shadertoy_folder
+
     return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files) else shadertoy.refused(files)
 
 
 DIALECTS = (
-    Dialect("isf", lambda text, code: _ISF.match(text), isf.shaders),
-    Dialect("export", lambda text, code: _EXPORT.match(text), shadertoy_export.shaders),
+    Dialect("isf", lambda text, code: _ISF.match(text), _isf),
+    Dialect("export", lambda text, code: _EXPORT.match(text), _export),
     Dialect(OWN, lambda text, code: _OWN_PRAGMA.search(code)),
     Dialect("vscode", lambda text, code: _DIRECTIVE.search(code), _vscode),
     Dialect("shadertoy", lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code), _shadertoy),
-    Dialect("main", lambda text, code: _MAIN.search(code), main.shaders),
+    Dialect("main", lambda text, code: _MAIN.search(code), _main),
     Dialect(_REFUSED, lambda text, code: _SOUND.search(code), _without_picture),
 )
 """The dialects, in the order in which a text is looked at."""
@@ -118,6 +145,9 @@ def read_foreign(
 
     Raises ``SketchError`` or ``ShaderError`` for what is wrong in the text.
     """
+    from playground.sketch.dialects.passes import graph_of_shaders
+    from playground.sketch.dialects.reading import Files
+
     key = (path, root, dialect)
     known = _known.get(key) if not instead else None
     if known is not None and known[1].hold():

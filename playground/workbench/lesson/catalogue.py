@@ -1,15 +1,21 @@
-"""The catalogue of lessons: by number, in a language, read when they are opened."""
+"""The catalogue of lessons: by number, in a language, read when they are opened.
+
+What reads Markdown is imported with the first of them.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from playground.errors import PlaygroundError
 from playground.lessons.library import SOURCE
 from playground.lessons.model import Lesson
-from playground.lessons.read import Summary, read_lesson, summaries
 from playground.lessons.scenes import Sketches
+
+if TYPE_CHECKING:
+    from playground.lessons.read import Summary
 
 
 @dataclass
@@ -24,6 +30,8 @@ class Catalogue:
     def listed(self, language: str) -> list[Summary]:
         """Return all lessons, in their order."""
         if language not in self._listed:
+            from playground.lessons.read import summaries
+
             try:
                 self._listed[language] = summaries(language)
             except PlaygroundError as error:
@@ -36,6 +44,8 @@ class Catalogue:
 
         Raises ``SketchError`` for one that is not there or not well written.
         """
+        from playground.lessons.read import read_lesson
+
         try:
             return read_lesson(name, language, self._sketches)
         except PlaygroundError:

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from playground.errors import PlaygroundError
 from playground.lessons.library import LANGUAGES, preferred_language
@@ -24,7 +25,6 @@ from playground.lessons.model import (
     Slider,
     Steps,
 )
-from playground.lessons.read import Summary
 from playground.lessons.scenes import comparable
 from playground.lessons.tasks.texts import answer_text, path_of
 from playground.workbench.bench import Bench
@@ -38,6 +38,9 @@ from playground.workbench.lesson.progress import Progress, progress_file, write_
 from playground.workbench.lesson.shader_copies import Copies
 from playground.workbench.lesson.tasks import Tasks
 from playground.workbench.text_file import unsaved
+
+if TYPE_CHECKING:
+    from playground.lessons.read import Summary
 
 _STEP, _VALUE = 0.8, 0.5
 """[s] that a step, and a value of a sweep, is shown while it plays."""
