@@ -2,7 +2,7 @@
 //
 //   gives    Stand, stand_of, thinned, share_above, rise_of, depth_towards, reaches,
 //            depth_of_sky, facing_sun, facing_sky, leaf_phase, crown_light, share_in, normal_in,
-//            wood_sums
+//            WOOD_PLACES, WoodPlace, wood_place, wood_sums
 //   needs    trees/crown.glsl, trees/level.glsl
 //   units    metres; trees a square metre; shares 0..1; light as a share of that on a surface
 //            that faces the sun, and of that of the whole sky on open level ground
@@ -161,20 +161,33 @@ vec3 normal_in(vec3 normal, float share, float other) {
 const int SPOKES = 12;
 const int RINGS = 5;
 
+const int WOOD_PLACES = SIZES * RINGS * SPOKES;
+
+// A place on a crown of one of the sizes, seen from far away.
+struct WoodPlace {
+    vec3 normal;   // of the crown's sphere
+    float share;   // of the crowns, above it
+    float weight;  // of the crown's size
+};
+
+WoodPlace wood_place(Stand s, vec3 to_eye, int k) {
+    vec2 of = size_of(s, k / (RINGS * SPOKES));
+    int ring = (k / SPOKES) % RINGS;
+    float turn = 2.0 * TREE_PI * (float(k % SPOKES) + 0.4 * float(ring)) / float(SPOKES);
+    float away = sqrt((float(ring) + 0.5) / float(RINGS));
+    vec2 disc = away * vec2(cos(turn), sin(turn));
+    vec3 place = visible_place(disc, to_eye, vec2(s.across, s.up));
+    return WoodPlace(place, share_above(s, of.x * (s.middle + s.up * place.z)), of.y);
+}
+
 // Sums over the disc of a crown of each size: of sun, of sky and of 1, each place with
 // exp(-depth share), where `share` of the crowns is above it.
 vec3 wood_sums(Stand s, vec3 to_eye, vec3 to_sun, float depth) {
     vec3 total = vec3(0.0);
-    for (int k = 0; k < SIZES * RINGS * SPOKES; k++) {
-        vec2 of = size_of(s, k / (RINGS * SPOKES));
-        int ring = (k / SPOKES) % RINGS;
-        float turn = 2.0 * TREE_PI * (float(k % SPOKES) + 0.4 * float(ring)) / float(SPOKES);
-        float away = sqrt((float(ring) + 0.5) / float(RINGS));
-        vec2 disc = away * vec2(cos(turn), sin(turn));
-        vec3 place = visible_place(disc, to_eye, vec2(s.across, s.up));
-        float share = share_above(s, of.x * (s.middle + s.up * place.z));
-        float left = of.y * exp(-depth * share);
-        total += left * vec3(facing_sun(place, to_sun), facing_sky(place), 1.0);
+    for (int k = 0; k < WOOD_PLACES; k++) {
+        WoodPlace seen = wood_place(s, to_eye, k);
+        float left = seen.weight * exp(-depth * seen.share);
+        total += left * vec3(facing_sun(seen.normal, to_sun), facing_sky(seen.normal), 1.0);
     }
     return total / float(RINGS * SPOKES);
 }

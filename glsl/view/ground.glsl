@@ -13,14 +13,19 @@
 // costs little. The second draw (view/shaded, view/splat/shaded) works each pixel out once.
 #include "view/ground_texel.glsl"
 #include "view/vertices.glsl"
-#pragma draw(mesh = "land", output = "ground:rgba32f", samples = 1)
+#pragma draw(mesh = "land", output = "ground:rg32f", samples = 1)
 
 #include "view/parameters/shape.glsl"
 
-vec4 vertex(vec3 corner, vec4 tile, out vec3 position, out float mark) {
-    return vertex_of_mesh(height, detail, corner, tile, skirt, position, mark);
+// place: east and north in metres, and the mark of place_of_vertex.
+vec4 vertex(vec3 corner, vec4 tile, out vec3 place) {
+    vec3 position;
+    float mark;
+    vec4 clip = vertex_of_mesh(height, detail, corner, tile, skirt, position, mark);
+    place = vec3(position.xy, mark);
+    return clip;
 }
 
-vec4 fragment(vec3 position, float mark) {
-    return ground_texel(position, mark);
+vec4 fragment(vec3 place) {
+    return ground_texel(place.xy, place.z);
 }

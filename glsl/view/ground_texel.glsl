@@ -1,19 +1,34 @@
 // view/ground_texel.glsl -- what of the terrain a pixel shows, in one texel.
 //
-//   gives    Ground, ground_texel, ground_of_texel, texture_on_ground, draped_on_ground; in a
-//            draw's fragment stage only
-//   needs    maths/drape.glsl, view/surface.glsl; eye
+//   gives    ray_through, Ground, ground_texel, ground_of_texel, texture_on_ground,
+//            draped_on_ground; all but the first in a draw's fragment stage only
+//   needs    maths/drape.glsl, view/surface.glsl; eye, clip_from_world
 //   units    metres
 //   source   none: packing made here
 //   tested   tests/glsl/test_view_ground.py, by what comes back
 //
-// East and north; the distance; and in the last number how far the next pixel lies on the terrain,
-// east and north, as two floats of 16 bits, or below 0 the mark of a cut wall or of what is no
-// number, neither of which has a texture. The next pixel is that to the right or above, whichever
-// lies further: without a GPU that alone says which level of a texture is read, where its texels
-// are as wide as high. The 7 bits move a level by 1/256 at most.
+// In the first number the inverse of its depth, along the view and not along the pixel's ray: 0
+// where there is nothing. The ray says which place that is. In the second how far the next pixel
+// lies on the terrain, east and north, as two floats of 16 bits, or below 0 the mark of a cut wall
+// or of what is no number, neither of which has a texture. The next pixel is that to the right or
+// above, whichever lies further: without a GPU that alone says which level of a texture is read,
+// where its texels are as wide as high. The 7 bits move a level by 1/256 at most.
+//
+// Two numbers, as each more that a mesh of small triangles writes costs a tenth of its draw.
 #ifndef VIEW_GROUND_TEXEL
 #define VIEW_GROUND_TEXEL
+
+// From the eye to what is 1 m deep in the view, at a place of the picture: 0..1 from its south-west
+// corner. The rows of the matrix that turn and stretch say so without the eye, whose large numbers
+// the inverse would subtract again. Linear over the picture.
+vec3 ray_through(vec2 place) {
+    mat3 rows = mat3(transpose(clip_from_world));
+    vec3 depth = transpose(clip_from_world)[3].xyz;
+    vec2 clip = 2.0 * place - 1.0;
+    vec3 ray = cross(rows[0] - clip.x * depth, rows[1] - clip.y * depth);
+    return ray / dot(depth, ray);
+}
+
 #ifdef FRAGMENT_STAGE
 #include "maths/drape.glsl"
 #include "view/surface.glsl"
@@ -38,17 +53,20 @@ vec2 unpacked_pair(float number) {
     return uintBitsToFloat(uvec2(bits << 16, bits & 0xffff0000u));
 }
 
-vec4 ground_texel(vec3 position, float mark) {
-    vec2 right = dFdx(position.xy), above = dFdy(position.xy);
+vec4 ground_texel(vec2 place, float mark) {
+    vec2 right = dFdx(place), above = dFdy(place);
     vec2 change = abs(dot(right, right) > dot(above, above) ? right : above);
     float last = mark > 0.0 ? -clamp(mark, 1e-6, 1.0) : mark < BROKEN ? IS_BROKEN
                  : packed_pair(clamp(change, 1e-20, 1e20));
-    return vec4(position.xy, distance(eye, position), last);
+    return vec4(gl_FragCoord.w, last, 0.0, 1.0);
 }
 
-Ground ground_of_texel(vec4 texel) {
-    float mark = texel.w < BROKEN ? IS_BROKEN : max(-texel.w, 0.0);
-    return Ground(texel.xy, texel.z, mark == 0.0 ? unpacked_pair(texel.w) : vec2(0.0), mark);
+// What a pixel shows whose ray is that of ray_through.
+Ground ground_of_texel(vec2 texel, vec3 ray) {
+    float mark = texel.y < BROKEN ? IS_BROKEN : max(-texel.y, 0.0);
+    vec3 away = ray / texel.x;
+    return Ground(eye.xy + away.xy, length(away),
+                  mark == 0.0 ? unpacked_pair(texel.y) : vec2(0.0), mark);
 }
 
 // A texture at `uv`, which moves by so much from a pixel to the next; `sharper` as SHARPER is.

@@ -25,13 +25,14 @@ uniform sampler2D daylight;  //! input("black")
 uniform int sky = 0;  //! menu("colours", "daylight") group("Sky")
                       //! Whether the haze has that colour, or that of the sky of lighting/daylight
 
-vec4 vertex(vec3 corner, out vec2 pixel) {
+vec4 vertex(vec3 corner, out vec2 pixel, out vec3 ray) {
     pixel = corner.xy * vec2(size);
+    ray = ray_through(corner.xy);
     return vec4(corner.xy * 2.0 - 1.0, 1.0, 1.0);
 }
 
-vec4 fragment(vec2 pixel) {
-    Ground seen = ground_of_texel(texelFetch(ground, ivec2(pixel), 0));
+vec4 fragment(vec2 pixel, vec3 ray) {
+    Ground seen = ground_of_texel(texelFetch(ground, ivec2(pixel), 0).rg, ray);
     vec2 share = seen.place / extent, moves = seen.change / extent;
     vec3 shown = draped_on_ground(colour, share, moves, SHARPER).rgb;
     if (wired_detail_image) {

@@ -27,6 +27,7 @@ from playground.images.content_hash import content_hash
 from playground.images.files import read_image
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
+from playground.sketch.fixed_texels import fixed_texels, read_by_texels_alone
 from playground.sketch.model import Input, Kernel, Parameter, Sampling, Value
 from playground.sketch.reserved_names import MATCHES, PRESSED, TOWARDS, UNWIRED, WINDOW, WIRED
 from playground.terrain.directions import unit_vector
@@ -327,6 +328,27 @@ def fixed_texels_of(
         if unwired and result.size == (1, 1):  # where one input is unwired, so it goes with each of one texel
             x = y = 0
         found[uniform] = result.texel(output, x, y)
+    return found
+
+
+def texels_alone(kernel: Kernel, inputs: Mapping[str, Wired]) -> list[float] | None:
+    """Return all that a text reads of those inputs of which it reads single texels only.
+
+    Of each texel the components that it takes. None where one of the inputs cannot be read back.
+    """
+    found: list[float] = []
+    names = [name for name in read_by_texels_alone(kernel.source) if name in inputs]
+    names = [name for name in names if inputs[name].texture is not None]
+    if not all(is_read_back(name, inputs) for name in names):
+        return None
+    for texel in fixed_texels(kernel.source):
+        if texel.input in names:
+            result, _, output = inputs[texel.input]
+            assert result is not None, "it can be read back"
+            # With another input unwired, one of a single texel gives that at every place.
+            at = (0, 0) if result.size == (1, 1) else (texel.x, texel.y)
+            values = result.texel(output, *at)
+            found += [values[component] for component in sorted(texel.components)]
     return found
 
 

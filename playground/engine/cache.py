@@ -62,6 +62,7 @@ class Cache:
         self._total = 0  # their sum
         self.hits = 0  # results that were taken from here
         self._latest: dict[str, tuple[str, str, int]] = {}
+        self._read: dict[str, tuple[str, str]] = {}  # see ``note_read``
         # Of each pass, by its path and its size: see ``Cached``.
         self._versions: dict[tuple[str, tuple[int, int]], OrderedDict[str, None]] = {}
 
@@ -144,6 +145,15 @@ class Cache:
         known, key, before = self._latest.get(path, ("", "", 0))
         return key if known == unfinished and before < iterations and key in self._cached else ""
 
+    def note_read(self, path: str, read: str, key: str) -> None:
+        """Remember what a pass has read that has this key."""
+        self._read[path] = (read, key)
+
+    def with_same_read(self, path: str, read: str) -> str:
+        """Return the key of the same pass where it read the same; "" where nothing is cached of it."""
+        known, key = self._read.get(path, ("", ""))
+        return key if known == read and key in self._cached and key not in self._in_use else ""
+
     def take(self, key: str) -> Result:
         """Hand over the result of a pass to the caller, and forget it."""
         cached = self._cached.pop(key)
@@ -209,6 +219,7 @@ class Cache:
         self._sizes.clear()
         self._total = 0
         self._latest.clear()
+        self._read.clear()
         self._versions.clear()
 
     def _weigh_used(self) -> None:

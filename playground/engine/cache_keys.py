@@ -26,9 +26,10 @@ from typing import Any, NamedTuple
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_version, sources_of, walk
 from playground.images.content_hash import content_hash
 from playground.sketch.expressions import counts_frames
+from playground.sketch.fixed_texels import read_by_texels_alone
 from playground.sketch.flat import Fed, Ref, Shape, Source
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import CLOCKED, GIVEN, PRESSED, TOWARDS
+from playground.sketch.reserved_names import CLOCKED, GIVEN, MATCHES, PRESSED, TOWARDS
 from playground.terrain.known import Terrain
 from playground.terrain.meshes import mesh_parameters
 
@@ -48,15 +49,15 @@ class Keys:
     steps: dict[str, str] = field(default_factory=dict)  # by the step's path
     raw: dict[str, str] = field(default_factory=dict)  # the same of what it has, where more is shown
     unfinished: dict[str, str] = field(default_factory=dict)  # the same after any number of iterations
+    # The same without the inputs of which single texels are read and nothing else, by path; of such steps.
+    apart: dict[str, str] = field(default_factory=dict)
     loops: dict[str, str] = field(default_factory=dict)  # by the loop's path, likewise
     # The paths of the loops around a node whose iterations change it, by the node's identity.
     changes: dict[int, frozenset[str]] = field(default_factory=dict)
 
     def copy(self) -> Keys:
         """Return the same keys, to be changed."""
-        return Keys(
-            self.steps.copy(), self.raw.copy(), self.unfinished.copy(), self.loops.copy(), self.changes.copy()
-        )
+        return Keys(*(getattr(self, name).copy() for name in self.__dataclass_fields__))
 
 
 class KeyMaker:
@@ -122,6 +123,7 @@ class _Text:
     digest: str
     used: frozenset[str]  # names in the text besides their declaration, or in its header
     is_moving: bool  # the same plan of the same terrain may give it something else in the next frame
+    by_texels: frozenset[str]  # inputs of which a kernel that runs once reads single texels and nothing else
 
 
 def _read_text(kernel: Kernel, text: str) -> _Text:
@@ -151,7 +153,11 @@ def _read_text(kernel: Kernel, text: str) -> _Text:
         or not _FIXED.issuperset(kernel.given)
         or any(parameter.widget.kind == "button" for parameter in kernel.parameters)
     )
-    return _Text(_digest([header, text]), frozenset(used), is_moving)
+    by_texels = frozenset[str]()
+    if kernel.kind == "kernel" and kernel.repeat == "1":
+        by_texels = read_by_texels_alone(kernel.source)
+        by_texels -= {name for name in by_texels if kernel.reads(f"{MATCHES}{name}")}
+    return _Text(_digest([header, text]), frozenset(used), is_moving, by_texels)
 
 
 class _Loops(NamedTuple):
@@ -184,6 +190,7 @@ class _StepKeys:
     unfinished: str
     raw: str
     shown: str
+    apart: str  # "" for none: see ``Keys``
 
 
 class _Part(NamedTuple):
@@ -318,6 +325,9 @@ class _KeyComputation:
         self.found[id(node)] = known
         self.keys.unfinished[path], self.keys.raw[path] = known.unfinished, known.raw
         self.keys.steps[path] = known.shown
+        self.keys.apart.pop(path, None)
+        if known.apart:
+            self.keys.apart[path] = known.apart
         varies = self.sized.get((path, False), frozenset[str]())
         for _, source in node.inputs:
             varies |= self._varies(source, varying) if source else varies
@@ -339,15 +349,20 @@ class _KeyComputation:
                 parts.append((parameter.name, parameter.sampling, suffix, next(contents)))
             elif parameter.name in text.used and parameter.name not in reads.clocked:
                 parts.append((parameter.name, value))
-        parts += [*reads.sources, *reads.given.items()]
+        more: list[Any] = list(reads.given.items())
         if "iterations" in text.used:
-            parts.append(step.whole)
+            more.append(step.whole)
         if reads.is_continued:
-            parts.append("continued")
+            more.append("continued")
+        apart = ""
+        if text.by_texels:
+            others = [(name, bool(key) if name in text.by_texels else key) for name, key in reads.sources]
+            apart = _digest([step.repeat, parts, others, more])
+        parts += [*reads.sources, *more]
         raw = shown = _digest([step.repeat, parts])
         if step.between is not None:
             shown = _digest([raw, *step.between])
-        return _StepKeys(step, written, _digest([step.path, parts]), raw, shown)
+        return _StepKeys(step, written, _digest([step.path, parts]), raw, shown, apart)
 
     def _loop(
         self,

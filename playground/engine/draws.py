@@ -31,7 +31,7 @@ from playground.sketch.flat import Ref
 from playground.sketch.model import Value
 from playground.sketch.reserved_names import ZOOM
 from playground.terrain.lod import CHOOSERS
-from playground.terrain.meshes import build_mesh, mesh_key, mesh_parameters
+from playground.terrain.meshes import drawn_mesh, mesh_key, mesh_parameters
 from playground.terrain.tiles import Chosen, ranges
 from playground.terrain.visibility import View
 
@@ -331,7 +331,7 @@ class _Loaded:
     """A mesh in buffers."""
 
     def __init__(self, ctx: moderngl.Context, key: _MeshKey) -> None:
-        mesh = build_mesh(*key)
+        mesh = drawn_mesh(*key)
         self._ctx = ctx
         self._attributes = [
             (

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 
+from playground.engine.binder import texels_alone
 from playground.engine.cache import Cache, Cached
 from playground.engine.cache_keys import Keys
 from playground.engine.plan import LoopIteration, LoopStep, Plan, PlanNode, Step, walk
@@ -117,14 +118,33 @@ class Execution:
         goes_on = step.kernel.kind == "kernel" and step.kernel.repeat != "1"
         earlier = self._earlier(step, unfinished) if goes_on else None
         inputs = {name: self._wired(source, {}) for name, source in step.inputs}
-        with self.timed(step.path, key) if self.timed else nullcontext():
-            found = self.compute(step, inputs, None, earlier)
-        if self.ended is not None:
-            self.ended(step, found)
+        read = self._read(step, inputs)
+        before = self.cache.with_same_read(step.path, read) if read else ""
+        if before:
+            found = self.cache.take(before)
+        else:
+            with self.timed(step.path, key) if self.timed else nullcontext():
+                found = self.compute(step, inputs, None, earlier)
+            if self.ended is not None:
+                self.ended(step, found)
         self.cache.put(key, Cached({step.path: found}))
+        if read:
+            self.cache.note_read(step.path, read, key)
         if goes_on:
             self.cache.note_progress(step.path, unfinished, key, step.repeat)
         return found
+
+    def _read(self, step: Step, inputs: Mapping[str, Wired]) -> str:
+        """Return all that a step's textures depend on, where its key may change without that; "" elsewhere.
+
+        Of an input of which it reads single texels, as of a daylight the day of the year, these are all. Only
+        on a software renderer, which reads them back anyway: there they are uniforms.
+        """
+        apart = self.keys.apart.get(step.path)
+        if apart is None or not self.runner.kernels.software:
+            return ""
+        texels = texels_alone(step.kernel, inputs)
+        return "" if texels is None else f"{apart} {texels}"  # where 0 is not -0
 
     def _earlier(self, step: Step, unfinished: str) -> Result | None:
         """Return the same step after fewer iterations: what is cached, or a copy where a pass reads that."""

@@ -4,12 +4,13 @@
 
 A function may fetch from a sampler that it is handed: then every call, up the chain of calls, must hand
 it the input of that name, else the text does not say which texture is read. What a macro writes is left
-alone.
+alone. Of an input of which a text reads nothing else, these texels are all that counts.
 """
 
 from __future__ import annotations
 
 import re
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -20,6 +21,8 @@ _FETCH = re.compile(
     r"\btexelFetch[ \t]*\([ \t]*([A-Za-z_]\w*)[ \t]*,[ \t]*"
     r"ivec2[ \t]*\([ \t]*(\d{1,4})[ \t]*(?:,[ \t]*(\d{1,4})[ \t]*)?\)[ \t]*,[ \t]*0[ \t]*\)"
 )
+_COMPONENTS = re.compile(r"[ \t]*\.[ \t]*([xyzw]{1,4}|[rgba]{1,4}|[stpq]{1,4})\b")
+_DECLARES = re.compile(r"\bsampler2D[ \t]+$")
 _BRACKETS = re.compile(r"[()\[\],]")
 _DIRECTIVE = re.compile(
     r"^[ \t]*#(?:[^\n\\]|\\\n|\\[^\n])*", re.MULTILINE
@@ -36,6 +39,7 @@ class FixedTexel:
     line: int  # of the text, from 0
     start: int  # column, from 0
     end: int  # behind it
+    components: frozenset[int] = frozenset(range(4))  # what the text takes of it
 
 
 @lru_cache(maxsize=256)
@@ -54,8 +58,28 @@ def fixed_texels(source: SourceText) -> tuple[FixedTexel, ...]:
         line_start = source.code.rfind("\n", 0, at) + 1
         line, x = source.code.count("\n", 0, at), int(match[2])
         y = x if match[3] is None else int(match[3])
-        texels.append(FixedTexel(match[1], x, y, line, at - line_start, match.end() - line_start))
+        taken = _COMPONENTS.match(source.code, match.end())
+        components = frozenset(_index(one) for one in (taken[1] if taken else "xyzw"))
+        start, end = at - line_start, match.end() - line_start
+        texels.append(FixedTexel(match[1], x, y, line, start, end, components))
     return tuple(texels)
+
+
+@lru_cache(maxsize=256)
+def read_by_texels_alone(source: SourceText) -> frozenset[str]:
+    """Return the samplers of which a flattened text reads nothing but what ``fixed_texels`` finds."""
+    starts: dict[str, set[int]] = {}
+    lines = [0, *(match.end() for match in re.finditer("\n", source.code))]
+    for texel in fixed_texels(source):
+        starts.setdefault(texel.input, set()).add(lines[texel.line] + texel.start)
+    if not starts:
+        return frozenset()
+    text = _Text(source.code)
+    return frozenset([name for name, known in starts.items() if text.has_no_other_use(name, known)])
+
+
+def _index(component: str) -> int:
+    return next(names.index(component) for names in ("xyzw", "rgba", "stpq") if component in names)
 
 
 class _Text:
@@ -86,6 +110,38 @@ class _Text:
         if len(alike) > 1 or re.search(rf"\b{around.name}\b", self.of_macros):
             return False
         return self._is_handed(around, arguments.index(sampler), sampler, seen | {around.name})
+
+    def has_no_other_use(self, sampler: str, fetches: Collection[int]) -> bool:
+        """Return whether a name is only declared, fetched from at these places, and handed on as itself."""
+        name = re.compile(rf"\b{sampler}\b")
+        if name.search(self.of_macros):
+            return False
+        for match in name.finditer(self.code):
+            before = self.code[: match.start()]
+            opens = before.rfind("(")
+            if opens >= 0 and re.search(r"\btexelFetch[ \t]*$", before[:opens]):
+                fetch = before.rfind("texelFetch")
+                if fetch not in fetches or before[opens + 1 :].strip():
+                    return False
+            elif not _DECLARES.search(before) and not self._is_handed_on(match.start(), sampler):
+                return False
+        return True
+
+    def _is_handed_on(self, at: int, sampler: str) -> bool:
+        """Return whether a name in some place is an argument of a function that calls it so too."""
+        depth, index, opens = 0, 0, at - 1
+        while opens >= 0 and not (depth == 0 and self.code[opens] in "(;{"):
+            mark = self.code[opens]
+            depth += (mark in ")]") - (mark in "([")
+            index += mark == "," and depth == 0
+            opens -= 1
+        called = re.search(r"([A-Za-z_]\w*)\s*$", self.code[: max(opens, 0)])
+        alike = [one for one in self.functions if called and one.name == called[1]]
+        given = _given(self.code, opens) if alike else []
+        if len(given) <= index or given[index] != sampler:
+            return False
+        known = [_arguments(one.signature) for one in alike]
+        return all(len(arguments) > index and arguments[index] == sampler for arguments in known)
 
     def _is_handed(self, function: Declared, index: int, sampler: str, seen: frozenset[str]) -> bool:
         """Return whether each call hands a function the uniform of a name as its argument of that index."""

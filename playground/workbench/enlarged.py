@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from playground.gpu.own_shaders import own_shader
+from playground.gpu.own_shaders import own_part
 from playground.gpu.textures import make_texture
 from playground.workbench.full_screen import FullScreen
 
@@ -17,7 +17,7 @@ class Enlarger:
 
     def __init__(self, ctx: moderngl.Context) -> None:
         self.ctx = ctx
-        self._shader = FullScreen(ctx, own_shader("enlarged.frag"))
+        self._shaders: dict[tuple[str, bool], FullScreen] = {}  # by the way, and whether it is grey
         self._wide: moderngl.Texture | None = None  # enlarged along its rows
         self._surface: moderngl.Framebuffer | None = None
 
@@ -30,13 +30,22 @@ class Enlarger:
             self._surface = self.ctx.framebuffer([self._wide])
         rows, columns = size[0] / picture.width, target.height / picture.height
         grey = picture.components == 1
-        self._shader.draw(self._surface, {"picture": picture}, way=(1, 0), times=rows, grey=grey)
-        self._shader.draw(target, {"picture": self._wide}, way=(0, 1), times=columns, grey=False)
+        self._along("1, 0", grey).draw(self._surface, {"picture": picture}, times=rows)
+        self._along("0, 1", False).draw(target, {"picture": self._wide}, times=columns)
+
+    def _along(self, way: str, grey: bool) -> FullScreen:
+        """Return the program that enlarges along rows, "1, 0", or along columns, "0, 1"."""
+        if (way, grey) not in self._shaders:
+            text = own_part("enlarged.frag", way=way, grey=str(grey).lower())
+            self._shaders[way, grey] = FullScreen(self.ctx, text)
+        return self._shaders[way, grey]
 
     def release(self) -> None:
         """Release what was made."""
         self._release_surface()
-        self._shader.release()
+        for shader in self._shaders.values():
+            shader.release()
+        self._shaders.clear()
 
     def _release_surface(self) -> None:
         for made in (self._surface, self._wide):

@@ -73,6 +73,11 @@ class ShownPicture:
         """The pixels that were drawn; fewer than those of ``texture`` in a preview."""
         return self._drawn_size
 
+    @property
+    def faster(self) -> frozenset[str]:
+        """Paths of the passes whose menus have the choices of previews, and of others: see ``as_preview``."""
+        return self._faster
+
     def frame(self, sketch: str, time: float) -> Frame | None:
         """Read the picture back, as what can be saved; None before the first."""
         return self._picture.frame(sketch, time)

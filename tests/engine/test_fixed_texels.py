@@ -162,3 +162,65 @@ def test_no_line_and_no_column_changes(folder: Folder):
                 expected = expected[: each.start] + uniform + expected[each.end :]
         assert after.locate(after.first + index) is line
         assert new[after.first - 1 + index] == expected
+
+
+DATES = """#pragma kernel(output = "row:rgba32f")
+uniform float hour = 1.0;  //! slider(0, 24)
+uniform float day = 1.0;   //! slider(0, 365)
+vec4 kernel(ivec2 texel) { return vec4(hour, hour, hour, day) * float(texel.x + 1); }
+"""
+SEASON = """#pragma kernel(output = "season:r32f")
+uniform sampler2D row;  //! input
+uniform float gain = 1.0;  //! slider(0, 9)
+float kernel(ivec2 texel) { return gain * texelFetch(row, ivec2(2, 0), 0).a; }
+"""
+
+
+def test_a_pass_whose_texels_are_as_they_were_does_not_run_again(
+    any_engine: Engine, folder: Folder, software: bool
+):
+    """Only its result's key is another; what it does not take of a texel does not count."""
+    folder.write("row.glsl", DATES)
+    folder.write("reads.glsl", SEASON)
+    sketch = folder.sketch(PASSES.replace("SIZE", "5, 2"))
+    with Engine(any_engine.ctx) as engine:
+
+        def look(**values: float) -> tuple[float, bool]:
+            changed = {f"row.{name}" if name != "gain" else "a.gain": v for name, v in values.items()}
+            found = engine.read(sketch.with_values(changed), "a")
+            assert (found == found[0, 0]).all()
+            return float(found[0, 0]), "a" in engine.internal.record.ran
+
+        assert look(day=7) == (21, True)
+        assert look(day=7, hour=2) == (21, not software)
+        assert look(day=7, hour=3) == (21, not software)
+        assert look(day=8, hour=3) == (24, True)
+        assert look(day=8, hour=4, gain=2) == (48, True)
+        assert look(day=8, hour=5, gain=2) == (48, not software)
+        assert look(day=7, hour=3)[0] == 21
+
+
+BOTH = """#pragma kernel(output = "both:r32f")
+uniform sampler2D first;   //! input
+uniform sampler2D second;  //! input
+float kernel(ivec2 texel) { return texelFetch(first, texel, 0).r + 100.0 * texelFetch(second, texel, 0).r; }
+"""
+
+
+def test_passes_of_one_picture_that_read_the_same_texels_have_each_a_result(
+    any_engine: Engine, folder: Folder, monkeypatch
+):
+    """Two passes change places, so that each has what was the other's; then one goes on."""
+    monkeypatch.setattr(ContextInfo, "software", True)
+    folder.write("row.glsl", DATES)
+    folder.write("reads.glsl", SEASON)
+    folder.write("both.glsl", BOTH)
+    first = PASSES.replace("SIZE", "5, 2")
+    second = first.replace('"row"', '"other"').replace('name = "a"', 'name = "b"')
+    second += 'inputs = { row = "other:row" }\n'
+    last = '[[pass]]\nname = "c"\nuse = "./both"\ninputs = { first = "a", second = "b" }\n'
+    sketch = folder.sketch(first + second + last)
+    with Engine(any_engine.ctx) as engine:
+        for hour, other in ((1, 2), (2, 1), (3, 1), (1, 1), (4, 5)):
+            changed = sketch.with_values({"row.hour": hour, "other.hour": other})
+            assert (engine.read(changed, "c") == 303).all()

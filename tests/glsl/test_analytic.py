@@ -357,3 +357,25 @@ def test_daylight_takes_the_place_of_sun_and_sky(kept, sketch):
     )
     np.testing.assert_array_equal(first, second)
     assert first[..., 3].max() == 1
+
+
+FACTOR = """#include "noise/hash.glsl"
+#pragma kernel(output = "factor:rgba16f")
+vec4 kernel(ivec2 texel) {
+    ivec2 node = texel * 32 / (size - 1);
+    return vec4(random(node, 1u), random(node, 2u), random(node, 3u), 1.0);
+}
+"""
+
+
+def test_a_sky_factor_texel_for_texel_is_that_of_a_finer_one_at_the_same_places(any_engine, make_sketch):
+    """Of one as large as the light a texel is fetched, of another what is between its texels."""
+    text = '[[pass]]\nname = "height"\nuse = "generation/diamond_square"\n'
+    for name, size in (("same", 33), ("finer", 65)):
+        text += f'[[pass]]\nname = "{name}"\nuse = "./factor"\nsize = {size}\n'
+        text += f'[[pass]]\nname = "{name}_light"\nuse = "lighting/horizon_sun"\n'
+        text += f'inputs = {{ sky_factor = "{name}:factor" }}\nset = {{ sun = [120, 20], ambient = 0.7 }}\n'
+    sketch = make_sketch(text, size=33, factor=FACTOR)
+    found = any_engine.read(sketch, "same_light:light")
+    assert found.std() > 0.05
+    np.testing.assert_array_equal(found, any_engine.read(sketch, "finer_light:light"))

@@ -483,3 +483,16 @@ def test_a_camera_that_moves_lights_nothing_anew(any_engine, outdoors):
     assert any_engine.internal.ran and all(path.startswith("view.") for path in any_engine.internal.ran), (
         any_engine.internal.ran
     )
+
+
+@pytest.mark.parametrize("columns", [1, 2, 3, 5, 16])
+def test_a_dome_of_any_width_has_the_same_bits_by_its_halves(any_engine, make_sketch, columns):
+    """Of an odd number, the middle column is in the right half, whose last two columns have one place."""
+    text = '[[pass]]\nname = "daylight"\nuse = "lighting/daylight"\nset = { hour = 8.3 }\n'
+    text += f'[[pass]]\nname = "dome"\nuse = "lighting/daylight/dome"\nsize = [{columns}, 27]\n'
+    text += 'inputs = { place = "daylight.place:place", columns = "daylight:columns", '
+    text += 'bounced = "daylight:bounced", air = "daylight.air:air" }\n'
+    sketch = make_sketch(text)
+    found = any_engine.read(sketch, "dome")
+    assert "dome.fast.dome" in any_engine.internal.record.ran
+    np.testing.assert_array_equal(found, any_engine.read(sketch.plainly(), "dome"))

@@ -19,6 +19,20 @@ LOOKS = [
 ]
 GROUND = '[[pass]]\nname = "height"\nuse = "./terrain"\n[[pass]]\nname = "ground"\nuse = "view/ground"\n'
 GROUND += "size = [160, 100]\nset = { grid = 9 }\n[view]\nsamples = 1\n"
+READ = GROUND.replace("[view]", '[[pass]]\nname = "place"\nuse = "./place"\nsize = [160, 100]\n[view]')
+PLACE = """
+#include "view/ground_texel.glsl"
+#pragma draw(mesh = "sheet", output = "place:rgba32f", samples = 1)
+uniform sampler2D ground;  //! input
+vec4 vertex(vec3 corner, out vec3 ray) {
+    ray = ray_through(corner.xy);
+    return vec4(corner.xy * 2.0 - 1.0, 0.0, 1.0);
+}
+vec4 fragment(vec3 ray) {
+    Ground seen = ground_of_texel(texelFetch(ground, ivec2(gl_FragCoord.xy), 0).rg, ray);
+    return vec4(seen.place, seen.distance, seen.mark);
+}
+"""
 TERRAIN_VIEW = (
     '[[pass]]\nname = "height"\nuse = "generation/diamond_square"\n'
     '[[pass]]\nname = "colour"\nuse = "./colour"\nsize = 257\n'
@@ -37,6 +51,12 @@ def software(any_engine):
     return any_engine
 
 
+def unpacked(pairs):
+    """Return the two floats of 16 bits that each number holds."""
+    bits = np.ascontiguousarray(pairs.astype(np.float32)).view(np.uint32)
+    return np.stack([(bits << 16).view(np.float32), (bits & 0xFFFF0000).view(np.float32)], axis=-1)
+
+
 def forms(engine, sketch, size=SIZE):
     """Return the frame by the fast variant, which has run, by the plain draw, and where they must agree.
 
@@ -45,8 +65,7 @@ def forms(engine, sketch, size=SIZE):
     """
     found = engine.read(sketch, "view.sea", size=size)[..., :3].astype(float)
     ground = read_texture(engine.internal.record.results["view.land.fast.ground"].textures["ground"])
-    bits = np.ascontiguousarray(np.maximum(ground[..., 3], 0)).view(np.uint32)
-    slopes = np.stack([(bits << 16).view(np.float32), (bits & 0xFFFF0000).view(np.float32)], axis=-1)
+    slopes = unpacked(np.maximum(ground[..., 1], 0))
     squares = slopes.reshape(size[1] // 2, 2, size[0] // 2, 2, 2)
     low, high = squares.min(axis=(1, 3)), squares.max(axis=(1, 3))
     # Two neighbours of 8 bits.
@@ -67,8 +86,9 @@ def assert_agree(found, expected, alike, most=1 / 64 + 1e-3):
 
 def test_each_pixel_has_its_place_its_distance_and_how_far_the_next_is(software, make_sketch):
     """Level ground under a perspective camera: the pixels' rays meet a plane."""
-    sketch = make_sketch(GROUND, terrain=HEIGHT.format("0.0")).with_camera(LOOKS[0])
+    sketch = make_sketch(READ, terrain=HEIGHT.format("0.0"), place=PLACE).with_camera(LOOKS[0])
     found = software.read(sketch, "ground").astype(float)
+    read = software.read(sketch, "place").astype(float)
     eye = software.internal.plan.eye
     clip = eye.clip_from_world.astype(float)
     inverse = np.linalg.inv(clip[np.ix_([0, 1, 3], [0, 1, 3])])
@@ -79,13 +99,13 @@ def test_each_pixel_has_its_place_its_distance_and_how_far_the_next_is(software,
 
     rows, columns = np.indices((100, 160)) + 0.5
     place = places(rows, columns)
-    inside = ((place > 5) & (place < 995)).all(axis=-1) & (found[..., 2] > 0)
+    inside = ((place > 5) & (place < 995)).all(axis=-1) & (found[..., 0] > 0)
     assert inside.sum() > 2000
-    np.testing.assert_allclose(found[..., :2][inside], place[inside], atol=2e-2)
-    away = np.hypot(np.hypot(*np.moveaxis(place - eye.position[:2], -1, 0)), eye.position[2])
-    np.testing.assert_allclose(found[..., 2][inside], away[inside], rtol=1e-5)
-    bits = np.ascontiguousarray(found[..., 3].astype(np.float32)).view(np.uint32)
-    change = np.stack([(bits << 16).view(np.float32), (bits & 0xFFFF0000).view(np.float32)], axis=-1)
+    away = np.concatenate([place - eye.position[:2], np.full((100, 160, 1), -eye.position[2])], axis=-1)
+    np.testing.assert_allclose(1 / found[..., 0][inside], away[inside] @ clip[3, :3], rtol=1e-5)
+    np.testing.assert_allclose(read[..., :2][inside], place[inside], atol=2e-2)
+    np.testing.assert_allclose(read[..., 2][inside], np.linalg.norm(away, axis=-1)[inside], rtol=1e-5)
+    change = unpacked(found[..., 1])
     # Of a square of four pixels each row, and each column, has one difference.
     low, left = rows - (rows - 0.5) % 2, columns - (columns - 0.5) % 2
     right = np.abs(places(rows, left + 1) - places(rows, left))
@@ -99,7 +119,7 @@ def test_each_pixel_has_its_place_its_distance_and_how_far_the_next_is(software,
 def test_walls_and_holes_have_their_mark(any_engine, make_sketch):
     hole = HEIGHT.format("all(lessThan(abs(texel - 16), ivec2(4))) ? uintBitsToFloat(0x7fc00000u) : 0.0")
     sketch = make_sketch(GROUND.replace("grid = 9", "grid = 33"), terrain=hole)
-    last = any_engine.read(sketch.with_camera(LOOKS[2]), "ground")[..., 3]
+    last = any_engine.read(sketch.with_camera(LOOKS[2]), "ground")[..., 1]
     assert np.count_nonzero(last < -10) > 20
     walls = last[(last < 0) & (last > -10)]
     assert walls.size > 200 and walls.min() >= -1 and np.ptp(walls) > 0.5

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.sketch.fixed_texels import fixed_texels
+from playground.sketch.fixed_texels import fixed_texels, read_by_texels_alone
 from playground.sketch.source import read_source
 
 HEAD = """uniform sampler2D sun;
@@ -96,3 +96,67 @@ def test_a_fetch_of_one_texel_of_an_input_is_found(tmp_path: Path, where: str):
 @pytest.mark.parametrize("where", LEFT)
 def test_what_may_be_another_texel_is_left_alone(tmp_path: Path, where: str):
     assert texels(tmp_path, LEFT[where]) == []
+
+
+ALONE = {
+    "in the kernel": ("float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r; }", {"sun"}),
+    "by a function": (
+        "float at(bool is, sampler2D sun) { return is ? texelFetch(sun, ivec2(1, 0), 0).a : 0.0; }\n"
+        "float kernel(ivec2 t) { return (at(t.x > 0, sun)) + max(at(true, sun), 1.0); }",
+        {"sun"},
+    ),
+    "of two": (
+        "float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r * texelFetch(moon, ivec2(0), 0).r; }",
+        {"sun", "moon"},
+    ),
+    "and elsewhere": (
+        "float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r + texelFetch(sun, t, 0).r; }",
+        set(),
+    ),
+    "and filtered": (
+        "float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r + textureLod(sun, vec2(t), 0.0).r; }",
+        set(),
+    ),
+    "and its size": (
+        "float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r * float(textureSize(sun, 0).x); }",
+        set(),
+    ),
+    "and by a function that calls it otherwise": (
+        "float at(sampler2D which) { return textureLod(which, vec2(0.0), 0.0).r; }\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r * at(sun); }",
+        set(),
+    ),
+    "and by a function at any place": (
+        "float at(sampler2D sun, ivec2 t) { return texelFetch(sun, t, 0).r; }\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r * at(sun, t); }",
+        set(),
+    ),
+    "and by a macro": (
+        "#define AT(t) texelFetch(sun, t, 0)\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, ivec2(3), 0).r * AT(t).r; }",
+        set(),
+    ),
+}
+
+
+def source_of(folder: Path, text: str):
+    (folder / "k.glsl").write_text(HEAD + text + "\n", encoding="utf-8")
+    return read_source(folder / "k.glsl", (folder,))
+
+
+@pytest.mark.parametrize("how", ALONE)
+def test_an_input_is_read_by_single_texels_alone_where_the_text_does_nothing_else_with_it(
+    tmp_path: Path, how: str
+):
+    text, expected = ALONE[how]
+    assert read_by_texels_alone(source_of(tmp_path, text)) == expected
+
+
+@pytest.mark.parametrize(
+    ("taken", "components"),
+    [(".a", {3}), (" . gr", {0, 1}), (".xyz.zx", {0, 1, 2}), (".st", {0, 1}), ("", {0, 1, 2, 3})],
+)
+def test_what_a_text_takes_of_a_texel_is_noted(tmp_path: Path, taken: str, components: set[int]):
+    text = f"vec4 kernel(ivec2 t) {{ return vec4(texelFetch(sun, ivec2(3), 0){taken}); }}"
+    (found,) = fixed_texels(source_of(tmp_path, text))
+    assert found.components == components

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from playground.errors import SketchError
-from playground.terrain.meshes import MESHES, Mesh, build_mesh, mesh_key, mesh_parameters
+from playground.terrain.meshes import MESHES, Mesh, build_mesh, drawn_mesh, mesh_key, mesh_parameters
 
 
 def grid(n: int) -> Mesh:
@@ -135,3 +135,37 @@ def test_every_mesh_builds_at_its_least():
     for name, (_, limits) in MESHES.items():
         mesh = build_mesh(name, tuple((key, low) for key, (low, _) in limits.items()))
         assert len(mesh.indices) % 3 == 0
+
+
+def shaded(indices: np.ndarray, pieces: int = 1024, remembered: int = 256) -> int:
+    """Return how many vertices llvmpipe shades: each that is not the last of its number modulo 256.
+
+    It forgets all of them after so many indices (Mesa, draw_pt_vsplit.c).
+    """
+    count = 0
+    for start in range(0, len(indices), pieces):
+        last = np.full(remembered, -1)
+        for index in indices[start : start + pieces].tolist():
+            count += last[index % remembered] != index
+            last[index % remembered] = index
+    return count
+
+
+@pytest.mark.parametrize(("name", "more"), [("grid", {}), ("land", {"detail": 0})])
+@pytest.mark.parametrize("n", [2, 17, 97, 129, 257])
+def test_a_grid_is_drawn_in_an_order_that_shades_few_vertices_twice(name: str, more: dict[str, int], n: int):
+    key = mesh_key(name, {"grid": n, **more})
+    built, drawn = build_mesh(name, key), drawn_mesh(name, key)
+    assert shaded(drawn.indices) < 1.3 * len(drawn.attributes["corner"]) + 8
+    # The same triangles, each from the same corner on.
+    faces = [triangles(mesh).reshape(-1, 9) for mesh in (built, drawn)]
+    first, second = (each[np.lexsort(each.T)] for each in faces)
+    np.testing.assert_array_equal(first, second)
+
+
+@pytest.mark.parametrize(("name", "values"), [("sheet", {}), ("land", {"detail": 1, "grid": 9})])
+def test_other_meshes_are_drawn_as_they_are(name: str, values: dict[str, int]):
+    """Of tiles, draws take their pieces by their places among the indices."""
+    key = mesh_key(name, values)
+    built, drawn = build_mesh(name, key), drawn_mesh(name, key)
+    np.testing.assert_array_equal(built.indices, drawn.indices)

@@ -8,11 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from playground.engine.engine import Engine
 from playground.gpu.context import ContextInfo
+from playground.gpu.textures import read_picture
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
+from playground.workbench.inspect.compare import Compare
 from playground.workbench.preview import as_preview
 from playground.workbench.session import Session
 
@@ -31,6 +34,7 @@ use = "lighting/ray_cast"
 use = "view/terrain"
 """
 FORM = "light.visibility.form"
+LOW = (120.0, 6.0)  # a sun with long shadows
 
 
 @pytest.fixture
@@ -115,6 +119,39 @@ def test_a_preview_that_rests_runs_nothing_until_it_is_drawn_in_full(session: Se
     before = dict(session.engine.internal.runs)
     session.frame(SIZE)
     assert session.engine.internal.runs == before
+
+
+@pytest.mark.usefixtures("compute")
+def test_what_it_is_compared_with_has_the_same_form(session: Session, any_engine: Engine):
+    """A sweeps while B does, so that the two differ by what was changed alone; at rest both march."""
+    compare = Compare(session)
+
+    def follow() -> NDArray[np.uint8]:
+        picture = session.picture.texture
+        assert picture is not None
+        compare.follow(picture)
+        assert compare.picture is not None
+        return read_picture(compare.picture)
+
+    session.drafts.set("light.sun", LOW)
+    session.frame(SIZE)
+    session.read()
+    compare.keep()
+    full = follow()
+    session.drafts.set("light.sun", (200.0, 20.0))
+    session.frame(SIZE)
+    seen, sketch = follow(), load(session.path).with_values({"light.sun": LOW})
+    assert form(session) == 1 and session.picture.drawn_size == SIZE
+    swept = as_preview(sketch, faster={"light.visibility"})
+    np.testing.assert_array_equal(seen, any_engine.render(swept, size=SIZE).array)
+    assert (seen != any_engine.render(as_preview(sketch), size=SIZE).array).any()
+    session.drafts.set("light.sun", (201.0, 20.0))
+    session.frame(SIZE)
+    follow()
+    assert compare.draws == 1, "A has that form already"
+    session.read()
+    np.testing.assert_array_equal(follow(), full)
+    compare.release()
 
 
 def test_without_compute_shaders_it_marches(session: Session, monkeypatch):

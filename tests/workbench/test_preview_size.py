@@ -308,6 +308,21 @@ def test_a_cubic_surface_is_enlarged_to_itself(
     np.testing.assert_allclose(found[..., 0][inner], 255 * surface(large)[inner], atol=1.8)
 
 
+def test_grey_pictures_and_coloured_ones_are_enlarged_in_turn(any_engine: Engine):
+    ctx, size, large = any_engine.ctx, (6, 4), (13, 11)
+    level = np.full((size[1], size[0], 4), (200, 90, 30, 255), np.uint8)
+    shown, enlarger = ctx.texture(large, 4), Enlarger(ctx)
+    target = ctx.framebuffer([shown])
+    grey, coloured = ctx.texture(size, 1, level[..., 0].tobytes(), alignment=1), ctx.texture(size, 4, level)
+    for picture, expected in ((grey, (200, 200, 200)), (coloured, (200, 90, 30)), (grey, (200, 200, 200))):
+        with any_engine.internal.borrowed():
+            enlarger.draw(picture, target)
+        found = np.frombuffer(shown.read(), np.uint8).reshape(-1, 4)
+        np.testing.assert_allclose(found[:, :3], np.tile(expected, (len(found), 1)), atol=1)
+    for made in (enlarger, target, shown, grey, coloured):
+        made.release()
+
+
 def test_costs_between_sizes_and_beyond_them_are_linear_and_the_first_is_forgotten():
     costs = PassCosts()
     assert costs.expected("a", 100) is None

@@ -59,6 +59,9 @@ void kernel(ivec2 texel, out vec4 light, out float visibility) {
     visibility = disc_seen(over.a, horizon);
     vec4 received = received_at(texel);
     vec3 sky = over.rgb;
-    if (wired_sky_factor) sky *= map_at(sky_factor, texel, size).rgb;
+    if (wired_sky_factor) {
+        sky *= (matches_sky_factor ? texelFetch(sky_factor, texel, 0)
+                : map_at(sky_factor, texel, size)).rgb;
+    }
     light = vec4(received.rgb * visibility + sky, received.a * visibility);
 }

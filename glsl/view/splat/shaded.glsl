@@ -28,13 +28,14 @@ uniform sampler2D light;    //! input("linear", "mipmap", "white")
 #include "view/parameters/layers.glsl"
 #include "view/parameters/haze.glsl"
 
-vec4 vertex(vec3 corner, out vec2 pixel) {
+vec4 vertex(vec3 corner, out vec2 pixel, out vec3 ray) {
     pixel = corner.xy * vec2(size);
+    ray = ray_through(corner.xy);
     return vec4(corner.xy * 2.0 - 1.0, 1.0, 1.0);
 }
 
-vec4 fragment(vec2 pixel) {
-    Ground seen = ground_of_texel(texelFetch(ground, ivec2(pixel), 0));
+vec4 fragment(vec2 pixel, vec3 ray) {
+    Ground seen = ground_of_texel(texelFetch(ground, ivec2(pixel), 0).rg, ray);
     vec2 share = seen.place / extent, moves = seen.change / extent;
     vec2 square = vec2(1.0, extent.y / extent.x);
     vec2 tile = share * square, over = moves * square;

@@ -2,11 +2,14 @@
 // A picture enlarged along its rows, or along its columns. Between the middles of its texels lies
 // the cubic of Catmull and Rom 1974, "A Class of Local Interpolating Splines", which goes through
 // their values and keeps edges sharp. Texels are fetched: a bound sampler changes nothing.
+// Which way, and whether the picture has one channel, are constants: a software renderer works out
+// places of texels, and chooses channels, for each of the four anew.
 uniform sampler2D picture;
-uniform ivec2 way;    // (1, 0) along rows, (0, 1) along columns
 uniform float times;  // pixels of the target that a texel is wide, along `way`
-uniform bool grey;
 out vec4 colour;
+
+const ivec2 way = ivec2($way);  // 1, 0 along rows; 0, 1 along columns
+const bool grey = $grey;
 
 vec3 texel(ivec2 at) {
     vec4 found = texelFetch(picture, at, 0);

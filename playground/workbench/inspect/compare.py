@@ -1,9 +1,10 @@
 """Two states of a sketch side by side: A is stored as it was, B is what is worked on.
 
 A is a draft, with its texts in memory, and its picture. While nothing but B changes, that
-picture stays. When the camera, the time, the size or the texture that is shown moves on, A
-is drawn again from its draft; where that can no longer be done, since an image that it
-reads is another now or a pass does not draw, its picture stays, and a notice says so.
+picture stays. When the camera, the time, the size or the texture that is shown moves on, or the
+forms of its passes that previews have of B, A is drawn again from its draft; where that can no
+longer be done, since an image that it reads is another now or a pass does not draw, its picture
+stays, and a notice says so.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from playground.engine.plan import Plan
 from playground.engine.planner import repeats_of
 from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch
-from playground.sketch.traits import is_animated
+from playground.sketch.traits import is_animated, traits_of
 from playground.workbench.data_files import hash_of
 from playground.workbench.edits import Draft
 from playground.workbench.inspect.blend import Blend
@@ -212,11 +213,12 @@ class Compare:
             with session.engine.internal.borrowed():
                 self._picture.copy(picture)
             self._drawn, self._is_preview = wanted, session.is_preview
+        elif self._is_preview and not session.is_preview:
+            self._draw(stored, plan, picture.size, preview=False)
+            self._drawn = wanted
         elif wanted != self._drawn:
             self._draw(stored, plan, picture.size, preview=session.engine.info.software)
             self._drawn = wanted
-        elif self._is_preview and not session.is_preview:
-            self._draw(stored, plan, picture.size, preview=False)
 
     def release(self) -> None:
         """Release what was made in the engine's context; it is drawn again where it is needed."""
@@ -229,14 +231,19 @@ class Compare:
         shown = self.session.view.map
         time = plan.time if is_animated(stored.draft.sketch) else 0.0
         view_inputs = size, plan.sketch.camera, plan.interpolated
-        return stored.draft, view_inputs, time, shown, self.session.engine
+        return stored.draft, view_inputs, time, shown, self._faster(stored.draft.sketch), self.session.engine
+
+    def _faster(self, sketch: Sketch) -> frozenset[str]:
+        """Return the passes of A that have the forms of previews, since B's have them."""
+        return self.session.picture.faster.intersection(path for path, _ in traits_of(sketch).faster)
 
     def _draw(self, stored: Stored, plan: Plan, size: tuple[int, int], *, preview: bool) -> None:
         """Draw A with as many pixels as B was drawn with, and at the size that B is shown at."""
         assert self._picture is not None
         session, engine = self.session, self.session.engine
         sketch = self._seen_as(stored.draft.sketch, plan)
-        chosen = as_preview(sketch, size, plan.frame_size) if preview else sketch
+        faster = self._faster(sketch)
+        chosen = as_preview(sketch, size, plan.frame_size, faster) if preview else sketch
         changed = [path for path, before in stored.files.items() if hash_of(path) != before]
         try:
             if changed:
