@@ -276,6 +276,4 @@ def _pyav() -> Any:
             'a video needs PyAV: python -m pip install "terrain-shader-playground[video]", or '
             "python -m pip install av; --frames writes PNG files without it"
         ) from None
-    # What an encoder has to say goes nowhere: its errors are exceptions.
-    av.logging.set_level(av.logging.PANIC)
     return av

@@ -32,7 +32,8 @@ def pyav(what: str) -> Any:
             f'{what} needs PyAV: python -m pip install "terrain-shader-playground[video]", or '
             "python -m pip install av"
         ) from None
-    av.logging.set_level(av.logging.PANIC)  # what a decoder has to say goes nowhere: errors are exceptions
+    # What a decoder has to say goes nowhere: errors are exceptions. So it is by default, and no level is set:
+    # at any, a decoder's threads wait for Python's lock to say it, which who closes a film holds, for ever.
     return av
 
 

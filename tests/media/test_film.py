@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import subprocess
 import sys
 
 import numpy as np
@@ -68,6 +69,35 @@ def test_a_frame_is_the_same_however_it_is_reached(tmp_path, name):
     backwards = Film(path)
     for number in reversed(range(film.count)):
         np.testing.assert_array_equal(backwards.pixels(number, film.size), played[number])
+
+
+AS_IT_WAS = """
+import sys, av
+from fractions import Fraction
+from pathlib import Path
+import numpy as np
+from playground.capture.video import Video
+from playground.media.film import Film
+path = Path(sys.argv[1])
+with Video(path, (64, 48), Fraction(25), 9) as video:
+    for number in range(9):
+        video.add(np.full((48, 64, 4), 20 * number, np.uint8))
+film = Film(path)
+film.pixels(3, film.size)
+film.pixels(0, film.size)
+print(av.logging.get_level())
+"""
+
+
+def test_decoders_log_nothing_by_way_of_python(tmp_path):
+    """Where a level is set, any, their threads wait for Python's lock to log.
+
+    Whoever closes a film holds that lock and waits for them: with films of noise it stood still after some
+    hundred of them.
+    """
+    command = [sys.executable, "-c", AS_IT_WAS, str(tmp_path / "a.mp4")]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "None\n", "")
 
 
 def test_playing_on_decodes_each_frame_once(tmp_path, monkeypatch):
