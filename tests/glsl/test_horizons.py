@@ -1,9 +1,9 @@
 """Horizons: the march against brute force in float64, the sweep (lighting/horizons.comp) against the march.
 
 Horizons are compared as elevations in degrees. They are kept as tangents in half floats, which
-is 0.03 degrees at most. The sweep finds the row on which each texel sees its horizon from lines that
-run beside it, and looks at that row from the texel itself: so it is never over the march, and
-under it only where the lines saw another row. How far is bounded here, by the sun's diameter,
+is 0.03 degrees at most. The sweep finds rows on which a texel may see its horizon from a line that
+runs beside it, and looks at these rows from the texel itself: so it is never over the march, and
+under it only where the line saw other rows. How far is bounded here, by the sun's diameter,
 on terrains from real to white noise, at the border as inside, whatever the texels' sides.
 """
 
@@ -281,12 +281,12 @@ def test_a_horizon_near_by_is_exact(engines, measured):
         assert off(found[..., channel], whole)[close].max() < ROUNDING
 
 
-def test_a_needle_between_two_lines_may_be_missed_but_by_few(engines, measured):
-    """Each of the lines beside it sees half of a peak one texel wide, and may find another row higher."""
+def test_a_needle_between_two_lines_is_seen_by_nearly_all(engines, measured):
+    """A line beside it sees half of a peak one texel wide, and may find another row higher."""
     march, sweep = (measured(engine, ragged(97, 80), first=11.25) for engine in engines)
     assert (sweep[0] - march[0]).max() < ROUNDING
     wrong = off(sweep[0], march[0])
-    assert rms(wrong) < SUN / 3 and (wrong > SUN).mean() < 0.002 and wrong.max() < 25.0
+    assert rms(wrong) < SUN / 10 and (wrong > SUN).mean() < 0.002 and wrong.max() < 3.0
 
 
 @pytest.mark.parametrize("directions", [2, 16, 64])
