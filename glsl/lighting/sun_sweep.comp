@@ -11,8 +11,8 @@
 // Two lines, a texel apart, bound a band, and each texel of a row is in one band: on its first
 // line or between. A thread has four bands beside each other: five lines and six texels a row,
 // where four threads would have eight and twelve. It follows the lines from the sun's side, and
-// keeps for each of the four slopes the point that a line of that slope rests on: a fixed amount of
-// work a row. Bands that begin beside the terrain enter it later.
+// keeps for each of the four slopes the point that a line of that slope rests on: a fixed amount
+// of work a row. Bands that begin beside the terrain enter it later.
 #include "lighting/daylight_reading.glsl"
 #include "lighting/sun_sweep/lines.glsl"
 #include "maths/land.glsl"
@@ -99,8 +99,8 @@ float horizons[BANDS + 1];  // that the lines have found
     ivec2 texel = texel_on(lines, row, at); \
     if (at >= 0 && at <= lines.last) horizon[texel.y * size.x + texel.x] = tangent; }
 
-// The height at a texel: the same as texelFetch gives, in half the time on llvmpipe, which looks up
-// the level of texelFetch for each texel anew.
+// The height at a texel: the same as texelFetch gives, in half the time on llvmpipe, which looks
+// up the level of texelFetch for each texel anew.
 float height_in_middle(ivec2 texel) {
     return textureLod(height, (vec2(texel) + 0.5) / vec2(size), 0.0).r;
 }

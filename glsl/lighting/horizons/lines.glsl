@@ -47,9 +47,9 @@ int first_line(Course course) {
     return -max(drifted(course, 0), drifted(course, course.rows - 1));
 }
 
-// Where a group of four lines has a row and the next, an even one and an odd: of each four tangents
-// in two words. As many groups as can be on a row have room, and as many more as can leave it
-// within a block; beyond these the room is used again.
+// Where a group of four lines has a row and the next, an even one and an odd: of each four
+// tangents in two words. As many groups as can be on a row have room, and as many more as can
+// leave it within a block; beyond these the room is used again.
 int place_of(Course course, int group, int row) {
     int groups = (course.across + 31) >> 2;
     int pairs_of_rows = ((course.rows + 7) >> 3) << 2;

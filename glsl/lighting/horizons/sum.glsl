@@ -8,8 +8,8 @@
 //   source   Timonen and Westerholm 2010, as lighting/horizons.comp
 //   tested   tests/glsl/test_horizons.py, against brute force in float64 and against the march
 //
-// A sweep has left tangents in lines; a sum adds what sky they leave, and brings those of the chief
-// directions into the maps.
+// A sweep has left tangents in lines; a sum adds what sky they leave, and brings those of the
+// chief directions into the maps.
 #ifndef LIGHTING_HORIZONS_SUM
 #define LIGHTING_HORIZONS_SUM
 #ifdef COMPUTE_STAGE

@@ -282,8 +282,8 @@ void follow_hull(const int which, int block, Course course, int line, int hull_a
     second_word[which] = grows ? below : second;
 }
 
-#define FOLLOW(which) follow_hull(which, block, course, line, hull_at, apart, top_word, top_block, \
-    second_word);
+#define FOLLOW(which) follow_hull(which, block, course, line, hull_at, apart, \
+    top_word, top_block, second_word);
 
 void sweep(Batch batch) {
     int pair = batch.from + int(gl_WorkGroupID.y);
