@@ -107,6 +107,19 @@ def brute(terrain, azimuth, rows=10**6):
     return np.degrees(np.arctan(best))
 
 
+def brute_from(terrain, y, x, azimuth):
+    """Return the horizon's elevation [degrees] from one texel, every row looked at, float64."""
+    ny, nx = terrain.heights.shape
+    way = np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))]) / terrain.spacing
+    row = 1 / np.abs(way).max()  # [m]
+    k = np.arange(1, max(nx, ny))
+    px, py = x + k * row * way[0], y + k * row * way[1]
+    on = (px >= -0.5) & (py >= -0.5) & (px <= nx - 0.5) & (py <= ny - 0.5)
+    there = terrain.at(np.clip(px[on], 0, nx - 1), np.clip(py[on], 0, ny - 1))
+    rises = (there - terrain.heights[y, x]) / (k[on] * row)
+    return np.degrees(np.arctan(max(rises.max(initial=0.0), 0.0)))
+
+
 def ragged(nx=61, ny=45, seed=3):
     """Rough terrain on oblong texels, steep, with walls and needles on it."""
     rng = np.random.default_rng(seed)
@@ -267,6 +280,20 @@ def test_the_sweep_is_brute_force_as_nearly(engines, measured, terrain):
     seen = Land(heights.astype(np.float64) * np.ptp(terrain.heights), terrain.spacing)
     exact = np.stack([brute(seen, 17.0 + azimuth) for azimuth in CHIEF], axis=-1)
     assert rms(found - exact) < SUN / 10 and off(found, exact).max() < 3.0
+
+
+def test_wide_terrain_has_the_horizons_of_brute_force(engines, measured):
+    """A thousand rows, seen from texels here and there: most horizons are hundreds of rows away."""
+    terrain = rough(1.8, (30.0, 30.0), (640, 1025))
+    found, _, heights = measured(engines[1], terrain, first=7.0)
+    seen = Land(heights.astype(np.float64) * np.ptp(terrain.heights), terrain.spacing)
+    rng = np.random.default_rng(0)
+    wrong = []
+    for y, x in zip(rng.integers(0, 640, 60), rng.integers(0, 1025, 60), strict=True):
+        exact = [brute_from(seen, int(y), int(x), 7.0 + azimuth) for azimuth in CHIEF]
+        wrong.append(found[y, x] - exact)
+    assert np.max(wrong) < ROUNDING
+    assert rms(np.array(wrong)) < SUN / 10 and np.abs(wrong).max() < 3.0
 
 
 def test_a_horizon_near_by_is_exact(engines, measured):
