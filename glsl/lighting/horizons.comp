@@ -13,8 +13,7 @@
 //            degrees; to as much along axes and diagonals, and wherever the horizon is at most 16
 //            rows away; else under it by 0.05 degrees (rms), 1 in 500 by more than the sun's
 //            diameter, 3 degrees at worst, K to 0.01, on terrain from real to white noise, half of
-//            its slopes over 55 degrees. A needle one texel wide, further away, may be missed:
-//            0.18 degrees (rms), 25 at worst, on such terrain with a needle of 900 m
+//            its slopes over 55 degrees, and with a needle of 900 m, one texel wide
 //
 // Sight lines of one direction are parallel, a texel apart, and each texel of a row is on one of
 // them. A sweep follows the lines from the end of the terrain that they look to, back to the
@@ -23,31 +22,31 @@
 //
 // The order: first the heights are copied into an image of this pass's size, since a processor
 // reads images several times faster than textures (stage 0). Then sweeps (stage 1) alternate with
-// sums (stage 2): a sweep leaves in lines which rows were found, a sum looks at these from each
-// texel. There are half as many pairs of directions as directions; no buffer may be larger than
-// 128 MiB on some drivers, so that `room` says for how many pairs one buffer has lines.
+// sums (stage 2, after others stage 3): a sweep leaves tangents in lines, a sum takes them from
+// there to the texels. There are half as many pairs of directions as directions; no buffer may be
+// larger than 128 MiB on some drivers, so that `room` says for how many pairs there are lines.
 //
 // A light map coarser than the heights would miss what is between its texels: give this pass
 // at least as many texels as the heightmap has.
 #pragma compute( \
-    stages = "0, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, 1, 2, \
-              1, 2, 1, 2, 1, 2", \
+    stages = "0, 1, 2, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, \
+              1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, \
+              1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3, 1, 3", \
     where = "pairs = max(directions // 8 * 4, 1); \
              texels = (size.x + 32) * (size.y + 32); \
-             room = max(min(2 ** 25 // texels, 4), 1); \
-             rounds = (pairs - 1) // (2 * room) + 1; \
+             room = max(min(2 ** 25 // texels, 8), 1); \
+             rounds = (pairs - 1) // room + 1; \
              words = (max(size.x, size.y) + 31) // 8; \
              wanted = iteration <= 2 * rounds; \
              sweeps = iteration % 2; \
              groups_of_lines = (size.x + size.y + 191) // 128; \
              columns = groups_of_lines if sweeps else (size.x + 31) // 32; \
-             rows = min(8, pairs) if sweeps else (size.y + 63) // 64", \
+             rows = min(room, pairs) if sweeps else (size.y + 63) // 64", \
     groups = "columns if wanted else 1, rows if wanted else 1", local = "32, 1", \
     buffers = "sky:float:size.x * size.y; \
-               hull:int:2 * room * (size.x + size.y + 64) * words; \
-               even_lines:uvec4:room * (texels // 4); \
-               odd_lines:uvec4:room * (texels // 4)", \
-    overwrites = "sky, hull, even_lines, odd_lines", aligned = "4", \
+               hull:int:room * (size.x + size.y + 64) * words; \
+               lines:uvec4:2 * room * (texels // 8)", \
+    overwrites = "sky, land, hull, lines", aligned = "4", \
     agrees = "ahead, behind: 0.05 degrees rms; sky: 0.002 rms; exact")
 
 uniform sampler2D height;  //! input
@@ -72,5 +71,5 @@ void main() {
     Batch batch = batch_at((iteration - 1) / 2);
     if (stage == 0) copy_heights();
     if (stage == 1 && batch.from < batch.end) sweep(batch);
-    if (stage == 2 && batch.from < batch.end) sum(batch);
+    if (stage >= 2 && batch.from < batch.end) sum(batch, stage == 3);
 }

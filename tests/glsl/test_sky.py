@@ -74,6 +74,27 @@ def test_a_sector_is_the_integral_over_it(on_gpu, sectors, azimuth, slope):
         assert value == pytest.approx(truth * sectors / np.pi, abs=2e-5)
 
 
+@pytest.mark.parametrize("slope", [(0.0, 0.0), (0.4, -0.2), (-3.0, 8.0)], ids=str)
+def test_two_opposite_sectors_are_the_sum_of_both(on_gpu, slope):
+    """By each sector's own angle from the vertical, in float64; level, steep and over a wall."""
+    azimuth = np.radians(25.0)
+    towards = np.array([np.sin(azimuth), np.cos(azimuth)])
+    heights = [0.0, 1e-4, 0.3, 1.0, 30.0, 6e4]
+    tangents = np.array([(there, back) for there in heights for back in heights], np.float32)
+    call = "sky_of_sectors(tangents, slope, towards, sector_shape(16))"
+    found = on_gpu(
+        OPEN_SKY, call, tangents=tangents, slope=tuple(np.float32(slope)), towards=tuple(np.float32(towards))
+    )
+    width = np.pi / 16
+    truth = np.zeros(len(tangents))
+    for tangent, sense in zip(tangents.T.astype(np.float64), (1, -1), strict=True):
+        rise = sense * (np.array(slope) @ towards)
+        open_sky = np.pi / 2 - np.arctan(np.maximum(np.maximum(tangent, rise), 0.0))
+        within = open_sky - np.sin(2 * open_sky) / 2
+        truth += np.sin(open_sky) ** 2 - rise * np.sin(width) / width * within
+    np.testing.assert_allclose(found, truth, atol=5e-6)
+
+
 def test_the_total_k_is_below_each_patch(on_gpu):
     """K = 0.1, 0.3, 0.2 and ground of 0.5: 0.75 in all; with each patch's own K below, 0.977."""
     k = np.array([0.1, 0.3, 0.2], np.float32)

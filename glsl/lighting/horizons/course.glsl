@@ -26,6 +26,7 @@ struct Course {
     int rows;       // how many there are
     int across;     // texels of a row
     int middle;     // the row on which lines go through the middles of texels
+    float rows_a_texel;  // rows on which it drifts one texel; many where it does not
     float steep;    // tangent for a height of 1 m on the next row  [1/m]
 };
 
@@ -40,6 +41,7 @@ Course course_towards(vec2 towards, ivec2 grid, vec2 metres) {
     course.along_x = along_x;
     course.upwards = ahead >= 0.0;
     course.drift = aside < 0.0 ? -size_of_drift : size_of_drift;
+    course.rows_a_texel = size_of_drift == 0 ? 1e9 : 65536.0 / float(size_of_drift);
     course.rows = along_x ? grid.x : grid.y;
     course.across = along_x ? grid.y : grid.x;
     course.middle = course.upwards ? (course.rows - 1) >> 1 : course.rows >> 1;

@@ -1,6 +1,7 @@
 // lighting/horizons/open_sky.glsl -- what a sector of open sky over a horizon gives to a slope.
 //
-//   gives    above_horizon, horizon_over_slope, sector_shape, sky_of_sector, thrown_back
+//   gives    above_horizon, horizon_over_slope, sector_shape, sky_of_sector, sky_of_sectors,
+//            thrown_back
 //   needs    nothing: pure functions, no uniforms, no textures
 //   units    tangents of elevations and slopes: rises over runs; shares of what an open, even sky
 //            gives
@@ -52,4 +53,16 @@ float sky_of_sector(float tangent, vec2 slope, vec2 towards, float shape) {
     return open.y - dot(slope, towards) * shape * open.x;
 }
 // end: sector
+
+// What the sectors towards u and away from it add: sky_of_sector of both, with one arc tangent, of
+// the difference of their angles.
+float sky_of_sectors(vec2 tangents, vec2 slope, vec2 towards, float shape) {
+    float rise = dot(slope, towards);
+    vec2 held = max(max(tangents, vec2(rise, -rise)), 0.0);
+    vec2 lengths = 1.0 + held * held;
+    vec2 upright = lengths.yx / (lengths.x * lengths.y);
+    float turn = atan((held.y - held.x) / (1.0 + held.x * held.y));
+    vec2 level = held * upright;
+    return upright.x + upright.y - rise * shape * (turn + level.y - level.x);
+}
 #endif

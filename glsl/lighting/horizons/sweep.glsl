@@ -1,26 +1,28 @@
-// lighting/horizons/sweep.glsl -- sweeps along lines: on which row each texel sees its horizon.
+// lighting/horizons/sweep.glsl -- sweeps along lines: how steep each texel sees its horizon.
 //
 //   gives    sweep; in a compute variant only
-//   needs    lighting/horizons/lines.glsl; first, extent, the buffers of lighting/horizons.comp
+//   needs    lighting/horizons/lines.glsl; first, extent, relief, the buffers of
+//            lighting/horizons.comp
 //   units    texels and rows; heights without unit; slopes for rows 1 m apart and heights of 1
 //   source   Timonen and Westerholm 2010, as lighting/horizons.comp
 //   tested   tests/glsl/test_horizons.py, against brute force in float64 and against the march
 //
-// A line runs up to half a texel beside a texel. What it sees highest, and what the line on the
-// texel's other side does, need not be as high to the texel; so only which row that is comes
-// from the lines, and the texel looks at both rows itself.
+// A line runs up to half a texel beside a texel. What it sees highest need not be as high to the
+// texel; so only which rows are looked at comes from the lines, and each of these rows the texel
+// looks at itself, on its own line of sight, between texels as the march does it.
 //
 // A thread has four lines beside each other, and goes in blocks of eight rows:
-//   - sixteen rows ahead of each texel are looked at exactly, between texels as the march does it:
-//     so near, a line that runs beside a texel would see other terrain;
-//   - what is further on is looked at from the line, where it passes beside the texel: so a slope
-//     to the side counts for nothing. First what the block reaches;
+//   - the block's rows look at the sixteen rows ahead of each, and at what is left of the next two
+//     blocks: so near, a line that runs beside a texel would see other terrain;
 //   - then the hull is followed from its near end, for all rows at once, as long as the next point
-//     shows more to one of them; points that rows of the block cover are dropped from it;
+//     shows more to one of them on the line, and all rows look at each point on the way; points
+//     that rows of the block cover are dropped from it;
+//   - then the doubtful rows are looked at: a line leaves the terrain up to half a texel after
+//     some of the lines of sight along it, or before. What stands there would hide, on the hull,
+//     what those see that have left before. So it is not on the hull, and is looked at row by row,
+//     where it is high enough to be seen;
 //   - then the block's own hull goes on top: a word with a bit for each row, and the number of
-//     the block that was on top before it;
-//   - then each texel looks at the row that its line found. Where its own line of sight has left
-//     the terrain before that row, it marches.
+//     the block that was on top before it.
 // The hull lies sixteen rows further on than the block, so that no texel meets its near rows
 // there.
 #ifndef LIGHTING_HORIZONS_SWEEP
@@ -32,7 +34,6 @@ const int BLOCK = 8;            // rows of a block, and bits of a word of the hu
 const int NEAR = 16;            // rows that are looked at exactly
 const int ROWS = BLOCK + NEAR;
 const float NONE = -1e30;       // a height that hides nothing
-const float OFF = 1e9;          // a place that is on no terrain
 
 // Each of several rows, or pairs of rows, written out as in lighting/horizons/lines.glsl.
 #define FROM_8(DO) DO(8) DO(9) DO(10) DO(11) DO(12) DO(13) DO(14) DO(15)
@@ -54,15 +55,21 @@ const float OFF = 1e9;          // a place that is on no terrain
 vec4 here[ROWS];       // heights of the texels
 vec4 along[ROWS];      // heights where the lines cross the row
 vec4 upper[ROWS];      // how much higher the next texel of the row is
-vec4 lower[ROWS];      // how much higher this one is than the texel before it
+float lower[ROWS];     // how much higher the first of these texels is than the one before it
 float beside[ROWS];    // how far the lines run beside the middle of their texels
-float aside[ROWS];     // how far the first line's texel is from the middle of the row
-vec4 found[BLOCK];     // the steepest of the near rows, for rows 1 m apart and heights of 1
-vec4 found_at[BLOCK];  // how many rows away
-vec4 far[BLOCK];       // the steepest of the others as the lines see them
-vec4 far_at[BLOCK];    // on which row, counted from the block's first
+vec4 leaves[BLOCK];    // after how many rows the texels' own lines of sight leave the terrain
+// The steepest slope that the texels see, 0 or more, for rows 1 m apart and heights of 1: as bits,
+// whose maximum is one instruction, where that of floats looks for numbers that are none.
+ivec4 found[BLOCK];
 vec4 steepest[BLOCK];  // of the rows that will go on the hull, the slopes to those after them
 vec4 gentlest[BLOCK];  // and from those before them
+vec4 doubtful;         // the highest of what only some lines of sight along a line see
+
+// The heights of a row at so many texels beside the middles of these, -1 to 1.
+vec4 beside_texels(int row, float part) {
+    vec4 sideways = mix(vec4(lower[row], upper[row].xyz), upper[row], bvec4(part > 0.0));
+    return here[row] + part * sideways;
+}
 
 void enter_row(int row, Course course, int line, int first_row) {
     int at = line + drifted(course, first_row + row);
@@ -76,28 +83,33 @@ void enter_row(int row, Course course, int line, int first_row) {
     bool on_row = first_row + row < course.rows;
     here[row] = vec4(t1, t2, t3, t4);
     upper[row] = vec4(t2 - t1, t3 - t2, t4 - t3, t5 - t4);
-    lower[row] = vec4(t1 - t0, upper[row].xyz);
+    lower[row] = t1 - t0;
     beside[row] = beside_of(course, first_row + row);
-    aside[row] = on_row ? float(at) - 0.5 * float(last) : OFF;
     // Lines beside the terrain belong to it as far as a line of sight between them and it may run.
     // As unsigned numbers, those below 0 are large.
     uvec4 across = uvec4(ivec4(at + 1, at + 2, at + 3, at + 4));
     bvec4 on_land = lessThan(across, uvec4(on_row ? course.across + 2 : 0));
-    vec4 crossed = here[row] + max(beside[row], 0.0) * upper[row]
-            + min(beside[row], 0.0) * lower[row];
-    along[row] = mix(vec4(NONE), crossed, on_land);
+    vec4 to_edge = vec4(ivec4(at, at + 1, at + 2, at + 3));
+    to_edge = course.drift < 0 ? to_edge : float(last) - to_edge;
+    bvec4 sure = greaterThanEqual(to_edge, vec4(course.drift < 0 ? -beside[row] : beside[row]));
+    vec4 crossed = mix(vec4(NONE), beside_texels(row, beside[row]), on_land);
+    along[row] = mix(vec4(NONE), crossed, sure);
+    vec4 most = here[row] + max(upper[row], max(-vec4(lower[row], upper[row].xyz), 0.0));
+    doubtful = max(doubtful, mix(most, vec4(NONE), sure));
+    // To the side: the edge that the lines drift to is half a texel beyond the last middle. The
+    // smallest part of a drift more, so that rounding leaves on the terrain what is on its edge.
+    leaves[row] = min(vec4(float(course.rows - 1 - first_row - row)),
+                      (to_edge + 0.5 + 0.5 / 65536.0) * course.rows_a_texel);
 }
 
 // A row's texels look at the d-th row from them, on their own lines of sight.
-void look_near(int row, int d, float half_width) {
-    float part = beside[row + d] - beside[row];
-    vec4 there = here[row + d] + max(part, 0.0) * upper[row + d] + min(part, 0.0) * lower[row + d];
+void look_near(int row, int d) {
+    vec4 there = beside_texels(row + d, beside[row + d] - beside[row]);
     vec4 slope = (there - here[row]) * (1.0 / float(d));
-    bvec4 on_land = lessThanEqual(abs(vec4(0.0, 1.0, 2.0, 3.0) + (aside[row + d] + part)),
-                                  vec4(half_width));
-    slope = mix(vec4(NONE), slope, on_land);
-    found_at[row] = mix(found_at[row], vec4(d), greaterThan(slope, found[row]));
-    found[row] = max(found[row], slope);
+    bvec4 on_land = lessThanEqual(vec4(d), leaves[row]);
+    ivec4 most = max(found[row], floatBitsToInt(slope));
+    found[row] = ivec4(on_land.x ? most.x : found[row].x, on_land.y ? most.y : found[row].y,
+                       on_land.z ? most.z : found[row].z, on_land.w ? most.w : found[row].w);
 }
 
 // 1/x, with one division for four.
@@ -113,175 +125,152 @@ int nearest_in(int word) {
     return (floatBitsToInt(float(uint(word & -word))) >> 23) - 127;
 }
 
+// A point of a line's hull: the heights around it, and where it is.
+struct Point {
+    float texel;    // the height of the texel that the line is nearest to
+    float upper;    // how much higher the next texel of the row is
+    float lower;    // how much higher this one is than the texel before it
+    float beside;   // how far the line runs beside the middle of that texel
+    float crossed;  // the height where the line crosses the row
+    float away;     // on which row, counted from the block's first
+};
+
+// The rows on which a line has gone beyond the middles of the texels at the edge that it drifts
+// to, and not yet a texel: whoever looks along it may have left the terrain before. The first, and
+// the first after them.
+ivec2 doubtful_rows(Course course, int line) {
+    if (course.drift == 0) return ivec2(course.rows);
+    int inside = course.drift < 0 ? line : course.across - 1 - line;
+    float met = float(inside) * course.rows_a_texel + float(course.middle);
+    // Where rounding moves a row from one to the other, it is seen here too.
+    return ivec2(clamp(vec2(floor(met), ceil(met + course.rows_a_texel) + 1.0), 0.0,
+                       float(course.rows)));
+}
+
+Point point_on(Course course, int line, int row, int first_row) {
+    int at = line + drifted(course, row);
+    int last = course.across - 1;
+    Point point;
+    point.texel = land_at(texel_of(course, row, clamp(at, 0, last)));
+    point.upper = land_at(texel_of(course, row, clamp(at + 1, 0, last))) - point.texel;
+    point.lower = point.texel - land_at(texel_of(course, row, clamp(at - 1, 0, last)));
+    point.beside = beside_of(course, row);
+    point.crossed = point.texel
+            + point.beside * (point.beside > 0.0 ? point.upper : point.lower);
+    point.away = float(row - first_row);
+    return point;
+}
+
 #define BEYOND(row) here[row] = vec4(0.0); along[row] = vec4(NONE); upper[row] = vec4(0.0); \
-    lower[row] = vec4(0.0); beside[row] = 0.0; aside[row] = OFF;
+    lower[row] = 0.0; beside[row] = 0.0;
 #define TO_NEXT_BLOCK(row) here[row] = here[row - BLOCK]; along[row] = along[row - BLOCK]; \
     upper[row] = upper[row - BLOCK]; lower[row] = lower[row - BLOCK]; \
-    beside[row] = beside[row - BLOCK]; aside[row] = aside[row - BLOCK];
+    beside[row] = beside[row - BLOCK];
 #define ENTER(row) enter_row(row, course, line, first_row);
-#define CLEAR(row) found[row] = vec4(0.0); found_at[row] = vec4(0.0); far[row] = vec4(0.0); \
-    far_at[row] = vec4(0.0);
+#define CLEAR(row) found[row] = ivec4(0);
 #define CLEAR_HULL(row) steepest[row] = vec4(NONE); gentlest[row] = vec4(-NONE);
-#define LOOK_NEAR_1(row, d) look_near(row, d, half_width);
+#define LOOK_NEAR_1(row, d) look_near(row, d);
 #define LOOK_NEAR(row) UP_TO_7_FROM(LOOK_NEAR_1, row) LOOK_NEAR_1(row, 8) LOOK_NEAR_1(row, 9) \
     LOOK_NEAR_1(row, 10) LOOK_NEAR_1(row, 11) LOOK_NEAR_1(row, 12) LOOK_NEAR_1(row, 13) \
     LOOK_NEAR_1(row, 14) LOOK_NEAR_1(row, 15) LOOK_NEAR_1(row, 16)
-#define LOOK_ALONG(row, d) { \
-    vec4 slope = (along[row + d] - along[row]) * (1.0 / float(d)); \
-    far_at[row] = mix(far_at[row], vec4(row + d), greaterThan(slope, far[row])); \
-    far[row] = max(far[row], slope); }
 #define COMPARE(row, d) { \
     vec4 slope = (along[row + d] - along[row]) * (1.0 / float(d)); \
     steepest[row - NEAR] = max(steepest[row - NEAR], slope); \
     gentlest[row + d - NEAR] = min(gentlest[row + d - NEAR], slope); }
-#define TAKE(row) now[row] = along[row][which];
-#define SEE(row) seen[row] = far[row][which]; seen_at[row] = far_at[row][which];
-#define GIVE(row) { \
-    bvec4 chosen = equal(ivec4(which), ivec4(0, 1, 2, 3)); \
-    far[row] = mix(far[row], vec4(seen[row]), chosen); \
-    far_at[row] = mix(far_at[row], vec4(seen_at[row]), chosen); }
-#define SEE_IF_STEEPER(row, slope) seen_at[row] = slope > seen[row] ? away : seen_at[row]; \
-    seen[row] = max(seen[row], slope);
-#define LOOK_FAR(row) { \
-    vec4 part = reciprocals(away - vec4(row, row + 1, row + 2, row + 3)); \
-    SEE_IF_STEEPER(row, (tall - now[row]) * part.x) \
-    SEE_IF_STEEPER(row + 1, (tall - now[row + 1]) * part.y) \
-    SEE_IF_STEEPER(row + 2, (tall - now[row + 2]) * part.z) \
-    SEE_IF_STEEPER(row + 3, (tall - now[row + 3]) * part.w) }
-#define LOOKS_ON(row) highest_near = max(highest_near, now[row] - slope * float(row));
-#define COVER(row) highest = max(highest, now[row] - slope * float(row));
+// All that look along a line see its hull; what is doubtful, those whose lines of sight are still
+// on the terrain.
+#define SLOPE_TO_POINT(row, part) \
+    float aside = point.beside - beside[row]; \
+    float there = point.texel + aside * (aside > 0.0 ? point.upper : point.lower); \
+    float slope = (there - here[row][which]) * part;
+#define SEE(row, part) { \
+    SLOPE_TO_POINT(row, part) \
+    found[row][which] = max(found[row][which], floatBitsToInt(slope)); }
+#define SEE_IF_ON_LAND(row, part) { \
+    SLOPE_TO_POINT(row, part) \
+    bool on_land = point.away - float(row) <= leaves[row][which]; \
+    found[row][which] = max(found[row][which], floatBitsToInt(on_land ? slope : 0.0)); }
+#define LOOK_FAR(row, SEE_1) { \
+    vec4 part = reciprocals(point.away - vec4(row, row + 1, row + 2, row + 3)); \
+    SEE_1(row, part.x) SEE_1(row + 1, part.y) SEE_1(row + 2, part.z) SEE_1(row + 3, part.w) }
+#define LOOKS_ON(row) over_near |= floatBitsToInt(base - along[row][which]); base += slope;
+#define COVER(row) over |= floatBitsToInt(base - along[row][which]); base += slope;
+// What is lower than that, on that row or further on, a texel does not see.
+#define SEES_OVER(nth) { \
+    float away = float(row - first_row - nth); \
+    float least = here[nth][which] + intBitsToFloat(found[nth][which]) * away; \
+    lowest = min(lowest, away <= leaves[nth][which] ? least : -NONE); }
 #define ON_HULL(row) if (max(steepest[row - NEAR][which], \
-    (top_tall - now[row]) / (top_away - float(row))) < gentlest[row \
-    - NEAR][which] && now[row] > 0.5 * NONE) word |= 1 << (row - NEAR);
-#define CHOOSE(row) choose(row, course, line, first_row);
-// What is ahead comes first, what is behind is added.
-#define PUT(lines) lines[at] = back ? lines[at] | four << 16 : four
-#define LEAVE(row) if (first_row + row < course.rows) { \
-    uvec4 four = uvec4(chosen[row]); \
-    int at = place + (back ? -row : row); \
-    if ((pair & 1) == 0) PUT(even_lines); else PUT(odd_lines); }
-
-ivec4 chosen[BLOCK];  // where each texel sees its horizon, as own_row and far_row read it
-// a bit for each texel whose line looked where its own line of sight has left the terrain
-int lost;
-
-// Of a row's texels: the steepest of the near rows, or the one that the line found, if it is
-// steeper to the texel.
-void choose(int row, Course course, int line, int first_row) {
-    ivec4 away = ivec4(far_at[row]) - row;
-    int across = line + drifted(course, first_row + row);
-    vec4 place = vec4(ivec4(across, across + 1, across + 2, across + 3))
-            + vec4(away) * (float(course.drift) * (1.0 / 65536.0));
-    vec4 held = clamp(place, 0.0, float(course.across - 1));
-    ivec4 low = ivec4(held);
-    ivec4 high = min(low + 1, course.across - 1);
-    ivec4 there = min(first_row + row + away, course.rows - 1);
-    vec4 from = vec4(land_at(texel_of(course, there.x, low.x)),
-                     land_at(texel_of(course, there.y, low.y)),
-                     land_at(texel_of(course, there.z, low.z)),
-                     land_at(texel_of(course, there.w, low.w)));
-    vec4 to = vec4(land_at(texel_of(course, there.x, high.x)),
-                   land_at(texel_of(course, there.y, high.y)),
-                   land_at(texel_of(course, there.z, high.z)),
-                   land_at(texel_of(course, there.w, high.w)));
-    vec4 slope = (from + (to - from) * (held - vec4(low)) - here[row]) / vec4(max(away, 1));
-    ivec4 saw = ivec4(greaterThan(far[row], vec4(0.0)));
-    ivec4 left = saw * ivec4(greaterThan(abs(place - 0.5 * float(course.across - 1)),
-                                         vec4(0.5 * float(course.across))));
-    ivec4 steeper = (saw - left) * ivec4(greaterThan(slope, found[row]));
-    ivec4 near = ivec4(found_at[row]);
-    // What is left of a far row, if a near one is steeper: as much of its number as has room.
-    ivec4 rest = saw * ((floatBitsToInt(vec4(max(away, 1))) >> 16) - SEVEN_BITS);
-    ivec4 both = NEAR_WINS + (near - 1) * MOST_REST + rest;
-    ivec4 alone = ivec4(bvec4(ivec4(equal(near, ivec4(0))) + steeper + left));
-    chosen[row] = both + alone * (saw * away - both);
-    // Only texels of the terrain count.
-    left *= ivec4(lessThan(uvec4(ivec4(across, across + 1, across + 2, across + 3)),
-                           uvec4(first_row + row < course.rows ? course.across : 0)));
-    lost |= (left.x | left.y << 1 | left.z << 2 | left.w << 3) << (4 * row);
-}
-
-// Those march, one after the other.
-void march_lost(Course course, int line, int first_row) {
-    int d = 1;
-    int best = 0;
-    float steepest_yet = 0.0;
-    while (lost != 0) {
-        int bit = nearest_in(lost);
-        int row = first_row + (bit >> 2);
-        int across = line + drifted(course, row) + (bit & 3);
-        float tangent = tangent_at(course, row, across, d, land_at(texel_of(course, row, across)));
-        bool on_land = sees(course, row, across, d);
-        best = on_land && tangent > steepest_yet ? d : best;
-        steepest_yet = on_land ? max(steepest_yet, tangent) : 0.0;
-        if (!on_land) {
-            chosen[bit >> 2][bit & 3] = best;
-            lost &= lost - 1;
-            best = 0;
-        }
-        d = on_land ? d + 1 : 1;
-    }
-}
-
-// The height where a line crosses a row.
-float height_on(Course course, int row, int line) {
-    int at = line + drifted(course, row);
-    float part = beside_of(course, row);
-    float texel = land_at(texel_of(course, row, clamp(at, 0, course.across - 1)));
-    float other = land_at(texel_of(course, row,
-                                   clamp(part < 0.0 ? at - 1 : at + 1, 0, course.across - 1)));
-    return texel + abs(part) * (other - texel);
-}
+    (top_tall - along[row][which]) / (top_away - float(row))) < gentlest[row \
+    - NEAR][which] && along[row][which] > 0.5 * NONE) word |= 1 << (row - NEAR);
+// The tangents of two rows.
+#define LEAVE(row) { \
+    uvec4 one = halves_of(min(intBitsToFloat(found[row]) * metres_of_steep, HIGHEST)); \
+    uvec4 next = halves_of(min(intBitsToFloat(found[row + 1]) * metres_of_steep, HIGHEST)); \
+    lines[place + row / 2] = uvec4(one.xz | one.yw << 16, next.xz | next.yw << 16); }
 
 // One of the four lines looks at the hull, and puts the block's rows on it.
-void follow_hull(int which, int block, Course course, int line, int hull_at, int apart,
-                 inout ivec4 top_word, inout ivec4 top_block) {
-    float now[ROWS];
-    float seen[BLOCK];
-    float seen_at[BLOCK];
-    UP_TO_24(TAKE)
-    UP_TO_8(SEE)
+void follow_hull(const int which, int block, Course course, int line, int hull_at, int apart,
+                 inout ivec4 top_word, inout ivec4 top_block, inout ivec4 second_word) {
     int word = top_word[which];
     int in_block = top_block[which];
     bool going = in_block >= 0;
     int first_row = block * BLOCK;
     int row = in_block * BLOCK + NEAR + nearest_in(word);
-    // The point that is looked at, and the topmost that stays on the hull: height, rows away.
-    float tall = going ? height_on(course, row, line + which) : NONE;
-    float away = going ? float(row - first_row) : 1e9;
-    float top_tall = tall;
-    float top_away = away;
+    Point point = point_on(course, line + which, row, first_row);
+    point.crossed = going ? point.crossed : NONE;
+    point.away = going ? point.away : 1e9;
+    // The topmost that stays on the hull.
+    float top_tall = point.crossed;
+    float top_away = point.away;
     int rest = word;
     int rest_in = in_block;
+    // The word below is at hand: what is read from a buffer takes longer than what a point costs.
+    int under = second_word[which];
+    int second = under;
     while (going) {
-        LOOK_FAR(0) LOOK_FAR(4)
+        LOOK_FAR(0, SEE) LOOK_FAR(4, SEE)
         // The next point.
         rest &= rest - 1;
         if ((rest & 0xffff) == 0) {
             rest_in = (rest >> 16) - 1;
-            if (rest_in >= 0) rest = hull[hull_at + which + rest_in * apart];
+            rest = under;
+            int under_in = (under >> 16) - 1;
+            if (rest_in >= 0 && under_in >= 0) under = hull[hull_at + which + under_in * apart];
         }
         bool more = rest_in >= 0;
         row = rest_in * BLOCK + NEAR + nearest_in(rest);
-        float next_tall = height_on(course, row, line + which);
-        float next_away = float(row - first_row);
+        Point next = point_on(course, line + which, row, first_row);
         // A row over the line through both sees more at the next; a row that will be on
         // the hull and is there covers this point.
-        float slope = more ? (next_tall - tall) / (next_away - away) : 0.0;
-        float base = tall - slope * away;
-        float highest = NONE;
-        float highest_near = NONE;
+        float slope = more ? (next.crossed - point.crossed) / (next.away - point.away) : 0.0;
+        float base = point.crossed - slope * point.away;
+        // Signs: that of a row which is over it is set.
+        int over = 0;
+        int over_near = 0;
         UP_TO_8(LOOKS_ON)
+        base += 8.0 * slope;
         FROM_16(COVER)
-        if (highest > base && more && top_away == away) {
+        if (over < 0 && more && top_away == point.away) {
             word = rest;
             in_block = rest_in;
-            top_tall = next_tall;
-            top_away = next_away;
+            second = under;
+            top_tall = next.crossed;
+            top_away = next.away;
         }
-        going = max(highest, highest_near) > base && more;
-        tall = next_tall;
-        away = next_away;
+        going = (over | over_near) < 0 && more;
+        point = next;
+    }
+    // Doubtful rows.
+    ivec2 rows = doubtful_rows(course, line + which);
+    row = max(rows.x, first_row + ROWS);
+    while (true) {
+        float lowest = -NONE;
+        UP_TO_8(SEES_OVER)
+        if (row >= rows.y || lowest >= doubtful[which]) break;
+        point = point_on(course, line + which, row, first_row);
+        LOOK_FAR(0, SEE_IF_ON_LAND) LOOK_FAR(4, SEE_IF_ON_LAND)
+        row++;
     }
     int below = word;
     word = 0;
@@ -290,8 +279,11 @@ void follow_hull(int which, int block, Course course, int line, int hull_at, int
     if (grows && in_block >= 0) hull[hull_at + which + in_block * apart] = below;
     top_word[which] = grows ? word | ((in_block + 1) << 16) : below;
     top_block[which] = grows ? block : in_block;
-    UP_TO_8(GIVE)
+    second_word[which] = grows ? below : second;
 }
+
+#define FOLLOW(which) follow_hull(which, block, course, line, hull_at, apart, \
+    top_word, top_block, second_word);
 
 void sweep(Batch batch) {
     int pair = batch.from + int(gl_WorkGroupID.y);
@@ -305,7 +297,7 @@ void sweep(Batch batch) {
         int line = first_line(course) + 4 * group;
         int drift_away = min(drifted(course, 0), drifted(course, course.rows - 1));
         bool off = pair >= batch.end || line + drift_away > course.across;
-        float half_width = 0.5 * float(course.across);
+        float metres_of_steep = relief * course.steep;
         // The rows on which one of the four lines is on the terrain, or less than a texel beside
         // it.
         vec2 ends = vec2(0.0, float(course.rows - 1));
@@ -316,6 +308,8 @@ void sweep(Batch batch) {
         }
         ivec4 top_word = ivec4(0);
         ivec4 top_block = ivec4(-1);
+        ivec4 second_word = ivec4(0);
+        doubtful = vec4(NONE);
         UP_TO_24(BEYOND)
         for (int block = off ? -1 : int(ends.y) / BLOCK; block >= int(ends.x) / BLOCK; block--) {
             int first_row = block * BLOCK;
@@ -325,17 +319,12 @@ void sweep(Batch batch) {
             UP_TO_8(CLEAR)
             UP_TO_8(CLEAR_HULL)
             UP_TO_8(LOOK_NEAR)
-            FAR_PAIRS(LOOK_ALONG)
+            FAR_PAIRS(LOOK_NEAR_1)
             HULL_PAIRS(COMPARE)
-            for (int which = 0; which < 4; which++) {
-                follow_hull(which, block, course, line, hull_at, apart, top_word, top_block);
-            }
-            int place = batch.apart * ((pair - batch.from) >> 1)
-                    + place_of(course, group, back ? course.rows - 1 - first_row : first_row);
-            lost = 0;
-            UP_TO_8(CHOOSE)
-            march_lost(course, line, first_row);
-            UP_TO_8(LEAVE)
+            UP_TO_4(FOLLOW)
+            int place = batch.apart * (2 * (pair - batch.from) + side)
+                    + place_of(course, group, first_row);
+            LEAVE(0) LEAVE(2) LEAVE(4) LEAVE(6)
         }
     }
 }
