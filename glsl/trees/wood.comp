@@ -13,8 +13,9 @@
 #include "lighting/daylight_reading.glsl"
 #include "trees/stand.glsl"
 #include "trees/wood_reading.glsl"
-#pragma compute(where = "sides = max(size.y // 24, 1); shapes = (size.y - 1) // (12 * sides) + 1", \
-                local = "8, 1", groups = "(size.x + 7) // 8, sides * shapes", agrees = "exact")
+#pragma compute(where = "sides = max(size.y // 24, 1); \
+                         shapes = (size.y - 1) // (12 * sides) + 1", local = "8, 1", \
+                groups = "(size.x + 7) // 8, sides * shapes", agrees = "exact")
 
 #include "lighting/parameters/sun.glsl"
 #include "trees/parameters/stand.glsl"

@@ -2,7 +2,7 @@
 //
 //   gives    ray_through, Ground, ground_texel, ground_of_texel, texture_on_ground,
 //            draped_on_ground; all but the first in a draw's fragment stage only
-//   needs    maths/drape.glsl, view/surface.glsl; eye, clip_from_world
+//   needs    maths/drape.glsl, view/surface.glsl; eye
 //   units    metres
 //   source   none: packing made here
 //   tested   tests/glsl/test_view_ground.py, by what comes back
@@ -18,14 +18,14 @@
 #ifndef VIEW_GROUND_TEXEL
 #define VIEW_GROUND_TEXEL
 
-// From the eye to what is 1 m deep in the view, at a place of the picture: 0..1 from its south-west
-// corner. The rows of the matrix that turn and stretch say so without the eye, whose large numbers
+// From the eye to what is 1 m deep in the view, at a place of the picture: 0..1 from below on the
+// left. The rows of the matrix that turn and stretch say so without the eye, whose large numbers
 // the inverse would subtract again. Linear over the picture.
-vec3 ray_through(vec2 place) {
-    mat3 rows = mat3(transpose(clip_from_world));
-    vec3 depth = transpose(clip_from_world)[3].xyz;
+vec3 ray_through(mat4 clip_from_world, vec2 place) {
+    mat4 rows = transpose(clip_from_world);
+    vec3 depth = rows[3].xyz;
     vec2 clip = 2.0 * place - 1.0;
-    vec3 ray = cross(rows[0] - clip.x * depth, rows[1] - clip.y * depth);
+    vec3 ray = cross(rows[0].xyz - clip.x * depth, rows[1].xyz - clip.y * depth);
     return ray / dot(depth, ray);
 }
 

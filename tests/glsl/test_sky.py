@@ -76,7 +76,10 @@ def test_a_sector_is_the_integral_over_it(on_gpu, sectors, azimuth, slope):
 
 @pytest.mark.parametrize("slope", [(0.0, 0.0), (0.4, -0.2), (-3.0, 8.0)], ids=str)
 def test_two_opposite_sectors_are_the_sum_of_both(on_gpu, slope):
-    """By each sector's own angle from the vertical, in float64; level, steep and over a wall."""
+    """By each sector's own angle from the vertical, in float64; level, steep and over a wall.
+
+    Mesa's arc tangent, a polynomial, is off by 3.26e-6 at most, and counts as often as the slope rises.
+    """
     azimuth = np.radians(25.0)
     towards = np.array([np.sin(azimuth), np.cos(azimuth)])
     heights = [0.0, 1e-4, 0.3, 1.0, 30.0, 6e4]
@@ -92,7 +95,8 @@ def test_two_opposite_sectors_are_the_sum_of_both(on_gpu, slope):
         open_sky = np.pi / 2 - np.arctan(np.maximum(np.maximum(tangent, rise), 0.0))
         within = open_sky - np.sin(2 * open_sky) / 2
         truth += np.sin(open_sky) ** 2 - rise * np.sin(width) / width * within
-    np.testing.assert_allclose(found, truth, atol=5e-6)
+    steep = abs(np.array(slope) @ towards)
+    np.testing.assert_allclose(found, truth, rtol=4 * 2.0**-24, atol=2e-6 + 3.3e-6 * steep)
 
 
 def test_the_total_k_is_below_each_patch(on_gpu):

@@ -25,7 +25,7 @@ PLACE = """
 #pragma draw(mesh = "sheet", output = "place:rgba32f", samples = 1)
 uniform sampler2D ground;  //! input
 vec4 vertex(vec3 corner, out vec3 ray) {
-    ray = ray_through(corner.xy);
+    ray = ray_through(clip_from_world, corner.xy);
     return vec4(corner.xy * 2.0 - 1.0, 0.0, 1.0);
 }
 vec4 fragment(vec3 ray) {

@@ -30,7 +30,7 @@ uniform sampler2D light;    //! input("linear", "mipmap", "white")
 
 vec4 vertex(vec3 corner, out vec2 pixel, out vec3 ray) {
     pixel = corner.xy * vec2(size);
-    ray = ray_through(corner.xy);
+    ray = ray_through(clip_from_world, corner.xy);
     return vec4(corner.xy * 2.0 - 1.0, 1.0, 1.0);
 }
 

@@ -1,4 +1,4 @@
-// lighting/daylight/dome/halves.glsl -- both halves of the table of the sky, each of its sums once.
+// lighting/daylight/dome/halves.glsl -- both halves of the table of the sky at once.
 //
 //   gives    molecules, aerosol: the left and the right half of lighting/daylight/dome
 //   needs    sky/dome.glsl, sky/sight.glsl, lighting/sun.glsl; the sun's place, the air and two
