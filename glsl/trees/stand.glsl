@@ -185,9 +185,9 @@ WoodPlace wood_place(Stand s, vec3 to_eye, int k) {
 vec3 wood_sums(Stand s, vec3 to_eye, vec3 to_sun, float depth) {
     vec3 total = vec3(0.0);
     for (int k = 0; k < WOOD_PLACES; k++) {
-        WoodPlace seen = wood_place(s, to_eye, k);
-        float left = seen.weight * exp(-depth * seen.share);
-        total += left * vec3(facing_sun(seen.normal, to_sun), facing_sky(seen.normal), 1.0);
+        WoodPlace found = wood_place(s, to_eye, k);
+        float left = found.weight * exp(-depth * found.share);
+        total += left * vec3(facing_sun(found.normal, to_sun), facing_sky(found.normal), 1.0);
     }
     return total / float(RINGS * SPOKES);
 }
