@@ -27,9 +27,7 @@ _MAX_DEVICES = 15
 _SOFTWARE = re.compile(r"llvmpipe|softpipe|swrast|software|SwiftShader|Microsoft Basic Render", re.IGNORECASE)
 _OTHER_DEVICES = re.compile(r"requested device index -?\d+, but found ([1-9]\d*)")  # glcontext's words
 _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # glibc's M_TRIM_THRESHOLD and M_MMAP_THRESHOLD
-_MAPPED = (
-    2**23
-)  # [bytes] from which a block is the system's again as soon as it is freed: a picture is smaller
+_MAPPED = 2**23  # [bytes] from which a block goes back to the system as soon as it is freed
 _KEPT = 6 * 2**23  # [bytes] of freed blocks that stay: a frame's triangles are some 30 MiB
 _MESA_VENDOR = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 

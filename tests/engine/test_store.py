@@ -192,19 +192,24 @@ def text_of_bits(form: str) -> str:
     return text.replace("TYPE", {1: "float", 2: "vec2", 4: "vec4"}[count])
 
 
-def test_reopened_textures_of_every_format_have_the_same_bits(shelf, folder):
-    """Whatever their bits; the passes do not run."""
+def sketch_of_every_format(folder, declared, read):
+    """Write a sketch with a pass of bits of each format, and one that reads all of them."""
     passes, reads = "", ""
     for form in FORMATS:
         folder.write(f"{form}.glsl", text_of_bits(form))
         passes += f'[[pass]]\nname = "{form}"\nuse = "./{form}"\n'
-        reads += f"    sum += abs(texelFetch({form}, texel, 0).r);\n"
-    inputs = "".join(f"uniform sampler2D {form}; //! input\n" for form in FORMATS)
+        reads += f"    sum += abs({read.format(form)}.r);\n"
+    inputs = "".join(f"uniform sampler2D {form}; //! {declared}\n" for form in FORMATS)
     text = f'#pragma kernel(output = "v:r32f")\n{inputs}float kernel(ivec2 texel) {{\n    float sum = 0.0;\n'
     folder.write("all.glsl", f"{text}{reads}    return 1.0 / sum;\n}}\n")
     wires = ", ".join(f'{form} = "{form}"' for form in FORMATS)
     passes += f'[[pass]]\nname = "all"\nuse = "./all"\nsize = [64, 36]\ninputs = {{ {wires} }}\n'
-    sketch = folder.sketch(passes, size="size = [67, 41]")
+    return folder.sketch(passes, size="size = [67, 41]")
+
+
+def test_reopened_textures_of_every_format_have_the_same_bits(shelf, folder):
+    """Whatever their bits; the passes do not run."""
+    sketch = sketch_of_every_format(folder, "input", "texelFetch({}, texel, 0)")
     first = shelf.engine()
     seen = picture(first, sketch)
     made = {form: read_raw(first.internal.results[form].textures["bits"]) for form in FORMATS}
@@ -225,17 +230,9 @@ def test_reopened_mipmaps_of_every_format_have_the_same_bits_and_are_not_made_an
 ):
     if not shelf.engine().info.software:
         pytest.skip("a graphics card makes them anew")
-    passes, sums = "", ""
-    for form in FORMATS:
-        folder.write(f"{form}.glsl", text_of_bits(form))
-        passes += f'[[pass]]\nname = "{form}"\nuse = "./{form}"\n'
-        sums += f"    sum += abs(textureLod({form}, vec2(0.4, 0.6), 2.0).r);\n"
-    inputs = "".join(f'uniform sampler2D {form}; //! input("linear", "mipmap")\n' for form in FORMATS)
-    text = f'#pragma kernel(output = "v:r32f")\n{inputs}float kernel(ivec2 texel) {{\n    float sum = 0.0;\n'
-    folder.write("all.glsl", f"{text}{sums}    return 1.0 / sum;\n}}\n")
-    wires = ", ".join(f'{form} = "{form}"' for form in FORMATS)
-    passes += f'[[pass]]\nname = "all"\nuse = "./all"\nsize = [64, 36]\ninputs = {{ {wires} }}\n'
-    sketch = folder.sketch(passes, size="size = [67, 41]")
+    sketch = sketch_of_every_format(
+        folder, 'input("linear", "mipmap")', "textureLod({}, vec2(0.4, 0.6), 2.0)"
+    )
     first = shelf.engine()
     seen = picture(first, sketch)
     made = {form: levels(first, form) for form in FORMATS}
