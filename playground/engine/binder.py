@@ -19,7 +19,7 @@ from playground.engine.programs import Program
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Wired
 from playground.errors import ContextError
-from playground.gpu.gl_calls import mirror
+from playground.gpu.gl_calls import mirror, surround
 from playground.gpu.shapes import FACES, Shaped, copied, shaped_size
 from playground.gpu.textures import check_size, drain
 from playground.gpu.wrap import reads_unwired
@@ -65,7 +65,9 @@ class Binder:
     def __init__(self, ctx: moderngl.Context, *, software: bool) -> None:
         self.ctx = ctx
         self._anisotropy = 1.0 if software else min(_ANISOTROPY, float(ctx.max_anisotropy or 1.0))
+        self._software = software
         self._samplers: dict[Sampling, moderngl.Sampler] = {}
+        self._texels: moderngl.Sampler | None = None  # gives texels, and 0 around them
         self._constants: dict[str, moderngl.Texture] = {}
         self._shaped: dict[tuple[str, str], Shaped] = {}  # constants, by name and shape
         self._files: OrderedDict[tuple[str, bool, bool, bool], moderngl.Texture] = OrderedDict()
@@ -78,9 +80,10 @@ class Binder:
             texture.release()
         for shaped in self._shaped.values():
             shaped.release()
-        for sampler in self._samplers.values():
+        for sampler in (*self._samplers.values(), *([self._texels] if self._texels else [])):
             sampler.release()
         self._samplers.clear()
+        self._texels = None
         self._constants.clear()
         self._shaped.clear()
         self._files.clear()
@@ -135,7 +138,7 @@ class Binder:
             uniforms[f"{WIRED}{declared.name}"] = wire != _OPEN
             uniforms[f"{MATCHES}{declared.name}"] = wire == _MATCHING
             if declared.name in program.uniforms:
-                sampler = self.sampler(declared.sampling)
+                sampler = self.sampler_of(kernel, declared)
                 units.append((declared, unit, sampler))
                 program.set(declared.name, unit)
                 self.use(unit, self.wired(declared, inputs), sampler)
@@ -212,6 +215,21 @@ class Binder:
             found = self._samplers[sampling] = self._new_sampler(sampling)
             self._on_units.clear()  # making one may have taken another off its unit
         return found
+
+    def sampler_of(self, kernel: Kernel, declared: Input) -> moderngl.Sampler:
+        """Return the sampler that reads an input of a kernel.
+
+        What it reads by ``texelFetch`` alone is the same by any. A software renderer has one that gives
+        by coordinates what ``texelFetch`` gives by places: see ``gpu.choices.has_quick_fetches``.
+        """
+        if not self._software or declared.name not in kernel.fetched_alone.inputs:
+            return self.sampler(declared.sampling)
+        if self._texels is None:
+            self._texels = self.ctx.sampler(repeat_x=False, repeat_y=False)
+            self._texels.filter = self.ctx.NEAREST, self.ctx.NEAREST
+            surround(self.ctx, self._texels)
+            self._on_units.clear()  # it may have taken another off its unit
+        return self._texels
 
     def use(self, unit: int, texture: Readable, sampler: moderngl.Sampler) -> None:
         """Bind one texture to a unit, and the sampler that reads it unless it is there."""

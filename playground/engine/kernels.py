@@ -18,6 +18,7 @@ from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.settling import Settling
+from playground.gpu.choices import has_quick_fetches
 from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
@@ -34,6 +35,7 @@ from playground.sketch.reserved_names import (
     PRESSED,
     SIZES,
     SKIPS,
+    TEXELS,
     UNWIRED,
     VALUE,
     WINDOW,
@@ -175,6 +177,8 @@ class Kernels:
                 choices.append((f"{MATCHES}{name}", int(matches)))
         if reads_unwired(kernel):
             choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
+        if has_quick_fetches(kernel):
+            choices.append((TEXELS, 1))
         if job.loop_iteration is None:  # in a loop, each iteration would wait for what it reads back
             inputs = {texel.input for texel in fixed_texels(kernel.source)}
             choices += [(f"{FIXED}{name}", 1) for name in sorted(inputs) if is_read_back(name, job.inputs)]

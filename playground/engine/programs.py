@@ -13,9 +13,10 @@ from collections import OrderedDict
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from playground.gpu.choices import fixed_texel, with_choices
 from playground.gpu.own_shaders import TRIANGLE
 from playground.gpu.program import compile_wrapped
-from playground.gpu.wrap import CORNER, fixed_texel, with_choices, wrap
+from playground.gpu.wrap import CORNER, wrap
 from playground.paths import shown
 from playground.sketch.model import Kernel
 
@@ -41,7 +42,7 @@ class Program:
         self.bound: object = None  # what its uniforms were last bound for: see ``Binder.bind``
         self._last: dict[str, Any] = {}  # the values that uniforms have
         self.arrays: dict[object, moderngl.VertexArray] = {}  # by mesh; None: the whole picture
-        # Uniforms that are texels of inputs, and which: see ``gpu.wrap.with_choices``.
+        # Uniforms that are texels of inputs, and which: see ``gpu.choices.with_choices``.
         self.fixed = [(name, *of) for name in self.uniforms if (of := fixed_texel(name)) is not None]
         self.frame = 0  # when it was last used
         self._corners: moderngl.Buffer | None = None

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 _ACTIVE, _TEXTURE0 = "glActiveTexture", 0x84C0
 _SAMPLER_BINDING = 0x8919
 _WRAPS = (0x2802, 0x2803, 0x8072)  # GL_TEXTURE_WRAP_S, T and R
-_MIRRORED = 0x8370
+_MIRRORED, _CLAMP_TO_BORDER = 0x8370, 0x812D
 _TEXTURE_2D, _INTERNAL_FORMAT = 0x0DE1, 0x1003
 _PACK_ALIGNMENT, _UNPACK_ALIGNMENT = 0x0D05, 0x0CF5
 _CHANNELS = {1: 0x1903, 2: 0x8227, 4: 0x1908}  # GL_RED, GL_RG, GL_RGBA
@@ -104,10 +104,19 @@ def _texel(texture: moderngl.Texture) -> int:
 
 def mirror(ctx: moderngl.Context, sampler: moderngl.Sampler) -> None:
     """Let a sampler repeat a texture mirrored; it is taken off unit 0 again."""
+    _wrap(ctx, sampler, _MIRRORED)
+
+
+def surround(ctx: moderngl.Context, sampler: moderngl.Sampler) -> None:
+    """Let a sampler give 0 outside of a texture; it is taken off unit 0 again."""
+    _wrap(ctx, sampler, _CLAMP_TO_BORDER)
+
+
+def _wrap(ctx: moderngl.Context, sampler: moderngl.Sampler, mode: int) -> None:
     call, name = Calls(ctx), ctypes.c_int()
     sampler.use(0)
     call.activate(0)
     call("glGetIntegerv", (ctypes.c_int, ctypes.c_void_p), _SAMPLER_BINDING, ctypes.addressof(name))
     for wrap in _WRAPS:
-        call("glSamplerParameteri", (ctypes.c_uint, ctypes.c_int, ctypes.c_int), name.value, wrap, _MIRRORED)
+        call("glSamplerParameteri", (ctypes.c_uint, ctypes.c_int, ctypes.c_int), name.value, wrap, mode)
     sampler.clear(0)

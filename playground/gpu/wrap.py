@@ -8,17 +8,15 @@ begin, so that a driver's log can be given back its file and line.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 from playground.errors import ShaderError
 from playground.gpu.own_shaders import TRIANGLE, own_part
 from playground.gpu.stage_recipe import SIGNATURE, Part, Recipe, version_line
-from playground.sketch.fixed_texels import fixed_texels
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.reserved_names import (
     FETCHES,
-    FIXED,
     GIVEN,
     MATCHES,
     PART,
@@ -38,9 +36,9 @@ LOCAL = 8
 CORNER = "k_corner"
 """What a vertex shader is handed where its version has no numbers of vertices: a vec2 in clip space."""
 
-_NOTHING_SKIPPED = f"bool {SKIPS}() {{ return false; }}"
+NOTHING_SKIPPED = f"bool {SKIPS}() {{ return false; }}"
+"""What a kernel calls where none of it is skipped."""
 _NUMBER = re.compile(r"#\s*version\s+(\d+)\s*(\w*)")
-_FIXED = re.compile(rf"{FIXED}(\d+)_(\d+)_(\w+)")
 _PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
 _PROTOTYPE = re.compile(r"^(\w+)\s+(\w+)\s*\(([^()]*)\)\s*;", re.MULTILINE)
 
@@ -102,68 +100,6 @@ def recipes_of(kernel: Kernel, driver: str, version_code: int = 330) -> tuple[st
 def _made(recipe: Recipe) -> ShaderStage:
     text, first = recipe.make()
     return ShaderStage(text, first, recipe.source, recipe.expected)
-
-
-def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrapped:
-    """Write checkboxes and menus into a wrapped text as constants, which changes no line and no column.
-
-    A software renderer goes both ways of every ``if``: what was not chosen costs as much
-    as what was, unless the compiler can see that it never happens. With the choice ``SKIPS`` the text is
-    that of the part of a kernel that ends before its costly rest: see ``engine.costly_rest``. With the
-    choices that ``FIXED`` begins, texels of these inputs become uniforms: see ``_with_uniform_texels``.
-    """
-    stages = {}
-    fixed = frozenset(choice.removeprefix(FIXED) for choice, _ in choices if choice.startswith(FIXED))
-    for name, stage in wrapped.stages.items():
-        text = stage.text
-        for choice, value in choices:
-            pattern = rf"^([ \t]*)uniform([ \t]+(bool|int)[ \t]+{choice}\b)[^;\n]*;"
-
-            def constant(match: re.Match[str], value: int = value) -> str:
-                literal = ("true" if value else "false") if match.group(3) == "bool" else str(value)
-                return f"{match.group(1)}const  {match.group(2)} = {literal};"
-
-            text = re.sub(pattern, constant, text, flags=re.MULTILINE)
-            if choice == SKIPS:
-                text = text.replace(_NOTHING_SKIPPED, f"bool {SKIPS}() {{ discard; return true; }}")
-        stage = replace(stage, text=text)
-        stages[name] = _with_uniform_texels(stage, fixed) if fixed else stage
-    return replace(wrapped, stages=stages)
-
-
-def fixed_name(x: int, y: int, name: str) -> str:
-    """Return the name of the uniform with one texel of an input."""
-    return f"{FIXED}{x}_{y}_{name}"
-
-
-def fixed_texel(uniform: str) -> tuple[str, int, int] | None:
-    """Return the input and the place, x and y, of the texel that a uniform is; None for any other."""
-    match = _FIXED.fullmatch(uniform)
-    return (match[3], int(match[1]), int(match[2])) if match else None
-
-
-def _with_uniform_texels(stage: ShaderStage, inputs: Collection[str]) -> ShaderStage:
-    """Write uniforms in place of the fetches of some inputs' texels at places written as numbers.
-
-    A software renderer fetches such a texel anew for every texel that it computes, which takes it as long
-    as one that differs; a uniform is there. No column changes: a fetch takes more letters than the name.
-    """
-    if not stage.first:
-        return stage
-    lines, uniforms = stage.text.split("\n"), {}
-    for texel in fixed_texels(stage.source):
-        index, uniform = stage.first - 1 + texel.line, fixed_name(texel.x, texel.y, texel.input)
-        own = stage.source.lines[texel.line].code[texel.start : texel.end]
-        given = lines[index][texel.start : texel.end]
-        # What a stage does not have, as the other's function, is blank.
-        if texel.input in inputs and given in (own, own.replace("texelFetch", FETCHES["texelFetch"])):
-            line = lines[index]
-            lines[index] = line[: texel.start] + uniform.ljust(len(given)) + line[texel.end :]
-            uniforms[uniform] = f"uniform vec4 {uniform};"
-    if not uniforms:
-        return stage
-    lines[stage.first - 1 : stage.first - 1] = uniforms.values()
-    return replace(stage, text="\n".join(lines), first=stage.first + len(uniforms))
 
 
 def wrap_library(kernel: Kernel, driver: str) -> Wrapped:
@@ -284,7 +220,7 @@ def _given(kernel: Kernel, always: tuple[str, ...] = ()) -> list[Part]:
     found += [("vec3", f"{TOWARDS}{p.name}") for p in kernel.parameters if p.widget.kind == "direction"]
     found.append(("ivec2", WINDOW))
     parts = [Part(f"uniform {kind} {name};", () if name in always else (name,)) for kind, name in found]
-    return [*parts, Part(_NOTHING_SKIPPED, (SKIPS,))]
+    return [*parts, Part(NOTHING_SKIPPED, (SKIPS,))]
 
 
 def _fragment(kernel: Kernel) -> Recipe:

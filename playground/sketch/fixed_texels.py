@@ -14,6 +14,13 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from functools import lru_cache
 
+from playground.sketch.call_arguments import (
+    DIRECTIVE,
+    arguments_of,
+    call_around,
+    given_to,
+    without_directives,
+)
 from playground.sketch.outline import Declared, outline
 from playground.sketch.source import SourceText
 
@@ -23,10 +30,6 @@ _FETCH = re.compile(
 )
 _COMPONENTS = re.compile(r"[ \t]*\.[ \t]*([xyzw]{1,4}|[rgba]{1,4}|[stpq]{1,4})\b")
 _DECLARES = re.compile(r"\bsampler2D[ \t]+$")
-_BRACKETS = re.compile(r"[()\[\],]")
-_DIRECTIVE = re.compile(
-    r"^[ \t]*#(?:[^\n\\]|\\\n|\\[^\n])*", re.MULTILINE
-)  # and the lines that it goes on to
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,9 +89,9 @@ class _Text:
     """The functions of a text, and what their samplers stand for."""
 
     def __init__(self, code: str) -> None:
-        directives = list(_DIRECTIVE.finditer(code))
+        directives = list(DIRECTIVE.finditer(code))
         self.directives = [match.span() for match in directives]
-        self.code = _DIRECTIVE.sub(lambda match: re.sub(r"[^\n]", " ", match.group()), code)
+        self.code = without_directives(code)
         self.of_macros = " ".join([match.group() for match in directives])
         self.functions: list[Declared] = [one for one in outline(code) if one.kind == "function"]
 
@@ -101,7 +104,7 @@ class _Text:
         around = next((one for one in self.functions if one.body >= 0 and one.start <= at < one.end), None)
         if around is None:
             return False
-        arguments = _arguments(around.signature)
+        arguments = arguments_of(around.signature)
         if sampler not in arguments:
             return True
         if around.name in seen:
@@ -129,18 +132,15 @@ class _Text:
 
     def _is_handed_on(self, at: int, sampler: str) -> bool:
         """Return whether a name in some place is an argument of a function that calls it so too."""
-        depth, index, opens = 0, 0, at - 1
-        while opens >= 0 and not (depth == 0 and self.code[opens] in "(;{"):
-            mark = self.code[opens]
-            depth += (mark in ")]") - (mark in "([")
-            index += mark == "," and depth == 0
-            opens -= 1
-        called = re.search(r"([A-Za-z_]\w*)\s*$", self.code[: max(opens, 0)])
-        alike = [one for one in self.functions if called and one.name == called[1]]
-        given = _given(self.code, opens) if alike else []
+        call = call_around(self.code, at)
+        if call is None:
+            return False
+        name, index, opens = call
+        alike = [one for one in self.functions if one.name == name]
+        given = given_to(self.code, opens) if alike else []
         if len(given) <= index or given[index] != sampler:
             return False
-        known = [_arguments(one.signature) for one in alike]
+        known = [arguments_of(one.signature) for one in alike]
         return all(len(arguments) > index and arguments[index] == sampler for arguments in known)
 
     def _is_handed(self, function: Declared, index: int, sampler: str, seen: frozenset[str]) -> bool:
@@ -149,34 +149,9 @@ class _Text:
         for call in re.finditer(rf"\b{function.name}\b", self.code):
             if call.start() in declared:
                 continue
-            given = _given(self.code, call.end())
+            given = given_to(self.code, call.end())
             if len(given) <= index or given[index] != sampler:
                 return False
             if not self.reads_uniform(sampler, call.start(), seen):
                 return False
         return True
-
-
-def _arguments(signature: str) -> list[str]:
-    """Return the names of a function's arguments; "" for one without."""
-    inside = signature[signature.index("(") + 1 : signature.rindex(")")]
-    return [(re.findall(r"[A-Za-z_]\w*", part) or [""])[-1] for part in inside.split(",")]
-
-
-def _given(code: str, at: int) -> list[str]:
-    """Return the arguments of the call whose bracket opens at a place, or behind white space there."""
-    opens = re.compile(r"\s*\(").match(code, at)
-    if opens is None:
-        return []
-    found, depth, start = [], 1, opens.end()
-    for mark in _BRACKETS.finditer(code, opens.end()):
-        if mark.group() in "([":
-            depth += 1
-        elif mark.group() in ")]":
-            depth -= 1
-        if depth == 0 or (depth == 1 and mark.group() == ","):
-            found.append(code[start : mark.start()].strip())
-            start = mark.end()
-        if depth == 0:
-            return found
-    return []

@@ -174,9 +174,14 @@ def _plain(text: str, code: str, start: int, end: int) -> Declared | None:
 
 def _comment_above(text: str, start: int) -> str:
     """Return the lines of ``//`` right above a place, without their marks, their line ends kept."""
-    lines = text[:start].split("\n")[:-1]
     found: list[str] = []
-    while lines and (line := lines.pop().strip()).startswith("//") and not line.startswith("//!"):
+    end = text.rfind("\n", 0, start)
+    while end >= 0:
+        begins = text.rfind("\n", 0, end) + 1
+        line = text[begins:end].strip()
+        if not line.startswith("//") or line.startswith("//!"):
+            break
         if not re.match(r"//\s*(?:anchor|end):", line):
             found.append(line[2:].removeprefix(" "))
+        end = begins - 1
     return "\n".join(reversed(found)).strip()

@@ -46,6 +46,12 @@ FETCHES = {"texelFetch": "k_fetch_in", "texelFetchOffset": "k_fetch_in_shift"}
 """What replaces GLSL's own functions, as long as these, where an input may stay unwired: the one
 texel of its white or black answers for every place."""
 
+TEXELS = "k_texels"
+"""A choice: what is read texel by texel alone is fetched as a software renderer is quick to."""
+
+QUICK_FETCHES = {"texelFetch": "k_texel_of", "k_fetch_in": "k_texel_in"}
+"""What replaces functions that fetch texels then, as long as these."""
+
 FIXED = "k_fixed_"
 """What begins the name of a uniform with one texel of an input, in place of a fetch at a place written as
 numbers: x, y and the input follow, as in k_fixed_5_0_daylight. On software renderers only."""

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from playground.errors import Diagnostic, ShaderError, SketchError
 from playground.sketch.agreement import Bound
+from playground.sketch.fetched_alone import FetchedAlone, fetched_alone
 from playground.sketch.parameter import AS_IT_IS, Parameter, Sampling, Value
 from playground.sketch.reserved_names import GIVEN, PLAIN_UNIFORMS
 from playground.sketch.source import Line, SourceText
@@ -153,6 +154,13 @@ class Kernel:
     def given(self) -> tuple[str, ...]:
         """Which names the text reads of those that the engine gives: see ``reserved_names.GIVEN``."""
         return tuple(name for name in GIVEN if self.reads(name))
+
+    @cached_property
+    def fetched_alone(self) -> FetchedAlone:
+        """What of it reads inputs by ``texelFetch`` alone; nothing of a plain or another tool's shader."""
+        if self.dialect or self.kind.startswith("plain"):
+            return FetchedAlone()
+        return fetched_alone(self.source, frozenset([declared.name for declared in self.inputs]))
 
     @property
     def pragma(self) -> Line | None:

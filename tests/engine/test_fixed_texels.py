@@ -8,8 +8,9 @@ import pytest
 from playground.engine import results
 from playground.engine.engine import Engine
 from playground.engine.results import Result
+from playground.gpu.choices import with_choices
 from playground.gpu.context import ContextInfo
-from playground.gpu.wrap import FRAGMENT, with_choices, wrap
+from playground.gpu.wrap import FRAGMENT, wrap
 from playground.sketch.fixed_texels import fixed_texels
 from playground.sketch.reserved_names import FIXED
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from playground.errors import ShaderError
-from playground.gpu.wrap import COMPUTE, FRAGMENT, with_choices, wrap, wrap_library
+from playground.gpu.choices import with_choices
+from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap, wrap_library
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Kernel
 from playground.sketch.source import read_source

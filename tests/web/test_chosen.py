@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from playground.engine.engine import Engine
-from playground.gpu.wrap import FRAGMENT, with_choices, wrap
+from playground.gpu.choices import with_choices
+from playground.gpu.wrap import FRAGMENT, wrap
 from playground.sketch.load import load
 from playground.web.page_data import page_data
 

@@ -1,0 +1,126 @@
+"""Write into a wrapped text what is known when it runs on a software renderer, which gains by it.
+
+No line and no column of the kernel's own changes, so that complaints of the driver stay in their places.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+
+from playground.gpu.own_shaders import own_part
+from playground.gpu.wrap import NOTHING_SKIPPED, ShaderStage, Wrapped, previous_name
+from playground.sketch.fetched_alone import FETCH
+from playground.sketch.fixed_texels import fixed_texels
+from playground.sketch.model import Kernel
+from playground.sketch.reserved_names import FETCHES, FIXED, QUICK_FETCHES, SKIPS, TEXELS, UNWIRED
+
+_FIXED = re.compile(rf"{FIXED}(\d+)_(\d+)_(\w+)")
+
+
+def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrapped:
+    """Write checkboxes and menus into a wrapped text as constants, which changes no line and no column.
+
+    A software renderer goes both ways of every ``if``: what was not chosen costs as much
+    as what was, unless the compiler can see that it never happens. With the choice ``SKIPS`` the text is
+    that of the part of a kernel that ends before its costly rest: see ``engine.costly_rest``. With the
+    choices that ``FIXED`` begins, texels of these inputs become uniforms: see ``_with_uniform_texels``. With
+    the choice ``TEXELS`` texels are fetched as this renderer is quick to: see ``_with_quick_fetches``.
+    """
+    stages, quick = {}, any(choice == TEXELS for choice, _ in choices)
+    fixed = frozenset(choice.removeprefix(FIXED) for choice, _ in choices if choice.startswith(FIXED))
+    for name, stage in wrapped.stages.items():
+        text = stage.text
+        for choice, value in choices:
+            pattern = rf"^([ \t]*)uniform([ \t]+(bool|int)[ \t]+{choice}\b)[^;\n]*;"
+
+            def constant(match: re.Match[str], value: int = value) -> str:
+                literal = ("true" if value else "false") if match.group(3) == "bool" else str(value)
+                return f"{match.group(1)}const  {match.group(2)} = {literal};"
+
+            text = re.sub(pattern, constant, text, flags=re.MULTILINE)
+            if choice == SKIPS:
+                text = text.replace(NOTHING_SKIPPED, f"bool {SKIPS}() {{ discard; return true; }}")
+        stage = replace(stage, text=text)
+        stage = _with_uniform_texels(stage, fixed) if fixed else stage
+        stages[name] = _with_quick_fetches(stage, wrapped.kernel) if quick else stage
+    return replace(wrapped, stages=stages)
+
+
+def fixed_name(x: int, y: int, name: str) -> str:
+    """Return the name of the uniform with one texel of an input."""
+    return f"{FIXED}{x}_{y}_{name}"
+
+
+def fixed_texel(uniform: str) -> tuple[str, int, int] | None:
+    """Return the input and the place, x and y, of the texel that a uniform is; None for any other."""
+    match = _FIXED.fullmatch(uniform)
+    return (match[3], int(match[1]), int(match[2])) if match else None
+
+
+def _with_uniform_texels(stage: ShaderStage, inputs: Collection[str]) -> ShaderStage:
+    """Write uniforms in place of the fetches of some inputs' texels at places written as numbers.
+
+    A software renderer fetches such a texel anew for every texel that it computes, which takes it as long
+    as one that differs; a uniform is there. No column changes: a fetch takes more letters than the name.
+    """
+    if not stage.first:
+        return stage
+    lines, uniforms = stage.text.split("\n"), {}
+    for texel in fixed_texels(stage.source):
+        index, uniform = stage.first - 1 + texel.line, fixed_name(texel.x, texel.y, texel.input)
+        own = stage.source.lines[texel.line].code[texel.start : texel.end]
+        given = lines[index][texel.start : texel.end]
+        # What a stage does not have, as the other's function, is blank.
+        if texel.input in inputs and given in (own, own.replace("texelFetch", FETCHES["texelFetch"])):
+            line = lines[index]
+            lines[index] = line[: texel.start] + uniform.ljust(len(given)) + line[texel.end :]
+            uniforms[uniform] = f"uniform vec4 {uniform};"
+    if not uniforms:
+        return stage
+    lines[stage.first - 1 : stage.first - 1] = uniforms.values()
+    return replace(stage, text="\n".join(lines), first=stage.first + len(uniforms))
+
+
+def has_quick_fetches(kernel: Kernel) -> bool:
+    """Return whether the choice ``TEXELS`` changes a kernel's text.
+
+    Where it is made, ``Binder`` binds the inputs of ``fetched_alone`` by a sampler that gives the nearest
+    texel, and 0 outside of the texture.
+    """
+    return bool(kernel.fetched_alone.fetches) or _reads_previous(kernel)
+
+
+def _reads_previous(kernel: Kernel) -> bool:
+    return any(kernel.reads(previous_name(kernel, output)) for output in kernel.outputs)
+
+
+def _with_quick_fetches(stage: ShaderStage, kernel: Kernel) -> ShaderStage:
+    """Write another function in place of ``texelFetch`` where it reads what samplers give as texels."""
+    if not stage.first:
+        return stage
+    lines, changed, own = stage.text.split("\n"), False, stage.first - 1
+    for index in range(own):  # the engine's function for the iteration before, whose places are inside
+        fetch = f"{FETCH}(k_previous_"
+        changed |= fetch in lines[index]
+        lines[index] = lines[index].replace(fetch, f"{QUICK_FETCHES[FETCH]}(k_previous_")
+    used = set()
+    for number, column in kernel.fetched_alone.fetches:
+        line, end = lines[own + number], column + len(FETCH)
+        called = line[column:end]
+        if called in QUICK_FETCHES:  # what a stage does not have is blank, and some are uniforms by now
+            lines[own + number] = line[:column] + QUICK_FETCHES[called] + line[end:]
+            used.add(called)
+    if not used and not changed:
+        return stage
+    if FETCHES[FETCH] in used:
+        unwired = own_part(
+            "quick_fetch_unwired.glsl",
+            unwired=UNWIRED,
+            fetch=QUICK_FETCHES[FETCH],
+            fetch_unwired=QUICK_FETCHES[FETCHES[FETCH]],
+        )
+        lines[own:own] = unwired.split("\n")
+    lines[1:1] = own_part("quick_fetch.glsl", fetch=QUICK_FETCHES[FETCH]).split("\n")  # behind the version
+    return replace(stage, text="\n".join(lines), first=stage.first + len(lines) - stage.text.count("\n") - 1)

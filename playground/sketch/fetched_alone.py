@@ -1,0 +1,138 @@
+"""Find the inputs that a kernel reads by ``texelFetch`` alone, and the fetches that read only such inputs.
+
+    float slope(sampler2D heights, ivec2 t) { return texelFetch(heights, t, 0).r - …; }
+
+How a sampler filters and what it gives outside of its texture count for none of these inputs, so whoever
+binds them is free to say. A function that is handed samplers reads one of these inputs if it is handed
+nothing else, by any call. What a macro writes is not read: what it might mean counts as another use.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections import defaultdict
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+from playground.sketch.call_arguments import (
+    DIRECTIVE,
+    arguments_of,
+    call_around,
+    given_to,
+    without_directives,
+)
+from playground.sketch.outline import outline
+from playground.sketch.source import SourceText
+
+FETCH = "texelFetch"
+_ASKED = frozenset({(FETCH, 0), ("textureSize", 0)})  # functions of GLSL, and which argument is the sampler
+_SAMPLER = re.compile(r"\bsampler2D[ \t]+([A-Za-z_]\w*)")
+_DECLARED = re.compile(r"\bsampler2D[ \t]+\Z")
+_REPLACED = re.compile(rf"\bdefine[ \t]+(?:{FETCH}|textureSize|sampler2D)\b")
+
+_Sampler = tuple[str, int]  # a function and which of its arguments; of a uniform its name and -1
+
+
+@dataclass(frozen=True, slots=True)
+class FetchedAlone:
+    """What of a text reads inputs by ``texelFetch`` alone."""
+
+    inputs: frozenset[str] = frozenset()
+    fetches: tuple[tuple[int, int], ...] = ()  # of level 0, of these inputs: line and column, both from 0
+
+
+@lru_cache(maxsize=256)
+def fetched_alone(source: SourceText, inputs: frozenset[str]) -> FetchedAlone:
+    """Return what of a flattened text reads some of its inputs by ``texelFetch`` alone."""
+    if FETCH not in source.names or not inputs:
+        return FetchedAlone()
+    text = _Uses(source.code)
+    if text.is_unclear:
+        return FetchedAlone()
+    free = _reaching(text.handed_by, [*text.used_otherwise, *text.uniforms_but(inputs)])
+    # A function that may be handed another sampler too fetches as it did.
+    mixed = _reaching(text.handed_to, free)
+    alone = frozenset([name for name in inputs if (name, -1) in text.samplers and (name, -1) not in free])
+    reached = _reaching(text.handed_to, [(name, -1) for name in alone])
+    places = [at for at, sampler in text.fetches if sampler in reached and sampler not in mixed]
+    lines = [0, *(match.end() for match in re.finditer("\n", source.code))]
+    found = []
+    for at in sorted(places):
+        line = bisect_right(lines, at) - 1
+        found.append((line, at - lines[line]))
+    return FetchedAlone(alone, tuple(found))
+
+
+class _Uses:
+    """What a text does with its samplers."""
+
+    def __init__(self, code: str) -> None:
+        self._code = without_directives(code)
+        of_macros = " ".join(match.group() for match in DIRECTIVE.finditer(code))
+        self._functions = [one for one in outline(code) if one.kind == "function" and "(" in one.signature]
+        self._starts = [one.start for one in self._functions]
+        self._names = [arguments_of(one.signature) for one in self._functions]
+        self._arguments: dict[str, list[list[str]]] = defaultdict(list)  # of each function of a name
+        for one, names_of_one in zip(self._functions, self._names, strict=True):
+            self._arguments[one.name].append(names_of_one)
+        self.samplers: set[_Sampler] = set()
+        self.used_otherwise: set[_Sampler] = set()
+        self.handed_to: dict[_Sampler, set[_Sampler]] = defaultdict(set)
+        self.handed_by: dict[_Sampler, set[_Sampler]] = defaultdict(set)
+        self.fetches: list[tuple[int, _Sampler]] = []
+        names = set(_SAMPLER.findall(self._code))
+        in_macros = set(re.findall(r"[A-Za-z_]\w*", of_macros))
+        takers = {one.name for one in self._functions if "sampler2D" in one.signature}
+        self.is_unclear = bool(_REPLACED.search(of_macros) or in_macros & (names | takers))
+        if names and not self.is_unclear:
+            for match in re.finditer(rf"\b(?:{'|'.join(sorted(names))})\b", self._code):
+                self._look(match.group(), match.start())
+
+    def uniforms_but(self, names: Collection[str]) -> Iterator[_Sampler]:
+        """Yield the uniform samplers that have other names than these."""
+        yield from (one for one in self.samplers if one[1] < 0 and one[0] not in names)
+
+    def _look(self, name: str, at: int) -> None:
+        """Note what one naming of a sampler does."""
+        sampler = self._meant(name, at)
+        self.samplers.add(sampler)
+        if _DECLARED.search(self._code, max(at - 40, 0), at):
+            return
+        called = call_around(self._code, at)
+        if called is None:
+            self.used_otherwise.add(sampler)
+            return
+        function, index, opens = called
+        if (function, index) in _ASKED:
+            if function == FETCH and given_to(self._code, opens)[2:] != ["0"]:
+                self.used_otherwise.add(sampler)
+            elif function == FETCH:
+                self.fetches.append((self._code.rindex(FETCH, 0, opens), sampler))
+            return
+        known = self._arguments.get(function, [])
+        if not known or any(len(arguments) <= index for arguments in known):
+            self.used_otherwise.add(sampler)
+            return
+        # Of several functions of a name the text does not say which: the sampler may come to each.
+        self.handed_to[sampler].add((function, index))
+        self.handed_by[function, index].add(sampler)
+
+    def _meant(self, name: str, at: int) -> _Sampler:
+        """Return what a name means in some place: an argument of the function around, or a uniform."""
+        before = bisect_right(self._starts, at) - 1
+        if before >= 0 and at < self._functions[before].end and name in self._names[before]:
+            return self._functions[before].name, self._names[before].index(name)
+        return name, -1
+
+
+def _reaching(steps: dict[_Sampler, set[_Sampler]], begun: Collection[_Sampler]) -> set[_Sampler]:
+    """Return what is reached from some samplers by steps, themselves included."""
+    found, left = set(begun), list(begun)
+    while left:
+        for step in steps.get(left.pop(), ()):
+            if step not in found:
+                found.add(step)
+                left.append(step)
+    return found

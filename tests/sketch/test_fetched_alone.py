@@ -1,0 +1,118 @@
+"""Which inputs a text reads by ``texelFetch`` alone, and which of its fetches read no other."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from playground.sketch.fetched_alone import fetched_alone
+from playground.sketch.source import SourceText, read_source
+
+HEAD = """uniform sampler2D sun;
+uniform sampler2D moon;
+uniform sampler2D image;
+"""
+BOTH = {"sun", "moon"}
+AT = "float at(sampler2D which, ivec2 t) { return ■texelFetch(which, t, 0).r; }\n"
+TEXTS = {
+    # How an input is read: a text, each fetch that is found marked; the inputs that are read by nothing else.
+    "in the kernel": ("float kernel(ivec2 t) { return ■texelFetch(sun, t, 0).r; }", BOTH),
+    "at a place with calls and brackets": (
+        "float kernel(ivec2 t) {\n"
+        "    return ■texelFetch( sun,clamp(ivec2(t[0], max(t.y, 1)), ivec2(0), textureSize(sun, 0)), 0 ).r"
+        " + ■texelFetch(moon, t, 0).g; }",
+        BOTH,
+    ),
+    "by a function that is handed both": (
+        f"{AT}float kernel(ivec2 t) {{ return at(sun, t) + at(moon, t + 1); }}",
+        BOTH,
+    ),
+    "down a chain, with other names": (
+        f"{AT}float twice(float by, sampler2D one) {{ return by * at(one, ivec2(2)); }}\n"
+        "float kernel(ivec2 t) { return twice(float(t.x), sun); }",
+        BOTH,
+    ),
+    "by a function that calls itself": (
+        "float at(sampler2D sun, int n) { return n > 0 ? at(sun, --n) : ■texelFetch(sun, ivec2(7), 0).r; }\n"
+        "float kernel(ivec2 t) { return at(sun, 3); }",
+        BOTH,
+    ),
+    "in a call within a call": (
+        f"{AT}float kernel(ivec2 t) {{ return max(at(sun, ivec2(at(moon, t), 0)), 1.0); }}",
+        BOTH,
+    ),
+    "by another level": ("float kernel(ivec2 t) { return texelFetch(sun, t, 1).r; }", {"moon"}),
+    "by a level that is worked out": (
+        "float kernel(ivec2 t) { return texelFetch(sun, t, t.x).r; }",
+        {"moon"},
+    ),
+    "and filtered": (
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + textureLod(sun, vec2(t), 0.0).r"
+        " + ■texelFetch(moon, t, 0).r; }",
+        {"moon"},
+    ),
+    "and filtered by a function": (
+        "float at(sampler2D sun) { return textureLod(sun, vec2(0.5), 0.0).r; }\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + at(sun) + ■texelFetch(moon, t, 0).r; }",
+        {"moon"},
+    ),
+    "by a function that may be handed one that is filtered": (
+        "float at(sampler2D which, ivec2 t) { return texelFetch(which, t, 0).r; }\n"
+        "float kernel(ivec2 t) { return at(sun, t) + at(moon, t) + textureLod(moon, vec2(t), 0.0).r; }",
+        {"sun"},
+    ),
+    "by a function that may be handed an image file": (
+        "float at(sampler2D which, ivec2 t) { return texelFetch(which, t, 0).r; }\n"
+        "float kernel(ivec2 t) { return at(sun, t) + at(image, t); }",
+        BOTH,
+    ),
+    "by one of two functions of a name, of which the other filters": (
+        "float at(sampler2D which, ivec2 t) { return texelFetch(which, t, 0).r; }\n"
+        "float at(sampler2D which, vec2 t) { return textureLod(which, t, 0.0).r; }\n"
+        "float kernel(ivec2 t) { return at(sun, t) + ■texelFetch(moon, t, 0).r; }",
+        {"moon"},
+    ),
+    "by a function that nothing calls": (
+        "float at(sampler2D which, ivec2 t) { return texelFetch(which, t, 0).r; }\n"
+        "float kernel(ivec2 t) { return ■texelFetch(moon, t, 0).r; }",
+        BOTH,
+    ),
+    "by a macro": (
+        "#define AT(t) texelFetch(sun, t, 0)\nfloat kernel(ivec2 t) { return AT(t).r; }",
+        set(),
+    ),
+    "by a macro that is handed it": (
+        "#define AT(s) texelFetch(s, ivec2(0), 0)\nfloat kernel(ivec2 t) { return AT(sun).r; }",
+        {"moon"},
+    ),
+    "by a function that a macro calls": (
+        "float at(sampler2D which) { return texelFetch(which, ivec2(0), 0).r; }\n"
+        "#define FIRST at\nfloat kernel(ivec2 t) { return FIRST(sun) + at(moon); }",
+        set(),
+    ),
+    "by what a macro makes of the name": (
+        "#define texelFetch(s, p, l) textureLod(s, vec2(p), 0.0)\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r; }",
+        set(),
+    ),
+    "in a comment": ("float kernel(ivec2 t) { return 1.0; } // texelFetch(sun, t, 0)", set()),
+}
+
+
+def source_of(folder: Path, text: str) -> SourceText:
+    (folder / "k.glsl").write_text(HEAD + text + "\n", encoding="utf-8")
+    return read_source(folder / "k.glsl", (folder,))
+
+
+@pytest.mark.parametrize("how", TEXTS)
+def test_what_is_read_by_fetches_alone(tmp_path: Path, how: str):
+    marked, expected = TEXTS[how]
+    source = source_of(tmp_path, marked.replace("■", ""))
+    found = fetched_alone(source, frozenset(BOTH))
+    lines = [line.code for line in source.lines]
+    for line, column in reversed(found.fetches):
+        assert lines[line][column:].startswith("texelFetch")
+        lines[line] = f"{lines[line][:column]}■{lines[line][column:]}"
+    assert "\n".join(lines).split("//")[0].strip() == (HEAD + marked).split("//")[0].strip()
+    assert found.inputs == expected
