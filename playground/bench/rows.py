@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from functools import cache
 from pathlib import Path
@@ -18,6 +18,7 @@ from typing import Any
 from playground.errors import ParameterError, nearest
 
 FOLDER = Path(__file__).resolve().parent / "rows"
+_BESIDE = "beside"  # a peer of a frame, drawn by its measure
 _OWN = {"name", "what", "measure", "goal", "peers", "sizes"}
 
 
@@ -48,6 +49,11 @@ class Row:
     peers: tuple[Mapping[str, Any], ...] = ()
     sized: bool = True  # whether it is measured at the sizes that are asked for
     options: Mapping[str, Any] = field(default_factory=dict)  # its measure's own
+
+    def alone(self) -> Row:
+        """Return the row without what it is compared with."""
+        options = {key: value for key, value in self.options.items() if key != _BESIDE}
+        return replace(self, peers=(), options=options)
 
 
 @cache

@@ -31,6 +31,7 @@ HELP = help_text(
     "playground bench --list",
     "playground bench normalisation --size 257 --rounds 3",
     "playground bench generation lighting --size 513 4097 -o results.json --page results.html",
+    "playground bench lighting --no-peers --size 513 4097",
     "playground bench engine --against results.json --fail",
 )
 LARGEST = 8193
@@ -48,6 +49,9 @@ def bench(
     rounds: Annotated[str, value("--rounds N", "Runs of each that count (default 7).")] = "",
     processor: Annotated[
         bool, flag("--processor", "Compare processors' time, not the clock's: for a busy machine.")
+    ] = False,
+    no_peers: Annotated[
+        bool, flag("--no-peers", "Time ours alone: for growth to large sizes, where a peer takes minutes.")
     ] = False,
     output: Annotated[Path | None, value("-o --output FILE", "Write every sample as JSON.")] = None,
     page: Annotated[
@@ -86,6 +90,8 @@ def bench(
     renderer: Renderer = ctx.obj.or_else(software, device)
     clock = "processor" if processor else "wall"
     opts = Options(count, renderer.software, renderer.device, note)
+    if no_peers:
+        rows = [row.alone() for row in rows]
     with progress("rows", len(planned(rows, sides))) as advance:
         results = run(rows, sides, opts, advance)
     if output is not None:

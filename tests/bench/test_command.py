@@ -8,6 +8,7 @@ import sys
 import pytest
 
 from playground import cli
+from playground.bench.rows import chosen
 
 SMALL = ["bench", "white_noise", "diamond_square", "--size", "33", "--rounds", "2"]
 
@@ -45,6 +46,14 @@ def test_what_has_become_slower_fails_where_that_is_asked_for(tmp_path, capsys):
     assert ran(capsys, *again)[0] == 0
     status, out, _ = ran(capsys, *again, "--fail")
     assert status == 1 and "slower" in out
+
+
+def test_ours_can_be_timed_without_peers(capsys):
+    alone = ["bench", "white_noise", "--size", "33", "--rounds", "2", "--json", "--no-peers"]
+    (figure,) = json.loads(ran(capsys, *alone)[1])["figures"]
+    assert figure["theirs"] == {} and len(figure["ours"]["auto"]["wall"]) == 2
+    beside = [row for row in chosen(["frames"]) if "beside" in row.options]
+    assert beside and not any("beside" in row.alone().options for row in beside)
 
 
 def test_the_list_runs_nothing(capsys):
