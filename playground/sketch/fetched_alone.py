@@ -28,6 +28,7 @@ from playground.sketch.source import SourceText
 
 FETCH = "texelFetch"
 _ASKED = frozenset({(FETCH, 0), ("textureSize", 0)})  # functions of GLSL, and which argument is the sampler
+_OF_GLSL = re.compile(r"texture|texel|shadow")  # its functions that take samplers begin so
 _SAMPLER = re.compile(r"\bsampler2D[ \t]+([A-Za-z_]\w*)")
 _DECLARED = re.compile(r"\bsampler2D[ \t]+\Z")
 _REPLACED = re.compile(rf"\bdefine[ \t]+(?:{FETCH}|textureSize|sampler2D)\b")
@@ -74,9 +75,10 @@ class _Uses:
         self._functions = [one for one in outline(code) if one.kind == "function" and "(" in one.signature]
         self._starts = [one.start for one in self._functions]
         self._names = [arguments_of(one.signature) for one in self._functions]
-        self._arguments: dict[str, list[list[str]]] = defaultdict(list)  # of each function of a name
-        for one, names_of_one in zip(self._functions, self._names, strict=True):
-            self._arguments[one.name].append(names_of_one)
+        self._takes: dict[str, set[int]] = defaultdict(set)  # which arguments of a function are samplers
+        for one in self._functions:
+            inside = one.signature[one.signature.index("(") :].split(",")
+            self._takes[one.name] |= {i for i, part in enumerate(inside) if _SAMPLER.search(part)}
         self.samplers: set[_Sampler] = set()
         self.used_otherwise: set[_Sampler] = set()
         self.handed_to: dict[_Sampler, set[_Sampler]] = defaultdict(set)
@@ -84,7 +86,7 @@ class _Uses:
         self.fetches: list[tuple[int, _Sampler]] = []
         names = set(_SAMPLER.findall(self._code))
         in_macros = set(re.findall(r"[A-Za-z_]\w*", of_macros))
-        takers = {one.name for one in self._functions if "sampler2D" in one.signature}
+        takers = {name for name, taken in self._takes.items() if taken}
         self.is_unclear = bool(_REPLACED.search(of_macros) or in_macros & (names | takers))
         if names and not self.is_unclear:
             for match in re.finditer(rf"\b(?:{'|'.join(sorted(names))})\b", self._code):
@@ -97,27 +99,30 @@ class _Uses:
     def _look(self, name: str, at: int) -> None:
         """Note what one naming of a sampler does."""
         sampler = self._meant(name, at)
-        self.samplers.add(sampler)
-        if _DECLARED.search(self._code, max(at - 40, 0), at):
-            return
         called = call_around(self._code, at)
-        if called is None:
-            self.used_otherwise.add(sampler)
-            return
-        function, index, opens = called
-        if (function, index) in _ASKED:
+        function, index, opens = called or ("", 0, at)
+        if _DECLARED.search(self._code, max(at - 40, 0), at):
+            self.samplers.add(sampler)
+        elif (function, index) in _ASKED:
+            self.samplers.add(sampler)
             if function == FETCH and given_to(self._code, opens)[2:] != ["0"]:
                 self.used_otherwise.add(sampler)
             elif function == FETCH:
                 self.fetches.append((self._code.rindex(FETCH, 0, opens), sampler))
-            return
-        known = self._arguments.get(function, [])
-        if not known or any(len(arguments) <= index for arguments in known):
+        elif index in self._takes.get(function, ()):
+            # Of several functions of a name the text does not say which: the sampler may come to each.
+            self.samplers.add(sampler)
+            self.handed_to[sampler].add((function, index))
+            self.handed_by[function, index].add(sampler)
+        elif (index == 0 and _OF_GLSL.match(function)) or (not function and self._is_in_brackets(name, at)):
+            self.samplers.add(sampler)
             self.used_otherwise.add(sampler)
-            return
-        # Of several functions of a name the text does not say which: the sampler may come to each.
-        self.handed_to[sampler].add((function, index))
-        self.handed_by[function, index].add(sampler)
+        # Anything else is a variable of that name: a sampler can only be handed on.
+
+    def _is_in_brackets(self, name: str, at: int) -> bool:
+        """Return whether a name has brackets of its own, within which it is still a sampler."""
+        before, after = self._code[:at].rstrip(), self._code[at + len(name) :].lstrip()
+        return before.endswith("(") and after.startswith(")")
 
     def _meant(self, name: str, at: int) -> _Sampler:
         """Return what a name means in some place: an argument of the function around, or a uniform."""

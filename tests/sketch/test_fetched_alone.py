@@ -42,6 +42,22 @@ TEXTS = {
         f"{AT}float kernel(ivec2 t) {{ return max(at(sun, ivec2(at(moon, t), 0)), 1.0); }}",
         BOTH,
     ),
+    "beside a variable of its name": (
+        "float near(float moon, ivec2 t) { return max(moon, 1.0) * (moon + float(t.x)); }\n"
+        "float kernel(ivec2 t) { vec2 sun = vec2(2.0, 3.0); return near(sun.x, ivec2(sun)); }\n"
+        "float other(ivec2 t) { return ■texelFetch(sun, t, 0).r + ■texelFetch(moon, t, 0).r; }",
+        BOTH,
+    ),
+    "in brackets": (
+        "float at(sampler2D which, ivec2 t) { return texelFetch(which, t, 0).r; }\n"
+        "float kernel(ivec2 t) { return at((sun), t) + ■texelFetch(moon, t, 0).r; }",
+        {"moon"},
+    ),
+    "by another function of GLSL": (
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + texelFetchOffset(sun, t, 0, t).r"
+        " + textureGrad(moon, vec2(t), vec2(0.0), vec2(0.0)).r; }",
+        set(),
+    ),
     "by another level": ("float kernel(ivec2 t) { return texelFetch(sun, t, 1).r; }", {"moon"}),
     "by a level that is worked out": (
         "float kernel(ivec2 t) { return texelFetch(sun, t, t.x).r; }",
