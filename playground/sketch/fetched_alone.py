@@ -85,7 +85,7 @@ class _Uses:
         self.handed_by: dict[_Sampler, set[_Sampler]] = defaultdict(set)
         self.fetches: list[tuple[int, _Sampler]] = []
         names = set(_SAMPLER.findall(self._code))
-        in_macros = set(re.findall(r"[A-Za-z_]\w*", of_macros))
+        self._in_macros = in_macros = set(re.findall(r"[A-Za-z_]\w*", of_macros))
         takers = {name for name, taken in self._takes.items() if taken}
         self.is_unclear = bool(_REPLACED.search(of_macros) or in_macros & (names | takers))
         if names and not self.is_unclear:
@@ -114,7 +114,11 @@ class _Uses:
             self.samplers.add(sampler)
             self.handed_to[sampler].add((function, index))
             self.handed_by[function, index].add(sampler)
-        elif (index == 0 and _OF_GLSL.match(function)) or (not function and self._is_in_brackets(name, at)):
+        elif (
+            (index == 0 and _OF_GLSL.match(function))
+            or function in self._in_macros
+            or (not function and self._is_in_brackets(name, at))
+        ):
             self.samplers.add(sampler)
             self.used_otherwise.add(sampler)
         # Anything else is a variable of that name: a sampler can only be handed on.
