@@ -107,9 +107,9 @@ class Room:
 def changing(room: Room, given: Mapping[str, Any]) -> Callable[[Sketch], Sketch]:
     """Return what gives a sketch new values for each run, of the paths in ``seeds`` and ``suns``.
 
-    A seed is a whole number. A sun stands at ``elevation`` degrees, and elsewhere each time; its height
-    differs a little from row to row, else the engine would know a part of one from another. ``nudged`` are
-    paths of numbers that grow a little each time.
+    A seed is a whole number. A sun stands at ``elevation`` degrees, and elsewhere each time, or ``turn``
+    degrees further; its height differs a little from row to row, else the engine would know a part of one
+    from another. ``nudged`` are paths of numbers that grow a little each time.
     """
     seeds, suns = given.get("seeds", ()), given.get("suns", ())
     nudged = given.get("nudged", ())
@@ -119,7 +119,7 @@ def changing(room: Room, given: Mapping[str, Any]) -> Callable[[Sketch], Sketch]
     def changed(sketch: Sketch) -> Sketch:
         values: dict[str, Any] = {path: room.seed() for path in seeds}
         if suns:
-            azimuth = (20.0 + SUN_TURNS * next(turns)) % 360.0
+            azimuth = (20.0 + given.get("turn", SUN_TURNS) * next(turns)) % 360.0
             values |= dict.fromkeys(suns, (azimuth, float(given["elevation"]) + own))
         if nudged:
             values |= dict.fromkeys(nudged, next(steps) * 1e-4)

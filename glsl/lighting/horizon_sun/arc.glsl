@@ -1,7 +1,7 @@
 // lighting/horizon_sun/arc.glsl -- where a sun is on its arc, and how much of it is seen.
 //
-//   gives    ARC, EIGHT, directions_for, on_arc, Weights, weights_of, elevation_of, in_diameters,
-//            disc_seen
+//   gives    ARC, EIGHT, directions_for, on_arc, Between, between_horizons, elevation_of,
+//            in_diameters, disc_seen
 //   needs    maths/angle.glsl
 //   units    degrees; azimuths clockwise from north; unit vectors with x east, y north, z up
 //   source   Belaiche 2010, section 3.4, eqs 3.5, 3.6 and 3.8, after Hoffman and Mitchell 2001,
@@ -38,28 +38,35 @@ vec3 on_arc(vec3 to_sun, float arc, int measured) {
     return measured == ARC ? vec3(held.x * level, held.y) : to_sun;
 }
 
-// How much each of the measured horizons counts: of the first, its opposite, and the two square
-// to them; of the four between these.
-struct Weights {
-    vec4 upright;
-    vec4 slanting;
+// The two measured horizons that the sun is between, and how much each counts. The first is one
+// of the four that are upright: 0 the arc's, 1 its opposite, 2 and 3 square to them; the second
+// is one of the four between these, in the same order.
+struct Between {
+    ivec2 which;
+    vec2 weights;
 };
+
+// Which of four one is, as they lie around: the opposite of the first comes third.
+int among_four(int around) {
+    return ((around & 1) << 1) | (around >> 1);
+}
 
 // For a sun on its arc it is the first or the one opposite; else the two that are nearest of
 // eight, 45 degrees apart counterclockwise from the arc's.
-Weights weights_of(vec3 to_sun, float arc, int measured) {
+Between between_horizons(vec3 to_sun, float arc, int measured) {
     if (measured == ARC) {
         bool far = dot(to_sun.xy, cos_sin_degrees(arc).yx) < 0.0;
-        return Weights(vec4(far ? 0.0 : 1.0, far ? 1.0 : 0.0, 0.0, 0.0), vec4(0.0));
+        return Between(ivec2(far ? 1 : 0, 0), vec2(1.0, 0.0));
     }
     // Straight up, no azimuth is the sun's.
     vec2 level = dot(to_sun.xy, to_sun.xy) < 1e-12 ? vec2(0.0, 1.0) : to_sun.xy;
     float turn = (arc - degrees(atan(level.x, level.y))) / 45.0;
-    vec4 upright = turn - vec4(0.0, 4.0, 2.0, 6.0);
-    vec4 slanting = upright - 1.0;
-    return Weights(
-        max(1.0 - abs(upright - 8.0 * floor(upright / 8.0 + 0.5)), 0.0),
-        max(1.0 - abs(slanting - 8.0 * floor(slanting / 8.0 + 0.5)), 0.0)
+    float before = floor(turn), beyond = turn - before;
+    int sector = int(before) & 7;
+    bool from_upright = (sector & 1) == 0;
+    return Between(
+        ivec2(among_four(((sector + 1) & 7) >> 1), among_four(sector >> 1)),
+        from_upright ? vec2(1.0 - beyond, beyond) : vec2(beyond, 1.0 - beyond)
     );
 }
 

@@ -3,7 +3,7 @@
 //   gives    light: red, green, blue; alpha the visible part of the sun, 0 where the surface is
 //            turned away from it; visibility: the part of the sun that is over the horizon
 //   needs    lighting/daylight_reading.glsl, lighting/horizon_sun/arc.glsl,
-//            terrain/maps.glsl, lighting/sun.glsl, terrain/heightfield.glsl; angles, normals,
+//            terrain/maps.glsl, lighting/sun.glsl, terrain/heightfield.glsl; horizons, normals,
 //            the table of sunlight, and where the sun is
 //   units    light without unit, 1 for white; not cut at 1, that is the view's to do
 //   source   Belaiche 2010, section 3.4, eqs 3.3, 3.7 and 3.8
@@ -20,8 +20,7 @@
 #pragma kernel(output = "light:rgba16f, visibility:r32f")
 
 uniform sampler2D height;                //! input
-uniform sampler2D upright;               //! input
-uniform sampler2D slanting;              //! input
+uniform sampler2D between;               //! input
 uniform sampler2D facing;                //! input
 uniform sampler2D table;                 //! input
 uniform sampler2D stand;                 //! input
@@ -51,11 +50,8 @@ vec4 received_at(ivec2 texel) {
 }
 
 void kernel(ivec2 texel, out vec4 light, out float visibility) {
-    float horizon = dot(texelFetch(upright, texel, 0), texelFetch(stand, ivec2(0), 0));
-    if (directions_for(measured, wired_daylight) == EIGHT) {
-        horizon += dot(texelFetch(slanting, texel, 0), texelFetch(stand, ivec2(1, 0), 0));
-    }
-    vec4 over = texelFetch(stand, ivec2(2, 0), 0);
+    float horizon = dot(texelFetch(between, texel, 0).rg, texelFetch(stand, ivec2(0), 0).zw);
+    vec4 over = texelFetch(stand, ivec2(1, 0), 0);
     visibility = disc_seen(over.a, horizon);
     vec4 received = received_at(texel);
     vec3 sky = over.rgb;

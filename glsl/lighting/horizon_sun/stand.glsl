@@ -1,8 +1,8 @@
 // lighting/horizon_sun/stand.glsl -- where the sun is among the horizons.
 //
-//   gives    stand: texels 0 and 1, by what the two textures of angles are multiplied and summed
-//            to give the horizon; texel 2, the sky's light on open level ground, and in alpha the
-//            elevation of the disc's upper edge
+//   gives    stand: texel 0, which two horizons the sun is between (see between_horizons) and by
+//            what their angles are multiplied and summed to give its own; texel 1, the sky's light
+//            on open level ground, and in alpha the elevation of the disc's upper edge
 //   needs    lighting/daylight_reading.glsl, lighting/horizon_sun/arc.glsl
 //   units    horizon and edge in diameters of the sun; the angles are shares of 90 degrees
 //   source   Belaiche 2010, section 3.4, eq. 3.8
@@ -24,9 +24,9 @@ uniform float ambient = 0.0;             //! slider(0, 1) step(0.01) group("Sky"
 vec4 kernel(ivec2 texel) {
     Sunlight given = sunlight(wired_daylight, daylight, towards_sun, sun, vec3(0.0), sky_colour);
     vec3 to_sun = on_arc(given.direction, arc, directions_for(measured, wired_daylight));
-    Weights weights = weights_of(to_sun, arc, directions_for(measured, wired_daylight));
-    if (texel.x < 2) {
-        return (texel.x == 0 ? weights.upright : weights.slanting) * in_diameters(90.0, diameter);
+    if (texel.x == 0) {
+        Between found = between_horizons(to_sun, arc, directions_for(measured, wired_daylight));
+        return vec4(vec2(found.which), found.weights * in_diameters(90.0, diameter));
     }
     float upper_edge = elevation_of(to_sun) + 0.5 * diameter;
     return vec4(given.sky * ambient, in_diameters(upper_edge, diameter));
