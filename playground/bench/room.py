@@ -109,7 +109,7 @@ def changing(room: Room, given: Mapping[str, Any]) -> Callable[[Sketch], Sketch]
 
     A seed is a whole number. A sun stands at ``elevation`` degrees, and elsewhere each time, or ``turn``
     degrees further; its height differs a little from row to row, else the engine would know a part of one
-    from another. ``nudged`` are paths of numbers that grow a little each time.
+    from another. ``nudged`` are paths of numbers that grow a little each time, from ``around``, else 0.
     """
     seeds, suns = given.get("seeds", ()), given.get("suns", ())
     nudged = given.get("nudged", ())
@@ -122,7 +122,7 @@ def changing(room: Room, given: Mapping[str, Any]) -> Callable[[Sketch], Sketch]
             azimuth = (20.0 + given.get("turn", SUN_TURNS) * next(turns)) % 360.0
             values |= dict.fromkeys(suns, (azimuth, float(given["elevation"]) + own))
         if nudged:
-            values |= dict.fromkeys(nudged, next(steps) * 1e-4)
+            values |= dict.fromkeys(nudged, given.get("around", 0.0) + next(steps) * 1e-4)
         return sketch.with_values(values) if values else sketch
 
     return changed
