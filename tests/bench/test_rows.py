@@ -21,7 +21,7 @@ ROWS = {row.name: row for row in chosen(())}
 
 def test_names_are_of_one_row_each_and_suites_are_those_of_the_files():
     assert len(ROWS) == sum(len(rows) for rows in suites().values())
-    assert set(suites()) == {"engine", "frames", "generation", "lighting"}
+    assert set(suites()) == {"engine", "frames", "generation", "land", "lighting"}
 
 
 def test_rows_are_chosen_by_suite_by_name_and_by_pattern():
@@ -58,7 +58,7 @@ def test_its_sketch_has_the_texture_and_what_changes(name):
         sketch = room.sketch(row.options, 65)
         changed = {path: 3 for path in row.options.get("seeds", ())}
         changed |= dict.fromkeys(row.options.get("suns", ()), (120.0, 30.0))
-        changed |= dict.fromkeys(row.options.get("nudged", ()), 0.5)
+        changed |= dict.fromkeys(row.options.get("nudged", ()), row.options.get("around", 0.5) + 0.01)
         assert changed, "each run is to make something new"
         wanted = str(row.options["texture"])
         plan = room.engine().internal.plan_for(sketch.with_values(changed), (64, 36), 0.0, None, wanted)
