@@ -11,14 +11,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from playground.engine.binder import Binder, Bound, has_unwired, is_read_back, wires_of
+from playground.engine.binder import (
+    Binder,
+    Bound,
+    are_of_own_size,
+    has_unwired,
+    is_read_back,
+    wires_of,
+)
 from playground.engine.costly_rest import CostlyRest
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.settling import Settling
-from playground.gpu.choices import has_quick_fetches
+from playground.gpu.choices import has_quick_fetches, may_have_own_size
 from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
@@ -31,6 +38,7 @@ from playground.sketch.reserved_names import (
     ELEMENT,
     FIXED,
     MATCHES,
+    OWN_SIZE,
     PART,
     PRESSED,
     SIZES,
@@ -179,6 +187,8 @@ class Kernels:
             choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
         if has_quick_fetches(kernel):
             choices.append((TEXELS, 1))
+        if may_have_own_size(kernel) and are_of_own_size(job.step, job.inputs):
+            choices.append((OWN_SIZE, 1))
         if job.loop_iteration is None:  # in a loop, each iteration would wait for what it reads back
             inputs = {texel.input for texel in fixed_texels(kernel.source)}
             choices += [(f"{FIXED}{name}", 1) for name in sorted(inputs) if is_read_back(name, job.inputs)]

@@ -14,8 +14,10 @@ from playground.gpu.wrap import NOTHING_SKIPPED, ShaderStage, Wrapped, previous_
 from playground.sketch.fetched_alone import FETCH
 from playground.sketch.fixed_texels import fixed_texels
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import FETCHES, FIXED, QUICK_FETCHES, SKIPS, TEXELS, UNWIRED
+from playground.sketch.reserved_names import FETCHES, FIXED, OWN_SIZE, QUICK_FETCHES, SKIPS, TEXELS, UNWIRED
 
+_GIVEN_SIZE = "uniform ivec2 size;"
+_OWN_SHARE = "k_own_share"
 _FIXED = re.compile(rf"{FIXED}(\d+)_(\d+)_(\w+)")
 
 
@@ -26,9 +28,11 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
     as what was, unless the compiler can see that it never happens. With the choice ``SKIPS`` the text is
     that of the part of a kernel that ends before its costly rest: see ``engine.costly_rest``. With the
     choices that ``FIXED`` begins, texels of these inputs become uniforms: see ``_with_uniform_texels``. With
-    the choice ``TEXELS`` texels are fetched as this renderer is quick to: see ``_with_quick_fetches``.
+    the choice ``TEXELS`` texels are fetched as this renderer is quick to: see ``_with_quick_fetches``. With
+    ``OWN_SIZE`` textures are not asked for their size: see ``_with_own_size``.
     """
-    stages, quick = {}, any(choice == TEXELS for choice, _ in choices)
+    stages = {}
+    quick, own_size = [any(choice == name for choice, _ in choices) for name in (TEXELS, OWN_SIZE)]
     fixed = frozenset(choice.removeprefix(FIXED) for choice, _ in choices if choice.startswith(FIXED))
     for name, stage in wrapped.stages.items():
         text = stage.text
@@ -44,7 +48,8 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
                 text = text.replace(NOTHING_SKIPPED, f"bool {SKIPS}() {{ discard; return true; }}")
         stage = replace(stage, text=text)
         stage = _with_uniform_texels(stage, fixed) if fixed else stage
-        stages[name] = _with_quick_fetches(stage, wrapped.kernel) if quick else stage
+        stage = _with_quick_fetches(stage, wrapped.kernel, own_size=own_size) if quick else stage
+        stages[name] = _with_own_size(stage) if own_size else stage
     return replace(wrapped, stages=stages)
 
 
@@ -96,7 +101,33 @@ def _reads_previous(kernel: Kernel) -> bool:
     return any(kernel.reads(previous_name(kernel, output)) for output in kernel.outputs)
 
 
-def _with_quick_fetches(stage: ShaderStage, kernel: Kernel) -> ShaderStage:
+def may_have_own_size(kernel: Kernel) -> bool:
+    """Return whether the choice ``OWN_SIZE`` may be made for a kernel: no texture but its inputs is asked.
+
+    It holds where each of these is as large as what the kernel makes.
+    """
+    if kernel.kind != "kernel" or kernel.dialect or kernel.file_parameters or kernel.stride:
+        return False
+    return kernel.reads("textureSize") or has_quick_fetches(kernel)
+
+
+def _with_own_size(stage: ShaderStage) -> ShaderStage:
+    """Have a text's function ``textureSize`` give the pass's own size, which the driver knows as a uniform.
+
+    What a text does for textures of other sizes is left out then as it is compiled.
+    """
+    if not stage.first:
+        return stage
+    lines = stage.text.split("\n")
+    given = [i for i in range(stage.first - 1) if lines[i] == _GIVEN_SIZE]
+    for index in given:  # the part declares it, before all that asks
+        lines[index] = ""
+    part = own_part("own_size.glsl", size=OWN_SIZE, share=_OWN_SHARE).split("\n")
+    lines[1:1] = part
+    return replace(stage, text="\n".join(lines), first=stage.first + len(part))
+
+
+def _with_quick_fetches(stage: ShaderStage, kernel: Kernel, *, own_size: bool) -> ShaderStage:
     """Write another function in place of ``texelFetch`` where it reads what samplers give as texels."""
     if not stage.first:
         return stage
@@ -122,5 +153,7 @@ def _with_quick_fetches(stage: ShaderStage, kernel: Kernel) -> ShaderStage:
             fetch_unwired=QUICK_FETCHES[FETCHES[FETCH]],
         )
         lines[own:own] = unwired.split("\n")
-    lines[1:1] = own_part("quick_fetch.glsl", fetch=QUICK_FETCHES[FETCH]).split("\n")  # behind the version
+    share = _OWN_SHARE if own_size else "(1.0 / vec2(textureSize(k_input, 0)))"
+    part = own_part("quick_fetch.glsl", fetch=QUICK_FETCHES[FETCH], share=share)
+    lines[1:1] = part.split("\n")  # behind the version
     return replace(stage, text="\n".join(lines), first=stage.first + len(lines) - stage.text.count("\n") - 1)

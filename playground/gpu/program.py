@@ -15,7 +15,7 @@ from playground.gpu.stage_recipe import version_line
 from playground.gpu.wrap import COMPUTE, FRAGMENT, ShaderStage, Wrapped, wrap_library
 from playground.paths import shown
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import FETCHES, QUICK_FETCHES
+from playground.sketch.reserved_names import FETCHES
 from playground.sketch.source import Line, SourceText
 
 if TYPE_CHECKING:
@@ -87,8 +87,7 @@ def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diag
     from playground.gpu.driver_log import hint, source_column
     from playground.gpu.name_suggestions import guess
 
-    # The longer first, and those of ours that replace others of ours.
-    for name, ours in (*QUICK_FETCHES.items(), *sorted(FETCHES.items(), reverse=True)):
+    for name, ours in sorted(FETCHES.items(), reverse=True):  # the longer first
         entry = replace(entry, message=entry.message.replace(ours, name))
     line = stage.locate(entry.line) if entry.line else _defined(entry.message, stage.source)
     if line is not None and entry.severity == "error" and (place := _beyond_ascii(line)) is not None:

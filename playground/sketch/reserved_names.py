@@ -50,7 +50,10 @@ TEXELS = "k_texels"
 """A choice: what is read texel by texel alone is fetched as a software renderer is quick to."""
 
 QUICK_FETCHES = {"texelFetch": "k_texel_of", "k_fetch_in": "k_texel_in"}
-"""What replaces functions that fetch texels then, as long as these."""
+"""What replaces functions that fetch texels then, each as long."""
+
+OWN_SIZE = "k_size_here"
+"""A choice: all inputs have the size of the pass. So is called what replaces textureSize, as long, then."""
 
 FIXED = "k_fixed_"
 """What begins the name of a uniform with one texel of an input, in place of a fetch at a place written as

@@ -7,10 +7,10 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import ShaderError
-from playground.gpu.choices import has_quick_fetches, with_choices
+from playground.gpu.choices import has_quick_fetches, may_have_own_size, with_choices
 from playground.gpu.context import ContextInfo
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
-from playground.sketch.reserved_names import TEXELS, UNWIRED
+from playground.sketch.reserved_names import OWN_SIZE, TEXELS, UNWIRED
 
 from .conftest import Folder
 
@@ -123,6 +123,69 @@ def test_the_iteration_before_is_read_so_too(any_engine: Engine, folder: Folder,
     np.testing.assert_allclose(second, two, atol=1e-5)
 
 
+@pytest.mark.parametrize("own", ["4095, 2", "8193, 2"])
+def test_no_texel_is_missed_where_there_are_many(any_engine: Engine, folder: Folder, monkeypatch, own: str):
+    """The middle of a texel as a share of the width is rounded, by far less than half a texel."""
+    monkeypatch.setattr(ContextInfo, "software", True)
+    folder.write("rough.glsl", ROUGH.replace("FORMAT", "rgba32f"))
+    folder.write("reads.glsl", ASKS)
+    passes = PASSES.replace("[23, 11]", "[8193, 2]").partition("inputs")[0]
+    with Engine(any_engine.ctx) as engine:
+        sketch = folder.sketch(f"{passes}size = [{own}]\n")
+        rough, found = engine.read(sketch, "rough"), engine.read(sketch, "a")
+    np.testing.assert_array_equal(found[..., :2], rough[:, : found.shape[1], :2])
+
+
+ASKS = """#pragma kernel(output = "found:rgba32f")
+uniform sampler2D rough;  //! input
+vec4 kernel(ivec2 texel) { return vec4(texelFetch(rough, texel, 0).rg, textureSize(rough, 0)); }
+"""
+
+
+def test_sizes_are_those_of_the_textures_whether_known_or_asked_for(
+    any_engine: Engine, folder: Folder, monkeypatch
+):
+    """The same kernel runs with an input of its own size, then with one of another."""
+    monkeypatch.setattr(ContextInfo, "software", True)
+    folder.write("rough.glsl", ROUGH.replace("FORMAT", "rgba32f"))
+    folder.write("reads.glsl", ASKS)
+    with Engine(any_engine.ctx) as engine:
+        for width, height in ((9, 4), (6, 2), (9, 4)):
+            passes = PASSES.replace("[23, 11]", f"[{width}, {height}]").partition("inputs")[0]
+            found = engine.read(folder.sketch(f"{passes}size = [9, 4]\n"), "a")
+            np.testing.assert_array_equal(found[0, 0, 2:], [width, height])
+
+
+def test_a_texture_of_the_passs_own_size_is_not_asked_for_it(folder: Folder):
+    """What a text does for other sizes is left out then as it is compiled."""
+    sketch_of(folder)
+    folder.write("reads.glsl", ASKS.replace("texel, 0)", "texel * size / size, 0)"))
+    kernel = folder.sketch(PASSES.partition("inputs")[0]).graph.passes[1].technique
+    assert may_have_own_size(kernel)
+    before = wrap(kernel, COMPUTE).stages["compute"]
+    after = with_choices(wrap(kernel, COMPUTE), [(TEXELS, 1), (OWN_SIZE, 1)]).stages["compute"]
+    own, changed = before.text.split("\n")[before.first - 1 :], after.text.split("\n")[after.first - 1 :]
+    assert [line.replace("texelFetch", "k_texel_of") for line in own] == changed
+    assert after.locate(after.first) == kernel.source.lines[0]
+    assert after.text.count("uniform ivec2 size;") == 1
+    assert len(OWN_SIZE) == len("textureSize") and f"#define textureSize {OWN_SIZE}\n" in after.text
+    assert "vec2(textureSize" not in after.text
+
+
+IMAGE = """#pragma kernel(output = "found:r32f")
+uniform sampler2D rough;  //! input
+uniform sampler2D image;  //! file("image.png")
+float kernel(ivec2 texel) { return texelFetch(rough, texel, 0).r + float(textureSize(image, 0).x); }
+"""
+
+
+def test_a_kernel_that_reads_an_image_asks_for_sizes(folder: Folder):
+    sketch_of(folder)
+    folder.write("reads.glsl", IMAGE)
+    kernel = folder.sketch(PASSES.partition("inputs")[0]).graph.passes[1].technique
+    assert has_quick_fetches(kernel) and not may_have_own_size(kernel)
+
+
 def test_no_line_and_no_column_changes(folder: Folder):
     kernel = sketch_of(folder).graph.passes[1].technique
     assert has_quick_fetches(kernel)
@@ -134,14 +197,28 @@ def test_no_line_and_no_column_changes(folder: Folder):
     assert sum(line.count("k_fetch_in(third") for line in changed) == 1, "which is read by textureLod as well"
 
 
-@pytest.mark.parametrize("name", ["first", "open"])
-def test_complaints_name_the_function_of_the_text(any_engine: Engine, folder: Folder, monkeypatch, name: str):
+@pytest.mark.parametrize(
+    "wrong", ["texelFetch(rough, vec2(1.0), 0)", "vec4(vec3(textureSize(rough, 0)), 1.0)"]
+)
+def test_a_complaint_names_what_the_author_wrote(any_engine: Engine, folder: Folder, monkeypatch, wrong: str):
+    sketch_of(folder)
+    folder.write("reads.glsl", ASKS.replace("return ", f"return {wrong} + "))
+    said = []
+    for software in (True, False):
+        monkeypatch.setattr(ContextInfo, "software", software)
+        with Engine(any_engine.ctx) as engine, pytest.raises(ShaderError) as refused:
+            engine.read(folder.sketch(PASSES.partition("inputs")[0]), "a")
+        said.append(refused.value.diagnostics)
+    assert said[0] == said[1]
+
+
+def test_a_text_with_a_macro_of_such_a_name_compiles(any_engine: Engine, folder: Folder, monkeypatch):
     monkeypatch.setattr(ContextInfo, "software", True)
     sketch_of(folder)
-    wrong = READS.replace("texelFetch(open, place * 5, 0)", f"texelFetch({name}, vec2(place), 0)")
-    folder.write("reads.glsl", wrong)
-    with Engine(any_engine.ctx) as engine, pytest.raises(ShaderError) as refused:
-        engine.read(folder.sketch(PASSES), "a")
-    first = refused.value.diagnostics[0]
-    expected = next(i for i, line in enumerate(wrong.split("\n"), 1) if "vec2(place)" in line)
-    assert first.line == expected and "k_texel" not in first.message and "k_fetch" not in first.message
+    own = ASKS.replace("uniform", "#define textureSize(a, b) ivec2(b + 7)\nuniform", 1)
+    folder.write("reads.glsl", own)
+    with Engine(any_engine.ctx) as engine:
+        found = engine.read(
+            folder.sketch(PASSES.replace("size = [23, 11]\n", "").partition("inputs")[0]), "a"
+        )
+    np.testing.assert_array_equal(found[2, 4, 2:], [7, 7])
