@@ -24,6 +24,7 @@ from playground.sketch.agreement import Bound, bound_of
 from playground.sketch.assign import all_paths, resolve
 from playground.sketch.canonical import content_of
 from playground.sketch.model import (
+    DEFAULT_PICTURE,
     Graph,
     Kernel,
     Parameter,
@@ -281,15 +282,16 @@ def _compare(engine: Engine, place: Place, sketch: Sketch, words: str, verdict: 
         bound = bound_of(place.variant.technique.agrees, output)
         if bound is None:
             continue
+        ref = f"{place.path}:{output}"
         try:
-            found = engine.read(fast, f"{place.path}:{output}")
+            if not _runs(engine, place, fast, ref):
+                return
+            found = engine.read(fast, ref)
         except SketchError:
-            if _is_drawn(engine, sketch.plainly(), f"{place.path}:{output}"):
+            if _is_drawn(engine, sketch.plainly(), ref):
                 raise
             return  # the technique itself needs more here, as a mesh in tiles what says how fine each is
-        if not _has_run(engine, place):
-            return
-        wanted = engine.read(sketch.plainly(), f"{place.path}:{output}")
+        wanted = engine.read(sketch.plainly(), ref)
         apart = difference(found, wanted, bound)
         if apart >= verdict.worst.get(output, (0.0, bound))[0]:
             verdict.worst[output] = apart, bound
@@ -312,11 +314,21 @@ def _is_drawn(engine: Engine, sketch: Sketch, texture: str) -> bool:
     return True
 
 
-def _has_run(engine: Engine, place: Place) -> bool:
-    """Return whether the fast variant was what gave the last texture: where more is wired, it steps back."""
-    files = {kernel.path for _, kernel in kernels_of(place.variant.technique)}
-    steps = engine.internal.plan.walk() if engine.internal.plan is not None else ()
-    return any(step.path.startswith(place.path) and step.kernel.path in files for step in steps)
+def _runs(engine: Engine, place: Place, fast: Sketch, ref: str) -> bool:
+    """Return whether the variant would run for a texture: where more is wired, it has the plain form run.
+
+    A file of both forms tells nothing, so what each runs at the place is compared; nothing is drawn.
+    """
+    plans = (engine.internal.plan_for(s, DEFAULT_PICTURE, wanted=ref) for s in (fast, fast.plainly()))
+    one, other = (
+        {
+            (step.path, step.kernel.path)
+            for step in plan.walk()
+            if f"{step.path}.".startswith(f"{place.path}.")
+        }
+        for plan in plans
+    )
+    return one != other
 
 
 def _with_one(technique: Graph, variant: Variant, contents: tuple[str, str]) -> Graph:

@@ -137,6 +137,16 @@ def test_it_agrees_in_every_sketch_that_uses_it(ctx, name):
             assert not found.wrong, f"{place.path}: {found.words}"
 
 
+def test_where_the_plain_form_runs_nothing_is_compared_and_nothing_drawn(ctx):
+    """A pixel of several samples is drawn by no fast variant, though both forms of a view share files."""
+    sketch = load("fbm")
+    assert sketch.samples > 1
+    place = next(p for p in places_in(sketch, GLSL) if p.path == "view")
+    with Engine(ctx) as engine:
+        assert compared(engine, place).drawings == 0
+        assert not engine.internal.runs
+
+
 @pytest.mark.parametrize("path", ["height.noise.direction", "height.spectrum.direction"])
 def test_a_parameter_inside_that_a_variant_has_not_has_the_plain_form_run(path):
     """Set by whatever means: a variant would ignore it."""

@@ -11,7 +11,7 @@ from playground.lessons.course import lesson_names
 from playground.lessons.figure_renders import pictures_of, with_bug
 from playground.lessons.glossary import terms_of
 from playground.lessons.library import LANGUAGES, SOURCE, TEXTS, lesson_files
-from playground.lessons.measuring import filled, numbers_of
+from playground.lessons.measuring import Number, filled
 from playground.lessons.model import Break, Prose
 from playground.lessons.read import read_lesson, read_lessons, summaries
 from playground.lessons.rules import MOST_MINUTES, broken_rules, wrong_pictures
@@ -117,9 +117,9 @@ def test_bugs_are_visible_and_claims_hold(shipped, engine):
     assert list(wrong_pictures(engine, shipped["en"])) == []
 
 
-@pytest.mark.slow
-def test_every_number_is_in_its_sentence(shipped, engine):
-    numbers = numbers_of(engine, shipped["en"])
+def test_every_number_is_in_its_sentence(shipped):
+    """What each is does not matter here: the test above computes all of them."""
+    numbers = {measure.name: Number(1.0, "1") for measure in shipped["en"].measures}
     for language, lesson in shipped.items():
         for words in lesson.texts():
             assert "…" not in filled(words, numbers, comma=language == "fr") or "…" in words
