@@ -75,8 +75,10 @@ class ComputeVariants:
             self.kernels.images(result, read=True)
             program: Program | None = None
             for iteration in range(repeat):
-                program = self._program(job, iteration, program)
                 groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
+                if kernel.stages and 0 in groups:  # of a step that this size does not need
+                    continue
+                program = self._program(job, iteration, program)
                 job.count(program, iteration, kernel.repeat, repeat)
                 program.run(max(groups[0], 1), max(groups[1], 1))
             for output in kernel.outputs:

@@ -339,6 +339,31 @@ def test_stages_say_what_each_iteration_does(any_engine, folder):
     assert made == (3 if any_engine.info.software else 1), "one for each stage, where the processor draws"
 
 
+def test_a_stage_with_no_groups_is_left_out(any_engine, folder):
+    """As for a step that only larger sizes need."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    groups = "0 if iteration % 3 == 1 else size.x // 8 + 1, size.y"
+    head = f'#pragma compute(stages = "0, 0, 0, 0, 0, 1", groups = "{groups}", local = "8, 1", '
+    folder.write("fill.glsl", PLAIN_FILL)
+    folder.write(
+        "fill.comp",
+        head
+        + """buffers = "work:float:size.x * size.y")
+    void main() {
+        ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+        if (texel.x >= size.x) return;
+        int at = texel.y * size.x + texel.x;
+        if (stage == 0) work[at] = 10.0 * work[at] + float(iteration + 1);
+        if (stage == 1) imageStore(out_sums, texel, vec4(work[at]));
+    }
+    """,
+    )
+    for side, wanted in ((19, 134.0), (3, 134.0)):
+        sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
+        np.testing.assert_array_equal(any_engine.read(sketch, "a"), wanted)
+
+
 def test_a_stage_that_comes_back_reads_what_it_read_before(any_engine, folder):
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
@@ -389,17 +414,19 @@ void main() {
 
 
 @pytest.mark.parametrize("size", [(19, 7), (2, 3), (64, 64)])
-def test_rows_of_a_buffer_may_be_whole_fours(any_engine, folder, size):
+@pytest.mark.parametrize("fours", [1, 2])
+def test_rows_of_a_buffer_may_be_whole_fours_or_eights(any_engine, folder, size, fours):
     """OpenGL itself fills rows up to 8 bytes at most."""
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
-    head = '#pragma compute(groups = "(size.x + 3) // 4, size.y", local = "1, 1", aligned = "16", '
-    body = """buffers = "sums:vec4:(size.x + 3) // 4 * size.y")
-    void main() {
+    row = f"(size.x + {4 * fours - 1}) // {4 * fours} * {fours}"
+    head = f'#pragma compute(groups = "{row}, size.y", local = "1, 1", aligned = "{16 * fours}", '
+    body = f"""buffers = "sums:vec4:{row} * size.y")
+    void main() {{
         ivec2 four = ivec2(gl_GlobalInvocationID.xy);
         vec4 x = float(4 * four.x) + vec4(0.0, 1.0, 2.0, 3.0);
-        sums[four.y * ((size.x + 3) / 4) + four.x] = x + 100.0 * float(four.y);
-    }
+        sums[four.y * ({row.replace("//", "/")}) + four.x] = x + 100.0 * float(four.y);
+    }}
     """
     folder.write("fill.glsl", PLAIN_FILL)
     folder.write("fill.comp", head + body)
