@@ -143,8 +143,8 @@ void make_coarse(int lane, int levels) {
 // Columns 2 j - 1 .. 2 j + 3 of a row; rows beyond the border are those at the border.
 void read_five(int place, int side, int row, int j, out float h[5]) {
     int begin = clamp(row, 0, side) * 4 * pitch_of(side) + 2 * j - 1;
-    vec4 first = lattices[place + (begin >> 2)];
-    vec4 second = lattices[place + (begin >> 2) + 1];
+    vec4 first = read_lattices(place + (begin >> 2));
+    vec4 second = read_lattices(place + (begin >> 2) + 1);
     bool early = (begin & 3) == 1;  // else 3: begin is odd
     h[0] = early ? first.y : first.w;
     h[1] = early ? first.z : second.x;

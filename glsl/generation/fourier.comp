@@ -161,7 +161,7 @@ vec2 root(int e) {
 void higher(Digit digit, int p) {
     find_roots(digit.low, p);
     for (int e = 0; e < 32; e++) {
-        v[e] = both_products(waves[digit.base + e * digit.apart], root(e));
+        v[e] = both_products(read_waves(digit.base + e * digit.apart), root(e));
     }
     transform32(v);
     for (int e = 0; e < 32; e++) waves[digit.base + e * digit.apart] = v[place32(e)];
@@ -169,7 +169,7 @@ void higher(Digit digit, int p) {
 
 void low_x(Digit digit) {
     int levels = lowest_digit(bits.x);
-    for (int e = 0; e < 32; e++) v[e] = waves[digit.base + e];
+    for (int e = 0; e < 32; e++) v[e] = read_waves(digit.base + e);
     transform_blocks(v, levels);
     int block = ~((1 << levels) - 1);
     for (int e = 0; e < 32; e++) {
@@ -186,7 +186,7 @@ void top_y(int job) {
     find_roots(low, p);
     for (int e = 0; e < 32; e++) {
         int row = ((e & 7) << p) | low;
-        v[e] = both_products(waves[row * pitch + columns[e >> 3]], root(e));
+        v[e] = both_products(read_waves(row * pitch + columns[e >> 3]), root(e));
     }
     transform32(v);
     // Conjugates: of Z[k] = R[k] + i S[k] and of Z[-k] = conj R[k] + i conj S[k].
@@ -256,7 +256,7 @@ void show_fours(int row, int from, int at) {
         int rows_on = int(from + j >= size.x) + int(from + j >= 2 * size.x);
         int x = from + j - rows_on * size.x;
         int place = (row + rows_on) * pitch + (x & (count.x - 1));
-        found[j] = waves[place] * vec4(1.0, -1.0, 1.0, -1.0);
+        found[j] = read_waves(place) * vec4(1.0, -1.0, 1.0, -1.0);
     }
     vec2 range = vec2(height_of_key(~bounds[0]), height_of_key(bounds[1]));
     vec2 stretch = stretch_of(range, normalise);

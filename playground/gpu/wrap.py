@@ -12,6 +12,7 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from playground.errors import ShaderError
+from playground.gpu.buffer_reads import TEXELS, reading, with_texels
 from playground.gpu.own_shaders import TRIANGLE, own_part
 from playground.gpu.stage_recipe import SIGNATURE, Part, Recipe, version_line
 from playground.sketch.fixed_texels import fixed_texels
@@ -110,7 +111,8 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
     A software renderer goes both ways of every ``if``: what was not chosen costs as much
     as what was, unless the compiler can see that it never happens. With the choice ``SKIPS`` the text is
     that of the part of a kernel that ends before its costly rest: see ``engine.costly_rest``. With the
-    choices that ``FIXED`` begins, texels of these inputs become uniforms: see ``_with_uniform_texels``.
+    choices that ``FIXED`` begins, texels of these inputs become uniforms: see ``_with_uniform_texels``. With
+    the choice ``TEXELS`` buffers are read as textures: see ``engine.buffer_texels``.
     """
     stages = {}
     fixed = frozenset(choice.removeprefix(FIXED) for choice, _ in choices if choice.startswith(FIXED))
@@ -126,6 +128,8 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
             text = re.sub(pattern, constant, text, flags=re.MULTILINE)
             if choice == SKIPS:
                 text = text.replace(_NOTHING_SKIPPED, f"bool {SKIPS}() {{ discard; return true; }}")
+            if choice == TEXELS:
+                text = with_texels(text)
         stage = replace(stage, text=text)
         stages[name] = _with_uniform_texels(stage, fixed) if fixed else stage
     return replace(wrapped, stages=stages)
@@ -351,6 +355,7 @@ def _variant(kernel: Kernel) -> Recipe:
     for unit, buffer in enumerate(kernel.buffers):
         block = f"buffer k_buffer_{buffer.name} {{ {buffer.type} {buffer.name}[]; }};"
         before.append(f"layout(std430, binding = {unit}) {block}")
+        before += reading(buffer)
     return _recipe(kernel, before, [], "void main()")
 
 

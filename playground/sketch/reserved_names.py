@@ -39,6 +39,10 @@ WIRED, MATCHES, TOWARDS = "wired_", "matches_", "towards_"
 """What begins a given name for each input (bool: something is wired to it; it has the size of this
 pass) and each direction (vec3: the unit vector towards it); declared where a text names it."""
 
+READ = "read_"
+"""What begins the name of a function that reads a compute variant's buffer: ``read_heights(place)`` is
+``heights[place]``; declared where a text names it."""
+
 UNWIRED = "k_unwired"
 """Whether any input that may stay unwired is, a bool; declared where a text fetches texels."""
 
