@@ -2,7 +2,7 @@
 //
 //   gives    height, as generation/diamond_square.toml, for 2^n + 1 texels a side
 //   needs    generation/diamond_square/{lattice,rows}.glsl, generation/normalise/stretch.glsl,
-//            noise/finest.glsl, terrain/{extremes,order}.glsl
+//            maths/whole.glsl, noise/finest.glsl, terrain/{extremes,order}.glsl
 //   units    as the technique
 //   source   Belaiche 2010, section 4.3.1; a random number that depends on its point alone
 //            lets any part of a level be made by itself
@@ -17,23 +17,29 @@
 // To normalise, the last step is done twice: first only to find the range, then to write. The
 // first skips rows whose heights cannot leave the range that is known from the coarser lattice.
 //
-// Lattices lie in one buffer, the finest at its beginning, in fours of floats, which a
-// processor stores quicker than floats one by one. A row is side + 2 floats long, so that even
-// rows begin at a multiple of four and odd rows two after one.
+// Rows are whole eights of floats, stored in fours, which a processor does quicker than one by
+// one: so there is a thread more than eights of spacings, whose first column is the last.
 #define random random_at  // the technique has a parameter of that name
 #include "generation/diamond_square/rows.glsl"
 #undef random
 #include "generation/diamond_square/lattice.glsl"
 #include "generation/normalise/stretch.glsl"
+#include "maths/whole.glsl"
 #include "noise/finest.glsl"
 #include "terrain/extremes.glsl"
 #include "terrain/order.glsl"
-#pragma compute(where = "levels_left = max(log2(size.x - 1) // 2 - 2 - iteration, 0); \
-                         spacings = (size.x - 1) // 4**levels_left", \
-                groups = "spacings // 256, spacings // 48 + 1", local = "32, 1", \
-                repeat = "max(log2(size.x - 1) // 2 - 1, 1) + min(normalise, 1)", \
-                buffers = "height:vec4:(size.x + 1)**2 * 9 // 32 + 8; extremes:uint:2", \
-                overwrites = "height", agrees = "1e-5")
+#pragma compute(stages = "0, 1, 1, 1, 1, 2, 3", local = "32, 1", \
+                where = "steps = log2(size.x - 1) // 2 - 2; \
+                         needed = min(steps, normalise) if iteration == 5 else \
+                                  steps if iteration == 6 else steps - iteration; \
+                         spacings = (size.x - 1) // 4**max(steps - iteration, 0); \
+                         threads = (spacings // 8 + 1) * (spacings // 48 + 1); \
+                         coarser = (size.x + 3) // 4", \
+                groups = "1 if iteration == 0 else \
+                          (threads + 31) // 32 if needed > 0 else 0, 1", \
+                buffers = "height:vec4:(size.y + 3) * ((size.x + 7) // 8 * 2); \
+                           lattices:vec4:coarser**2 + 64; extremes:uint:2", \
+                overwrites = "height, lattices", aligned = "32", agrees = "1e-5")
 
 uniform float smoothing = 0.2;  //! slider(0, 1) step(0.01) As in the technique
 uniform uint seed = 7u;         //! slider(0, 9999) As in the technique
@@ -42,6 +48,7 @@ uniform vec4 corners = vec4(0.5, 0.5, 0.5, 0.5);  //! slider(0, 1) step(0.01)
     //! parts("SW", "SE", "NW", "NE") As in the technique
 uniform int normalise = 0;      //! menu("none", "max", "minmax") As in the technique
 
+const int COARSE = 0, MAKE = 1, LOOK = 2, LAST = 3;
 const int LANES = 32;
 const int ROWS = 12;            // that a thread goes through
 const int MOST_COARSE = 32;     // spacings a side of the coarse lattice
@@ -58,10 +65,14 @@ int coarse_levels(int levels) {
     return levels <= 5 ? levels : 4 + (levels & 1);
 }
 
-// Where in the buffer the lattice of 2^level spacings begins, in fours.
-int place_of(int level, int levels) {
-    if (level == levels) return 0;
-    return ((size.x - 1) * (size.x + 2) >> 2) + 2 + (1 << max(2 * level - 3, 0));
+// Fours from a row of a lattice to the next.
+int pitch_of(int side) {
+    return ((side + 8) >> 3) << 1;
+}
+
+// Where in `lattices` the lattice of 2^level spacings begins, in fours.
+int place_of(int level) {
+    return 1 << (2 * level - 1);
 }
 
 Lattice lattice_of(int level) {
@@ -73,12 +84,11 @@ Lattice lattice_of(int level) {
 // ── the coarse lattice ──
 
 void make_coarse(int lane, int levels) {
-    // Loops that do nothing, not an if: a processor goes through the inside of an if anyhow.
-    int made = iteration == 0 ? coarse_levels(levels) : -1;
-    Lattice lattice = lattice_of(max(made, 0));
+    int made = coarse_levels(levels);
+    Lattice lattice = lattice_of(made);
     int side = lattice.side;
     int pitch = side + 1;
-    for (int i = lane; i < (made < 0 ? 0 : 4); i += LANES) {
+    for (int i = lane; i < 4; i += LANES) {
         coarse[((i >> 1) * pitch + (i & 1)) * side] = corners[i];
     }
     barrier();
@@ -108,25 +118,23 @@ void make_coarse(int lane, int levels) {
         barrier();
     }
     vec2 range = NO_RANGE;
-    int texels = made < 0 || normalise == 0 ? 0 : pitch * pitch;
+    int texels = normalise == 0 ? 0 : pitch * pitch;
     for (int i = 0; i < texels; i++) range = widened(range, vec2(coarse[i]));
     if (texels > 0 && lane == 0) {
         extremes[0] = key_of_height(range.y);
         extremes[1] = ~key_of_height(range.x);
     }
-    int row = levels == 0 ? 2 : side + 2;
-    int fours = made < 0 ? 0 : (pitch * row + 3) >> 2;
-    for (int i = lane; i < fours; i += LANES) {
+    vec2 scale = stretch_of(range, normalise);
+    int row = 4 * pitch_of(side);
+    for (int i = lane; i < (row >> 2) * (side + 1); i += LANES) {
         vec4 h;
         for (int k = 0; k < 4; k++) {
             int y = (4 * i + k) / row;
             int x = 4 * i + k - y * row;
-            h[k] = coarse[x <= side && y <= side ? y * pitch + x : 0];
+            h[k] = coarse[x <= side ? y * pitch + x : 0];
         }
-        if (made == levels && normalise != 0) {
-            h = stretched(h, stretch_of(range, normalise), normalise);
-        }
-        height[place_of(made, levels) + i] = h;
+        if (made < levels) lattices[place_of(made) + i] = h;
+        else height[i] = stretched(h, scale, normalise);
     }
 }
 
@@ -134,9 +142,9 @@ void make_coarse(int lane, int levels) {
 
 // Columns 2 j - 1 .. 2 j + 3 of a row; rows beyond the border are those at the border.
 void read_five(int place, int side, int row, int j, out float h[5]) {
-    int begin = clamp(row, 0, side) * (side + 2) + 2 * j - 1;
-    vec4 first = height[place + (begin >> 2)];
-    vec4 second = height[place + (begin >> 2) + 1];
+    int begin = clamp(row, 0, side) * 4 * pitch_of(side) + 2 * j - 1;
+    vec4 first = read_lattices(place + (begin >> 2));
+    vec4 second = read_lattices(place + (begin >> 2) + 1);
     bool early = (begin & 3) == 1;  // else 3: begin is odd
     h[0] = early ? first.y : first.w;
     h[1] = early ? first.z : second.x;
@@ -145,73 +153,26 @@ void read_five(int place, int side, int row, int j, out float h[5]) {
     h[4] = early ? second.y : second.w;
 }
 
-// What a step does with the rows it makes.
-struct Task {
-    int place;      // of the lattice in the buffer
-    bool keeps;     // writes them
-    bool tells;     // widens the range by them
-    bool scales;    // normalises them
-    vec2 scale;
-};
+void widen_by_eight(inout vec2 range, vec4 eight[2], bool is_last) {
+    // Only the first is one of the lattice's columns.
+    if (is_last) eight[0] = eight[1] = vec4(eight[0].x);
+    vec4 least = min(eight[0], eight[1]);
+    vec4 most = max(eight[0], eight[1]);
+    range.x = min(range.x, min(min(least.x, least.y), min(least.z, least.w)));
+    range.y = max(range.y, max(max(most.x, most.y), max(most.z, most.w)));
+}
 
-// Rows 2 k and 2 k + 1 of a lattice, from rows k and k + 1 of the coarser; `below` are the
-// centres south of row 2 k, and become those north of it.
-void two_rows(Task task, Lattice lattice, int j, int k, bool wanted, float low[6], float high[6],
-              inout float below[5], inout vec2 range) {
-    int side = lattice.side;
-    bool is_last = j == (side >> 3) - 1;
-    bool has_odd = 2 * k < side;
-    float above[5];
-    five_centres(low, high, j, k, lattice, above);
-    vec4 even[2], odd[2];
-    eight_of_even_row(low, below, above, j, 2 * k, lattice, even);
-    eight_of_odd_row(low, high, above, j, 2 * k + 1, lattice, odd);
-    // Past the last column of an odd row there is room for one float more.
-    if (is_last) odd[1].w = odd[1].z;
-    // No eight columns hold the last of an even row, or the first two of an odd one.
-    float last = low[4];
-    vec4 neighbours = vec4(above[0], high[0], 0.0, low[0]);
-    vec2 first = vec2(above[0]);
-    first.x = edge_in_column(neighbours, ivec2(0, 2 * k + 1), bvec2(true, false), lattice);
-    below = above;
-    if (normalise != 0 && wanted && task.tells) {
-        if (!has_odd) odd = even;
-        vec4 least = min(min(even[0], even[1]), min(odd[0], odd[1]));
-        vec4 most = max(max(even[0], even[1]), max(odd[0], odd[1]));
-        range.x = min(range.x, min(min(least.x, least.y), min(least.z, least.w)));
-        range.y = max(range.y, max(max(most.x, most.y), max(most.z, most.w)));
-        if (is_last) range = widened(range, vec2(last));
-        vec2 ends = vec2(min(first.x, first.y), max(first.x, first.y));
-        if (j == 0 && has_odd) range = widened(range, ends);
-    }
-    if (normalise != 0 && task.scales) {
-        for (int i = 0; i < 2; i++) {
-            even[i] = stretched(even[i], task.scale, normalise);
-            odd[i] = stretched(odd[i], task.scale, normalise);
-        }
-        vec4 seam = stretched(vec4(last, last, first), task.scale, normalise);
-        last = seam.x;
-        first = seam.zw;
-    }
-    if (!wanted || !task.keeps) return;
-    int begin = 2 * k * (side + 2);
-    int even_place = task.place + (begin >> 2) + 2 * j;
-    int seam_place = task.place + ((begin + side) >> 2);
-    height[even_place] = even[0];
-    height[even_place + 1] = even[1];
-    if (is_last) height[seam_place].x = last;
-    if (!has_odd) return;
-    height[seam_place + 1 + 2 * j] = odd[0];
-    height[seam_place + 2 + 2 * j] = odd[1];
-    if (j == 0) {
-        height[seam_place].z = first.x;
-        height[seam_place].w = first.y;
+// Write a thread's eight columns of a row: rows past the last lie in room that nobody reads.
+void write_eight(int place, vec4 eight[2], vec2 scale) {
+    for (int i = 0; i < 2; i++) {
+        if (stage == MAKE) lattices[place + i] = eight[i];
+        if (stage == LAST) height[place + i] = stretched(eight[i], scale, normalise);
     }
 }
 
 // Narrow the rows from `begin` to `end` to those where heights may leave the range that is
 // known: a new height is within `margin` of the heights around it.
-void narrow(int place, int side, int j, float margin, bool looks, inout int begin, inout int end) {
+void narrow(int place, int side, int j, float margin, inout int begin, inout int end) {
     // Others may widen the range meanwhile: it is a true one all the same, and more rows are
     // skipped.
     vec2 known = vec2(height_of_key(~extremes[1]), height_of_key(extremes[0]));
@@ -220,12 +181,12 @@ void narrow(int place, int side, int j, float margin, bool looks, inout int begi
     vec2 around[4] = vec2[](NO_RANGE, NO_RANGE, NO_RANGE, NO_RANGE);  // of the last four rows
     int first = end;
     int last = begin - 1;
-    int stop = looks ? end + 2 : begin - 1;
-    for (int row = begin - 1; row < stop; row++) {
+    for (int row = begin - 1; row < end + 2; row++) {
         float h[5];
         read_five(place, side, row, j, h);
         // Columns off the lattice hold nothing.
         if (j == 0) h[0] = h[1];
+        if (2 * j + 2 > side) h[2] = h[3] = h[1];
         if (2 * j + 3 > side) h[4] = h[3];
         for (int i = 0; i < 3; i++) around[i] = around[i + 1];
         around[3] = vec2(h[4]);
@@ -237,54 +198,68 @@ void narrow(int place, int side, int j, float margin, bool looks, inout int begi
             last = q;
         }
     }
-    if (looks) {
-        begin = first;
-        end = last + 1;
-    }
+    begin = first;
+    end = last + 1;
 }
 
-void make_two_levels(int j, int begin, int levels) {
-    int last = max((levels >> 1) - 2, 0);  // the step that makes the terrain, or only looks at it
-    int level = min(4 + (levels & 1) + 2 * iteration, levels);
-    bool looks = normalise != 0 && iteration == last;
-    bool works = iteration > 0 && levels > 5 && j < 1 << max(level - 3, 0);
+void make_two_levels(int job, int levels) {
+    int steps = (levels >> 1) - 2;
+    int level = stage == MAKE ? 4 + (levels & 1) + 2 * iteration : levels;
     Lattice middle = lattice_of(level - 1);
     Lattice fine = lattice_of(level);
     int side = fine.side >> 2;
-    int from = place_of(level - 2, levels);
+    int from = place_of(level - 2);
+    int across = (fine.side >> 3) + 1;
+    int from_south = quotient(job, across);
+    int j = job - from_south * across;
+    bool is_last = j == across - 1;
+    int begin = from_south * ROWS;
+    int end = min(begin + ROWS, side + 1);
+    bool tells = normalise != 0 && (stage == LOOK || (stage == MAKE && iteration == steps - 1));
     vec2 known = vec2(height_of_key(~extremes[1]), height_of_key(extremes[0]));
     vec2 scale = stretch_of(known, normalise);
-    bool tells = normalise != 0 && (looks || iteration == last - 1);
-    Task task = Task(place_of(level, levels), !looks, tells, iteration > last, scale);
-    int end = works ? min(begin + ROWS, side + 1) : begin - 1;
-    if (!works) j = 0;
     // Twice two displacements lie between the coarser lattice and the finer.
-    float margin = 2.0 * (middle.amplitude + fine.amplitude);
-    if (normalise != 0) narrow(from, side, j, margin, works && looks, begin, end);
+    if (stage == LOOK) narrow(from, side, j, 2.0 * (middle.amplitude + fine.amplitude), begin, end);
 
-    float low[5], high[5], next[5], below[5];
+    float low[5], high[5], next[5], below[5], above[5];
     float centres[4], next_centres[4];
     float even[6], odd[6], next_even[6];
+    vec4 eight[2];
     read_five(from, side, begin - 1, j, low);
     read_five(from, side, begin, j, high);
-    four_centres(low, high, j, begin - 1, middle, centres);
-    for (int i = 0; i < 6; i++) even[i] = 0.0;
-    for (int i = 0; i < 5; i++) below[i] = 0.0;
+    read_five(from, side, begin + 1, j, next);
+    four_centres(low, high, j, begin - 1, middle, next_centres);
+    four_centres(high, next, j, begin, middle, centres);
+    six_of_odd_row(low, high, next_centres, j, 2 * begin - 1, middle, odd);
+    six_of_even_row(high, next_centres, centres, j, 2 * begin, middle, even);
+    five_centres(odd, even, j, 2 * begin - 1, fine, below);
     vec2 range = NO_RANGE;
-    // The first step only makes what the second needs from the south.
-    for (int q = begin - 1; q < end; q++) {
+    int pitch = pitch_of(fine.side);
+    int place = (stage == MAKE ? place_of(level) : 0) + 4 * begin * pitch + 2 * j;
+    for (int q = begin; q < end; q++) {
+        low = high;
+        high = next;
         read_five(from, side, q + 2, j, next);
         six_of_odd_row(low, high, centres, j, 2 * q + 1, middle, odd);
         four_centres(high, next, j, q + 1, middle, next_centres);
         six_of_even_row(high, centres, next_centres, j, 2 * q + 2, middle, next_even);
-        two_rows(task, fine, j, 2 * q, q >= begin, even, odd, below, range);
-        two_rows(task, fine, j, 2 * q + 1, q >= begin && q < side, odd, next_even, below, range);
-        low = high;
-        high = next;
         centres = next_centres;
-        even = next_even;
+        for (int k = 0; k < 2; k++) {
+            int row = 4 * q + 2 * k;
+            five_centres(even, odd, j, row >> 1, fine, above);
+            eight_of_even_row(even, below, above, j, row, fine, eight);
+            if (tells && row <= fine.side) widen_by_eight(range, eight, is_last);
+            write_eight(place, eight, scale);
+            eight_of_odd_row(even, odd, above, j, row + 1, fine, eight);
+            if (tells && row < fine.side) widen_by_eight(range, eight, is_last);
+            write_eight(place + pitch, eight, scale);
+            below = above;
+            even = odd;
+            odd = next_even;
+            place += 2 * pitch;
+        }
     }
-    if (normalise != 0 && works && task.tells) {
+    if (tells && begin < end) {
         atomicMax(extremes[0], key_of_height(range.y));
         atomicMax(extremes[1], ~key_of_height(range.x));
     }
@@ -292,6 +267,6 @@ void make_two_levels(int j, int begin, int levels) {
 
 void main() {
     int levels = count_levels();
-    make_coarse(int(gl_LocalInvocationID.x), levels);
-    make_two_levels(int(gl_GlobalInvocationID.x), int(gl_WorkGroupID.y) * ROWS, levels);
+    if (stage == COARSE) make_coarse(int(gl_LocalInvocationID.x), levels);
+    else make_two_levels(int(gl_GlobalInvocationID.x), levels);
 }

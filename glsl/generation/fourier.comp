@@ -15,10 +15,10 @@
 // row of `waves`, a vec4 a texel. A place along an axis of 2^n has the digits of its number in
 // base 32: the top one, one more where n > 10, and a lowest of 1 to 5 bits. Each stage takes
 // 32 numbers that differ in one digit, transforms them and puts them back where they were:
-//   DRAW      the waves, weighed, and the lowest digit of y
+//   DRAW      the waves, weighed, and the lowest digit of y; DRAW_AT_2 where the roughness is 2
 //   HIGHER    a middle digit, or the top one of x
 //   TOP_Y     the top digit of y, and two complex rows from the spectra of four real ones
-//   LOW_X     the lowest digit of x
+//   LOW_X     the lowest digit of x; LOW_X_OF_32 where that has all its five bits
 // The range of heights is then known, for SHOW. What a digit of frequency has become is a digit
 // of place, in reverse order: the top digit of a frequency's place counts single waves.
 //
@@ -39,24 +39,27 @@
 #include "maths/power.glsl"
 #include "maths/whole.glsl"
 #include "terrain/order.glsl"
-#pragma compute(stages = "0, 1, 2, 3, 1, 1, 4, 5", local = "32, 1", \
+#pragma compute(stages = "0, 6, 1, 2, 3, 7, 1, 1, 4, 5", local = "32, 1", \
                 accepts = "n up to 8193, m up to 8193", \
                 where = "numbers_x = max(size.x - size.x % 2, 128); \
                          numbers_y = max(size.y - size.y % 2, 128); \
-                         skipped = numbers_y < 2048 if iteration == 1 else \
-                                   numbers_x < 2048 if iteration == 4 else \
-                                   (size.y + 1) % 2 if iteration == 7 else 0; \
+                         skipped = (roughness == 2) != iteration if iteration < 2 else \
+                             (size.x // 2 == 512) != iteration - 4 if iteration // 2 == 2 else \
+                             size.y < 2048 if iteration == 2 else \
+                             size.x < 2048 if iteration == 6 else \
+                             size.y % 2 == 0 if iteration == 9 else 0; \
                          a_group = 4096", \
-                groups = "1 if skipped else (numbers_x + 4) * numbers_y // a_group + 1, 1", \
+                groups = "0 if skipped else (numbers_x + 4) * numbers_y // a_group + 1, 1", \
                 buffers = "waves:vec4:(numbers_x + 4) * numbers_y // 4; bounds:uint:2; \
-                           height:vec4:(size.x * size.y + 3) // 4", \
-                overwrites = "waves, height", aligned = "4", agrees = "1e-5")
+                           height:vec4:(size.x + 3) // 4 * size.y", \
+                overwrites = "waves, height", aligned = "16", agrees = "1e-5")
 
 uniform float roughness = 2.0; //! slider(0, 4) step(0.01) As in the technique
 uniform uint seed = 7u;        //! slider(0, 9999) As in the technique
 uniform int normalise = 2;     //! menu("none", "max", "minmax") As in the technique
 
 const int DRAW = 0, HIGHER = 1, TOP_Y = 2, LOW_X = 3, SHOW = 4, SHOW_LAST_ROW = 5;
+const int DRAW_AT_2 = 6, LOW_X_OF_32 = 7;
 const int SHOWN = 8;  // jobs of a thread
 
 ivec2 period;  // texels after which the terrain repeats
@@ -127,12 +130,14 @@ Digit along_x(int job, int p) {
     return digit;
 }
 
-// The top two bits of a place along y are the column of four.
+// The top two bits of a place along y are the column of four. Threads in twos differ in the
+// topmost, so that neighbours store in columns side by side: a processor stores whole lines.
 Digit along_y(int job, int p) {
     Digit digit;
     int pairs = (count.x >> 2) + 1;
-    int mine = quotient(job, pairs);
-    ivec4 columns = columns_of(job - mine * pairs, digit.frequencies);
+    int rest = quotient(job >> 1, pairs);
+    int mine = rest | ((job & 1) << (bits.y - 6));
+    ivec4 columns = columns_of((job >> 1) - rest * pairs, digit.frequencies);
     digit.low = mine & ((1 << p) - 1);
     digit.place = ((mine >> p) << (p + 5)) | digit.low;
     int quarter = digit.place >> (bits.y - 2);
@@ -161,15 +166,20 @@ vec2 root(int e) {
 void higher(Digit digit, int p) {
     find_roots(digit.low, p);
     for (int e = 0; e < 32; e++) {
-        v[e] = both_products(waves[digit.base + e * digit.apart], root(e));
+        v[e] = both_products(read_waves(digit.base + e * digit.apart), root(e));
     }
     transform32(v);
     for (int e = 0; e < 32; e++) waves[digit.base + e * digit.apart] = v[place32(e)];
 }
 
 void low_x(Digit digit) {
+    for (int e = 0; e < 32; e++) v[e] = read_waves(digit.base + e);
+    if (stage == LOW_X_OF_32) {
+        transform32(v);
+        for (int e = 0; e < 32; e++) waves[digit.base + e] = v[place32(e)];
+        return;
+    }
     int levels = lowest_digit(bits.x);
-    for (int e = 0; e < 32; e++) v[e] = waves[digit.base + e];
     transform_blocks(v, levels);
     int block = ~((1 << levels) - 1);
     for (int e = 0; e < 32; e++) {
@@ -186,7 +196,7 @@ void top_y(int job) {
     find_roots(low, p);
     for (int e = 0; e < 32; e++) {
         int row = ((e & 7) << p) | low;
-        v[e] = both_products(waves[row * pitch + columns[e >> 3]], root(e));
+        v[e] = both_products(read_waves(row * pitch + columns[e >> 3]), root(e));
     }
     transform32(v);
     // Conjugates: of Z[k] = R[k] + i S[k] and of Z[-k] = conj R[k] + i conj S[k].
@@ -203,28 +213,50 @@ void top_y(int job) {
     }
 }
 
-// A wave as the filter leaves it, with what the way back multiplies by taken out.
-vec2 weighed(ivec2 frequency) {
-    ivec2 along = frequency - count * ivec2(greaterThan(2 * frequency, count));
-    // Of a short side that is repeated, waves that do not end where it ends are 0.
-    ivec2 copies = bits - ivec2(findMSB(period.x), findMSB(period.y));  // a power of two
-    ivec2 waves = along >> copies;
-    if (waves << copies != along) return vec2(0.0);
-    vec2 f = vec2(waves) * (float(max(period.x, period.y)) / vec2(period));
-    float squared = dot(f, f);
-    float weight = squared > 0.0 ? power(squared, -0.5 * roughness) : 1.0;
+// One axis of a wave: its frequency and the opposite one, signed, as generation/fourier/wave.glsl
+// has them.
+struct Part {
+    int waves, opposite;
+    bool ends;      // where a short side that is repeated ends; of others all waves are 0
+    float squared;  // of the frequency, along the terrain's longer side
+};
+
+Part part_of(int frequency, int count, int period) {
+    Part part;
+    int along = frequency - (2 * frequency > count ? count : 0);
+    int copies = findMSB(count) - findMSB(period);  // a power of two
+    part.waves = along >> copies;
+    part.ends = part.waves << copies == along;
+    part.opposite = (2 * part.waves == period ? period : 0) - part.waves;
+    float f = float(part.waves) * (float(max(size.x, size.y) & ~1) / float(period));
+    part.squared = f * f;
+    return part;
+}
+
+// A wave as the filter leaves it, conjugate, with what the way back multiplies by taken out:
+// wave_number, whose questions about x are asked once for all waves of a column.
+vec2 weighed(Part x, Part y) {
+    bool is_drawn = x.waves == x.opposite ? y.waves >= y.opposite : x.waves > x.opposite;
+    ivec2 key = ivec2(max(x.waves, x.opposite), is_drawn ? y.waves : y.opposite);
+    vec2 pair = random_pair(key, seed + FOURIER_SALT) * 2.0 - 1.0;
+    vec2 wave = 0.70710678 * vec2(pair.x, is_drawn ? -pair.y : pair.y);
+    if (x.waves == x.opposite && y.waves == y.opposite) wave = vec2(pair.x, 0.0);
+    float squared = x.squared + y.squared;
+    float weight = stage == DRAW_AT_2 ? 1.0 / squared : power(squared, -0.5 * roughness);
+    if (squared == 0.0) weight = 1.0;
     weight *= inversesqrt(float(period.x) * float(period.y));
-    return wave_number(waves, period, seed) * weight;
+    return x.ends && y.ends ? wave * weight : vec2(0.0);
 }
 
 void draw(Digit digit) {
     int levels = lowest_digit(bits.y);
     int block = ~((1 << levels) - 1);
+    Part one = part_of(digit.frequencies.x, count.x, period.x);
+    Part other = part_of(digit.frequencies.y, count.x, period.x);
     for (int e = 0; e < 32; e++) {
         int l = frequency_of(digit.place | (e & block) | block_number(e, levels), bits.y);
-        vec2 one = weighed(ivec2(digit.frequencies.x, l));
-        vec2 other = weighed(ivec2(digit.frequencies.y, l));
-        v[e] = vec4(one, other) * vec4(1.0, -1.0, 1.0, -1.0);
+        Part y = part_of(l, count.y, period.y);
+        v[e] = vec4(weighed(one, y), weighed(other, y));
     }
     transform_blocks_back(v, levels);
     for (int e = 0; e < 32; e++) waves[digit.base + e * digit.apart] = v[e];
@@ -247,36 +279,23 @@ void measure() {
     if (highest > bounds[1]) atomicMax(bounds[1], highest);
 }
 
-// Four heights in each of four rows, a quarter of the count apart; `from` is the first's texel
-// along the row, and `at` its place among the fours of `height`. A row's last four may go on
-// in the next row, but not a quarter's, which is a multiple of four rows.
-void show_fours(int row, int from, int at) {
-    vec4 found[4];
-    for (int j = 0; j < 4; j++) {
-        int rows_on = int(from + j >= size.x) + int(from + j >= 2 * size.x);
-        int x = from + j - rows_on * size.x;
-        int place = (row + rows_on) * pitch + (x & (count.x - 1));
-        found[j] = waves[place] * vec4(1.0, -1.0, 1.0, -1.0);
-    }
-    vec2 range = vec2(height_of_key(~bounds[0]), height_of_key(bounds[1]));
-    vec2 stretch = stretch_of(range, normalise);
-    int quarter = (rows >> 2) * size.x;
-    int all_fours = (size.x * size.y + 3) >> 2;
-    for (int g = 0; g < 4; g++) {
-        if (at + g * quarter < all_fours) {
-            vec4 four = vec4(found[0][g], found[1][g], found[2][g], found[3][g]);
-            height[at + g * quarter] = stretched(four, stretch, normalise);
-        }
-    }
-}
-
-// One such job of `many` rows: row 0 of `waves` is the terrain's row `first`.
-void show(int job, int first, int many) {
+// Fours of heights in each of four rows, a quarter of the count apart: one such job of `many` rows,
+// where row 0 of `waves` is the terrain's row `first`.
+void show(int job, int first, int many, vec2 stretch) {
     int fours = (size.x + 3) >> 2;
     int row = quotient(job, fours);
-    int start = (first + row) * size.x;
-    int at = ((start + 3) >> 2) + job - row * fours;
-    if (row < many && 4 * at - start < size.x) show_fours(row, 4 * at - start, at);
+    int place = job - row * fours;
+    if (row >= many) return;
+    vec4 found[4];
+    for (int j = 0; j < 4; j++) {
+        int x = (4 * place + j) & (count.x - 1);
+        found[j] = read_waves(row * pitch + x) * vec4(1.0, -1.0, 1.0, -1.0);
+    }
+    for (int g = 0; g < 4; g++) {
+        int y = first + row + g * rows;
+        vec4 four = vec4(found[0][g], found[1][g], found[2][g], found[3][g]);
+        if (y < size.y) height[y * fours + place] = stretched(four, stretch, normalise);
+    }
 }
 
 void main() {
@@ -287,25 +306,29 @@ void main() {
     pitch = count.x + 4;
 
     int job = int(gl_GlobalInvocationID.x);
-    bool x_axis = iteration > 2;
-    bool top = iteration == 5;
+    bool x_axis = iteration > 3;
+    bool top = iteration == 7;
     int n = x_axis ? bits.x : bits.y;
     int p = top ? n - 5 : n - 10;
     int jobs = x_axis ? count.x * rows >> 5 : ((count.x >> 2) + 1) * (count.y >> 5);
-    if (stage == HIGHER && p <= 0) jobs = 0;
-    if (job >= jobs && stage < SHOW) return;
+    if (job >= jobs && stage != SHOW && stage != SHOW_LAST_ROW) return;
 
-    if (stage == DRAW) draw(along_y(job, 0));
+    if (stage == DRAW || stage == DRAW_AT_2) draw(along_y(job, 0));
     if (stage == TOP_Y) top_y(job);
-    if (stage == LOW_X) low_x(along_x(job, 0));
+    if (stage == LOW_X || stage == LOW_X_OF_32) low_x(along_x(job, 0));
     if (stage == HIGHER) {
         Digit digit = along_x(job, p);
         if (!x_axis) digit = along_y(job, p);
         higher(digit, p);
         if (top) measure();
     }
-    if (stage == SHOW) {
-        for (int k = 0; k < SHOWN; k++) show((job & ~31) * SHOWN + (job & 31) + 32 * k, 0, rows);
+    if (stage == SHOW || stage == SHOW_LAST_ROW) {
+        vec2 range = vec2(height_of_key(~bounds[0]), height_of_key(bounds[1]));
+        vec2 stretch = stretch_of(range, normalise);
+        bool all_rows = stage == SHOW;
+        for (int k = 0; k < (all_rows ? SHOWN : 1); k++) {
+            int mine = all_rows ? (job & ~31) * SHOWN + (job & 31) + 32 * k : job;
+            show(mine, all_rows ? 0 : count.y, all_rows ? rows : 1, stretch);
+        }
     }
-    if (stage == SHOW_LAST_ROW && size.y > count.y) show(job, count.y, 1);
 }

@@ -44,7 +44,7 @@ Told range_in_place(Told told) {
     int all_texels = size.x * size.y;
     int last = min(begin + FOUND, all_texels >> 2);
     for (int four = begin + mine; four < last; four += READERS) {
-        told = told_also(told, heights[four]);
+        told = told_also(told, read_heights(four));
     }
     int single = (all_texels & ~3) + mine;
     if (begin == 0 && single < all_texels) {
@@ -69,7 +69,7 @@ void stretch() {
     int begin = int(gl_WorkGroupID.x) * STRETCHED;
     int last = min(begin + STRETCHED, (size.x * size.y + 3) >> 2);
     for (int four = begin + int(gl_LocalInvocationIndex); four < last; four += READERS) {
-        vec4 h = matches_height ? heights[four] : texels_of_four(four);
+        vec4 h = matches_height ? read_heights(four) : texels_of_four(four);
         heights[four] = stretched(h, by, mode);
     }
 }

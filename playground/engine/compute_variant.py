@@ -15,9 +15,11 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, NamedTuple
 
+from playground.engine.buffer_texels import BufferTexels
 from playground.engine.kernels import Job, Kernels
 from playground.engine.programs import Program
 from playground.engine.results import UNWIRED, Result
+from playground.gpu.buffer_reads import TEXELS
 from playground.gpu.gl_calls import Calls
 from playground.gpu.wrap import COMPUTE
 from playground.sketch import expressions
@@ -48,6 +50,7 @@ class ComputeVariants:
     def __init__(self, ctx: moderngl.Context, kernels: Kernels) -> None:
         self.ctx = ctx
         self.kernels = kernels
+        self.texels = BufferTexels(ctx)
         self._spare: list[Spare] = []  # newest last
         self._runs = 0
 
@@ -56,12 +59,14 @@ class ComputeVariants:
         for spare in self._spare:
             spare.buffer.release()
         self._spare.clear()
+        self.texels.release()
 
     def run(self, job: Job) -> Result:
         """Run a compute variant; the result is the caller's."""
         step, kernel = job.step, job.step.kernel
         names = job.numbers()
         buffers: list[moderngl.Buffer] = []
+        read: list[Buffer] = []
         whole = all([output.name in kernel.overwrites for output in kernel.outputs])
         pool = self.kernels.pool
         result = pool.take(step.size, kernel.outputs) if whole else self.kernels.empty(step)
@@ -72,11 +77,17 @@ class ComputeVariants:
                 if declared.name == kernel.in_place:
                     self._begin(job, result, declared, buffers[-1])
                 buffers[-1].bind_to_storage_buffer(unit, size=self._size(declared, names))
+            named = dict(zip([declared.name for declared in kernel.buffers], buffers, strict=True))
+            if self.kernels.software:
+                read = self.texels.read(kernel, named)
+                self.texels.bind(read, named)
             self.kernels.images(result, read=True)
             program: Program | None = None
             for iteration in range(repeat):
-                program = self._program(job, iteration, program)
                 groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
+                if kernel.stages and 0 in groups:  # of a step that this size does not need
+                    continue
+                program = self._program(job, iteration, program, reads=bool(read))
                 job.count(program, iteration, kernel.repeat, repeat)
                 program.run(max(groups[0], 1), max(groups[1], 1))
             for output in kernel.outputs:
@@ -90,20 +101,24 @@ class ComputeVariants:
             pool.give(result)
             raise
         finally:
+            if read:
+                self.texels.let_go()
             self._runs += 1
             self._spare += [Spare(buffer, self._runs) for buffer in buffers]
             self._trim()
         return result
 
-    def _program(self, job: Job, iteration: int, bound: Program | None) -> Program:
+    def _program(self, job: Job, iteration: int, bound: Program | None, *, reads: bool) -> Program:
         """Return the program of an iteration with all that it reads, if it is not the one that is ``bound``.
 
         On a software renderer, there is one for each stage: otherwise what the others do would
-        be computed as well, and discarded.
+        be computed as well, and discarded. Where it ``reads`` buffers as
+        textures, that is another.
         """
         step, stages = job.step, job.step.kernel.stages
         stage = (("stage", stages[iteration]),) if stages else ()
-        program = self.kernels.program(job, COMPUTE, *stage)
+        more = (*stage, (TEXELS, 1)) if reads else stage
+        program = self.kernels.program(job, COMPUTE, *more)
         if program is not bound:  # a program that was bound before may find other textures on its units
             self.kernels.binder.bind(program, step, job.given, job.inputs)
         for name, number in stage:

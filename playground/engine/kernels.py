@@ -38,12 +38,12 @@ from playground.sketch.reserved_names import (
     ELEMENT,
     FIXED,
     MATCHES,
+    NEAREST,
     OWN_SIZE,
     PART,
     PRESSED,
     SIZES,
     SKIPS,
-    TEXELS,
     UNWIRED,
     VALUE,
     WINDOW,
@@ -186,7 +186,7 @@ class Kernels:
         if reads_unwired(kernel):
             choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
         if has_quick_fetches(kernel):
-            choices.append((TEXELS, 1))
+            choices.append((NEAREST, 1))
         if may_have_own_size(kernel) and are_of_own_size(job.step, job.inputs):
             choices.append((OWN_SIZE, 1))
         if job.loop_iteration is None:  # in a loop, each iteration would wait for what it reads back

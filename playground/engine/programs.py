@@ -20,7 +20,7 @@ from playground.gpu.program import compile_wrapped
 from playground.gpu.wrap import CORNER, Wrapped, wrap
 from playground.paths import shown
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import OWN_SIZE, TEXELS
+from playground.sketch.reserved_names import NEAREST, OWN_SIZE
 
 if TYPE_CHECKING:
     import moderngl
@@ -137,7 +137,7 @@ class Programs:
 
         So a driver's complaints name what the author wrote.
         """
-        own = tuple([choice for choice in choices if choice[0] not in (TEXELS, OWN_SIZE)])
+        own = tuple([choice for choice in choices if choice[0] not in (NEAREST, OWN_SIZE)])
         try:
             return compile_wrapped(self.ctx, wrapped)
         except ShaderError:

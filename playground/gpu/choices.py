@@ -9,12 +9,13 @@ import re
 from collections.abc import Collection, Sequence
 from dataclasses import replace
 
+from playground.gpu.buffer_reads import TEXELS, with_texels
 from playground.gpu.own_shaders import own_part
 from playground.gpu.wrap import NOTHING_SKIPPED, ShaderStage, Wrapped, previous_name
 from playground.sketch.fetched_alone import FETCH
 from playground.sketch.fixed_texels import fixed_texels
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import FETCHES, FIXED, OWN_SIZE, QUICK_FETCHES, SKIPS, TEXELS, UNWIRED
+from playground.sketch.reserved_names import FETCHES, FIXED, NEAREST, OWN_SIZE, QUICK_FETCHES, SKIPS, UNWIRED
 
 _GIVEN_SIZE = "uniform ivec2 size;"
 _OWN_SHARE = "k_own_share"
@@ -28,11 +29,12 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
     as what was, unless the compiler can see that it never happens. With the choice ``SKIPS`` the text is
     that of the part of a kernel that ends before its costly rest: see ``engine.costly_rest``. With the
     choices that ``FIXED`` begins, texels of these inputs become uniforms: see ``_with_uniform_texels``. With
-    the choice ``TEXELS`` texels are fetched as this renderer is quick to: see ``_with_quick_fetches``. With
-    ``OWN_SIZE`` textures are not asked for their size: see ``_with_own_size``.
+    the choice ``NEAREST`` texels are fetched as this renderer is quick to: see ``_with_quick_fetches``. With
+    ``OWN_SIZE`` textures are not asked for their size: see ``_with_own_size``. With ``TEXELS`` buffers are
+    read as textures: see ``engine.buffer_texels``.
     """
     stages = {}
-    quick, own_size = [any(choice == name for choice, _ in choices) for name in (TEXELS, OWN_SIZE)]
+    quick, own_size = [any(choice == name for choice, _ in choices) for name in (NEAREST, OWN_SIZE)]
     fixed = frozenset(choice.removeprefix(FIXED) for choice, _ in choices if choice.startswith(FIXED))
     for name, stage in wrapped.stages.items():
         text = stage.text
@@ -44,6 +46,8 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
                 return f"{match.group(1)}const  {match.group(2)} = {literal};"
 
             text = re.sub(pattern, constant, text, flags=re.MULTILINE)
+            if choice == TEXELS:
+                text = with_texels(text)
             if choice == SKIPS:
                 text = text.replace(NOTHING_SKIPPED, f"bool {SKIPS}() {{ discard; return true; }}")
         stage = replace(stage, text=text)
@@ -89,7 +93,7 @@ def _with_uniform_texels(stage: ShaderStage, inputs: Collection[str]) -> ShaderS
 
 
 def has_quick_fetches(kernel: Kernel) -> bool:
-    """Return whether the choice ``TEXELS`` changes a kernel's text.
+    """Return whether the choice ``NEAREST`` changes a kernel's text.
 
     Where it is made, ``Binder`` binds the inputs of ``fetched_alone`` by a sampler that gives the nearest
     texel, and 0 outside of the texture.

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from playground.errors import ShaderError
+from playground.gpu.buffer_reads import reading
 from playground.gpu.own_shaders import TRIANGLE, own_part
 from playground.gpu.stage_recipe import SIGNATURE, Part, Recipe, version_line
 from playground.sketch.model import DRIVERS, Kernel, Output
@@ -287,6 +288,7 @@ def _variant(kernel: Kernel) -> Recipe:
     for unit, buffer in enumerate(kernel.buffers):
         block = f"buffer k_buffer_{buffer.name} {{ {buffer.type} {buffer.name}[]; }};"
         before.append(f"layout(std430, binding = {unit}) {block}")
+        before += reading(buffer)
     return _recipe(kernel, before, [], "void main()")
 
 

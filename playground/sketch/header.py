@@ -66,7 +66,7 @@ CHOICES: dict[str, tuple[str, ...]] = {
     "until": ("unchanged",),
     "reads": _SOURCE_READS,
     "samples": ("0", "1"),
-    "aligned": ("4", "8", "16"),
+    "aligned": ("4", "8", "16", "32"),
 }
 """Option of a pragma → what it may be, where that is one of a few."""
 _BUFFER_TYPES = "float int uint vec2 vec4 ivec2 ivec4 uvec2 uvec4".split()
@@ -297,7 +297,7 @@ def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         raise line.error("stages says how many steps there are; leave repeat out")
     if options.get("aligned", "8") not in CHOICES["aligned"]:
         raise line.error(
-            f'aligned = "{options["aligned"]}": expected 4, 8 or 16, the bytes that rows are filled up to'
+            f'aligned = "{options["aligned"]}": expected 4, 8, 16 or 32, the bytes that rows are filled up to'
         )
     in_place, there = options.get("in_place", ""), [buffer.name for buffer in buffers]
     if in_place and in_place not in there:

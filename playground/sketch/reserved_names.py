@@ -39,6 +39,10 @@ WIRED, MATCHES, TOWARDS = "wired_", "matches_", "towards_"
 """What begins a given name for each input (bool: something is wired to it; it has the size of this
 pass) and each direction (vec3: the unit vector towards it); declared where a text names it."""
 
+READ = "read_"
+"""What begins the name of a function that reads a compute variant's buffer: ``read_heights(place)`` is
+``heights[place]``; declared where a text names it."""
+
 UNWIRED = "k_unwired"
 """Whether any input that may stay unwired is, a bool; declared where a text fetches texels."""
 
@@ -46,7 +50,7 @@ FETCHES = {"texelFetch": "k_fetch_in", "texelFetchOffset": "k_fetch_in_shift"}
 """What replaces GLSL's own functions, as long as these, where an input may stay unwired: the one
 texel of its white or black answers for every place."""
 
-TEXELS = "k_texels"
+NEAREST = "k_nearest"
 """A choice: what is read texel by texel alone is fetched as a software renderer is quick to."""
 
 QUICK_FETCHES = {"texelFetch": "k_texel_of", "k_fetch_in": "k_texel_in"}

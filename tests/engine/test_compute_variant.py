@@ -339,6 +339,31 @@ def test_stages_say_what_each_iteration_does(any_engine, folder):
     assert made == (3 if any_engine.info.software else 1), "one for each stage, where the processor draws"
 
 
+def test_a_stage_with_no_groups_is_left_out(any_engine, folder):
+    """As for a step that only larger sizes need."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    groups = "0 if iteration % 3 == 1 else size.x // 8 + 1, size.y"
+    head = f'#pragma compute(stages = "0, 0, 0, 0, 0, 1", groups = "{groups}", local = "8, 1", '
+    folder.write("fill.glsl", PLAIN_FILL)
+    folder.write(
+        "fill.comp",
+        head
+        + """buffers = "work:float:size.x * size.y")
+    void main() {
+        ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
+        if (texel.x >= size.x) return;
+        int at = texel.y * size.x + texel.x;
+        if (stage == 0) work[at] = 10.0 * work[at] + float(iteration + 1);
+        if (stage == 1) imageStore(out_sums, texel, vec4(work[at]));
+    }
+    """,
+    )
+    for side, wanted in ((19, 134.0), (3, 134.0)):
+        sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {side}")
+        np.testing.assert_array_equal(any_engine.read(sketch, "a"), wanted)
+
+
 def test_a_stage_that_comes_back_reads_what_it_read_before(any_engine, folder):
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
@@ -380,6 +405,45 @@ def test_stages_take_the_place_of_repeat(folder):
             folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n')
 
 
+READ = """#pragma compute(stages = "0, 1", groups = "(size.x * size.y + 3) // 4, 1", local = "1, 1", \\
+                aligned = "4", buffers = "ones:float:size.x * size.y + 3; \\
+                pairs:vec2:size.x * size.y // 2 + 2; sums:vec4:(size.x * size.y + 3) // 4")
+void main() {
+    int at = int(gl_GlobalInvocationID.x);
+    for (int i = 0; i < 4 && stage == 0; i++) ones[4 * at + i] = float(4 * at + i);
+    for (int i = 0; i < 2 && stage == 0; i++) pairs[2 * at + i] = vec2(100.0, 200.0) * float(2 * at + i);
+    if (stage == 0) sums[at] = vec4(0.25);
+    if (stage == 0) return;
+    vec4 sum = read_sums(at);
+    for (int i = 0; i < 4; i++) sum[i] += read_ones(4 * at + i) + read_pairs(2 * at + i / 2)[i % 2];
+    sums[at] = sum;
+}
+"""
+
+
+@pytest.mark.parametrize("size", [(19, 7), (64, 64)])
+@pytest.mark.parametrize("fits", [True, False])
+def test_buffers_are_read_by_functions(any_engine, folder, size, fits):
+    """By textures on a software renderer, where those may be so long; what a step has written is there."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    texels = any_engine.internal.runner.compute_variants.texels
+    before, texels.most = texels.most, texels.most if fits else 16
+    folder.write("fill.glsl", PLAIN_FILL)
+    folder.write("fill.comp", READ)
+    sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size=f"size = {list(size)}")
+    at = np.arange(size[0] * size[1])
+    wanted = (0.25 + at + at // 2 * np.where(at % 2, 200, 100)).reshape(size[::-1])
+    try:
+        for _ in range(2):  # the second time buffers are used again
+            np.testing.assert_array_equal(any_engine.read(sketch, "a"), wanted)
+            any_engine.internal.cache.clear()
+        assert bool(texels._textures) == (fits and any_engine.info.software)
+    finally:
+        texels.release()
+        texels.most = before
+
+
 ROWS = """#pragma compute(groups = "size.x,size.y", local = "1,1", aligned = "4", buffers = "sums:float:SIZE")
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);
@@ -389,17 +453,19 @@ void main() {
 
 
 @pytest.mark.parametrize("size", [(19, 7), (2, 3), (64, 64)])
-def test_rows_of_a_buffer_may_be_whole_fours(any_engine, folder, size):
+@pytest.mark.parametrize("fours", [1, 2])
+def test_rows_of_a_buffer_may_be_whole_fours_or_eights(any_engine, folder, size, fours):
     """OpenGL itself fills rows up to 8 bytes at most."""
     if not any_engine.info.compute:
         pytest.skip("this context has no compute shaders")
-    head = '#pragma compute(groups = "(size.x + 3) // 4, size.y", local = "1, 1", aligned = "16", '
-    body = """buffers = "sums:vec4:(size.x + 3) // 4 * size.y")
-    void main() {
+    row = f"(size.x + {4 * fours - 1}) // {4 * fours} * {fours}"
+    head = f'#pragma compute(groups = "{row}, size.y", local = "1, 1", aligned = "{16 * fours}", '
+    body = f"""buffers = "sums:vec4:{row} * size.y")
+    void main() {{
         ivec2 four = ivec2(gl_GlobalInvocationID.xy);
         vec4 x = float(4 * four.x) + vec4(0.0, 1.0, 2.0, 3.0);
-        sums[four.y * ((size.x + 3) / 4) + four.x] = x + 100.0 * float(four.y);
-    }
+        sums[four.y * ({row.replace("//", "/")}) + four.x] = x + 100.0 * float(four.y);
+    }}
     """
     folder.write("fill.glsl", PLAIN_FILL)
     folder.write("fill.comp", head + body)

@@ -10,7 +10,7 @@ from playground.errors import ShaderError
 from playground.gpu.choices import has_quick_fetches, may_have_own_size, with_choices
 from playground.gpu.context import ContextInfo
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
-from playground.sketch.reserved_names import OWN_SIZE, TEXELS, UNWIRED
+from playground.sketch.reserved_names import NEAREST, OWN_SIZE, UNWIRED
 
 from .conftest import Folder
 
@@ -163,7 +163,7 @@ def test_a_texture_of_the_passs_own_size_is_not_asked_for_it(folder: Folder):
     kernel = folder.sketch(PASSES.partition("inputs")[0]).graph.passes[1].technique
     assert may_have_own_size(kernel)
     before = wrap(kernel, COMPUTE).stages["compute"]
-    after = with_choices(wrap(kernel, COMPUTE), [(TEXELS, 1), (OWN_SIZE, 1)]).stages["compute"]
+    after = with_choices(wrap(kernel, COMPUTE), [(NEAREST, 1), (OWN_SIZE, 1)]).stages["compute"]
     own, changed = before.text.split("\n")[before.first - 1 :], after.text.split("\n")[after.first - 1 :]
     assert [line.replace("texelFetch", "k_texel_of") for line in own] == changed
     assert after.locate(after.first) == kernel.source.lines[0]
@@ -190,7 +190,7 @@ def test_no_line_and_no_column_changes(folder: Folder):
     kernel = sketch_of(folder).graph.passes[1].technique
     assert has_quick_fetches(kernel)
     before = wrap(kernel, FRAGMENT).stages["fragment"]
-    after = with_choices(wrap(kernel, FRAGMENT), [(UNWIRED, 0), (TEXELS, 1)]).stages["fragment"]
+    after = with_choices(wrap(kernel, FRAGMENT), [(UNWIRED, 0), (NEAREST, 1)]).stages["fragment"]
     own, changed = before.text.split("\n")[before.first - 1 :], after.text.split("\n")[after.first - 1 :]
     assert [len(line) for line in own] == [len(line) for line in changed]
     assert sum(line.count("k_texel_in(") for line in changed) == 2, "at(…) and of open"

@@ -12,8 +12,11 @@
 // both odd, edges one of them. Five columns of a lattice are enough for two finer ones:
 //
 //   columns 2 j - 1 .. 2 j + 3   and the 4 centres between them give
-//   columns 4 j .. 4 j + 5       of the finer lattice; these and the 5 centres between them
-//   columns 8 j .. 8 j + 7       of an even row of the finest, 8 j + 2 .. 8 j + 9 of an odd one
+//   columns 4 j - 1 .. 4 j + 4   of the finer lattice; these and the 5 centres between them
+//   columns 8 j .. 8 j + 7       of the finest
+//
+// Of these, columns 4 j and 8 j may be the first or the last of their lattice, column 4 j + 4
+// the last; what lies further east is then no height, and no height depends on it.
 //
 // Neighbours are added one by one, from the east or north-east counter-clockwise, as raw.glsl
 // does: sums are the same to the last bit.
@@ -54,8 +57,8 @@ float edge_in_row(vec4 neighbours, ivec2 point, Lattice lattice) {
     return new_height(neighbours, inside, point, lattice);
 }
 
-// A point of an odd row: those in its column are always there. Only the first and the last of
-// several (`ends`) may be at the border; so the others are spared the question.
+// A point of an odd row: those in its column are always there. Only some columns can be the first
+// or the last; so the others are spared the question.
 float edge_in_column(vec4 neighbours, ivec2 point, bvec2 ends, Lattice lattice) {
     bvec4 inside = bvec4(!ends.y || point.x < lattice.side, true, !ends.x || point.x > 0, true);
     return new_height(neighbours, inside, point, lattice);
@@ -70,13 +73,14 @@ void four_centres(float low[5], float high[5], int j, int row,
     }
 }
 
-// Columns 4 j .. 4 j + 5 of an even row: the coarser row, and the centres south and north of it.
+// Columns 4 j - 1 .. 4 j + 4 of an even row: the coarser row, and the centres south and north
+// of it.
 void six_of_even_row(float known[5], float below[4], float above[4], int j, int row,
                      Lattice lattice, out float found[6]) {
     for (int i = 0; i < 3; i++) {
-        vec4 neighbours = vec4(known[i + 2], above[i + 1], known[i + 1], below[i + 1]);
-        found[2 * i] = known[i + 1];
-        found[2 * i + 1] = edge_in_row(neighbours, ivec2(4 * j + 2 * i + 1, row), lattice);
+        vec4 neighbours = vec4(known[i + 1], above[i], known[i], below[i]);
+        found[2 * i] = edge_in_row(neighbours, ivec2(4 * j + 2 * i - 1, row), lattice);
+        found[2 * i + 1] = known[i + 1];
     }
 }
 
@@ -86,17 +90,17 @@ void six_of_odd_row(float low[5], float high[5], float centres[4], int j, int ro
     for (int i = 0; i < 3; i++) {
         vec4 neighbours = vec4(centres[i + 1], high[i + 1], centres[i], low[i + 1]);
         ivec2 point = ivec2(4 * j + 2 * i, row);
-        found[2 * i] = edge_in_column(neighbours, point, bvec2(i == 0, i == 2), lattice);
-        found[2 * i + 1] = centres[i + 1];
+        found[2 * i] = centres[i];
+        found[2 * i + 1] = edge_in_column(neighbours, point, bvec2(i == 0, i != 1), lattice);
     }
 }
 
-// Centres between columns 4 j .. 4 j + 5 of the coarser rows `row` and `row + 1`.
+// Centres between columns 4 j - 1 .. 4 j + 4 of the coarser rows `row` and `row + 1`.
 void five_centres(float low[6], float high[6], int j, int row,
                   Lattice lattice, out float centres[5]) {
     for (int i = 0; i < 5; i++) {
         vec4 corners = vec4(high[i + 1], high[i], low[i], low[i + 1]);
-        centres[i] = centre(corners, ivec2(4 * j + i, row), lattice);
+        centres[i] = centre(corners, ivec2(4 * j - 1 + i, row), lattice);
     }
 }
 
@@ -104,20 +108,20 @@ void five_centres(float low[6], float high[6], int j, int row,
 void eight_of_even_row(float known[6], float below[5], float above[5], int j, int row,
                        Lattice lattice, out vec4 found[2]) {
     for (int i = 0; i < 4; i++) {
-        vec4 neighbours = vec4(known[i + 1], above[i], known[i], below[i]);
+        vec4 neighbours = vec4(known[i + 2], above[i + 1], known[i + 1], below[i + 1]);
         float edge = edge_in_row(neighbours, ivec2(8 * j + 2 * i + 1, row), lattice);
-        found[i >> 1][2 * (i & 1)] = known[i];
+        found[i >> 1][2 * (i & 1)] = known[i + 1];
         found[i >> 1][2 * (i & 1) + 1] = edge;
     }
 }
 
-// Columns 8 j + 2 .. 8 j + 9 of an odd row.
+// The same columns of an odd row.
 void eight_of_odd_row(float low[6], float high[6], float centres[5], int j, int row,
                       Lattice lattice, out vec4 found[2]) {
     for (int i = 0; i < 4; i++) {
         vec4 neighbours = vec4(centres[i + 1], high[i + 1], centres[i], low[i + 1]);
-        ivec2 point = ivec2(8 * j + 2 * i + 2, row);
-        float edge = edge_in_column(neighbours, point, bvec2(false, i == 3), lattice);
+        ivec2 point = ivec2(8 * j + 2 * i, row);
+        float edge = edge_in_column(neighbours, point, bvec2(i == 0), lattice);
         found[i >> 1][2 * (i & 1)] = edge;
         found[i >> 1][2 * (i & 1) + 1] = centres[i + 1];
     }

@@ -21,7 +21,7 @@ void stretch_fours(int mode) {
     int last = min(begin + STRETCHED, ((size.x + 3) >> 2) * size.y);
     int readers = int(gl_WorkGroupSize.x);
     for (int four = begin + int(gl_LocalInvocationIndex); four < last; four += readers) {
-        height[four] = stretched(height[four], by, mode);
+        height[four] = stretched(read_height(four), by, mode);
     }
 }
 #endif
