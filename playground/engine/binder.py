@@ -308,6 +308,12 @@ def wires_of(step: Step, inputs: Mapping[str, Wired]) -> tuple[int, ...]:
     return tuple(found)
 
 
+def are_of_own_size(step: Step, inputs: Mapping[str, Wired]) -> bool:
+    """Return whether each input of a step reads a texture that is as large as those that it makes."""
+    whole = step.window is None and step.size == step.whole_size
+    return whole and all(wire == _MATCHING for wire in wires_of(step, inputs))
+
+
 def is_read_back(name: str, inputs: Mapping[str, Wired]) -> bool:
     """Return whether texels of an input can be read back: few texels, of floats, whose bits stay the same."""
     result, texture, _ = inputs.get(name, NOT_WIRED)

@@ -13,11 +13,13 @@ from collections import OrderedDict
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from playground.errors import ShaderError
 from playground.gpu.own_shaders import TRIANGLE
 from playground.gpu.program import compile_wrapped
-from playground.gpu.wrap import CORNER, fixed_texel, with_choices, wrap
+from playground.gpu.wrap import CORNER, Wrapped, fixed_texel, with_choices, wrap
 from playground.paths import shown
 from playground.sketch.model import Kernel
+from playground.sketch.reserved_names import LEVEL_0, OWN_SIZE
 
 if TYPE_CHECKING:
     import moderngl
@@ -116,19 +118,31 @@ class Programs:
         if known is not None and known[1] in self._by_text:
             self._texts.move_to_end(wanted)
             return self._used(known[1])
-        wrapped = wrap(kernel, driver, self.ctx.version_code)
-        if choices:
-            wrapped = with_choices(wrapped, choices)
+        plain = wrap(kernel, driver, self.ctx.version_code)
+        wrapped = with_choices(plain, choices) if choices else plain
         text = tuple(stage.text for stage in wrapped.stages.values())
         self._texts[wanted] = (kernel, text)
         while len(self._texts) > 4 * _SPARE:
             self._texts.popitem(last=False)
         if text not in self._by_text:
             start = time.perf_counter()
-            self._keep(text, compile_wrapped(self.ctx, wrapped))
+            self._keep(text, self._compiled(plain, wrapped, choices))
             self.compile_times[kernel.path] = milliseconds = (time.perf_counter() - start) * 1e3
             _log.debug("compiled %s (%s) in %.0f ms", shown(kernel.path), driver, milliseconds)
         return self._used(text)
+
+    def _compiled(self, plain: Wrapped, wrapped: Wrapped, choices: Choices) -> Any:
+        """Compile a text; where its fetches are replaced and that fails, with its own.
+
+        So a driver's complaints name what the author wrote.
+        """
+        own = tuple(choice for choice in choices if choice[0] not in (LEVEL_0, OWN_SIZE))
+        if own == choices:
+            return compile_wrapped(self.ctx, wrapped)
+        try:
+            return compile_wrapped(self.ctx, wrapped)
+        except ShaderError:
+            return compile_wrapped(self.ctx, with_choices(plain, own))
 
     def own(self, fragment: str) -> Program:
         """Return the program of a fragment shader of the engine's own."""

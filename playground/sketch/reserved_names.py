@@ -46,6 +46,10 @@ FETCHES = {"texelFetch": "k_fetch_in", "texelFetchOffset": "k_fetch_in_shift"}
 """What replaces GLSL's own functions, as long as these, where an input may stay unwired: the one
 texel of its white or black answers for every place."""
 
+LEVEL_0, OWN_SIZE = "k_texel_at", "k_size_here"
+"""What replaces texelFetch and textureSize, each as long, where they are read and known otherwise: see
+``gpu.nearest_texels``. On software renderers only."""
+
 FIXED = "k_fixed_"
 """What begins the name of a uniform with one texel of an input, in place of a fetch at a place written as
 numbers: x, y and the input follow, as in k_fixed_5_0_daylight. On software renderers only."""

@@ -1,0 +1,47 @@
+"""Have a text's texels read by samplers that take the nearest, which a software renderer does sooner.
+
+llvmpipe looks up the level of a fetch for each texel anew, and compiles that for each fetch of a text: a
+quarter of the time that a new kernel takes until it runs. In the middle of a texel such a sampler gives
+the same bits. Where all inputs have the size of the pass itself, a text need not ask for theirs, and what
+it would do for others is left out as it is compiled: as much again.
+
+No line and no column of a text changes: macros stand before it.
+"""
+
+from __future__ import annotations
+
+from playground.gpu.own_shaders import own_part
+from playground.sketch.model import Kernel
+from playground.sketch.reserved_names import LEVEL_0, OWN_SIZE
+
+_GIVEN_SIZE = "uniform ivec2 size;\n"
+_ASKED = "textureSize(k_input, 0)", "(1.0 / vec2(k_texels))"
+
+
+def reads_nearest(kernel: Kernel) -> bool:
+    """Return whether a kernel fetches texels, and all its samplers take the nearest one."""
+    if kernel.kind != "kernel" or not kernel.inputs or kernel.file_parameters:
+        return False
+    if not kernel.reads("texelFetch"):
+        return False
+    return all(
+        one.sampling.filter == "nearest" == (one.sampling.magnify or "nearest")
+        and not (one.sampling.mipmap or one.shape)
+        for one in kernel.inputs
+    )
+
+
+def with_nearest_texels(text: str, first: int, *, own_size: bool) -> tuple[str, int]:
+    """Return a stage's text with its texels read so, and the line, from 1, where the kernel's lines begin.
+
+    ``first`` is where they begin in ``text``; ``own_size``: all inputs have the size of the pass.
+    """
+    lines = text.splitlines(keepends=True)
+    head, rest = "".join(lines[1 : first - 1]), "".join(lines[first - 1 :])
+    before = lines[0]
+    if own_size:
+        head = head.replace(_GIVEN_SIZE, "")
+        before += own_part("own_size.glsl", size=OWN_SIZE) + "\n"
+    texels, share = ("k_own_size", "k_own_share") if own_size else _ASKED
+    before += own_part("nearest_texels.glsl", fetch=LEVEL_0, texels=texels, share=share) + "\n"
+    return before + head + rest, (before + head).count("\n") + 1
