@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 from playground.engine.binder import (
     Binder,
     Bound,
-    are_of_own_size,
     has_unwired,
     is_read_back,
     wires_of,
@@ -22,10 +21,10 @@ from playground.engine.binder import (
 from playground.engine.costly_rest import CostlyRest
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
+from playground.engine.quicker_reads import quicker_reads
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.settling import Settling
-from playground.gpu.nearest_texels import reads_nearest
 from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
@@ -37,9 +36,7 @@ from playground.sketch.reserved_names import (
     DEPTH,
     ELEMENT,
     FIXED,
-    LEVEL_0,
     MATCHES,
-    OWN_SIZE,
     PART,
     PRESSED,
     SIZES,
@@ -165,8 +162,8 @@ class Kernels:
     def program(self, job: Job, driver: str, *more: tuple[str, int]) -> Program:
         """Return the program of a step.
 
-        On a software renderer there is one for each choice of menus, and of what is wired, and fetches
-        may be replaced: see ``gpu.nearest_texels``.
+        On a software renderer there is one for each choice of menus, and of what is wired, with what is
+        quicker there: see ``gpu.quicker``.
         ``more`` are whole numbers to compile in as well.
         """
         kernel, values = job.step.kernel, job.step.values
@@ -189,10 +186,8 @@ class Kernels:
         if job.loop_iteration is None:  # in a loop, each iteration would wait for what it reads back
             inputs = {texel.input for texel in fixed_texels(kernel.source)}
             choices += [(f"{FIXED}{name}", 1) for name in sorted(inputs) if is_read_back(name, job.inputs)]
-        if driver == FRAGMENT and reads_nearest(kernel):
-            choices.append((LEVEL_0, 1))
-            if are_of_own_size(job.step, job.inputs):
-                choices.append((OWN_SIZE, 1))
+        if driver == FRAGMENT and kernel.kind == "kernel":
+            choices += [(name, 1) for name in quicker_reads(job.step, job.inputs)]
         return self.programs.get(kernel, driver, (*choices, *more))
 
     def draw_own(

@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Any
 from playground.errors import ShaderError
 from playground.gpu.own_shaders import TRIANGLE
 from playground.gpu.program import compile_wrapped
+from playground.gpu.quicker import QUICKER, quicker
 from playground.gpu.wrap import CORNER, Wrapped, fixed_texel, with_choices, wrap
 from playground.paths import shown
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import LEVEL_0, OWN_SIZE
 
 if TYPE_CHECKING:
     import moderngl
@@ -119,7 +119,7 @@ class Programs:
             self._texts.move_to_end(wanted)
             return self._used(known[1])
         plain = wrap(kernel, driver, self.ctx.version_code)
-        wrapped = with_choices(plain, choices) if choices else plain
+        wrapped = quicker(with_choices(plain, choices), dict(choices)) if choices else plain
         text = tuple(stage.text for stage in wrapped.stages.values())
         self._texts[wanted] = (kernel, text)
         while len(self._texts) > 4 * _SPARE:
@@ -132,11 +132,11 @@ class Programs:
         return self._used(text)
 
     def _compiled(self, plain: Wrapped, wrapped: Wrapped, choices: Choices) -> Any:
-        """Compile a text; where its fetches are replaced and that fails, with its own.
+        """Compile a text; where it is a quicker one and that fails, as it would be without.
 
         So a driver's complaints name what the author wrote.
         """
-        own = tuple(choice for choice in choices if choice[0] not in (LEVEL_0, OWN_SIZE))
+        own = tuple(choice for choice in choices if choice[0] not in QUICKER)
         if own == choices:
             return compile_wrapped(self.ctx, wrapped)
         try:

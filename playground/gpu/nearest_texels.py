@@ -10,7 +10,10 @@ No line and no column of a text changes: macros stand before it.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from playground.gpu.own_shaders import own_part
+from playground.gpu.wrap import Wrapped
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import LEVEL_0, OWN_SIZE
 
@@ -20,9 +23,7 @@ _ASKED = "textureSize(k_input, 0)", "(1.0 / vec2(k_texels))"
 
 def reads_nearest(kernel: Kernel) -> bool:
     """Return whether a kernel fetches texels, and all its samplers take the nearest one."""
-    if kernel.kind != "kernel" or not kernel.inputs or kernel.file_parameters:
-        return False
-    if not kernel.reads("texelFetch"):
+    if not kernel.inputs or kernel.file_parameters or not kernel.reads("texelFetch"):
         return False
     return all(
         one.sampling.filter == "nearest" == (one.sampling.magnify or "nearest")
@@ -31,17 +32,16 @@ def reads_nearest(kernel: Kernel) -> bool:
     )
 
 
-def with_nearest_texels(text: str, first: int, *, own_size: bool) -> tuple[str, int]:
-    """Return a stage's text with its texels read so, and the line, from 1, where the kernel's lines begin.
-
-    ``first`` is where they begin in ``text``; ``own_size``: all inputs have the size of the pass.
-    """
-    lines = text.splitlines(keepends=True)
-    head, rest = "".join(lines[1 : first - 1]), "".join(lines[first - 1 :])
-    before = lines[0]
+def with_nearest_texels(wrapped: Wrapped, *, own_size: bool) -> Wrapped:
+    """Return a kernel's stages with its texels read so; ``own_size``: all inputs have the pass's own."""
+    stage = wrapped.stages["fragment"]
+    lines = stage.text.splitlines(keepends=True)
+    head, rest = "".join(lines[1 : stage.first - 1]), "".join(lines[stage.first - 1 :])
+    before, (texels, share) = lines[0], _ASKED
     if own_size:
         head = head.replace(_GIVEN_SIZE, "")
         before += own_part("own_size.glsl", size=OWN_SIZE) + "\n"
-    texels, share = ("k_own_size", "k_own_share") if own_size else _ASKED
+        texels, share = "k_own_size", "k_own_share"
     before += own_part("nearest_texels.glsl", fetch=LEVEL_0, texels=texels, share=share) + "\n"
-    return before + head + rest, (before + head).count("\n") + 1
+    stage = replace(stage, text=before + head + rest, first=(before + head).count("\n") + 1)
+    return replace(wrapped, stages={**wrapped.stages, "fragment": stage})

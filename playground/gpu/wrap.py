@@ -12,7 +12,6 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 from playground.errors import ShaderError
-from playground.gpu.nearest_texels import with_nearest_texels
 from playground.gpu.own_shaders import TRIANGLE, own_part
 from playground.gpu.stage_recipe import SIGNATURE, Part, Recipe, version_line
 from playground.sketch.fixed_texels import fixed_texels
@@ -21,9 +20,7 @@ from playground.sketch.reserved_names import (
     FETCHES,
     FIXED,
     GIVEN,
-    LEVEL_0,
     MATCHES,
-    OWN_SIZE,
     PART,
     SKIPS,
     TOWARDS,
@@ -114,10 +111,8 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
     as what was, unless the compiler can see that it never happens. With the choice ``SKIPS`` the text is
     that of the part of a kernel that ends before its costly rest: see ``engine.costly_rest``. With the
     choices that ``FIXED`` begins, texels of these inputs become uniforms: see ``_with_uniform_texels``.
-    With ``LEVEL_0``, and ``OWN_SIZE`` besides, fetches are replaced: see ``nearest_texels``.
     """
     stages = {}
-    nearest, own_size = [any(name == choice for choice, _ in choices) for name in (LEVEL_0, OWN_SIZE)]
     fixed = frozenset(choice.removeprefix(FIXED) for choice, _ in choices if choice.startswith(FIXED))
     for name, stage in wrapped.stages.items():
         text = stage.text
@@ -131,10 +126,7 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
             text = re.sub(pattern, constant, text, flags=re.MULTILINE)
             if choice == SKIPS:
                 text = text.replace(_NOTHING_SKIPPED, f"bool {SKIPS}() {{ discard; return true; }}")
-        first = stage.first
-        if nearest and first:
-            text, first = with_nearest_texels(text, first, own_size=own_size)
-        stage = replace(stage, text=text, first=first)
+        stage = replace(stage, text=text)
         stages[name] = _with_uniform_texels(stage, fixed) if fixed else stage
     return replace(wrapped, stages=stages)
 

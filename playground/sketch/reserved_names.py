@@ -50,6 +50,9 @@ LEVEL_0, OWN_SIZE = "k_texel_at", "k_size_here"
 """What replaces texelFetch and textureSize, each as long, where they are read and known otherwise: see
 ``gpu.nearest_texels``. On software renderers only."""
 
+PLACE = "k_place"
+"""What says that a kernel's place is interpolated: see ``gpu.interpolated_place``. Likewise."""
+
 FIXED = "k_fixed_"
 """What begins the name of a uniform with one texel of an input, in place of a fetch at a place written as
 numbers: x, y and the input follow, as in k_fixed_5_0_daylight. On software renderers only."""

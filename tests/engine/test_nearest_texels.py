@@ -11,8 +11,9 @@ from playground.engine import programs
 from playground.engine.engine import Engine
 from playground.errors import ShaderError
 from playground.gpu.context import ContextInfo
-from playground.gpu.nearest_texels import reads_nearest
-from playground.gpu.wrap import FRAGMENT, with_choices, wrap
+from playground.gpu.interpolated_place import with_interpolated_place
+from playground.gpu.nearest_texels import reads_nearest, with_nearest_texels
+from playground.gpu.wrap import FRAGMENT, wrap
 from playground.sketch.model import Sketch
 from playground.sketch.reserved_names import LEVEL_0, OWN_SIZE
 
@@ -146,9 +147,10 @@ def test_no_line_and_no_column_changes(folder: Folder):
     kernel = sketch.graph.passes[1].technique
     plain = wrap(kernel, FRAGMENT)
     before = plain.stages["fragment"]
-    after = with_choices(plain, ((LEVEL_0, 1), (OWN_SIZE, 1))).stages["fragment"]
+    after = with_interpolated_place(with_nearest_texels(plain, own_size=True)).stages["fragment"]
     texts = [stage.text.split("\n")[stage.first - 1 :] for stage in (before, after)]
-    assert texts[0] == texts[1]
+    own = len(kernel.source.lines)
+    assert texts[0][:own] == texts[1][:own]
     assert after.locate(after.first) == kernel.source.lines[0]
     assert after.text.count("uniform ivec2 size;") == 1
     assert len("texelFetch") == len(LEVEL_0)
@@ -174,3 +176,14 @@ def test_a_text_with_a_macro_of_that_name_compiles(any_engine: Engine, folder: F
     with Engine(any_engine.ctx) as engine:
         found = engine.read(sketch_of(folder, own), "a")
     np.testing.assert_array_equal(found[2, 4], [5, 3, 4, 2])
+
+
+@pytest.mark.parametrize("size", ["8193, 3", "3, 8193", "4095, 5", "1, 1"])
+def test_each_texel_knows_its_place(any_engine: Engine, folder: Folder, compiled: list[str], size: str):
+    """The place that the vertex shader gives is rounded, by far less than half a texel."""
+    with Engine(any_engine.ctx) as engine:
+        found = engine.read(sketch_of(folder, size=size, own="2, 2"), "numbers")
+    assert any("ivec2(k_place_at)" in text for text in compiled)
+    height, width = found.shape[:2]
+    np.testing.assert_array_equal(found[..., 0], np.tile(np.arange(width) + np.float32(0.25), (height, 1)))
+    np.testing.assert_array_equal(found[..., 1].T, np.tile(np.arange(height) + np.float32(0.25), (width, 1)))
