@@ -328,8 +328,7 @@ def wires_of(step: Step, inputs: Mapping[str, Wired]) -> tuple[int, ...]:
 
 def are_of_own_size(step: Step, inputs: Mapping[str, Wired]) -> bool:
     """Return whether each input of a step reads a texture that is as large as those that it makes."""
-    whole = step.window is None and step.size == step.whole_size
-    return whole and all(wire == _MATCHING for wire in wires_of(step, inputs))
+    return all(wire == _MATCHING for wire in wires_of(step, inputs))
 
 
 def is_read_back(name: str, inputs: Mapping[str, Wired]) -> bool:

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 from playground.engine.binder import (
     Binder,
     Bound,
-    are_of_own_size,
     has_unwired,
     is_read_back,
     wires_of,
@@ -22,10 +21,10 @@ from playground.engine.binder import (
 from playground.engine.costly_rest import CostlyRest
 from playground.engine.plan import LoopIteration, Step
 from playground.engine.programs import Program, Programs
+from playground.engine.quicker_texts import quicker_texts
 from playground.engine.results import UNWIRED as NOT_WIRED
 from playground.engine.results import Pool, Result, Wired
 from playground.engine.settling import Settling
-from playground.gpu.choices import has_quick_fetches, may_have_own_size
 from playground.gpu.own_shaders import own_shader
 from playground.gpu.textures import make_framebuffer
 from playground.gpu.wrap import COMPUTE, FRAGMENT, LOCAL, reads_unwired
@@ -38,8 +37,6 @@ from playground.sketch.reserved_names import (
     ELEMENT,
     FIXED,
     MATCHES,
-    NEAREST,
-    OWN_SIZE,
     PART,
     PRESSED,
     SIZES,
@@ -165,7 +162,8 @@ class Kernels:
     def program(self, job: Job, driver: str, *more: tuple[str, int]) -> Program:
         """Return the program of a step.
 
-        On a software renderer there is one for each choice of menus, and of what is wired.
+        On a software renderer there is one for each choice of menus, and of what is wired, written as it is
+        quicker there.
         ``more`` are whole numbers to compile in as well.
         """
         kernel, values = job.step.kernel, job.step.values
@@ -185,10 +183,7 @@ class Kernels:
                 choices.append((f"{MATCHES}{name}", int(matches)))
         if reads_unwired(kernel):
             choices.append((UNWIRED, int(has_unwired(kernel, job.inputs))))
-        if has_quick_fetches(kernel):
-            choices.append((NEAREST, 1))
-        if may_have_own_size(kernel) and are_of_own_size(job.step, job.inputs):
-            choices.append((OWN_SIZE, 1))
+        choices += [(name, 1) for name in quicker_texts(job.step, job.inputs, driver)]
         if job.loop_iteration is None:  # in a loop, each iteration would wait for what it reads back
             inputs = {texel.input for texel in fixed_texels(kernel.source)}
             choices += [(f"{FIXED}{name}", 1) for name in sorted(inputs) if is_read_back(name, job.inputs)]

@@ -14,13 +14,12 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from playground.errors import ShaderError
-from playground.gpu.choices import fixed_texel, with_choices
+from playground.gpu.choices import QUICKER, fixed_texel, with_choices
 from playground.gpu.own_shaders import TRIANGLE
 from playground.gpu.program import compile_wrapped
 from playground.gpu.wrap import CORNER, Wrapped, wrap
 from playground.paths import shown
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import NEAREST, OWN_SIZE
 
 if TYPE_CHECKING:
     import moderngl
@@ -137,7 +136,7 @@ class Programs:
 
         So a driver's complaints name what the author wrote.
         """
-        own = tuple([choice for choice in choices if choice[0] not in (NEAREST, OWN_SIZE)])
+        own = tuple([choice for choice in choices if choice[0] not in QUICKER])
         try:
             return compile_wrapped(self.ctx, wrapped)
         except ShaderError:

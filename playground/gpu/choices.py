@@ -10,12 +10,25 @@ from collections.abc import Collection, Sequence
 from dataclasses import replace
 
 from playground.gpu.buffer_reads import TEXELS, with_texels
+from playground.gpu.interpolated_place import with_interpolated_place
 from playground.gpu.own_shaders import own_part
 from playground.gpu.wrap import NOTHING_SKIPPED, ShaderStage, Wrapped, previous_name
 from playground.sketch.fetched_alone import FETCH
 from playground.sketch.fixed_texels import fixed_texels
 from playground.sketch.model import Kernel
-from playground.sketch.reserved_names import FETCHES, FIXED, NEAREST, OWN_SIZE, QUICK_FETCHES, SKIPS, UNWIRED
+from playground.sketch.reserved_names import (
+    FETCHES,
+    FIXED,
+    NEAREST,
+    OWN_SIZE,
+    PLACE,
+    QUICK_FETCHES,
+    SKIPS,
+    UNWIRED,
+)
+
+QUICKER = NEAREST, OWN_SIZE, PLACE
+"""Choices that change how a text is computed, and not what."""
 
 _GIVEN_SIZE = "uniform ivec2 size;"
 _OWN_SHARE = "k_own_share"
@@ -30,11 +43,12 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
     that of the part of a kernel that ends before its costly rest: see ``engine.costly_rest``. With the
     choices that ``FIXED`` begins, texels of these inputs become uniforms: see ``_with_uniform_texels``. With
     the choice ``NEAREST`` texels are fetched as this renderer is quick to: see ``_with_quick_fetches``. With
-    ``OWN_SIZE`` textures are not asked for their size: see ``_with_own_size``. With ``TEXELS`` buffers are
-    read as textures: see ``engine.buffer_texels``.
+    ``OWN_SIZE`` textures are not asked for their size: see ``_with_own_size``. With ``PLACE`` the vertex
+    shader says which texel it is: see ``interpolated_place``. With ``TEXELS`` buffers are read as textures:
+    see ``engine.buffer_texels``.
     """
     stages = {}
-    quick, own_size = [any(choice == name for choice, _ in choices) for name in (NEAREST, OWN_SIZE)]
+    quick, own_size, place = [any(choice == name for choice, _ in choices) for name in QUICKER]
     fixed = frozenset(choice.removeprefix(FIXED) for choice, _ in choices if choice.startswith(FIXED))
     for name, stage in wrapped.stages.items():
         text = stage.text
@@ -54,7 +68,8 @@ def with_choices(wrapped: Wrapped, choices: Sequence[tuple[str, int]]) -> Wrappe
         stage = _with_uniform_texels(stage, fixed) if fixed else stage
         stage = _with_quick_fetches(stage, wrapped.kernel, own_size=own_size) if quick else stage
         stages[name] = _with_own_size(stage) if own_size else stage
-    return replace(wrapped, stages=stages)
+    wrapped = replace(wrapped, stages=stages)
+    return with_interpolated_place(wrapped) if place else wrapped
 
 
 def fixed_name(x: int, y: int, name: str) -> str:
@@ -113,6 +128,14 @@ def may_have_own_size(kernel: Kernel) -> bool:
     if kernel.kind != "kernel" or kernel.dialect or kernel.file_parameters or kernel.stride:
         return False
     return kernel.reads("textureSize") or has_quick_fetches(kernel)
+
+
+def may_have_place(kernel: Kernel) -> bool:
+    """Return whether the choice ``PLACE`` may be made for a kernel, for the fragment driver.
+
+    It holds where the whole of what the kernel makes is drawn at once.
+    """
+    return kernel.kind == "kernel" and not kernel.dialect and not kernel.stride
 
 
 def _with_own_size(stage: ShaderStage) -> ShaderStage:

@@ -59,6 +59,9 @@ QUICK_FETCHES = {"texelFetch": "k_texel_of", "k_fetch_in": "k_texel_in"}
 OWN_SIZE = "k_size_here"
 """A choice: all inputs have the size of the pass. So is called what replaces textureSize, as long, then."""
 
+PLACE = "k_place"
+"""A choice: a kernel is told its texel's place by the vertex shader."""
+
 FIXED = "k_fixed_"
 """What begins the name of a uniform with one texel of an input, in place of a fetch at a place written as
 numbers: x, y and the input follow, as in k_fixed_5_0_daylight. On software renderers only."""

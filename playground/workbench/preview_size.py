@@ -80,11 +80,13 @@ class PreviewSize:
         self.divisor = 1
         self._costs.clear()
 
-    def choose(self, engine: Engine, sketch: Sketch, size: Size, changed: Collection[str], **at: Any) -> Size:
+    def choose(
+        self, engine: Engine, sketch: Sketch, size: Size, changed: Collection[str] | None, **at: Any
+    ) -> Size:
         """Return the pixels for the next picture of a sketch, of which ``changed`` passes will run.
 
-        A pass that runs once for another size, and then no more, is not counted. ``at``: the time and
-        what else ``Engine.plan_for`` takes. Raises as that does.
+        None: those that are stale. A pass that runs once for another size, and then no more, is not
+        counted. ``at``: the time and what else ``Engine.plan_for`` takes. Raises as that does.
         """
         self.guessed, self.whole = False, 0.0
         possible = [d for d in DIVISORS if d == 1 or size[0] * size[1] >= LEAST * d * d]
@@ -95,7 +97,8 @@ class PreviewSize:
         smaller = engine.internal.plan_for(sketch, divided(size, 2), **at)
         sizes, halved = _texels(whole), _texels(smaller)
         following = {path for path, texels in sizes.items() if halved.get(path) != texels}
-        if not sizes.keys() >= set(changed):  # of the picture in full, which has fast variants of its own
+        # Of the picture in full it is others: that has fast variants of its own.
+        if changed is None or not sizes.keys() >= set(changed):
             changed = engine.internal.stale(sketch, size=size, **at)
         if not _goes_on(whole).isdisjoint(following):
             self.divisor = 1  # it would begin anew at each size

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING, Any
 
 from playground.engine.engine import Engine
 from playground.engine.frame import Frame
+from playground.engine.plan import Plan
 from playground.engine.runner import Runner
 from playground.engine.unfinished import PassesUnfinished
-from playground.sketch.model import Sketch
+from playground.sketch.model import Sketch, kernels_of
 from playground.sketch.traits import traits_of
 from playground.workbench.catch_up import CatchUp
 from playground.workbench.framing import framed
@@ -116,11 +117,13 @@ class ShownPicture:
         pixels, faster = size, self._faster if moves else frozenset()
         if sized or (moves and traits_of(sketch).faster):
             at = _at(view, sketch, time, coming=coming)
-            changed = self._changed(engine, sketch, view, size, at)
-            faster |= frozenset(changed if moves else ())
+            # What a new text runs is asked below, of the preview alone: a plan less.
+            is_new = coming and _has_new_text(engine.internal.plan, sketch)
+            changed = None if is_new else self._changed(engine, sketch, view, size, at)
+            faster |= frozenset(changed or () if moves else ())
         chosen = as_preview(sketch, faster=faster) if previews else sketch
         if sized:
-            if changed or self.texture is None or self.texture.size != size:
+            if changed != [] or self.texture is None or self.texture.size != size:
                 pixels = self._sizes.choose(engine, _framed(chosen, view, time, size), size, changed, **at)
             else:
                 pixels = self._drawn_size
@@ -176,6 +179,16 @@ def _at(view: View, sketch: Sketch, time: float, *, coming: bool = False) -> dic
     """Return the time, and where repeats stop, as ``Engine.draw`` takes them."""
     stops = view.stops(sketch, time, coming=coming)
     return {"time": time, "steps": stops, "interpolated": view.interpolated}
+
+
+def _has_new_text(plan: Plan | None, sketch: Sketch) -> bool:
+    """Return whether a kernel of a sketch has another text than it had in a plan; a comment is none."""
+    known = dict(kernels_of(plan.sketch.graph)) if plan is not None else {}
+    for path, kernel in kernels_of(sketch.graph):
+        before = known.get(path, kernel)
+        if before is not kernel and before.source.canonical != kernel.source.canonical:
+            return True
+    return False
 
 
 def _framed(sketch: Sketch, view: View, time: float, size: Size) -> Sketch:

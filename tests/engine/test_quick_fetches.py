@@ -10,7 +10,7 @@ from playground.errors import ShaderError
 from playground.gpu.choices import has_quick_fetches, may_have_own_size, with_choices
 from playground.gpu.context import ContextInfo
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
-from playground.sketch.reserved_names import NEAREST, OWN_SIZE, UNWIRED
+from playground.sketch.reserved_names import NEAREST, OWN_SIZE, PLACE, UNWIRED
 
 from .conftest import Folder
 
@@ -222,3 +222,24 @@ def test_a_text_with_a_macro_of_such_a_name_compiles(any_engine: Engine, folder:
             folder.sketch(PASSES.replace("size = [23, 11]\n", "").partition("inputs")[0]), "a"
         )
     np.testing.assert_array_equal(found[2, 4, 2:], [7, 7])
+
+
+PLACES = """#pragma kernel(output = "found:rg32f")
+vec2 kernel(ivec2 texel) { return vec2(texel); }
+"""
+
+
+@pytest.mark.parametrize("size", ["8193, 3", "3, 8193", "4095, 5", "1, 1"])
+def test_each_texel_knows_its_place(any_engine: Engine, folder: Folder, monkeypatch, size: str):
+    """The place that the vertex shader gives is rounded, by far less than half a texel."""
+    monkeypatch.setattr(ContextInfo, "software", True)
+    folder.write("places.glsl", PLACES)
+    sketch = folder.sketch(f'[[pass]]\nname = "a"\nuse = "./places"\nsize = [{size}]\n')
+    kernel = sketch.graph.passes[0].technique
+    written = with_choices(wrap(kernel, FRAGMENT), [(PLACE, 1)]).stages["fragment"]
+    assert "ivec2(k_place_at)" in written.text and written.locate(written.first) == kernel.source.lines[0]
+    with Engine(any_engine.ctx, driver=FRAGMENT) as engine:
+        found = engine.read(sketch, "a")
+    height, width = found.shape[:2]
+    np.testing.assert_array_equal(found[..., 0], np.tile(np.arange(width), (height, 1)))
+    np.testing.assert_array_equal(found[..., 1].T, np.tile(np.arange(height), (width, 1)))

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
+from playground.engine.planner import Planner
 from playground.sketch.assign import values_of
 from playground.sketch.load import load
 from playground.sketch.model import Sketch
@@ -119,5 +120,37 @@ def test_it_has_its_own_fast_variants_when_a_full_picture_starts_to_move(terrain
             assert session.is_preview == any_engine.info.software
         ran = set(any_engine.internal.ran)
         assert ("view.fast.land" if any_engine.info.software else "view.land") in ran
+    finally:
+        session.release()
+
+
+def test_a_saved_text_is_planned_as_a_preview_alone(
+    terrain: Sketch, any_engine: Engine, monkeypatch: pytest.MonkeyPatch
+):
+    """The plan in full waits until the picture is there; what only has another comment is asked of that."""
+    file = Path(terrain.file)
+    kernel = file.parent / "own.glsl"
+    file.write_text(SKETCH.replace("generation/diamond_square", "./own"), encoding="utf-8")
+    text = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.1; }\n'
+    kernel.write_text(text, encoding="utf-8")
+    planned: list[int] = []
+    plan = Planner.plan
+    monkeypatch.setattr(
+        Planner, "plan", lambda own, sketch, **how: planned.append(sketch.samples) or plan(own, sketch, **how)
+    )
+    session = Session(any_engine, file)
+    try:
+        session.frame((640, 360))
+        session.read()
+        other = text.replace("0.1", "0.2")
+        for saved, in_full in ((other, False), (f"{other}// the same\n", True)):
+            kernel.write_text(saved, encoding="utf-8")
+            planned.clear()
+            session.drafts.reload()
+            session.frame((640, 360))
+            assert session.error is None
+            if any_engine.info.software:
+                assert (max(planned) > 1) is in_full
+            session.read()
     finally:
         session.release()
