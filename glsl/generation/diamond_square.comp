@@ -78,7 +78,8 @@ int place_of(int level) {
 Lattice lattice_of(int level) {
     int side = 1 << level;
     float amplitude = 2.0 / float(side) * smoothing;
-    return Lattice(side, FINEST_SIDE >> level, amplitude, random == 0, seed + DIAMOND_SQUARE_SALT);
+    int halvings = findMSB(FINEST_SIDE) - level;
+    return Lattice(side, halvings, amplitude, random == 0, seed + DIAMOND_SQUARE_SALT);
 }
 
 // ── the coarse lattice ──
