@@ -33,7 +33,8 @@
                          needed = min(steps, normalise) if iteration == 5 else \
                                   steps if iteration == 6 else steps - iteration; \
                          spacings = (size.x - 1) // 4**max(steps - iteration, 0); \
-                         threads = (spacings // 8 + 1) * (spacings // 48 + 1); \
+                         rows = 4 * (48 if iteration == 5 else 12); \
+                         threads = (spacings // 8 + 1) * (spacings // rows + 1); \
                          coarser = (size.x + 3) // 4", \
                 groups = "1 if iteration == 0 else \
                           (threads + 31) // 32 if needed > 0 else 0, 1", \
@@ -51,6 +52,7 @@ uniform int normalise = 0;      //! menu("none", "max", "minmax") As in the tech
 const int COARSE = 0, MAKE = 1, LOOK = 2, LAST = 3;
 const int LANES = 32;
 const int ROWS = 12;            // that a thread goes through
+const int ROWS_LOOKED = 48;     // the same where it skips most
 const int MOST_COARSE = 32;     // spacings a side of the coarse lattice
 shared float coarse[(MOST_COARSE + 1) * (MOST_COARSE + 1)];
 
@@ -78,7 +80,8 @@ int place_of(int level) {
 Lattice lattice_of(int level) {
     int side = 1 << level;
     float amplitude = 2.0 / float(side) * smoothing;
-    return Lattice(side, FINEST_SIDE >> level, amplitude, random == 0, seed + DIAMOND_SQUARE_SALT);
+    int halvings = findMSB(FINEST_SIDE) - level;
+    return Lattice(side, halvings, amplitude, random == 0, seed + DIAMOND_SQUARE_SALT);
 }
 
 // ── the coarse lattice ──
@@ -213,8 +216,9 @@ void make_two_levels(int job, int levels) {
     int from_south = quotient(job, across);
     int j = job - from_south * across;
     bool is_last = j == across - 1;
-    int begin = from_south * ROWS;
-    int end = min(begin + ROWS, side + 1);
+    int rows = stage == LOOK ? ROWS_LOOKED : ROWS;
+    int begin = from_south * rows;
+    int end = min(begin + rows, side + 1);
     bool tells = normalise != 0 && (stage == LOOK || (stage == MAKE && iteration == steps - 1));
     vec2 known = vec2(height_of_key(~extremes[1]), height_of_key(extremes[0]));
     vec2 scale = stretch_of(known, normalise);

@@ -112,8 +112,7 @@ class ComputeVariants:
         """Return the program of an iteration with all that it reads, if it is not the one that is ``bound``.
 
         On a software renderer, there is one for each stage: otherwise what the others do would
-        be computed as well, and discarded. Where it ``reads`` buffers as
-        textures, that is another.
+        be computed as well, and discarded. One that ``reads`` buffers as textures is another.
         """
         step, stages = job.step, job.step.kernel.stages
         stage = (("stage", stages[iteration]),) if stages else ()

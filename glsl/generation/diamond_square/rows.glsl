@@ -27,7 +27,7 @@
 
 struct Lattice {
     int side;         // spacings
-    int apart;        // spacings of the finest lattice in one of these, see noise/finest.glsl
+    int halvings;     // from it to the finest lattice, see noise/finest.glsl
     float amplitude;  // how far a random number of 1 moves a new height
     bool centred;     // random numbers in [-1, 1), not in [0, 1)
     uint seed;        // the salt added
@@ -36,7 +36,7 @@ struct Lattice {
 // The height of a new point between four neighbours, or three of them at the border.
 // anchor: height
 float new_height(vec4 neighbours, bvec4 inside, ivec2 point, Lattice lattice) {
-    ivec2 key = point * lattice.apart;
+    ivec2 key = point << lattice.halvings;
     float number = lattice.centred ? random_signed(key, lattice.seed) : random(key, lattice.seed);
     // In a loop: Mesa makes a sum of sums out of a + b + c + d.
     float total = 0.0;
