@@ -8,10 +8,10 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.gpu.wrap import FRAGMENT, with_choices, wrap
-from playground.sketch.load import load
 from playground.web.page_data import page_data
 
 from ..cases import each
+from ..loading import load
 from ..shipped import FEW
 from ..sketch_texts import map_of, passes
 from .node import Node
