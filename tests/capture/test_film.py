@@ -18,8 +18,8 @@ from playground.capture.video import QUALITIES, Stopped, Video, count_pictures
 from playground.engine.engine import Engine
 from playground.errors import ContextError, DataError, ParameterError
 from playground.images.files import read_png, write_png
-from playground.sketch.load import load
 
+from ..loading import load
 from ..sketch_texts import LIT_NOISE, SMALL_VIEW
 
 av = pytest.importorskip("av")

@@ -10,8 +10,8 @@ import pytest
 from playground.capture.export import export
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
-from playground.sketch.load import load
 
+from ..loading import load
 from .test_shader_export import FRAME, HEAD, ROUNDING, apart, refusal
 
 TOY = """// toy.frag -- a Shadertoy text.

@@ -9,7 +9,8 @@ import pytest
 
 from playground.capture.export import export
 from playground.engine.engine import Engine
-from playground.sketch.load import load
+
+from ..loading import load
 
 KERNEL = """#pragma kernel(output = "height:r32f")
 uniform int mode = 9;                 //! menu("soft", "hard", "none") values(-3, 9, 40)

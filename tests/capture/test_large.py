@@ -14,8 +14,8 @@ from playground.engine.plan import Window
 from playground.errors import DataError, ParameterError, SketchError
 from playground.gpu.textures import read_picture, read_texture
 from playground.images.files import read_png
-from playground.sketch.load import load
 
+from ..loading import load
 from ..sketch_texts import passes
 
 SIZE, TILES = (640, 360), (100, 70)

@@ -20,12 +20,12 @@ from playground.images.values import write_values
 from playground.live.drops import Drops, opened_from
 from playground.paths import GLSL
 from playground.sketch import unpack
-from playground.sketch.load import load
 from playground.sketch.model import VARIANTS
 from playground.sketch.unpack import unpacked, unpacked_beside
 from playground.sketch.variant_record import NAME
 from playground.sketch.variants import active_variant, left_out
 
+from ..loading import load
 from ..sketch_texts import passes
 from ..variants import trust
 

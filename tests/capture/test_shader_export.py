@@ -15,8 +15,8 @@ from playground.capture.export import export
 from playground.engine.engine import Engine
 from playground.errors import DataError, PlaygroundError
 from playground.images.files import read_image
-from playground.sketch.load import load
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 from .shader_hosts import draw_isf, draw_shadertoy
 

@@ -14,8 +14,8 @@ from playground.capture.sweep import read_sweep, swept
 from playground.capture.video import Video
 from playground.engine.engine import Engine
 from playground.shots.suite import render_shot, shots_of
-from playground.sketch.load import load
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 
 TRAIL = """#pragma kernel(output = "trail:r32f")

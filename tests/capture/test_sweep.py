@@ -13,8 +13,8 @@ from playground.capture.sweep import columns_of, read_sweep, swept
 from playground.engine.engine import Engine
 from playground.errors import ParameterError
 from playground.images.files import read_png
-from playground.sketch.load import load
 
+from ..loading import load
 from ..sketch_texts import LIT_NOISE, SMALL_VIEW
 
 SKETCH = "format = 1\nsize = 33\n" + LIT_NOISE + SMALL_VIEW

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
+
+from ..loading import load
 
 
 class Folder:

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from playground.engine.engine import Engine
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 
 SIDE = 16

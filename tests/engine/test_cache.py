@@ -8,8 +8,9 @@ import pytest
 from playground.engine import cache
 from playground.engine.engine import Engine
 from playground.engine.results import Pool
-from playground.sketch.load import load
 from playground.sketch.model import Output
+
+from ..loading import load
 
 
 def held(engine: Engine) -> int:

@@ -12,7 +12,8 @@ import pytest
 from playground.engine.check import check_file
 from playground.engine.sandbox import Sandbox
 from playground.errors import Diagnostic, PlaygroundError
-from playground.sketch.load import load
+
+from ..loading import load
 
 
 @pytest.fixture(scope="module")

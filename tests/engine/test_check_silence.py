@@ -11,7 +11,8 @@ import pytest
 from playground.engine.check import FileReport, check_file, find_files
 from playground.engine.sandbox import Sandbox
 from playground.errors import DataError, Diagnostic, ShaderError
-from playground.sketch.load import load
+
+from ..loading import load
 
 KERNEL = '#pragma kernel(output = "height:r32f")\n'
 

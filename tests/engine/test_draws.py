@@ -9,7 +9,8 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
-from playground.sketch.load import load
+
+from ..loading import load
 
 HEAD = '#pragma draw(mesh = "sheet", output = "frame:rgba32f"{more})\n'
 PLATE = (

@@ -13,11 +13,11 @@ from playground.engine.verify import verify
 from playground.engine.verify_targets import recorded, subjects
 from playground.errors import PlainFormWarning, PlaygroundError, SketchError
 from playground.sketch.flatten import withheld
-from playground.sketch.load import load
 from playground.sketch.model import VARIANTS, Sketch
 from playground.sketch.variant_record import NAME
 from playground.sketch.variants import left_out
 
+from ..loading import load
 from ..sketch_texts import passes
 from ..variants import trust
 

@@ -7,10 +7,10 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import ShaderError
-from playground.sketch.load import load
 from playground.sketch.reserved_names import CLOCKED
 from playground.sketch.traits import has_moving_counts, is_animated
 
+from ..loading import load
 from ..sketch_texts import passes
 
 STATE = """// Each texel takes the mean of the one to its west and of the other pass, and what goes by time.

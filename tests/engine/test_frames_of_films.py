@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 from tests.media.films import colour, own_film
+
+from ..loading import load
 
 SKETCH = """format = 1
 size = 8

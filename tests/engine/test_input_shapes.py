@@ -13,8 +13,9 @@ from playground.engine.planner import Planner
 from playground.errors import SketchError
 from playground.gpu.shapes import copied
 from playground.images.files import write_png
-from playground.sketch.load import load
 from tests.cube_maps import directions, face_and_place
+
+from ..loading import load
 
 SIDE = 4
 SAMPLER = {

@@ -10,9 +10,10 @@ from playground.engine.engine import Engine
 from playground.errors import PlaygroundError, ShaderError
 from playground.gpu.wrap import FRAGMENT, wrap
 from playground.images.files import write_png
-from playground.sketch.load import load
 from tests.engine.test_dialects import DEPRECATED, colours
 from tests.isf_texts import STATEFUL, TEXTS, VERTEX, with_mistake
+
+from ..loading import load
 
 SIZE = (32, 18)
 STATELESS = [name for name in TEXTS if name not in STATEFUL]

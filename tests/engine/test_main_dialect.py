@@ -12,12 +12,13 @@ from playground.engine.planner import Planner
 from playground.errors import ShaderError, SketchError
 from playground.gpu.wrap import FRAGMENT, wrap
 from playground.reduce.inline import inline_sketch
-from playground.sketch.load import load
 from playground.sketch.model import kernels_of
 from playground.sketch.text_overrides import with_texts
 from tests.dialect_texts import with_mistake
 from tests.engine.test_dialects import DEPRECATED
 from tests.main_dialect_texts import MAIN_TEXTS, STATEFUL
+
+from ..loading import load
 
 SIZE = (32, 18)
 

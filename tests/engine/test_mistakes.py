@@ -10,8 +10,8 @@ from playground.engine.all_errors import all_errors
 from playground.engine.engine import Engine
 from playground.engine.sandbox import Sandbox, TrySketch
 from playground.errors import PlaygroundError, ShaderError, SketchError
-from playground.sketch.load import load
 
+from ..loading import load
 from ..sketch_texts import passes
 
 SKETCH = (

@@ -10,8 +10,9 @@ import pytest
 from playground.engine.on_arrays import OnArrays
 from playground.engine.source_works import SourceUnfinished
 from playground.errors import PlaygroundError
-from playground.sketch.load import load
 from playground.sketch.techniques import read_technique
+
+from ..loading import load
 
 HILLS = """#pragma kernel(output = "height:r32f")
 uniform int seed = 3; //! slider(0, 99)

@@ -10,7 +10,8 @@ import pytest
 from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 from playground.images.files import write_png
-from playground.sketch.load import load
+
+from ..loading import load
 
 SKETCH = """format = 1
 [[pass]]

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from playground.errors import PlaygroundError
-from playground.sketch.load import load
+
+from ..loading import load
 
 TOY = """// a shader of one's own
 #version 330 core

@@ -7,8 +7,9 @@ import pytest
 
 from playground.errors import PlaygroundError, ShaderError
 from playground.images.files import write_png
-from playground.sketch.load import load
 from playground.sketch.warnings import warnings_of_kernel
+
+from ..loading import load
 
 COPY = """#version 330
 uniform sampler2D tex;  //! file("x.png")

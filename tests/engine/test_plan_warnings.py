@@ -15,9 +15,9 @@ from playground import cli
 from playground.engine import sandbox as sandbox_module
 from playground.engine.check import check_file
 from playground.engine.sandbox import Sandbox
-from playground.sketch.load import load
 from playground.workbench.problems import Warnings
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 
 SKETCH = (

@@ -16,8 +16,9 @@ from playground.engine.planner import Planner
 from playground.errors import DataError
 from playground.images.values import write_values
 from playground.sketch.assign import resolve, shown_parameters
-from playground.sketch.load import load
 from playground.sketch.model import Sketch, Value
+
+from ..loading import load
 
 SIZE = (64, 36)
 SKETCHES = (

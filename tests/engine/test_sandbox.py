@@ -18,7 +18,8 @@ import pytest
 from playground.engine.accepted_sizes import smallest_terrain
 from playground.engine.sandbox import Sandbox, SandboxReport, TryLibrary, TrySketch, reading_seconds
 from playground.errors import SandboxCrash, SandboxTimeout, ShaderError
-from playground.sketch.load import load
+
+from ..loading import load
 
 ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 90.0  # [s] for what happens soon on any machine that is not busy

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 
 TERRAIN = """#pragma kernel(output = "height:r32f")

@@ -18,10 +18,11 @@ from playground.engine.source_works import SourceUnfinished, SourceWorks
 from playground.errors import DataError, PlaygroundError
 from playground.images.files import write_png
 from playground.process.messages import Cancelled
-from playground.sketch.load import load
 from playground.terrain import sources
 from playground.terrain.known import Terrain
 from playground.terrain.source_kinds import Material, SourceKind
+
+from ..loading import load
 
 RAMP = """#pragma kernel(output = "ramp:r32f")
 uniform float rise = 1.0;  //! slider(0, 9)

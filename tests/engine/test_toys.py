@@ -16,7 +16,6 @@ from playground.errors import PlaygroundError, ShaderError
 from playground.images.files import write_png
 from playground.reduce.inline import inline_sketch
 from playground.sketch.channels import with_source
-from playground.sketch.load import load
 from playground.sketch.warnings import former_names_used
 from tests.toy_texts import (
     CUBE,
@@ -35,6 +34,8 @@ from tests.toy_texts import (
     one,
     read,
 )
+
+from ..loading import load
 
 SIZE = (32, 18)
 TOYS: dict[str, Toy] = {**EXPORTS, **FOLDERS, **VSCODE}

@@ -11,8 +11,9 @@ from scipy.ndimage import distance_transform_edt
 from playground.engine.plan_warnings import source_warnings
 from playground.engine.planner import Planner
 from playground.errors import ShaderError
-from playground.sketch.load import load
 from playground.sketch.warnings import former_names_used, warnings_of_kernel
+
+from ..loading import load
 
 HEAD = "uniform vec2 u_resolution;\n"
 PASSES = """void main() {{

@@ -9,9 +9,9 @@ import moderngl
 import pytest
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
+from ..loading import load
 from ..sketch_texts import passes
 
 TERRAIN = (

@@ -12,8 +12,9 @@ from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 from playground.flight.craft import CLEARANCE
 from playground.flight.flight import Flight
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
+
+from ..loading import load
 
 SIZE = (48, 27)
 SKETCH = """format = 1

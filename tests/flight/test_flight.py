@@ -19,7 +19,8 @@ from playground.flight.record import Header, Moment, Record, Recorder, read_reco
 from playground.flight.scene import visibility_range
 from playground.gpu.textures import read_picture
 from playground.images.files import read_png
-from playground.sketch.load import load
+
+from ..loading import load
 
 SIZE = (160, 90)
 

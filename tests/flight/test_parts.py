@@ -13,7 +13,8 @@ from playground.errors import SketchError
 from playground.flight.layout import plot_of
 from playground.flight.parts import Parts
 from playground.gpu.textures import read_texture
-from playground.sketch.load import load
+
+from ..loading import load
 
 
 @pytest.fixture

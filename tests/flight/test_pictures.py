@@ -17,7 +17,8 @@ from playground.flight.frames import fly_again
 from playground.flight.record import read_record
 from playground.images.files import read_png
 from playground.shots.compare import compare
-from playground.sketch.load import load
+
+from ..loading import load
 
 HOME = Path(__file__).parent / "pictures"
 EVERY = 150

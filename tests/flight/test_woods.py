@@ -19,7 +19,8 @@ from playground.flight.groves import Planter, cells_of
 from playground.flight.layout import plot_of
 from playground.flight.parts import Parts
 from playground.gpu.textures import read_picture
-from playground.sketch.load import load
+
+from ..loading import load
 
 WOODS = """
 [[pass]]

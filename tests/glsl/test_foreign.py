@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from playground.images.files import write_png
-from playground.sketch.load import load
 from tests.cube_maps import directions
+
+from ..loading import load
 
 SKETCH = """format = 1
 size = 8

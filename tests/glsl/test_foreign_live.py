@@ -14,8 +14,9 @@ from playground.engine.plan_warnings import source_warnings
 from playground.media.camera import camera
 from playground.media.live_inputs import Keyboard, KeysNow
 from playground.media.microphone import microphone
-from playground.sketch.load import load
 from playground.sketch.traits import traits_of
+
+from ..loading import load
 
 SPACE, A, LEFT = 32, 65, 37
 SKETCH = """format = 1

@@ -13,9 +13,10 @@ from playground.capture.film import film_of, frames
 from playground.engine.disk_cache_choice import passing
 from playground.errors import ContextError, DataError, ShaderError
 from playground.media import analysis
-from playground.sketch.load import load
 from playground.sketch.traits import is_animated
 from tests.media.films import RATE, colour, own_film, sound, uneven_film
+
+from ..loading import load
 
 SKETCH = """format = 1
 size = 8

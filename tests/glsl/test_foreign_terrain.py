@@ -11,11 +11,11 @@ from playground.engine.engine import Engine
 from playground.errors import PlaygroundError
 from playground.sketch.assign import value_of, values_of
 from playground.sketch.colour import srgb_to_linear
-from playground.sketch.load import load
 from playground.sketch.replace_technique import choices, with_technique
 from playground.sketch.save import save, save_copy
 from playground.sketch.text_overrides import with_texts
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 
 # Differences between neighbours are far below 1/255, and below a half float's steps as well.

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from playground.paths import SKETCHES
-from playground.sketch.load import load
+
+from ..loading import load
 
 RADIUS, TOP, EYE = 6360.0, 100.0, 0.001
 WAVES = np.array([0.627, 0.539, 0.440])

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 from playground.terrain.camera import look
+
+from ..loading import load
 
 FRAMES, STEP = 240, 2.0  # [m] a frame: 120 m/s
 WHOLE, REACH, TALLEST = 500.0, 1500.0, 21.0

@@ -21,12 +21,12 @@ from playground.lessons.read import read_lesson
 from playground.lessons.tasks.sentences import task_labels
 from playground.lessons.values import spelled_value
 from playground.sketch.assign import shown_parameters
-from playground.sketch.load import load
 from playground.web.blobs import packed_json
 from playground.web.plan import sketch_data
 from playground.web.shared import SharedData
 from playground.web.shown import row as row_data
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 from .conftest import SKETCHES
 

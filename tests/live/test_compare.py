@@ -17,7 +17,6 @@ from playground.engine.engine import Engine
 from playground.gpu.textures import make_framebuffer, make_texture, read_picture, write_texture
 from playground.images.files import write_png
 from playground.live.inspect.ab import drag_line, shows_first
-from playground.sketch.load import load
 from playground.workbench.inspect.blend import Blend
 from playground.workbench.inspect.compare import PERIOD, Compare, Mode
 from playground.workbench.inspect.inspector import Inspector
@@ -25,6 +24,7 @@ from playground.workbench.inspect.toggles import Inspection
 from playground.workbench.preview import as_preview
 from playground.workbench.session import Session
 
+from ..loading import load
 from .desk import Bare
 
 TERRAIN = """// terrain.glsl -- hills

@@ -8,7 +8,8 @@ import pytest
 
 from playground.live.dividers import GRAB_DISTANCE, divider_at, dividers_of, moved
 from playground.paths import GLSL
-from playground.sketch.load import load
+
+from ..loading import load
 
 METHODS = GLSL / "sketches" / "lighting_methods.toml"  # three pictures, two lines
 

@@ -14,12 +14,12 @@ from playground.engine.engine import Engine
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError
 from playground.live import code_window, errors_list
 from playground.live.code_window import draw_code
-from playground.sketch.load import load
 from playground.workbench import open_files as sources
 from playground.workbench.editors import Editor
 from playground.workbench.problems import Problems, Warnings, passes_of
 from playground.workbench.text_file import unsaved
 
+from ..loading import load
 from ..sketch_texts import map_of_height
 from .desk import Bare, errors_of
 

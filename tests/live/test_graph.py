@@ -11,11 +11,11 @@ from imgui_bundle import imgui
 from playground.engine.engine import Engine
 from playground.gpu.textures import read_raw
 from playground.paths import SKETCHES
-from playground.sketch.load import load
 from playground.workbench.inspect.pass_graph import placed, wiring_of
 from playground.workbench.inspect.thumbnails import APART, SIDE, Thumbnails, picture_of
 from playground.workbench.session import Session
 
+from ..loading import load
 from ..sketch_texts import passes
 from .desk import Bare
 

@@ -10,12 +10,12 @@ import pytest
 from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 from playground.sketch.model import Camera
 from playground.workbench.bench import Bench
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
 
+from ..loading import load
 from ..sketch_texts import LIT_NOISE, SMALL_VIEW
 from .desk import Bare
 

@@ -13,7 +13,6 @@ from playground.lessons.figure_renders import broken, draw
 from playground.lessons.model import Break, Compare, Exercise, Figure, Scene, Slider, Steps
 from playground.lessons.read import read_lesson
 from playground.sketch.find import find
-from playground.sketch.load import load
 from playground.workbench.edits import Draft, Edits
 from playground.workbench.framing import framed
 from playground.workbench.lesson.bugs import BROKEN, FIXED, SHOWN
@@ -22,6 +21,7 @@ from playground.workbench.lesson.links import play_on
 from playground.workbench.lesson.reader import BOTH
 from playground.workbench.resume import StoredEdits
 
+from ..loading import load
 from .lesson_desk import FILE, OWN, Desk, shelved, value
 
 

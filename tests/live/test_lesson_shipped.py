@@ -14,9 +14,10 @@ from playground.lessons.model import Break, Compare, Exercise, Figure, Slider, S
 from playground.lessons.read import read_lesson
 from playground.live.lesson.formulas import set_formula
 from playground.live.lesson.markdown_runs import INSTEAD
-from playground.sketch.load import load
 from playground.workbench.edits import Draft
 from playground.workbench.lesson.figure_state import edits_of, map_of, steps_of
+
+from ..loading import load
 
 FILES = sorted(TEXTS.glob("*/*.md"))
 

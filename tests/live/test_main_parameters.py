@@ -11,11 +11,11 @@ from playground.engine.engine import Engine
 from playground.live.panel_rows import fitting_label
 from playground.sketch.assign import values_of
 from playground.sketch.find import find, shipped_sketches
-from playground.sketch.load import load
 from playground.workbench.edits import Draft
 from playground.workbench.parameter_list import Filter, Listing
 from playground.workbench.random_targets import targets
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 from .desk import Bare
 

@@ -6,9 +6,10 @@ import pytest
 
 from playground.live.part_labels import Part, parts_of
 from playground.sketch.find import find
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.sketch.replace_technique import with_technique
+
+from ..loading import load
 
 
 def sketch_of(name: str) -> Sketch:

@@ -9,10 +9,10 @@ from imgui_bundle import imgui
 
 from playground.engine.engine import Engine
 from playground.live.mouse import PictureMouse
-from playground.sketch.load import load
 from playground.workbench.clock import Clock
 from playground.workbench.inspect.time_range import marks_of, span_of, stepped, toggle_loop
 
+from ..loading import load
 from ..sketch_texts import passes
 from .desk import Bare
 

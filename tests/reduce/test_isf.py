@@ -7,8 +7,9 @@ import pytest
 from playground.errors import ShaderError
 from playground.reduce.case import copied
 from playground.reduce.inline import inline_sketch
-from playground.sketch.load import load
 from tests.isf_texts import TEXTS, VERTEX, with_mistake
+
+from ..loading import load
 
 
 @pytest.fixture

@@ -26,9 +26,9 @@ from playground.reduce.probe import Probe
 from playground.reduce.search import Search
 from playground.reduce.variant import record_text
 from playground.shots.references import reference_path
-from playground.sketch.load import load
 from playground.sketch.variant_record import NAME
 
+from ..loading import load
 from ..shipped import of_each_kind
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -20,8 +20,8 @@ from playground.images.files import write_png
 from playground.shots.fingerprint import Fingerprint, fingerprint_of, read_fingerprint
 from playground.shots.references import read_reference, write_reference_in
 from playground.sketch.canonical import compiled_text
-from playground.sketch.load import load
 
+from ..loading import load
 from ..sketch_texts import passes
 from .conftest import OURS
 

@@ -14,9 +14,9 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.non_finite import NotFinite, not_finite_in
 from playground.shots.suite import render_shot, shots_of
-from playground.sketch.load import load
 
 from ..cases import each
+from ..loading import load
 from ..sketch_texts import map_of_height, passes
 
 NAN, INFINITY = "uintBitsToFloat(0x7fc00000u)", "uintBitsToFloat(0x7f800000u)"

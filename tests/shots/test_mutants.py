@@ -38,9 +38,9 @@ from playground.shots.mutants.suite import (
 )
 from playground.shots.mutants.tiers import TIERS
 from playground.shots.suite import ShotCase, render_shot
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
+from ..loading import load
 from ..sketch_texts import map_of_height
 
 SIZE = (160, 90)

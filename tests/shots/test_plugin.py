@@ -16,8 +16,8 @@ from playground.errors import SandboxCrash, SandboxTimeout
 from playground.gpu.context import ContextInfo
 from playground.images.files import read_png
 from playground.shots.references import write_reference
-from playground.sketch.load import load
 
+from ..loading import load
 from ..variants import trust
 
 Run = Callable[..., pytest.RunResult]

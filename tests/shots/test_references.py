@@ -21,8 +21,9 @@ from playground.shots.references import (
     stale_references,
     write_reference,
 )
-from playground.sketch.load import load
 from playground.sketch.model import Graph, Shot, Sketch
+
+from ..loading import load
 
 LLVMPIPE = ContextInfo(450, "llvmpipe (LLVM 15.0.6, 256 bits)", "Mesa/X.org", "4.5 Mesa 22.3.6", 4)
 PICTURE = np.arange(4 * 6 * 4, dtype=np.uint8).reshape(4, 6, 4)

@@ -16,9 +16,9 @@ from playground.shots.judge import Judgement, Rule, judge
 from playground.shots.masking import Light, mask_of
 from playground.shots.references import Reference
 from playground.shots.results import read_result
-from playground.sketch.load import load
 from playground.sketch.tolerance import TIERS, Tolerance, tolerance_of
 
+from ..loading import load
 from .conftest import OURS
 
 Picture = NDArray[np.uint8]

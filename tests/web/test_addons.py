@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from playground.sketch.load import load
 from playground.web import addons
 from playground.web.bundle import BUNDLES, read_bundle
 from playground.web.page_data import page_data
 
+from ..loading import load
 from .node import Node, NodeError
 
 NEEDED = {

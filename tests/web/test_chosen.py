@@ -9,10 +9,10 @@ import pytest
 from playground.engine.engine import Engine
 from playground.gpu.choices import with_choices
 from playground.gpu.wrap import FRAGMENT, wrap
-from playground.sketch.load import load
 from playground.web.page_data import page_data
 
 from ..cases import each
+from ..loading import load
 from ..shipped import FEW
 from ..sketch_texts import map_of, passes
 from .node import Node

@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 from playground.web.page_data import page_data
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 from .pages import PageError, Pages
 

@@ -9,10 +9,10 @@ from playground.gpu.wrap import wrap
 from playground.sketch.find import shipped_sketches
 from playground.sketch.flat import leaves_of
 from playground.sketch.flatten import flatten
-from playground.sketch.load import load
 from playground.sketch.model import Kernel
 
 from ..cases import each
+from ..loading import load
 from .node import Node, NodeError
 from .texts import kernels
 

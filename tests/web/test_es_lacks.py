@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from playground.errors import ShaderError
-from playground.sketch.load import load
 from playground.web.es_lacks import lacking
 from playground.web.page_data import page_data
+
+from ..loading import load
 
 TOY = "void mainImage(out vec4 c, in vec2 p) {{ c = vec4({}); }}\n"
 

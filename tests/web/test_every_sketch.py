@@ -12,12 +12,13 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
-from playground.sketch.catalogue import load, shipped_sketches
+from playground.sketch.catalogue import shipped_sketches
 from playground.sketch.model import Sketch
 from playground.terrain.sources import source_kind
 from playground.web.page_data import page_data
 from playground.web.plan import KINDS
 
+from ..loading import load
 from ..report.browser import SWIFTSHADER
 from .pages import MISSING, Pages
 from .random_settings import Settings, random_settings

@@ -19,11 +19,11 @@ from playground.images.files import read_image, write_png
 from playground.paths import SKETCHES
 from playground.sketch.assign import shown_parameters
 from playground.sketch.colour import srgb_to_linear
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.web.page_data import page_data
 from playground.web.plan import KINDS
 
+from ..loading import load
 from ..report import browser as browsers
 from ..sketch_texts import map_of, passes
 

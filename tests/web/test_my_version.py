@@ -15,11 +15,11 @@ import numpy as np
 import pytest
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 from playground.sketch.model import Camera
 from playground.sketch.unpack import unpacked
 from playground.web.page_data import page_data
 
+from ..loading import load
 from ..report.browser import MESA, Browser
 from .node import NODE
 from .pages import HOME, MISSING

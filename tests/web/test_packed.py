@@ -17,13 +17,13 @@ import pytest
 from playground.engine.engine import Engine
 from playground.paths import GLSL
 from playground.sketch.assign import values_of
-from playground.sketch.load import load
 from playground.sketch.model import Camera, Sketch, kernels_of
 from playground.sketch.text_overrides import with_texts
 from playground.sketch.unpack import read_pack, unpacked
 from playground.sketch.values import shortest
 from playground.web.page_data import page_data
 
+from ..loading import load
 from ..shipped import EACH_KIND
 from .node import Node
 

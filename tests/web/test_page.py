@@ -15,13 +15,13 @@ from typing import Any
 
 import pytest
 
-from playground.sketch.load import load
 from playground.web.blobs import packed
 from playground.web.bundle import read_bundle
 from playground.web.page import Poster, page_html
 from playground.web.page_data import page_data
 from playground.web.pressed import pressed
 
+from ..loading import load
 from ..report import browser as browsers
 from .node import Node
 from .unpressed import parts_of, undense

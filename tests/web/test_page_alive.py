@@ -18,10 +18,10 @@ from numpy.typing import NDArray
 
 from playground.capture.web_page import page_bytes, prepare_page
 from playground.engine.engine import Engine
-from playground.sketch.catalogue import load
 from playground.sketch.model import DEFAULT_PICTURE, Camera, Sketch
 from playground.workbench.framing import field_for
 
+from ..loading import load
 from ..report.browser import MESA, Browser
 
 pytestmark = pytest.mark.slow

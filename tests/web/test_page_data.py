@@ -17,7 +17,6 @@ from playground.errors import PlaygroundError
 from playground.gpu.wrap import FRAGMENT, wrap
 from playground.paths import GLSL
 from playground.sketch import expressions
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.web.page import page_texts
 from playground.web.page_data import page_data
@@ -25,6 +24,7 @@ from playground.web.plan import KINDS
 from playground.web.pressed import pressed
 
 from .. import dialect_texts, isf_texts
+from ..loading import load
 from ..shipped import EACH_KIND, of_each_kind, slow_but
 from .node import Node
 

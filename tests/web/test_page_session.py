@@ -10,9 +10,9 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.sketch.find import shipped_sketches
-from playground.sketch.load import load
 from playground.web.page_data import page_data
 
+from ..loading import load
 from . import fake_page
 from .node import Node
 

@@ -14,7 +14,6 @@ from playground.live import dome
 from playground.sketch.assign import check_value, resolve, shown_parameters, values_of
 from playground.sketch.colour import linear_to_srgb, parse_hex, srgb_to_linear, to_hex
 from playground.sketch.find import shipped_sketches
-from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, Sketch, Value
 from playground.sketch.values import coerce, is_whole, length_of, tidied
 from playground.terrain.camera import look
@@ -27,6 +26,7 @@ from playground.workbench.number_format import decimals, format_of, snapped, uni
 from playground.workbench.parameter_list import Listing
 from playground.workbench.sun_drag import turned
 
+from ..loading import load
 from .node import Node
 
 pytestmark = pytest.mark.slow

@@ -13,12 +13,12 @@ from playground.engine.engine import Engine
 from playground.errors import PlaygroundWarning
 from playground.images.files import write_png
 from playground.sketch.catalogue import SKETCHES
-from playground.sketch.load import load
 from playground.web.page_data import page_data
 
 from ..dialect_texts import TEXTS
 from ..isf_texts import TEXTS as ISF
 from ..isf_texts import VERTEX
+from ..loading import load
 from ..main_dialect_texts import MAIN_TEXTS
 from ..sketch_texts import map_of_height
 from ..toy_texts import EXPORTS, FOLDERS, VSCODE

@@ -17,7 +17,6 @@ from playground.engine.cache_keys import KeyMaker, Keys
 from playground.engine.plan import LoopStep, Plan, PlanNode, Step, every_node, needed
 from playground.engine.planner import Planner
 from playground.errors import PlaygroundError
-from playground.sketch.catalogue import load
 from playground.sketch.map_sketch import Map
 from playground.sketch.model import Camera, Kernel, Sketch
 from playground.web import texts
@@ -25,6 +24,7 @@ from playground.web.blobs import Blobs
 from playground.web.plan import KINDS, _Writing, sketch_data
 from playground.web.shared import SharedData
 
+from ..loading import load
 from ..shipped import SHIPPED
 from ..sketch_texts import map_of, passes
 from .node import Node

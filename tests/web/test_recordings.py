@@ -13,13 +13,13 @@ import pytest
 
 from playground.media.live_inputs import LiveInputs
 from playground.media.now import Now
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.terrain.sources import source_kind
 from playground.web import sources
 from playground.web.page_data import page_data
 from tests.media.films import sound, uneven_film
 
+from ..loading import load
 from .node import Node
 
 SKETCH = """format = 1

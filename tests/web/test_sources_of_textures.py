@@ -9,9 +9,9 @@ import pytest
 from playground.capture.export import prepare, run
 from playground.capture.export_options import Form
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 
 BASE = """#pragma kernel(output = "height:r32f")

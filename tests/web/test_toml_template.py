@@ -9,12 +9,12 @@ import pytest
 
 from playground.paths import GLSL
 from playground.sketch.assign import values_of
-from playground.sketch.load import load
 from playground.sketch.model import Camera
 from playground.sketch.values import shortest
 from playground.web.page_data import page_data
 from playground.web.toml_template import sketch_pieces
 
+from ..loading import load
 from .node import Node
 
 PASS = '[[pass]]\nname = "height"\nuse = "generation/diamond_square"\n'

@@ -12,11 +12,12 @@ from playground.engine.engine import Engine
 from playground.images.files import write_png
 from playground.sketch.assign import values_of
 from playground.sketch.channels import channels
-from playground.sketch.load import load
 from playground.workbench.autosave import Autosave, memory_of
 from playground.workbench.bench import Bench
 from playground.workbench.interface import WindowControls
 from playground.workbench.session import Session
+
+from ..loading import load
 
 FIRST = """// First channel
 uniform float gain = 1.0; //! slider(0, 2)

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from playground.sketch.assign import values_of
-from playground.sketch.load import load
 from playground.sketch.model import Camera
 from playground.workbench.edits import Draft, Edits, reload_draft
 from playground.workbench.resume import StoredEdits, first_draft
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 
 KERNEL = """// terrain.glsl -- level terrain

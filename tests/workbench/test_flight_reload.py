@@ -11,9 +11,10 @@ import pytest
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ShaderError
 from playground.sketch.assign import values_of
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.workbench.flight_reload import SaveFollower
+
+from ..loading import load
 
 TERRAIN = """// terrain.glsl -- a plain
 #pragma kernel(output = "height:r32f")

@@ -10,12 +10,13 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.sketch.find import find
-from playground.sketch.load import load
 from playground.sketch.model import DEFAULT_PICTURE, Camera
 from playground.terrain.camera import look
 from playground.workbench.camera_drag import Gesture
 from playground.workbench.framing import WIDEST, field_for, framed, moved
 from playground.workbench.session import Session
+
+from ..loading import load
 
 EXTENT, RELIEF = (10_240.0, 8_000.0), 1_800.0
 NARROW = (950, 720)

@@ -11,7 +11,6 @@ import pytest
 from playground.engine.engine import Engine
 from playground.errors import DataError, ShaderError
 from playground.images.files import read_image, read_png, write_png
-from playground.sketch.load import load
 from playground.terrain.masks import read_mask
 from playground.workbench.brush import ERASER, Brush, covered, stroke
 from playground.workbench.canvas import MOST_TEXELS
@@ -19,6 +18,7 @@ from playground.workbench.painted_mask import Mask
 from playground.workbench.painting import Painting
 from playground.workbench.session import Session
 
+from ..loading import load
 from ..sketch_texts import passes
 
 EXTENT = (1000.0, 500.0)

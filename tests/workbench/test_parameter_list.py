@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from playground.errors import ParameterError
-from playground.sketch.load import load
 from playground.sketch.model import Camera, Parameter, Widget
 from playground.sketch.values import coerce, tidied
 from playground.workbench.edits import Draft, Edits
@@ -18,6 +17,7 @@ from playground.workbench.parameter_list import Filter, Listing, set_words
 from playground.workbench.randomise import at_random, mutated
 from playground.workbench.typed_values import read_typed
 
+from ..loading import load
 from ..sketch_texts import map_of_height
 
 KERNEL = """// terrain.glsl -- level terrain

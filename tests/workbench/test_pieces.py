@@ -12,9 +12,10 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.unfinished import PassesUnfinished
 from playground.gpu.context import ContextInfo
-from playground.sketch.load import load
 from playground.workbench import shown_picture
 from playground.workbench.session import Session
+
+from ..loading import load
 
 SIZE = (160, 90)
 SKETCH = """format = 1

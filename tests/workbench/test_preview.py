@@ -11,11 +11,12 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.planner import Planner
 from playground.sketch.assign import values_of
-from playground.sketch.load import load
 from playground.sketch.model import Sketch
 from playground.workbench.enlarged import Enlarger
 from playground.workbench.preview import GRID, GRID_OF_FEWER, as_preview
 from playground.workbench.session import Session
+
+from ..loading import load
 
 SKETCH = """format = 1
 size = 129

@@ -14,10 +14,11 @@ from playground.engine.engine import Engine
 from playground.gpu.context import ContextInfo
 from playground.gpu.textures import read_picture
 from playground.sketch.assign import values_of
-from playground.sketch.load import load
 from playground.workbench.inspect.compare import Compare
 from playground.workbench.preview import as_preview
 from playground.workbench.session import Session
+
+from ..loading import load
 
 SIZE = (160, 90)
 SKETCH = """format = 1

@@ -26,12 +26,13 @@ from playground.engine.engine import Engine
 from playground.engine.sandbox import Sandbox
 from playground.errors import PlaygroundError
 from playground.sketch.assign import values_of
-from playground.sketch.load import load
 from playground.sketch.model import Camera
 from playground.workbench.reload import Follower
 from playground.workbench.reload_stages import ReloadStage, explained, missing_file_error
 from playground.workbench.session import Session
 from playground.workbench.watcher import Watcher
+
+from ..loading import load
 
 SIZE = (24, 16)
 PATIENCE = 90.0  # [s] for the session to come to rest

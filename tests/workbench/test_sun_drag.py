@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 from playground.engine.engine import Engine
-from playground.sketch.load import load
 from playground.workbench.session import Session
 from playground.workbench.sun_drag import suns_of, turned
 
+from ..loading import load
 from ..sketch_texts import passes
 
 SKETCH = "format = 1\nsize = 17\n" + passes(

@@ -8,9 +8,9 @@ import pytest
 
 from playground.errors import SketchError
 from playground.sketch.assign import value_of, values_of
-from playground.sketch.load import load
 from playground.sketch.replace_technique import choices, fits, nearest_fitting, with_technique
 
+from ..loading import load
 from ..sketch_texts import map_of, passes
 
 pytestmark = pytest.mark.slow
