@@ -350,6 +350,8 @@ class Session:
         self._press()
         if drafts.stage is ReloadStage.SANDBOX:
             drafts.take_report()
+        if drafts.stage is ReloadStage.SANDBOX and drafts.coming is not None:
+            self.picture.prepare(self.engine, drafts.coming.sketch, self.view, size, self.clock.time)
         if drafts.stage is ReloadStage.DRAW:
             self._draw_coming(size)
         if drafts.shown is not None:
