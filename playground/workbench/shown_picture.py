@@ -53,7 +53,6 @@ class ShownPicture:
         self._pieces = 0  # of a full picture that have run, and not the last one
         self._faster: frozenset[str] = frozenset()  # passes that have run in a preview since it was in full
         self._drawn_at = 0.0
-        self._prepared: Sketch | None = None  # whose preview was planned before it may be drawn
 
     @property
     def texture(self) -> moderngl.Texture | None:
@@ -163,13 +162,12 @@ class ShownPicture:
         return True
 
     def prepare(self, engine: Engine, sketch: Sketch, view: View, size: Size, time: float) -> None:
-        """Plan the preview of a sketch that is coming, once, while nothing may be drawn of it.
+        """Plan the preview of a sketch that is coming, while nothing may be drawn of it.
 
         ``draw`` goes on from these plans, and raises what is wrong with them.
         """
-        if self._prepared is sketch or not engine.info.software or view.map is not None:
+        if not engine.info.software or view.map is not None:
             return
-        self._prepared = sketch
         preview, at = _framed(as_preview(sketch), view, time, size), _at(view, sketch, time, coming=True)
         with suppress(PlaygroundError):
             for divisor in sorted({1, 2, self._sizes.divisor}):
