@@ -92,6 +92,7 @@ class Session:
         self.picture = ShownPicture(engine.ctx, now)
         self._repeats: tuple[Sketch | None, float, dict[str, int]] = (None, 0.0, {})
         self._drawn: tuple[object, ...] | None = None  # what the picture shows
+        self._planned: Draft | None = None  # what was planned last while the sandbox tried it
         self._size: tuple[int, int] | None = None  # of the latest frame
         self._data_of: Sketch | None = None  # the sketch whose data files were noted last
         self._reported: set[str] = set()  # kinds of notes that are given once a sketch
@@ -350,6 +351,8 @@ class Session:
         self._press()
         if drafts.stage is ReloadStage.SANDBOX:
             drafts.take_report()
+        if drafts.testing and drafts.coming is not self._planned:
+            self._plan_coming(size)
         if drafts.stage is ReloadStage.DRAW:
             self._draw_coming(size)
         if drafts.shown is not None:
@@ -416,6 +419,12 @@ class Session:
         sketch = self.drafts.sketch
         time = self.clock.time if sketch is not None and is_animated(sketch) else 0.0
         return self.drafts.revision, self.view.revision, size, self.view.framed_for, time
+
+    def _plan_coming(self, size: tuple[int, int]) -> None:
+        """Plan what the sandbox tries, unless it reads new data: to plan that looks into the file."""
+        coming = self._planned = self.drafts.coming
+        if coming is not None and not self.reads_new_data(coming.sketch):
+            self.picture.prepare(self.engine, coming.sketch, self.view, size, self.clock.time)
 
     def _draw_coming(self, size: tuple[int, int]) -> None:
         drafts = self.drafts

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from playground.engine.engine import Engine
@@ -18,13 +18,14 @@ from playground.engine.frame import Frame
 from playground.engine.plan import Plan
 from playground.engine.runner import Runner
 from playground.engine.unfinished import PassesUnfinished
+from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch, kernels_of
 from playground.sketch.traits import traits_of
 from playground.workbench.catch_up import CatchUp
 from playground.workbench.framing import framed
 from playground.workbench.last_frame import Painter, Picture
 from playground.workbench.preview import as_preview
-from playground.workbench.preview_size import SLOW, PreviewSize, Size
+from playground.workbench.preview_size import SLOW, PreviewSize, Size, divided
 from playground.workbench.view import View
 
 if TYPE_CHECKING:
@@ -159,6 +160,18 @@ class ShownPicture:
         self.rest = 0.0 if pixels != size and self._sizes.guessed else REST
         self._drawn_size, self._drawn_at = pixels, self._now()
         return True
+
+    def prepare(self, engine: Engine, sketch: Sketch, view: View, size: Size, time: float) -> None:
+        """Plan the preview of a sketch that is coming, while nothing may be drawn of it.
+
+        ``draw`` goes on from these plans, and raises what is wrong with them.
+        """
+        if not engine.info.software or view.map is not None:
+            return
+        preview, at = _framed(as_preview(sketch), view, time, size), _at(view, sketch, time, coming=True)
+        with suppress(PlaygroundError):
+            for divisor in sorted({1, 2, self._sizes.divisor}):
+                engine.internal.stale(preview, size=divided(size, divisor), **at)
 
     def differs(self, engine: Engine, sketch: Sketch, view: View, time: float) -> bool:
         """Return whether a sketch would run a pass if it were drawn as this was; raise as ``Engine.draw``."""

@@ -11,6 +11,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ContextError, SandboxTimeout, SketchError
+from playground.gpu.context import ContextInfo
 from playground.images.files import write_png
 from playground.sketch.assign import values_of
 from playground.sketch.model import DEFAULT_PICTURE, Camera
@@ -394,6 +395,36 @@ def test_the_sandbox_comes_first(tried: tuple[Bench, FakeSandbox]) -> None:
     sandbox.answer = SandboxReport(True)
     assert not np.array_equal(bench.picture(), before)
     assert not bench.session.drafts.testing
+
+
+def test_it_is_planned_while_the_sandbox_tries_it_and_nothing_is_drawn(
+    tmp_path: Path, any_engine: Engine, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Until it is allowed the driver gets nothing of it; then a save only has to be drawn."""
+    monkeypatch.setattr(ContextInfo, "software", True)
+    text = '#pragma kernel(output = "height:r32f")\nfloat kernel(ivec2 texel) { return 0.1; }\n'
+    (tmp_path / "own.glsl").write_text(text, encoding="utf-8")
+    own = SKETCH_3D.replace("generation/diamond_square", "./own")
+    (tmp_path / "sketch.toml").write_text(own, encoding="utf-8")
+    sandbox, size = FakeSandbox(), (640, 360)
+    sandbox.answer = SandboxReport(True)
+    session = Session(any_engine, tmp_path / "sketch.toml", sandbox=sandbox)
+    try:
+        session.frame(size)
+        session.read()
+        planner, runs = any_engine.internal.planner, sum(any_engine.internal.runs.values())
+        (tmp_path / "own.glsl").write_text(text.replace("0.1", "0.2"), encoding="utf-8")
+        session.drafts.reload()
+        for _ in range(3):
+            session.frame(size)
+        planned = planner.made_whole
+        assert sum(any_engine.internal.runs.values()) == runs and session.drafts.testing
+        sandbox.answer = SandboxReport(True)
+        session.frame(size)
+        assert session.error is None and sum(any_engine.internal.runs.values()) > runs
+        assert planner.made_whole == planned
+    finally:
+        session.release()
 
 
 def test_a_first_picture_that_fails_is_an_error_and_no_more(tmp_path: Path, any_engine: Engine) -> None:

@@ -82,6 +82,8 @@ class WatchedSketch:
         for file in texts:
             self.save(file)
         self.woken = threading.Event()
+        if sandbox is not None:
+            sandbox.on_answer = self.woken.set
         self.session = Session(self.engine, next(iter(texts)).parent, sandbox=sandbox)
         self.watcher = Watcher(self.woken.set, (".glsl", ".toml"))
         self.follower = Follower(self.session, self.watcher)
