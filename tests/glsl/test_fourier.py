@@ -62,10 +62,10 @@ def frequencies(nx, ny):
 
 def filtered(grid, roughness):
     """Return the terrain of a grid of random numbers by the four steps of section 1.3.3."""
-    spectrum = scipy.fft.fft2(grid.astype(np.float64))
-    f = frequencies(*grid.shape[::-1])
+    spectrum = scipy.fft.rfft2(grid.astype(np.float64))  # half of it, as the numbers are real
+    f = frequencies(*grid.shape[::-1])[:, : spectrum.shape[1]]
     f[0, 0] = 1.0
-    return scipy.fft.ifft2(spectrum / f**roughness).real
+    return scipy.fft.irfft2(spectrum / f**roughness, grid.shape)
 
 
 def as_complex(array):
