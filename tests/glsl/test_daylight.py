@@ -337,20 +337,9 @@ float kernel(ivec2 texel) {
 """
 
 
-TAKERS = [
-    "lighting/analytic",
-    "lighting/horizon_sun",
-    "lighting/l_dot_n",
-    "lighting/ray_cast",
-    "lighting/shade",
-    "lighting/soft_cone",
-    "lighting/soft_cylinder",
-    "lighting/sun_disc",
-]  # by name: to find them reads the whole library, which each process would do only to collect tests
-
-
-def test_these_are_the_light_techniques_that_take_daylight():
-    found = [
+def takers():
+    """Return the light techniques that have an input for daylight."""
+    return [
         name
         for name, technique in library().items()
         if name.startswith("lighting/")
@@ -358,10 +347,9 @@ def test_these_are_the_light_techniques_that_take_daylight():
         and "daylight" in input_names(technique)
         and {"sun_colour", "sky_colour", "ambient"} <= {p.name for p in technique.parameters}
     ]
-    assert found == TAKERS
 
 
-@pytest.mark.parametrize("name", TAKERS)
+@pytest.mark.parametrize("name", takers())
 @pytest.mark.parametrize("elevation", [35.0, 6.0])
 def test_a_light_technique_takes_the_sun_and_the_sky_from_it(any_engine, make_sketch, name, elevation):
     light = f'[[pass]]\nname = "light"\nuse = "{name}"\nset = {{ ambient = 1.0 }}\n'
