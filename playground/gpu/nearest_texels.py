@@ -5,6 +5,9 @@ quarter of the time that a new kernel takes until it runs. In the middle of a te
 the same bits. Where all inputs have the size of the pass itself, a text need not ask for theirs, and what
 it would do for others is left out as it is compiled: as much again.
 
+A text with loops fetches as it says: whether Mesa unrolls a loop depends on how long it is, and with
+that which constants it multiplies beforehand, so that sums may be rounded otherwise.
+
 No line and no column of a text changes: macros stand before it.
 """
 
@@ -17,13 +20,16 @@ from playground.gpu.wrap import Wrapped
 from playground.sketch.model import Kernel
 from playground.sketch.reserved_names import LEVEL_0, OWN_SIZE
 
+_LOOPS = frozenset({"for", "while"})
 _GIVEN_SIZE = "uniform ivec2 size;\n"
 _ASKED = "textureSize(k_input, 0)", "(1.0 / vec2(k_texels))"
 
 
 def reads_nearest(kernel: Kernel) -> bool:
-    """Return whether a kernel fetches texels, and all its samplers take the nearest one."""
+    """Return whether a kernel without loops fetches texels, and all its samplers take the nearest one."""
     if not kernel.inputs or kernel.file_parameters or not kernel.reads("texelFetch"):
+        return False
+    if not kernel.source.names.isdisjoint(_LOOPS):
         return False
     return all(
         one.sampling.filter == "nearest" == (one.sampling.magnify or "nearest")

@@ -134,10 +134,11 @@ def test_a_texture_of_its_size_is_not_asked_for_it(any_engine: Engine, folder: F
     assert "vec2(textureSize" not in text
 
 
-def test_a_kernel_with_a_sampler_that_mixes_texels_fetches_them(folder: Folder):
+def test_a_kernel_with_a_sampler_that_mixes_texels_or_with_a_loop_fetches_them(folder: Folder):
     mixed = READS.replace("//! input", '//! input("linear")')
     by_filter = READS.replace("texelFetch(field, place, 0)", "textureLod(field, vec2(place), 0.0)")
-    for reads, expected in ((READS, True), (mixed, False), (by_filter, False)):
+    loops = READS.replace("return at", "for (int i = 0; i < 9; ++i) texel.x += i;\n    return at")
+    for reads, expected in ((READS, True), (mixed, False), (by_filter, False), (loops, False)):
         kernel = sketch_of(folder, reads).graph.passes[1].technique
         assert reads_nearest(kernel) is expected
 

@@ -1,5 +1,4 @@
-// How many texels an input has, all of which have the size of this pass: read once, not in each iteration
-// of a loop.
+// How many texels an input has, all of which have the size of this pass: read once.
 uniform ivec2 size;
 ivec2 k_own_size = size;
 vec2 k_own_share = 1.0 / vec2(size);
