@@ -223,7 +223,8 @@ void make_two_levels(int job, int levels) {
     vec2 known = vec2(height_of_key(~extremes[1]), height_of_key(extremes[0]));
     vec2 scale = stretch_of(known, normalise);
     // Twice two displacements lie between the coarser lattice and the finer.
-    if (stage == LOOK) narrow(from, side, j, 2.0 * (middle.amplitude + fine.amplitude), begin, end);
+    float between = 2.0 * (middle.amplitude + fine.amplitude);
+    if (stage == LOOK) narrow(from, side, j, between, begin, end);
 
     float low[5], high[5], next[5], below[5], above[5];
     float centres[4], next_centres[4];

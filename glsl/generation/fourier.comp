@@ -279,8 +279,8 @@ void measure() {
     if (highest > bounds[1]) atomicMax(bounds[1], highest);
 }
 
-// Fours of heights in each of four rows, a quarter of the count apart: one such job of `many` rows,
-// where row 0 of `waves` is the terrain's row `first`.
+// Fours of heights in each of four rows, a quarter of the count apart: one such job of `many`
+// rows, where row 0 of `waves` is the terrain's row `first`.
 void show(int job, int first, int many, vec2 stretch) {
     int fours = (size.x + 3) >> 2;
     int row = quotient(job, fours);
