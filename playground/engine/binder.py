@@ -213,14 +213,14 @@ class Binder:
         found = self._samplers.get(sampling)
         if found is None:
             found = self._samplers[sampling] = self._new_sampler(sampling)
-            self._on_units.clear()  # making one may have taken another off its unit
+            self._put_back()
         return found
 
     def sampler_of(self, kernel: Kernel, declared: Input) -> moderngl.Sampler:
         """Return the sampler that reads an input of a kernel.
 
         What it reads by ``texelFetch`` alone is the same by any. A software renderer has one that gives
-        by coordinates what ``texelFetch`` gives by places: see ``gpu.choices.has_quick_fetches``.
+        by coordinates what ``texelFetch`` gives by places: see ``gpu.choices.quicker_choices``.
         """
         if not self._software or declared.name not in kernel.fetched_alone.inputs:
             return self.sampler(declared.sampling)
@@ -228,8 +228,14 @@ class Binder:
             self._texels = self.ctx.sampler(repeat_x=False, repeat_y=False)
             self._texels.filter = self.ctx.NEAREST, self.ctx.NEAREST
             surround(self.ctx, self._texels)
-            self._on_units.clear()  # it may have taken another off its unit
+            self._put_back()
         return self._texels
+
+    def _put_back(self) -> None:
+        """Put back the sampler of unit 0, where a new one may have been while it was made."""
+        before = self._on_units.get(0)
+        if before is not None:
+            before.use(0)
 
     def use(self, unit: int, texture: Readable, sampler: moderngl.Sampler) -> None:
         """Bind one texture to a unit, and the sampler that reads it unless it is there."""

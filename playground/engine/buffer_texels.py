@@ -12,10 +12,9 @@ from collections.abc import Mapping
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from playground.gpu.buffer_reads import FIRST_UNIT
+from playground.gpu.buffer_reads import FIRST_UNIT, read_by_functions
 from playground.gpu.gl_calls import Calls
 from playground.sketch.model import Buffer, Kernel
-from playground.sketch.reserved_names import READ
 
 if TYPE_CHECKING:
     import moderngl
@@ -41,7 +40,7 @@ class BufferTexels:
 
     def read(self, kernel: Kernel, buffers: Mapping[str, moderngl.Buffer]) -> list[Buffer]:
         """Return the buffers that a kernel reads so; none where one is longer than a texture may be."""
-        found = [b for b in kernel.buffers if b.type in _FORMATS and kernel.reads(f"{READ}{b.name}")]
+        found = read_by_functions(kernel)
         longest = max([buffers[b.name].size // 4 for b in found], default=0)  # in texels of a float
         return found if longest <= self.most else []
 

@@ -90,6 +90,8 @@ class ComputeVariants:
                 program = self._program(job, iteration, program, reads=bool(read))
                 job.count(program, iteration, kernel.repeat, repeat)
                 program.run(max(groups[0], 1), max(groups[1], 1))
+            if program is None and repeat > 0:
+                raise kernel.error(f"pass '{step.path}': groups of 0 leave out every step at this size")
             for output in kernel.outputs:
                 if (held := kernel.buffer_of(output.name)) is not None:
                     buffer = buffers[kernel.buffers.index(held)]

@@ -7,20 +7,18 @@ from collections.abc import Mapping
 from playground.engine.binder import are_of_own_size
 from playground.engine.plan import Step
 from playground.engine.results import Wired
-from playground.gpu.choices import has_quick_fetches, may_have_own_size, may_have_place
+from playground.gpu.choices import quicker_choices
 from playground.gpu.wrap import FRAGMENT
-from playground.sketch.reserved_names import NEAREST, OWN_SIZE, PLACE
+from playground.sketch.reserved_names import OWN_SIZE, PLACE
 
 
 def quicker_texts(step: Step, inputs: Mapping[str, Wired], driver: str) -> list[str]:
     """Return the choices for a step: see ``gpu.choices.QUICKER``. None changes what it computes."""
-    kernel = step.kernel
-    found: list[str] = []
-    is_whole = step.window is None and step.size == step.whole_size
-    if has_quick_fetches(kernel):
-        found.append(NEAREST)
-    if is_whole and may_have_own_size(kernel) and are_of_own_size(step, inputs):
-        found.append(OWN_SIZE)
-    if is_whole and driver == FRAGMENT and may_have_place(kernel):
-        found.append(PLACE)
-    return found
+    found = quicker_choices(step.kernel)
+    if found and (step.window is not None or step.size != step.whole_size):
+        found -= {OWN_SIZE, PLACE}
+    if PLACE in found and driver != FRAGMENT:
+        found -= {PLACE}
+    if OWN_SIZE in found and not are_of_own_size(step, inputs):
+        found -= {OWN_SIZE}
+    return sorted(found)

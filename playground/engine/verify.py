@@ -322,7 +322,7 @@ def _runs(engine: Engine, place: Place, fast: Sketch, ref: str) -> bool:
     plans = (engine.internal.plan_for(s, DEFAULT_PICTURE, wanted=ref) for s in (fast, fast.plainly()))
     one, other = (
         {
-            (step.path, step.kernel.path)
+            (step.path, step.kernel.path, step.size, step.repeat, repr(sorted(step.values.items())))
             for step in plan.walk()
             if f"{step.path}.".startswith(f"{place.path}.")
         }

@@ -6,7 +6,8 @@ import re
 from itertools import count
 
 from playground.gpu.stage_recipe import Part
-from playground.sketch.model import Buffer
+from playground.sketch.model import Buffer, Kernel
+from playground.sketch.outline import outline
 from playground.sketch.reserved_names import READ
 
 TEXELS = "k_texels_"
@@ -19,12 +20,19 @@ _SWIZZLES = {"float": ".r", "vec2": ".rg", "vec4": ""}  # of the buffers that ma
 _FUNCTION = re.compile(rf"^(\w+) {READ}(\w+)\(int place\) {{ return \2\[place\]; }}$", re.MULTILINE)
 
 
-def reading(buffer: Buffer) -> tuple[Part, ...]:
-    """Return the function that reads a number of a buffer, declared where a text names it."""
-    if buffer.type not in _SWIZZLES:
-        return ()
-    name = f"{READ}{buffer.name}"
-    return (Part(f"{buffer.type} {name}(int place) {{ return {buffer.name}[place]; }}", (name,)),)
+def read_by_functions(kernel: Kernel) -> list[Buffer]:
+    """Return the buffers that a compute variant reads by these functions, unless it has its own."""
+    own = {one.name for one in outline(kernel.source.code)}
+    names = {f"{READ}{buffer.name}": buffer for buffer in kernel.buffers if buffer.type in _SWIZZLES}
+    return [buffer for name, buffer in names.items() if kernel.reads(name) and name not in own]
+
+
+def reading(kernel: Kernel) -> list[Part]:
+    """Return these functions."""
+    return [
+        Part(f"{buffer.type} {READ}{buffer.name}(int place) {{ return {buffer.name}[place]; }}")
+        for buffer in read_by_functions(kernel)
+    ]
 
 
 def with_texels(text: str) -> str:

@@ -30,6 +30,8 @@ from playground.sketch.reserved_names import (
 QUICKER = NEAREST, OWN_SIZE, PLACE
 """Choices that change how a text is computed, and not what."""
 
+_known: dict[int, tuple[Kernel, frozenset[str]]] = {}  # by identity: to compare kernels takes long
+_MOST_KNOWN = 512
 _GIVEN_SIZE = "uniform ivec2 size;"
 _OWN_SHARE = "k_own_share"
 _FIXED = re.compile(rf"{FIXED}(\d+)_(\d+)_(\w+)")
@@ -107,35 +109,36 @@ def _with_uniform_texels(stage: ShaderStage, inputs: Collection[str]) -> ShaderS
     return replace(stage, text="\n".join(lines), first=stage.first + len(uniforms))
 
 
-def has_quick_fetches(kernel: Kernel) -> bool:
-    """Return whether the choice ``NEAREST`` changes a kernel's text.
+def quicker_choices(kernel: Kernel) -> frozenset[str]:
+    """Return which of ``QUICKER`` may be made for a kernel.
 
-    Where it is made, ``Binder`` binds the inputs of ``fetched_alone`` by a sampler that gives the nearest
-    texel, and 0 outside of the texture.
+    Where ``NEAREST`` is made, ``Binder`` binds the inputs of ``fetched_alone`` by a sampler that gives the
+    nearest texel, and 0 outside of the texture. ``OWN_SIZE`` holds where each input is as large as what the
+    kernel makes, ``PLACE`` where the fragment driver draws the whole of that at once.
     """
-    return bool(kernel.fetched_alone.fetches) or _reads_previous(kernel)
+    key = id(kernel)
+    known = _known.get(key)
+    if known is None or known[0] is not kernel:
+        known = _known[key] = kernel, _quicker_choices(kernel)
+        while len(_known) > _MOST_KNOWN:
+            del _known[next(iter(_known))]
+    return known[1]
+
+
+def _quicker_choices(kernel: Kernel) -> frozenset[str]:
+    found = set()
+    if kernel.fetched_alone.fetches or _reads_previous(kernel):
+        found.add(NEAREST)
+    if kernel.kind == "kernel" and not kernel.dialect and not kernel.stride:
+        found.add(PLACE)
+        # No texture but inputs may be asked for its size.
+        if not kernel.file_parameters and (found & {NEAREST} or kernel.reads("textureSize")):
+            found.add(OWN_SIZE)
+    return frozenset(found)
 
 
 def _reads_previous(kernel: Kernel) -> bool:
     return any(kernel.reads(previous_name(kernel, output)) for output in kernel.outputs)
-
-
-def may_have_own_size(kernel: Kernel) -> bool:
-    """Return whether the choice ``OWN_SIZE`` may be made for a kernel: no texture but its inputs is asked.
-
-    It holds where each of these is as large as what the kernel makes.
-    """
-    if kernel.kind != "kernel" or kernel.dialect or kernel.file_parameters or kernel.stride:
-        return False
-    return kernel.reads("textureSize") or has_quick_fetches(kernel)
-
-
-def may_have_place(kernel: Kernel) -> bool:
-    """Return whether the choice ``PLACE`` may be made for a kernel, for the fragment driver.
-
-    It holds where the whole of what the kernel makes is drawn at once.
-    """
-    return kernel.kind == "kernel" and not kernel.dialect and not kernel.stride
 
 
 def _with_own_size(stage: ShaderStage) -> ShaderStage:

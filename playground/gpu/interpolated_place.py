@@ -19,7 +19,8 @@ def with_interpolated_place(wrapped: Wrapped) -> Wrapped:
     """Return a kernel's stages that do so; of a pass whose target has the size ``size``."""
     fragment = wrapped.stages["fragment"]
     version, rest = fragment.text.split("\n", 1)
-    text = f"{version}\nnoperspective in vec2 k_place_at;\n{rest.replace(_FROM, _TO)}"
+    before, _, after = rest.rpartition(_FROM)  # behind the kernel's own lines
+    text = f"{version}\nnoperspective in vec2 k_place_at;\n{before}{_TO}{after}"
     stages = {
         "vertex": replace(wrapped.stages["vertex"], text=own_shader("triangle_with_place.vert")),
         "fragment": replace(fragment, text=text, first=fragment.first + 1),

@@ -288,7 +288,7 @@ def _variant(kernel: Kernel) -> Recipe:
     for unit, buffer in enumerate(kernel.buffers):
         block = f"buffer k_buffer_{buffer.name} {{ {buffer.type} {buffer.name}[]; }};"
         before.append(f"layout(std430, binding = {unit}) {block}")
-        before += reading(buffer)
+    before += reading(kernel)
     return _recipe(kernel, before, [], "void main()")
 
 

@@ -29,9 +29,11 @@ from playground.sketch.source import SourceText
 FETCH = "texelFetch"
 _ASKED = frozenset({(FETCH, 0), ("textureSize", 0)})  # functions of GLSL, and which argument is the sampler
 _OF_GLSL = re.compile(r"texture|texel|shadow")  # its functions that take samplers begin so
-_SAMPLER = re.compile(r"\bsampler2D[ \t]+([A-Za-z_]\w*)")
-_DECLARED = re.compile(r"\bsampler2D[ \t]+\Z")
-_REPLACED = re.compile(rf"\bdefine[ \t]+(?:{FETCH}|textureSize|sampler2D)\b")
+_SAMPLER = re.compile(r"\bsampler2D\s+([A-Za-z_]\w*)")
+_DECLARED = re.compile(r"\bsampler2D\s+\Z")
+_UNIFORM = re.compile(r"\buniform\s+(?:(?:highp|mediump|lowp)\s+)?sampler2D\s+[A-Za-z_]\w*\s*;")
+_SAMPLERS = re.compile(r"\bsampler2D\b")
+_ASKERS = frozenset({FETCH, "textureSize"})
 
 _Sampler = tuple[str, int]  # a function and which of its arguments; of a uniform its name and -1
 
@@ -87,7 +89,14 @@ class _Uses:
         names = set(_SAMPLER.findall(self._code))
         self._in_macros = in_macros = set(re.findall(r"[A-Za-z_]\w*", of_macros))
         takers = {name for name, taken in self._takes.items() if taken}
-        self.is_unclear = bool(_REPLACED.search(of_macros) or in_macros & (names | takers))
+        # Each sampler that the text declares is a uniform, or an argument of a function that is known.
+        known = sum(len(_SAMPLER.findall(one.signature)) for one in self._functions)
+        known += len(_UNIFORM.findall(self._code))
+        self.is_unclear = bool(
+            known != len(_SAMPLERS.findall(self._code))
+            or in_macros & {"sampler2D", *_ASKERS, *names, *takers}
+            or _ASKERS & self._takes.keys()
+        )
         if names and not self.is_unclear:
             for match in re.finditer(rf"\b(?:{'|'.join(sorted(names))})\b", self._code):
                 self._look(match.group(), match.start())

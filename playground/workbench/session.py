@@ -26,7 +26,7 @@ from playground.errors import ContextError, PlaygroundError
 from playground.sketch.assign import find_targets, resolve
 from playground.sketch.find import find
 from playground.sketch.map_sketch import Map, refs_of
-from playground.sketch.model import Sketch, Value
+from playground.sketch.model import Graph, Sketch, Value
 from playground.sketch.traits import has_moving_counts, is_animated, traits_of
 from playground.workbench.catch_up import CatchUp
 from playground.workbench.checks import Checks
@@ -92,7 +92,7 @@ class Session:
         self.picture = ShownPicture(engine.ctx, now)
         self._repeats: tuple[Sketch | None, float, dict[str, int]] = (None, 0.0, {})
         self._drawn: tuple[object, ...] | None = None  # what the picture shows
-        self._planned: Draft | None = None  # what was planned last while the sandbox tried it
+        self._planned: Graph | None = None  # what was planned last while the sandbox tried it
         self._size: tuple[int, int] | None = None  # of the latest frame
         self._data_of: Sketch | None = None  # the sketch whose data files were noted last
         self._reported: set[str] = set()  # kinds of notes that are given once a sketch
@@ -351,8 +351,8 @@ class Session:
         self._press()
         if drafts.stage is ReloadStage.SANDBOX:
             drafts.take_report()
-        if drafts.testing and drafts.coming is not self._planned:
-            self._plan_coming(size)
+        if drafts.testing and drafts.coming is not None:
+            self._plan_coming(drafts.coming.sketch, size)
         if drafts.stage is ReloadStage.DRAW:
             self._draw_coming(size)
         if drafts.shown is not None:
@@ -386,9 +386,9 @@ class Session:
         runner.hover, runner.drag = before.hover, before.drag
         engine.internal.plain_forms.notice = silent
         engine.internal.painted.update(self.engine.internal.painted)
-        self.engine, self.plan = engine, None
+        self.engine, self.plan, self._planned, self._drawn = engine, None, None, None
         self.picture = ShownPicture(engine.ctx, self._now)
-        self._drawn, shown = None, (self.shown, self.drafts.revision, self.view.revision)
+        shown = self.shown, self.drafts.revision, self.view.revision
         if self._lost_over == shown and self._size is not None:
             self._drawn = self._wanted(self._size)
             message = "this made the graphics driver reset itself twice; it waits until something is changed"
@@ -420,11 +420,11 @@ class Session:
         time = self.clock.time if sketch is not None and is_animated(sketch) else 0.0
         return self.drafts.revision, self.view.revision, size, self.view.framed_for, time
 
-    def _plan_coming(self, size: tuple[int, int]) -> None:
-        """Plan what the sandbox tries, unless it reads new data: to plan that looks into the file."""
-        coming = self._planned = self.drafts.coming
-        if coming is not None and not self.reads_new_data(coming.sketch):
-            self.picture.prepare(self.engine, coming.sketch, self.view, size, self.clock.time)
+    def _plan_coming(self, coming: Sketch, size: tuple[int, int]) -> None:
+        """Plan a text that the sandbox tries, unless it reads new data: to plan that looks into the file."""
+        if coming.graph is not self._planned and not self.reads_new_data(coming):
+            self.picture.prepare(self.engine, coming, self.view, size, self.clock.time)
+        self._planned = coming.graph
 
     def _draw_coming(self, size: tuple[int, int]) -> None:
         drafts = self.drafts

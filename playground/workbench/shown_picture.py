@@ -18,7 +18,6 @@ from playground.engine.frame import Frame
 from playground.engine.plan import Plan
 from playground.engine.runner import Runner
 from playground.engine.unfinished import PassesUnfinished
-from playground.errors import PlaygroundError
 from playground.sketch.model import Sketch, kernels_of
 from playground.sketch.traits import traits_of
 from playground.workbench.catch_up import CatchUp
@@ -168,8 +167,8 @@ class ShownPicture:
         """
         if not engine.info.software or view.map is not None:
             return
-        preview, at = _framed(as_preview(sketch), view, time, size), _at(view, sketch, time, coming=True)
-        with suppress(PlaygroundError):
+        with suppress(Exception):
+            preview, at = _framed(as_preview(sketch), view, time, size), _at(view, sketch, time, coming=True)
             for divisor in sorted({1, 2, self._sizes.divisor}):
                 engine.internal.stale(preview, size=divided(size, divisor), **at)
 

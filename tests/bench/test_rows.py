@@ -21,7 +21,7 @@ ROWS = {row.name: row for row in chosen(())}
 
 def test_names_are_of_one_row_each_and_suites_are_those_of_the_files():
     assert len(ROWS) == sum(len(rows) for rows in suites().values())
-    assert set(suites()) == {"engine", "frames", "generation", "land", "lighting"}
+    assert set(suites()) == {"engine", "frames", "generation", "lighting", "terrain"}
 
 
 def test_rows_are_chosen_by_suite_by_name_and_by_pattern():

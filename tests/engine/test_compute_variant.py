@@ -444,6 +444,28 @@ def test_buffers_are_read_by_functions(any_engine, folder, size, fits):
         texels.most = before
 
 
+def test_a_variants_own_function_of_such_a_name_is_its_own(any_engine, folder):
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    own = "float read_ones(int place) { return 2.0 * ones[place]; }\nvoid main"
+    folder.write("fill.glsl", PLAIN_FILL)
+    folder.write("fill.comp", READ.replace("void main", own))
+    sketch = folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = [19, 7]")
+    at = np.arange(19 * 7)
+    wanted = (0.25 + 2 * at + at // 2 * np.where(at % 2, 200, 100)).reshape(7, 19)
+    np.testing.assert_array_equal(any_engine.read(sketch, "a"), wanted)
+
+
+def test_a_variant_whose_every_step_has_no_groups_is_told(any_engine, folder):
+    """What it would give was never written."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    folder.write("fill.glsl", PLAIN_FILL)
+    folder.write("fill.comp", READ.replace("(size.x * size.y + 3) // 4, 1", "size.x // 64, 1", 1))
+    with pytest.raises(PlaygroundError, match="pass 'a': groups of 0 leave out every step at this size"):
+        any_engine.read(folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = [19, 7]"), "a")
+
+
 ROWS = """#pragma compute(groups = "size.x,size.y", local = "1,1", aligned = "4", buffers = "sums:float:SIZE")
 void main() {
     ivec2 texel = ivec2(gl_GlobalInvocationID.xy);

@@ -7,7 +7,7 @@ import pytest
 
 from playground.engine.engine import Engine
 from playground.errors import ShaderError
-from playground.gpu.choices import has_quick_fetches, may_have_own_size, with_choices
+from playground.gpu.choices import quicker_choices, with_choices
 from playground.gpu.context import ContextInfo
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
 from playground.sketch.reserved_names import NEAREST, OWN_SIZE, PLACE, UNWIRED
@@ -161,7 +161,7 @@ def test_a_texture_of_the_passs_own_size_is_not_asked_for_it(folder: Folder):
     sketch_of(folder)
     folder.write("reads.glsl", ASKS.replace("texel, 0)", "texel * size / size, 0)"))
     kernel = folder.sketch(PASSES.partition("inputs")[0]).graph.passes[1].technique
-    assert may_have_own_size(kernel)
+    assert OWN_SIZE in quicker_choices(kernel)
     before = wrap(kernel, COMPUTE).stages["compute"]
     after = with_choices(wrap(kernel, COMPUTE), [(NEAREST, 1), (OWN_SIZE, 1)]).stages["compute"]
     own, changed = before.text.split("\n")[before.first - 1 :], after.text.split("\n")[after.first - 1 :]
@@ -183,12 +183,12 @@ def test_a_kernel_that_reads_an_image_asks_for_sizes(folder: Folder):
     sketch_of(folder)
     folder.write("reads.glsl", IMAGE)
     kernel = folder.sketch(PASSES.partition("inputs")[0]).graph.passes[1].technique
-    assert has_quick_fetches(kernel) and not may_have_own_size(kernel)
+    assert NEAREST in quicker_choices(kernel) and OWN_SIZE not in quicker_choices(kernel)
 
 
 def test_no_line_and_no_column_changes(folder: Folder):
     kernel = sketch_of(folder).graph.passes[1].technique
-    assert has_quick_fetches(kernel)
+    assert NEAREST in quicker_choices(kernel)
     before = wrap(kernel, FRAGMENT).stages["fragment"]
     after = with_choices(wrap(kernel, FRAGMENT), [(UNWIRED, 0), (NEAREST, 1)]).stages["fragment"]
     own, changed = before.text.split("\n")[before.first - 1 :], after.text.split("\n")[after.first - 1 :]
@@ -222,6 +222,29 @@ def test_a_text_with_a_macro_of_such_a_name_compiles(any_engine: Engine, folder:
             folder.sketch(PASSES.replace("size = [23, 11]\n", "").partition("inputs")[0]), "a"
         )
     np.testing.assert_array_equal(found[2, 4, 2:], [7, 7])
+
+
+FILTERS = """#pragma kernel(output = "found:r32f")
+uniform sampler2D mixed;  //! input
+uniform sampler2D rough;  //! input
+float kernel(ivec2 texel) {
+    return textureLod(mixed, vec2(texel) / vec2(size), 0.0).r + 1000.0 * texelFetch(rough, texel, 0).r;
+}
+"""
+
+
+def test_an_input_that_is_read_by_shares_keeps_its_sampler_while_that_of_texels_is_made(
+    any_engine: Engine, folder: Folder, monkeypatch
+):
+    sketch_of(folder)
+    folder.write("reads.glsl", FILTERS)
+    sketch = folder.sketch(PASSES.partition("inputs")[0] + 'inputs = { mixed = "rough", rough = "rough" }\n')
+    found = []
+    for software in (True, False):
+        monkeypatch.setattr(ContextInfo, "software", software)
+        with Engine(any_engine.ctx) as engine:
+            found.append(engine.read(sketch, "a"))
+    np.testing.assert_array_equal(found[0], found[1])
 
 
 PLACES = """#pragma kernel(output = "found:rg32f")

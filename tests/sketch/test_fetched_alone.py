@@ -100,7 +100,7 @@ TEXTS = {
     ),
     "by a macro that is handed it": (
         "#define AT(s) texelFetch(s, ivec2(0), 0)\nfloat kernel(ivec2 t) { return AT(sun).r; }",
-        {"moon"},
+        set(),
     ),
     "by a function that a macro calls": (
         "float at(sampler2D which) { return texelFetch(which, ivec2(0), 0).r; }\n"
@@ -109,6 +109,43 @@ TEXTS = {
     ),
     "by what a macro makes of the name": (
         "#define texelFetch(s, p, l) textureLod(s, vec2(p), 0.0)\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r; }",
+        set(),
+    ),
+    "by a function that returns several numbers": (
+        "float[2] two(sampler2D which, vec2 p) { return float[2](textureLod(which, p, 0.0).r, 0.0); }\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t))[0]; }",
+        set(),
+    ),
+    "by a function with a line end in its argument": (
+        "float two(sampler2D\n    which, vec2 p) { return textureLod(which, p, 0.0).r; }\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t)); }",
+        {"moon"},
+    ),
+    "by a function whose argument has a macro's type": (
+        "#define Map sampler2D\nfloat two(Map which, vec2 p) { return textureLod(which, p, 0.0).r; }\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t)); }",
+        set(),
+    ),
+    "by a function behind a macro": (
+        "#define SQUARE(T) T square(T x) { return x * x; }\nSQUARE(vec2)\n"
+        "float two(sampler2D which, vec2 p) { return textureLod(which, p, 0.0).r; }\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t)); }",
+        set(),
+    ),
+    "by a function behind a head that is written twice": (
+        "#if 1\nfloat one(float x) {\n#else\nfloat one(float x, float y) {\n#endif\n    return x; }\n"
+        "float two(sampler2D which, vec2 p) { return textureLod(which, p, 0.0).r; }\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(sun, vec2(t)); }",
+        set(),
+    ),
+    "by a function with brackets in its arguments": (
+        "float two(float w[(2)], sampler2D which) { return textureLod(which, vec2(w[0]), 0.0).r; }\n"
+        "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r + two(float[2](0.1, 0.2), sun); }",
+        set(),
+    ),
+    "by the text's own function of that name": (
+        "vec4 texelFetch(sampler2D which, ivec2 p, int l) { return textureLod(which, vec2(p), 0.0); }\n"
         "float kernel(ivec2 t) { return texelFetch(sun, t, 0).r; }",
         set(),
     ),
