@@ -22,9 +22,9 @@ _FUNCTION = re.compile(rf"^(\w+) {READ}(\w+)\(int place\) {{ return \2\[place\];
 
 def read_by_functions(kernel: Kernel) -> list[Buffer]:
     """Return the buffers that a compute variant reads by these functions, unless it has its own."""
-    own = {one.name for one in outline(kernel.source.code)}
-    names = {f"{READ}{buffer.name}": buffer for buffer in kernel.buffers if buffer.type in _SWIZZLES}
-    return [buffer for name, buffer in names.items() if kernel.reads(name) and name not in own]
+    found = [b for b in kernel.buffers if b.type in _SWIZZLES and kernel.reads(f"{READ}{b.name}")]
+    own = {one.name for one in outline(kernel.source.code)} if found else set()
+    return [buffer for buffer in found if f"{READ}{buffer.name}" not in own]
 
 
 def reading(kernel: Kernel) -> list[Part]:

@@ -30,8 +30,6 @@ from playground.sketch.reserved_names import (
 QUICKER = NEAREST, OWN_SIZE, PLACE
 """Choices that change how a text is computed, and not what."""
 
-_known: dict[int, tuple[Kernel, frozenset[str]]] = {}  # by identity: to compare kernels takes long
-_MOST_KNOWN = 512
 _GIVEN_SIZE = "uniform ivec2 size;"
 _OWN_SHARE = "k_own_share"
 _FIXED = re.compile(rf"{FIXED}(\d+)_(\d+)_(\w+)")
@@ -116,23 +114,13 @@ def quicker_choices(kernel: Kernel) -> frozenset[str]:
     nearest texel, and 0 outside of the texture. ``OWN_SIZE`` holds where each input is as large as what the
     kernel makes, ``PLACE`` where the fragment driver draws the whole of that at once.
     """
-    key = id(kernel)
-    known = _known.get(key)
-    if known is None or known[0] is not kernel:
-        known = _known[key] = kernel, _quicker_choices(kernel)
-        while len(_known) > _MOST_KNOWN:
-            del _known[next(iter(_known))]
-    return known[1]
-
-
-def _quicker_choices(kernel: Kernel) -> frozenset[str]:
     found = set()
     if kernel.fetched_alone.fetches or _reads_previous(kernel):
         found.add(NEAREST)
     if kernel.kind == "kernel" and not kernel.dialect and not kernel.stride:
         found.add(PLACE)
         # No texture but inputs may be asked for its size.
-        if not kernel.file_parameters and (found & {NEAREST} or kernel.reads("textureSize")):
+        if not kernel.file_parameters and (NEAREST in found or kernel.reads("textureSize")):
             found.add(OWN_SIZE)
     return frozenset(found)
 

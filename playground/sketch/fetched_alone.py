@@ -27,13 +27,12 @@ from playground.sketch.outline import outline
 from playground.sketch.source import SourceText
 
 FETCH = "texelFetch"
-_ASKED = frozenset({(FETCH, 0), ("textureSize", 0)})  # functions of GLSL, and which argument is the sampler
+_ASKED = frozenset({FETCH, "textureSize"})  # functions of GLSL, whose first argument is a sampler
 _OF_GLSL = re.compile(r"texture|texel|shadow")  # its functions that take samplers begin so
 _SAMPLER = re.compile(r"\bsampler2D\s+([A-Za-z_]\w*)")
 _DECLARED = re.compile(r"\bsampler2D\s+\Z")
 _UNIFORM = re.compile(r"\buniform\s+(?:(?:highp|mediump|lowp)\s+)?sampler2D\s+[A-Za-z_]\w*\s*;")
 _SAMPLERS = re.compile(r"\bsampler2D\b")
-_ASKERS = frozenset({FETCH, "textureSize"})
 
 _Sampler = tuple[str, int]  # a function and which of its arguments; of a uniform its name and -1
 
@@ -94,8 +93,8 @@ class _Uses:
         known += len(_UNIFORM.findall(self._code))
         self.is_unclear = bool(
             known != len(_SAMPLERS.findall(self._code))
-            or in_macros & {"sampler2D", *_ASKERS, *names, *takers}
-            or _ASKERS & self._takes.keys()
+            or in_macros & {"sampler2D", *_ASKED, *names, *takers}
+            or _ASKED & self._takes.keys()
         )
         if names and not self.is_unclear:
             for match in re.finditer(rf"\b(?:{'|'.join(sorted(names))})\b", self._code):
@@ -112,7 +111,7 @@ class _Uses:
         function, index, opens = called or ("", 0, at)
         if _DECLARED.search(self._code, max(at - 40, 0), at):
             self.samplers.add(sampler)
-        elif (function, index) in _ASKED:
+        elif function in _ASKED and index == 0:
             self.samplers.add(sampler)
             if function == FETCH and given_to(self._code, opens)[2:] != ["0"]:
                 self.used_otherwise.add(sampler)

@@ -5,8 +5,11 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from playground.engine.engine import Engine
+from playground.gpu.context import ContextInfo
 from playground.sketch.model import Sketch
 
 from ..loading import load
@@ -36,6 +39,18 @@ class Folder:
         """Load a sketch of one kernel in a pass named ``a``."""
         self.write("one.glsl", kernel)
         return self.sketch(f'[[pass]]\nname = "a"\nuse = "./one"\n{more}', size=size)
+
+
+def on_both_kinds(
+    any_engine: Engine, monkeypatch: pytest.MonkeyPatch, sketch: Sketch, texture: str
+) -> list[np.ndarray]:
+    """Return a texture as it is made on what passes for a software renderer, and for a GPU."""
+    found = []
+    for software in (True, False):
+        monkeypatch.setattr(ContextInfo, "software", software)
+        with Engine(any_engine.ctx) as engine:
+            found.append(engine.read(sketch, texture))
+    return found
 
 
 @pytest.fixture

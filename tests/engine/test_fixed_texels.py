@@ -14,7 +14,7 @@ from playground.gpu.wrap import FRAGMENT, wrap
 from playground.sketch.fixed_texels import fixed_texels
 from playground.sketch.reserved_names import FIXED
 
-from .conftest import Folder
+from .conftest import Folder, on_both_kinds
 
 ROW = """#pragma kernel(output = "row:FORMAT")
 uniform float scale = 1.0;  //! slider(0, 9)
@@ -74,12 +74,7 @@ def test_their_values_are_those_of_the_fetches(any_engine: Engine, folder: Folde
 def test_the_bits_are_those_of_a_renderer_that_fetches(
     any_engine: Engine, folder: Folder, monkeypatch, form: str
 ):
-    found = []
-    for software in (True, False):
-        monkeypatch.setattr(ContextInfo, "software", software)
-        with Engine(any_engine.ctx) as engine:
-            found.append(engine.read(sketch_of(folder, form), "a"))
-    np.testing.assert_array_equal(found[0], found[1])
+    np.testing.assert_array_equal(*on_both_kinds(any_engine, monkeypatch, sketch_of(folder, form), "a"))
 
 
 def test_they_change_with_the_input_and_are_read_back_once(any_engine: Engine, folder: Folder, monkeypatch):

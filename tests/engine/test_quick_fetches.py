@@ -12,7 +12,7 @@ from playground.gpu.context import ContextInfo
 from playground.gpu.wrap import COMPUTE, FRAGMENT, wrap
 from playground.sketch.reserved_names import NEAREST, OWN_SIZE, PLACE, UNWIRED
 
-from .conftest import Folder
+from .conftest import Folder, on_both_kinds
 
 ROUGH = """#pragma kernel(output = "rough:FORMAT")
 vec4 kernel(ivec2 texel) {
@@ -82,12 +82,7 @@ def test_texels_are_those_at_their_places_and_zero_outside(
 def test_the_bits_are_those_of_a_renderer_that_fetches(
     any_engine: Engine, folder: Folder, monkeypatch, form: str
 ):
-    found = []
-    for software in (True, False):
-        monkeypatch.setattr(ContextInfo, "software", software)
-        with Engine(any_engine.ctx) as engine:
-            found.append(engine.read(sketch_of(folder, form), "a"))
-    np.testing.assert_array_equal(found[0], found[1])
+    np.testing.assert_array_equal(*on_both_kinds(any_engine, monkeypatch, sketch_of(folder, form), "a"))
 
 
 BLUR = """#pragma kernel(output = "one:r32f, two:rg32f", repeat = "6")
@@ -239,12 +234,7 @@ def test_an_input_that_is_read_by_shares_keeps_its_sampler_while_that_of_texels_
     sketch_of(folder)
     folder.write("reads.glsl", FILTERS)
     sketch = folder.sketch(PASSES.partition("inputs")[0] + 'inputs = { mixed = "rough", rough = "rough" }\n')
-    found = []
-    for software in (True, False):
-        monkeypatch.setattr(ContextInfo, "software", software)
-        with Engine(any_engine.ctx) as engine:
-            found.append(engine.read(sketch, "a"))
-    np.testing.assert_array_equal(found[0], found[1])
+    np.testing.assert_array_equal(*on_both_kinds(any_engine, monkeypatch, sketch, "a"))
 
 
 PLACES = """#pragma kernel(output = "found:rg32f")
