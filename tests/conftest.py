@@ -48,10 +48,22 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         default=[],
         help="below this folder run each test with its first parameters only; may be given several times",
     )
+    parser.addoption(
+        "--seed",
+        metavar="HASH",
+        default="",
+        help="sample the cases of tests that have many by this seed; the commit's hash by default",
+    )
+    parser.addoption(
+        "--all", action="store_true", help="run every case of every test, slow ones too unless -m is given"
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    config.pluginmanager.register(Spread())
+    every_case = config.getoption("--all")
+    if every_case and config.option.markexpr == "not slow":
+        config.option.markexpr = ""
+    config.pluginmanager.register(Spread(config.getoption("--seed"), every_case, config.args))
 
 
 @pytest.hookimpl(trylast=True)

@@ -1,35 +1,89 @@
-"""Spread the many cases of one test over two runs: a quarter of them every day, the others in the slow run.
+"""Sample the many cases of one test: a run has a part of them, the next commit another part.
 
-Where one function is called with many parameters, as for every size, seed and method, what is wrong with
-the code is wrong in most of its cases. Which are for every day goes by the test's name, not by its place:
-neighbours differ in the parameter that changes fastest, and every fourth of them could be all of one value.
+Where one function is called with many parameters, as for every size, seed and sketch, a bug shows in most of
+its cases. The everyday run has a quarter of them, the slow run another quarter, and of a test that is slow
+anyway a quarter. The commit's hash and the case's name choose, so one commit always has the same cases and a
+few commits have all. Each tenth commit runs them all, and so does ``--all``. Cases named on the command line
+and those of tests marked ``always`` are never left out.
 """
 
 from __future__ import annotations
 
-import zlib
+import subprocess
 from collections import defaultdict
+from collections.abc import Iterable
+from hashlib import sha256
 from pathlib import Path
 
 import pytest
 
 TESTS = Path(__file__).parent
-MANY = 2  # cases of a function that are all for every day
-SHARE = 4  # of more, one in so many
+MAX_UNSAMPLED = 2  # cases of a function that all run
+PARTS = 4  # of the cases of a function
+FULL_INTERVAL = 10  # commits from one full run to the next
+
+
+def git(*arguments: str) -> str:
+    """Return what git prints about this checkout, or nothing where there is no git or no checkout."""
+    try:
+        result = subprocess.run(
+            ["git", *arguments], cwd=TESTS, capture_output=True, text=True, encoding="utf-8", check=True
+        )
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+    return result.stdout.strip()
 
 
 class Spread:
-    """Marks cases as slow, of those that are not yet, before markers are looked at."""
+    """Divides the cases of each test between the everyday run, the slow run and other commits' runs."""
+
+    def __init__(self, seed: str = "", every_case: bool = False, arguments: Iterable[str] = ()) -> None:
+        """Sample by a seed, or else by the commit; ``arguments`` are those of the command line."""
+        self.seed = seed or git("rev-parse", "--short=12", "HEAD") or "none"
+        commits = "" if seed else git("rev-list", "--count", "HEAD")
+        self.every_case = every_case or (commits != "" and int(commits) % FULL_INTERVAL == 0)
+        self.named = tuple(name.replace("\\", "/").rpartition("/")[2] for name in arguments if "[" in name)
+
+    def pytest_report_header(self) -> str:
+        """Print the seed, and how to repeat the run."""
+        if self.every_case:
+            return f"cases: all, of seed {self.seed}; --seed {self.seed} samples them"
+        return f"cases: sampled, seed {self.seed}; --seed {self.seed} repeats this run, --all runs every case"
+
+    def part(self, item: pytest.Item) -> int:
+        """Return the part of its test's cases that a case belongs to."""
+        return sha256(f"{self.seed} {item.nodeid}".encode()).digest()[0] % PARTS
+
+    def is_left_out(self, item: pytest.Item, part: int) -> bool:
+        """Return whether a case is in another part than the slow run's, and may be left out."""
+        return (
+            not self.every_case
+            and self.part(item) != part
+            and item.get_closest_marker("always") is None
+            and not (self.named and item.nodeid.endswith(self.named))
+        )
 
     @pytest.hookimpl(tryfirst=True)
-    def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
-        """Mark what is left to the slow run; the first case of a function never is."""
-        cases = defaultdict(list)
+    def pytest_collection_modifyitems(self, config: pytest.Config, items: list[pytest.Item]) -> None:
+        """Mark what the everyday run leaves to the slow run; deselect what both leave to other commits."""
+        functions = defaultdict(list)
         for item in items:
-            if item.path.is_relative_to(TESTS) and item.get_closest_marker("slow") is None:
-                cases[item.nodeid.partition("[")[0]].append(item)
-        for found in cases.values():
-            if len(found) > MANY:
-                for item in found[1:]:
-                    if zlib.crc32(item.nodeid.encode()) % SHARE:
-                        item.add_marker("slow")
+            if item.path.is_relative_to(TESTS):
+                is_slow = item.get_closest_marker("slow") is not None
+                functions[item.nodeid.partition("[")[0], is_slow].append(item)
+        left_out: set[pytest.Item] = set()
+        for (_, is_slow), cases in functions.items():
+            if len(cases) <= MAX_UNSAMPLED:
+                continue
+            if is_slow:
+                others = [item for item in cases if self.is_left_out(item, part=0)]
+                left_out.update(others if len(others) < len(cases) else cases[1:])
+                continue
+            for item in cases[1:]:  # the first case is for every day
+                if self.part(item) != 0:
+                    item.add_marker("slow")
+                    if self.is_left_out(item, part=1):
+                        left_out.add(item)
+        if left_out:
+            config.hook.pytest_deselected(items=list(left_out))
+            items[:] = [item for item in items if item not in left_out]

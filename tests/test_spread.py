@@ -1,15 +1,25 @@
-"""What of many cases is for every day: some of each, never none, and what was slow before stays so."""
+"""Which of many cases a run has: some of each test, never none, all of them over time, and all on demand."""
 
 from __future__ import annotations
 
+import subprocess
 from itertools import product
+from pathlib import Path
 from types import SimpleNamespace
 
-from .spread import MANY, TESTS, Spread
+import pytest
+
+from . import spread
+from .spread import FULL_INTERVAL, MAX_UNSAMPLED, TESTS, Spread
+
+FEW = [str(i) for i in range(MAX_UNSAMPLED)]
+MANY = ["-".join(case) for case in product("abcdefgh", "1234", "xyz")]
 
 
 class Case(SimpleNamespace):
-    """A collected test, as far as its marker goes."""
+    """A collected test, as far as its markers go."""
+
+    __hash__ = object.__hash__
 
     def get_closest_marker(self, name: str) -> str | None:
         return name if name in self.marks else None
@@ -18,29 +28,69 @@ class Case(SimpleNamespace):
         self.marks.append(name)
 
 
-def every_day(names: list[str], folder: int = 0) -> list[str]:
-    """Return the cases that are left, of a test among the tests (0), or in a folder beside them (1)."""
-    path = (TESTS if folder == 0 else TESTS.parent) / "test_a.py"
-    cases = [Case(nodeid=f"a.py::test[{name}]", path=path, marks=[]) for name in names]
-    Spread().pytest_collection_modifyitems(cases)  # type: ignore[arg-type]
-    return [name for name, case in zip(names, cases, strict=True) if not case.marks]
+def runs(names: list[str], spread: Spread, *marks: str, folder: Path = TESTS) -> tuple[list[str], list[str]]:
+    """Return the cases of the everyday run and those of the slow run."""
+    cases = [
+        Case(nodeid=f"tests/test_a.py::test[{name}]", path=folder / "test_a.py", marks=[*marks])
+        for name in names
+    ]
+    left_out: list[Case] = []
+    hook = SimpleNamespace(pytest_deselected=lambda items: left_out.extend(items))
+    items = list(cases)
+    spread.pytest_collection_modifyitems(SimpleNamespace(hook=hook), items)  # type: ignore[arg-type]
+    assert {id(case) for case in cases} == {id(case) for case in items + left_out}
+    kept = [(name, "slow" in case.marks) for name, case in zip(names, cases, strict=True) if case in items]
+    return [name for name, slow in kept if not slow], [name for name, slow in kept if slow]
 
 
 def test_few_cases_and_those_of_other_folders_all_run():
-    few, many = [str(i) for i in range(MANY)], [str(i) for i in range(60)]
-    assert (every_day(few), every_day(many, 1)) == (few, many)
+    assert runs(FEW, Spread("1")) == (FEW, [])
+    assert runs(FEW, Spread("1"), "slow") == ([], FEW)
+    assert runs(MANY, Spread("1"), folder=TESTS.parent) == (MANY, [])
 
 
-def test_of_many_a_quarter_run_among_them_the_first_and_every_value_of_each_parameter():
-    many = ["-".join(case) for case in product("abcdefgh", "1234", "xyz")]
-    left = every_day(many)
-    assert left[0] == many[0] and 0.15 < len(left) / len(many) < 0.35
-    for at in range(3):
-        assert {name.split("-")[at] for name in left} == {name.split("-")[at] for name in many}
+@pytest.mark.parametrize("seed", ["1", "2"])
+def test_each_run_has_about_a_quarter(seed: str):
+    everyday, slow = runs(MANY, Spread(seed))
+    assert everyday[0] == MANY[0] and not set(everyday) & set(slow)
+    for part in (everyday, slow, runs(MANY, Spread(seed), "slow")[1]):
+        assert 0.15 < len(part) / len(MANY) < 0.35
+        assert {name[-1] for name in part} == set("xyz")
 
 
-def test_what_is_slow_is_not_counted_and_stays_slow():
-    marked = [Case(nodeid=f"a.py::test[{i}]", path=TESTS / "a.py", marks=["slow"]) for i in range(60)]
-    first = Case(nodeid="a.py::test[first]", path=TESTS / "a.py", marks=[])
-    Spread().pytest_collection_modifyitems([*marked, first])  # type: ignore[arg-type]
-    assert first.marks == [] and all(case.marks == ["slow"] for case in marked)
+def test_ten_seeds_reach_almost_every_case_and_one_repeats():
+    parts = [runs(MANY, Spread(str(seed)), "slow")[1] for seed in range(10)]
+    # A case is missed by ten independent quarters with the probability 0.75 ** 10 = 0.056.
+    assert len(set().union(*parts)) > 0.85 * len(MANY)
+    assert parts[3] == runs(MANY, Spread("3"), "slow")[1] != parts[4]
+
+
+@pytest.mark.parametrize("seed", [str(seed) for seed in range(8)])
+def test_three_slow_cases_are_never_all_left_out(seed: str):
+    assert runs(["a", "b", "c"], Spread(seed), "slow")[1]
+
+
+def test_all_always_and_named_cases_run():
+    everyday, slow = runs(MANY, Spread("1", every_case=True))
+    assert sorted(everyday + slow) == sorted(MANY) and everyday == runs(MANY, Spread("1"))[0]
+    assert runs(MANY, Spread("1"), "slow", "always") == ([], MANY)
+    left_out = next(name for name in MANY if name not in runs(MANY, Spread("1"), "slow")[1])
+    assert left_out in runs(MANY, Spread("1", arguments=[f"tests/test_a.py::test[{left_out}]"]), "slow")[1]
+
+
+def test_the_commit_is_the_seed_and_each_tenth_is_full(monkeypatch: pytest.MonkeyPatch):
+    answers = {"rev-parse": "abcdef", "rev-list": str(FULL_INTERVAL * 7)}
+    monkeypatch.setattr(spread, "git", lambda command, *_: answers[command])
+    assert runs(MANY, Spread(), "slow") == ([], MANY)
+    assert not Spread("abcdef").every_case, "a seed that is given is a sample"
+    answers["rev-list"] = str(FULL_INTERVAL * 7 + 1)
+    assert runs(MANY, Spread(), "slow") == runs(MANY, Spread("abcdef"), "slow") != ([], MANY)
+    assert "--seed abcdef " in Spread().pytest_report_header()
+
+
+def test_without_git_there_is_still_a_seed(monkeypatch: pytest.MonkeyPatch):
+    def missing(*_: object, **__: object) -> None:
+        raise FileNotFoundError
+
+    monkeypatch.setattr(subprocess, "run", missing)
+    assert Spread().seed == "none" and not Spread().every_case
