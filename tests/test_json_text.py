@@ -7,6 +7,7 @@ import pytest
 from playground.json_text import DEEPEST, read_json
 
 
+@pytest.mark.always
 @pytest.mark.parametrize("opening", ["[", '{"a":', '[{"a":'])
 @pytest.mark.parametrize("times", [DEEPEST, 400, 3000, 100_000])
 def test_what_is_nested_too_deeply_is_refused(opening: str, times: int):

@@ -217,6 +217,7 @@ BAD = [
 ]
 
 
+@pytest.mark.always
 @pytest.mark.parametrize("name", BAD)
 def test_no_name_leads_out(name: str, tmp_path: Path) -> None:
     path = zipped(tmp_path / "bad.zip", {"sketch.toml": b"", name: b"x"})

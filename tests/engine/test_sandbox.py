@@ -222,6 +222,7 @@ MONSTERS = {
 }
 
 
+@pytest.mark.always
 @pytest.mark.slow
 @pytest.mark.parametrize("name", MONSTERS)
 def test_a_monstrous_text_is_stopped_or_crashes_and_the_next_is_tried(folder, name):
@@ -398,6 +399,7 @@ def two(folder):
     return folder.path
 
 
+@pytest.mark.always
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("number", "pipe"),

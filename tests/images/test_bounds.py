@@ -98,6 +98,7 @@ def jpeg(path: Path) -> None:
     path.write_bytes(data[:at] + struct.pack(">HH", 13000, 13000) + data[at + 4 :])
 
 
+@pytest.mark.always
 @pytest.mark.parametrize(
     ("name", "write", "read"),
     [

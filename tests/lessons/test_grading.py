@@ -108,6 +108,7 @@ def link(info):
     return info
 
 
+@pytest.mark.always
 @pytest.mark.parametrize(
     ("entries", "sentence"),
     [
@@ -248,6 +249,7 @@ def test_only_the_values_that_are_asked_for_are_taken():
     }
 
 
+@pytest.mark.always
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [

@@ -256,6 +256,7 @@ sys.stdin.read()
 """
 
 
+@pytest.mark.always
 @pytest.mark.slow
 @linux
 @pytest.mark.parametrize(

@@ -164,6 +164,7 @@ HOSTILE = [
 ]  # fmt: skip
 
 
+@pytest.mark.always
 @pytest.mark.parametrize("text", HOSTILE, ids=[text[:24] for text in HOSTILE])
 def test_a_hostile_link_does_no_harm(node: Node, text: str):
     body = """const before = session.state(); const found = read("#" + steps + "&height.seed=4");

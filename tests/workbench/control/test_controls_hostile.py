@@ -75,6 +75,7 @@ def anything(chance: random.Random, depth: int = 0) -> Any:
     return {chance.choice([*PATHS, "azimuth", "elevation"]): anything(chance, depth + 1) for _ in range(3)}
 
 
+@pytest.mark.always
 @pytest.mark.parametrize("seed", range(4))
 def test_what_is_asked_by_chance_ends_in_a_sentence_at_worst(desk: Desk, seed: int):
     chance, controls = random.Random(seed), Controls(desk.bench)
