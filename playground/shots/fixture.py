@@ -31,7 +31,7 @@ from playground.shots.mask_of_test import MaskOfTest
 from playground.shots.masking import Light
 from playground.shots.names import name_of_test, one_spelling, why_no_name
 from playground.shots.plugin_constants import USED
-from playground.shots.soft_failures import add_failure, fail_for_what_is_left
+from playground.shots.soft_failures import add_check, add_failure, expect_check, fail_for_what_is_left
 from playground.shots.suite import RenderedShot, ShotCase, film_of
 from playground.sketch.find import find
 from playground.sketch.load import load
@@ -57,6 +57,7 @@ class ShotFixture:
         self._drawn: dict[int, tuple[Frame, ContextInfo, ShotCase]] = {}
         self._started = time.perf_counter()
         self._begun = False
+        expect_check(node)
 
     def render(
         self,
@@ -101,6 +102,7 @@ class ShotFixture:
             return frame
         finally:
             self._checker.show_what_was_printed(self._node)
+        add_check(self._node)  # it may be what the test expects
         # Without the frames it came through, which say nothing of the test's own mistake.
         raise self._checker.raised(self._node, own, mistake) from None
 
@@ -142,6 +144,7 @@ class ShotFixture:
         that cannot be or is taken, a tolerance without a reason, and what is no mask.
         """
         __tracebackhide__ = True
+        add_check(self._node)
         start, self._started = self._started, time.perf_counter()
         own, name = not name, name or name_of_test(self._node.nodeid)
         self._refuse_name(name, own)
@@ -176,6 +179,7 @@ class ShotFixture:
         Otherwise as `check`; ``mask`` hides the same of each frame, and is no texture.
         """
         __tracebackhide__ = True
+        add_check(self._node)
         start, self._started = self._started, time.perf_counter()
         own, name = not name, name or name_of_test(self._node.nodeid)
         self._refuse_name(name, own)

@@ -28,6 +28,7 @@ import pytest
 from playground.shots import unused_references as used
 from playground.shots.plugin_constants import (
     CHECKED,
+    FIXTURE,
     REFERENCE_RENDERER,
     REPORT,
     SHOT,
@@ -207,7 +208,7 @@ def pytest_itemcollected(item: pytest.Item) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Mark the tests in Python that compare pictures, for ``-m shots``."""
     for item in items:
-        if "shot" in getattr(item, "fixturenames", ()):
+        if FIXTURE in getattr(item, "fixturenames", ()):
             item.add_marker("shots")
     used.count_tests(config, items)
 

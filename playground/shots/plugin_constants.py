@@ -38,6 +38,12 @@ UNCOMPARED = "shots-uncompared"
 UNRECORDED = "shots-unrecorded"
 """… that says why a result could not be recorded."""
 
+FIXTURE = "shot"
+"""The fixture's name."""
+
+UNCHECKED = "shots-unchecked"
+"""The user property that says that a test has the fixture, and failed because it checked nothing."""
+
 USED = "shots-used"
 """… that names a reference which a test in Python has used, as "llvmpipe/dawn"."""
 

@@ -1,10 +1,11 @@
 """Find references of test files that no test uses any more, in a run that could know.
 
 A run knows which references the tests of a file use only if it had all of its tests, and
-every one of them passed: under ``-k``, ``--lf``, ``-x``, with a node id, or where a test was
-skipped or failed, nothing is reported. Of the references, only those of renderers that drew in
-this run are judged. The tests may have run in several processes; what they report
-is gathered where their reports come together.
+every one of them passed, or failed only because it checked nothing: under ``-k``, ``--lf``, ``-x``, with
+a node id, or where a test was skipped or failed, nothing is reported. A reference of a renderer that
+drew in this run is used if it was compared; one of another renderer, if a picture of its name was
+checked at all. The tests may have run in several processes; what they report is gathered where their
+reports come together.
 
 It reads no pictures, and is loaded with every pytest: it imports next to nothing.
 """
@@ -17,7 +18,7 @@ from pathlib import Path
 
 import pytest
 
-from playground.shots.plugin_constants import SCREENSHOTS, TESTS, USED
+from playground.shots.plugin_constants import FIXTURE, SCREENSHOTS, TESTS, UNCHECKED, USED
 
 _COUNTS: pytest.StashKey[Counter[Path]] = pytest.StashKey()
 
@@ -35,7 +36,7 @@ def count_tests(config: pytest.Config, items: list[pytest.Item]) -> None:
     counts = config.stash.setdefault(_COUNTS, Counter())
     known: dict[Path, bool] = {}
     for item in items:
-        uses = "shot" in getattr(item, "fixturenames", ())
+        uses = FIXTURE in getattr(item, "fixturenames", ())
         if uses or known.setdefault(item.path, references_of(item.path).is_dir()):
             item.user_properties.append((TESTS, 0 if narrowed else counts[item.path]))
 
@@ -48,7 +49,7 @@ def references_of(module: Path) -> Path:
 @dataclass
 class _File:
     tests: int = 0  # in the file; 0: not known
-    passed: set[str] = field(default_factory=set)  # node ids
+    ended: set[str] = field(default_factory=set)  # node ids of the tests that passed, or checked nothing
     used: set[str] = field(default_factory=set)  # "renderer/name"
     unused: bool = False  # whether there are references that none of them uses
 
@@ -62,13 +63,14 @@ class Uses:
         self._files: dict[str, _File] = {}
 
     def add(self, report: pytest.TestReport) -> None:
-        """Record a test that has passed."""
+        """Record a test of which it is known what it used."""
         tests = [value for name, value in report.user_properties if name == TESTS]
-        if not tests or not report.passed:
+        unchecked = any(name == UNCHECKED for name, _ in report.user_properties)
+        if not tests or not (report.passed or unchecked):
             return
         file = self._files.setdefault(report.nodeid.partition("::")[0], _File())
         file.tests = int(str(tests[0]))
-        file.passed.add(report.nodeid)
+        file.ended.add(report.nodeid)
         file.used.update(str(value) for name, value in report.user_properties if name == USED)
 
     def complete(self) -> dict[Path, set[str]]:
@@ -80,21 +82,24 @@ class Uses:
             self._root / name: {used.rpartition("/")[2] for used in file.used}
             | ({"references"} if file.unused else set())
             for name, file in self._files.items()
-            if file.tests and len(file.passed) == file.tests
+            if file.tests and len(file.ended) == file.tests
         }
 
     def stale(self) -> dict[str, str]:
         """Return, by the node id of a test that would have found it, the unused references, as a sentence."""
         found: dict[str, str] = {}
         for name, file in self._files.items():
-            if not file.tests or len(file.passed) != file.tests:
+            if not file.tests or len(file.ended) != file.tests:
                 continue
             folder = references_of(self._root / name)
             stale: list[Path] = []
-            for renderer in {self._expected, *(used.partition("/")[0] for used in file.used)}:
+            drew = {self._expected, *(used.partition("/")[0] for used in file.used)}
+            checked = {used.partition("/")[2] for used in file.used}
+            for picture in sorted(folder.glob("*/*.png")):
                 # dawn.png and dawn.2.png are both references of dawn
-                pictures = sorted((folder / renderer).glob("*.png"))
-                stale += [p for p in pictures if f"{renderer}/{p.name.partition('.')[0]}" not in file.used]
+                renderer, shot = picture.parent.name, picture.name.partition(".")[0]
+                if f"{renderer}/{shot}" not in file.used if renderer in drew else shot not in checked:
+                    stale.append(picture)
             stale += _of_files_that_are_gone(folder.parent)
             file.unused = bool(stale)
             if stale:

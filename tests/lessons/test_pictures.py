@@ -43,7 +43,7 @@ def test_pictures(shot, name):
     check(shot, name, own(name))
 
 
-def test_what_is_left_to_shots_is_one(shot):
+def test_what_is_left_to_shots_is_one():
     """Of a lesson's picture that is a shot of its sketch, that sketch's test compares the reference."""
     for name in LESSONS[:2]:
         for picture in pictures_of(read_lesson(name)):

@@ -196,10 +196,76 @@ def test_a_reference_that_no_test_uses_fails_when_all_tests_of_its_file_ran(test
     tests().assert_outcomes(passed=1, skipped=1)
     edit("test_slope.py", "    pytest.skip()", "    return")
     result = tests()
-    result.assert_outcomes(
-        passed=2, failed=1
-    )  # of numpy, nothing was drawn: nothing is known of its references
-    result.stdout.fnmatch_lines(STALE)
+    result.assert_outcomes(passed=1, failed=2)  # one of them: it checks nothing
+    result.stdout.fnmatch_lines(["no test uses 3 references; remove:", "*numpy/ramp.png"])
+
+
+UNCHECKED = """import numpy as np, pytest
+RAMP = np.linspace(0, 1, 48).reshape(4, 4, 3)
+@pytest.fixture
+def late(shot):
+    yield
+    shot.check(RAMP, 'late', by='numpy')
+@pytest.fixture
+def helper(shot):
+    return lambda name: shot.check(RAMP, name, by='numpy')
+@pytest.fixture
+def idle(shot):
+    yield
+def test_nothing(shot): pass
+@pytest.mark.parametrize('n', [0, 1])
+def test_some(shot, n):
+    if n: shot.check(RAMP, 'some', by='numpy')
+def test_late(late): pass
+def test_helper(helper): helper('helped')
+def test_idle(idle): pass
+def test_asked(request): request.getfixturevalue('shot')
+def test_refused(shot):
+    with pytest.raises(ValueError): shot.check(RAMP, 'a b', by='numpy')
+def test_skipped(shot): pytest.skip()
+@pytest.mark.xfail(reason='later', raises=ZeroDivisionError, strict=True)
+def test_expected(shot): 1 / 0
+def test_wrong(shot): assert 0, 'its own failure'
+def test_without(): pass
+"""
+
+
+def test_a_test_that_checks_no_picture_fails(run: Run, pytester: pytest.Pytester) -> None:
+    pytester.makepyfile(test_sea=UNCHECKED)
+    result = run("--shots-update", "-rfE")
+    # Failed: nothing, some[0], asked, wrong. An error: idle, whose fixture might have checked after the test.
+    result.assert_outcomes(passed=6, failed=4, errors=1, skipped=1, xfailed=1)
+    found = sorted(
+        line.partition("::")[2].partition(" - ")[0]
+        for line in result.outlines
+        if line[:5] in ("FAILE", "ERROR") and "::" in line
+    )
+    assert found == ["test_asked", "test_idle", "test_nothing", "test_some[0]", "test_wrong"]
+    assert result.stdout.str().count("takes `shot` and checks nothing: expected shot.check") >= 4
+
+
+@pytest.mark.parametrize("workers", [(), pytest.param(("-n", "1"), marks=pytest.mark.slow)])
+def test_the_reference_of_a_check_that_is_gone_is_named(
+    run: Run, pytester: pytest.Pytester, workers: tuple[str, ...]
+) -> None:
+    ramp = "import numpy as np\nRAMP = np.linspace(0, 1, 48).reshape(4, 4, 3)\n"
+    check = "shot.check(RAMP, '{0}', by='numpy')"
+    test = "def test_{0}(shot): {1}\n"
+    both = "".join(test.format(name, check.format(name)) for name in ("one", "two"))
+    pytester.makepyfile(test_sea=ramp + both)
+    run("--shots-update").assert_outcomes(passed=2)
+    other = Path("screenshots/test_sea.py/nvidia-h200")
+    other.mkdir()
+    for name in ("one", "gone"):
+        (other / f"{name}.png").write_bytes(b"")
+    lines = ["no test uses 2 references; remove:", "*numpy/two.png", "*nvidia-h200/gone.png"]
+    for without in ("", test.format("two", "pass")):
+        Path("test_sea.py").write_text(ramp + test.format("one", check.format("one")) + without)
+        result = run(*workers)
+        result.assert_outcomes(passed=1, failed=1 + bool(without))
+        result.stdout.fnmatch_lines(lines)
+    for arguments in (("-k", "one"), ("test_sea.py::test_one",), ("--deselect", "test_sea.py::test_two")):
+        assert run(*arguments, *workers).ret == pytest.ExitCode.OK, "a part of the tests knows nothing of it"
 
 
 def test_references_of_a_test_file_that_is_gone_or_compares_nothing_any_more_fail(tests: Run) -> None:

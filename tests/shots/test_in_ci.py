@@ -61,11 +61,13 @@ def test_a_path_after_the_option_is_a_path(accepted: Run) -> None:
 @pytest.mark.parametrize("workers", [(), ("-n", "1", "--dist", "loadfile")])
 def test_the_progress_ends_at_a_hundred_percent(run: Run, workers: tuple[str, ...]) -> None:
     """Unused references are reported as a test that was not collected."""
-    Path("test_land.py").write_text("def test_one(shot):\n    pass\n")
+    Path("test_land.py").write_text(
+        "def test_one(shot):\n    shot.check(__import__('numpy').eye(9), 'one', by='numpy')\n"
+    )
     stale = Path("screenshots/test_land.py/llvmpipe/gone.png")
     stale.parent.mkdir(parents=True)
     stale.write_bytes(b"")
-    result = run("test_land.py", *workers)
+    result = run("test_land.py", "--shots-update", *workers)
     result.assert_outcomes(passed=1, failed=1)
     percents = [int(found) for found in re.findall(r"\[ *(\d+)%\]", result.stdout.str())]
     assert percents and max(percents) == 100
