@@ -8,6 +8,7 @@ from pathlib import Path
 
 from playground.errors import DataError
 from playground.images.files import reason, replacing
+from playground.regular_file import open_regular
 
 _MARK = b"terrain shader playground"
 _LOOKED_AT = 4096  # bytes, within which an export says who made it
@@ -19,7 +20,7 @@ def refuse_foreign_files(path: Path, sidecars: list[Path]) -> None:
         try:
             if not other.exists():
                 continue
-            with other.open("rb") as handle:
+            with open_regular(other) as handle:
                 ours = _MARK in handle.read(_LOOKED_AT)
         except OSError as error:
             raise DataError(f"cannot be read: {reason(error)}", file=other) from error

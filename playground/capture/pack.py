@@ -21,6 +21,7 @@ from playground.engine.packed_files import contents, folder_of
 from playground.errors import DataError
 from playground.images.files import reason, replacing
 from playground.paths import shown
+from playground.regular_file import read_regular
 from playground.sketch.libraries import libraries_of
 from playground.sketch.model import Sketch
 from playground.sketch.unpack import FORMAT, MANIFEST, MOST_BYTES, MOST_FILES
@@ -55,7 +56,7 @@ def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] =
         with replacing(path) as handle, zipfile.ZipFile(handle, "w") as archive:
             text = (json.dumps(manifest, indent=1, ensure_ascii=False) + "\n").encode()
             for name in sorted({*files, MANIFEST}):
-                data = text if name == MANIFEST else files[name].read_bytes()
+                data = text if name == MANIFEST else read_regular(files[name])
                 archive.writestr(_entry(name), data, zipfile.ZIP_DEFLATED, 9)
     except OSError as error:
         raise DataError(f"cannot be packed: {reason(error)}", file=error.filename or path) from None

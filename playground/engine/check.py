@@ -27,6 +27,7 @@ from playground.engine.standalone import free_name, standalone_sketch, with_pict
 from playground.errors import DataError, Diagnostic, PlaygroundError, SketchError, nearest
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
+from playground.regular_file import irregularity
 from playground.sketch.allowed_files import TEXTS, is_elevation, is_variant, root_of, unsaved_texts
 from playground.sketch.assign import values_of
 from playground.sketch.dialects import EXPORT, is_export
@@ -108,8 +109,8 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
                 wanted = ", ".join((*TEXTS, ENDING, "an elevation file"))
                 raise DataError(f"cannot be checked; expected a folder or {wanted}", file=shown(path))
             found.setdefault(path.resolve(), root_of(path.resolve()))
-        elif path.exists():
-            raise DataError("this is a pipe, a socket or a device; a file was expected", file=shown(path))
+        elif what := irregularity(path):
+            raise DataError(what, file=shown(path))
         else:
             near = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
             hint = nearest(path.name, near)

@@ -15,6 +15,7 @@ from typing import NamedTuple
 from playground.errors import DataError, nearest
 from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL, shown
+from playground.regular_file import irregularity
 from playground.sketch.allowed_files import ELEVATIONS, VECTORS, outside_sidecar
 from playground.sketch.sidecars import sidecar_places
 
@@ -90,5 +91,6 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
     near = sorted(
         {p.name for folder in folders if folder.is_dir() for p in folder.iterdir() if p.suffix in _DATA}
     )
-    what = "this is a folder, not a file" if path.is_dir() else "there is no such file"
-    raise DataError(f"{parameter}: {what}{nearest(path.name, near)}", file=shown(path))
+    what = next(filter(None, map(irregularity, [*(place / path for place in places), path])), "")
+    message = what or f"there is no such file{nearest(path.name, near)}"
+    raise DataError(f"{parameter}: {message}", file=shown(path))

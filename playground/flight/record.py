@@ -19,6 +19,7 @@ from typing import IO, Any, TypeGuard
 from playground.errors import DataError
 from playground.flight.craft import STEP, Controls
 from playground.json_text import read_json
+from playground.regular_file import read_regular
 
 FORMAT, VERSION = "playground flight", 1
 LEAST_RADIUS, MOST_RADIUS = 1.5, 16.0  # [parts] visible: nearer, the end of the terrain would show
@@ -142,7 +143,7 @@ class Record:
 def read_record(path: str | Path) -> Record:
     """Read a flight; raise ``DataError`` naming the line that is wrong."""
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = read_regular(path).decode()
     except OSError as error:
         raise DataError(f"cannot be read: {error.strerror}", file=str(path)) from None
     except UnicodeDecodeError:

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from playground.errors import DataError
 from playground.paths import shown
+from playground.regular_file import open_regular, require_regular
 from playground.sketch.sidecars import sidecars
 
 _TICK = 50_000_000  # [ns] more than a file system's clock takes to move on
@@ -22,7 +23,7 @@ def content_key(path: Path) -> str:
     Raises ``DataError`` for a file that cannot be read.
     """
     try:
-        stat = path.stat()
+        stat = require_regular(path)
     except OSError as error:
         raise DataError(f"cannot be read: {error.strerror}", file=shown(path)) from None
     if stat.st_size < _LARGE:
@@ -46,9 +47,9 @@ def content_hash(path: Path) -> str:
 
 def _own_hash(path: Path) -> str:
     try:
-        stat = path.stat()
+        stat = require_regular(path)
         # Two saves may fall into one tick of a file system's clock: what is so new is not remembered.
-        is_new = abs(time.time_ns() - stat.st_mtime_ns) < _TICK
+        is_new = abs(time.time_ns() - max(stat.st_mtime_ns, stat.st_ctime_ns)) < _TICK
         work_out = _hash.__wrapped__ if is_new else _hash
         return work_out(str(path), stat.st_mtime_ns, stat.st_ctime_ns, stat.st_size, stat.st_ino)
     except OSError as error:
@@ -57,5 +58,5 @@ def _own_hash(path: Path) -> str:
 
 @lru_cache(maxsize=256)
 def _hash(path: str, modified: int, changed: int, size: int, inode: int) -> str:
-    with Path(path).open("rb") as file:
+    with open_regular(path) as file:
         return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=16)).hexdigest()

@@ -36,6 +36,7 @@ from playground.images.array_pictures import array_samples, is_array
 from playground.images.bounds import refuse_bomb, refuse_too_many, webp_size
 from playground.partial import partial_file
 from playground.paths import shown
+from playground.regular_file import NotRegularError, open_regular, require_regular
 
 if TYPE_CHECKING:
     import PIL.Image
@@ -152,15 +153,15 @@ def checked_file(path: str | Path) -> Path:
     """
     path = Path(path)
     try:
-        if path.is_dir():
-            raise DataError("is a folder; expected a file", file=path)
-        if path.stat().st_size == 0:
+        if require_regular(path).st_size == 0:
             raise DataError("the file is empty", file=path)
     except (FileNotFoundError, NotADirectoryError) as error:
         if not path.parent.is_dir():
             raise DataError(f"there is no folder '{shown(path.parent)}'", file=path) from error
         near = nearest(path.name, (p.name for p in path.parent.iterdir() if p.suffix == path.suffix))
         raise DataError(f"there is no such file{near}", file=path) from error
+    except NotRegularError as error:
+        raise DataError(reason(error), file=path) from None
     except (OSError, ValueError) as error:
         raise DataError(f"cannot be read: {reason(error)}", file=path) from error
     return path
@@ -178,12 +179,12 @@ def reading(path: Path) -> Iterator[BinaryIO]:
     logging.getLogger(__name__).debug("read %s", shown(path))
     # Of damaged files Pillow raises OSError, SyntaxError, ValueError, struct.error …; of odd ones it warns.
     try:
-        with warnings.catch_warnings(), path.open("rb") as handle:
+        with warnings.catch_warnings(), open_regular(path) as handle:
             warnings.simplefilter("ignore")
             yield handle
     except DataError:
         raise
-    except PermissionError as error:
+    except (PermissionError, NotRegularError) as error:
         raise DataError(f"cannot be read: {reason(error)}", file=path) from error
     except Exception as error:
         raise DataError(f"the file is damaged or cut short: {reason(error)}", file=path) from error

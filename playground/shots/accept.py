@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from playground.errors import DataError, ParameterError, nearest
 from playground.images.files import make_folder, read_png, replacing, write_png
 from playground.paths import shown
+from playground.regular_file import read_regular
 from playground.shots.references import FOLDER, accepted_in
 from playground.shots.results import NEVER_ACCEPTED, Record, digest_of, digests_of
 
@@ -77,7 +78,7 @@ def accept(folder: Path, record: Record, *, also: bool = False) -> Change:
         if any(_shows(path, pixels) for path in there):
             return Change(record.name, None)
         raise DataError(f"{record.name}: {_changed(record, there)} since it was checked; run the tests again")
-    before = {path: path.read_bytes() for path in there}
+    before = {path: read_regular(path) for path in there}
     written = _further(place, record.shot, there) if also and there else place / f"{record.shot}.png"
     make_folder(place)
     write_png(written, pixels, text=record.texts)
@@ -101,7 +102,7 @@ def undo(change: Change) -> list[str]:
         )
     lines = []
     for path, data in change.before.items():
-        if path.exists() and digest_of(data) == digest_of(path.read_bytes()):
+        if path.exists() and digest_of(data) == digest_of(read_regular(path)):
             continue
         with replacing(path) as handle:
             handle.write(data)
@@ -146,7 +147,7 @@ def _picture(folder: Path, record: Record) -> NDArray[np.uint8]:
         raise DataError(f"{record.name}: there is no picture of it in {shown(folder)}; run the tests again")
     path = folder / record.pictures["actual"]
     try:
-        data = path.read_bytes()
+        data = read_regular(path)
     except OSError:
         raise DataError(f"{record.name}: its picture is not there any more; run the tests again") from None
     if digest_of(data) != record.digest:

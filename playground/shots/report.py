@@ -19,6 +19,7 @@ from pathlib import Path
 from playground.errors import counted
 from playground.images.files import replacing
 from playground.paths import shown
+from playground.regular_file import read_regular
 from playground.shots.page.document import page
 from playground.shots.page.shot import Setting
 from playground.shots.results import FOLDER, Record, read_results
@@ -77,7 +78,7 @@ class _Pictures:
         found: dict[str, str] = {}
         for name in record.pictures.values():
             try:
-                data = (self.folder / name).read_bytes()
+                data = read_regular(self.folder / name)
             except OSError:
                 self.gone.append(name)
                 continue

@@ -33,6 +33,7 @@ from numpy.typing import NDArray
 from playground.errors import DataError
 from playground.images.files import encode_png, make_folder, replacing
 from playground.json_text import read_json
+from playground.regular_file import read_regular
 from playground.shots.plugin_constants import REPORT
 
 FORMAT = 2
@@ -216,7 +217,7 @@ def read_results(folder: Path) -> list[Record]:
 def read_result(path: Path) -> Record:
     """Read one record from its file; raise ``DataError``."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_regular(path).decode()
     except OSError as error:
         raise DataError(f"cannot be read: {error.strerror}", file=path) from error
     except UnicodeDecodeError as error:
@@ -242,7 +243,7 @@ def digests_of(files: Iterable[Path]) -> dict[str, str]:
     found = {}
     for path in files:
         try:
-            found[path.name] = digest_of(path.read_bytes())
+            found[path.name] = digest_of(read_regular(path))
         except OSError as error:
             raise DataError(f"cannot be read: {error.strerror}", file=path) from error
     return found

@@ -13,6 +13,7 @@ from urllib.parse import quote
 
 from playground.errors import DataError, PlaygroundError
 from playground.paths import shown
+from playground.regular_file import read_regular
 from playground.shots.accept import Change, accept, undo
 from playground.shots.page.document import page
 from playground.shots.page.shot import Setting
@@ -54,7 +55,7 @@ class Session:
         if name not in self._pictures:
             return None
         try:
-            return (self.folder / name).read_bytes()
+            return read_regular(self.folder / name)
         except OSError:
             return None
 

@@ -6,12 +6,12 @@ from pathlib import Path
 
 from playground.errors import SketchError, nearest
 from playground.paths import GLSL, SKETCHES
+from playground.regular_file import irregularity
 from playground.sketch.allowed_files import (
     ELEVATIONS,
     SHADERS,
     TECHNIQUES,
     TEXTS,
-    exists,
     is_elevation,
     is_file,
     is_inside,
@@ -59,8 +59,8 @@ def find(name: str | Path) -> Path:
             return candidate
     if is_folder:
         raise SketchError("this folder holds no sketch.toml, and no Image of Shadertoy of its own", file=path)
-    if exists(path):
-        raise SketchError("this is a pipe, a socket or a device; a file was expected", file=path)
+    if what := irregularity(path):
+        raise SketchError(what, file=path)
     names = [*shipped_sketches(), *(shipped_names() if "/" in text else [])]
     raise SketchError(f"there is no file and no shipped sketch '{text}'{nearest(text, names)}")
 

@@ -17,6 +17,7 @@ from playground.errors import DataError, ParameterError, nearest
 from playground.folders import state_folder
 from playground.json_text import read_json
 from playground.partial import partial_file
+from playground.regular_file import read_regular
 from playground.sketch.allowed_files import is_inside, names_below, note
 
 VARIABLE = "PLAYGROUND_LIBRARIES"
@@ -47,7 +48,7 @@ def remembered() -> dict[str, Path]:
     try:
         if path.stat().st_size > _LARGEST:
             raise ValueError(f"it is larger than {_LARGEST} bytes")
-        table = read_json(path.read_text(encoding="utf-8"))
+        table = read_json(read_regular(path).decode())
         if table["format"] != FORMAT:
             raise ValueError(f"it has format {table['format']}, and this version knows {FORMAT}")
         return {str(name): Path(str(folder)) for name, folder in table["libraries"].items()}

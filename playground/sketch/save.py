@@ -19,6 +19,7 @@ from pathlib import Path
 from playground.errors import DataError, PlaygroundError, SketchError
 from playground.partial import partial_file
 from playground.paths import GLSL
+from playground.regular_file import read_regular
 from playground.sketch.allowed_files import is_elevation, leads_outside
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.load import load, load_with
@@ -239,7 +240,7 @@ def _with_camera(text: str, file: Sketch, camera: Camera) -> str:
 
 def _read(path: Path) -> str:
     try:
-        return path.read_bytes().decode()
+        return read_regular(path).decode()
     except (OSError, UnicodeDecodeError) as error:
         raise DataError(f"cannot be read: {error}", file=path) from None
 
@@ -353,7 +354,7 @@ def _copied_into(folder: Path, source: Path) -> str:
 
 def _contents(files: Iterable[Path]) -> dict[str, bytes]:
     """Return what files of one name hold, by their endings."""
-    return {file.suffix: file.read_bytes() for file in files}
+    return {file.suffix: read_regular(file) for file in files}
 
 
 def _new_folder(folder: Path, name: str) -> Path:

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import logging
 import re
-import stat
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -23,6 +22,7 @@ from typing import NamedTuple
 
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
+from playground.regular_file import NotRegularError, irregularity, open_regular
 from playground.sketch.allowed_files import (
     exists,
     is_file,
@@ -212,18 +212,17 @@ def read_text(path: Path, *, any_encoding: bool = False) -> str:
 def _text(path: Path, any_encoding: bool) -> str:
     data = b""
     try:
-        state = path.stat()
-        if not (stat.S_ISREG(state.st_mode) or stat.S_ISDIR(state.st_mode)):  # reading it may never end
-            raise SketchError("this is a pipe, a socket or a device; a file was expected", file=path)
-        if state.st_size > _MAX_BYTES:
+        with open_regular(path) as file:
+            data = file.read(_MAX_BYTES + 1)
+        if len(data) > _MAX_BYTES:
             raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=path)
-        data = path.read_bytes()
-        _log.debug("read %s", shown(path))
+        if _log.isEnabledFor(logging.DEBUG):  # naming a file takes longer than reading it
+            _log.debug("read %s", shown(path))
         return normalised(data.decode())
     except FileNotFoundError:
         raise SketchError("there is no such file", file=path) from None
-    except IsADirectoryError:
-        raise SketchError("this is a folder; a file was expected", file=path) from None
+    except NotRegularError as error:
+        raise SketchError(error.strerror, file=path) from None
     except UnicodeDecodeError as error:
         if any_encoding and b"\0" not in data:
             return normalised(data.decode("latin-1"))
@@ -334,8 +333,8 @@ class _Reader:
     def find(self, name: str, includer: Path, line: Line) -> Path:
         allowed, climbs = self.allowed(includer)
         parents = [p for p in includer.parents if any(map(p.is_relative_to, allowed))] if climbs else ()
-        for folder in (includer.parent, *parents, *allowed):
-            place = folder / name
+        places = [folder / name for folder in (includer.parent, *parents, *allowed)]
+        for place in places:
             candidate = self.looked_at[place] = _file_at(place)
             if candidate is not None:
                 if not is_inside(candidate, allowed) and not library_around(candidate, self.libraries):
@@ -346,6 +345,8 @@ class _Reader:
             self.asked.add(named[1])
             if named[1] in self.libraries:
                 return self.in_library(named[1], named[2], line)
+        if what := next(filter(None, map(irregularity, places)), ""):
+            raise line.error(f"'{name}': {what}")
         near = nearest(name, names_below(allowed, (".glsl",)))
         elsewhere = near.endswith(f"/{named[2].rpartition('/')[2]}'?") if named else True
         if named and not elsewhere and not exists(self.library / named[1]):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
+from playground.regular_file import irregularity
 from playground.sketch.allowed_files import (
     FAST,
     TECHNIQUES,
@@ -262,6 +263,8 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
         raise SketchError(f"use = '{use}' is both {shown(present[0])} and {shown(present[1])}; remove one")
     if present:
         return _followed(present[0]), limit
+    if what := next(filter(None, map(irregularity, candidates)), ""):
+        raise SketchError(f"use = '{use}': {what}")
     ending = f" (without '{base.suffix}')" if base.suffix in TECHNIQUES else ""
     files = names_below((folder,), TECHNIQUES) if own else []
     names = [f"./{name.rpartition('.')[0]}" for name in files] if own else shipped_names()

@@ -23,6 +23,7 @@ from playground.errors import DataError, counted
 from playground.folders import cache_folder
 from playground.json_text import read_json
 from playground.paths import GLSL
+from playground.regular_file import open_regular
 
 ENDING = ".zip"
 MANIFEST = "pack.json"
@@ -244,14 +245,14 @@ def _is_whole(pack: Pack, target: Path) -> bool:
 
 def _crc(path: Path) -> int:
     found = 0
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         while block := file.read(1 << 20):
             found = zlib.crc32(block, found)
     return found
 
 
 def _digest(path: Path) -> str:
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=12)).hexdigest()
 
 

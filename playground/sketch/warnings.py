@@ -9,6 +9,7 @@ from pathlib import Path
 
 from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import GLSL
+from playground.regular_file import read_regular
 from playground.sketch.expressions import names_in
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.uniforms import unfed_samplers
@@ -70,7 +71,7 @@ def _counted(path: Path) -> frozenset[str]:
     found: set[str] = set()
     for file in (folder.with_suffix(".toml"), *sorted(folder.glob("*.toml"))):
         try:
-            table = tomllib.loads(file.read_text(encoding="utf-8"))
+            table = tomllib.loads(read_regular(file).decode())
             exports = table.get("parameters", {})
             uses = {each["name"]: each["use"].rpartition("/")[2] for each in table.get("pass", [])}
             counts = [each.get(key, "") for each in table.get("pass", []) for key in ("size", "repeat")]

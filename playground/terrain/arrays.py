@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.images.bounds import refuse_bomb
+from playground.regular_file import open_regular
 from playground.terrain.geodesy import spacing_from_degrees
 from playground.terrain.geokeys import GEOGRAPHIC, IS_POINT, MODEL, RASTER
 from playground.terrain.grid import Found, check_grid, in_memory
@@ -32,7 +33,7 @@ class _Header:
 
 def read_npy(path: Path) -> Found:
     """Read the one array of an `.npy`; it says nothing of metres."""
-    with path.open("rb") as handle:
+    with open_regular(path) as handle:
         header = _array_header(handle, path)
         check_grid(header.shape, header.dtype, path, in_turn=not header.by_columns)
         length = path.stat().st_size

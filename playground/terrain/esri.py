@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from playground.errors import DataError
+from playground.regular_file import open_regular
 from playground.sketch.sidecars import sidecars
 from playground.terrain.grid import Found, check_grid
 from playground.terrain.place import Crs, Place
@@ -80,7 +81,7 @@ def _header_beside(path: Path) -> Header:
 def _text_header(path: Path) -> tuple[Header, int]:
     """Return the words at the head of a text, and the byte at which its numbers begin."""
     header: dict[str, str] = {}
-    with path.open("rb") as handle:
+    with open_regular(path) as handle:
         for _ in range(12):
             start = handle.tell()
             words = handle.readline(256).decode("utf-8", "replace").split()
@@ -177,7 +178,7 @@ def _numbers_in_text(path: Path, start: int, size: tuple[int, int]) -> Iterator[
     """Yield the numbers of a text as rows, however its lines part them."""
     columns, rows = size
     row, left = 0, np.empty(0)
-    with path.open("rb") as handle:
+    with open_regular(path) as handle:
         handle.seek(start)
         rest = b""
         while row < rows:

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
+from playground.regular_file import read_regular, require_regular
 from playground.terrain.model_document import (
     MOST_BYTES,
     MOST_TRIANGLES,
@@ -56,9 +57,9 @@ def read_model(path: Path) -> Model:
         DataError: missing, too large, damaged, without triangles, or with what is not read here.
     """
     try:
-        if path.stat().st_size > MOST_BYTES:
+        if require_regular(path).st_size > MOST_BYTES:
             raise WrongModel(f"is larger than {MOST_BYTES >> 20} MB, the most that a model may have")
-        document = read_document(path.read_bytes())
+        document = read_document(read_regular(path))
         with np.errstate(all="ignore"):  # what became of overflow is looked at, number by number
             return _Reader(document).model()
     except WrongModel as wrong:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
+from playground.regular_file import open_regular
 
 _BAND = 2**22  # [texels] of a band of an array
 
@@ -89,7 +90,7 @@ class FileRows:
         count = max(_BAND // cols, 1)
         used = cols * self.dtype.itemsize
         wide = self.row_bytes or used
-        with self.path.open("rb") as handle:
+        with open_regular(self.path) as handle:
             handle.seek(self.offset)
             for start in range(0, rows, count):
                 high = min(count, rows - start)

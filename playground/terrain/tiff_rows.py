@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
+from playground.regular_file import open_regular
 from playground.terrain.rows import Band, FileRows, Rows
 
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ class _Blocks:
         high, wide = self.block
         across = -(-cols // wide)
         several = max(_BAND // (high * cols), 1)
-        with self.path.open("rb") as handle:
+        with open_regular(self.path) as handle:
             for start in range(0, rows, several * high):
                 end = min(start + several * high, rows)
                 values = np.empty((end - start, across * wide), self.dtype.newbyteorder("="))

@@ -21,6 +21,8 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.images.files import checked_file, reason
+from playground.regular_file import irregularity, open_regular, read_regular
+from playground.sketch.sidecars import sidecar_places
 from playground.terrain.gis import ADVICE
 
 Kind = Literal["point", "line", "polygon"]
@@ -77,6 +79,9 @@ class Vectors:
 def read_vectors(path: Path) -> Vectors:
     """Read all shapes of a file; raise ``DataError`` for what is none, damaged, empty or too big."""
     path = checked_file(path)
+    for place in sidecar_places(path):  # OGR opens them itself
+        if what := irregularity(place):
+            raise DataError(what, file=place)
     ending = path.suffix.lower()
     if ending in (".geojson", ".json"):
         found = _geojson(path)
@@ -101,7 +106,7 @@ def _geojson(path: Path) -> Vectors:
             file=path,
         )
     try:
-        document = json.loads(path.read_bytes())
+        document = json.loads(read_regular(path))
     except (ValueError, RecursionError) as error:
         raise DataError(f"is not GeoJSON: {reason(error)}", file=path) from None
     if not isinstance(document, dict) or not isinstance(document.get("type"), str):
@@ -216,7 +221,7 @@ def _is_what_it_says(path: Path, ending: str) -> bool:
     OGR goes by what a file holds, not by its name.
     """
     begins = re.compile(_BEGINS[ending])
-    with path.open("rb") as handle:
+    with open_regular(path) as handle:
         if ending not in (".kml", ".gpx"):
             return begins.match(handle.read(100)) is not None
         if not path.stat().st_size:

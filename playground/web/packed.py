@@ -17,6 +17,7 @@ from playground._version import __version__
 from playground.engine.packed_files import contents, folder_of
 from playground.errors import PlaygroundError
 from playground.paths import GLSL, SKETCHES
+from playground.regular_file import read_regular
 from playground.sketch.allowed_files import TEXTS
 from playground.sketch.libraries import libraries_of
 from playground.sketch.load import is_technique, load
@@ -64,7 +65,7 @@ def pack_data(sketch: Sketch, names: Mapping[str, str], blobs: Blobs) -> dict[st
         elif path.suffix in _TEXTS:
             files[name] = ["text", read_text(path, any_encoding=True)]
         elif path.stat().st_size <= LARGEST_FILE:
-            files[name] = ["blob", blobs.add(path.read_bytes())]
+            files[name] = ["blob", blobs.add(read_regular(path))]
         else:
             left_out.append(name)
     return {

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
 from playground.paths import shown
+from playground.regular_file import read_regular
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.channels import source_of
 from playground.sketch.model import Camera, Value
@@ -177,7 +178,7 @@ class Commands:
             return
         file = Path(draft.file.file)
         try:
-            text = saved_text(file.read_bytes().decode("utf-8-sig"), draft.file, draft.sketch)
+            text = saved_text(read_regular(file).decode("utf-8-sig"), draft.file, draft.sketch)
         except (OSError, UnicodeDecodeError) as error:
             self.notices.say(f"{shown(draft.file.file)} cannot be read: {error}")
             return

@@ -15,6 +15,7 @@ from pathlib import Path
 from playground.errors import PlaygroundError
 from playground.folders import state_folder
 from playground.images.files import replacing
+from playground.regular_file import read_regular
 from playground.workbench.notices import Notices
 
 SIZES = (0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0)
@@ -56,7 +57,7 @@ def remembered_size(folder: Path | None = None) -> InterfaceSize:
     try:
         if file.stat().st_size > _LARGEST:
             return InterfaceSize(file=file)
-        table = json.loads(file.read_text(encoding="utf-8"))
+        table = json.loads(read_regular(file).decode())
         size = float(table["size"]) if table["format"] == FORMAT else 1.0
     except (OSError, ValueError, TypeError, KeyError, OverflowError, RecursionError):
         return InterfaceSize(file=file)

@@ -19,6 +19,7 @@ from typing import IO, Any
 from playground.errors import DataError
 from playground.images.files import replacing
 from playground.json_text import read_json
+from playground.regular_file import read_regular
 from playground.sketch.model import Camera, Value
 from playground.workbench.edit_merge import FileValue
 from playground.workbench.edits import Edits
@@ -86,7 +87,7 @@ class Memory:
                 return Remembered(), ""
             if self.path.stat().st_size > _LARGEST:
                 raise ValueError(f"it is larger than {_LARGEST // 2**20} MiB")
-            return _read(read_json(self.path.read_text(encoding="utf-8"))), ""
+            return _read(read_json(read_regular(self.path).decode())), ""
         except (OSError, ValueError, TypeError, KeyError, AttributeError, ArithmeticError) as error:
             return Remembered(), set_aside(self.path, "what was remembered of this sketch", error)
 

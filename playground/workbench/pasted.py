@@ -16,6 +16,7 @@ from pathlib import Path
 from playground.errors import DataError, SketchError
 from playground.folders import state_folder
 from playground.partial import partial_file
+from playground.regular_file import read_regular
 from playground.sketch.allowed_files import TEXTS
 from playground.sketch.dialects import OWN, dialect_of, names
 
@@ -72,7 +73,7 @@ def _kept(data: bytes, folder: Path, name: str, ending: str) -> Path:
     for stem in _stems(name):
         path = folder / f"{stem}{ending}"
         if any(os.path.lexists(folder / f"{stem}{other}") for other in _TAKEN):
-            if path.is_file() and path.stat().st_size == len(data) and path.read_bytes() == data:
+            if path.is_file() and path.stat().st_size == len(data) and read_regular(path) == data:
                 return path
             continue
         with partial_file(path) as partial:

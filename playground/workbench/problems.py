@@ -16,6 +16,7 @@ from playground.errors import Diagnostic, PlaygroundError, counted
 from playground.images.content_hash import content_hash
 from playground.media.live_inputs import LiveInputs
 from playground.paths import GLSL, without_part
+from playground.regular_file import read_regular
 from playground.sketch.allowed_files import root_of
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.techniques import Techniques
@@ -141,7 +142,7 @@ def _lines_of(name: str) -> list[str]:
 
 @lru_cache(maxsize=32)
 def _lines_at(path: Path, _: str) -> list[str]:
-    text = path.read_bytes().decode("utf-8-sig", "replace")
+    text = read_regular(path).decode("utf-8-sig", "replace")
     return text.replace("\r\n", "\n").replace("\r", "\n").split("\n")
 
 

@@ -11,6 +11,7 @@ from typing import Protocol
 from playground.engine.sandbox import SandboxReport, TrySketch
 from playground.errors import ContextError, PlaygroundError, SketchError
 from playground.paths import shown
+from playground.regular_file import irregularity
 
 log = logging.getLogger("playground.live")
 
@@ -73,6 +74,8 @@ def missing_file_error(sketch: Path) -> SketchError | None:
     """Return the error for a sketch whose file has vanished; None while it is there."""
     if sketch.is_file():
         return None
+    if what := irregularity(sketch):
+        return SketchError(what, file=sketch)
     where = "from" if sketch.parent.is_dir() else "with its folder"
     ways = "moved, renamed or deleted; put it back, or drop another sketch on the window"
     return SketchError(f"the file is gone {where} {sketch.parent}: {ways}", file=sketch)

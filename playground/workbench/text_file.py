@@ -15,6 +15,7 @@ from playground.errors import DataError
 from playground.images.files import reason
 from playground.partial import partial_file
 from playground.paths import shown
+from playground.regular_file import read_regular
 
 MOST = 8 * 2**20
 """Bytes that a file may have."""
@@ -113,7 +114,7 @@ class OpenText:
         try:
             if self.path.stat().st_size > MOST:
                 raise DataError(f"larger than {MOST // 2**20} MiB", file=shown(self.path))
-            return self.path.read_bytes()
+            return read_regular(self.path)
         except FileNotFoundError:
             raise DataError("there is no such file", file=shown(self.path)) from None
         except OSError as error:

@@ -17,12 +17,13 @@ from pathlib import Path
 
 from watchfiles import watch
 
+from playground.regular_file import NotRegularError, open_regular
 from playground.sketch.allowed_files import Signature, signature
 
 STEP, DEBOUNCE = 5, 50  # [ms] quiet after which a batch is reported; longest batch
 LOOK_EVERY = 500  # [ms]
 _GRACE = 0.08  # [s] a deleted file may take to come back: editors delete and create
-_JUST = 0.05  # [s] how far a file's time of change may lag behind the clock
+_JUST = 0.05  # [s] how far a file's times may lag behind the clock
 
 
 class Watcher:
@@ -194,13 +195,15 @@ def _identities(folders: Iterable[Path]) -> dict[Path, int]:
 
 
 def _hash(path: Path) -> bytes:
-    """Return a hash of a file's contents; empty when it cannot be read."""
+    """Return a hash of a file's contents, or what is there in its place; empty when it cannot be read."""
     for _ in range(3):
         try:
-            with path.open("rb") as handle:
+            with open_regular(path) as handle:
                 return hashlib.file_digest(handle, "blake2b").digest()
         except FileNotFoundError:
             return b""
+        except NotRegularError as error:
+            return error.strerror.encode()
         except OSError:  # another program holds it just now (Windows)
             time.sleep(0.02)
     return b""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from pathlib import Path
 
@@ -266,6 +267,22 @@ def test_the_reference_of_a_check_that_is_gone_is_named(
         result.stdout.fnmatch_lines(lines)
     for arguments in (("-k", "one"), ("test_sea.py::test_one",), ("--deselect", "test_sea.py::test_two")):
         assert run(*arguments, *workers).ret == pytest.ExitCode.OK, "a part of the tests knows nothing of it"
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system's folders hold files alone")
+@pytest.mark.parametrize("kind", ["a FIFO", "a device"])
+def test_a_reference_that_is_no_file_fails_in_a_sentence(tests: Run, kind: str) -> None:
+    reference = FOLDER / "numpy/ramp.png"
+    reference.unlink()
+    if kind == "a FIFO":
+        os.mkfifo(reference)
+    else:
+        reference.symlink_to("/dev/zero")
+    result = tests("-k", "given")
+    result.assert_outcomes(failed=1, deselected=1)
+    result.stdout.fnmatch_lines([f"test_slope.py/ramp: unreadable: *ramp.png: this is {kind}, not a file"])
+    tests("-k", "given", "--shots-update").assert_outcomes(passed=1, deselected=1)
+    assert reference.is_file() and not reference.is_symlink()
 
 
 def test_references_of_a_test_file_that_is_gone_or_compares_nothing_any_more_fail(tests: Run) -> None:

@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 from collections import Counter
 from pathlib import Path
+from typing import BinaryIO
 
 import pytest
 
 from playground.errors import ShaderError
 from playground.paths import GLSL
+from playground.sketch import source
 from playground.sketch.allowed_files import (
     is_file,
     looking_once,
@@ -137,18 +139,18 @@ def test_a_load_looks_at_a_path_and_reads_a_text_once_and_the_next_load_does_it_
 ):
     looked: Counter[Path] = Counter()
     texts: Counter[Path] = Counter()
-    lstat, read_bytes = Path.lstat, Path.read_bytes
+    lstat, open_regular = Path.lstat, source.open_regular
 
     def counted(path: Path) -> os.stat_result:
         looked[path] += 1
         return lstat(path)
 
-    def counted_text(path: Path) -> bytes:
+    def counted_text(path: Path) -> BinaryIO:
         texts[path] += 1
-        return read_bytes(path)
+        return open_regular(path)
 
     monkeypatch.setattr(Path, "lstat", counted)
-    monkeypatch.setattr(Path, "read_bytes", counted_text)
+    monkeypatch.setattr(source, "open_regular", counted_text)
     view = '[view]\nuse = "view/map"\ninputs = { shown = "height" }\n'
     (hills / "sketch.toml").write_text(f'format = 1\n[[pass]]\nname = "height"\nuse = "./parts/k"\n{view}')
     kernel = hills / "parts" / "k.glsl"

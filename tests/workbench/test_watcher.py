@@ -188,6 +188,31 @@ def test_a_save_that_bears_an_old_time_is_not_lost_while_it_is_read(watched: Wat
     assert watched.sees(other)
 
 
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system's folders hold files alone")
+@pytest.mark.parametrize("kind", ["fifo", "zero"])
+def test_what_is_no_file_is_reported_and_saves_after_it_as_well(watched: Watched, kind: str) -> None:
+    watched.file.unlink()
+    if kind == "fifo":
+        os.mkfifo(watched.file)
+    else:
+        watched.file.symlink_to("/dev/zero")
+    assert watched.sees(watched.file)
+    watched.watcher.follow([watched.include])
+    watched.watcher.follow([watched.file, watched.include])  # which waits for no writer
+    watched.file.unlink()
+    save_in_place(watched.file, "two")
+    assert watched.sees(watched.file)
+    save_in_place(watched.file, "three")
+    assert watched.sees(watched.file)
+
+
+def test_a_save_that_keeps_inode_size_and_time_is_seen(watched: Watched) -> None:
+    before = watched.file.stat()
+    save_in_place(watched.file, "two")
+    os.utime(watched.file, ns=(before.st_atime_ns, before.st_mtime_ns))
+    assert watched.sees(watched.file)
+
+
 @pytest.mark.slow
 def test_a_folder_that_vanishes_and_returns_is_found_again(watched: Watched) -> None:
     shutil.rmtree(watched.include.parent)

@@ -25,6 +25,7 @@ from playground.capture.shader_export.texts import (
 from playground.engine.plan import Plan
 from playground.errors import DataError
 from playground.images.files import reason
+from playground.regular_file import read_regular
 from playground.sketch.model import Sketch
 
 MADE_BY = "terrain shader playground"
@@ -160,7 +161,7 @@ def _copies(path: Path, images: dict[str, Path]) -> dict[str, Path]:
 
 def _read(path: Path) -> bytes:
     try:
-        return path.read_bytes()
+        return read_regular(path)
     except OSError as error:
         raise DataError(f"cannot be read: {reason(error)}", file=path) from error
 

@@ -17,6 +17,7 @@ from playground.errors import PlaygroundError
 from playground.folders import state_folder
 from playground.images.files import replacing
 from playground.json_text import read_json
+from playground.regular_file import read_regular
 from playground.sketch.model import Value
 from playground.workbench.unread import set_aside
 
@@ -100,7 +101,7 @@ def _done(attempts: dict[str, Attempt]) -> dict[str, Attempt]:
 def _whole(path: Path) -> Progress:
     if path.stat().st_size > _LARGEST:
         raise ValueError(f"it is larger than {_LARGEST // 2**20} MiB")
-    return _read(read_json(path.read_text(encoding="utf-8")))
+    return _read(read_json(read_regular(path).decode()))
 
 
 def _read(table: Any) -> Progress:
