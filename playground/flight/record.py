@@ -143,7 +143,7 @@ class Record:
 def read_record(path: str | Path) -> Record:
     """Read a flight; raise ``DataError`` naming the line that is wrong."""
     try:
-        text = read_regular(path).decode()
+        text = read_regular(Path(path)).decode()
     except OSError as error:
         raise DataError(f"cannot be read: {error.strerror}", file=str(path)) from None
     except UnicodeDecodeError:

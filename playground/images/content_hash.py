@@ -58,5 +58,5 @@ def _own_hash(path: Path) -> str:
 
 @lru_cache(maxsize=256)
 def _hash(path: str, modified: int, changed: int, size: int, inode: int) -> str:
-    with open_regular(path) as file:
+    with open_regular(Path(path)) as file:
         return hashlib.file_digest(file, lambda: hashlib.blake2b(digest_size=16)).hexdigest()

@@ -14,7 +14,7 @@ from contextvars import ContextVar
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from types import MappingProxyType
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from playground.paths import GLSL
 from playground.sketch.sidecars import sidecars
@@ -45,8 +45,19 @@ _SPELLS_NAMES = os.name == "nt"  # following links there gives names as the disk
 
 T = TypeVar("T")
 
-Signature = tuple[int, int, int]
-"""Inode, time of change [ns] and size of a file: what differs when it was saved since."""
+
+class Signature(NamedTuple):
+    """What differs when a file was saved since, but for two saves in one tick of the file system's clock."""
+
+    inode: int
+    modified: int  # [ns] which a save may keep, as ``cp -p`` and archives do
+    changed: int  # [ns] which no program sets (on Windows, when the file was created)
+    size: int  # [bytes]
+
+    @property
+    def latest(self) -> int:
+        """When it was saved last [ns since the epoch], whatever time the save bears."""
+        return max(self.modified, self.changed)
 
 
 @dataclass(slots=True)
@@ -139,18 +150,21 @@ def note_again(places: Mapping[Path, Signature | None]) -> None:
 def note(path: Path) -> None:
     """Note that a file is looked for at a place; before it is read, so that no save falls in between."""
     noted = _noted.get()
-    if noted is None or path in noted:
-        return
+    if noted is not None and path not in noted:
+        noted[path] = signature_in_load(path)
+
+
+def signature_in_load(path: Path) -> Signature | None:
+    """Return a file's signature, taken once in a load and before the file is read."""
     state = _state.get()
     if state is None:
-        noted[path] = signature(path)
-        return
+        return signature(path)
     if path not in state.signatures:  # what was found out before is of a time that no signature tells
         state.signatures[path] = signature(path)
         state.files.pop(path, None)
         for any_encoding in (False, True):
             state.texts.pop((path, any_encoding), None)
-    noted[path] = state.signatures[path]
+    return state.signatures[path]
 
 
 def signature(path: Path) -> Signature | None:
@@ -159,7 +173,7 @@ def signature(path: Path) -> Signature | None:
         found = path.stat()
     except (OSError, ValueError):
         return None
-    return found.st_ino, found.st_mtime_ns, found.st_size
+    return Signature(found.st_ino, found.st_mtime_ns, found.st_ctime_ns, found.st_size)
 
 
 def real(path: Path) -> Path | None:

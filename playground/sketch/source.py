@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 from playground.errors import Diagnostic, PlaygroundError, ShaderError, SketchError, nearest
 from playground.paths import GLSL, shown
-from playground.regular_file import NotRegularError, irregularity, open_regular
+from playground.regular_file import NotRegularError, irregularity, read_regular
 from playground.sketch.allowed_files import (
     exists,
     is_file,
@@ -212,8 +212,7 @@ def read_text(path: Path, *, any_encoding: bool = False) -> str:
 def _text(path: Path, any_encoding: bool) -> str:
     data = b""
     try:
-        with open_regular(path) as file:
-            data = file.read(_MAX_BYTES + 1)
+        data = read_regular(path, _MAX_BYTES + 1)
         if len(data) > _MAX_BYTES:
             raise SketchError(f"larger than {_MAX_BYTES // 2**20} MiB; a text was expected", file=path)
         if _log.isEnabledFor(logging.DEBUG):  # naming a file takes longer than reading it

@@ -1,28 +1,31 @@
 """Cache techniques from one load of a sketch to the next, for as long as their files stay the same.
 
 A live session loads its sketch at every save, which changes one file of a hundred. A technique
-is reused, as the same object, where every place that it was read from, and every place where
-a file would take precedence over one of those, has the same signature.
-
-Two saves can fall into one tick of a file system's clock and leave one signature. So a
-technique is cached only if its files were unchanged for a while before: a later save then
-has another time.
+is reused, as the same object, where every text that it was read from is the same, and every
+other place where a file was looked for has the same signature. Texts are compared, not times:
+a save may keep inode, size and times.
 """
 
 from __future__ import annotations
 
-import time
 from collections import OrderedDict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from playground.errors import PlaygroundError
 from playground.paths import GLSL
-from playground.sketch.allowed_files import Signature, note_again, noting_part, signature
+from playground.sketch.allowed_files import (
+    Signature,
+    note_again,
+    noting_part,
+    signature_in_load,
+    texts_of_load,
+)
 from playground.sketch.model import Technique
+from playground.sketch.source import read_text
 from playground.sketch.techniques import Techniques
 
-RESTED = 3.0  # [s] from a file's last change to its reading, at least; FAT counts in steps of two seconds
 _MOST = 256
 
 _Name = tuple[str, Path, Path]
@@ -31,12 +34,20 @@ _Name = tuple[str, Path, Path]
 @dataclass(frozen=True, slots=True)
 class _Entry:
     technique: Technique
-    places: Mapping[Path, Signature | None]
+    places: Mapping[Path, Signature | None]  # where files were looked for
+    texts: Mapping[tuple[Path, bool], str]  # those that were read, by path and whether in any encoding
+    unread: Mapping[Path, Signature | None]  # the other places
     depth: int  # how deep techniques of several passes nest in it, itself among them
 
     def is_fresh(self) -> bool:
         """Return whether all files that it was read from are unchanged."""
-        return all(signature(path) == known for path, known in self.places.items())
+        try:
+            return all(signature_in_load(path) == known for path, known in self.unread.items()) and all(
+                read_text(path, any_encoding=any_encoding) == text
+                for (path, any_encoding), text in self.texts.items()
+            )
+        except PlaygroundError:  # a text that cannot be read any more
+            return False
 
 
 class TechniqueCache(Techniques):
@@ -68,18 +79,19 @@ class TechniqueCache(Techniques):
 
     def _read_again(self, name: _Name, use: str, folder: Path, root: Path) -> _Entry:
         around, self.deepest = self.deepest, len(self.open)
-        began = time.time_ns()
         self.known.clear()  # it would not note where it read from
         try:
             with noting_part() as places:
                 found = super().read(use, folder, root)
-            read = _Entry(found, places, self.deepest - len(self.open))
         finally:
-            self.deepest = max(around, self.deepest)
-        latest = max((known[1] for known in places.values() if known is not None), default=0)
-        self._cached.pop(name, None)
-        if latest < began - RESTED * 1e9:
-            self._cached[name] = read
-            while len(self._cached) > _MOST:
-                self._cached.popitem(last=False)
-        return read
+            self.deepest, depth = max(around, self.deepest), self.deepest - len(self.open)
+        in_load = texts_of_load() or {}
+        keys = [(path, any_encoding) for path in places for any_encoding in (False, True)]
+        texts = {key: in_load[key] for key in keys if key in in_load}
+        read = {path for path, _ in texts}
+        unread = {path: known for path, known in places.items() if path not in read}
+        made = self._cached[name] = _Entry(found, places, texts, unread, depth)
+        self._cached.move_to_end(name)
+        while len(self._cached) > _MOST:
+            self._cached.popitem(last=False)
+        return made

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
+from playground.images.content_hash import content_key
 from playground.sketch.model import Value
 from playground.terrain.model_files import Model, read_model
 
@@ -55,13 +56,9 @@ def make_model(
 def _model(values: Mapping[str, Value]) -> Model:
     """Return a model, which is not read again while its file stays as it is: every plan needs its size."""
     path = Path(str(values["model"]))
-    try:
-        now = path.stat()
-    except OSError:
-        return read_model(path)  # says why
-    return _read(path, now.st_mtime_ns, now.st_size)
+    return _read(path, content_key(path))
 
 
 @lru_cache(maxsize=8)
-def _read(path: Path, changed: int, size: int) -> Model:
+def _read(path: Path, _: str) -> Model:
     return read_model(path)

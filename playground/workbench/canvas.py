@@ -20,8 +20,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.images.files import new_name
-from playground.sketch.allowed_files import Signature, signature
 from playground.workbench.brush import Brush, Part
+from playground.workbench.data_files import hash_of
 from playground.workbench.latest_write import LatestWrite
 
 MOST_TEXELS = 4097
@@ -56,7 +56,7 @@ class Canvas(ABC):
         self.version = 0
         self.writing = LatestWrite()
         self._given = -1  # the version that was given to be written last
-        self._written: Signature | None = None  # of the file, as it was written here
+        self._written = ""  # a hash of the file, as it was written here
         self._changes: deque[tuple[int, Part]] = deque(maxlen=_REMEMBERED)  # each with its version
         self._tiles: dict[tuple[int, int], Patch] | None = None  # from before the stroke that goes on
         self._before: list[_Stroke] = []  # what was there before each stroke, oldest first
@@ -124,7 +124,7 @@ class Canvas(ABC):
 
     def holds(self) -> bool:
         """Return whether it is what its file holds, or newer; not where others have written the file."""
-        return self.writing.pending or not self.saved or signature(self.path) == self._written
+        return self.writing.pending or not self.saved or hash_of(self.path) == self._written
 
     def changed_since(self, version: int) -> Part:
         """Return the rows and columns of all that was changed since a version."""
@@ -167,7 +167,7 @@ class Canvas(ABC):
         self._tiles = None
         self._before, self._after = [], []
         self._change(whole)
-        self._given, self._written = self.version, signature(self.path)
+        self._given, self._written = self.version, hash_of(self.path)
 
     def save(self) -> None:
         """Have the file written soon, as the image is now; ``writing`` has what goes wrong."""
@@ -175,7 +175,7 @@ class Canvas(ABC):
 
         def write() -> None:
             self.write(self.path, pixels)
-            self._written = signature(self.path)
+            self._written = hash_of(self.path)
 
         self.writing.give(write)
 

@@ -90,14 +90,14 @@ class Watcher:
                 now = signature(path)
                 self._real[path] = path.resolve()
                 self._followed[path] = (now, _hash(path))
-                if read_at is not None and now is not None and now[1] / 1e9 > read_at - _JUST:
+                if read_at is not None and now is not None and now.latest / 1e9 > read_at - _JUST:
                     self._changed[path] = None
             for path in wanted & read.keys():
                 if read[path] == self._followed[path][0]:
                     continue
                 now = signature(path)
                 self._followed[path] = (now, _hash(path))
-                if now != read[path] or (now is not None and now[1] / 1e9 > time.time() - _JUST):
+                if now != read[path] or (now is not None and now.latest / 1e9 > time.time() - _JUST):
                     self._changed[path] = None
             notify = bool(self._changed)
             if folders is not None and _folders(self._real) != folders:

@@ -273,3 +273,30 @@ def test_what_would_run_is_what_runs_and_asking_changes_nothing(engine, folder, 
     engine.draw(changed, size=(32, 18))
     assert engine.internal.ran == would
     assert bool(would) == (what != "nothing")
+
+
+def save_silently(path, data: bytes) -> None:
+    """Save other contents in place, of the same size, inode and time of change, as ``cp -p`` does."""
+    before = path.stat()
+    path.write_bytes(data)
+    os.utime(path, (1e9, 1e9))
+    assert (path.stat().st_ino, path.stat().st_size) == (before.st_ino, before.st_size)
+
+
+def test_saves_that_keep_inode_size_and_time_are_drawn(any_engine, folder, tmp_path):
+    """Many at once: some of them fall into one tick of the file system's clock."""
+    pragma = '#include "part.glsl"\n#pragma kernel(output = "height:r32f")\n'
+    kernel = pragma + "float kernel(ivec2 texel) {{ return {}.0 * part(); }}\n"
+    ramp = np.linspace(0.0, 1.0, 17 * 17, dtype=np.float32).reshape(17, 17)
+    folder.write("k.glsl", kernel.format(0))
+    folder.write("part.glsl", "float part() { return 0.0; }\n")
+    np.save(tmp_path / "ramp.npy", ramp)
+    head = (tmp_path / "ramp.npy").read_bytes()[: -ramp.nbytes]
+    elevation = 'set = { elevation = "ramp.npy", first_row = "south" }'
+    folder.sketch(passes(a="./k", b=("generation/heightmap", elevation)))
+    for value in range(1, 9):
+        save_silently(tmp_path / "k.glsl", kernel.format(value).encode())
+        save_silently(tmp_path / "part.glsl", f"float part() {{ return {value}.0; }}\n".encode())
+        save_silently(tmp_path / "ramp.npy", head + (ramp**value).tobytes())
+        assert any_engine.read(tmp_path / "sketch.toml", "a")[0, 0] == value * value
+        np.testing.assert_allclose(any_engine.read(tmp_path / "sketch.toml", "b"), ramp**value, atol=1e-6)

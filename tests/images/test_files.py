@@ -188,7 +188,7 @@ def test_permission_denied_is_a_sentence(tmp_path, monkeypatch):
     def denied(*_: object, **__: object) -> None:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(Path, "open", denied)
+    monkeypatch.setattr("playground.images.files.open_regular", denied)
     with pytest.raises(DataError, match=r"cannot be read: Permission denied$"):
         read_image(tmp_path / "a.png")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections import Counter
 from pathlib import Path
-from typing import BinaryIO
 
 import pytest
 
@@ -139,18 +138,18 @@ def test_a_load_looks_at_a_path_and_reads_a_text_once_and_the_next_load_does_it_
 ):
     looked: Counter[Path] = Counter()
     texts: Counter[Path] = Counter()
-    lstat, open_regular = Path.lstat, source.open_regular
+    lstat, read_regular = Path.lstat, source.read_regular
 
     def counted(path: Path) -> os.stat_result:
         looked[path] += 1
         return lstat(path)
 
-    def counted_text(path: Path) -> BinaryIO:
+    def counted_text(path: Path, most: int) -> bytes:
         texts[path] += 1
-        return open_regular(path)
+        return read_regular(path, most)
 
     monkeypatch.setattr(Path, "lstat", counted)
-    monkeypatch.setattr(source, "open_regular", counted_text)
+    monkeypatch.setattr(source, "read_regular", counted_text)
     view = '[view]\nuse = "view/map"\ninputs = { shown = "height" }\n'
     (hills / "sketch.toml").write_text(f'format = 1\n[[pass]]\nname = "height"\nuse = "./parts/k"\n{view}')
     kernel = hills / "parts" / "k.glsl"

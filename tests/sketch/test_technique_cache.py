@@ -13,7 +13,7 @@ from playground.errors import PlaygroundError, SketchError
 from playground.sketch.allowed_files import noting_places
 from playground.sketch.load import load, load_with
 from playground.sketch.model import kernels_of
-from playground.sketch.technique_cache import RESTED, TechniqueCache
+from playground.sketch.technique_cache import TechniqueCache
 
 KERNEL = """#include "part.glsl"
 #pragma kernel(output = "height:r32f")
@@ -75,17 +75,42 @@ def test_a_save_of_what_is_included_deep_inside_is_seen(files: Files):
     assert sketch.graph.find("view").technique is view, "nothing of it was saved"
 
 
-def test_what_was_saved_just_before_it_was_read_is_read_again(files: Files):
-    """Two saves in one tick of a coarse clock, of one length: only the text differs."""
-    now = time.time_ns()
-    (files.folder / "inner.toml").write_text(INNER.replace("one", "abc"), encoding="utf-8")
-    os.utime(files.folder / "inner.toml", ns=(now, now))
+@pytest.mark.parametrize(
+    ("name", "text", "other"),
+    [
+        ("part.glsl", PART, PART.replace("1.0", "2.0")),
+        ("k.glsl", KERNEL, KERNEL.replace("part();", "trap();")),
+        ("inner.toml", INNER, INNER.replace("one", "xyz")),
+        ("outer.toml", OUTER, OUTER.replace("two", "abc")),
+    ],
+)
+def test_a_save_that_keeps_inode_size_and_times_is_seen(files: Files, name: str, text: str, other: str):
+    """As ``cp -p`` does, ``unzip -o`` of packed versions, and a save in one tick of a coarse clock."""
+    path = files.folder / name
     techniques = TechniqueCache()
     load_with(techniques.begin(), files.folder)
-    (files.folder / "inner.toml").write_text(INNER.replace("one", "xyz"), encoding="utf-8")
-    os.utime(files.folder / "inner.toml", ns=(now, now))
-    names = [path for path, _ in kernels_of(load_with(techniques.begin(), files.folder).graph)]
-    assert "height.two.xyz" in names
+    before = path.stat()
+    assert len(text) == len(other)
+    path.write_text(other, encoding="utf-8")
+    os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
+    after = path.stat()
+    assert (before.st_ino, before.st_size, before.st_mtime_ns) == (
+        after.st_ino,
+        after.st_size,
+        after.st_mtime_ns,
+    )
+    assert load_with(techniques.begin(), files.folder) == load(files.folder)
+    path.write_text(text, encoding="utf-8")
+    assert load_with(techniques.begin(), files.folder) == load(files.folder)
+
+
+def test_a_save_that_changes_times_alone_keeps_a_technique(files: Files):
+    techniques = TechniqueCache()
+    first = load_with(techniques.begin(), files.folder)
+    for path in files.folder.iterdir():
+        path.touch()
+    second = load_with(techniques.begin(), files.folder)
+    assert first.graph.find("height").technique is second.graph.find("height").technique
 
 
 def test_a_file_that_comes_where_another_was_looked_for_is_seen(files: Files):
@@ -168,7 +193,3 @@ def result_of(loading):
         return loading()
     except PlaygroundError as error:
         return str(error)
-
-
-def test_a_file_counts_as_rested_only_after_the_coarsest_clock_has_ticked():
-    assert RESTED > 2.0, "the resolution of FAT is two seconds"

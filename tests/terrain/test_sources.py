@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -132,7 +131,7 @@ def test_a_file_that_does_not_change_is_read_once(values, tmp_path, monkeypatch)
     os.utime(file, (0, 0))
     given = values()
     first = KIND.make(given, (3, 2))["height"]
-    monkeypatch.setattr(Path, "open", None)
+    monkeypatch.setattr("playground.terrain.arrays.open_regular", None)
     np.testing.assert_array_equal(KIND.make(given, (3, 2))["height"], first)
 
 
@@ -145,7 +144,8 @@ def test_large_heights_are_not_kept_once_a_texture_was_made_and_are_known_all_th
     monkeypatch.setattr("playground.terrain.elevation_source.KEPT", 1)
     np.testing.assert_array_equal(KIND.make(given, (3, 2))["height"], kept)
     assert elevation_source._whole.cache_info().currsize == 0
-    monkeypatch.setattr(Path, "open", None)
+    for module in ("arrays", "rows"):
+        monkeypatch.setattr(f"playground.terrain.{module}.open_regular", None)
     assert KIND.describe(given) == known
     with pytest.raises(DataError):
         KIND.make(given, (3, 2))
