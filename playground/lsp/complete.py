@@ -153,10 +153,9 @@ def _names(document: Document, documents: Documents, at: int) -> list[types.Comp
         return _members(shader)
     found: dict[str, types.CompletionItem] = {}
     function = shader.function_at(at)
-    inside = locals_of(document.text, function) if function is not None else {}
-    for name, written in inside.items():
-        if min(written) < start:
-            found[name] = item(name, Kind.Variable, order=1)
+    for local in locals_of(document.text, function) if function is not None else ():
+        if local.seen <= start < local.end:
+            found[local.name] = item(local.name, Kind.Variable, order=1)
     for parameter in shader.parameters:
         about = describe.parameter(parameter)
         found.setdefault(parameter.name, item(parameter.name, Kind.Variable, parameter.type, about, 2))

@@ -15,7 +15,7 @@ from playground.lsp.sketch_text import SketchText
 from playground.paths import GLSL, shown
 from playground.sketch import toml_keys
 from playground.sketch.header import title_of
-from playground.sketch.outline import locals_of, outline
+from playground.sketch.outline import local_at, locals_of, outline
 from playground.sketch.reserved_names import DRIVER_BOUND, RESERVED
 from playground.sketch.source import find_include, read_source, read_text
 from playground.sketch.toml_places import Pair, Place
@@ -61,8 +61,9 @@ def hover_shader(document: Document, documents: Documents, at: int) -> str:
         return ""
     shader = shader_of(document, documents)
     function = shader.function_at(start)
-    if function is not None and word in (inside := locals_of(document.text, function)):
-        row = document.position(inside[word][0]).line
+    local = local_at(locals_of(document.text, function), word, start) if function is not None else None
+    if local is not None:
+        row = document.position(local.at).line
         return describe.code(document.lines[row].strip())
     if (parameter := shader.parameter(word)) is not None:
         return describe.parameter(parameter)

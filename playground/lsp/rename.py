@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 from lsprotocol import types
@@ -23,7 +24,16 @@ from playground.paths import shown
 from playground.sketch.allowed_files import FAST, SHADERS, is_file, names_below, reading_unsaved
 from playground.sketch.header import parse_kernel
 from playground.sketch.load import load_with
-from playground.sketch.outline import code_of, locals_of, outline, words
+from playground.sketch.outline import (
+    Declared,
+    code_of,
+    has_branches,
+    local_at,
+    locals_of,
+    macros_of,
+    outline,
+    words,
+)
 from playground.sketch.reserved_names import GLSL_WORDS, MATCHES, PREFIX, TOWARDS, WIRED
 from playground.sketch.source import read_source, read_text
 from playground.sketch.techniques import Techniques
@@ -62,6 +72,7 @@ def rename(document: Document, documents: Documents, at: int, new: str) -> dict[
         function = shader.function_at(start)
         assert function is not None
         inside = {word for word, at in words(document.text) if function.start <= at < function.end}
+        inside |= {word for used in _macros_in(shader, function) for word in used.words}
         if new in inside:
             raise Refused(f"'{new}' is a name of this function already")
         return {document.path: [(place, place + len(name), new) for place in places]}
@@ -78,6 +89,8 @@ def _word(document: Document, at: int) -> tuple[str, int]:
         raise Refused(f"'{name}' is a word of GLSL itself")
     if start and document.text[start - 1] == ".":
         raise Refused(f"'{name}' is a component or a struct's member; those are not renamed")
+    if any(one.start <= start < one.end and name in one.parameters for one in macros_of(document.text)):
+        raise Refused(f"'{name}' is a macro's parameter; those are not renamed")
     return name, start
 
 
@@ -95,21 +108,61 @@ def _check_new(new: str) -> None:
 def _local(shader: Shader, name: str, start: int) -> list[int] | None:
     """Return the places of a name that a function declares; None for one of the top level."""
     function = shader.function_at(start)
-    if function is None or start == function.at or name not in locals_of(shader.text, function):
+    if function is None or start == function.at:
+        return None
+    found = locals_of(shader.text, function)
+    local = local_at(found, name, start)
+    if local is None:
         return None
     for path, text, one in shader.declared():
         if one.name == name:
             line = text.count("\n", 0, one.at) + 1
             raise Refused(f"'{name}' is also declared at {shown(path)}:{line}, which this function hides")
+    for used in _macros_in(shader, function):
+        if name in used.words:
+            raise Refused(f"'{name}' is in the macro {used.name} at {used.place}, which this function uses")
+    # Parts that exclude each other may declare it each for themselves, and close blocks that others open.
+    branches = has_branches(shader.text, function)
     return [
         place
         for word, place in words(shader.text)
-        if word == name and function.start <= place < function.end and not _is_member(shader.text, place)
+        if word == name
+        and function.start <= place < function.end
+        and not _is_member(shader.text, place)
+        and not any(one.start <= place < one.end for one in macros_of(shader.text))
+        and (other := local_at(found, name, place)) is not None
+        and (branches or other.end == local.end)
     ]
 
 
+@dataclass(frozen=True, slots=True)
+class _Used:
+    """A macro that a function uses."""
+
+    name: str
+    words: frozenset[str]  # in its body, without its parameters
+    place: str  # as a user would name it
+
+
+def _macros_in(shader: Shader, function: Declared) -> list[_Used]:
+    """Return the macros that a function's text names, and those that they name."""
+    known: dict[str, list[_Used]] = {}
+    for path, text in shader.files:
+        inside = [(word, at) for word, at in words(text) if not _is_member(text, at)]
+        for one in macros_of(text):
+            body = frozenset(word for word, at in inside if one.body <= at < one.end)
+            line = text.count("\n", 0, one.start) + 1
+            known.setdefault(one.name, []).append(_Used(one.name, body, f"{shown(path)}:{line}"))
+    new = {word for word, at in words(shader.text) if function.start <= at < function.end}
+    found: dict[str, list[_Used]] = {}
+    while new := {word for word in new if word in known and word not in found}:
+        found |= {word: known[word] for word in new}
+        new = {word for name in new for used in known[name] for word in used.words}
+    return [used for several in found.values() for used in several]
+
+
 def _is_member(text: str, place: int) -> bool:
-    return text[:place].rstrip(" \t").endswith(".")
+    return code_of(text)[:place].rstrip().endswith(".")
 
 
 def _top_level(shader: Shader, name: str) -> None:
@@ -227,9 +280,10 @@ class _Everywhere:
 
     def _check(self, path: Path, text: str, is_changed: bool) -> None:
         for one in outline(text):
-            places = locals_of(text, one).get(self.name) if one.kind == "function" and one.body >= 0 else None
-            if places:
-                line = text.count("\n", 0, places[0]) + 1
+            inside = locals_of(text, one) if one.kind == "function" and one.body >= 0 else ()
+            at = next((local.at for local in inside if local.name == self.name), None)
+            if at is not None:
+                line = text.count("\n", 0, at) + 1
                 raise Refused(f"'{self.name}' is hidden by another of that name at {shown(path)}:{line}")
         if is_changed and self.parameter is not None:
             for ending in FAST:

@@ -17,7 +17,7 @@ from playground.lsp.documents import Document, Documents
 from playground.paths import GLSL
 from playground.sketch.header import parse_kernel
 from playground.sketch.model import Input, Kernel, Parameter
-from playground.sketch.outline import WORD, Declared, code_of, locals_of, outline
+from playground.sketch.outline import Declared, code_of, identifiers, local_at, locals_of, outline
 from playground.sketch.reserved_names import GIVEN, MATCHES, SKIPS, TOWARDS, WIRED
 from playground.sketch.source import SourceText, find_include, read_source, read_text
 from playground.sketch.uniforms import read_uniforms
@@ -96,10 +96,9 @@ class Shader:
         """Return where a name is declared that the text has at a place; None where it is not known."""
         function = self.function_at(at)
         if function is not None:
-            places = locals_of(self.text, function).get(name)
-            if places:
-                before = [place for place in places if place <= at]
-                return Place(self.path, self.text, before[-1] if before else places[0], len(name))
+            local = local_at(locals_of(self.text, function), name, at)
+            if local is not None:
+                return Place(self.path, self.text, local.at, len(name))
         for prefix in (WIRED, MATCHES, TOWARDS):
             if name.startswith(prefix) and name in self.given:
                 name = name.removeprefix(prefix)
@@ -179,9 +178,9 @@ def word_at(text: str, at: int) -> tuple[str, int]:
     """Return the identifier that a place is in or behind, and where it begins; ("", at) for none."""
     line = text.rfind("\n", 0, at) + 1
     end = text.find("\n", at)
-    for match in WORD.finditer(text, line, end if end >= 0 else len(text)):
-        if match.start() <= at <= match.end():
-            return match.group(), match.start()
+    for word, start in identifiers(text, line, end if end >= 0 else len(text)):
+        if start <= at <= start + len(word):
+            return word, start
     return "", at
 
 

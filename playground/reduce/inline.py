@@ -192,4 +192,4 @@ def unwired(text: str, name: str) -> str:
     An input that nothing is wired to would else take the latest earlier output of its name.
     """
     fresh = name if name.startswith("no_") else f"no_{name}"
-    return re.sub(rf"\b({WIRED}|{MATCHES}|){name}\b", lambda found: f"{found.group(1)}{fresh}", text)
+    return re.sub(rf"(?<![\w.])({WIRED}|{MATCHES}|){name}\b", lambda found: f"{found.group(1)}{fresh}", text)

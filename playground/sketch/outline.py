@@ -7,12 +7,15 @@ what is after a bracket that was never closed belongs to its block.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
 WORD = re.compile(r"[A-Za-z_]\w*", re.ASCII)
-_MARK = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
+# A number takes its suffix and its exponent, so that their letters are no names.
+_NAME_OR_NUMBER = re.compile(r"([A-Za-z_]\w*)|0[xX]\w*|\.?\d(?:[eE][-+]|[\w.])*", re.ASCII)
+# Of a pragma, // in quotes is no comment; one of // goes on behind a backslash at the line's end.
+_MARK = re.compile(r'"(?:[^"\\\n]|\\.)*"?|//(?:[^\n\\]|\\.)*|/\*.*?(?:\*/|\Z)', re.DOTALL)
 _QUALIFIERS = r"(?:(?:const|flat|highp|mediump|lowp|in|out|uniform|shared)\s+)*"
 _FUNCTION = re.compile(rf"{_QUALIFIERS}([A-Za-z_]\w*)\s+([A-Za-z_]\w*)\s*\(([^)]*)\)\s*$", re.DOTALL)
 _VARIABLE = re.compile(
@@ -22,11 +25,15 @@ _STRUCT = re.compile(r"struct\s+([A-Za-z_]\w*)\s*$")
 _DEFINE = re.compile(r"[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(\([^)\n]*\))?[^\n]*")
 _DIRECTIVE = re.compile(r"[ \t]*#(?:[^\n\\]|\\\n|\\[^\n])*")  # and the lines that it goes on to
 _LOCAL = re.compile(
-    r"(?<![\w.])([A-Za-z_]\w*)\s+((?:[A-Za-z_]\w*)\s*(?:\[[^\]]*\]\s*)?(?:=[^;]*?)?"
-    r"(?:,\s*[A-Za-z_]\w*\s*(?:\[[^\]]*\]\s*)?(?:=[^;]*?)?)*)(?=;|\)|,|\{|$)"
+    r"(?<![\w.])([A-Za-z_]\w*)(?:(?:\s*\[[^\]]*\])+\s*|\s+)([A-Za-z_]\w*)(?=\s*(?:[;,=)[{]|$))", re.ASCII
 )
-_NOT_TYPES = frozenset("return else in out inout case goto".split())
-_NAME_IN_LIST = re.compile(r"(?:^|,)\s*([A-Za-z_]\w*)")
+_NOT_TYPES = frozenset("return else do in out inout const flat highp mediump lowp goto case".split())
+_NEXT_IN_LIST = re.compile(r",\s*([A-Za-z_]\w*)(?=\s*[][;,=])", re.ASCII)
+_BEFORE_BRACKET = re.compile(r"([A-Za-z_]\w*)\s*\Z", re.ASCII)
+_OWN_SCOPE = frozenset(("for", "while", "if", "switch"))
+_CONTROL = re.compile(r"\s*(?:(for|while|if|switch)\s*\(|do\b)", re.ASCII)
+_ELSE = re.compile(r"\s*else\b", re.ASCII)
+_MACRO = re.compile(r"\s*#\s*define\s+([A-Za-z_]\w*)(\([^)]*\))?", re.ASCII)
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,52 +61,163 @@ def outline(text: str) -> tuple[Declared, ...]:
     return tuple(sorted((*_macros(text), *_statements(text)), key=lambda one: one.start))
 
 
+@dataclass(frozen=True, slots=True)
+class Local:
+    """One name that a function declares, an argument or a variable of a block."""
+
+    name: str
+    at: int  # where it is declared
+    seen: int  # from where on it stands for this one: behind its value
+    end: int  # where its block ends
+
+
+@dataclass(frozen=True, slots=True)
+class Macro:
+    """One ``#define``, the lines that it goes on to too."""
+
+    name: str
+    parameters: frozenset[str]
+    start: int  # of the directive
+    body: int  # where its body begins
+    end: int
+
+
 @lru_cache(maxsize=256)
 def code_of(text: str) -> str:
     """Return a text as long as this one, with spaces in place of its comments."""
-    return _MARK.sub(lambda match: re.sub(r"[^\n]", " ", match.group()), text)
+    return _MARK.sub(lambda match: match[0] if match[0][0] == '"' else _blank(match), text)
+
+
+def _blank(match: re.Match[str]) -> str:
+    return re.sub(r"[^\n]", " ", match[0])
+
+
+def identifiers(text: str, start: int = 0, end: int | None = None) -> Iterator[tuple[str, int]]:
+    """Yield each identifier of a text with its place: no letters of numbers, as in 1e-3, 2.0f and 0xFFu."""
+    for match in _NAME_OR_NUMBER.finditer(text, start, len(text) if end is None else end):
+        if match[1]:
+            yield match[1], match.start()
 
 
 def words(text: str) -> Iterator[tuple[str, int]]:
-    """Yield each identifier of the code, directives but for pragmas and includes too, with its place."""
-    for match in WORD.finditer(_without_strings(text)):
-        yield match.group(), match.start()
+    """Yield each identifier of the code with its place, of macros too, but for macros' own parameters.
+
+    Pragmas and includes are left out.
+    """
+    macros = list(macros_of(text))
+    for word, at in identifiers(_without_strings(text)):
+        while macros and macros[0].end <= at:
+            macros.pop(0)
+        if not (macros and macros[0].start <= at and word in macros[0].parameters):
+            yield word, at
 
 
 @lru_cache(maxsize=256)
 def _without_strings(text: str) -> str:
     """Return a text with spaces in place of comments, includes and pragmas."""
-    code = code_of(text)
     return _DIRECTIVE.sub(
-        lambda match: (
-            re.sub(r"[^\n]", " ", match.group())
-            if re.match(r"\s*#\s*(?:include|pragma)\b", match.group())
-            else match.group()
-        ),
-        code,
+        lambda match: _blank(match) if re.match(r"\s*#\s*(?:include|pragma)\b", match[0]) else match[0],
+        code_of(text),
     )
 
 
-def locals_of(text: str, function: Declared) -> dict[str, list[int]]:
-    """Return the names that a function declares, its own arguments too, each with the places where."""
-    code = code_of(text)
-    found: dict[str, list[int]] = {}
-    for match in _LOCAL.finditer(code, function.start, max(function.end, function.start)):
+@lru_cache(maxsize=256)
+def _without_directives(text: str) -> str:
+    """Return a text with spaces in place of comments and directives."""
+    return _DIRECTIVE.sub(_blank, code_of(text))
+
+
+@lru_cache(maxsize=256)
+def macros_of(text: str) -> tuple[Macro, ...]:
+    """Return the macros of a text, in its order."""
+    found = []
+    for directive in _DIRECTIVE.finditer(code_of(text)):
+        if match := _MACRO.match(directive[0]):
+            parameters = frozenset(word for word, _ in identifiers(match[2] or ""))
+            start = directive.start()
+            found.append(Macro(match[1], parameters, start, start + match.end(), directive.end()))
+    return tuple(found)
+
+
+@lru_cache(maxsize=256)
+def locals_of(text: str, function: Declared) -> tuple[Local, ...]:
+    """Return the names that a function declares, its own arguments too, in their order."""
+    code = _without_directives(text)[: max(function.end, function.start)]
+    found: list[Local] = []
+    for match in _LOCAL.finditer(code, function.start):
         if match[1] in _NOT_TYPES or match.start(2) <= function.at:
             continue
-        for name in _NAME_IN_LIST.finditer(_brackets_blanked(match[2])):
-            found.setdefault(name[1], []).append(match.start(2) + name.start(1))
-    return found
+        end = _scope_end(code, match.start(2))
+        name, at = match[2], match.start(2)
+        while True:
+            behind = _declarator_end(code, at + len(name))
+            found.append(Local(name, at, behind, end))
+            following = _NEXT_IN_LIST.match(code, behind)
+            if following is None:
+                break
+            name, at = following[1], following.start(1)
+    return tuple(found)
 
 
-def _brackets_blanked(text: str) -> str:
-    """Return a text as long, with what is in brackets blanked."""
-    depth, found = 0, []
-    for letter in text:
-        depth -= letter in ")]"
-        found.append(" " if depth > 0 else letter)
-        depth += letter in "(["
-    return "".join(found)
+def has_branches(text: str, function: Declared) -> bool:
+    """Return whether parts of a function exclude each other, by ``#else`` or ``#elif``."""
+    inside = _DIRECTIVE.finditer(code_of(text), function.start, max(function.end, function.start))
+    return any(re.match(r"\s*#\s*el", directive[0]) for directive in inside)
+
+
+def local_at(found: Iterable[Local], name: str, at: int) -> Local | None:
+    """Return the local that a name at a place stands for, or declares; None for a name of the top level."""
+    there = [one for one in found if one.name == name and (one.at == at or one.seen <= at < one.end)]
+    return next((one for one in there if one.at == at), max(there, key=lambda one: one.at, default=None))
+
+
+def _declarator_end(code: str, at: int) -> int:
+    """Return where a declared name ends, with its brackets and its value."""
+    depth = 0
+    for match in re.compile(r"[][(){};,]").finditer(code, at):
+        mark = match[0]
+        if depth == 0 and mark in ";,)]}":
+            return match.start()
+        depth += (mark in "([{") - (mark in ")]}")
+    return len(code)
+
+
+def _scope_end(code: str, at: int) -> int:
+    """Return where the block ends that a place is in: of a loop's head, behind the loop."""
+    depth = 0
+    for match in reversed(list(re.compile(r"[(){}]").finditer(code, 0, at))):
+        depth += 1 if match[0] in ")}" else -1
+        if depth < 0 and match[0] == "{":
+            return _closing(code, match.start())
+        if depth < 0:
+            before = _BEFORE_BRACKET.search(code[: match.start()])
+            if before is not None and before[1] in _OWN_SCOPE:
+                return _statement_end(code, _closing(code, match.start()) + 1)
+            return len(code)  # an argument
+    return len(code)
+
+
+def _closing(code: str, at: int) -> int:
+    """Return where the bracket at a place is closed; the code's end where it is not."""
+    depth = 0
+    for match in re.compile(r"[(){}]").finditer(code, at):
+        depth += 1 if match[0] in "({" else -1
+        if depth == 0:
+            return match.start()
+    return len(code)
+
+
+def _statement_end(code: str, at: int) -> int:
+    """Return where the statement that begins at a place ends."""
+    branches = 0
+    while (control := _CONTROL.match(code, at)) is not None:
+        branches += control[1] == "if"
+        at = _closing(code, control.end() - 1) + 1 if control[1] else control.end()
+    brace = re.compile(r"\s*\{").match(code, at)
+    end = _closing(code, brace.end() - 1) if brace is not None else code.find(";", at)
+    end = end + 1 if end >= 0 else len(code)
+    following = _ELSE.match(code, end) if branches else None
+    return end if following is None else _statement_end(code, following.end())
 
 
 def _macros(text: str) -> Iterator[Declared]:
@@ -119,7 +237,7 @@ def _is_guard(code: str, match: re.Match[str]) -> bool:
 
 
 def _statements(text: str) -> Iterator[Declared]:
-    code = _DIRECTIVE.sub(lambda match: re.sub(r"[^\n]", " ", match.group()), code_of(text))
+    code = _without_directives(text)
     depth, start, body, head = 0, 0, -1, ""
     for match in re.finditer(r"[{};]", code):
         mark, at = match.group(), match.start()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -329,6 +330,120 @@ def test_what_the_library_declares_is_not_renamed_from_a_kernel(editor: Editor, 
     text = KERNEL.replace("#include", '#include "noise/hash.glsl"\n#include').replace("kept_of(", "random(")
     with pytest.raises(Refusal, match="not in the open folder"):
         renamed(editor, folder, "random(", "chance", text)
+
+
+# What is renamed stands in «»; the cursor is at the first of them.
+SCOPES = {
+    "numbers": """float kernel(ivec2 texel) {
+    float «e» = 1e-3, f = 2.0f;
+    return «e» * 1.e3 + .5e3 + 0xeu - 1E-3 + f * «e»;
+}""",
+    "suffixes": """float kernel(ivec2 texel) {
+    float «f» = 2.0f;
+    return «f» + 1.f + .5F + 3e2f + 0xFFu;
+}""",
+    "members": """struct Wave { float e; };
+float kernel(ivec2 texel) {
+    vec4 «e» = vec4(1.0);
+    Wave wave = Wave(«e».x);
+    return «e».r + wave.e + wave . e + «e» [0];
+}""",
+    "another function": """float other(float e) { return e; }
+float kernel(ivec2 texel) { float «e» = 1.0; return other(«e»); }
+float third() { float e = 2.0; return e; }""",
+    "outer block": """float kernel(ivec2 texel) {
+    float «e» = 1.0;
+    for (int i = 0; i < 3; ++i) { float e = «e» * 2.0, g = e; texel.x += int(e + g); }
+    for (int e = 0; e < 3; ++e) texel.x += e;
+    if (texel.x > 1) { float e = 2.0; return e; } else { return «e»; }
+}""",
+    "inner block": """float kernel(ivec2 texel) {
+    float e = 1.0;
+    { float «e» = e * 2.0; texel.x += int(«e»); { float e = «e»; texel.x += int(e); } }
+    return e;
+}""",
+    "head of a loop": """float kernel(ivec2 texel) {
+    int e = 1;
+    for (int «e» = 0, g = «e»; «e» < 3; ++«e») if (g > «e») texel.x += «e»; else texel.x -= «e»;
+    return float(e);
+}""",
+    "argument": """float other(in vec2 «e», float[2] g) {
+    float h[2] = float[2](«e».x, «e».y), k = «e».x;
+    return h[0] * k;
+}
+float kernel(ivec2 texel) { return other(vec2(1e-3), float[2](0.0, 1.0)); }""",
+    "a macro's parameter": """#define SQUARE(e) ((e) * (e))
+float kernel(ivec2 texel) { float «e» = 1.0; return SQUARE(«e»); }""",
+    "branches": """float kernel(ivec2 texel) {
+#ifdef FINE
+    float «e» = 1.0;
+#else
+    float «e» = 2.0;
+#endif
+    return «e»;
+}""",
+    "top level": """float «e»(float f) { return f * 1e-3; }
+#define CALL(e) (e)
+float kernel(ivec2 texel) { return CALL(«e»(1e3)); }""",
+}
+PRAGMA = '#pragma kernel(output = "height:r32f", \\\n    title = "a // b")\n'
+
+
+@pytest.mark.parametrize("case", SCOPES)
+def test_a_rename_changes_what_the_name_stands_for(editor: Editor, folder: Path, case: str) -> None:
+    marked = PRAGMA + SCOPES[case]
+    text = marked.replace("«", "").replace("»", "")
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, text)
+    found = editor.at("rename", uri, *place(marked, "«"), newName="east")["changes"]
+    assert applied(text, found[uri]) == re.sub("«.*?»", "east", marked)
+
+
+@pytest.mark.parametrize(
+    ("text", "word", "new", "why"),
+    [
+        ("float kernel(ivec2 t) { return 1e-3; }", "e-3", "east", "no name here"),
+        ("float kernel(ivec2 t) { return 2.0f; }", "f;", "far", "no name here"),
+        ("float kernel(ivec2 t) { return 0xFFu; }", "FFu", "far", "no name here"),
+        (
+            "#define STEP (1.0 + e)\n#define TWICE (STEP * 2.0)\n"
+            "float kernel(ivec2 t) { float e = 1.0; return TWICE; }",
+            "e = 1",
+            "east",
+            r"'e' is in the macro STEP at .*hill\.glsl:3, which this function uses",
+        ),
+        (
+            "float far = 1.0;\n#define STEP (1.0 + far)\n"
+            "float kernel(ivec2 t) { float e = 1.0; return e * STEP; }",
+            "e = 1",
+            "far",
+            "a name of this function already",
+        ),
+        (
+            "#define SQ(e) (e * e)\nfloat kernel(ivec2 t) { return SQ(1.0); }",
+            "e)",
+            "east",
+            "a macro's parameter",
+        ),
+    ],
+)
+def test_a_rename_that_would_change_the_meaning_is_refused(
+    editor: Editor, folder: Path, text: str, word: str, new: str, why: str
+) -> None:
+    with pytest.raises(Refusal, match=why):
+        renamed(editor, folder, word, new, PRAGMA + text)
+
+
+def test_a_uniform_behind_a_pragma_with_slashes_has_a_symbol(editor: Editor, folder: Path) -> None:
+    text = (
+        PRAGMA + "uniform float gain = 1.0;  //! slider(0, 1)\nfloat kernel(ivec2 texel) { return gain; }\n"
+    )
+    uri = (folder / "hill.glsl").as_uri()
+    editor.open(uri, text)
+    found = editor.ask("textDocument/documentSymbol", textDocument={"uri": uri})
+    assert [symbol["name"] for symbol in found] == ["gain", "kernel"]
+    found = editor.at("rename", uri, *place(text, "gain"), newName="loss")["changes"]
+    assert applied(text, found[uri]) == text.replace("gain", "loss")
 
 
 # ── colours ──────────────────────────────────────────────────────────────────

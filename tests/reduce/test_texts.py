@@ -8,7 +8,7 @@ import pytest
 
 from playground.paths import GLSL
 from playground.reduce import blocks, edits
-from playground.reduce.inline import written
+from playground.reduce.inline import unwired, written
 from playground.reduce.tokens import print_tokens, tidy, tokens_of
 from playground.sketch.techniques import read_kernel
 
@@ -159,3 +159,11 @@ def test_zeros_are_not_put_in_where_they_would_be_the_defect():
 )
 def test_what_glsl_leaves_undefined_is_known(text, names):
     assert edits.undefined(tidy(text)) == names
+
+
+def test_an_input_without_a_source_keeps_members_and_numbers() -> None:
+    text = (
+        "uniform sampler2D f;  //! input\nfloat g = wired_f ? texture(f, uv).x + 1.f + wave.f : 0.0;\n"
+    )
+    expected = text.replace("sampler2D f", "sampler2D no_f").replace("wired_f", "wired_no_f")
+    assert unwired(text, "f") == expected.replace("texture(f", "texture(no_f")

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from playground.gpu.name_suggestions import library
 from playground.paths import GLSL
 from playground.sketch.outline import code_of, locals_of, outline, words
@@ -51,8 +53,8 @@ def test_each_declaration_has_its_kind_its_signature_and_its_comment() -> None:
 def test_a_function_knows_its_arguments_and_all_that_it_declares() -> None:
     steep = next(one for one in outline(TEXT) if one.name == "steep")
     found = locals_of(TEXT, steep)
-    assert sorted(found) == ["far", "first", "march", "second", "slope", "step"]
-    assert all(TEXT[at:].startswith(name) for name, places in found.items() for at in places)
+    assert [one.name for one in found] == ["slope", "march", "first", "second", "step", "far"]
+    assert all(TEXT[one.at :].startswith(one.name) for one in found)
 
 
 def test_words_are_those_of_the_code() -> None:
@@ -60,6 +62,27 @@ def test_words_are_those_of_the_code() -> None:
     assert found >= {"steep", "TWICE", "march", "far"}
     assert not found & {"no", "comment", "hidden", "Not", "glsl", "colour"}
     assert len(code_of(TEXT)) == len(TEXT)
+
+
+def test_letters_of_numbers_are_no_names() -> None:
+    text = "float a = 1e-3 + 2.0f + 3.e5 + .5e3f + 0xFFu + 0Xe1 + 1u + 4.f - e; vec2 b = v1e3.xy * 1E+2;\n"
+    assert [word for word, _ in words(text)] == ["float", "a", "e", "vec2", "b", "v1e3", "xy"]
+
+
+@pytest.mark.parametrize(
+    "pragma",
+    [
+        '#pragma kernel(output = "height:r32f", \\\n    about = "https://example.org // it")',
+        '#pragma kernel(output = "height:r32f") // see https://example.org \\\n  and what follows',
+        '#pragma kernel(output = "height:r32f", \\\n    about = "never closed // it \\\n   and on)',
+        '#pragma kernel(output = "a \\" // b", /* c // */ \\\n size = "1")',
+    ],
+)
+def test_what_follows_a_pragma_with_slashes_is_declared(pragma: str) -> None:
+    text = (
+        pragma + "\nuniform float gain = 1.0;  //! slider(0, 1)\nfloat kernel(ivec2 texel) { return gain; }\n"
+    )
+    assert [one.name for one in outline(text)] == ["gain", "kernel"]
 
 
 def test_what_a_bracket_never_closes_is_no_other_function() -> None:
