@@ -2,8 +2,8 @@
 //
 //   gives    height: 0 at the file's lowest, 1 at its highest
 //   needs    nothing; the processor reads the file (playground/terrain/elevation.py)
-//   units    heights without unit; where the file or `metres` tells them, the sketch's relief,
-//            base elevation and extent take the file's metres unless it sets its own
+//   units    heights without unit; the sketch's relief, base elevation and extent take the metres
+//            of the file or of `metres` unless it sets its own. Only pictures have no heights
 //   source   Belaiche 2010, section 2.3.1, for heights as greys in [a, b]
 //   tested   tests/glsl/test_heightmap.py, against the file's own numbers
 //

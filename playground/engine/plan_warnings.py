@@ -15,6 +15,7 @@ from playground.sketch.flat import Ref, Source
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
 from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
+from playground.terrain.known import Terrain
 from playground.terrain.sources import source_kind
 
 
@@ -83,6 +84,7 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
     """
     live = inputs or LiveInputs()
     found: dict[str, Diagnostic] = {}
+    assumptions = _assumptions(plan)
     for step in _fed_from_outside(Identity(plan.nodes)):
         if step.kernel.dialect:
             from playground.sketch.dialects.foreign import unfed_warnings
@@ -96,11 +98,42 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
                 notes = kind.notes(step.values)
             if lack := kind.lack(step.values, live):
                 notes = (*notes, f"{_readers(plan, step)}: {lack}")
-            for note in notes:
+            for note in (*notes, *assumptions.get(step.path, ())):
                 file = spec.file or shown(step.kernel.path)
                 note = note.removeprefix(f"{Path(file).name}: ")  # of a file that was opened itself
                 found.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
     return tuple(found.values())
+
+
+def _assumptions(plan: Plan) -> dict[str, tuple[str, ...]]:
+    """Return what is assumed of the terrain's metres, by the path of the source that leaves them open.
+
+    What the sketch says itself is not assumed.
+    """
+    sketch, terrain = plan.sketch, plan.terrain
+    for leaf in plan.flat.sources:
+        kind, step = source_kind(leaf.kernel.registry), plan.step(leaf.path)
+        if step is None:
+            continue
+        try:
+            known = kind.describe(step.values)
+        except DataError:  # the file has gone since; drawing reports it
+            return {}
+        if known == Terrain():
+            continue
+        name, found = Path(str(step.values[kind.files[0]])).name, list[str]()
+        assert terrain.relief is not None and terrain.base_elevation is not None and terrain.extent
+        if sketch.relief is None and known.relief is None:
+            low, high = terrain.base_elevation, terrain.base_elevation + terrain.relief
+            found.append(f"{name}: its heights have no unit and are stretched to {low:g}..{high:g} m")
+        elif sketch.relief is None and known.assumed:
+            found.append(f"{name}: {known.assumed}")
+        if sketch.extent is None and known.extent is None and known.size and not known.place:
+            found.append(
+                f"{name}: nothing says how large it is; a width of {terrain.extent[0]:g} m is assumed"
+            )
+        return {leaf.path: tuple(found)}
+    return {}
 
 
 @lru_cache(maxsize=2)

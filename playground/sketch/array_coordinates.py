@@ -17,6 +17,7 @@ from playground.errors import ParameterError
 _EAST = ("x", "lon", "longitude", "easting", "projection_x_coordinate")
 _METRES = {"": 1.0, "m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "km": 1000.0}
 _DEGREES = ("degree", "degrees", "deg")
+_MAX_UNIT = 60  # letters of a unit's name
 _EVEN = 1e-3  # of a spacing: what coordinates that were rounded may be off
 
 
@@ -29,12 +30,14 @@ class Coordinates:
     step: tuple[float, float] | None = None
     units: str = ""  # "m" or "degrees"
     crs: str = ""  # its well-known text
+    height_units: str = ""  # the unit of the numbers, as it is named
 
     def arrays(self) -> dict[str, Any]:
         """Return what an ``.npz`` says of it, as ``terrain.arrays`` reads it."""
+        found: dict[str, Any] = {"height_units": self.height_units} if self.height_units else {}
         if self.step is None or self.x is None or self.y is None:
-            return {}
-        found: dict[str, Any] = {"dx": self.step[0], "dy": self.step[1]}
+            return found
+        found |= {"dx": self.step[0], "dy": self.step[1]}
         found |= {"xmin": self.x[0], "xmax": self.x[1], "ymin": self.y[0], "ymax": self.y[1]}
         return found | {"units": self.units} | ({"crs": self.crs} if self.crs else {})
 
@@ -58,6 +61,7 @@ def coordinates_of(
     accessor = getattr(given, "rio", None)
     gap = getattr(accessor, "nodata", None)
     gap = None if gap is None or np.isnan(gap) else float(gap)
+    unit = str(_attributes(given).get("units", "")).strip()[:_MAX_UNIT]
     if values.ndim != 2:
         return values, Coordinates(), gap
     if dims[0].lower() in _EAST and dims[1].lower() not in _EAST:
@@ -68,14 +72,14 @@ def coordinates_of(
     if y is not None and y[0] > y[1]:
         values, y = values[::-1], y[::-1]
     if x is None or y is None:
-        return values, Coordinates(), gap
+        return values, Coordinates(height_units=unit), gap
     step = (x[1] - x[0]) / (values.shape[1] - 1), (y[1] - y[0]) / (values.shape[0] - 1)
     crs = getattr(accessor, "crs", None)
     if crs is not None:
-        return values, Coordinates((x[0], x[1]), (y[0], y[1]), step, "", str(crs.to_wkt())), gap
+        return values, Coordinates((x[0], x[1]), (y[0], y[1]), step, "", str(crs.to_wkt()), unit), gap
     scale, degrees = _unit(given, dims, name)
     x, y, step = ((pair[0] * scale, pair[1] * scale) for pair in (x, y, step))
-    return values, Coordinates(x, y, step, "degrees" if degrees else "m"), gap
+    return values, Coordinates(x, y, step, "degrees" if degrees else "m", "", unit), gap
 
 
 def _along(given: Any, dim: str, count: int, name: str) -> tuple[float, float] | None:
@@ -108,6 +112,6 @@ def _unit(given: Any, dims: list[str], name: str) -> tuple[float, bool]:
     return _METRES[words.pop()], False
 
 
-def _attributes(coordinate: Any) -> Mapping[str, Any]:
-    found = getattr(coordinate, "attrs", {})
+def _attributes(labelled: Any) -> Mapping[str, Any]:
+    found = getattr(labelled, "attrs", {})
     return found if isinstance(found, Mapping) else {}

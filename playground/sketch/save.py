@@ -12,7 +12,7 @@ import os
 import shutil
 import stat
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -338,13 +338,14 @@ def _copied_into(folder: Path, source: Path) -> str:
         return source.relative_to(folder).as_posix()
     target, number = folder / source.name, 2
     try:
-        data = _contents((source, *sidecars(source)))
-        while (there := _contents(filter(Path.exists, (target, *sidecars(target))))) and there != data:
+        data = _contents(source)
+        while (there := _contents(target)) and there != data:
             target, number = folder / f"{source.stem}-{number}{source.suffix}", number + 1
         for ending, content in reversed(data.items()):  # the file itself comes last
-            with partial_file(target.with_suffix(ending)) as partial:
+            path = target.with_name(target.stem + ending)
+            with partial_file(path) as partial:
                 partial.handle.write(content)
-                partial.rename(target.with_suffix(ending))
+                partial.rename(path)
     except OSError as error:
         raise DataError(
             f"cannot be copied into the folder of the sketch: {error.strerror}", file=source
@@ -352,9 +353,10 @@ def _copied_into(folder: Path, source: Path) -> str:
     return target.name
 
 
-def _contents(files: Iterable[Path]) -> dict[str, bytes]:
-    """Return what files of one name hold, by their endings."""
-    return {file.suffix: read_regular(file) for file in files}
+def _contents(path: Path) -> dict[str, bytes]:
+    """Return what a file and those next to it hold, by what follows its stem; of those that are there."""
+    files = filter(Path.exists, (path, *sidecars(path)))
+    return {file.name[len(path.stem) :]: read_regular(file) for file in files}
 
 
 def _new_folder(folder: Path, name: str) -> Path:

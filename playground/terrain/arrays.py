@@ -32,15 +32,16 @@ class _Header:
 
 
 def read_npy(path: Path) -> Found:
-    """Read the one array of an `.npy`; it says nothing of metres."""
+    """Read the one array of an `.npy`; it says nothing of units."""
     with open_regular(path) as handle:
         header = _array_header(handle, path)
         check_grid(header.shape, header.dtype, path, in_turn=not header.by_columns)
         length = path.stat().st_size
         if header.by_columns:
-            return in_memory(_array_body(handle, header, length, path))
+            return in_memory(_array_body(handle, header, length, path)).in_unit(Crs())
         _refuse_cut(handle, header, length, path)
-        return Found(FileRows(path, (header.shape[0], header.shape[1]), header.dtype, handle.tell()))
+        rows = FileRows(path, (header.shape[0], header.shape[1]), header.dtype, handle.tell())
+        return Found(rows).in_unit(Crs())
 
 
 def _array_header(handle: IO[bytes], path: Path) -> _Header:
@@ -141,10 +142,13 @@ def read_npz(path: Path) -> Found:
         dx, dy = archive.number("dx"), archive.number("dy")
         x0, x1, y0, y1 = (archive.number(name) for name in ("xmin", "xmax", "ymin", "ymax"))
         units, crs, first = archive.word("units"), archive.text("crs"), archive.word("first_row")
+        of_heights = archive.text("height_units", 256)
     if first not in ("", "north", "south"):
         raise DataError(f"'first_row' is {first!r}; expected 'north' or 'south'", file=path)
     found = _placed(path, values, (dx, dy), ((x0, x1), (y0, y1)), units, crs)
-    return replace(found, south_first=first == "south" if first else None)
+    if not crs and (dx is not None or dy is not None):
+        of_heights = of_heights or "m"  # as of its cells
+    return replace(found.in_unit(Crs(wkt=crs), of_heights), south_first=first == "south" if first else None)
 
 
 def _placed(
@@ -162,11 +166,12 @@ def _placed(
     dx, dy = abs(dx or dy or 0.0), abs(dy or dx or 0.0)
     if not dx or not dy:
         raise DataError("'dx' and 'dy' are zero; expected the distance between texels", file=path)
-    if crs and x0 is not None and x1 is not None and y0 is not None and y1 is not None:
-        size = values.shape[1], values.shape[0]
-        found = _bounded((x0, x1), (y0, y1), (dx, dy), size, Crs(wkt=crs))
-        spacing, notes = found.spacing if found else (None, ())
-        return in_memory(values, spacing, in_metres=True, place=found, notes=notes)
+    if crs:
+        size, found = (values.shape[1], values.shape[0]), None
+        if x0 is not None and x1 is not None and y0 is not None and y1 is not None:
+            found = _bounded((x0, x1), (y0, y1), (dx, dy), size, Crs(wkt=crs))
+        spacing, notes = (found or Place(math.nan, math.nan, (dx, dy), size, Crs(wkt=crs))).spacing
+        return in_memory(values, spacing, place=found, notes=notes)
     if x0 is None or x1 is None or y0 is None or y1 is None:
         in_degrees = False
     else:
@@ -181,13 +186,13 @@ def _placed(
             f"'units' is {units!r}; expected 'm', or 'degrees' together with 'ymin' and 'ymax'", file=path
         )
     if not in_degrees:
-        return in_memory(values, (dx, dy), in_metres=True)
+        return in_memory(values, (dx, dy))
     assert y0 is not None and y1 is not None
     spacing, notes = spacing_from_degrees(dx, dy, (y0 + y1) / 2)
     place = None
     if x0 is not None and x1 is not None:
         place = _place((x0, x1), (y0, y1), (dx, dy), (values.shape[1], values.shape[0]))
-    return in_memory(values, spacing, in_metres=True, place=place, notes=notes)
+    return in_memory(values, spacing, place=place, notes=notes)
 
 
 def _place(

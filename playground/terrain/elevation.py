@@ -52,13 +52,14 @@ class Elevation:
     heights: Heights  # (ny, nx) float32, row 0 in the south, NaN for no data; read-only
     name: str  # the file's name
     spacing: tuple[float, float] | None = None  # [m] a texel, east and north; None: the file is silent
-    in_metres: bool = False  # heights are metres; else raw numbers, or the file is silent
+    in_metres: bool = True  # heights are metres; else codes, as a picture's
     code_range: tuple[float, float] | None = None  # what raw numbers can be: (0, 255), (0, 65535),
     # (0, 16777215) when packed, or the metres that these mean where a PNG's texts say so;
     # None for other metres and for floats
     notes: tuple[str, ...] = ()  # sentences: what was assumed, what was lost
     path: Path | None = None  # where it was read from
     place: Place | None = None  # where all of the file's texels lie; None: the file is silent
+    assumed: str = ""  # of the unit of its heights; "" where the file or its format says it
     range: tuple[float, float] | None = None  # the lowest and the highest of the file; None: of ``heights``
 
     @property
@@ -181,7 +182,15 @@ class ElevationFile:
                 notes += (f"{dtype} heights up to {high:.6g} are kept as float32, to {grain:.2g} only",)
         heights.setflags(write=False)
         return Elevation(
-            heights, path.name, spacing, found.in_metres, found.code_range, notes, path, found.place
+            heights,
+            path.name,
+            spacing,
+            found.in_metres,
+            found.code_range,
+            notes,
+            path,
+            found.place,
+            found.assumed,
         )
 
 
@@ -213,19 +222,24 @@ def open_elevation(
       say which, as `playground export` writes them, with the spacing in `spacing_m`. Fully
       transparent texels have no data.
     * `.tif`, `.tiff`: integers or floats. Tags of GeoTIFF give the spacing (degrees
-      become metres at the middle latitude), the height's unit and what is no data.
-    * `.npy`; `.npz`: the array `elevation`, or the only one of two dimensions; scalars
-      `dx` and `dy` give the spacing. They are degrees if `xmin`, `xmax`, `ymin`, `ymax`
-      are there, look like degrees (|x| <= 360, |y| <= 90, spacing below 0.05) and no
-      string `units` says "m"; else metres. A text `crs`, the well-known text of a reference
-      system, says what they are instead; `first_row` is "north" or "south".
+      become metres at the middle latitude), the height's unit and what is no data. 8 or
+      16 bits without a sign, a place or a unit are a picture's raw numbers.
+    * `.npy`; `.npz`: the array `elevation`, or the only one of two dimensions, in metres
+      unless a string `height_units` names another unit; scalars `dx` and `dy` give the
+      spacing. They are degrees if `xmin`, `xmax`, `ymin`, `ymax` are there, look like degrees
+      (|x| <= 360, |y| <= 90, spacing below 0.05) and no string `units` says "m"; else metres.
+      A text `crs`, the well-known text of a reference system, says what they are instead;
+      `first_row` is "north" or "south".
     * `.asc`, and `.bil` and `.flt` with an `.hdr`: ESRI's grids. A `.prj` next to them says
-      whether their cells are metres or degrees.
+      whether their cells are metres or degrees, and the unit of heights in a compound system.
     * `.nc`: NetCDF, read by GDAL in the extra `gis`.
     * `.r16`, `.raw`: unsigned 16-bit little-endian numbers, square unless `raw_size`
       (nx, ny) says otherwise.
     * `.hgt`: SRTM, signed 16-bit big-endian metres over one degree; the latitude is
       in the name, as `N36W085.hgt`.
+
+    The `.aux.xml` that GDAL writes next to TIFF and ESRI's grids may have a unit, a scale and an
+    offset of heights. `assumed` says what nothing tells of the unit.
 
     `packing="rgb"` reads R*65536 + G*256 + B from three 8-bit channels of a PNG or
     TIFF. `first_row` says which edge the file begins with: "north" for everything

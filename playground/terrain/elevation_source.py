@@ -47,13 +47,14 @@ def describe(values: Mapping[str, Value]) -> Terrain:
     low, high = known.lowest, known.highest
     metres = values["metres"]  # of the file's lowest and highest codes; equal: nothing is known
     relief = base = None
+    assumed = ""
     if isinstance(metres, tuple) and metres[0] != metres[1]:
         codes = known.code_range or (low, high)
         scale = (metres[1] - metres[0]) / ((codes[1] - codes[0]) or 1.0)
         base, relief = metres[0] + (low - codes[0]) * scale, (high - low) * scale
     elif known.in_metres:
-        base, relief = low, high - low
-    return Terrain(size, file.extent, relief, base, file.found.place)
+        base, relief, assumed = low, high - low, known.assumed
+    return Terrain(size, file.extent, relief, base, file.found.place, assumed)
 
 
 def make(
@@ -129,13 +130,14 @@ class _Known:
     highest: float
     code_range: tuple[float, float] | None
     in_metres: bool
+    assumed: str
     notes: tuple[str, ...]
 
 
 @lru_cache(maxsize=16)
 def _known(asked: Asked, size: tuple[int, int]) -> _Known:
     found = _at(asked, size)
-    return _Known(found.lowest, found.highest, found.code_range, found.in_metres, found.notes)
+    return _Known(found.lowest, found.highest, found.code_range, found.in_metres, found.assumed, found.notes)
 
 
 def _at(asked: Asked, size: tuple[int, int]) -> Elevation:

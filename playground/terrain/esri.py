@@ -17,6 +17,7 @@ import numpy as np
 from playground.errors import DataError
 from playground.regular_file import open_regular
 from playground.sketch.sidecars import sidecars
+from playground.terrain.band import band_facts
 from playground.terrain.grid import Found, check_grid
 from playground.terrain.place import Crs, Place
 from playground.terrain.rows import Band, FileRows, Rows, StreamRows
@@ -138,12 +139,21 @@ def _found(rows: Rows, header: Header, path: Path) -> Found:
         notes = (
             f"there is no {path.with_suffix('.prj').name} next to it, so its cells may be degrees or metres",
         )
-    in_metres = spacing is not None
     no_data = _real(header, "nodata_value", path)
     no_data = _real(header, "nodata", path) if no_data is None else no_data
     if no_data is None and path.suffix.lower() in (".asc", ".flt"):
         no_data = -9999.0  # where the header does not say
-    return Found(rows, spacing, in_metres=in_metres, no_data=no_data, place=place, notes=notes)
+    band = band_facts(path)
+    found = Found(
+        rows,
+        spacing,
+        no_data=no_data,
+        scale=band.scale,
+        offset=band.offset,
+        place=place,
+        notes=notes,
+    )
+    return found.in_unit(Crs() if place is None else place.crs, band.unit)
 
 
 def _place(header: Header, size: tuple[int, int], path: Path) -> Place | None:

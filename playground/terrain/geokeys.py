@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from types import MappingProxyType
 from typing import Any
 
+from playground.terrain.units import HEIGHTS_IN_FEET, METRE, UNITS
 from playground.terrain.wkt import CrsFacts
 
 Key = int | str | tuple[float, ...]
@@ -21,14 +21,11 @@ DIRECTORY, DOUBLES, WORDS = 34735, 34736, 34737
 """The tags that hold the keys, their real numbers, and their texts."""
 
 MODEL, RASTER, CITATION = 1024, 1025, 1026
-GEOGRAPHIC, ANGLE, PROJECTED, PROJECTED_CITATION, LENGTH = 2048, 2054, 3072, 3073, 3076
+GEOGRAPHIC, ANGLE, PROJECTED, PROJECTED_CITATION, LENGTH, LENGTH_SIZE = 2048, 2054, 3072, 3073, 3076, 3077
 VERTICAL, VERTICAL_UNIT = 4096, 4099
 IS_AREA, IS_POINT = 1, 2
 OWN = 32767  # defined by further keys, not by a code
-METRE = 9001
-
-UNITS: Mapping[int, float] = MappingProxyType({METRE: 1.0, 9002: 0.3048, 9003: 1200.0 / 3937.0, 9036: 1000.0})
-"""Metres in a unit, by its EPSG code: metre, foot, US survey foot, kilometre."""
+_IN_METRES = (258, 269, 326, 327)  # hundreds of EPSG's codes of projected systems: UTM, all in metres
 
 
 def read_keys(directory: Any, doubles: Any, words: Any) -> Keys:
@@ -85,14 +82,51 @@ def read_facts(keys: Keys) -> CrsFacts:
     """Return what the keys say of the coordinate reference system."""
     known = dict(keys)
     model = code(known, MODEL)
+    height_unit, notes = _height_unit(known)
     if model == 2:
         degrees = math.degrees(1.0) if code(known, ANGLE) == 9101 else 1.0
-        return CrsFacts("geographic", degrees, _epsg(known, GEOGRAPHIC))
+        return CrsFacts("geographic", degrees, _epsg(known, GEOGRAPHIC), height_unit, notes)
     if model == 1:
-        unit = code(known, LENGTH, METRE)
-        notes = () if unit in UNITS else (f"its unit of length, EPSG {unit}, is taken for a metre",)
-        return CrsFacts("projected", UNITS.get(unit, 1.0), _epsg(known, PROJECTED), notes)
-    return CrsFacts()
+        epsg = _epsg(known, PROJECTED)
+        unit, more = _cell_unit(known, epsg)
+        return CrsFacts("projected", unit, epsg, height_unit, (*more, *notes))
+    return CrsFacts(height_unit=height_unit, notes=notes)
+
+
+def _cell_unit(known: Mapping[int, Key], epsg: int) -> tuple[float, tuple[str, ...]]:
+    """Return the metres in a unit of a projected system, and notes; the code alone may imply the unit."""
+    unit, size = code(known, LENGTH), known.get(LENGTH_SIZE)
+    if unit == OWN and isinstance(size, tuple) and size[0] > 0.0:
+        return size[0], ()
+    if unit == 0 and epsg and epsg // 100 not in _IN_METRES:
+        try:
+            from rasterio.crs import CRS
+            from rasterio.errors import CRSError
+        except ImportError:
+            return 1.0, (f"its keys do not say the unit of EPSG:{epsg}; a metre is assumed",)
+        try:
+            return float(CRS.from_epsg(epsg).linear_units_factor[1]), ()
+        except CRSError:
+            return 1.0, (f"GDAL does not know EPSG:{epsg}; its unit is taken for a metre",)
+    notes = () if unit in (0, *UNITS) else (f"its unit of length, EPSG {unit}, is taken for a metre",)
+    return UNITS.get(unit, 1.0), notes
+
+
+def _height_unit(known: Mapping[int, Key]) -> tuple[float, tuple[str, ...]]:
+    """Return the metres in a unit of height, 0 where the keys do not say, and notes.
+
+    The code of a vertical system says its unit; ``VERTICAL_UNIT`` is for systems without one, and for the
+    codes of GeoTIFF 1.0 (5001 to 5199), which are ellipsoids and datums.
+    """
+    system, unit = code(known, VERTICAL), code(known, VERTICAL_UNIT)
+    stated = UNITS.get(unit, 0.0)
+    if not 0 < system < OWN or (5000 < system < 5200 and stated):
+        notes = (f"its unit of height, EPSG {unit}, is not known here",) if unit and not stated else ()
+        return stated, notes
+    own = UNITS[HEIGHTS_IN_FEET.get(system, METRE)]
+    if stated and stated != own:
+        return own, (f"its keys name EPSG:{system} and another unit, EPSG {unit}; that of the former counts",)
+    return own, ()
 
 
 def _epsg(known: Mapping[int, Key], key: int) -> int:

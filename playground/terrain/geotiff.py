@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import logging
 import math
-import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -22,14 +21,12 @@ from playground.errors import DataError
 from playground.images.bounds import MAX_TEXELS, refuse_bomb
 from playground.images.files import reason
 from playground.terrain import gis
+from playground.terrain.band import band_facts
 from playground.terrain.geokeys import (
     DIRECTORY,
     DOUBLES,
     IS_POINT,
-    METRE,
     RASTER,
-    UNITS,
-    VERTICAL_UNIT,
     WORDS,
     code,
     read_keys,
@@ -46,6 +43,7 @@ from playground.terrain.grid import (
 from playground.terrain.place import Crs, Place, turned
 from playground.terrain.rows import ArrayRows, Rows
 from playground.terrain.tiff_rows import tiff_rows
+from playground.terrain.wkt import CrsFacts
 
 if TYPE_CHECKING:
     import tifffile
@@ -82,16 +80,17 @@ def read_tiff(path: Path, packing: Packing) -> Found:
             refuse_bomb(path, math.prod(shape) * page.dtype.itemsize, sum(page.databytecounts))
         no_data = _no_data(page)
         rows = _rows(page, path, no_data)
-        place, south_first = _place(page, (rows_cols[1], rows_cols[0]), path)
-        packed = _packing(page, path)
+        crs = Crs(read_keys(*(page.tags.valueof(number) for number in (DIRECTORY, DOUBLES, WORDS))))
+        place, south_first = _place(page, (rows_cols[1], rows_cols[0]), crs, path)
+        band = band_facts(path, str(page.tags.valueof(42112) or ""))
         overviews, notes = _further(tif, page, path, no_data)
     if isinstance(rows, gis.GdalRows):
         overviews = gis.overview_rows(path, "GTiff")
-    spacing, in_metres = None, False
+    spacing = None
+    is_map = place is not None or crs.facts != CrsFacts()
     if place is not None:
         spacing, more = place.spacing
-        in_metres, notes = place.crs.facts.kind != "", (*more, *notes)
-    crs = place.crs if place is not None else Crs()
+        notes = (*more, *notes)
     if place is not None and not math.isfinite(place.west + place.north):
         place = None  # it has steps, but no point that they go from
     void = None
@@ -108,25 +107,22 @@ def read_tiff(path: Path, packing: Packing) -> Found:
     else:
         rows = ArrayRows(rows) if isinstance(rows, np.ndarray) else rows
         code_range = {"u1": EIGHT_BIT, "u2": SIXTEEN_BIT}.get(rows.dtype.str[1:])
-    in_metres = in_metres and (packed is not None or code_range in (None, SIXTEEN_BIT))
-    scale, offset = packed if packed is not None and in_metres else (1.0, 0.0)
-    unit = 1.0
-    if in_metres:
-        unit = UNITS.get(code(dict(crs.keys), VERTICAL_UNIT, METRE), 1.0)
-    return Found(
+    in_metres = code_range is None or (packing == "grey" and (is_map or not band.is_default))
+    found = Found(
         rows,
         spacing,
         in_metres=in_metres,
         code_range=None if in_metres else code_range,
         void=void,
         no_data=no_data,
-        scale=scale * unit,
-        offset=offset * unit,
+        scale=band.scale if in_metres else 1.0,
+        offset=band.offset if in_metres else 0.0,
         place=place,
         south_first=south_first,
         overviews=overviews,
         notes=notes,
     )
+    return found.in_unit(crs, band.unit) if in_metres else found
 
 
 @contextmanager
@@ -218,30 +214,12 @@ def _no_data(page: tifffile.TiffPage) -> float | None:
         return None
 
 
-def _packing(page: tifffile.TiffPage, path: Path) -> tuple[float, float] | None:
-    """Return what a whole number is multiplied by and what is added, where GDAL's metadata say so."""
-    text = str(page.tags.valueof(42112) or "")  # XML, of which two items of the first channel count
-    found = {}
-    for attributes, value in re.findall(r"<Item\b([^>]*)>([^<]*)</Item>", text):
-        role = re.search(r'\brole="(scale|offset)"', attributes)
-        if role and not re.search(r'\bsample="(?!0")', attributes):
-            try:
-                found[role[1]] = float(value)
-            except ValueError:
-                found[role[1]] = math.nan
-    if not found:
-        return None
-    scale, offset = found.get("scale", 1.0), found.get("offset", 0.0)
-    if not (math.isfinite(scale) and math.isfinite(offset) and scale):
-        raise DataError("says that its numbers have a scale or an offset that is no number", file=path)
-    return scale, offset
-
-
-def _place(page: tifffile.TiffPage, size: tuple[int, int], path: Path) -> tuple[Place | None, bool | None]:
+def _place(
+    page: tifffile.TiffPage, size: tuple[int, int], crs: Crs, path: Path
+) -> tuple[Place | None, bool | None]:
     """Return where the nodes lie, and whether the first row is the south's; None for what is not said."""
     tags = page.tags
     scale, tie, matrix = (tags.valueof(number) for number in (33550, 33922, 34264))
-    crs = Crs(read_keys(*(tags.valueof(number) for number in (DIRECTORY, DOUBLES, WORDS))))
     middle = 0.0 if code(dict(crs.keys), RASTER) == IS_POINT else 0.5  # of a texel, from its place
     if scale is not None and len(scale) >= 2:
         dx, dy = float(scale[0]), -abs(float(scale[1]))  # as GDAL takes their signs

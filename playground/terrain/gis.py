@@ -36,7 +36,6 @@ _WGS_84 = (
     'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433],AUTHORITY["EPSG","4326"]]'
 )
 _BAND = 2**22  # [texels]
-_METRES = {"m": 1.0, "metre": 1.0, "metres": 1.0, "meter": 1.0, "meters": 1.0, "ft": 0.3048, "km": 1000.0}
 
 
 def has_rasters() -> bool:
@@ -110,26 +109,24 @@ def read_netcdf(path: Path) -> Found:
         notes = (f"the first of its {raster.count} bands was read",) if raster.count > 1 else ()
         place, more = _place(raster, path)
         scale, offset, no_data = raster.scales[0], raster.offsets[0], raster.nodata
-        unit = _METRES.get((raster.units[0] or "").lower().strip())
+        unit = raster.units[0] or ""
     rows = raster_rows(name, _NETCDF)
     notes = (*more, *notes)
     spacing = None
     if place is not None:
         spacing, more = place.spacing
         notes = (*more, *notes)
-    if unit is None:
-        notes = (*notes, "it does not say in which unit its heights are; metres are assumed")
-    return Found(
+    found = Found(
         rows,
         spacing,
-        in_metres=True,
         no_data=no_data,
-        scale=scale * (unit or 1.0),
-        offset=offset * (unit or 1.0),
+        scale=scale,
+        offset=offset,
         place=place,
         south_first=None if place is None else False,
         notes=notes,
     )
+    return found.in_unit(Crs() if place is None else place.crs, unit)
 
 
 def _grid_in(path: Path) -> str:

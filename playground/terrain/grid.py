@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.images.bounds import MAX_TEXELS
-from playground.terrain.place import Place
+from playground.terrain.place import Crs, Place
 from playground.terrain.rows import ArrayRows, Rows
 
 Heights = NDArray[np.float32]
@@ -35,11 +35,12 @@ class Found:
 
     rows: Rows  # of any real dtype
     spacing: tuple[float, float] | None = None
-    in_metres: bool = False
+    in_metres: bool = True  # else heights are codes, as a picture's
     code_range: tuple[float, float] | None = None
     void: NDArray[np.bool_] | None = None  # (rows, cols) where there is no data, besides NaN and ``no_data``
     no_data: float | None = None  # what stands for no data
-    scale: float = 1.0  # metres in the file's unit of height
+    assumed: str = ""  # of the unit of its heights; "" where the file or its format says it
+    scale: float = 1.0  # [m] height of one step of the file's numbers
     offset: float = 0.0  # [m] height of the file's 0
     place: Place | None = None
     south_first: bool | None = None  # the file's first row is the south's; None: it does not say
@@ -51,6 +52,11 @@ class Found:
         """Return (nx, ny), in texels."""
         ny, nx = self.rows.shape
         return nx, ny
+
+    def in_unit(self, crs: Crs, stated: str = "") -> Found:
+        """Return the same in metres, of scale and offset in a stated unit, else in that of ``crs``."""
+        metres, assumed = crs.height_unit(stated)
+        return replace(self, scale=self.scale * metres, offset=self.offset * metres, assumed=assumed)
 
     def heights(self, start: int, band: NDArray[Any]) -> NDArray[np.floating[Any]]:
         """Return the heights that some rows mean, NaN for no data; ``start`` is the number of the first."""
@@ -132,11 +138,12 @@ def from_channels(samples: NDArray[Any], packing: Packing, path: Path) -> Found:
                 f"packed heights need three channels of 8 bits; found {channels} of {bits}", file=path
             )
         red, green, blue = (samples[..., k].astype(np.float32) for k in range(3))  # exact: below 2**24
-        return in_memory(red * 65536.0 + green * 256.0 + blue, code_range=PACKED, void=void)
+        packed = red * 65536.0 + green * 256.0 + blue
+        return in_memory(packed, in_metres=False, code_range=PACKED, void=void)
     grey = samples[..., 0]
     if pictured and channels >= 3 and not all(np.array_equal(grey, samples[..., k]) for k in (1, 2)):
         raise DataError(
             "is a picture in colour; expected grey, or packing 'rgb' for heights in three channels", file=path
         )
     notes = () if pictured or channels == 1 else (f"the first of its {channels} bands was read",)
-    return in_memory(grey, code_range=code_range, void=void, notes=notes)
+    return in_memory(grey, in_metres=code_range is None, code_range=code_range, void=void, notes=notes)

@@ -19,6 +19,7 @@ class Terrain:
     relief: float | None = None  # [m] from height 0 to height 1
     base_elevation: float | None = None  # [m] above sea level at height 0
     place: Place | None = None  # where it lies on the Earth
+    assumed: str = ""  # of the unit of its heights, where nothing says it
 
     def metres(self, heights: NDArray[np.float32]) -> NDArray[np.float32]:
         """Return heights 0..1 in metres above sea level, float32; the relief and the base must be known."""

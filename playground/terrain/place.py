@@ -14,6 +14,7 @@ from pathlib import Path
 from playground.errors import DataError
 from playground.terrain.geodesy import spacing_from_degrees
 from playground.terrain.geokeys import Keys, read_facts
+from playground.terrain.units import height_unit
 from playground.terrain.wkt import CrsFacts, read_wkt
 
 _WEB_MERCATOR = 3857
@@ -36,6 +37,11 @@ class Crs:
     def name(self) -> str:
         """Return its code, as "EPSG:32633"; "" for one without."""
         return f"EPSG:{self.facts.epsg}" if self.facts.epsg else ""
+
+    def height_unit(self, stated: str = "") -> tuple[float, str]:
+        """Return the metres in a unit of heights, of which a file may state the name, and what is assumed."""
+        facts = self.facts
+        return height_unit(stated, facts.height_unit, facts.unit if facts.kind == "projected" else 0.0)
 
 
 @dataclass(frozen=True)
@@ -85,7 +91,7 @@ class Place:
                 stretched = math.cosh(middle / _EQUATOR)
                 dx, dy = dx / stretched, dy / stretched
             return (dx, dy), facts.notes
-        return None, ("it has a texel size but does not say whether that is metres",)
+        return None, (*facts.notes, "it has a texel size but does not say whether that is metres")
 
 
 def turned(path: Path, east: float, north: float) -> DataError:

@@ -18,7 +18,7 @@ from playground.terrain.rows import FileRows
 
 def read_raw(path: Path, size: tuple[int, int] | None) -> Found:
     """Read unsigned little-endian numbers; the grid is square unless ``size`` (nx, ny) says otherwise."""
-    return Found(_numbers(path, "<u2", size), code_range=SIXTEEN_BIT)
+    return Found(_numbers(path, "<u2", size), in_metres=False, code_range=SIXTEEN_BIT)
 
 
 def read_hgt(path: Path, size: tuple[int, int] | None) -> Found:
@@ -27,7 +27,7 @@ def read_hgt(path: Path, size: tuple[int, int] | None) -> Found:
     named = re.match(r"([NS])(\d{1,2})([EW])(\d{1,3})", path.name, re.IGNORECASE)
     if not named:
         note = "an .hgt file's name tells its latitude, as N36W085.hgt; this one does not, so no spacing"
-        return Found(rows, in_metres=True, notes=(note,))
+        return Found(rows, notes=(note,))
     south = int(named[2]) * (1 if named[1].upper() == "N" else -1)
     west = int(named[4]) * (1 if named[3].upper() == "E" else -1)
     ny, nx = rows.shape
@@ -35,7 +35,7 @@ def read_hgt(path: Path, size: tuple[int, int] | None) -> Found:
     crs = Crs(((MODEL, 2), (RASTER, IS_POINT), (GEOGRAPHIC, 4326)))
     place = Place(west, south + 1, (1.0 / (nx - 1), 1.0 / (ny - 1)), (nx, ny), crs)
     spacing, notes = place.spacing
-    return Found(rows, spacing, in_metres=True, place=place, notes=notes)
+    return Found(rows, spacing, place=place, notes=notes)
 
 
 def _numbers(path: Path, dtype: str, size: tuple[int, int] | None) -> FileRows:

@@ -10,6 +10,8 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from playground.terrain.units import metres_in
+
 _TOKEN = re.compile(r'"((?:[^"]|"")*)"|([A-Za-z_][A-Za-z_0-9]*)\s*(?=[\[(])|([^\s,\[\]()"]+)|([\[(])|([\])])')
 _PROJECTED = ("PROJCS", "PROJCRS", "PROJECTEDCRS")
 _GEOGRAPHIC = ("GEOGCS", "GEOGCRS", "GEOGRAPHICCRS", "GEODCRS", "GEODETICCRS")
@@ -24,6 +26,8 @@ _NAMES = {
     "GCS_North_American_1983": 4269,
     "WGS_1984_Web_Mercator_Auxiliary_Sphere": 3857,
 }
+_DEGREE = 0.017453292519943295  # [rad]
+_VERTICAL = ("VERT_CS", "VERTCS", "VERTCRS", "VERTICALCRS")
 _UNITS = ("UNIT", "LENGTHUNIT", "ANGLEUNIT")
 
 
@@ -58,6 +62,7 @@ class CrsFacts:
     kind: str = ""  # "projected", "geographic"; "" for another, and where there is none
     unit: float = 1.0  # metres, or degrees, in a unit
     epsg: int = 0  # 0: none is named
+    height_unit: float = 0.0  # metres in a unit of its heights; 0: it says nothing of heights
     notes: tuple[str, ...] = ()
 
 
@@ -65,18 +70,43 @@ def read_wkt(text: str) -> CrsFacts:
     """Return what a text says; nothing where it is not understood."""
     root = _parsed(text)
     crs = root.find((*_PROJECTED, *_GEOGRAPHIC)) if root is not None else None
-    if crs is None:
-        return CrsFacts()
+    if root is None or crs is None:
+        return _read_lines(text)
     projected = crs.word in _PROJECTED
-    unit = 1.0
+    unit = _unit(crs) or (1.0 if projected else _DEGREE)
+    if not projected:  # WKT gives radians, which become degrees
+        unit = unit / _DEGREE if abs(unit / _DEGREE - 1.0) > 1e-9 else 1.0
+    return CrsFacts("projected" if projected else "geographic", unit, _epsg(crs), _height_unit(root, crs))
+
+
+def _unit(crs: _Node, words: tuple[str, ...] = _UNITS) -> float:
+    """Return the number of a system's first unit; 0 where it has none."""
     holders = [crs, *(node for node in crs.nodes() if node.word in ("CS", "AXIS"))]
-    units = [node for holder in holders for node in holder.nodes() if node.word in _UNITS]
-    if units:
-        numbers = [value for value in map(_number, units[0].texts()[1:]) if value]
-        if numbers:  # WKT gives radians, which become degrees
-            unit = numbers[0] if projected else numbers[0] * 57.29577951308232
-            unit = unit if projected or abs(unit - 1.0) > 1e-9 else 1.0
-    return CrsFacts("projected" if projected else "geographic", unit, _epsg(crs))
+    units = [node for holder in holders for node in holder.nodes() if node.word in words]
+    return next((value for node in units[:1] for value in map(_number, node.texts()[1:]) if value), 0.0)
+
+
+def _height_unit(root: _Node, crs: _Node) -> float:
+    """Return the metres in a unit of height: of the vertical system, or of a third axis."""
+    vertical = root.find(_VERTICAL) or next((axis for axis in crs.nodes() if _is_third(axis)), None)
+    return _unit(crs, ("LINUNIT",)) if vertical is None else _unit(vertical)
+
+
+def _is_third(axis: _Node) -> bool:
+    return axis.word == "AXIS" and any(text.lower() == "up" for text in axis.texts()[1:])
+
+
+def _read_lines(text: str) -> CrsFacts:
+    """Return what a .prj in the form before well-known text says, as ARC/INFO wrote it: words and values."""
+    lines = (line.lower().split() for line in text.splitlines())
+    words = {line[0]: line[1] for line in lines if len(line) >= 2}
+    height_unit = metres_in(words.get("zunits", "")) or 0.0
+    if words.get("projection") == "geographic":
+        return CrsFacts("geographic", 1.0 / 3600.0 if words.get("units") == "ds" else 1.0, 0, height_unit)
+    unit = metres_in(words.get("units", ""))
+    if "projection" not in words or unit is None:
+        return CrsFacts(height_unit=height_unit)
+    return CrsFacts("projected", unit, 0, height_unit)
 
 
 def _epsg(crs: _Node) -> int:

@@ -37,6 +37,7 @@ class Labelled:
     units: str = ""
     name: str = "dem"
     rio: Any = None
+    attrs: dict[str, str] = field(default_factory=dict)
 
     @property
     def coords(self) -> dict[str, Any]:
@@ -167,6 +168,13 @@ def test_coordinates_say_where_rows_go_and_how_far_apart_they_are(any_engine, sk
     terrain = any_engine.internal.plan.terrain
     assert terrain.extent == pytest.approx((120.0, 60.0)) and terrain.size == (5, 4)
     assert terrain.relief == pytest.approx(19.0)
+
+
+@pytest.mark.parametrize("places", [{}, SOUTH_FIRST])
+def test_an_array_s_own_unit_counts(any_engine, sketch, places):
+    labelled = Labelled(HEIGHTS, places=places, attrs={"units": "ft"})
+    found = any_engine.metres(given(sketch, labelled), "height")
+    np.testing.assert_allclose(found, HEIGHTS * 0.3048, atol=1e-5)
 
 
 def test_a_reference_system_of_rioxarray_is_kept(any_engine, sketch):

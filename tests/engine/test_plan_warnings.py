@@ -21,7 +21,7 @@ from ..loading import load
 from ..sketch_texts import map_of, passes
 
 SKETCH = (
-    "format = 1\nsize = 9\n"
+    "format = 1\nsize = 9\nextent = 900\nrelief = 70\n"
     + passes(height=("generation/heightmap", 'set = { elevation = "two.tif" }'), other="./mine")
     + map_of("height")
 )
@@ -52,7 +52,7 @@ def test_an_engine_reports_each_once(any_engine, sketch):
     for size in ((8, 8), (9, 9)):
         any_engine.render(load(sketch), size=size)
     place = next(place for place, message in reports if message == SECOND)
-    assert len(reports) == 2 and place.endswith("sketch.toml:3")
+    assert len(reports) == 2 and place.endswith("sketch.toml:5")
     assert sum("#line is left out" in message for _, message in reports) == 1
 
 
@@ -81,14 +81,14 @@ def test_render_and_export_print_each_once(sketch, capsys):
             assert cli.main(command) == 0
             printed = capsys.readouterr().err
             assert printed.count(SECOND) == 1, printed
-            assert f"warning: sketch.toml:3: {SECOND}" in printed
+            assert f"warning: sketch.toml:5: {SECOND}" in printed
 
 
 @pytest.mark.slow
 def test_check_shows_them_and_fails_for_none(sketch, capsys):
     assert cli.main(["check", "."]) == 0
     out = capsys.readouterr().out
-    assert out.count(f"warning: sketch.toml:3: {SECOND}") == 1
+    assert out.count(f"warning: sketch.toml:5: {SECOND}") == 1
     assert out.count("nothing reads 'idle'") == 1  # of the kernel, and again of the sketch
     assert "2 files checked, none failed, 3 warnings" in out
     with Sandbox() as made:
@@ -117,7 +117,7 @@ def test_the_window_lists_them(any_engine, sketch):
     assert [w.message for w in known.of(loaded, any_engine.internal.plan)] == [SECOND]
     while known.waiting:
         known.look()
-    assert [w.line for w in known.of(loaded, any_engine.internal.plan)] == [2, 3, 3]
+    assert [w.line for w in known.of(loaded, any_engine.internal.plan)] == [2, 3, 5]
 
 
 def test_a_file_that_goes_while_its_picture_is_shown_is_no_mistake_of_the_list(any_engine, sketch):

@@ -64,6 +64,18 @@ def test_each_format_has_its_own(tmp_path: Path, ending: str, found: list[str]) 
     assert set(sidecars(path)) <= set(sidecar_places(path))
 
 
+def test_what_gdal_appends_to_a_name_goes_along(folder: Path, tmp_path: Path) -> None:
+    source = grid(tmp_path / "elsewhere/b.tif")
+    aux = source.with_name("b.tif.aux.xml")
+    assert sidecars(source) == ()
+    before = content_key(source)
+    aux.write_text("<PAMDataset/>")
+    assert sidecars(source) == (aux,) and content_key(source) != before
+    sketch = load(folder)
+    save(sketch, sketch.with_values({"height.shape": str(source)}))
+    assert (folder / "b.tif.aux.xml").read_text() == "<PAMDataset/>"
+
+
 def test_small_letters_come_first_and_what_is_not_there_is_none(tmp_path: Path) -> None:
     path = grid(tmp_path / "a.bil", ".HDR")
     assert [p.name.lower() for p in sidecars(path)] == ["a.hdr"]

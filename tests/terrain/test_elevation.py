@@ -293,9 +293,10 @@ def test_whole_numbers_that_gdal_s_metadata_scale_become_metres(tmp_path, dtype)
     found = read_elevation(path)
     assert found.in_metres and found.code_range is None
     np.testing.assert_allclose(found.heights[::-1], (heightmap * 0.5 - 40.0) * 0.3048, rtol=1e-6)
-    # Without a spacing in metres nothing says that the scaled numbers are metres.
-    path = geotiff(tmp_path / "b.tif", heightmap, {}, metadata=gdal(offset, scale))
-    assert_heightmap(read_elevation(path), heightmap)
+    # Heights and cells are two facts: scaled numbers are heights, whether cells have metres or not.
+    found = read_elevation(geotiff(tmp_path / "b.tif", heightmap, {}, metadata=gdal(offset, scale)))
+    assert found.in_metres and "metres are assumed" in found.assumed
+    np.testing.assert_allclose(found.heights[::-1], heightmap * 0.5 - 40.0, rtol=1e-6)
     refused(
         geotiff(tmp_path / "c.tif", heightmap, keys, metadata=gdal(scale.replace("0.5", "much"))),
         "a scale or an offset that is no number",
@@ -342,7 +343,8 @@ def test_web_mercator_is_brought_back_to_true_metres(tmp_path):
 
 def test_a_texel_size_without_a_unit_is_not_believed(tmp_path):
     found = read_elevation(geotiff(tmp_path / "a.tif", HEIGHTMAP, {}, (10.0, 10.0)))
-    assert found.spacing is None and not found.in_metres and "does not say" in found.notes[0]
+    assert found.spacing is None and "does not say" in found.notes[0]
+    assert found.in_metres and "metres are assumed" in found.assumed
     at_the_pole = geotiff(tmp_path / "b.tif", HEIGHTMAP, {1024: 2}, (0.1, 0.1), (0, 0, 0, 0, 90.3, 0))
     assert read_elevation(at_the_pole).spacing is None
     refused(geotiff(tmp_path / "c.tif", HEIGHTMAP, {1024: 1}, (0.0, 10.0)), "expected lengths above zero")
@@ -387,7 +389,7 @@ def test_npy_of_every_kind_of_number(tmp_path, dtype, by_columns):
     np.save(tmp_path / "a.npy", heightmap)
     found = read_elevation(tmp_path / "a.npy")
     assert_heightmap(found, heightmap)
-    assert found.spacing is None and not found.in_metres
+    assert found.spacing is None and found.in_metres and "metres are assumed" in found.assumed
 
 
 def test_the_jacksboro_fault_has_its_true_size(on_ellipsoid, tmp_path):
@@ -415,11 +417,11 @@ def test_npz_in_metres_and_other_names(tmp_path):
     np.savez(tmp_path / "a.npz", dem=HEIGHTMAP, dx=25, dy=np.array([30.0]), title=np.array("x"))
     found = read_elevation(tmp_path / "a.npz")
     assert_heightmap(found, HEIGHTMAP)
-    assert found.spacing == (25.0, 30.0) and found.in_metres
+    assert found.spacing == (25.0, 30.0) and found.in_metres and not found.assumed
     np.savez_compressed(tmp_path / "b.npz", other=2 * HEIGHTMAP, elevation=HEIGHTMAP)
     found = read_elevation(tmp_path / "b.npz")
     assert_heightmap(found, HEIGHTMAP)
-    assert found.spacing is None and not found.in_metres
+    assert found.spacing is None and found.in_metres and "metres are assumed" in found.assumed
 
 
 def test_npz_bounds_in_metres_are_not_degrees(tmp_path):

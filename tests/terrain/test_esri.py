@@ -79,7 +79,7 @@ def test_cells_in_degrees_and_in_feet(tmp_path):
 
 def test_without_a_prj_the_cells_are_not_believed_and_that_is_said(tmp_path):
     found = read_elevation(asc(tmp_path / "a.asc", prj=""))
-    assert found.spacing is None and not found.in_metres
+    assert found.spacing is None and found.in_metres
     assert "there is no a.prj next to it" in found.notes[0]
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import tifffile
 from scipy.ndimage import gaussian_filter
 
 from playground.errors import DataError
@@ -351,8 +352,9 @@ def test_the_file_says_the_relief_and_heights_are_in_it():
 
 
 def test_a_file_without_metres_is_told_them(tmp_path):
-    file = tmp_path / "hills.npy"
-    np.save(file, gaussian_filter(np.random.default_rng(2).normal(size=(90, 70)), 4).astype(np.float32))
+    hills = gaussian_filter(np.random.default_rng(2).normal(size=(90, 70)), 4)
+    file = tmp_path / "hills.tif"  # a picture, whose greys have no unit
+    tifffile.imwrite(file, (65535 * (hills - hills.min()) / np.ptp(hills)).astype(np.uint16))
     assert source.describe(values(file)).relief is None
     assert source.describe(values(file, rise=300.0)).relief == 300.0
     assert "it does not say how large it is" in source.notes(values(file))[0]

@@ -274,7 +274,7 @@ def test_netcdf_of_several_grids_needs_one_of_a_usual_name(tmp_path):
     assert read_elevation(netcdf(tmp_path / "a.nc", names=("tid", "elevation"))[0]).size == (7, 5)
     with pytest.raises(DataError, match="holds tid, sid; expected one grid, or one called elevation or z"):
         read_elevation(netcdf(tmp_path / "b.nc", names=("tid", "sid"))[0])
-    assert "metres are assumed" in " ".join(read_elevation(netcdf(tmp_path / "c.nc", unit="")[0]).notes)
+    assert "metres are assumed" in read_elevation(netcdf(tmp_path / "c.nc", unit="")[0]).assumed
 
 
 def test_netcdf_that_is_none_is_a_sentence(tmp_path):

@@ -30,7 +30,8 @@ _SALT = crc32(b"generation/from_example")
 def describe(values: Mapping[str, Value]) -> Terrain:
     """Return the example's relief, where it is known: what is made of it has about the same."""
     low, rise = _metres(values)
-    return Terrain(relief=rise, base_elevation=low)
+    assumed = "" if low is None else _example(values)[0].assumed
+    return Terrain(relief=rise, base_elevation=low, assumed=assumed)
 
 
 def work(
