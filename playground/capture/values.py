@@ -33,7 +33,6 @@ from playground.terrain.geokeys import (
     IS_AREA,
     IS_POINT,
     LENGTH,
-    METRE,
     MODEL,
     OWN,
     PROJECTED,
@@ -43,11 +42,13 @@ from playground.terrain.geokeys import (
     WORDS,
     Key,
     code,
+    read_facts,
     with_keys,
     write_keys,
 )
 from playground.terrain.gis import geokeys_of
 from playground.terrain.place import Crs, Place
+from playground.terrain.units import METRE
 
 SOFTWARE = f"terrain shader playground {__version__}"
 
@@ -294,8 +295,8 @@ def _vertical(layer: Layer, keys: dict[int, Key]) -> dict[int, Key | None]:
     """Return which keys to change: heights are written in metres, in whatever unit they came."""
     if layer.kind != HEIGHT:
         return {VERTICAL_UNIT: None} if layer.place is None else {}
-    if code(keys, VERTICAL_UNIT, METRE) == METRE:
-        return {}
+    if read_facts(tuple(keys.items())).height_unit in (0.0, 1.0):
+        return {VERTICAL_UNIT: METRE} if VERTICAL_UNIT in keys else {}
     # Without a vertical system they are metres; a unit by itself would be taken for a system of its own.
     return dict.fromkeys(range(VERTICAL, VERTICAL_UNIT + 1))
 
@@ -306,10 +307,14 @@ def _tiff(samples: NDArray[Any], layer: Layer, span: tuple[float, float] | None 
     tags = _place_tags(layer)
     if samples.dtype.kind == "f" and np.isnan(samples).any():
         tags.append((_NO_DATA, _ASCII, 0, "nan", True))
+    items: list[tuple[str, str, float | str]] = []
     if span is not None:
-        items = (("OFFSET", "offset", span[0]), ("SCALE", "scale", scale_of(span, layer.bits)))
+        items += [("OFFSET", "offset", span[0]), ("SCALE", "scale", scale_of(span, layer.bits))]
+    if layer.kind == HEIGHT:
+        items.append(("UNITTYPE", "unittype", "m"))
+    if items:
         metadata = "".join(
-            f'<Item name="{name}" sample="{channel}" role="{role}">{value!r}</Item>'
+            f'<Item name="{name}" sample="{channel}" role="{role}">{value}</Item>'
             for channel in range(samples[0, 0].size)
             for name, role, value in items
         )

@@ -9,6 +9,7 @@ import pytest
 
 from playground.capture.export import export
 from playground.terrain import gis
+from playground.terrain.elevation import read_elevation
 
 rasterio = pytest.importorskip("rasterio")  # of the extra gis
 from rasterio.crs import CRS  # noqa: E402
@@ -117,6 +118,35 @@ def test_feet_are_written_as_the_metres_that_they_are_read_as(tmp_path, any_engi
         assert CRS.from_epsg(2264).to_epsg() == 2264 and after.crs.to_epsg() == 2264, (
             "no height system in feet"
         )
+
+
+@pytest.mark.parametrize("bits", [16, 32])
+@pytest.mark.parametrize(
+    ("crs", "unit", "factor"),
+    [
+        ("EPSG:2264+6360", None, 1200 / 3937),
+        ("EPSG:2264+5703", None, 1.0),
+        ("EPSG:2264", None, 1200 / 3937),  # as of its cells
+        ("EPSG:32633", "ft", 0.3048),
+        ("EPSG:32633+5773", None, 1.0),
+    ],
+)
+def test_exported_heights_state_that_they_are_metres(tmp_path, any_engine, crs, unit, factor, bits):
+    path = dem(tmp_path / "dem.tif", crs, METRES)
+    if unit:
+        with rasterio.open(path, "r+") as file:
+            file.set_band_unit(1, unit)
+    made = of_terrain(tmp_path, any_engine, path, bits=bits)
+    with rasterio.open(made.path) as after:
+        metres = after.read(1) * after.scales[0] + after.offsets[0]
+        # Whole numbers are off by half a step, and float32 by two roundings of some 1300 m.
+        np.testing.assert_allclose(
+            metres, HEIGHTS * factor, rtol=0, atol=(0.51 * after.scales[0] if bits == 16 else 0) + 4e-4
+        )
+        assert after.units == ("m",)
+        vertical = after.crs.to_wkt().partition("VERT_CS")[2]
+        assert "foot" not in vertical and bool(vertical) is ("+57" in crs)
+    np.testing.assert_allclose(read_elevation(made.path).heights[::-1], metres, rtol=1e-6)
 
 
 @pytest.mark.parametrize("extra", [True, False])
