@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from playground.errors import PlaygroundError, counted
-from playground.paths import shown
+from playground.paths import GLSL, shown
 from playground.regular_file import read_regular
 from playground.sketch.assign import TERRAIN_KEYS, resolve, values_of
 from playground.sketch.channels import source_of
@@ -116,9 +116,15 @@ class Commands:
     # ── saving ───────────────────────────────────────────────────────────────
 
     def save_values(self) -> None:
-        """Save values, camera and techniques into the sketch; where it is read-only, offer a copy."""
+        """Save values, camera and techniques into the sketch; where it is read-only, offer a copy.
+
+        A shader or an elevation file that was opened alone has none: make one next to it.
+        """
         draft = self._ready()
         if draft is None:
+            return
+        if is_shader(draft) and not Path(draft.file.file).is_relative_to(GLSL):
+            self.save_a_copy()
             return
         if draft.sketch == draft.file:
             self.notices.say(f"nothing differs from the file{self._missed}")
@@ -138,7 +144,7 @@ class Commands:
     def save_a_copy(self) -> None:
         """Save the sketch with the user's edits as a new one in the current folder, and go on with that.
 
-        Of a shader that was opened alone, it is a sketch next to it that uses it.
+        Of a shader or an elevation file that was opened alone, it is a sketch next to it that uses it.
         """
         draft = self._ready()
         if draft is None:

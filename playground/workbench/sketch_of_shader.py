@@ -68,7 +68,7 @@ def _save_elevation(draft: Draft, file: Path, folder: Path) -> Draft:
     with new_name((folder if ships else file.parent) / f"{file.stem}.toml") as path:
         path.write_text(elevation_text(file, named), "utf-8")
         loaded = load(path)
-        save(loaded, Draft(loaded, loaded).with_edits(draft.edits).sketch)
+        save(loaded, Draft(loaded, loaded).with_all(draft.edits).sketch)
         saved = load(path)
     return Draft(saved, saved, Edits(locked=draft.edits.locked))
 

@@ -11,6 +11,7 @@ import pytest
 from playground.engine.engine import Engine
 from playground.paths import SKETCHES
 from playground.sketch.assign import values_of
+from playground.sketch.load import load
 from playground.sketch.model import Camera
 from playground.workbench.bench import Bench
 from playground.workbench.commands import rounded
@@ -214,6 +215,28 @@ def test_a_shipped_sketch_is_offered_as_a_copy(tmp_path: Path, any_engine: Engin
     desk.bench.undo.undo()
     assert desk.value("seed") != 4
     desk.session.release()
+
+
+@pytest.mark.parametrize("edited", [False, True])
+def test_an_elevation_file_is_saved_as_a_sketch_beside_it(tmp_path, any_engine, edited) -> None:
+    dem = tmp_path / "data" / "dem.npy"
+    dem.parent.mkdir()
+    np.save(dem, np.add.outer(np.arange(9.0), np.arange(7.0) ** 2))
+    before = dem.read_bytes()
+    desk = Desk(any_engine, tmp_path, dem)
+    if edited:
+        desk.session.drafts.choose("light", "lighting/l_dot_n")
+        desk.session.drafts.set("weights.rock_slope", 41.0)
+    picture = desk.frame()
+    desk.bench.commands.save_values()
+    assert f"saved dem.toml in {dem.parent}" in desk.messages and not desk.bench.file.asks
+    assert desk.session.path == dem.with_name("dem.toml") and dem.read_bytes() == before
+    np.testing.assert_array_equal(desk.frame(), picture)
+    saved = load(dem.with_name("dem.toml"))
+    assert saved.graph.find("light").use == ("lighting/l_dot_n" if edited else "lighting/ray_cast")
+    assert dict(saved.graph.find("weights").values)["rock_slope"] == (41.0 if edited else 30.0)
+    desk.bench.commands.save_values()
+    assert "nothing differs from the file" in desk.messages
 
 
 def test_another_sketch_begins_anew(desk: Desk, tmp_path: Path) -> None:
