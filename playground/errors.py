@@ -230,14 +230,16 @@ def counted(number: int, noun: str) -> str:
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
-def nearest(name: str, valid: Iterable[str]) -> str:
+def nearest(name: str, valid: Iterable[str], cutoff: float = 0.55) -> str:
     """Suggest the valid name that was probably meant, as the end of a sentence.
+
+    ``cutoff`` is the least likeness of two names, 0 to 1: short ones need more to be near.
 
     Returns ``""`` when nothing is near and there is nothing to list, else
     ``"; did you mean 'x'?"`` or ``"; there are: a, b, c"``.
     """
     names = sorted(set(valid))
-    close = difflib.get_close_matches(name, names, n=1, cutoff=0.55)
+    close = difflib.get_close_matches(name, names, n=1, cutoff=cutoff)
     if close:
         return f"; did you mean '{close[0]}'?"
     if not names:

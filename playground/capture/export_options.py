@@ -15,6 +15,7 @@ from playground.capture.extensions import (
     KINDS,
     MESHES,
     NUMBERS,
+    OTHERS,
     PAGES,
     RAW,
     SHADERS,
@@ -84,8 +85,14 @@ def _no_ending(ending: str) -> str:
         ".fragment": ".frag",
         ".htm": ".html",
     }.get(ending)
-    near = f"; did you mean '{usual}'?" if usual else nearest(ending, ENDINGS)
-    return f"nothing is exported as '{ending}'{near if 'did you mean' in near else listed}"
+    what = next((kind for kind, others in OTHERS.items() if ending in others.split()), "")
+    if usual:
+        listed = f"; did you mean '{usual}'?"
+    elif what:
+        listed = f"; {what}"
+    elif "did you mean" in (near := nearest(ending, ENDINGS, cutoff=0.75)):
+        listed = near
+    return f"nothing is exported as '{ending}'{listed}"
 
 
 def _check_mesh(path: Path, form: Form) -> None:

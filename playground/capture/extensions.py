@@ -42,6 +42,25 @@ PAGES = (".html",)
 
 ENDINGS = (*VALUES, *MESHES, *SHADERS, *PAGES)
 
+OTHERS = {
+    f"a mesh is {' or '.join(MESHES)}": (
+        ".3ds .3mf .abc .blend .c4d .dae .fbx .iges .lwo .ma .max .mb .off .ply .skp .step .stl .stp .usd"
+        " .usda .usdc .usdz .vrm .wrl .x3d"
+    ),
+    "heights are .tif, .npy, .exr, .png, .r16 or .r32": (
+        ".adf .asc .bil .csv .dem .flt .grd .h5 .hdf5 .hdr .hgt .img .las .laz .mat .nc .npz"
+        " .pfm .ter .vrt .xyz"
+    ),
+    "a picture is .png, .webp or .jpg": (
+        ".avif .bmp .dds .heic .ico .jp2 .jxl .ktx .ktx2 .pbm .pgm .ppm .psd .svg .tga"
+    ),
+    f"a shader is {', '.join(SHADERS[:-1])} or {SHADERS[-1]}": (
+        ".cg .comp .fx .hlsl .metal .osl .shader .spv .vert .wgsl"
+    ),
+    "a video is what playground render --video writes": ".apng .avi .gif .mkv .mov .mp4 .webm",
+}
+"""What each kind of file is exported as → endings of that kind that nothing is exported as."""
+
 PIPED = tuple(ending for ending in ENDINGS if ending not in (*RAW, ".obj"))
 """What is one file, and so can go to standard output."""
 

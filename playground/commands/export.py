@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from collections.abc import Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated, Any
@@ -27,7 +28,14 @@ from playground.commands.arguments import (
 from playground.commands.options import flag, value
 from playground.commands.standard_input import kept
 from playground.commands.standard_output import NAME, check_standard_output, write_file
-from playground.errors import DataError, ParameterError
+from playground.errors import (
+    DataError,
+    Diagnostic,
+    ParameterError,
+    PlaygroundError,
+    ShaderError,
+    SketchError,
+)
 from playground.terminal import busy, complain, note
 
 if TYPE_CHECKING:
@@ -44,7 +52,7 @@ HELP = help_text(
     " the terrain's middle at x = z = 0, sea level at y = 0.\n\n"
     ".fs (ISF), .frag (a Shadertoy text of one pass), .json (a Shadertoy export: up to four buffers, an Image"
     " and what they share) and .glsl (a fragment shader of its own) hold the picture as a shader, or with"
-    " --texture one texture. What cannot leave is named, and nothing is written.\n\n"
+    " --texture one texture. What cannot leave is named, and no shader is written.\n\n"
     ".html is a web page: one file that anybody can open, without a network, in which the sketch runs, can"
     " be turned, set and edited. With --technique the page has menus of techniques.\n\n"
     "With --to -, one file goes to standard output, in the form that --format names. As SKETCH, - is a"
@@ -201,7 +209,7 @@ def _write_piped(
 
 
 def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: Renderer) -> None:
-    from playground.capture.export import prepare, run
+    from playground.capture.export import ExportJob, prepare, run
     from playground.capture.export_options import check
     from playground.images.files import new_name
 
@@ -212,23 +220,42 @@ def _write(moment: Moment, names: list[str], form: Form, driver: str, renderer: 
         if not paths:
             check(Path(f"{sketch.name}.glb"), form)
             paths = [stack.enter_context(new_name(f"{sketch.name}.glb"))]
+        errors, checked, jobs, count = dict[Diagnostic, None](), list[Path](), list[ExportJob](), 0
         for path in paths:
-            check(path, form)
-        show = stack.enter_context(busy(f"exporting {sketch.name}"))
-        engine = stack.enter_context(renderer.open_engine(driver=driver))
-        engine.internal.runner.works.on_progress = show
+            with _collecting(errors):
+                check(path, form)
+                checked.append(path)
+        if checked:
+            show = stack.enter_context(busy(f"exporting {sketch.name}"))
+            engine = stack.enter_context(renderer.open_engine(driver=driver))
+            engine.internal.runner.works.on_progress = show
+        at: dict[str, Any] = {"time": moment.time, "steps": moment.steps, "frame": moment.size}
         # Every file is prepared before the first is written.
-        jobs = [
-            prepare(engine, sketch, path, form, time=moment.time, steps=moment.steps, frame=moment.size)
-            for path in paths
-        ]
+        for path in checked:
+            with _collecting(errors):
+                jobs.append(prepare(engine, sketch, path, form, **at))
         for job in jobs:
-            done = run(engine, job)
-            note(f"{done.path.name}: {done.summary}")
-            for warning in done.warnings:
-                complain(f"{done.path.name}: {warning}", "warning")
-            for path in (done.path, *done.sidecars):
-                print(path)
+            with _collecting(errors):
+                done = run(engine, job)
+                count += 1
+                note(f"{done.path.name}: {done.summary}")
+                for warning in done.warnings:
+                    complain(f"{done.path.name}: {warning}", "warning")
+                for path in (done.path, *done.sidecars):
+                    print(path)
+        if errors:
+            if len(paths) > 1:
+                note(f"{count} of {len(paths)} files are written")
+            raise PlaygroundError(diagnostics=errors)
+
+
+@contextmanager
+def _collecting(errors: dict[Diagnostic, None]) -> Iterator[None]:
+    """Collect the mistakes of one file, each once; the others are written all the same."""
+    try:
+        yield
+    except (SketchError, ShaderError, DataError) as error:
+        errors |= dict.fromkeys(error.diagnostics)
 
 
 def _read_format(text: str) -> str:

@@ -119,11 +119,17 @@ def test_bits_range_grid_and_driver_are_heard(folder: Path, capsys: pytest.Captu
     [
         (["--to", "terrain.gltf"], "terrain.gltf: nothing is exported as '.gltf'; did you mean '.glb'?"),
         (["--to", "terrain.tif16"], "terrain.tif16: nothing is exported as '.tif16'; did you mean '.tif'?"),
-        (["--to", "terrain.blend"], f"nothing is exported as '.blend'; expected one of {', '.join(ENDINGS)}"),
+        (["--to", "a.zip"], f"nothing is exported as '.zip'; expected one of {', '.join(ENDINGS)}"),
+        *((["--to", f"a.{e}"], f"nothing is exported as '.{e}'; a mesh is .glb or .obj")
+          for e in ("blend", "fbx", "stl", "ply")),
+        (["--to", "a.asc"], "nothing is exported as '.asc'; heights are .tif, .npy,"),
+        (["--to", "a.bmp"], "nothing is exported as '.bmp'; a picture is .png, .webp or .jpg"),
+        (["--to", "a.hlsl"], "nothing is exported as '.hlsl'; a shader is .fs, .frag, .json or .glsl"),
+        (["--to", "a.mp4"], "exported as '.mp4'; a video is what playground render --video writes"),
+        (["--to", "a.gbl"], "nothing is exported as '.gbl'; did you mean '.glb'?"),
         (["--to", "terrain"], "terrain: the name has no ending; expected one of .png"),
         (["--to", "no/terrain.png"], "no/terrain.png: there is no folder 'no' to write into"),
         (["--to", "rise"], "rise: is a folder; expected the name of a file to write"),
-        (["--to", "a.png", "--to", "no/b.png"], "no/b.png: there is no folder 'no' to write into"),
         (["--to", "a.png", "--to", "a.png"], "--to a.png: a.png would be written twice"),
         (["--to", "a.obj", "--to", "a-texture.png"], "a-texture.png would be written twice"),
         (["--to", "a.jpg"], "a.jpg: .jpg does not hold heights; .png"),
@@ -162,6 +168,21 @@ def test_a_mistake_is_one_sentence_and_status_2(
     assert out == ""
     assert error.startswith("error: ") and words in error and len(error.splitlines()) == 1
     assert names(folder) == []
+
+
+def test_what_is_right_is_written_beside_mistakes(folder: Path, capsys: pytest.CaptureFixture[str]):
+    """Each mistake once, at the end; of the sketch's, too, which shows when a file is prepared."""
+    command = ["export", "rise", "--to", "a.fbx", "--to", "a.npy", "--to", "no/b.png", "--to", "c.npy"]
+    assert cli.main(command) == 2
+    out, error = printed(capsys)
+    assert out.split() == ["a.npy", "c.npy"] == names(folder)
+    *_, count, first, second = error.splitlines()
+    assert count == "2 of 4 files are written"
+    assert first == "error: a.fbx: nothing is exported as '.fbx'; a mesh is .glb or .obj"
+    assert second.endswith("no/b.png: there is no folder 'no' to write into")
+    command = ["export", "rise", "--to", "a.png", "--to", "b.tif", "--texture", "colr"]
+    assert cli.main(command) == 2
+    assert printed(capsys)[1].count("no pass 'colr' in sketch rise") == 1
 
 
 @pytest.mark.parametrize("ending", ["glb", "png", "obj"])
