@@ -202,6 +202,27 @@ def test_k_is_close_to_the_exact_one(read, make):
         assert rms(error) < mean and abs(error.mean()) < 0.002, values
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(("steepness", "excess"), [(1, 0.014), (3, 0.076)])
+def test_the_sky_is_too_bright_at_the_edge(read, steepness, excess):
+    """By as much as header and lesson say: a piece of a wider DEM, against the exact K of all of it."""
+    wide = Land(real(193).heights * steepness, real(193).spacing)
+    piece = slice(64, 129)
+    k = read(
+        Land(wide.heights[piece, piece], wide.spacing),
+        "horizon_sky",
+        "k",
+        summed="over all directions",
+        directions=64,
+    )
+    over = k - sky_visibility(wide, count=32)[piece, piece]
+    from_edge = np.minimum(np.arange(65), np.arange(65)[::-1])
+    ring = np.minimum.outer(from_edge, from_edge)
+    assert over[ring == 0].mean() == pytest.approx(excess, rel=0.15)
+    assert 0 < over[ring == 16].mean() < 0.15 * excess
+    assert over.max() < 0.12 * steepness
+
+
 def test_the_table_and_the_formula_agree(read):
     terrain = Land(real(49).heights * 3, (74.0, 93.0))
     table, formula, measured = (

@@ -14,6 +14,11 @@
 // seen over the horizon found so far. A step of the repeat marches in two opposite directions: no
 // single draw lasts so long that a graphics driver would give it up. Half a texel beyond the
 // terrain's edge a march leaves the terrain.
+//
+// Beyond the edge the sky is open, so that near it horizons are too low and K is too bright. Of
+// 65 x 65 texels cut out of real terrain with slopes of 16 degrees the outermost have 0.01 too
+// much in the mean, with slopes of 38 degrees 0.08, at worst 0.33; 16 texels further in it is a
+// tenth of that. Where it counts, read a wider DEM than is shown.
 #include "lighting/horizons/course.glsl"
 #include "lighting/horizons/open_sky.glsl"
 #include "lighting/horizons/slope.glsl"
