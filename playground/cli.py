@@ -43,10 +43,11 @@ from playground.commands import (
     shots,
     variants,
 )
-from playground.commands.arguments import Renderer, help_text, moment_of, quoted, read_device
+from playground.commands.arguments import Renderer, help_text, moment_of, read_device
 from playground.commands.common_options import prepared
 from playground.commands.import_name import check_package
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
+from playground.paths import quoted
 from playground.signals import ended_by_signals
 from playground.sketch.model import DEFAULT_PICTURE
 from playground.streams import let_go, open_streams

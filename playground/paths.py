@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 _PACKAGE = Path(__file__).resolve().parent
@@ -29,6 +30,15 @@ def without_part(name: str) -> str:
     """Return the file that a name is of: of "shader.json:Buffer A" the first."""
     whole, colon, _ = name.rpartition(PART_OF_FILE)
     return whole if colon and whole.endswith(".json") else name
+
+
+def quoted(text: str) -> str:
+    """Return a word as the shell takes it."""
+    if sys.platform == "win32":
+        return f'"{text}"' if " " in text else text
+    import shlex
+
+    return shlex.quote(text)
 
 
 _current = Path("/")

@@ -46,7 +46,7 @@ LAYERS = (
     ("media",),
     ("images",),
     ("sketch",),
-    ("errors", "folders", "json_text", "markup", "partial", "paths", "regular_file", "_version"),
+    ("errors", "extras", "folders", "json_text", "markup", "partial", "paths", "regular_file", "_version"),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 LONGEST = 500

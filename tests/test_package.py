@@ -116,6 +116,12 @@ def test_an_empty_environment_renders_the_default_sketch(wheel: Path, tmp_path: 
         )
         needs_a_screen = "There is no screen" in done.stderr and done.returncode == 2
         assert done.returncode == 0 or needs_a_screen, f"{command}: {done.stderr}"
+    lacking = [str(scripts / "playground"), "lsp"]
+    done = subprocess.run(lacking, capture_output=True, text=True, env=clean, cwd=tmp_path, timeout=120)
+    command = done.stderr.strip().partition("needs pygls: ")[2]
+    _need_network(subprocess.run(command, shell=True, capture_output=True, text=True, env=clean, timeout=600))
+    installed = [str(scripts / "python"), "-c", "import pygls"]
+    assert command and subprocess.run(installed, env=clean, cwd=tmp_path, timeout=120).returncode == 0
     for number, text in enumerate(readme_blocks("python")):
         (tmp_path / f"snippet_{number}.py").write_text(text, encoding="utf-8")
         words = [str(scripts / "python"), f"snippet_{number}.py"]
@@ -132,6 +138,6 @@ def readme_commands() -> list[str]:
     """Return the commands of README.md that are the playground's, as one types them without a checkout."""
     lines = [line.partition("  #")[0].strip() for block in readme_blocks("sh") for line in block.splitlines()]
     found = [re.sub(r"^\./play\b", "playground", line) for line in lines]
-    found = [line for line in found if line.startswith("playground") and line.split()[1:2] != ["test"]]
+    found = [line for line in found if line.startswith("playground") and line.split()[1] not in ("test", "add")]
     assert {"playground new hills", "playground render hills -o hills.png"} <= set(found)
     return found

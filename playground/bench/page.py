@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING
 
 from playground._version import __version__
 from playground.bench.against import changes
-from playground.bench.peers import EXTRA
 from playground.bench.results import Figure, Results
 from playground.bench.table import HEADINGS, rows_of
 from playground.errors import DataError
+from playground.extras import needs
 from playground.images.files import replacing
 from playground.markup import Markup, joined, tag
 
@@ -37,7 +37,7 @@ _WIDTH, _ROW = 9.0, 0.27  # inches
 def check_plots() -> None:
     """Raise ``DataError`` where matplotlib, which draws the plots, is not installed."""
     if importlib.util.find_spec("matplotlib") is None:
-        raise DataError(f"the page's plots need matplotlib, which is not installed; {EXTRA}")
+        raise DataError(needs("a page with plots", "matplotlib", "bench"))
 
 
 def write_page(results: Results, earlier: Sequence[Results], path: Path, clock: str = "wall") -> None:

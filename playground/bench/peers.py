@@ -18,8 +18,6 @@ from playground.bench import horizon_peers
 from playground.bench.room import Room, changing, processors
 from playground.bench.timing import Run
 
-EXTRA = 'pip install "terrain-shader-playground[bench]"'
-
 
 @dataclass
 class Peer:

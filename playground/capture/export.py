@@ -46,7 +46,7 @@ from playground.errors import DataError, SketchError
 from playground.images.files import encode_samples
 from playground.images.image_formats import naming
 from playground.sketch.model import DEFAULT_PICTURE, Sketch
-from playground.terrain.gis import ADVICE, geokeys_of
+from playground.terrain.gis import advice, geokeys_of
 from playground.terrain.grid import fitted
 from playground.terrain.place import Place
 
@@ -265,7 +265,7 @@ def _write_values(engine: Engine, job: ExportJob) -> Exported:
         if geokeys_of(place.crs):
             parts.append(f"in its place, in {place.crs.name or 'the reference system of its file'}")
         else:
-            notes.append(f"its reference system is left out: it has no EPSG code, and {ADVICE}")
+            notes.append(f"its reference system is left out: it has no EPSG code, and {advice()}")
     return Exported(job.path, "; ".join(parts), sidecars, tuple(filter(None, notes)))
 
 

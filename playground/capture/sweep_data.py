@@ -26,6 +26,7 @@ from playground.capture.sweep_case import Case, Found
 from playground.engine.internals import opened
 from playground.engine.plan_request import checked_pixels
 from playground.errors import ParameterError, PlaygroundError, SandboxCrash
+from playground.extras import needs
 from playground.process.worker import Launch, Worker, WorkerDied
 from playground.sketch.model import LARGEST_SIDE, Sketch
 
@@ -78,7 +79,7 @@ def sweep(
         )
         print(found["height.max"].sel(relief=400.0).values)
 
-    Needs xarray: ``pip install "terrain-shader-playground[research]"``. Raises ``ParameterError`` for
+    Needs xarray, of the extra ``research``. Raises ``ParameterError`` for
     what cannot be set, ``PlaygroundError`` for any mistake in the sketch, ``SandboxCrash`` where a
     process dies.
     """
@@ -111,7 +112,7 @@ def _xarray() -> Any:
     try:
         return importlib.import_module("xarray")
     except ImportError as error:
-        message = 'a sweep gives an xarray.Dataset: pip install "terrain-shader-playground[research]"'
+        message = needs("a sweep as a Dataset", "xarray", "research")
         raise PlaygroundError(f"{message} ({error})") from None
 
 

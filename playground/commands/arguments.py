@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
@@ -230,12 +229,3 @@ def check_parent(path: Path, output: str) -> None:
     """Raise ``DataError`` where the folder that a file is to be written into is not there."""
     if not path.expanduser().parent.is_dir():
         raise DataError(f"there is no folder '{path.parent}' to write into", file=output)
-
-
-def quoted(text: str) -> str:
-    """Return a word as the shell takes it."""
-    if sys.platform == "win32":
-        return f'"{text}"' if " " in text else text
-    import shlex
-
-    return shlex.quote(text)

@@ -23,9 +23,9 @@ HELP = help_text(
     "Time techniques, frames, starts and saves next to what else does the same.\n\n"
     "NAME is a suite or a row, as --list shows them, with * and ?; without one, all are run, which takes"
     " several minutes. Ours and theirs run alternately, so that a busy machine slows both: ratios can be"
-    " trusted more than times. Peers that are not installed are left out, which is said;"
-    ' pip install "terrain-shader-playground\\[bench]" has them. With --against, figures of earlier runs'
-    " are compared: those with a peer by their ratio to it, the others by their time; only what differs"
+    " trusted more than times. Peers that are not installed are left out, which is said; the extra bench"
+    " has them. With --against, figures of earlier runs are compared: those with a"
+    " peer by their ratio to it, the others by their time; only what differs"
     " by more than a tenth, and by more than its runs do, counts. With --fail, exit status 1 where"
     " something has become slower.",
     "playground bench --list",

@@ -10,9 +10,9 @@ from importlib import import_module
 from types import ModuleType
 
 from playground.errors import PlaygroundError, counted
+from playground.extras import DISTRIBUTION, reinstall_command
 
 NAME = "playground"
-DISTRIBUTION = "terrain-shader-playground"
 _OF_OURS = "_HOMES"  # a name in our own __init__.py, which another package's has not
 
 
@@ -35,7 +35,7 @@ def other_owners() -> list[str]:
 
 def repair(others: list[str]) -> str:
     """Return the commands that leave this distribution alone in the environment."""
-    again = f"python -m pip install --force-reinstall --no-deps {DISTRIBUTION}"
+    again = reinstall_command()
     return f"python -m pip uninstall {' '.join(others)}, then {again}" if others else again
 
 

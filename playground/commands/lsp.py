@@ -10,6 +10,7 @@ from playground.commands import options
 from playground.commands.arguments import Renderer, help_text, read_option, within
 from playground.commands.options import value
 from playground.errors import ContextError
+from playground.extras import needs
 
 HELP = help_text(
     "Serve an editor by the Language Server Protocol, over standard input and output.\n\n"
@@ -34,7 +35,6 @@ def lsp(
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("pygls", "lsprotocol", "cattrs", "attrs"):
             raise
-        install = 'python -m pip install "terrain-shader-playground[lsp]"'
-        raise ContextError(f"the language server needs pygls: {install}") from None
+        raise ContextError(needs("the language server", "pygls", "lsp")) from None
     renderer: Renderer = ctx.obj.or_else(software, device)
     serve(port, software=renderer.software, device=renderer.device)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated
 
-from playground.commands.arguments import help_text, quoted
+from playground.commands.arguments import help_text
 from playground.commands.options import flag, positional
+from playground.paths import quoted
 from playground.terminal import note
 
 HELP = help_text(

@@ -20,7 +20,6 @@ from playground.commands.arguments import (
     Renderer,
     help_text,
     moment_of,
-    quoted,
     read_device,
     read_driver,
     read_option,
@@ -32,6 +31,7 @@ from playground.commands.arguments import (
 )
 from playground.commands.options import complete_driver, flag, value
 from playground.errors import ParameterError
+from playground.paths import quoted
 from playground.terminal import console_for, has_bars, note
 
 if TYPE_CHECKING:

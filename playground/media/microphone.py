@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import ContextError
+from playground.extras import needs
 from playground.media.analysis import SPAN
 from playground.media.device import Device
 from playground.media.sound import RATE
@@ -51,7 +52,5 @@ def _sounddevice() -> Any:
     try:
         import sounddevice
     except ImportError:
-        raise ContextError(
-            'a microphone needs sounddevice: python -m pip install "terrain-shader-playground[microphone]"'
-        ) from None
+        raise ContextError(needs("a microphone", "sounddevice", "microphone")) from None
     return sounddevice

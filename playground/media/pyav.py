@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from playground.errors import ContextError, DataError
+from playground.extras import needs
 from playground.images.files import checked_file, reason
 
 if TYPE_CHECKING:
@@ -28,10 +29,7 @@ def pyav(what: str) -> Any:
     try:
         import av
     except ImportError:
-        raise ContextError(
-            f'{what} needs PyAV: python -m pip install "terrain-shader-playground[video]", or '
-            "python -m pip install av"
-        ) from None
+        raise ContextError(needs(what, "PyAV", "video")) from None
     # What a decoder has to say goes nowhere: errors are exceptions. So it is by default, and no level is set:
     # at any, a decoder's threads wait for Python's lock to say it, which who closes a film holds, for ever.
     return av

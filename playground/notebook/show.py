@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from playground.engine.internals import opened
 from playground.errors import DataError
+from playground.extras import needs
 from playground.sketch.model import Sketch
 from playground.sketch.values import spell
 
@@ -102,5 +103,4 @@ def _needed(error: ModuleNotFoundError) -> DataError:
     """Return what to say of a missing module; raise the error itself for one that no extra brings."""
     if error.name not in ("anywidget", "traitlets"):
         raise error
-    advice = 'python -m pip install "terrain-shader-playground[notebook]"'
-    return DataError(f"a widget needs {error.name}, which is not installed: {advice}")
+    return DataError(needs("a widget", error.name, "notebook"))

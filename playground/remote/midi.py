@@ -17,6 +17,7 @@ from typing import Any
 import mido
 
 from playground.errors import ContextError
+from playground.extras import needs
 from playground.workbench.control.controller_file import Source
 from playground.workbench.control.controllers import Move
 
@@ -55,8 +56,7 @@ class Midi:
             _choose_backend()
             self._connect()
         except ImportError:
-            install = 'python -m pip install "terrain-shader-playground[midi]"'
-            raise ContextError(f"MIDI needs python-rtmidi or pygame-ce: {install}") from None
+            raise ContextError(needs("MIDI", "python-rtmidi or pygame-ce", "midi")) from None
         except Exception as error:  # each backend has its own
             raise ContextError(f"MIDI cannot be received here: {' '.join(str(error).split())}") from None
         if not self._thread.is_alive():

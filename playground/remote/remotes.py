@@ -8,6 +8,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, TypeVar
 
 from playground.errors import ContextError, PlaygroundError
+from playground.extras import needs
 from playground.remote.access import check_token, new_token
 from playground.remote.calls import Calls
 from playground.workbench.bench import Bench
@@ -156,7 +157,7 @@ def _midi(wake: Callable[[], None]) -> Midi:
     try:
         from playground.remote.midi import Midi
     except ImportError:
-        raise missing_extra("MIDI", "mido", "midi") from None
+        raise ContextError(needs("MIDI", "mido", "midi")) from None
     return Midi(wake)
 
 
@@ -164,7 +165,7 @@ def _osc(source: Address | None, target: Address | None) -> Osc:
     try:
         from playground.remote.osc import Osc
     except ImportError:
-        raise missing_extra("OSC", "python-osc", "osc") from None
+        raise ContextError(needs("OSC", "python-osc", "osc")) from None
     return Osc(source, target)
 
 
@@ -172,11 +173,5 @@ def _server(port: int, token: str) -> Server:
     try:
         from playground.remote.server import Server
     except ImportError:
-        raise missing_extra("the remote", "aiohttp", "remote") from None
+        raise ContextError(needs("the remote", "aiohttp", "remote")) from None
     return Server(port, token)
-
-
-def missing_extra(what: str, package: str, extra: str) -> ContextError:
-    """Return the error that says how to install what is missing."""
-    install = f'python -m pip install "terrain-shader-playground[{extra}]"'
-    return ContextError(f"{what} needs {package}: {install}")

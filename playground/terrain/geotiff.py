@@ -173,11 +173,13 @@ def _rows(page: tifffile.TiffPage, path: Path, no_data: float | None) -> Rows | 
     except PIL.UnidentifiedImageError:
         pass
     except OSError as error:
-        message = f"its compression {compression} cannot be undone ({error}): it is damaged, or {gis.ADVICE}"
+        message = (
+            f"its compression {compression} cannot be undone ({error}): it is damaged, or {gis.advice()}"
+        )
         raise DataError(message, file=path) from error
     raise DataError(
         f"its {page.dtype} numbers under compression {compression} cannot be read here; "
-        f"expected no compression or deflate; {gis.ADVICE}",
+        f"expected no compression or deflate; {gis.advice()}",
         file=path,
     )
 

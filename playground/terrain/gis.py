@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from playground.errors import DataError
+from playground.extras import install_command
 from playground.images.files import reason
 from playground.terrain.geokeys import DIRECTORY, DOUBLES, WORDS, Keys, keys_of_code, read_keys, write_keys
 from playground.terrain.grid import Found, check_grid
@@ -27,7 +28,11 @@ from playground.terrain.rows import Band
 if TYPE_CHECKING:
     import rasterio.io
 
-ADVICE = 'the extra gis reads it: python -m pip install "terrain-shader-playground[gis]"'
+
+def advice(verb: str = "reads") -> str:
+    """Return how to install ``gis``, which reads, or transforms, what is not read here."""
+    return f"the extra gis {verb} it: {install_command('gis')}"
+
 
 _NETCDF = "netCDF"
 _USUAL = ("elevation", "z", "height", "altitude", "topo", "dem", "band1", "band_data")
@@ -102,7 +107,7 @@ def _explained(path: Path | str) -> Iterator[None]:
 def read_netcdf(path: Path) -> Found:
     """Read the heights of a NetCDF file by GDAL; raise ``DataError`` naming the extra where it is missing."""
     if not has_rasters():
-        raise DataError(f"NetCDF is read by GDAL; {ADVICE}", file=path)
+        raise DataError(f"NetCDF is read by GDAL; {advice()}", file=path)
     name = _grid_in(path)
     with _explained(path), _open(name, _NETCDF) as raster:
         check_grid(raster.shape, np.dtype(raster.dtypes[0]), path, in_turn=True)

@@ -19,7 +19,7 @@ from playground.errors import DataError
 from playground.images.content_hash import content_key
 from playground.sketch.model import Value
 from playground.terrain.elevation import open_elevation
-from playground.terrain.gis import ADVICE, has_rasters, name_for_gdal, transformed
+from playground.terrain.gis import advice, has_rasters, name_for_gdal, transformed
 from playground.terrain.grid import check_grid
 from playground.terrain.place import Place
 from playground.terrain.vector_mask import Grid, draw
@@ -100,7 +100,7 @@ def _in_system(shapes: tuple[Shape, ...], crs: str, place: Place, path: Path) ->
     if not has_rasters() or not wanted:
         target = wanted.partition("[")[0] or "one without a code"
         message = f"its reference system is {crs.partition('[')[0]} and that of the terrain {target}"
-        raise DataError(f"{message}; {ADVICE.replace('reads', 'transforms')}", file=path)
+        raise DataError(f"{message}; {advice('transforms')}", file=path)
     lines = [_dense(line) if shape.kind != "point" else line for shape in shapes for line in shape.lines]
     try:
         points = transformed(np.concatenate(lines), crs, wanted)

@@ -23,7 +23,7 @@ from playground.errors import DataError
 from playground.images.files import checked_file, reason
 from playground.regular_file import irregularity, open_regular, read_regular
 from playground.sketch.sidecars import sidecar_places
-from playground.terrain.gis import ADVICE
+from playground.terrain.gis import advice
 
 Kind = Literal["point", "line", "polygon"]
 Line = NDArray[np.float64]  # (n, 2): x or longitude, y or latitude
@@ -189,7 +189,7 @@ def _crs_of(document: dict[str, Any], path: Path) -> str:
 
 def _by_ogr(path: Path, ending: str) -> Vectors:
     if find_spec("pyogrio") is None:
-        raise DataError(f"{ending} is read by OGR; {ADVICE}", file=path)
+        raise DataError(f"{ending} is read by OGR; {advice()}", file=path)
     if not _is_what_it_says(path, ending):
         raise DataError(f"is no {ending[1:]} file, although its name says so", file=path)
     import pyogrio

@@ -89,4 +89,4 @@ def test_a_page_without_matplotlib_is_refused_before_anything_runs(capsys, monke
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     status, _, err = ran(capsys, "bench", "white_noise", "--page", "page.html")
-    assert status == 2 and "plots need matplotlib" in err
+    assert status == 2 and "a page with plots needs matplotlib: " in err

@@ -1,6 +1,6 @@
 """Time water and erosion by rivers against other programs, in one run.
 
-    pip install ".[bench]" fastscapelib pyflwdir xarray-spatial scikit-image richdem
+    pip install -e ".[bench]" fastscapelib pyflwdir xarray-spatial scikit-image richdem
     python tests/benchmarks/water.py --processor [--size 1025] [--rounds 3] [NAME…]
 
 Each of those that is not installed is left out. They use one processor and take processor time by

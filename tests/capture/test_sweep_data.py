@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 import playground
 from playground.capture import sweep_data
 from playground.capture.sweep_data import sweep
+from playground.extras import install_command
 
 xarray = pytest.importorskip("xarray")
 SIZE = (48, 27)
@@ -116,9 +118,7 @@ def test_a_part_and_its_whole_are_refused_together(monkeypatch):
 
 def test_without_xarray_it_says_what_to_install(sketch, monkeypatch):
     monkeypatch.setitem(sys.modules, "xarray", None)
-    with pytest.raises(
-        playground.PlaygroundError, match=r'pip install "terrain-shader-playground\[research\]"'
-    ):
+    with pytest.raises(playground.PlaygroundError, match=re.escape(install_command("research"))):
         sweep(sketch, {"relief": [1.0]})
 
 

@@ -23,6 +23,7 @@ def install(folder: Path, name: str, *files: str) -> None:
     info = folder / f"{name.replace('-', '_')}-1.0.dist-info"
     info.mkdir(parents=True)
     (info / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+    (info / "direct_url.json").write_text('{"url": "file:///a/b.whl", "archive_info": {}}')
     (info / "RECORD").write_text("".join(f"{file},,\n" for file in files))
     for file in map(folder.joinpath, files):  # Python 3.13 counts no file that is missing
         file.parent.mkdir(exist_ok=True)
@@ -65,7 +66,7 @@ def test_a_package_that_has_overwritten_this_one_is_named(site: Path):
     assert done.stderr == (
         f"error: 'import playground' gives {site / 'playground' / '__init__.py'}, which belongs not to"
         f" {DISTRIBUTION} but to swings-and-slides: python -m pip uninstall swings-and-slides, then"
-        f" python -m pip install --force-reinstall --no-deps {DISTRIBUTION}\n"
+        f' {sys.executable} -m pip install --force-reinstall --no-deps "file:///a/b.whl"\n'
     )
 
 
@@ -74,7 +75,9 @@ def test_a_package_that_was_uninstalled_and_took_the_shared_file_with_it(site: P
     (site / "playground" / "__init__.py").unlink()
     done = run(site)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
-    assert done.stderr.endswith(f": python -m pip install --force-reinstall --no-deps {DISTRIBUTION}\n")
+    assert done.stderr.endswith(
+        f': {sys.executable} -m pip install --force-reinstall --no-deps "file:///a/b.whl"\n'
+    )
 
 
 @pytest.mark.slow

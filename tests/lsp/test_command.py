@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 
 from playground import cli
+from playground.extras import install_command
 from playground.paths import GLSL
 
 
@@ -23,7 +24,7 @@ def test_without_the_extra_one_sentence_says_how_to_install_it(
     monkeypatch.setitem(sys.modules, "pygls", None)
     assert cli.main(["lsp"]) == 2
     error = capsys.readouterr().err
-    assert "terrain-shader-playground[lsp]" in error and len(error.strip().split("\n")) == 1
+    assert install_command("lsp") in error and len(error.strip().split("\n")) == 1
 
 
 @pytest.mark.parametrize("port", ["0", "70000", "many"])

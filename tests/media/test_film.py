@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+import re
 import subprocess
 import sys
 
@@ -10,6 +11,7 @@ import numpy as np
 import pytest
 
 from playground.errors import ContextError, DataError
+from playground.extras import install_command
 from playground.images import bounds
 from playground.media.film import Film, film_of
 from playground.media.pyav import open_media
@@ -209,5 +211,5 @@ def test_a_playlist_leads_nowhere(tmp_path, text):
 def test_without_pyav_the_extra_is_named(tmp_path, monkeypatch):
     path = own_film(tmp_path / "a.mp4", count=2)
     monkeypatch.setitem(sys.modules, "av", None)
-    with pytest.raises(ContextError, match=r"a video file needs PyAV: .*terrain-shader-playground\[video\]"):
+    with pytest.raises(ContextError, match="a video file needs PyAV: " + re.escape(install_command("video"))):
         open_media(path, "a video file", (".mp4",))

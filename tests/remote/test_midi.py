@@ -11,6 +11,7 @@ import mido
 import pytest
 
 from playground.errors import SketchError
+from playground.extras import install_command
 from playground.remote.remotes import Remotes
 from playground.workbench.control.controller_file import (
     Binding,
@@ -318,7 +319,7 @@ def test_without_a_device_or_a_package_one_sentence_says_so(desk: Desk, monkeypa
     desk.remotes = Remotes()
     desk.remotes.attach(desk.bench, lambda: None)
     controllers.learn("height.level")
-    assert desk.notices[-1].endswith('python -m pip install "terrain-shader-playground[midi]"')
+    assert desk.notices[-1].endswith(install_command("midi"))
 
 
 @pytest.mark.slow

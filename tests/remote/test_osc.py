@@ -17,6 +17,7 @@ from pythonosc.udp_client import SimpleUDPClient
 
 from playground import cli
 from playground.errors import ContextError, DataError
+from playground.extras import install_command
 from playground.remote.osc import MOST, Osc, messages_of
 from playground.remote.remotes import RemoteOptions, Remotes
 
@@ -276,7 +277,7 @@ def test_a_taken_port_an_unknown_host_and_a_missing_package_are_one_sentence(mon
     monkeypatch.setitem(sys.modules, "pythonosc.osc_packet", None)
     with pytest.raises(ContextError) as caught:
         Remotes(RemoteOptions(osc=("127.0.0.1", 0)))
-    assert str(caught.value).endswith('python -m pip install "terrain-shader-playground[osc]"')
+    assert str(caught.value).endswith(install_command("osc"))
 
 
 @pytest.mark.parametrize(

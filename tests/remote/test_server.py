@@ -19,6 +19,7 @@ from PIL import Image
 
 from playground import cli
 from playground.errors import ContextError, DataError, ParameterError
+from playground.extras import install_command
 from playground.remote.access import check_token, new_token, refusal
 from playground.remote.calls import MOST, Busy, Calls
 from playground.remote.remotes import RemoteOptions, Remotes
@@ -464,7 +465,7 @@ def test_a_missing_package_is_one_sentence(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "aiohttp", None)
     with pytest.raises(ContextError) as caught:
         Remotes(RemoteOptions(port=0))
-    assert str(caught.value).endswith('python -m pip install "terrain-shader-playground[remote]"')
+    assert str(caught.value).endswith(install_command("remote"))
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import math
+import re
 import shutil
 import zipfile
 from pathlib import Path
@@ -14,6 +15,7 @@ import tifffile
 from PIL import Image as PillowImage
 
 from playground.errors import DataError
+from playground.extras import install_command
 from playground.images.files import encode_samples
 from playground.images.values import write_values
 from playground.terrain import geotiff as geotiff_reader
@@ -167,7 +169,7 @@ def test_what_neither_library_unpacks_is_a_sentence(tmp_path, monkeypatch):
     monkeypatch.setattr(gis, "has_rasters", lambda: False)
     refused(
         tmp_path / "a.tif",
-        r'float64 numbers under compression ADOBE_DEFLATE .* pip install "terrain-shader-playground\[gis\]"',
+        "float64 numbers under compression ADOBE_DEFLATE .* " + re.escape(install_command("gis")),
     )
     assert_heightmap(read_elevation(tmp_path / "b.tif"), HEIGHTMAP)
 
@@ -194,7 +196,7 @@ def test_a_compression_that_nothing_here_undoes_says_which_and_what_to_install(t
         if "damaged" in str(caught.value):
             pytest.skip("this Python undoes zstd itself")
         assert f"float64 numbers under compression {name} cannot be read here" in str(caught.value)
-        assert 'python -m pip install "terrain-shader-playground[gis]"' in str(caught.value)
+        assert install_command("gis") in str(caught.value)
 
 
 @pytest.mark.parametrize("bands", [2, 3, 5])

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from functools import partial
 
-from playground.bench.peers import EXTRA, Setting, made
+from playground.bench.peers import Setting, made
 from playground.bench.results import Figure
 from playground.bench.room import Room, changing
 from playground.bench.rows import Row
 from playground.bench.timing import Run, alternate, beyond
 from playground.engine.cache import VERSIONS
+from playground.extras import install_command
 from playground.sketch.variants import any_variants
 
 FORMS = ("auto", "fragment", "plain")
@@ -45,7 +46,7 @@ def figures(row: Row, room: Room, size: int) -> Iterator[Figure]:
     setting = Setting(room, size, options)
     peers = [peer for given in row.peers if (peer := made(setting, given)) is not None]
     for name in setting.missing:
-        room.options.say(f"{name} is not installed, and is left out; {EXTRA}")
+        room.options.say(f"{name} is not installed, and is left out; {install_command('bench')}")
     ours = list(runs)
     runs |= parts
     for _ in range(VERSIONS):  # from then on textures are used again, as while one drags

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from playground.errors import DataError
+from playground.extras import needs
 from playground.lessons import model
 from playground.lessons.bugs import bug_region
 from playground.lessons.excerpt import excerpt
@@ -26,9 +27,7 @@ def notebook_text(lesson: model.Lesson, numbers: Mapping[str, Number]) -> str:
     try:
         import nbformat
     except ModuleNotFoundError:
-        raise DataError(
-            'nbformat is not installed: python -m pip install "terrain-shader-playground[notebook]"'
-        ) from None
+        raise DataError(needs("a notebook", "nbformat", "notebook")) from None
     form: Any = nbformat  # its functions have no types
     make: Any = {"markdown": form.v4.new_markdown_cell, "code": form.v4.new_code_cell}
     cells = []
