@@ -137,7 +137,7 @@ def render_video(
 
     ``seconds`` long, to its last keyframe unless given, from ``start``; ``size`` in pixels,
     both sides even but for ``.gif``; ``quality`` "low", "medium", "high" or "best". Without
-    an ``engine`` one is opened. Needs PyAV: ``pip install "terrain-shader-playground[video]"``.
+    an ``engine`` one is opened. Needs the extra ``video`` or the program ``ffmpeg`` on PATH.
     ``path`` is returned; a file of that name is replaced at the end. ``sketch`` is a loaded one, or
     what ``load`` takes; ``fps`` is pictures a second.
 

@@ -1,6 +1,6 @@
 """Encode pictures as a video, one by one, into a file that is whole or not there.
 
-PyAV brings FFmpeg's encoders. The pictures are sRGB: they become BT.709 Y'CbCr of limited
+FFmpeg encodes (see ``encoders``). The pictures are sRGB: they become BT.709 Y'CbCr of limited
 range, and the file says so, which every player shows as it was drawn; each second pixel has
 a colour of its own, all have their brightness. A GIF has 256 colours a picture, chosen for
 each. Alpha is dropped, and counted: ``Video.dropped``.
@@ -12,19 +12,16 @@ from contextlib import ExitStack, suppress
 from fractions import Fraction
 from pathlib import Path
 from types import TracebackType
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.errors import ContextError, DataError, ParameterError, PlaygroundError, counted, nearest
+from playground.capture.encoders import Codec, open_encoder, read_packets
+from playground.errors import DataError, ParameterError, PlaygroundError, counted, nearest
 from playground.images.extensions import VIDEO_ENDINGS
 from playground.images.files import reason, writing
 from playground.partial import partial_file
 from playground.paths import shown
-
-if TYPE_CHECKING:
-    import av.container
 
 QUALITIES: dict[str, tuple[int, int]] = {
     "low": (30, 44),
@@ -37,7 +34,6 @@ QUALITIES: dict[str, tuple[int, int]] = {
 _SAME_BYTES = "cpu-independent=1"  # x264's fast motion trees read what no one wrote in small pictures
 
 QUALITY = "high"
-_BT709, _LIMITED = 1, 1  # as in ITU-T H.273
 _GIF_RATES = "1, 2, 4, 5, 10, 20, 25, 50"  # a picture of a GIF is shown for whole hundredths of a second
 _LONGEST = 16_384  # [pixels] of a side: H.264's and VP9's encoders take no more
 
@@ -62,7 +58,7 @@ class Video:
     video, as ``film-first-120.mp4``, and ``Stopped`` has its name.
 
     Raises ``DataError``, ``ParameterError`` or ``ContextError`` in a sentence for another
-    ending, odd sides, a rate that a GIF has not, a missing folder, and where PyAV is missing.
+    ending, odd sides, a rate that a GIF has not, a missing folder, and where nothing encodes.
     """
 
     def __init__(
@@ -74,11 +70,10 @@ class Video:
         self.dropped = 0  # pictures so far whose alpha was below one somewhere
         self.warning = ""  # a sentence where the finished file could not be checked
         self._ending = check_video(self.path, size, fps, quality)
-        self._av = _pyav()
         with ExitStack() as stack:
             with writing(self.path):
                 self._partial = stack.enter_context(partial_file(self.path))
-            self._open(quality)
+                self._encoder = open_encoder(self._partial.path, _codec(self._ending, quality), size, fps)
             self._open_partial = stack.pop_all()
 
     def __enter__(self) -> Video:
@@ -93,74 +88,21 @@ class Video:
             elif issubclass(kind, KeyboardInterrupt):
                 raise Stopped(self._shorter(), self.added) from None
         finally:
-            self._container.close()
+            self._encoder.close()
             self._open_partial.close()
 
     def add(self, picture: NDArray[np.uint8]) -> None:
         """Encode the next picture, (height, width, 3 or 4) bytes, top row first, sRGB."""
         self.dropped += has_alpha(picture)
-        frame = self._indexed(picture) if self._ending == ".gif" else self._yuv(picture)
-        frame.pts, frame.time_base = self.added, 1 / self.fps
-        self._mux(frame)
-        self.added += 1
-
-    def _open(self, quality: str) -> None:
-        crf = str(QUALITIES[quality][0])
-        x264 = {"crf": crf, "preset": "medium", "x264-params": _SAME_BYTES}
-        form, codec, pixels, options = {
-            ".mp4": ("mp4", "libx264", "yuv420p", x264),
-            ".webm": ("webm", "libvpx-vp9", "yuv420p", {"crf": str(QUALITIES[quality][1]), "b": "0"}),
-            ".gif": ("gif", "gif", "pal8", {}),
-        }[self._ending]
-        if codec == "libvpx-vp9":
-            options |= {"row-mt": "1", "deadline": "good", "cpu-used": "3"}
-        moved = {"movflags": "+faststart"} if form == "mp4" else {}
-        try:
-            with writing(self.path):
-                self._container: av.container.OutputContainer = self._av.open(
-                    str(self._partial.path), "w", format=form, options=moved
-                )
-                self._stream: Any = self._container.add_stream(codec, rate=self.fps, options=options)
-        except ValueError as error:  # an encoder that this build has not
-            raise ContextError(f"this PyAV cannot write {self._ending}: {reason(error)}") from None
-        self._stream.width, self._stream.height = self.size
-        self._stream.pix_fmt = pixels
-        self._stream.time_base = 1 / self.fps
-        if pixels == "yuv420p":
-            context = self._stream.codec_context
-            context.color_primaries = context.color_trc = context.colorspace = _BT709
-            context.color_range = _LIMITED
-
-    def _yuv(self, picture: NDArray[np.uint8]) -> Any:
-        rgb = self._av.VideoFrame.from_ndarray(np.ascontiguousarray(picture[..., :3]), format="rgb24")
-        return rgb.reformat(
-            format="yuv420p",
-            src_colorspace="ITU709",
-            dst_colorspace="ITU709",
-            src_color_range="JPEG",
-            dst_color_range="MPEG",
-            interpolation="AREA",
-        )
-
-    def _indexed(self, picture: NDArray[np.uint8]) -> Any:
-        import PIL.Image
-
-        found = PIL.Image.fromarray(np.ascontiguousarray(picture[..., :3])).quantize(256)
-        colours = np.zeros((256, 4), np.uint8)
-        given = np.array(found.getpalette() or [], np.uint8).reshape(-1, 3)[:256]
-        colours[: len(given), 1:], colours[:, 0] = given, 255  # alpha, red, green, blue
-        return self._av.VideoFrame.from_ndarray((np.array(found, np.uint8), colours), format="pal8")
-
-    def _mux(self, frame: Any) -> None:
         with writing(self.path):
-            for packet in self._stream.encode(frame):
-                self._container.mux(packet)
+            self._encoder.add(picture, self.added)
+        self.added += 1
 
     def _finish(self) -> None:
         """Rename the video; one that holds another number of pictures gets another."""
         if not self.added:
             raise DataError(f"no picture was drawn, of {self.count}", file=self.path)
-        self._close()
+        self._finish_encoder()
         try:
             found, rate = count_pictures(self._partial.path)
         except KeyboardInterrupt:
@@ -182,11 +124,9 @@ class Video:
             file=self.path,
         )
 
-    def _close(self) -> None:
-        """Write what the encoder still holds, and the end of the file."""
-        self._mux(None)
+    def _finish_encoder(self) -> None:
         with writing(self.path):
-            self._container.close()
+            self._encoder.finish()
 
     def _name(self, path: Path) -> None:
         with writing(path):
@@ -202,7 +142,7 @@ class Video:
         """
         if not self.added:
             return None
-        self._close()
+        self._finish_encoder()
         with suppress(Exception, KeyboardInterrupt):  # then the count is what was added
             self.added, _ = count_pictures(self._partial.path)
         path = self._first(self.added)
@@ -252,28 +192,21 @@ def check_video(path: Path, size: tuple[int, int], fps: Fraction, quality: str) 
 
 def count_pictures(path: str | Path) -> tuple[int, Fraction]:
     """Return how many pictures a video has and how many a second, without decoding them."""
-    module = _pyav()
-    try:
-        with module.open(str(path), format=None) as container:
-            stream = container.streams.video[0]
-            rate = Fraction(stream.average_rate or 0)  # a closed container has none
-            packets = [packet for packet in container.demux(stream) if packet.size]
-            times = sorted(packet.pts * packet.time_base for packet in packets if packet.pts is not None)
-    except (OSError, IndexError, ValueError) as error:
-        raise DataError(f"cannot be read back: {reason(error)}", file=Path(path)) from None
+    rate, found = read_packets(Path(path))
+    times = sorted(time for time in found if time is not None)
     if len(times) > 1 and times[-1] > times[0]:  # what is written is times; some formats round to thousandths
         mean = Fraction(len(times) - 1) / (times[-1] - times[0])
         near = rate and abs(mean / rate - 1) < Fraction(1, 100)
         rate = rate if near else mean.limit_denominator(1001)
-    return len(packets), rate
+    return len(found), rate
 
 
-def _pyav() -> Any:
-    try:
-        import av
-    except ImportError:
-        raise ContextError(
-            'a video needs PyAV: python -m pip install "terrain-shader-playground[video]", or '
-            "python -m pip install av; --frames writes PNG files without it"
-        ) from None
-    return av
+def _codec(ending: str, quality: str) -> Codec:
+    h264, vp9 = QUALITIES[quality]
+    if ending == ".mp4":
+        x264 = {"crf": str(h264), "preset": "medium", "x264-params": _SAME_BYTES}
+        return Codec("mp4", "libx264", "yuv420p", x264)
+    if ending == ".webm":
+        speed = {"row-mt": "1", "deadline": "good", "cpu-used": "3"}
+        return Codec("webm", "libvpx-vp9", "yuv420p", {"crf": str(vp9), "b": "0"} | speed)
+    return Codec("gif", "gif", "pal8", {})

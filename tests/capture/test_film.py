@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import shutil
 import sys
 from collections import Counter
 from fractions import Fraction
@@ -17,6 +18,7 @@ from playground.capture.sequence import render_sequence, write_sequence
 from playground.capture.video import QUALITIES, Stopped, Video, count_pictures
 from playground.engine.engine import Engine
 from playground.errors import ContextError, DataError, ParameterError
+from playground.extras import install_command
 from playground.images.files import read_png, write_png
 
 from ..loading import load
@@ -302,10 +304,75 @@ def test_what_cannot_be_written_is_a_sentence(tmp_path: Path, name, size, fps, q
     assert not list(tmp_path.iterdir())
 
 
-def test_without_pyav_a_sentence_says_how_to_get_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+def test_without_an_encoder_a_sentence_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setitem(sys.modules, "av", None)
-    with pytest.raises(ContextError, match="pip install"):
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(ContextError) as caught:
         Video(tmp_path / "a.mp4", (64, 36), Fraction(30), 1)
+    assert install_command("video") in str(caught.value) and "ffmpeg on PATH" in str(caught.value)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(
+    not shutil.which("ffmpeg") or not shutil.which("ffprobe"), reason="needs FFmpeg's programs"
+)
+@pytest.mark.parametrize("count", [1, 6])
+@pytest.mark.parametrize(
+    ("ending", "fps", "most"),
+    [("mp4", Fraction(30000, 1001), 0), ("gif", Fraction(25), 0), ("webm", Fraction(30), 32)],
+)
+def test_the_program_writes_the_film_that_pyav_writes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ending: str, fps: Fraction, most: int, count: int
+):
+    """VP9's decoded pictures may differ between versions of libvpx; H.264 of x264 and a GIF's do not."""
+    pictures = ramps(count, (64, 36))
+    paths = [tmp_path / f"{name}.{ending}" for name in ("pyav", "program")]
+    for path in paths:
+        with Video(path, (64, 36), fps, count) as video:
+            for picture in pictures:
+                video.add(picture)
+        assert not video.warning
+        monkeypatch.setitem(sys.modules, "av", None)
+    assert count_pictures(paths[0]) == count_pictures(paths[1]) == (count, fps)
+    monkeypatch.setitem(sys.modules, "av", av)
+    assert count_pictures(paths[0]) == count_pictures(paths[1]) == (count, fps)
+    theirs, ours = (decoded(path).astype(int) for path in paths)
+    assert np.abs(theirs - ours).max() <= most
+    assert {path.name for path in tmp_path.iterdir()} == {path.name for path in paths}
+
+
+@pytest.mark.skipif(
+    not shutil.which("ffmpeg") or not shutil.which("ffprobe"), reason="needs FFmpeg's programs"
+)
+def test_a_film_of_the_program_that_is_interrupted_is_shorter(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.setitem(sys.modules, "av", None)
+    with pytest.raises(Stopped) as caught, Video(tmp_path / "a.mp4", (64, 36), Fraction(10), 5) as video:
+        for picture in ramps(3, (64, 36)):
+            video.add(picture)
+        raise KeyboardInterrupt
+    assert caught.value.path == tmp_path / "a-first-3.mp4"
+    with pytest.raises(ZeroDivisionError), Video(tmp_path / "b.mp4", (64, 36), Fraction(10), 5) as video:
+        video.add(ramps(1, (64, 36))[0])
+        raise ZeroDivisionError
+    assert [path.name for path in tmp_path.iterdir()] == ["a-first-3.mp4"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a script for sh")
+def test_why_the_program_failed_is_in_the_message(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setitem(sys.modules, "av", None)
+    monkeypatch.setenv("PATH", str(tmp_path / "bin"))
+    (tmp_path / "bin").mkdir()
+    (tmp_path / "bin" / "ffmpeg").write_text("#!/bin/sh\necho \"Unknown encoder 'libx264'\" >&2\nexit 1\n")
+    (tmp_path / "bin" / "ffmpeg").chmod(0o755)
+    with (
+        pytest.raises(DataError, match=r"a\.mp4.*cannot be written: ffmpeg: Unknown encoder 'libx264'"),
+        Video(tmp_path / "a.mp4", (640, 360), Fraction(30), 9) as video,
+    ):
+        for picture in ramps(9, (640, 360)):
+            video.add(picture)
+    assert [path.name for path in tmp_path.iterdir()] == ["bin"]
 
 
 def test_render_video_needs_no_engine(clock, tmp_path: Path):

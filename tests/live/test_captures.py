@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -13,6 +14,7 @@ from playground.api import headless
 from playground.capture.job import FILM, PICTURE, PICTURES, SHEET, do
 from playground.engine.engine import Engine
 from playground.errors import ParameterError, PlaygroundError
+from playground.extras import install_command
 from playground.images.files import read_png
 from playground.sketch.assign import resolve
 from playground.workbench import captures as capturing
@@ -173,8 +175,9 @@ def test_an_invalid_capture_is_reported_before_anything_begins(
 
 def test_without_pyav_one_sentence_with_the_command(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "av", None)
+    monkeypatch.setenv("PATH", "")
     job = wishing(bench, Wish(FILM, seconds=0.2, fps=10)).job()
-    with pytest.raises(PlaygroundError, match="pip install"):
+    with pytest.raises(PlaygroundError, match=re.escape(install_command("video"))):
         do(job, bench.session.engine, lambda *_: None, lambda _: None)
     assert list(bench.captures.folder.iterdir()) == []
 
