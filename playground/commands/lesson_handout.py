@@ -18,9 +18,12 @@ HELP = help_text(
     "Write the exercises of lessons as a zip for students: a page without answers, and for each exercise"
     " that checks itself a folder that the window opens.\n\n"
     "Students edit one file an exercise and hand the folder in; `playground lesson grade` grades what a class"
-    " has handed in. Model answers are not in the zip.",
+    " has handed in. Model answers are not in the zip. The playground is on no package index: --wheel puts it"
+    " into the zip, --install says in the students' README where they get it.",
     "playground lesson handout diamond_square -o week3.zip",
     "playground lesson handout diamond_square --hints --lang fr -o semaine3.zip",
+    "playground lesson handout diamond_square --wheel terrain_shader_playground-0.1.0-py3-none-any.whl",
+    'playground lesson handout diamond_square --install "In room 3 it is installed."',
     "playground live week3.zip",
 )
 
@@ -32,24 +35,35 @@ def handout(
         "handout.zip"
     ),
     hints: Annotated[bool, flag("--hints", "Put the exercises' hints on the page.")] = False,
+    install: Annotated[str, value("--install TEXT", "How students install the playground.")] = "",
+    wheel: Annotated[
+        Path | None, value("--wheel FILE", "A wheel of the playground, to put into the zip.")
+    ] = None,
     lang: options.Language = "",
     software: options.Software = False,
 ) -> None:
     """Write the exercises of lessons as a zip for students."""
-    from playground.lessons.handout.pack import count_tasks, write_handout
+    from playground.lessons.handout.pack import count_tasks, read_wheel, write_handout
     from playground.lessons.read import read_lesson
 
     output = output.expanduser()
     if output.is_dir() or output.suffix.lower() != ".zip":
         raise DataError("a hand-out is written to a name ending in .zip", file=output)
     check_parent(output, str(output))
+    if wheel is not None:
+        wheel = wheel.expanduser()
+        read_wheel(wheel)
     language = read_language(lang)
     lessons = [read_lesson(name, language) for name in dict.fromkeys(names)]
     renderer: Renderer = ctx.obj.or_else(software)
     with renderer.open_engine() as engine, progress("drawing", count_tasks(lessons)) as advance:
-        written = write_handout(output, lessons, engine, hints=hints, advance=advance)
+        written = write_handout(
+            output, lessons, engine, hints=hints, install=install, wheel=wheel, advance=advance
+        )
     print(output)
     exercises = sum(one.points > 0 for one in written)
     matches = f", {counted(len(written) - exercises, 'challenge')}" if exercises < len(written) else ""
     points = counted(sum(one.points for one in written), "point")
+    if not install and wheel is None:
+        note("README.txt leaves it to you how students install the playground: see --wheel and --install")
     note(f"{counted(exercises, 'exercise')} to hand in, {points}{matches}")

@@ -15,6 +15,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import zipfile
 from collections.abc import Iterator
 from contextlib import nullcontext, redirect_stdout
 from itertools import takewhile
@@ -38,12 +39,12 @@ FORM = re.compile(  # how a command is used, not a command
 
 NOT_RUN = {
     r"export \w+=.*": "sets a variable; test_editors.py and test_cache.py read it",
-    r"(python -m )?pip install .*": "needs a network; ./play does as much, and .ci/run begins by it",
+    r"(python -m )?pip (install|wheel) .*": "needs a network; ./play does as much, and .ci/run begins by it",
+    r"\./play add( .*)?": "installs into .venv: tests/test_play.py, with a pip that installs nothing",
     r"sudo apt-get .*": "needs a network and an administrator",
     r"\./play test( -m slow)?": "is these tests",
     r"pytest -n 2 --dist loadfile": "is these tests, in two processes",
     r"\.venv/bin/.*": "is a step of .ci/run",
-    r"mkdocs .*": "serves until it is stopped, or is built by test_site.py",
     r"playground shots review.*": "serves until it is stopped: tests/report/test_review.py",
     r"playground shots accept .*": "needs a shot that failed: tests/report/test_accept.py",
     r"playground lsp.*": "serves until its editor ends: tests/lsp",
@@ -201,6 +202,10 @@ def furnish(folder: Path, command: str) -> None:
         assert cli.main(["lesson", "handout", "diamond_square", "-o", "week3.zip"]) == 0
         (folder / "handed-in").mkdir()
         shutil.copyfile("week3.zip", "handed-in/Zoë.zip")
+    if "--wheel" in words:
+        name = words[words.index("--wheel") + 1]
+        with zipfile.ZipFile(name, "w") as archive:
+            archive.writestr(f"{'-'.join(name.split('-')[:2])}.dist-info/METADATA", "")
     if "lesson.zip" in words and words[0] != "pack":
         make_sketch(folder / "my-land")
         assert cli.main(["pack", "my-land", "-o", "lesson.zip"]) == 0
@@ -338,7 +343,7 @@ def test_every_option_that_is_named_exists():
         "--execute",
     }  # of others
     named = {o for page in PAGES for o in re.findall(r"(?<![\w-])--[a-z][a-z-]+", page.read_text("utf-8"))}
-    assert named and not named - known - {"--no-install-recommends"}
+    assert named and not named - known - {"--no-install-recommends", "--no-deps"}
 
 
 # Programs other than the playground

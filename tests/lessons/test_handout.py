@@ -117,12 +117,47 @@ def test_in_french_without_hints(tmp_path):
     assert 'lang="fr"' in page and "Exercices" in page and "Indice" not in page
 
 
+WHEEL = "terrain_shader_playground-2.5.0-py3-none-any.whl"
+
+
+@pytest.fixture
+def wheel(tmp_path):
+    with zipfile.ZipFile(tmp_path / WHEEL, "w") as archive:
+        archive.writestr(
+            "terrain_shader_playground-2.5.0.dist-info/METADATA", "Name: terrain-shader-playground"
+        )
+    return tmp_path / WHEEL
+
+
+@pytest.mark.parametrize(("lang", "line"), [("en", ""), ("fr", "In room 3, or: pip install {me} \\n")])
+def test_a_wheel_and_the_line_of_the_teacher_are_in_the_readme(tmp_path, wheel, line, lang):
+    path, more = tmp_path / "a.zip", ["--wheel", str(wheel), "--install", line, "--lang", lang]
+    assert main(["lesson", "handout", "first_height", "-o", str(path), *more]) == 0
+    with zipfile.ZipFile(path) as archive:
+        assert archive.read(f"a/{WHEEL}") == wheel.read_bytes()
+        step = re.search(r"^1\. (.*?)^2\. ", archive.read("a/README.txt").decode(), re.DOTALL | re.MULTILINE)[
+            1
+        ]
+    assert WHEEL in step and (f"python -m pip install {WHEEL}" in step) == (not line)
+    assert line.strip() in step
+
+
+def test_a_damaged_wheel_is_refused_before_anything_is_drawn(tmp_path, wheel, capsys):
+    for data in (b"no zip", wheel.read_bytes().replace(b"METADATA", b"metadata")):
+        wheel.write_bytes(data)
+        output = tmp_path / "a.zip"
+        assert main(["lesson", "handout", "diamond_square", "--wheel", str(wheel), "-o", str(output)]) == 2
+        assert f"{WHEEL}: the file is damaged" in capsys.readouterr().err and not output.exists()
+
+
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
     [
         (["diamond_sqare"], "did you mean 'diamond_square'"),
         (["diamond_square", "-o", "week3.tar"], "ending in .zip"),
         (["diamond_square", "-o", "nowhere/week3.zip"], "no folder 'nowhere'"),
+        (["diamond_square", "--wheel", "playground.whl"], "there is no such file"),
+        (["diamond_square", "--wheel", __file__], "is not named as a wheel of the playground"),
     ],
 )
 def test_mistakes_are_sentences(arguments, sentence, capsys, tmp_path, monkeypatch):

@@ -3,6 +3,7 @@
     week3/README.txt             what to do, and what to hand in
     week3/exercises.html         the exercises, without answers
     week3/LESSON-EXERCISE/       what the student edits: see ``student_sketch``
+    week3/….whl                  the playground itself, if a wheel is given
     pack.json                    which of them opens where the zip itself is opened
 
 The same lessons give the same bytes, on the same renderer: names are sorted and dates fixed.
@@ -18,8 +19,9 @@ from pathlib import Path
 
 from playground._version import __version__
 from playground.engine.engine import Engine
-from playground.errors import SketchError
-from playground.images.files import replacing
+from playground.errors import DataError, SketchError
+from playground.extras import DISTRIBUTION
+from playground.images.files import checked_file, reading, replacing
 from playground.lessons.handout.exercise_files import Assignment, assignments_of
 from playground.lessons.handout.labels import handout_labels
 from playground.lessons.handout.page import handout_page
@@ -31,6 +33,8 @@ from playground.sketch.unpack import FORMAT, MANIFEST
 _DATE = (1980, 1, 1, 0, 0, 0)  # the earliest that a zip can say
 _PLAIN_FILE = 0o100644 << 16
 _UNIX = 3
+_WHEEL_NAME = DISTRIBUTION.replace("-", "_")
+_WHEEL = re.compile(rf"{_WHEEL_NAME}-[^-]+(-\d[^-]*)?(-[^-]+){{3}}\.whl")
 _NOT_IN_A_NAME = re.compile(r"[^\w.-]+")
 
 
@@ -45,12 +49,17 @@ def write_handout(
     engine: Engine,
     *,
     hints: bool = False,
+    install: str = "",
+    wheel: Path | None = None,
     advance: Callable[[], None] = lambda: None,
 ) -> list[Assignment]:
     """Write the zip, whole or not at all, and return the exercises with points that are in it.
 
-    Raises ``SketchError`` where none of the lessons has an exercise that checks itself, and as drawing does.
+    ``install`` is how students install the playground, for their README. ``wheel`` goes into the zip.
+    Raises ``SketchError`` where none of the lessons has an exercise that checks itself, ``DataError`` for
+    what is no wheel of the playground, and as drawing does.
     """
+    packed = {} if wheel is None else {wheel.name: read_wheel(wheel)}
     assignments = assignments_of(lessons)
     if not assignments:
         names = ", ".join(lesson.name for lesson in lessons)
@@ -59,7 +68,8 @@ def write_handout(
     numbers = {
         lesson.name: numbers_of(engine, lesson) if _names_numbers(lesson) else {} for lesson in lessons
     }
-    files = {f"{top}/README.txt": _readme(lessons, assignments, top).encode()}
+    files = {f"{top}/{name}": data for name, data in packed.items()}
+    files[f"{top}/README.txt"] = _readme(lessons, assignments, install, "".join(packed)).encode()
     for one in assignments:
         for name, data in student_files(one).items():
             files[f"{top}/{one.name}/{name}"] = data
@@ -88,13 +98,32 @@ def _names_numbers(lesson: Lesson) -> bool:
     )
 
 
-def _readme(lessons: Sequence[Lesson], assignments: Sequence[Assignment], top: str) -> str:
+def read_wheel(path: Path) -> bytes:
+    """Return the bytes of a wheel of the playground; raise ``DataError`` for another file."""
+    checked_file(path)
+    if not _WHEEL.fullmatch(path.name):
+        example = f"{_WHEEL_NAME}-{__version__}-py3-none-any.whl"
+        raise DataError(f"is not named as a wheel of the playground, such as {example}", file=path)
+    metadata = f"{'-'.join(path.name.split('-')[:2])}.dist-info/METADATA"
+    with reading(path) as handle, zipfile.ZipFile(handle) as archive:
+        archive.getinfo(metadata)
+        handle.seek(0)
+        return handle.read()
+
+
+def _readme(lessons: Sequence[Lesson], assignments: Sequence[Assignment], install: str, wheel: str) -> str:
     label = handout_labels(lessons[0].language)
+    lines = install.strip().splitlines()
+    if not lines:
+        lines = label("install_wheel", wheel=wheel).strip().splitlines() if wheel else [label("install_open")]
+    elif wheel:
+        lines.append(label("wheel_here", wheel=wheel))
     title = f"{label['title']}{label['colon']}{', '.join(lesson.title for lesson in lessons)}"
     return (
         label(
             "readme",
             title=title,
+            install="\n".join([lines[0], *(f"   {line.strip()}".rstrip() for line in lines[1:])]),
             commands="\n".join(f"   playground live {one.opens}" for one in assignments),
             files="\n".join(f"   {one.name}/{one.file}" for one in assignments),
         ).strip()
