@@ -138,6 +138,6 @@ def readme_commands() -> list[str]:
     """Return the commands of README.md that are the playground's, as one types them without a checkout."""
     lines = [line.partition("  #")[0].strip() for block in readme_blocks("sh") for line in block.splitlines()]
     found = [re.sub(r"^\./play\b", "playground", line) for line in lines]
-    found = [line for line in found if line.startswith("playground") and line.split()[1] not in ("test", "add")]
+    found = [line for line in found if re.match(r"playground(?! (?:test|add)\b)", line)]
     assert {"playground new hills", "playground render hills -o hills.png"} <= set(found)
     return found
