@@ -8,8 +8,12 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from mkdocs.exceptions import PluginError
 from mkdocs.structure.files import File
 from site_pages import pages
+
+from playground.errors import counted
+from playground.paths import CHECKOUT, GLSL
 
 if TYPE_CHECKING:
     from mkdocs.config.defaults import MkDocsConfig
@@ -17,7 +21,17 @@ if TYPE_CHECKING:
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
-    """Replace each entry of the navigation that names a generated folder with the folder's pages."""
+    """Replace each entry of the navigation that names a generated folder with the folder's pages.
+
+    Raises ``PluginError`` where another playground than this checkout's is imported, or a picture is missing.
+    """
+    if CHECKOUT != pages.ROOT:
+        raise PluginError(
+            f"the playground of this Python is {GLSL.parent}, whose pages would not follow {pages.ROOT}:"
+            " ./play add docs, then .venv/bin/mkdocs"
+        )
+    if lost := pages.missing_pictures():
+        raise PluginError(f"{counted(len(lost), 'picture')} of the site missing: {', '.join(lost[:3])}")
     config.nav = [pages.expanded(entry) for entry in config.nav or []]
     return config
 

@@ -63,6 +63,13 @@ def generated() -> dict[str, str | bytes]:
     return found
 
 
+def missing_pictures() -> list[str]:
+    """List the pictures that the site shows and the checkout lacks."""
+    files = [picture.file for sketch in shots.sketches() for picture in shots.pictures(sketch)]
+    files += [ROOT / source for source in PICTURES.values()]
+    return [str(file) for file in files if not file.is_file()]
+
+
 def moved(text: str, source: str, page: str) -> str:
     """Return a Markdown text whose links still lead there from its place in the site.
 

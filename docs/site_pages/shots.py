@@ -51,9 +51,8 @@ def sketches() -> tuple[Sketch, ...]:
 
 
 def pictures(sketch: Sketch) -> list[Picture]:
-    """List the shots of a sketch that have a reference."""
-    found = (Picture(sketch.name, shot.name) for shot in sketch.shots)
-    return [picture for picture in found if picture.file.is_file()]
+    """List the references of a sketch's shots."""
+    return [Picture(sketch.name, shot.name) for shot in sketch.shots]
 
 
 @cache

@@ -7,7 +7,10 @@ import re
 from dataclasses import replace
 from pathlib import Path
 
+import hooks
 import pytest
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.exceptions import PluginError
 from site_pages import commands, gallery, glossary, keys, pages, python, shots, techniques
 
 import playground
@@ -85,6 +88,20 @@ def test_every_shot_with_a_reference_is_in_the_gallery():
     files = [p for p in shots.SCREENSHOTS.glob(f"*/{shots.RENDERER}/*.png") if stems.fullmatch(p.stem)]
     assert len(files) > 200
     assert not [p for p in files if f"{p.parts[-3]}-{p.stem}.webp" not in text]
+
+
+@pytest.mark.parametrize(
+    ("module", "name", "value", "message"),
+    [
+        (shots, "SCREENSHOTS", Path("/nowhere"), r"^\d{3} pictures of the site missing: /nowhere/"),
+        (pages, "PICTURES", {"a.webp": "nowhere.png"}, r"^1 picture of the site missing: \S*nowhere\.png$"),
+        (hooks, "CHECKOUT", None, "whose pages would not follow .* ./play add docs"),
+    ],
+)
+def test_the_site_is_not_built_without_its_pictures(monkeypatch, module, name, value, message):
+    monkeypatch.setattr(module, name, value)
+    with pytest.raises(PluginError, match=message):
+        hooks.on_config(MkDocsConfig())
 
 
 def test_every_public_name_is_in_the_reference_and_says_what_it_is():
