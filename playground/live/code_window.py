@@ -16,6 +16,7 @@ from playground.live.text_field import ctrl_held
 from playground.live.theme import Theme
 from playground.paths import without_part
 from playground.workbench.dependencies import path_named
+from playground.workbench.indentation import closing_indent, new_line, step_of
 from playground.workbench.notices import Notices
 from playground.workbench.open_files import OpenFiles
 from playground.workbench.problems import Problems
@@ -31,6 +32,8 @@ _CLASH_ANSWERS = (
     ("Save mine", "Overwrites what others saved"),
     ("Go on typing", ""),
 )
+_ENTER = (imgui.Key.enter, imgui.Key.keypad_enter)
+_OWNER = 1  # of these keys, while they are taken from the library: any number but 0
 _BOX = imgui.WindowFlags_.always_auto_resize | imgui.WindowFlags_.no_saved_settings
 
 
@@ -39,6 +42,7 @@ class _View:
     """The editor of one open file."""
 
     editor: text_edit.TextEditor
+    step: str  # one step of indentation
     saved_at: int = 0  # the editor's undo index when its text was that of the file
     marked: tuple[Diagnostic, ...] = ()
     clash: str = ""  # why it could not be saved; the user decides what to do
@@ -107,12 +111,14 @@ def _view_of(editing: Editing) -> _View:
         editor = text_edit.TextEditor()
         if editing.text.path.suffix != ".toml":
             editor.set_language(text_edit.TextEditor.Language.glsl())
-        editor.set_tab_size(4)
-        editor.set_insert_spaces_on_tabs(True)
+        step = step_of(editing.text.base)
+        editor.set_tab_size(len(step.expandtabs(4)))
+        editor.set_insert_spaces_on_tabs(False)  # else the text's own tabs would become spaces
         editor.set_show_whitespaces_enabled(False)
         editor.set_complete_paired_glyphs(False)  # it would add a second one to each that is typed
         editor.set_text(editing.text.base)
-        editing.view = _View(editor, editor.get_undo_index())
+        editor.set_insert_spaces_on_tabs(step != "\t")
+        editing.view = _View(editor, step, editor.get_undo_index())
     return editing.view
 
 
@@ -152,6 +158,8 @@ def _draw(editing: Editing, notices: Notices, problems: Problems, look: Theme, a
             view.editor.set_cursor(text_edit.TextEditor.DocPos(editing.line - 1, editing.column - 1))
             view.editor.scroll_to_line(editing.line - 1, text_edit.TextEditor.Scroll.align_middle)
             view.editor.set_focus()
+        if focused and not imgui.is_any_item_active():  # Enter in the search field finds
+            _indent(view)
         with look.font(look.code):
             view.editor.render("##text", ImVec2(0, 0))
         if stays is False and view.changed and editing.text.needs_saving:
@@ -165,6 +173,47 @@ def _take_keys(editing: Editing, notices: Notices) -> None:
     if ctrl_held() and imgui.is_key_pressed(imgui.Key.s, False):
         save(editing, notices)
     imgui.get_io().want_text_input = True  # keys are this editor's, not the picture's
+
+
+def _indent(view: _View) -> None:
+    """Take Enter and closing brackets from the library, which indents by one letter, and no bracket.
+
+    With several cursors they stay the library's.
+    """
+    editor, io = view.editor, imgui.get_io()
+    if editor.get_number_of_cursors() != 1:
+        return
+    selection = editor.get_main_cursor_selection()
+    first = text_edit.TextEditor.DocPos(selection.start.line, 0)
+    typed = [chr(code) for code in io.input_queue_characters]
+    if any(imgui.is_key_pressed(key) for key in _ENTER) and not (io.key_ctrl or io.key_shift or io.key_alt):
+        for key in _ENTER:
+            imgui.internal.set_key_owner(key, _OWNER, imgui.internal.InputFlagsPrivate_.lock_this_frame)
+        io.input_queue_characters.clear()
+        end = selection.end
+        rest = editor.get_line_text(end.line)
+        rest = editor.get_section_text(end, text_edit.TextEditor.DocPos(end.line, len(rest)))
+        blanks = len(rest) - len(rest.lstrip())
+        editor.select_region(selection.start, text_edit.TextEditor.DocPos(end.line, end.index + blanks))
+        left, right = new_line(editor.get_section_text(first, selection.start), rest, view.step)
+        _insert(view, left, right)
+    elif len(typed) == 1 and selection.start == selection.end:
+        start = text_edit.TextEditor.DocPos(0, 0)
+        indent = closing_indent(editor.get_section_text(start, selection.start), typed[0])
+        if indent is not None:
+            io.input_queue_characters.clear()
+            editor.select_region(first, selection.start)
+            _insert(view, indent + typed[0])
+
+
+def _insert(view: _View, left: str, right: str = "") -> None:
+    """Replace the selection as one step that can be undone, tabs as they are; the cursor stays between."""
+    view.editor.set_insert_spaces_on_tabs(False)
+    view.editor.replace_text_in_current_cursor(left + right)
+    view.editor.set_insert_spaces_on_tabs(view.step != "\t")
+    if right:
+        line = view.editor.get_main_cursor_position().line - 1
+        view.editor.set_cursor(text_edit.TextEditor.DocPos(line, len(left) - 1))
 
 
 def _bar(editing: Editing, view: _View, notices: Notices, look: Theme) -> None:
@@ -264,18 +313,18 @@ def _merge(editing: Editing, view: _View, notices: Notices) -> None:
         view.clash = "Both changed the same lines, or lines side by side: choose one of the two."
         return
     view.clash = ""
-    _replace(view.editor, found)
+    _replace(view, found)
     save(editing, notices)
 
 
 def _reload(editing: Editing, view: _View) -> None:
     text = editing.text.reload()
     view.clash = ""
-    _replace(view.editor, text)
+    _replace(view, text)
     view.saved_at = view.editor.get_undo_index()
 
 
-def _replace(editor: text_edit.TextEditor, text: str) -> None:
+def _replace(view: _View, text: str) -> None:
     """Replace the text as one step that can be undone."""
-    editor.select_all()
-    editor.replace_text_in_current_cursor(text)
+    view.editor.select_all()
+    _insert(view, text)

@@ -295,6 +295,40 @@ def test_a_file_that_others_saved_meanwhile_needs_an_answer(desk: Desk, folder: 
 
 
 @pytest.mark.parametrize(
+    ("text", "column", "typed", "wanted"),
+    [
+        ("a {\n}\n", 4, "\nb;", "a {\n    b;\n}\n"),
+        ("a {\n  b {\n    c;\n  }\n}\n", 4, "\nb;", "a {\n  b;\n  b {\n    c;\n  }\n}\n"),
+        ("a {\n\tb;\t// c\n}\n", 4, "\nd;", "a {\n\td;\n\tb;\t// c\n}\n"),
+        ("a;\n    b;\t// c\n", 3, "\n{\n", "a;\n{\n    \n    b;\t// c\n"),
+        ("a;\n", 3, "\nif (a) {\nb {\nc;\n}\n}\n", "a;\nif (a) {\n    b {\n        c;\n    }\n}\n\n"),
+        ("a; // {\n", 9, "\nb;", "a; // {\nb;\n"),
+        ("a { // b\n", 9, "\nb;", "a { // b\n    b;\n"),
+        ("a {}\n", 4, "\nb;", "a {\n    b;\n}\n"),
+        ("a(   b);\n", 3, "\n", "a(\n    b);\n"),
+        ("a[2];\n", 1, "}", "}a[2];\n"),
+    ],
+)
+def test_new_lines_are_indented_as_the_file_is(
+    desk: Desk, folder: Path, text: str, column: int, typed: str, wanted: str
+) -> None:
+    (folder / "wave.glsl").write_text(text, encoding="utf-8")
+    desk.bench.files.open(folder / "wave.glsl", 1, column, here=True)
+    desk.run_frames(3)
+    editor = code_window._view_of(desk.bench.files.editing[0]).editor
+    assert editor.get_text() == text
+    for letter in typed:
+        if letter == "\n":
+            desk.key(imgui.Key.enter)
+        else:
+            desk.type(letter)
+    assert editor.get_text() == wanted
+    for _ in typed:
+        desk.key(imgui.Key.mod_ctrl, imgui.Key.z)
+    assert editor.get_text() == text
+
+
+@pytest.mark.parametrize(
     ("button", "mine", "open_after"), [("Save and close", True, 0), ("Close", False, 0), ("Stay", False, 1)]
 )
 def test_closing_asks(desk: Desk, folder: Path, button: str, mine: bool, open_after: int) -> None:
