@@ -40,8 +40,10 @@ class Engine:
     not run.
 
     It draws any number of sketches. It belongs to the thread that opened it: a call from another
-    raises ``ContextError``; open an engine in each thread. What ``internal`` has is for the
-    playground's own tools, and changes without notice.
+    raises ``ContextError``; open an engine in each thread. An engine that is dropped without
+    ``release`` destroys its own context, and leaks its objects in the caller's, with a
+    ``ResourceWarning``. What ``internal`` has is for the playground's own tools, and changes
+    without notice.
 
         sketch = playground.load("l_dot_n")
         with playground.headless() as engine:

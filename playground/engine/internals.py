@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import logging
 import threading
+import weakref
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, nullcontext
 from functools import partial
 from hashlib import blake2b
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from playground.engine.cache import Cache
 from playground.engine.cache_keys import KeyMaker, Keys
@@ -38,7 +39,7 @@ from playground.engine.supersampling import drawn_size
 from playground.engine.unfinished import Deadline, Piece
 from playground.engine.window import windowed
 from playground.errors import ContextError, Diagnostic, OpenGLFault
-from playground.gpu.context import ContextInfo, context_info, keep_freed_memory
+from playground.gpu.context import ContextInfo, context_info, keep_freed_memory, make_current, report_leak
 from playground.gpu.timers import Timer
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import shown
@@ -106,6 +107,7 @@ class Internals(Recorded):
         self._timer: Timer | None = None
         self._owns_context = owns_context
         self._default = ctx.detect_framebuffer(0)
+        self._leak: weakref.finalize[..., Internals] | None = None  # reports this engine as dropped
         self._released = False
         self._thread = threading.current_thread()
 
@@ -122,6 +124,8 @@ class Internals(Recorded):
         if self._released:
             return
         self._make_current()
+        if self._leak is not None:
+            self._leak.detach()
         self._released = self._owns_context
         self._log_counts()
         self.record = FrameRecord()
@@ -440,8 +444,10 @@ class Internals(Recorded):
         It stays current, since glcontext's way back leaves none.
         """
         self.refuse_misuse()
-        context: Any = self.ctx
-        context.__enter__()
+        make_current(self.ctx)
+        if not self._owns_context and (self._leak is None or not self._leak.alive):
+            self._leak = weakref.finalize(self, report_leak, self.ctx)
+            self._leak.atexit = False
 
     def refuse_misuse(self) -> None:
         """Raise ``ContextError`` where the engine was released, or belongs to another thread."""

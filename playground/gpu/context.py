@@ -10,6 +10,10 @@ import ctypes.util
 import os
 import re
 import sys
+import threading
+import warnings
+import weakref
+from collections import deque
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass
@@ -30,6 +34,8 @@ _TRIM_THRESHOLD, _MMAP_THRESHOLD = -1, -3  # glibc's M_TRIM_THRESHOLD and M_MMAP
 _MAPPED = 2**23  # [bytes] from which a block goes back to the system as soon as it is freed
 _KEPT = 6 * 2**23  # [bytes] of freed blocks that stay: a frame's triangles are some 30 MiB
 _MESA_VENDOR = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
+_QUEUED = "context_gc"  # moderngl's mode in which dropped objects stay in ``Context.objects``
+_dropped: deque[tuple[threading.Thread, Any]] = deque()  # contexts to destroy, each in its own thread
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,7 +118,7 @@ def _open(device: int | None = None, environment: Mapping[str, str] | None = Non
         except Exception as error:  # moderngl and glcontext raise bare Exception, ValueError, RuntimeError
             cause = str(error)
             continue
-        ctx.gc_mode = "auto"
+        _destroy_when_dropped(ctx)
         return ctx
     there = _OTHER_DEVICES.search(cause)
     if device is not None and there:
@@ -174,17 +180,82 @@ def adopt_context(address_of: Callable[[str], int | None] | None = None) -> mode
 
     options: dict[str, Any] = {} if address_of is None else {"context": _Functions(address_of)}
     ctx = moderngl.create_context(require=330, **options)
-    ctx.gc_mode = "auto"
+    ctx.gc_mode = _QUEUED
     return ctx
 
 
-def abandon(ctx: moderngl.Context) -> None:
-    """Release a lost context.
+def make_current(ctx: moderngl.Context) -> None:
+    """Make a context current, and delete what was dropped since: its objects, and contexts of this thread."""
+    import moderngl
 
-    Objects of it that are collected later are not deleted: by their numbers, that would
-    delete newer objects of another context.
+    _destroy_dropped()
+    context: Any = ctx  # not as a ``with`` block: glcontext's way back leaves no context current
+    context.__enter__()
+    while ctx.objects:  # ``Context.gc`` fails at one that was released before it was dropped
+        dropped = ctx.objects.popleft()
+        if not isinstance(dropped, moderngl.InvalidObject):
+            dropped.release()
+
+
+def _destroy_when_dropped(ctx: moderngl.Context) -> None:
+    """Destroy a context, with its objects, once nothing refers to it.
+
+    An object's number means another object in another context, so whichever context is current when one
+    is collected must not delete it: dropped objects wait for ``make_current``.
     """
-    ctx.gc_mode = None  # type: ignore[assignment]
+    import moderngl
+
+    ctx.gc_mode = _QUEUED
+    with suppress(AttributeError):  # moderngl's own, which would hold the newest for ever
+        moderngl._store.default_context = None  # type: ignore[attr-defined]
+    weakref.finalize(ctx, _drop, threading.current_thread(), ctx.mglo).atexit = False
+
+
+def _drop(thread: threading.Thread, context: Any) -> None:
+    """Destroy a context that was dropped, or leave it to its thread."""
+    _dropped.append((thread, context))
+    if thread is not threading.current_thread() and thread.is_alive():
+        warnings.warn(
+            f"an engine of thread '{thread.name}' was dropped in '{threading.current_thread().name}' without "
+            "release(): its context stays until that thread uses an engine again",
+            ResourceWarning,
+            stacklevel=2,
+        )
+    elif sys.platform.startswith("linux"):  # elsewhere glcontext leaves no context current
+        _destroy_dropped()
+
+
+def _destroy_dropped() -> None:
+    """Destroy the contexts that were dropped, of this thread and of those that have ended."""
+    for _ in range(len(_dropped)):
+        try:
+            thread, context = _dropped.popleft()
+        except IndexError:  # a collection during this one was faster
+            return
+        if thread is threading.current_thread() or not thread.is_alive():
+            context.release()
+        else:
+            _dropped.append((thread, context))
+
+
+def report_leak(ctx: moderngl.Context) -> None:
+    """Warn that an engine was dropped on its user's context, and keep its objects from other contexts."""
+    import moderngl
+
+    if isinstance(ctx.mglo, moderngl.InvalidObject):
+        return
+    if ctx.gc_mode == "auto":  # in whichever context is current
+        ctx.gc_mode = _QUEUED
+    warnings.warn(
+        "an engine on a context of your own was dropped without release(): its textures and programs stay "
+        f"until {'another engine draws there, or until ' if ctx.gc_mode else ''}ctx.release()",
+        ResourceWarning,
+        stacklevel=2,
+    )
+
+
+def abandon(ctx: moderngl.Context) -> None:
+    """Release a lost context."""
     with suppress(Exception):  # it may no longer respond
         ctx.release()
 

@@ -7,6 +7,9 @@ import gc
 import os
 import subprocess
 import sys
+import threading
+import warnings
+import weakref
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,8 +17,11 @@ from pathlib import Path
 import moderngl
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
+from playground.api import headless
 from playground.engine.engine import Engine
+from playground.gpu.context import open_context
 from playground.images.files import write_png
 
 from ..sketch_texts import passes
@@ -185,3 +191,115 @@ def test_each_engine_draws_in_its_own_context(sketch):
         text=True,
     )
     assert done.returncode == 0, done.stderr
+
+
+class Textures:
+    """Textures and buffers of a context, whose names other contexts use too; their bytes must stay."""
+
+    def __init__(self, ctx: moderngl.Context) -> None:
+        ctx.__enter__()
+        self.ctx = ctx
+        self.texels = [bytes([i, 1, 2, 3]) for i in range(200)]
+        self.textures = [ctx.texture((1, 1), 4, data=texel) for texel in self.texels]
+        self.buffers = [ctx.buffer(texel) for texel in self.texels]
+
+    def assert_intact(self) -> None:
+        gc.collect()
+        self.ctx.__enter__()
+        assert [texture.read() for texture in self.textures] == self.texels
+        assert [buffer.read() for buffer in self.buffers] == self.texels
+        assert self.ctx.error == "GL_NO_ERROR"
+
+
+@pytest.fixture
+def other() -> Iterator[Textures]:
+    """Give textures and buffers in a second context, which is current."""
+    ctx = open_context()
+    yield Textures(ctx)
+    ctx.release()
+
+
+def dropped(engine: Engine) -> None:
+    """Drop an engine that is part of a cycle, as one that a traceback holds is."""
+    engine.itself = engine  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("driver", ["fragment", "compute"])
+def test_a_dropped_engine_frees_nothing_of_others(sketch, other, driver):
+    for i in range(3):
+        engine = headless(driver=driver)
+        engine.render(sketch.with_values({"height.bumps": i}), size=(64, 36))
+        context = weakref.ref(engine.ctx)
+        other.assert_intact()  # makes the other context current
+        dropped(engine)
+        del engine
+        other.assert_intact()
+        assert context() is None, "nothing holds it"
+
+
+def test_a_texture_outlives_its_dropped_engine(sketch, other):
+    engine = headless()
+    texture = engine.texture(sketch, "height", size=(64, 36))
+    values, context = texture.read(), weakref.ref(engine.ctx)
+    dropped(engine)
+    del engine
+    other.assert_intact()
+    texture.ctx.__enter__()
+    assert texture.read() == values
+    del texture
+    other.assert_intact()
+    assert context() is None
+
+
+def test_a_texture_of_a_released_engine_frees_nothing(sketch, other):
+    with headless() as engine:
+        texture = engine.texture(sketch, "height", size=(64, 36))
+    other.assert_intact()
+    del engine, texture
+    other.assert_intact()
+
+
+@pytest.mark.parametrize("mode", ["auto", "context_gc", None])
+def test_an_engine_dropped_on_a_users_context_is_reported(sketch, other, mode):
+    ctx = open_context()
+    ctx.gc_mode = mode
+    for _ in range(2):
+        engine = Engine(ctx)
+        first = engine.render(sketch, size=(64, 36)).array
+        other.assert_intact()
+        dropped(engine)
+        del engine
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            other.assert_intact()
+        assert [(w.category, "release()" in str(w.message)) for w in caught] == [(ResourceWarning, True)]
+    with Engine(ctx) as engine:
+        np.testing.assert_array_equal(engine.render(sketch, size=(64, 36)).array, first)
+    ctx.release()
+
+
+def test_an_engine_dropped_in_another_thread_waits(sketch, other):
+    opened, dropped_elsewhere = threading.Event(), threading.Event()
+    engines: list[Engine] = []
+    pictures: list[NDArray[np.uint8]] = []
+
+    def work() -> None:
+        engines.append(headless())
+        pictures.append(engines[0].render(sketch, size=(64, 36)).array)
+        opened.set()
+        assert dropped_elsewhere.wait(30)
+        with headless() as engine:  # destroys what was dropped
+            pictures.append(engine.render(sketch, size=(64, 36)).array)
+
+    thread = threading.Thread(target=work, name="worker")
+    thread.start()
+    assert opened.wait(30)
+    dropped(engines.pop())
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        other.assert_intact()
+    assert ["thread 'worker'" in str(w.message) for w in caught] == [True]
+    dropped_elsewhere.set()
+    thread.join(30)
+    np.testing.assert_array_equal(*pictures)
+    other.assert_intact()
