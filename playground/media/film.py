@@ -22,10 +22,11 @@ from numpy.typing import NDArray
 from playground.errors import DataError
 from playground.images.bounds import refuse_bomb, refuse_too_many
 from playground.images.content_hash import content_key
-from playground.media.pyav import VIDEO_FILES, decoding, open_media
+from playground.media.pyav import VIDEO_FILES, decodable, decoding, open_media
 
 if TYPE_CHECKING:
     import av.container
+    import av.video
 
 _WHAT = "a video file"
 _MOST_FRAMES = 2**22  # 19 hours at 60 frames a second
@@ -55,13 +56,13 @@ class Film:
     def __init__(self, path: Path) -> None:
         self.path = path
         with self._open() as container:
-            stream = container.streams.video[0]
+            stream = decodable(container.streams.video, "picture", path)
             width, height = stream.codec_context.width, stream.codec_context.height
             if width < 1 or height < 1:
                 raise DataError("its frames have no size", file=path)
             self._judge(width, height)
             with decoding(path, "the list of its frames"):
-                self._index = _indexed(container, path)
+                self._index = _indexed(container, stream, path)
             with decoding(path, "its first frame"):
                 container.seek(0)
                 first = next(container.decode(stream), None)
@@ -154,7 +155,7 @@ class Film:
     def _numbered(self, container: av.container.InputContainer, key: int) -> Iterator[tuple[int, Any]]:
         """Yield frames with their numbers, from a key frame on."""
         stamps = self._index.stamps
-        stream = container.streams.video[0]
+        stream = decodable(container.streams.video, "picture", self.path)
         stream.thread_type = "AUTO"
         if not stamps:
             yield from enumerate(container.decode(stream))
@@ -176,8 +177,10 @@ class Film:
     def _open(self) -> av.container.InputContainer:
         container = open_media(self.path, _WHAT, VIDEO_FILES)
         if not container.streams.video:
+            has_sound = bool(container.streams.audio)
             container.close()
-            raise DataError("it has sound and no picture; foreign/sound reads sound", file=self.path)
+            hint = "it has sound and no picture; foreign/sound reads sound"
+            raise DataError(hint if has_sound else "it has no picture", file=self.path)
         return container
 
     def _judge(self, width: int, height: int) -> None:
@@ -185,9 +188,8 @@ class Film:
         refuse_bomb(self.path, width * height * 4, self.path.stat().st_size)
 
 
-def _indexed(container: av.container.InputContainer, path: Path) -> _Index:
+def _indexed(container: av.container.InputContainer, stream: av.video.VideoStream, path: Path) -> _Index:
     """List a film's frames without decoding them."""
-    stream = container.streams.video[0]
     unit = float(stream.time_base or 1)
     shown: list[tuple[int, bool]] = []
     ordered = not set(container.format.name.split(",")) & set(_UNORDERED)

@@ -6,17 +6,21 @@ the file itself is read: a playlist under the name of a film would lead to other
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from playground.errors import ContextError, DataError
 from playground.extras import needs
 from playground.images.files import checked_file, reason
 
 if TYPE_CHECKING:
+    import av.audio
     import av.container
+    import av.video
+
+    Stream = TypeVar("Stream", av.audio.AudioStream, av.video.VideoStream)
 
 VIDEO_FILES = (".mp4", ".mov", ".webm", ".mkv", ".gif", ".avi")
 SOUND_FILES = (".wav", ".mp3", ".ogg", ".flac", ".m4a")
@@ -45,11 +49,24 @@ def open_media(path: Path, what: str, endings: tuple[str, ...]) -> av.container.
     checked_file(path)
     listed = ", ".join(ending[1:] for ending in endings)
     try:
-        found: av.container.InputContainer = module.open(str(path), "r", options=dict(_OPTIONS))
+        found: av.container.InputContainer = module.open(
+            str(path), "r", options=dict(_OPTIONS), metadata_errors="replace"
+        )
     except (module.FFmpegError, OSError, ValueError) as error:
         message = f"not {what} that can be read ({_why(error)}); expected {listed}"
         raise DataError(message, file=path) from None
     return found
+
+
+def decodable(streams: Sequence[Stream], what: str, path: Path) -> Stream:
+    """Return the first stream that FFmpeg has a decoder for; ``what`` is "sound" or "picture".
+
+    Raises ``DataError`` where there is none: PyAV gives such a stream no codec context.
+    """
+    for stream in streams:
+        if stream.codec_context is not None:
+            return stream
+    raise DataError(f"its {what} is in a codec that this FFmpeg cannot decode", file=path)
 
 
 @contextmanager

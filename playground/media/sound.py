@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from playground.errors import DataError
 from playground.images.bounds import ALWAYS_FINE
 from playground.images.content_hash import content_key
-from playground.media.pyav import SOUND_FILES, decoding, open_media, pyav
+from playground.media.pyav import SOUND_FILES, decodable, decoding, open_media, pyav
 
 if TYPE_CHECKING:
     import av.container
@@ -36,7 +36,7 @@ class Sound:
     def __init__(self, path: Path) -> None:
         self.path = path
         self._container = self._open()
-        stream = self._container.streams.audio[0]
+        self._stream = stream = decodable(self._container.streams.audio, "sound", path)
         if not stream.codec_context.channels or not stream.codec_context.sample_rate:
             raise DataError("its sound has no channels: the file is damaged or cut short", file=path)
         self.channels = min(stream.codec_context.channels, 2)
@@ -84,7 +84,7 @@ class Sound:
         layout = "mono" if self.channels == 1 else "stereo"
         resampler: Any = pyav(_WHAT).AudioResampler(format="fltp", layout=layout, rate=RATE)
         with decoding(self.path, f"its sound after {self._count / RATE:.3g} s"):
-            for frame in self._container.decode(self._container.streams.audio[0]):
+            for frame in self._container.decode(self._stream):
                 yield from (part.to_ndarray() for part in resampler.resample(frame))
             yield from (part.to_ndarray() for part in resampler.resample(None))
 

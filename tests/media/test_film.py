@@ -176,6 +176,22 @@ def test_what_cannot_be_shown_is_a_sentence(tmp_path, monkeypatch):
         Film(tmp_path / "a.mp4")
 
 
+@pytest.mark.parametrize(
+    ("name", "known", "message"),
+    [
+        ("a.mp4", b"avc1", "its picture is in a codec that this FFmpeg cannot decode"),
+        ("a.webm", b"V_VP9", "it has no picture"),  # FFmpeg leaves the stream out
+    ],
+)
+def test_a_film_of_an_unknown_codec_is_a_sentence(tmp_path, name, known, message):
+    path = own_film(tmp_path / name, count=2)
+    data = path.read_bytes()
+    assert known in data
+    path.write_bytes(data.replace(known, b"zzzzz"[: len(known)]))
+    with pytest.raises(DataError, match=message):
+        Film(path)
+
+
 def test_a_film_that_would_become_monstrous_is_refused(tmp_path, monkeypatch):
     path = own_film(tmp_path / "a.mp4", count=2)
     monkeypatch.setattr(bounds, "ALWAYS_FINE", 1000)

@@ -159,6 +159,26 @@ def test_what_cannot_be_heard_is_a_sentence(tmp_path, monkeypatch):
         Sound(path)
 
 
+def test_a_sound_of_an_unknown_codec_is_a_sentence(tmp_path):
+    path = write(tmp_path / "a.wav", tone(10)[None])
+    data = path.read_bytes()
+    assert b"fmt \x10\0\0\0\x01\0" in data
+    path.write_bytes(data.replace(b"fmt \x10\0\0\0\x01\0", b"fmt \x10\0\0\0\x77\x77"))
+    with pytest.raises(DataError, match="its sound is in a codec that this FFmpeg cannot decode"):
+        Sound(path)
+
+
+def test_a_title_in_another_encoding_does_not_matter(tmp_path):
+    path = write(tmp_path / "a.wav", tone(10)[None])
+    heard = Sound(path).heard(100, 100, loop=False)
+    title = b"Mont\xe9e "  # Latin-1
+    info = b"INFOINAM" + len(title).to_bytes(4, "little") + title
+    data = bytearray(path.read_bytes() + b"LIST" + len(info).to_bytes(4, "little") + info)
+    data[4:8] = (len(data) - 8).to_bytes(4, "little")
+    path.write_bytes(data)
+    np.testing.assert_array_equal(Sound(path).heard(100, 100, loop=False), heard)
+
+
 def test_a_file_that_changes_is_heard_anew(tmp_path):
     path = write(tmp_path / "a.wav", tone(10)[None])
     first = sound_of(path)
