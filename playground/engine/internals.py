@@ -39,7 +39,14 @@ from playground.engine.supersampling import drawn_size
 from playground.engine.unfinished import Deadline, Piece
 from playground.engine.window import windowed
 from playground.errors import ContextError, Diagnostic, OpenGLFault
-from playground.gpu.context import ContextInfo, context_info, keep_freed_memory, make_current, report_leak
+from playground.gpu.context import (
+    ContextInfo,
+    context_info,
+    keep_freed_memory,
+    make_current,
+    release_context,
+    report_leak,
+)
 from playground.gpu.timers import Timer
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import shown
@@ -134,7 +141,7 @@ class Internals(Recorded):
         self.runner.release()
         self._timer = None
         if self._owns_context:
-            self.ctx.release()
+            release_context(self.ctx)
         elif (bound := self.ctx.fbo) is None or not _is_alive(bound):
             self._default.use()  # later calls of others bind again what is bound
 

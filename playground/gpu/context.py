@@ -35,6 +35,9 @@ _MAPPED = 2**23  # [bytes] from which a block goes back to the system as soon as
 _KEPT = 6 * 2**23  # [bytes] of freed blocks that stay: a frame's triangles are some 30 MiB
 _MESA_VENDOR = Path("/usr/share/glvnd/egl_vendor.d/50_mesa.json")
 _QUEUED = "context_gc"  # moderngl's mode in which dropped objects stay in ``Context.objects``
+_finalizers: weakref.WeakKeyDictionary[moderngl.Context, weakref.finalize[..., Any]] = (
+    weakref.WeakKeyDictionary()
+)
 _dropped: deque[tuple[threading.Thread, Any]] = deque()  # contexts to destroy, each in its own thread
 
 
@@ -208,7 +211,15 @@ def _destroy_when_dropped(ctx: moderngl.Context) -> None:
     ctx.gc_mode = _QUEUED
     with suppress(AttributeError):  # moderngl's own, which would hold the newest for ever
         moderngl._store.default_context = None  # type: ignore[attr-defined]
-    weakref.finalize(ctx, _drop, threading.current_thread(), ctx.mglo).atexit = False
+    _finalizers[ctx] = weakref.finalize(ctx, _drop, threading.current_thread(), ctx.mglo)
+    _finalizers[ctx].atexit = False
+
+
+def release_context(ctx: moderngl.Context) -> None:
+    """Destroy a context; nothing is left to do when it is dropped."""
+    ctx.release()
+    if finalizer := _finalizers.pop(ctx, None):
+        finalizer.detach()
 
 
 def _drop(thread: threading.Thread, context: Any) -> None:

@@ -290,6 +290,7 @@ def test_an_engine_dropped_in_another_thread_waits(sketch, other):
         assert dropped_elsewhere.wait(30)
         with headless() as engine:  # destroys what was dropped
             pictures.append(engine.render(sketch, size=(64, 36)).array)
+        engines.append(engine)
 
     thread = threading.Thread(target=work, name="worker")
     thread.start()
@@ -302,4 +303,5 @@ def test_an_engine_dropped_in_another_thread_waits(sketch, other):
     dropped_elsewhere.set()
     thread.join(30)
     np.testing.assert_array_equal(*pictures)
+    engines.clear()  # one that was released is nothing to report
     other.assert_intact()
