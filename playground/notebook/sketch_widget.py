@@ -25,10 +25,14 @@ from playground.notebook.sketch_page import browser_page, kernel_outline
 from playground.notebook.widget import BROWSER, KERNEL, LiveWidget
 from playground.sketch.assign import TERRAIN_KEYS, check_value
 from playground.sketch.model import Camera, Sketch, Value
+from playground.sketch.toml_camera import camera_of
+from playground.sketch.toml_keys import CAMERA
+from playground.sketch.values import spell
 
 AUTO = "auto"
 DRAWERS = (AUTO, BROWSER, KERNEL)
 _SIDE = (16, 4096)  # pixels a side of a picture, least and most
+_MAX_SECONDS = 1e9
 _JPEG = 85  # quality while something moves; at rest it is a PNG
 _FEW = 8  # sliders of a sketch that does not name its main parameters
 
@@ -47,9 +51,45 @@ class _ByPath(traitlets.TraitType[Any, Any]):
     def validate(self, obj: SketchesWidget, value: object) -> Values:
         """Return all values of that side, with those given among them; raise ``ParameterError``."""
         assert self.name
-        if not isinstance(value, Mapping):
+        if not isinstance(value, Mapping) or not all(isinstance(path, str) for path in value):
             raise ParameterError(f"{self.name}: expected values by path, as {{'light.sun': (250, 12)}}")
         return obj.taken(self.name, value)
+
+
+class _View(traitlets.TraitType[Any, Any]):
+    """A camera, or a mapping of its values; None is the sketch's own."""
+
+    def __init__(self) -> None:
+        super().__init__(None, allow_none=True)
+        self.tag(sync=True, to_json=lambda camera, _: camera and asdict(camera))
+
+    def validate(self, obj: SketchesWidget, value: object) -> Camera:
+        """Return the camera; raise ``ParameterError`` for one that cannot be."""
+        return _camera(value)
+
+
+class _Seconds(traitlets.TraitType[Any, Any]):
+    """A finite time, 0 or later."""
+
+    def __init__(self) -> None:
+        super().__init__(0.0)
+        self.tag(sync=True)
+
+    def validate(self, obj: SketchesWidget, value: object) -> float:
+        """Return the time as a number; raise ``ParameterError`` for one that cannot be."""
+        return _seconds(value)
+
+
+class _Size(traitlets.TraitType[Any, Any]):
+    """Width and height of a picture in pixels."""
+
+    def __init__(self) -> None:
+        super().__init__((640, 360))
+        self.tag(sync=True, to_json=lambda size, _: list(size))
+
+    def validate(self, obj: SketchesWidget, value: object) -> tuple[int, int]:
+        """Return width and height; raise ``DataError`` for a size that cannot be."""
+        return _pixels(value)
 
 
 class SketchesWidget(LiveWidget):
@@ -68,13 +108,9 @@ class SketchesWidget(LiveWidget):
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)  # of the pictures, where there are several
     rows = traitlets.List(traitlets.Unicode()).tag(sync=True)  # paths of the sliders
     swipe = traitlets.Bool(False).tag(sync=True)
-    size = traitlets.List(traitlets.Int()).tag(sync=True)  # [pixels] of a picture at rest
-    camera = traitlets.Instance(Camera, allow_none=True).tag(
-        sync=True,
-        to_json=lambda camera, _: camera and asdict(camera),
-        from_json=lambda given, _: given and _camera(given),
-    )
-    time = traitlets.Float(0.0, min=0.0).tag(sync=True)
+    size = _Size()  # [pixels] of a picture at rest
+    camera = _View()
+    time = _Seconds()
     playing = traitlets.Bool(False).tag(sync=True)
 
     def __init__(
@@ -89,18 +125,24 @@ class SketchesWidget(LiveWidget):
     ) -> None:
         if draws not in DRAWERS:
             raise DataError(f"draws = '{draws}': expected one of {', '.join(DRAWERS)}")
-        low, high = _SIDE
-        if len(size) != 2 or not all(isinstance(side, int) and low <= side <= high for side in size):
-            raise DataError(f"size = {size}: expected two whole numbers of pixels from {low} to {high}")
+        size = _pixels(size)
         self._sliders = sliders
         made = self._made(sketches, size, draws)
         self._take(sketches)
-        super().__init__(
-            sides=list(self.SIDES), size=list(size), draws=draws, language=language, **traits, **made
-        )
+        super().__init__(sides=list(self.SIDES), size=size, draws=draws, language=language, **traits, **made)
         self.observe(self._remade, names=list(self.SIDES))
         self.on_msg(self._asked)
         _open.add(self)
+
+    def set_state(self, sync_data: object) -> None:
+        """Take the state of a browser; raise ``ParameterError`` for what is none."""
+        if not isinstance(sync_data, Mapping):
+            raise ParameterError(f"the state of a widget is a mapping, not {type(sync_data).__name__}")
+        for name in sync_data:
+            if name not in self.keys:
+                public = [key for key in self.keys if not key.startswith("_")]
+                raise ParameterError(f"a widget has no '{name}'{nearest(str(name), public)}")
+        super().set_state(sync_data)
 
     # ── values ─────────────────────────────────────────────────────────────────
 
@@ -145,7 +187,7 @@ class SketchesWidget(LiveWidget):
         """Show other sketches; what is wrong with one is said, and the last good picture stays."""
         try:
             found = sketches()
-            made = self._made(found, (self.size[0], self.size[1]), self.draws)
+            made = self._made(found, self.size, self.draws)
         except PlaygroundError as error:
             self.mistake = str(error)
             return
@@ -222,7 +264,8 @@ class SketchesWidget(LiveWidget):
         values = {path: tuple(v) if isinstance(v, list) else v for path, v in asked["values"].items()}
         sketch = self._base[asked["side"]].with_values(values).with_camera(_camera(asked["camera"]))
         width, height = (min(max(int(side), 1), _SIDE[1]) for side in asked["size"])
-        frame = on_engine(lambda engine: engine.render(sketch, size=(width, height), time=asked["time"]))
+        time = _seconds(asked["time"])
+        frame = on_engine(lambda engine: engine.render(sketch, size=(width, height), time=time))
         return _sent(frame.array, moving=asked["moving"])
 
     def close(self) -> None:
@@ -285,9 +328,30 @@ def _all_values(sketch: Sketch) -> dict[str, Value]:
     return {path: value for path, (_, value) in parameters(sketch).items()}
 
 
-def _camera(given: Mapping[str, Any]) -> Camera:
-    target = given["target"]
-    return Camera(**{**given, "target": tuple(target) if target else None})
+def _camera(given: object) -> Camera:
+    values = asdict(given) if isinstance(given, Camera) else given
+    if not isinstance(values, Mapping):
+        raise ParameterError(f"camera = {spell(given)}: expected a Camera or its values by name")
+    for key in values:
+        if key not in CAMERA:
+            raise ParameterError(f"camera: no '{key}'{nearest(str(key), CAMERA)}")
+    if isinstance(target := values.get("target"), tuple):
+        values = {**values, "target": list(target)}
+    return camera_of(values, Camera(), lambda _, message: ParameterError(f"camera: {message}"))
+
+
+def _pixels(given: object) -> tuple[int, int]:
+    low, high = _SIDE
+    sides = given if isinstance(given, list | tuple) else ()
+    if len(sides) != 2 or not all(type(side) is int and low <= side <= high for side in sides):
+        raise DataError(f"size = {spell(given)}: expected two whole numbers of pixels from {low} to {high}")
+    return sides[0], sides[1]
+
+
+def _seconds(given: object) -> float:
+    if type(given) not in (int, float) or not 0 <= given <= _MAX_SECONDS:  # type: ignore[operator]
+        raise ParameterError(f"time = {spell(given)}: expected seconds from 0 to {_MAX_SECONDS:g}")
+    return float(given)  # type: ignore[arg-type]
 
 
 def _sent(picture: NDArray[np.uint8], *, moving: bool) -> bytes:

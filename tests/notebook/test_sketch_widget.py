@@ -102,6 +102,40 @@ def test_the_camera_of_the_browser_is_the_sketch_s(widget):
     assert widget.sketch.camera == Camera()
 
 
+INF, NAN = float("inf"), float("nan")
+
+
+@pytest.mark.parametrize(
+    ("state", "sentence"),
+    [
+        ({"values": {"height.rise": INF}}, "height.rise = inf: expected a finite number"),
+        ({"values": {"height.rise": 10**400}}, "height.rise = 1000.*: expected"),
+        ({"values": {1: 2}}, "values: expected values by path"),
+        ({"camera": {**VIEW, "distance": INF}}, "camera: distance = inf: expected 0 to"),
+        ({"camera": {"azimuth": NAN}}, "camera: azimuth = nan: expected -720 to 720"),
+        ({"camera": {**VIEW, "field_of_view": 0}}, "camera: field_of_view = 0: expected 5 to 120"),
+        ({"camera": {**VIEW, "target": [INF, 0, 0]}}, r"camera: target = \[inf, 0, 0\]: expected \[east"),
+        ({"camera": {**VIEW, "target": 5}}, r"camera: target = 5: expected \[east, north, up\]"),
+        ({"camera": {**VIEW, "distanse": 1.0}}, "camera: no 'distanse'; did you mean 'distance'"),
+        ({"camera": [1.0, 2.0]}, "camera = .*: expected a Camera or its values by name"),
+        ({"camera": {**VIEW, "azimuth": "north"}}, "camera: azimuth = 'north': expected"),
+        ({"time": INF}, "time = inf: expected seconds from 0"),
+        ({"time": NAN}, "time = nan: expected seconds from 0"),
+        ({"time": 10**400}, "time = 1000.*: expected seconds from 0"),
+        ({"size": [10**9, 9]}, "size = .*: expected two whole numbers of pixels from 16 to 4096"),
+        ({"tine": 1.0}, "a widget has no 'tine'; did you mean 'time'"),
+        ([1], "the state of a widget is a mapping, not list"),
+    ],
+)
+def test_a_state_that_cannot_be_is_one_sentence(widget, state, sentence):
+    before = dict(widget.values), widget.camera, widget.time
+    with pytest.raises(playground.PlaygroundError, match=sentence):
+        widget.set_state(state)
+    assert (dict(widget.values), widget.camera, widget.time) == before
+    widget.set_state({"camera": {"azimuth": 10.0}, "time": 1.5})
+    assert widget.camera == Camera(azimuth=10.0) and widget.time == 1.5
+
+
 def test_a_picture_that_the_kernel_draws_is_the_engine_s(widget, engine, answers):
     ((answer, (picture,)),) = answers(widget, values={"height.rise": 1.0, "height.far": [0.0, 0.0]})
     assert answer == {"drawn": "a-1", "error": ""}
@@ -114,8 +148,9 @@ def test_a_picture_that_the_kernel_draws_is_the_engine_s(widget, engine, answers
 
 def test_what_cannot_be_drawn_is_answered_as_well(widget, answers, monkeypatch):
     """Else the browser would wait for ever."""
-    ((answer, buffers),) = answers(widget, values={"height.rise": "x"})
-    assert "height.rise" in answer["error"] and buffers == []
+    for wrong in ({"values": {"height.rise": "x"}}, {"time": NAN}, {"camera": {**VIEW, "distance": INF}}):
+        ((answer, buffers),) = answers(widget, **wrong)
+        assert re.search("height.rise|time = nan|distance = inf", answer["error"]) and buffers == []
     monkeypatch.setattr(sketch_widget, "on_engine", lambda _: 1 / 0)
     with pytest.raises(ZeroDivisionError):
         answers(widget)
