@@ -1,6 +1,6 @@
 // water/fill.comp -- depressions filled, tile by tile, until nothing changes.
 //
-//   gives    level, as water/fill.toml with steps enough to find every shortest way
+//   gives    level, as water/fill.toml
 //   needs    water/fill/tile.glsl, water/least_fall.glsl, water/texels.glsl
 //   units    heights without unit
 //   source   Planchon and Darboux 2002, "A fast, simple and versatile algorithm to fill the
@@ -8,8 +8,7 @@
 //            Zhao 2005, "A fast sweeping method for eikonal equations"; the lists made here
 //   tested   tests/glsl/test_fill.py, against a priority flood and the flood's own steps, bit by
 //            bit; tests/glsl/test_fast_variants.py, against the passes
-//   agrees   never above the passes but for their rounding, and below them by a part of the fall:
-//            they stop before they have found every shortest way of a spill
+//   agrees   but for rounding: the passes begin with ways that are rounded once a doubling
 //
 // The flood only falls, and from any level above its end no step takes it below that: so the order
 // in which texels fall makes no difference to the bits. Here a tile falls by a sweep each to the
@@ -17,27 +16,23 @@
 // the next step. So a step costs no more than what changes, and about four visits to each tile are
 // enough. Where a neighbour's texels change meanwhile, either of their values will do: it calls.
 //
-// After as many steps as the sides have tiles all is still, but in mazes. Those are finished by
-// one thread with one list, in eight steps, so that none is too long for a graphics card; a maze
-// of more than some 200,000 visits stays too high, but no higher than water that goes straight
-// over its walls: that way is found before. The last step writes the levels.
+// A level is final one step after the level that it follows from, at most; a way out has no more
+// texels than the terrain. So that many steps are always enough, whatever the valleys' shape, and
+// the run ends with the first step that calls no tile. The last step writes the levels.
 #include "water/fill/tile.glsl"
 #include "water/least_fall.glsl"
 #include "water/texels.glsl"
 #pragma compute(where = "columns = (size.x + 7) // 8; rows = (size.y + 7) // 8; \
-                         tiles = columns * rows; finish = columns + rows + 1; \
-                         fours = (2 * columns + 2) * (8 * rows + 2); \
-                last = finish + 8", \
-                groups = "1 if (iteration - finish) // 8 == 0 else (tiles + 1023) // 1024, 1", \
-                local = "64, 1", repeat = "last + 1", \
+                         tiles = columns * rows; \
+                         fours = (2 * columns + 2) * (8 * rows + 2)", \
+                groups = "(tiles + 1023) // 1024, 1", \
+                local = "64, 1", repeat = "size.x * size.y + 2", active = "called", \
                 buffers = "ground:vec4:fours; water:vec4:fours; wet:uint:2 * tiles; \
-                           list:uint:2 * tiles; called:uint:finish + 1; \
-                           taken:uint:1", \
-                overwrites = "level, ground, water, list", agrees = "1e-3")
+                           list:uint:2 * tiles; called:uint:3", \
+                overwrites = "level, ground, water, list", agrees = "1e-5")
 
 uniform sampler2D height;  //! input
 
-const int MOST_VISITS = 1 << 15;  // of one thread in one step
 const float NO_WAY = 1e30;  // the level where no way out is known, and outside
 
 ivec2 tiles() { return (size + TILE - 1) / TILE; }
@@ -62,8 +57,7 @@ float begun(ivec2 texel, float bed) {
 void call(int number, int step_of_it) {
     int half_of = (step_of_it & 1) * tiles().x * tiles().y;
     if (atomicExchange(wet[half_of + number], 1u) != 0u) return;
-    uint place = atomicAdd(called[step_of_it], 1u) % uint(tiles().x * tiles().y);
-    list[half_of + int(place)] = uint(number);
+    list[half_of + int(atomicAdd(called[step_of_it % 3], 1u))] = uint(number);
 }
 
 void begin_four(ivec2 corner, int place) {
@@ -142,29 +136,26 @@ void main() {
     int own = int(gl_GlobalInvocationID.x);
     int threads = 64 * int(gl_NumWorkGroups.x);
     int count = tiles().x * tiles().y;
-    int finish = tiles().x + tiles().y + 1;
-    int last = iterations - 1;
-    for (int k = own; k < (iteration == 0 ? count : 0); k += threads) begin(tile_of(k), k);
-    for (int k = own; k < (iteration == last ? count : 0); k += threads) write_levels(tile_of(k));
-    bool alone = iteration >= finish;
-    bool falls = iteration > 0 && iteration < last && (own == 0 || !alone);
-    int now = min(iteration, finish);
-    int later = alone ? now : now + 1;
-    int here = alone ? int(taken[0]) : own;
-    int most = here + (alone ? MOST_VISITS : count);
-    int end = falls ? min(int(called[now]), most) : 0;
-    while (here < end) {
-        int number = int(list[(now & 1) * count + here % count]);
-        wet[(now & 1) * count + number] = 0u;
+    if (iteration == 0) {
+        for (int k = own; k < count; k += threads) begin(tile_of(k), k);
+        return;
+    }
+    if (iteration == iterations - 1) {
+        for (int k = own; k < count; k += threads) write_levels(tile_of(k));
+        return;
+    }
+    int half_of = (iteration & 1) * count;
+    int end = int(called[iteration % 3]);
+    if (own == 0) called[(iteration + 2) % 3] = 0u;  // read in the step before
+    for (int here = own; here < end; here += threads) {
+        int number = int(list[half_of + here]);
+        wet[half_of + number] = 0u;
         ivec2 tile = tile_of(number);
         uint seen = fall(tile);
         for (int k = 0; k < 9; k++) {
             ivec2 other = tile + ivec2(k % 3, k / 3) - 1;
             if ((seen >> uint(k) & 1u) == 0u || !inside(other, tiles())) continue;
-            call(other.y * tiles().x + other.x, later);
+            call(other.y * tiles().x + other.x, iteration + 1);
         }
-        here += alone ? 1 : threads;
-        if (alone) end = min(int(called[now]), most);
     }
-    if (alone && falls) taken[0] = uint(here);
 }

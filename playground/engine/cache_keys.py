@@ -35,7 +35,7 @@ from playground.terrain.meshes import mesh_parameters
 
 _MAX_TEXTS = 512
 _HEADER = ("kind", "outputs", "registry", "blend", "depth", "over", "samples", "local", "buffers",
-           "overwrites", "aligned", "stages", "in_place")  # fmt: skip
+           "overwrites", "aligned", "stages", "in_place", "active")  # fmt: skip
 """The fields of a kernel's header that its textures depend on, besides its counts and its inputs."""
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*")
 _FIXED = frozenset(GIVEN) - {"time", "clip_from_world", "world_from_clip", "eye"}

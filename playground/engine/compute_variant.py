@@ -13,6 +13,7 @@ from __future__ import annotations
 import ctypes
 from collections.abc import Iterator
 from contextlib import contextmanager
+from math import isqrt
 from typing import TYPE_CHECKING, NamedTuple
 
 from playground.engine.buffer_texels import BufferTexels
@@ -83,13 +84,19 @@ class ComputeVariants:
                 self.texels.bind(read, named)
             self.kernels.images(result, read=True)
             program: Program | None = None
-            for iteration in range(repeat):
+            active = sum(self._size(b, names) for b in kernel.buffers if b.name == kernel.active)
+            iteration, check = 0, 2
+            while iteration < repeat:
                 groups = expressions.evaluate_pair(kernel.groups, {**names, "iteration": iteration})
-                if kernel.stages and 0 in groups:  # of a step that this size does not need
-                    continue
-                program = self._program(job, iteration, program, reads=bool(read))
-                job.count(program, iteration, kernel.repeat, repeat)
-                program.run(max(groups[0], 1), max(groups[1], 1))
+                if not kernel.stages or 0 not in groups:  # a 0: a step that this size does not need
+                    program = self._program(job, iteration, program, reads=bool(read))
+                    job.count(program, iteration, kernel.repeat, repeat)
+                    program.run(max(groups[0], 1), max(groups[1], 1))
+                iteration += 1
+                if kernel.active and iteration == check:
+                    check += 1 + isqrt(iteration)  # as in settling.py: about √n steps too many
+                    if not any(named[kernel.active].read(active)):
+                        iteration = max(iteration, repeat - 1)
             if program is None and repeat > 0:
                 raise kernel.error(f"pass '{step.path}': groups of 0 leave out every step at this size")
             for output in kernel.outputs:

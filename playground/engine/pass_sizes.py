@@ -37,6 +37,7 @@ from playground.sketch.named_numbers import (
 )
 
 MAX_REPEAT = 1_000_000
+_MAX_BOUND = 2**31 - 1  # of a repeat that ends by itself: what GLSL counts
 _MOST_COUNTED = 1024  # iterations of a loop of which each may have its own sizes: each is planned
 Size = tuple[int, int]
 Names = Mapping[str, Number] | Callable[[str], Number]
@@ -268,8 +269,10 @@ def counted(text: str, name: str, owner: PassSpec | Kernel, names: Names) -> int
         count = expressions.evaluate(text, names)
     except ExpressionError as error:
         raise owner.error(f"pass '{name}': repeat {error}") from None
-    if not 0 <= count <= MAX_REPEAT:
-        raise owner.error(f"pass '{name}': repeat '{text}' gives {count}; 0 to {MAX_REPEAT} were expected")
+    ends = isinstance(owner, Kernel) and (owner.until or owner.active)
+    limit = _MAX_BOUND if ends else MAX_REPEAT
+    if not 0 <= count <= limit:
+        raise owner.error(f"pass '{name}': repeat '{text}' gives {count}; 0 to {limit} were expected")
     return count
 
 

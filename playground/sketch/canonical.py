@@ -60,6 +60,7 @@ def _of_kernel(kernel: Kernel) -> list[Any]:
     more = [kernel.own_accepts] if kernel.own_accepts else []
     more += [kernel.instances] if kernel.instances else []
     more += [f"in place: {kernel.in_place}"] if kernel.in_place else []
+    more += [f"active: {kernel.active}"] if kernel.active else []
     more += [f"over: {kernel.over}"] if kernel.over else []
     return [header, kernel.agrees, compiled_text(kernel.source.code), *more]
 

@@ -43,7 +43,7 @@ PRAGMAS: dict[str, tuple[str, ...]] = {
     ),
     "compute": (
         *("where", "accepts", "groups", "local", "buffers", "repeat", "stages", "overwrites", "aligned"),
-        *("in_place", "agrees"),
+        *("in_place", "active", "agrees"),
     ),
 }
 """Kind of a pragma → its options."""
@@ -299,7 +299,12 @@ def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         raise line.error(
             f'aligned = "{options["aligned"]}": expected 4, 8, 16 or 32, the bytes that rows are filled up to'
         )
-    in_place, there = options.get("in_place", ""), [buffer.name for buffer in buffers]
+    active, there = options.get("active", ""), [buffer.name for buffer in buffers]
+    if active and active not in there:
+        raise line.error(f"active: no buffer '{active}'{nearest(active, there)}")
+    if active and "repeat" not in options:
+        raise line.error("active says when a repeat may end; give the compute variant a repeat")
+    in_place = options.get("in_place", "")
     if in_place and in_place not in there:
         raise line.error(f"in_place: no buffer '{in_place}'{nearest(in_place, there)}")
     if in_place and not kernel.inputs:
@@ -321,6 +326,7 @@ def _compute(kernel: Kernel, options: dict[str, str], line: Line) -> Kernel:
         stages=tuple(int(part) for part in stages),
         aligned=int(options.get("aligned", "8")),
         in_place=in_place,
+        active=active,
         overwrites=tuple(filter(None, (p.strip() for p in options.get("overwrites", "").split(",")))),
         agrees=agrees,
     )

@@ -107,6 +107,7 @@ class Kernel:
     buffers: tuple[Buffer, ...] = ()
     aligned: int = 8  # bytes that rows of an output's buffer are filled up to
     in_place: str = ""  # of a compute variant: a buffer that begins as its first input and ends as its output
+    active: str = ""  # likewise: a buffer; once a step leaves it all zeros, only the last step is left to run
     stages: tuple[int, ...] = ()  # of a compute variant: what each of its steps does
     overwrites: tuple[str, ...] = ()  # of a compute variant: outputs and buffers that need not begin as zeros
     agrees: tuple[Bound, ...] = ()  # of a compute variant: how closely, with the technique that it replaces

@@ -586,3 +586,42 @@ def test_one_that_replaces_a_technique_takes_the_sizes_that_the_technique_takes(
     any_engine.read(folder.sketch(body, size="size = 16"), "t")
     with pytest.raises(PlaygroundError, match="not 20 x 20; the nearest it takes: 16 x 16 or 32 x 32"):
         any_engine.read(folder.sketch(body, size="size = 20"), "t")
+
+
+LEFT = """#pragma compute(groups = "1, 1", local = "1, 1", repeat = "1000000", active = "left", aligned = "4", \\
+                buffers = "plus:float:size.x * size.y; ran:uint:1; left:uint:2")
+void main() {
+    if (iteration == 0) left[1] = 100u;
+    else if (left[1] > 0u) left[1]--;
+    ran[0]++;
+    if (iteration < iterations - 1) return;
+    for (int k = 0; k < size.x * size.y; k++) plus[k] = float(ran[0]);
+}
+"""
+
+
+def left(folder, text=LEFT):
+    folder.write("fill.glsl", PLAIN_FILL.replace("sums", "plus"))
+    folder.write("fill.comp", text)
+    return folder.sketch('[[pass]]\nname = "a"\nuse = "./fill"\n', size="size = 4")
+
+
+def test_with_nothing_left_to_do_only_the_last_step_runs(any_engine, folder, ran):
+    """101 steps until nothing is left; that is noticed within their root of them, and one step ends it."""
+    if not any_engine.info.compute:
+        pytest.skip("this context has no compute shaders")
+    found = any_engine.read(left(folder), "a")
+    assert (found == found[0, 0]).all()
+    assert 102 <= found[0, 0] <= 101 + 11 + 1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('active = "left"', 'active = "lift"', "active: no buffer 'lift'; did you mean 'left'"),
+        ('repeat = "1000000", ', "", "active says when a repeat may end; give the compute variant a repeat"),
+    ],
+)
+def test_what_ends_early_has_a_buffer_and_a_repeat(folder, old, new, message):
+    with pytest.raises(PlaygroundError, match=message):
+        left(folder, LEFT.replace(old, new))

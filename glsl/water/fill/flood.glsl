@@ -10,12 +10,15 @@
 // In each step the flood falls to the ground, or to what the lowest neighbour lets out. It comes
 // from above: after any number of steps each texel but an edge's has a neighbour below its level,
 // so all water drains, and further steps only lower the flood where a shorter way out is known.
+// A way out has no more texels than the terrain, so the steps of 0 are enough for any terrain.
 #include "water/least_fall.glsl"
 #include "water/texels.glsl"
-#pragma kernel(output = "level:r32f", repeat = "steps", until = "unchanged")
+#pragma kernel(output = "level:r32f", repeat = "steps if steps > 0 else size.x * size.y", \
+               until = "unchanged")
 
 uniform sampler2D height;  //! input
-uniform int steps = 16384;  //! slider(1, 65536) Texels over which a way out is sought, at most
+uniform int steps = 0;     //! slider(0, 65536) Texels over which a way out is sought, at most;
+                           //! 0: until nothing changes
 
 float kernel(ivec2 texel) {
     float ground = texelFetch(height, texel, 0).r;

@@ -234,7 +234,8 @@ function planned(now) {
     refuse(node, size);
     checkShapes(sketch, node, measured.sizeOfSource);
     const own = ownNames(kernel, size, given, time);
-    const all = kernel.repeat === 1 ? 1 : counted(kernel.repeat, path, kernel.file, { name: own });
+    const all = kernel.repeat === 1 ? 1
+      : counted(kernel.repeat, path, kernel.file, { name: own }, Boolean(kernel.until));
     // Of a kernel that repeats in a loop of the same path, the loop is what stops.
     const repeat = path === around ? all : stoppedAt(path, all, kernel.followsTime);
     const between = now.fills ? betweenOf(kernel, node, repeat, all, own) : null;

@@ -12,6 +12,7 @@ import { givenTo, leavesOf, numberOf } from "./values.js";
 
 export const LARGEST_SIDE = 16384;
 export const MAX_REPEAT = 1_000_000;
+const MAX_BOUND = 2 ** 31 - 1; // of a repeat that ends by itself: what GLSL counts
 const MOST_COUNTED = 1024; // iterations of a loop of which each may have its own sizes: each is planned
 const FRAME_RATE = 60;
 
@@ -203,12 +204,13 @@ export function measure(sketch, shared, now) {
 
 /** How many iterations a repeat gives; `name` is of what says so, and `where` a mistake is.
  *  @param {import("./schema.js").Expression} repeat @param {string} name @param {string} where
- *  @param {Names} known */
-export function counted(repeat, name, where, known) {
+ *  @param {Names} known @param {boolean} [ends] whether it ends by itself */
+export function counted(repeat, name, where, known, ends = false) {
   try {
     const count = integer(repeat, known);
-    if (count >= 0n && count <= MAX_REPEAT) return Number(count);
-    const message = `repeat '${textOf(repeat)}' gives ${count}; 0 to ${MAX_REPEAT} were expected`;
+    const limit = ends ? MAX_BOUND : MAX_REPEAT;
+    if (count >= 0n && count <= limit) return Number(count);
+    const message = `repeat '${textOf(repeat)}' gives ${count}; 0 to ${limit} were expected`;
     throw planError(`pass '${name}': ${message}`, where);
   } catch (error) {
     if (!isPlanError(error) || error.where !== undefined) throw error;
