@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
@@ -11,9 +11,13 @@ from playground.engine.plan import Plan, PlanNode, Step, most_iterations, walk
 from playground.errors import DataError, Diagnostic
 from playground.media.live_inputs import LiveInputs
 from playground.paths import GLSL, shown
-from playground.sketch.flat import Ref, Source
+from playground.sketch import expressions
+from playground.sketch.assign import effective_values
+from playground.sketch.expressions import ExpressionError, Number
+from playground.sketch.flat import Flat, Ref, Source
 from playground.sketch.identity import Identity
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
+from playground.sketch.variant_check import INSIDE
 from playground.sketch.warnings import former_names_used, unheeded, warnings_of_kernel
 from playground.terrain.known import Terrain
 from playground.terrain.sources import source_kind
@@ -80,7 +84,8 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
     """Return what a plan's sources assumed of their files, or lost, at the pass that names each file.
 
     Of another tool's shader what nothing feeds, at its line; of a live input why nothing comes from it, with
-    the inputs that read it. ``inputs`` None: there is no window.
+    the inputs that read it. ``inputs`` None: there is no window. And of which parameters, by what their
+    kernels say, make no sense together.
     """
     live = inputs or LiveInputs()
     found: dict[str, Diagnostic] = {}
@@ -102,6 +107,16 @@ def source_warnings(plan: Plan, inputs: LiveInputs | None = None) -> tuple[Diagn
                 file = spec.file or shown(step.kernel.path)
                 note = note.removeprefix(f"{Path(file).name}: ")  # of a file that was opened itself
                 found.setdefault(note, Diagnostic(note, file, spec.line, severity="warning"))
+    for step, conditions in _with_conditions(Identity(plan.nodes), Identity(plan.flat)):
+        spec = plan.flat.user(step.path)
+        for condition, message, known in conditions:
+            names: dict[str, Number] = {"size.x": step.size[0], "size.y": step.size[1], **known}
+            names |= _numbers(step.values)
+            with suppress(ExpressionError):  # a division by zero, say: nothing that can be warned of
+                if expressions.evaluate(condition, names):
+                    text = f"pass '{spec.name}': {message}"
+                    file = spec.file or shown(step.kernel.path)
+                    found.setdefault(text, Diagnostic(text, file, spec.line, severity="warning"))
     return tuple(found.values())
 
 
@@ -134,6 +149,35 @@ def _assumptions(plan: Plan) -> dict[str, tuple[str, ...]]:
             )
         return {leaf.path: tuple(found)}
     return {}
+
+
+def _conditions(flat: Flat, step: Step) -> list[tuple[str, str, dict[str, Number]]]:
+    """Return what a step's kernel warns of, with its parameters' values where the step has none of its own.
+
+    Where a fast variant runs, which has only some of the parameters, they are those of the technique.
+    """
+    technique = flat.specs[step.path.partition(f".{INSIDE}.")[0]].technique
+    if technique is step.kernel or (step.kernel.kind != "compute" and f".{INSIDE}." not in step.path):
+        technique = step.kernel
+    values = effective_values(technique)
+    found = []
+    for path, kernel in kernels_of(technique):
+        own = {p.name: values[f"{path}.{p.name}" if path else p.name] for p in kernel.parameters}
+        found += [(condition, message, _numbers(own)) for condition, message in kernel.warns]
+    return found
+
+
+def _numbers(values: Mapping[str, object]) -> dict[str, Number]:
+    return {name: value for name, value in values.items() if isinstance(value, int | float)}
+
+
+@lru_cache(maxsize=2)
+def _with_conditions(
+    nodes: Identity[tuple[PlanNode, ...]], flat: Identity[Flat]
+) -> tuple[tuple[Step, list[tuple[str, str, dict[str, Number]]]], ...]:
+    """Return the steps of kernels that warn of some values of their parameters, and what they warn of."""
+    each = [(step, _conditions(flat.object, step)) for step in walk(nodes.object)]
+    return tuple([(step, conditions) for step, conditions in each if conditions])
 
 
 @lru_cache(maxsize=2)

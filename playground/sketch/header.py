@@ -36,7 +36,10 @@ _IMAGE = re.compile(
     r"uniform\s+(?:\w+\s+)*image2D\s+(\w+)"
 )
 PRAGMAS: dict[str, tuple[str, ...]] = {
-    "kernel": ("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once", "until"),
+    "kernel": (
+        *("where", "output", "repeat", "accepts", "visits", "stride", "between", "at_once", "until"),
+        "warns",
+    ),
     "source": ("name", "output", "reads"),
     "draw": (
         *("where", "mesh", "count", "instances", "output", "blend", "depth", "over", "samples", "repeat"),
@@ -125,7 +128,8 @@ def parse_kernel(name: str, source: SourceText) -> Kernel | None:
         return _draw(kernel, options, line)
     _refuse_driver_bound(source)
     texts = {key: options[key] for key in (*_STEPS, "accepts") if key in options}
-    kernel = replace(kernel, repeat=repeat, **texts)  # type: ignore[arg-type]
+    warns = _warns(options.get("warns", ""), numbers, line)
+    kernel = replace(kernel, repeat=repeat, warns=warns, **texts)  # type: ignore[arg-type]
     _check_steps(kernel, numbers, line)
     _check_accepts(kernel.accepts, line)
     return kernel
@@ -139,6 +143,19 @@ def _depends(text: str, line: Line) -> tuple[str, ...]:
             hint = nearest(name, _SOURCE_READS)
             raise line.error(f"reads = '{text}': a source cannot read '{name}'{hint}")
     return found
+
+
+def _warns(text: str, numbers: Collection[str], line: Line) -> tuple[tuple[str, str], ...]:
+    """Return conditions of the parameters, and what is warned of where one holds."""
+    found: list[tuple[str, str]] = []
+    for part in filter(None, (part.strip() for part in text.split(";"))):
+        condition, colon, message = (piece.strip() for piece in part.partition(":"))
+        if not colon or not message:
+            example = "frequency <= tiles: no detail is left (several are separated by ;)"
+            raise line.error(f"warns '{part}': expected condition: message, as {example}")
+        _check("warns", condition, (*_SIZE, *numbers), line)
+        found.append((condition, " ".join(message.split())))
+    return tuple(found)
 
 
 def _check_accepts(accepts: str, line: Line) -> None:

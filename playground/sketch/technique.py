@@ -94,6 +94,7 @@ class Kernel:
     between: str = ""  # how the texels of a stride are joined where a run is stopped: squares | triangles
     at_once: str = "1"  # steps that one run may take
     until: str = ""  # "unchanged": no more steps are run once one has changed no texel
+    warns: tuple[tuple[str, str], ...] = ()  # condition of its parameters → what is warned of where it holds
     registry: str = ""  # of a source or a draw: the name of the source or mesh
     depends: tuple[str, ...] = ()  # of a source: what its texels depend on besides its parameters, as time
     blend: str = "none"

@@ -588,7 +588,8 @@ def test_one_that_replaces_a_technique_takes_the_sizes_that_the_technique_takes(
         any_engine.read(folder.sketch(body, size="size = 20"), "t")
 
 
-LEFT = """#pragma compute(groups = "1, 1", local = "1, 1", repeat = "1000000", active = "left", aligned = "4", \\
+LEFT = """#pragma compute(groups = "1, 1", local = "1, 1", repeat = "1000000", active = "left", \\
+                aligned = "4", \\
                 buffers = "plus:float:size.x * size.y; ran:uint:1; left:uint:2")
 void main() {
     if (iteration == 0) left[1] = 100u;

@@ -15,6 +15,7 @@ from playground import cli
 from playground.engine import sandbox as sandbox_module
 from playground.engine.check import check_file
 from playground.engine.sandbox import Sandbox
+from playground.errors import PlaygroundError
 from playground.workbench.problems import Warnings
 
 from ..loading import load
@@ -149,3 +150,41 @@ def test_a_shot_that_stops_beyond_the_repeat_is_refused_at_its_line(folder, monk
     assert cli.main(["render", ".", "--shot", "end", "-o", "a.png"]) == 2
     printed = "error: sketch.toml:6: shot 'end': steps: 'a' stops after 99 steps, but it has 5 in all\n"
     assert capsys.readouterr().err == printed
+
+
+@pytest.mark.parametrize(
+    ("use", "values", "message"),
+    [
+        ("layered_noise", "frequency = 1", "the same one interval"),
+        ("layered_noise", "frequency = 40, octaves = 1", "than there are gaps between texels"),
+        ("layered_noise", "frequency = 4, octaves = 5", "as many intervals as there are gaps"),
+        ("layered_noise", "frequency = 4, octaves = 3", None),
+        ("gradient_noise", "frequency = 17.0", "is lowered until it has two"),
+        ("gradient_noise", "frequency = 16.0", None),
+        ("fbm", "frequency = 17.0", "is lowered until it has two"),
+    ],
+)
+def test_parameters_that_make_no_sense_together_are_warned_of(any_engine, folder, use, values, message):
+    """Each by its kernel's own condition, whichever of its fast variants runs."""
+    found: list[str] = []
+    any_engine.internal.warnings.report = lambda warning: found.append(warning.message)
+    sketch = folder.sketch(
+        f'[[pass]]\nname = "a"\nuse = "generation/{use}"\nset = {{ {values} }}\n', size="size = 33"
+    )
+    any_engine.read(sketch, "a")
+    any_engine.read(sketch, "a")
+    assert len(found) == (message is not None)
+    assert all(each.startswith("pass 'a': ") and str(message) in each for each in found)
+
+
+@pytest.mark.parametrize(
+    ("warns", "message"),
+    [("speed > 1", "expected condition: message"), ("sped > 1: too fast", "did you mean 'speed'")],
+)
+def test_a_condition_is_checked_where_it_is_written(folder, warns, message):
+    text = (
+        f'#pragma kernel(output = "a:r32f", warns = "{warns}")\nuniform float speed = 1.0; //! slider(0, 9)\n'
+    )
+    folder.write("a.glsl", text + "float kernel(ivec2 texel) { return speed; }\n")
+    with pytest.raises(PlaygroundError, match=message):
+        folder.sketch('[[pass]]\nname = "a"\nuse = "./a"\n')

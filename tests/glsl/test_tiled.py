@@ -237,3 +237,26 @@ def test_the_tile_shows_in_the_curvature(any_engine, sketch_of):
 
     assert repeats(4) > 0.9
     assert abs(repeats(1)) < 0.2
+
+
+@pytest.mark.parametrize(
+    ("use", "size", "values"),
+    [
+        ("mixed_tiled", 257, {"frequency": 32, "tiles": 32}),
+        ("mixed_tiled", 257, {"frequency": 23, "tiles": 16}),
+        ("mixed_tiled", 257, {"frequency": 24, "tiles": 16}),
+        ("mixed_tiled", 257, {"frequency": 8, "tiles": 8, "seams": "left"}),
+        ("layered_noise_tiled", [129, 65], {"frequency": 2, "tiles": 4}),
+        ("layered_noise_tiled", 129, {"frequency": 4, "tiles": 4}),
+    ],
+    ids=str,
+)
+def test_a_tile_without_detail_is_warned_of(any_engine, sketch_of, use, size, values):
+    """Whether a tile has detail is seen in the tile itself."""
+    warned = []
+    any_engine.internal.warnings.report = lambda found: warned.append(found.message)
+    sketch = sketch_of(use, size, **values)
+    tile = any_engine.read(sketch, "terrain.tile").astype(np.float64)
+    any_engine.read(sketch, "terrain")
+    assert any("adds no detail" in message for message in warned) == (np.ptp(tile) < 1e-6)
+    assert len(warned) <= 1

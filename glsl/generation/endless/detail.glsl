@@ -8,7 +8,9 @@
 //
 // A tile that fits beside its copy. It reads nothing of any part, so no part makes it anew.
 #include "noise/periodic.glsl"
-#pragma kernel(output = "detail:r32f")
+#pragma kernel(output = "detail:r32f", warns = "\
+    frequency * 2 ** octaves > size.x: \
+    the last layer has less than two texels a cell (lower frequency or octaves)")
 
 uniform int frequency = 6;         //! log_slider(1, 64) Cells along a side in the first layer
 uniform int octaves = 6;           //! slider(1, 8) Layers, each twice as fine as the one before

@@ -12,7 +12,9 @@
 // the same terrain, and hills are as wide as they are long whatever the terrain's shape.
 #include "generation/gradient_noise/seed.glsl"
 #include "noise/octaves.glsl"
-#pragma kernel(output = "height:r32f")
+#pragma kernel(output = "height:r32f", warns = "\
+    (octaves > 0) * (2 * frequency > size.x - 1): \
+    frequency leaves a cell less than two texels, and is lowered until it has two")
 
 #include "generation/gradient_noise/parameters/octaves.glsl"
 

@@ -22,7 +22,20 @@
 // wrap after 255.
 #include "generation/layered_noise/layers.glsl"
 #include "noise/hash.glsl"
-#pragma kernel(output = "height:r32f")
+#pragma kernel(output = "height:r32f", warns = "\
+    (layer == 0) * (seams == 0) * (tiles > 1) * (octaves > left_out) \
+        * (frequency ** (left_out + 1) < 2 * tiles - tiles // 2) \
+        * (size.y - 1 + (size.x - 1) // 2 < 2 * (size.x - 1)): \
+    a tile has one interval of its coarsest layer, and both nodes of it are one number where \
+    seams are removed, so that layer adds no detail (raise frequency or lower tiles); \
+    (layer == 0) * (octaves > 1) * (frequency == 1): \
+    with frequency 1 all layers have the same one interval (raise frequency or lower octaves); \
+    (octaves > 0) * (frequency > (size.x - 1) * tiles): \
+    frequency asks for more intervals than there are gaps between texels, and is lowered to these; \
+    (layer == 0) * (octaves > 1) * (1 < frequency) \
+        * (frequency ** (octaves - 1) >= (size.x - 1) * tiles): \
+    the last layers all have as many intervals as there are gaps between texels \
+    (lower frequency or octaves)")
 
 uniform int frequency = 4;       //! log_slider(1, 1024) Intervals a side in the first layer;
                                  //! each next layer has this many times more
