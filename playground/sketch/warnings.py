@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 
 from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import GLSL
 from playground.regular_file import read_regular
-from playground.sketch.expressions import names_in
+from playground.sketch import expressions
+from playground.sketch.expressions import ExpressionError, names_in
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
+from playground.sketch.source import SourceText
 from playground.sketch.uniforms import unfed_samplers
 
 
@@ -21,15 +23,164 @@ def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:
 
 
 def unheeded(kernel: Kernel) -> tuple[Diagnostic, ...]:
-    """Return what a picture does not show though the text says it: unfed samplers, ``#line``."""
+    """Return what a picture does not show though the text says it: unfed samplers, ``1/4``, ``#line``."""
     is_plain = kernel.kind.startswith("plain") and not kernel.dialect
     found = [*(unfed_samplers(kernel.source) if is_plain else ())]
+    found += whole_divisions(kernel.source)
+    found += whole_divisions(kernel.vertex_source) if kernel.vertex_source else ()
     found += [
         line.diagnostic("#line is left out, so that errors name the file's own lines", severity="warning")
         for line in kernel.source.lines
         if line.left_out
     ]
     return tuple(dict.fromkeys(found))
+
+
+# ── divisions of whole numbers ───────────────────────────────────────────────
+
+_MAYBE_DIVIDED = re.compile(r"[\d)]\s*/\s*[\d(]")
+_TOKEN = re.compile(r"(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\w*|[A-Za-z_]\w*|&&|\|\||[<>=!]=|\S")
+_WHOLE = re.compile(r"\d+")
+_WHOLE_TYPE = re.compile(r"u?int|[iu]vec[234]")
+_DECLARED_WHOLE = re.compile(r"\b(?:u?int|[iu]vec[234])\b(?!\s*\()([^;(){}]*)")
+_WHOLE_GIVEN = frozenset("size iteration iterations until stage texel gl_InstanceID gl_VertexID".split())
+_TAKES_WHOLE = frozenset(
+    "texelFetch texelFetchOffset textureSize imageLoad imageStore bitfieldExtract".split()
+)
+_ENDS = frozenset(("(", ")", ",", ";", "{", "}", "?", ":", "&&", "||", "=", "return", "[", "]"))
+
+
+def whole_divisions(source: SourceText) -> list[Diagnostic]:
+    """Return a warning for each division of two whole literals that leaves a remainder, as ``1/4``.
+
+    In GLSL that is a whole number, here 0. Left alone is what is meant so: an index, an array's size, and
+    where a whole number is declared, set, compared or handed over.
+    """
+    if not _MAYBE_DIVIDED.search(source.code):
+        return []
+    found: list[Diagnostic] = []
+    tokens: list[tuple[str, int, int]] = []  # text, index of its line, column
+    directive = False
+    for index, line in enumerate(source.lines):
+        directive = line.code.lstrip().startswith("#") or (
+            directive and source.lines[index - 1].code.endswith("\\")
+        )
+        if not directive:
+            tokens += [(m[0], index, m.start() + 1) for m in _TOKEN.finditer(line.code)]
+    texts = [text for text, _, _ in tokens]
+    whole = set(_WHOLE_GIVEN)
+    for declared in _DECLARED_WHOLE.finditer(" ".join(texts)):
+        whole |= set(re.findall(r"(?:^|,)\s*([A-Za-z_]\w*)", declared[1]))
+    for at, text in enumerate(texts):
+        if text != "/":
+            continue
+        start, left = _whole_before(texts, at)
+        after, right = _whole_after(texts, at + 1)
+        if left is None or not right or left % right == 0 or _is_whole(texts, start, after, whole):
+            continue
+        line, column = source.lines[tokens[start][1]], tokens[start][2]
+        last, end = tokens[after - 1][1], tokens[after - 1][2] - 1 + len(texts[after - 1])
+        written = line.code[column - 1 : end] if source.lines[last] is line else f"{left}/{right}"
+        message = f"{written} divides whole numbers, which gives {left // right}; write {left}.0/{right}.0"
+        found.append(line.diagnostic(message, column, "warning"))
+    return found
+
+
+def _whole_before(texts: Sequence[str], at: int) -> tuple[int, int | None]:
+    """Return where the product of whole literals before a place begins, and its value if it is one."""
+    start = at
+    while start > 0:
+        begin = _group_before(texts, start)
+        if begin == start or (begin > 0 and texts[begin] == "(" and re.match(r"\w", texts[begin - 1])):
+            return at, None
+        start = begin
+        if start == 0 or texts[start - 1] not in ("*", "/", "%"):
+            break
+        start -= 1
+    return start, _evaluated(texts[start:at])
+
+
+def _group_before(texts: Sequence[str], end: int) -> int:
+    """Return where the literal or bracket of literals begins that ends at a place; else the place."""
+    if _WHOLE.fullmatch(texts[end - 1]):
+        return end - 1
+    depth = 0
+    for at in range(end - 1, -1, -1):
+        depth += (texts[at] == ")") - (texts[at] == "(")
+        if depth == 0:
+            return at if texts[at] == "(" else end
+        if not re.fullmatch(r"[()+*/%-]|\d+", texts[at]):
+            break
+    return end
+
+
+def _whole_after(texts: Sequence[str], start: int) -> tuple[int, int | None]:
+    """Return where the literal, or the bracket of literals, ends that begins at a place, and its value."""
+    depth = 0
+    for at in range(start, len(texts)):
+        if not re.fullmatch(r"[()+*/%-]|\d+", texts[at]):
+            break
+        depth += (texts[at] == "(") - (texts[at] == ")")
+        if depth == 0:
+            return at + 1, _evaluated(texts[start : at + 1])
+    return start, None
+
+
+def _evaluated(texts: Sequence[str]) -> int | None:
+    """Return the value of literals, brackets and operators, as GLSL has it of positive numbers; else None."""
+    try:
+        return int(expressions.evaluate(" ".join("//" if text == "/" else text for text in texts), {}))
+    except ExpressionError:
+        return None
+
+
+def _is_whole(texts: Sequence[str], start: int, end: int, whole: Collection[str]) -> bool:
+    """Return whether a division stands where a whole number is meant."""
+    before, depth, calls = start, 0, list[str]()
+    while before > 0 and texts[before - 1] not in (";", "{", "}"):
+        before -= 1
+        depth += (texts[before] in (")", "]")) - (texts[before] in ("(", "["))
+        if depth < 0:  # a bracket around it
+            depth = 0
+            if texts[before] == "[":
+                return True
+            calls.append(texts[before - 1] if before else "")
+    # The innermost call decides; what is no call, as a bracket or if, leaves it to what is around.
+    for call in calls:
+        if _WHOLE_TYPE.fullmatch(call) or call in _TAKES_WHOLE:
+            return True
+        if re.fullmatch(r"[A-Za-z_]\w*", call) and call not in ("if", "while", "for", "return", "switch"):
+            return call in whole
+    head = [text for text in texts[before:start] if text not in ("const", "highp", "mediump", "lowp", "(")]
+    while head and head[0] in ("if", "else", "for", "while"):
+        head.pop(0)
+    if head and (_WHOLE_TYPE.fullmatch(head[0]) or head[0] == "case"):
+        return True
+    if len(head) > 1 and head[1] in ("=", "+", "-", "*", "/", "[", "<", ">") and head[0] in whole:
+        return True
+    if head[:1] == ["return"]:
+        return _returns_whole(texts, before)
+    left, right = start, end
+    while left > before and texts[left - 1] not in _ENDS:
+        left -= 1
+    while right < len(texts) and texts[right] not in _ENDS:
+        right += 1
+    others = (*range(left, start), *range(end, right))
+    names = [texts[k] for k in others if re.match(r"[A-Za-z_]|\.\d|\d+\.", texts[k]) and texts[k - 1] != "."]
+    return bool(names) and whole.issuperset(names)
+
+
+def _returns_whole(texts: Sequence[str], at: int) -> bool:
+    """Return whether the function around a place returns a whole number."""
+    depth = 0
+    for k in range(at - 1, -1, -1):
+        depth += (texts[k] == "}") - (texts[k] == "{")
+        if depth == -1 and texts[k] == "{" and k and texts[k - 1] == ")":
+            opened = next((i for i in range(k - 1, -1, -1) if texts[i : i + 1] == ["("]), 0)
+            if opened > 1 and re.match(r"[A-Za-z_]", texts[opened - 2]):
+                return bool(_WHOLE_TYPE.fullmatch(texts[opened - 2]))
+            depth = 0  # of an if or a loop
+    return False
 
 
 def unread(kernel: Kernel) -> tuple[Diagnostic, ...]:

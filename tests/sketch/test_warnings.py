@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from playground.errors import PlaygroundError
+from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import GLSL
+from playground.sketch.source import read_source
 from playground.sketch.techniques import read_kernel
-from playground.sketch.warnings import unread
+from playground.sketch.warnings import unheeded, unread, whole_divisions
 
 
 def found_in(folder: Path, declared: str, body: str = "", pragma: str = "") -> list[str]:
@@ -86,3 +87,72 @@ def test_what_a_techniques_repeat_or_size_names_is_read(folder, toml: str, read:
     other = '[[pass]]\nname = "b"\nuse = "./worn/other"\n'
     folder.write("worn.toml", f'{other}[[pass]]\nname = "a"\nuse = "./worn/finish"\n{toml}\n')
     assert [each.message for each in unread(read_kernel(path, folder.path))] == ([] if read else unheard)
+
+
+# ── divisions of whole numbers ───────────────────────────────────────────────
+
+
+def divisions_in(folder: Path, code: str) -> list[Diagnostic]:
+    body = f"float kernel(ivec2 texel) {{\n    float x = 1.0;\n    {code}\n    return x;\n}}\n"
+    (folder / "k.glsl").write_text(HEAD + body, encoding="utf-8")
+    kernel = read_kernel(folder / "k.glsl", folder)
+    assert kernel is not None
+    return list(unheeded(kernel))
+
+
+HEAD = '#pragma kernel(output = "a:r32f")\nint whole = 3;\nint of(int k) { return k; }\n'
+
+
+@pytest.mark.parametrize(
+    ("code", "written", "value"),
+    [
+        ("float a = 1/4;", "1/4", 0),
+        ("float a = x + 3*1 / 4;", "3*1 / 4", 0),
+        ("float a = 1/4*x;", "1/4", 0),
+        ("float a = pow(x, 1 / 3);", "1 / 3", 0),
+        ("vec2 a = vec2(0.5, 7/2);", "7/2", 3),
+        ("float a = 2.0 * (1/3);", "1/3", 0),
+        ("float a = (1+2)/4;", "(1+2)/4", 0),
+        ("float a = x > 1.0 ? 2/3 : 0.0;", "2/3", 0),
+        ("if (x < 1/2) x = 0.0;", "1/2", 0),
+        ("for (float t = 0.0; t < 1.0; t += 1/8) x += t;", "1/8", 0),
+        ("int a = int(4.0 * float(1/4));", "1/4", 0),
+        ("x *= 3/2;", "3/2", 1),
+    ],
+)
+def test_a_quotient_of_whole_literals_is_warned_of(
+    tmp_path: Path, code: str, written: str, value: int
+) -> None:
+    (found,) = divisions_in(tmp_path, code)
+    assert found.message.startswith(f"{written} divides whole numbers, which gives {value}; write ")
+    assert (found.line, found.column) == (6, 5 + code.index(written))
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "int n = 7/2;",
+        "const int n = 3, m = 7/2;",
+        "float table[7/2];",
+        "ivec2 n = ivec2(7/2, 3);",
+        "for (int k = 0; k < 7/2; k++) x += 1.0;",
+        "whole = 7/2;",
+        "whole += 7/2;",
+        "if (whole > 7/2) x = 2.0;",
+        "x = float(of(7/2) * int(texel.x));",
+        "float a = x * 1/4;",
+        "float a = x/4;",
+        "float a = 4/2;",
+        "float a = 1.0/4.0 + 1./4. + .5/2.;",
+        "uint n = 7u/2u;",
+        "float a = float(3)/2;",
+        "float a = x;  // 1/4",
+    ],
+)
+def test_whole_quotients_that_are_meant_are_left_alone(tmp_path: Path, code: str) -> None:
+    assert divisions_in(tmp_path, code) == []
+
+
+def test_no_shipped_text_divides_whole_literals() -> None:
+    texts = (read_source(path, [GLSL]) for path in GLSL.rglob("*.glsl"))
+    assert [found for text in texts for found in whole_divisions(text)] == []
