@@ -125,6 +125,7 @@ class Preset:
 
     name: str
     values: tuple[tuple[str, Value], ...]
+    left_out: tuple[str, ...] = ()  # a sentence for each value that no parameter takes
 
 
 @dataclass(frozen=True)

@@ -15,6 +15,7 @@ from playground.sketch import toml_keys, wiring
 from playground.sketch.agreement import read_agreement
 from playground.sketch.allowed_files import is_variant, leads_outside
 from playground.sketch.assign import (
+    TERRAIN_KEYS,
     check_value,
     current_paths,
     effective_values,
@@ -195,8 +196,13 @@ def _read_values(
     technique: Technique,
     read_value: Callable[[str, object], Value],
     who: str,
+    *,
+    left_out: list[str] | None = None,
 ) -> tuple[tuple[str, Value], ...]:
-    """Return what ``set`` says, checked: each value by ``read_value``, and that no file lies outside."""
+    """Return what ``set`` says, checked: each value by ``read_value``, and that no file lies outside.
+
+    A value that no parameter takes is an error, or, where there is a list ``left_out``, a warning in it.
+    """
     try:
         given = flat_values(technique, file.take(table, "set", dict, {}, *place))
         names = current_paths(technique, given)
@@ -210,7 +216,12 @@ def _read_values(
         try:
             value = read_value(path, raw)
         except ParameterError as error:
-            raise file.error(f"{who}: {error.diagnostics[0].message}", *place, "set", path) from None
+            message = f"{who}: {error.diagnostics[0].message}"
+            if left_out is None or path in TERRAIN_KEYS:
+                raise file.error(message, *place, "set", path) from None
+            left_out.append(message)
+            file.warn(f"{who} leaves out {path}: {error.diagnostics[0].message}", *place, "set", path)
+            continue
         parameters = [target.parameter for target in find_targets(technique, path)[:1]]
         files = [parameter.file for parameter in parameters if parameter.widget.kind == "file"]
         if value and any(leads_outside(str(value), file.root, declared_in) for declared_in in files):
@@ -231,10 +242,19 @@ def _set_lines(
 
 
 def read_set(
-    file: TomlFile, sketch: Sketch, table: Mapping[str, Any], place: Place, who: str
+    file: TomlFile,
+    sketch: Sketch,
+    table: Mapping[str, Any],
+    place: Place,
+    who: str,
+    left_out: list[str] | None = None,
 ) -> tuple[tuple[str, Value], ...]:
-    """Return what a shot, a preset or a keyframe sets, checked; ``who`` begins the sentence of a mistake."""
-    return _read_values(file, table, place, sketch.graph, partial(check_value, sketch), who)
+    """Return what a shot, a preset or a keyframe sets, checked; ``who`` begins the sentence of a mistake.
+
+    A value that no parameter takes is an error, or, where there is a list ``left_out``, a warning in it.
+    """
+    check = partial(check_value, sketch)
+    return _read_values(file, table, place, sketch.graph, check, who, left_out=left_out)
 
 
 def _repeat(file: TomlFile, table: Mapping[str, Any], place: Place) -> str:

@@ -127,11 +127,12 @@ def _main(file: TomlFile, sketch: Sketch) -> tuple[str, ...]:
         if why := why_absent(sketch.graph, path):
             file.warn(f"main: {path}: {why}", "main")
             continue
-        there.append(path)
         try:
             resolve(sketch.graph, path)
         except ParameterError as error:
-            raise file.error(f"main: {error.diagnostics[0].message}", "main") from None
+            file.warn(f"main leaves out {path}: {error.diagnostics[0].message}", "main")
+            continue
+        there.append(path)
         if paths.count(path) > 1:
             raise file.error(f"main: '{path}' appears twice", "main")
         if sentence := renamed(sketch.graph, path, None):
@@ -165,7 +166,9 @@ def _presets(file: TomlFile, sketch: Sketch) -> tuple[Preset, ...]:
         name = file.take(table, "name", str, "", *place)
         if not name or name in [p.name for p in found]:
             raise file.error(f"name = {spell(name)}: a preset needs a name of its own", *place, "name")
-        found.append(Preset(name, read_set(file, sketch, table, place, f"preset '{name}'")))
+        left_out: list[str] = []
+        values = read_set(file, sketch, table, place, f"preset '{name}'", left_out)
+        found.append(Preset(name, values, tuple(left_out)))
     return tuple(found)
 
 
@@ -188,6 +191,9 @@ def _shots(file: TomlFile, sketch: Sketch) -> tuple[Shot, ...]:
         preset = file.take(table, "preset", str, "", *place)
         if "preset" in table and preset not in presets:
             raise file.error(f"no preset '{preset}'{nearest(preset, presets)}", *place, "preset")
+        for message in [m for p in sketch.presets if p.name == preset for m in p.left_out]:
+            # A shot is the picture that its sketch says, or none: a test must be able to trust it.
+            raise file.error(f"shot '{name}': {message}", *place, "preset")
         found.append(
             Shot(
                 name=name,

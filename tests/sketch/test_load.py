@@ -283,6 +283,7 @@ def test_a_plain_shader_of_any_name_opens_itself(folder, name):
 # Mistakes
 
 P = PASS
+GONE = "[[preset]]\nname = 'p'\nset = { height.rize = 1 }\n"
 
 
 @each(
@@ -395,9 +396,14 @@ P = PASS
         ({"tail": TAIL + "[preset]\nname = 'a'\n"}, "expected [[preset]]", 7),
         ({"tail": TAIL + "[[preset]]\nset = {}\n"}, "a preset needs a name", 7),
         (
-            {"tail": TAIL + "[[preset]]\nname = 'a'\nset = { height.rize = 1 }\n"},
-            "preset 'a': no parameter 'height.rize' in sketch s; did you mean 'height.rise'",
+            {"tail": TAIL + "[[shot]]\nname = 'a'\nset = { height.rize = 1 }\n"},
+            "shot 'a': no parameter 'height.rize' in sketch s; did you mean 'height.rise'",
             9,
+        ),
+        (
+            {"tail": TAIL + GONE + "[[shot]]\nname = 'a'\npreset = 'p'\n"},
+            "shot 'a': preset 'p': no parameter 'height.rize' in sketch s; did you mean 'height.rise'",
+            12,
         ),
         ({"tail": TAIL + "[[preset]]\nname = 'a'\nset = { size = 0 }\n"}, "preset 'a': size = 0", 9),
         ({"tail": TAIL + "[[shot]]\nname = 'a b'\n"}, "a shot needs a name", 8),
@@ -422,6 +428,17 @@ P = PASS
 )
 def test_every_mistake_has_its_line(folder, parts, words, line):
     folder.refused(words, line, **parts)
+
+
+def test_a_preset_of_a_vanished_parameter_sets_the_rest(folder):
+    tail = TAIL + "[[preset]]\nname = 'p'\n[preset.set]\nheight.rize = 1\nheight.rise = 0.25\n"
+    sketch = folder.sketch(tail=tail + "relief = 20.0\n")
+    (warning,) = sketch.warnings
+    assert warning.message == (
+        "preset 'p' leaves out height.rize: no parameter 'height.rize' in sketch s; did you mean 'height.rise'?"
+    )
+    assert (warning.line, warning.severity) == (10, "warning")
+    assert dict(sketch.with_preset("p").presets[0].values) == {"height.rise": 0.25, "relief": 20.0}
 
 
 @each(

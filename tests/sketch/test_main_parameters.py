@@ -26,8 +26,6 @@ def test_a_sketch_lists_its_main_parameters(folder):
 @pytest.mark.parametrize(
     ("main", "words"),
     [
-        ('["height.rize"]', "did you mean 'height.rise'"),
-        ('["relief"]', "no parameter 'relief'"),
         ('["height.rise", "height.rise"]', "'height.rise' appears twice"),
         ('"height.rise"', "expected a list"),
         ("[1]", "expected paths of parameters"),
@@ -35,6 +33,17 @@ def test_a_sketch_lists_its_main_parameters(folder):
 )
 def test_a_wrong_one_is_refused_at_its_line(folder, main, words):
     folder.refused(words, line=2, head=f"format = 1\nmain = {main}\n")
+
+
+@pytest.mark.parametrize(
+    ("path", "words"), [("height.rize", "did you mean 'height.rise'"), ("relief", "no parameter 'relief'")]
+)
+def test_one_that_is_gone_is_left_out_with_a_warning(folder, path, words):
+    sketch = folder.sketch(head=f'format = 1\nmain = ["{path}", "height.rise"]\n')
+    (warning,) = sketch.warnings
+    assert sketch.main == ("height.rise",)
+    assert warning.message.startswith(f"main leaves out {path}: ") and words in warning.message
+    assert warning.line == 2
 
 
 def test_a_technique_does_not_take_the_key(folder):
