@@ -21,8 +21,10 @@ from playground.api import headless
 from playground.capture.video import QUALITY, Video, alpha_note
 from playground.engine.engine import Engine
 from playground.engine.internals import opened
+from playground.engine.plain_forms import warn
 from playground.errors import ParameterError
 from playground.sketch.model import Sketch
+from playground.sketch.traits import traits_of
 
 FPS = 30
 USUAL_SIZE = (1280, 720)
@@ -43,6 +45,21 @@ class Film:
     def time(self, number: int) -> float:
         """Return the time in seconds of a picture, from 0."""
         return self.start + float(number / self.fps)
+
+    @property
+    def still(self) -> str:
+        """Return a sentence where all pictures are the same, since nothing depends on the time; else ""."""
+        traits, first, last = traits_of(self.sketch), self.time(0), self.time(self.count - 1)
+        if self.count == 1 or traits.moves or traits.devices:
+            return ""
+        times = (last, *(frame.time for frame in self.sketch.keyframes if first < frame.time < last))
+        if any(self.sketch.at(time) != self.sketch.at(first) for time in times):
+            return ""
+        what = "no keyframe changes anything" if self.sketch.keyframes else "it has no keyframes"
+        return (
+            f"all {self.count} pictures are the same: "
+            f"nothing in sketch {self.sketch.name} depends on the time, and {what}"
+        )
 
 
 def film_of(
@@ -108,10 +125,12 @@ def write_film(
     """Write a film as a video by the path's ending, whole or not at all, and return its path.
 
     Each picture is encoded as it is drawn; ``done`` is called after each, ``notice`` with a
-    sentence where alpha was dropped. The file is read back before it takes its name: the
-    pictures in it are counted. See ``Video`` for what is refused, and for what is left of it
-    when it is interrupted.
+    sentence where all are the same, and where alpha was dropped. The file is read back before it
+    takes its name: the pictures in it are counted. See ``Video`` for what is refused, and for what
+    is left of it when it is interrupted.
     """
+    if film.still:
+        notice(film.still)
     with Video(path, film.size, film.fps, film.count, quality=quality) as video:
         for picture in frames(engine, film):
             video.add(picture)
@@ -138,6 +157,7 @@ def render_video(
     ``seconds`` long, to its last keyframe unless given, from ``start``; ``size`` in pixels,
     both sides even but for ``.gif``; ``quality`` "low", "medium", "high" or "best". Without
     an ``engine`` one is opened. Needs the extra ``video`` or the program ``ffmpeg`` on PATH.
+    A warning says where all pictures are the same, and where alpha was dropped.
     ``path`` is returned; a file of that name is replaced at the end. ``sketch`` is a loaded one, or
     what ``load`` takes; ``fps`` is pictures a second.
 
@@ -147,4 +167,4 @@ def render_video(
     """
     film = film_of(sketch, seconds=seconds, fps=fps, size=size, start=start)
     with nullcontext(engine) if engine is not None else headless() as used:
-        return write_film(used, film, path, quality=quality)
+        return write_film(used, film, path, quality=quality, notice=warn)

@@ -95,6 +95,8 @@ class _Work:
 
     def pictures(self) -> Path:
         film = self._film()
+        if film.still:
+            self.notice(film.still)
         with _new_folder(self._path.with_name(f"{self._path.name}-frames")) as folder:
             self._begin(film.count)
             write_sequence(self.engine, film, folder / "%05d.png", done=self._advance)

@@ -140,6 +140,8 @@ def _make_frames(job: SeriesJob, numbers: range) -> None:
         start=moment.time,
         steps=moment.steps,
     )
+    if film.still:
+        note(film.still)
     with job.drawing("drawing", len(numbers)) as (engine, done):
         found = write_sequence(engine, film, pattern, numbers=numbers, resume=job.series.resume, done=done)
     if found.kept:

@@ -6,6 +6,7 @@ import itertools
 import shutil
 import sys
 from collections import Counter
+from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from playground.capture.film import Film, film_of, frames, render_video, write_f
 from playground.capture.sequence import render_sequence, write_sequence
 from playground.capture.video import QUALITIES, Stopped, Video, count_pictures
 from playground.engine.engine import Engine
-from playground.errors import ContextError, DataError, ParameterError
+from playground.errors import ContextError, DataError, ParameterError, PlaygroundWarning
 from playground.extras import install_command
 from playground.images.files import read_png, write_png
 
@@ -378,6 +379,30 @@ def test_why_the_program_failed_is_in_the_message(tmp_path: Path, monkeypatch: p
 def test_render_video_needs_no_engine(clock, tmp_path: Path):
     path = render_video(clock, tmp_path / "a.mp4", seconds=0.1, fps=20, size=(32, 18))
     assert decoded(path).shape == (2, 18, 32, 3)
+
+
+SENTENCE = "all 3 pictures are the same: nothing in sketch keyed depends on the time, and "
+
+
+def test_a_still_film_is_warned_of_before_it_is_made(any_engine: Engine, keyed, clock, tmp_path: Path):
+    """Films that move: by their text, and by keyframes between the first and the last picture."""
+    still = replace(keyed, keyframes=())
+    noted: list[str] = []
+    film = film_of(still, seconds=0.3, fps=10, size=(32, 18))
+    write_film(any_engine, film, tmp_path / "a.mp4", notice=noted.append)
+    pictures = decoded(tmp_path / "a.mp4")
+    assert np.ptp(pictures.astype(int), axis=0).max() == 0
+    assert noted == [film.still] == [f"{SENTENCE}it has no keyframes"]
+    moving = (
+        film_of(clock, seconds=0.3, fps=10),
+        film_of(keyed, seconds=0.3, fps=10),
+        film_of(still, seconds=0.1, fps=10),  # of one picture
+    )
+    assert [each.still for each in moving] == ["", "", ""]
+    later = film_of(keyed, seconds=0.3, fps=10, start=0.5)  # after the last keyframe
+    assert later.still == f"{SENTENCE}no keyframe changes anything"
+    with pytest.warns(PlaygroundWarning, match="all 2 pictures are the same"):
+        render_video(still, tmp_path / "b.mp4", seconds=0.1, fps=20, size=(32, 18), engine=any_engine)
 
 
 # ── numbered pictures ────────────────────────────────────────────────────────

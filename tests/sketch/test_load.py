@@ -435,7 +435,8 @@ def test_a_preset_of_a_vanished_parameter_sets_the_rest(folder):
     sketch = folder.sketch(tail=tail + "relief = 20.0\n")
     (warning,) = sketch.warnings
     assert warning.message == (
-        "preset 'p' leaves out height.rize: no parameter 'height.rize' in sketch s; did you mean 'height.rise'?"
+        "preset 'p' leaves out height.rize: no parameter 'height.rize' in sketch s; "
+        "did you mean 'height.rise'?"
     )
     assert (warning.line, warning.severity) == (10, "warning")
     assert dict(sketch.with_preset("p").presets[0].values) == {"height.rise": 0.25, "relief": 20.0}
