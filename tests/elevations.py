@@ -20,3 +20,10 @@ def write_geotiff(path: Path, size: tuple[int, int] = (61, 41), epsg: int = 3263
     hills = (500.0 + 60.0 * np.sin(south / 7.0) * np.cos(east / 9.0)).astype(np.float32)
     tifffile.imwrite(path, hills, extratags=tags, metadata=None, photometric="minisblack")
     return path
+
+
+def spans_of_tiles(heights: np.ndarray) -> np.ndarray:
+    """Return the lowest and highest heights of tiles, (ny, nx, 2), with where they end: all alike."""
+    ny, nx = heights.shape[:2]
+    ends = np.meshgrid(np.arange(1, nx + 1) / nx, np.arange(1, ny + 1) / ny)
+    return np.concatenate([heights, np.stack(ends, axis=-1)], axis=-1).astype(np.float32)

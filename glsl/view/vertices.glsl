@@ -1,8 +1,8 @@
 // view/vertices.glsl -- where the vertices of mesh "land" are.
 //
 //   gives    vertex_of_mesh, share_of_vertex
-//   needs    view/geomipmap/tiles.glsl, view/surface.glsl; clip_from_world, eye, extent and
-//            relief; in a draw's vertex stage only
+//   needs    maths/drape.glsl, view/geomipmap/tiles.glsl, view/surface.glsl; clip_from_world,
+//            eye, extent and relief; in a draw's vertex stage only
 //   units    shares 0..1 of the terrain's sides, east and north; nodes as in
 //            view/geomipmap/tiles.glsl
 //   source   Strugar 2009, "Continuous Distance-Dependent Level of Detail for Rendering
@@ -22,6 +22,7 @@
 #ifndef VIEW_VERTICES
 #define VIEW_VERTICES
 #ifdef VERTEX_STAGE
+#include "maths/drape.glsl"
 #include "view/geomipmap/tiles.glsl"
 #include "view/surface.glsl"
 

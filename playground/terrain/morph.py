@@ -23,13 +23,13 @@ NEARLY = 0.8
 
 
 def pyramid(spans: NDArray[np.float32]) -> list[NDArray[np.float32]]:
-    """Return the lowest and highest heights of squares of 1, 2, 4 ... tiles a side, up to one square."""
+    """Return the spans of squares of 1, 2, 4 ... tiles a side, up to one square: see ``boxes_of``."""
     found = [spans]
     while max(found[-1].shape[:2]) > 1:
         ny, nx = found[-1].shape[:2]
         even = np.pad(found[-1], ((0, ny % 2), (0, nx % 2), (0, 0)), mode="edge")
         four = np.stack([even[j::2, i::2] for j in (0, 1) for i in (0, 1)])
-        found.append(np.stack([four[..., 0].min(axis=0), four[..., 1].max(axis=0)], axis=-1))
+        found.append(np.concatenate([four[..., :1].min(axis=0), four[..., 1:].max(axis=0)], axis=-1))
     return found
 
 
@@ -46,9 +46,8 @@ def level_distances(
     that heights differ in a quad. A level is also drawn so far that the next one lies wholly
     within its own unmorphed part wherever the two meet.
     """
-    tiles = tables["spans"].shape[1::-1]
     pixel = abs(view.relief) * view.pixels * view.stretch / max(tolerance, 1e-9)
-    boxes = [boxes_of(each, view, CELLS * 2**k, tiles) for k, each in enumerate(squares)]
+    boxes = [boxes_of(each, view) for each in squares]
     found: list[float] = []
     for level in range(1, len(squares)):
         size = max(level - LEVELS + 1, 0)  # of the squares whose errors are known
@@ -83,7 +82,7 @@ def morph(values: Mapping[str, object], tables: Mapping[str, NDArray[np.float32]
     places: list[tuple[Piece, NDArray[np.float32]]] = []
     inside = np.ones(squares[-1].shape[:2], bool)
     for level in range(len(squares) - 1, -1, -1):
-        boxes = boxes_of(squares[level], view, CELLS * 2**level, tables["spans"].shape[1::-1])
+        boxes = boxes_of(squares[level], view)
         cut = np.zeros_like(inside)
         if level:
             cut = inside & (boxes.distances(view.eye)[0] < distances[level - 1])

@@ -12,8 +12,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from playground.terrain.tiles import CELLS
-
 FAR = 1e30
 Floats = NDArray[np.float64]
 
@@ -131,20 +129,15 @@ def _length(east: Floats, north: Floats, up: Floats) -> Floats:
     return found
 
 
-def boxes_of(
-    spans: NDArray[np.float32], view: View, side: int = CELLS, tiles: tuple[int, int] | None = None
-) -> Boxes:
-    """Return the boxes of squares whose lowest and highest heights are ``spans``, (ny, nx, 2).
+def boxes_of(spans: NDArray[np.float32], view: View) -> Boxes:
+    """Return the boxes of squares, (ny, nx): ``spans`` are their lowest and highest heights and their ends.
 
-    ``side`` is theirs in cells; ``tiles`` says how many tiles, east and north, the terrain has,
-    where that is not how many squares it has.
+    Those are shares of the terrain's sides, east and north; each begins where the one before ends.
     """
-    heights = np.moveaxis(np.clip(spans.astype(np.float64), -FAR, FAR), -1, 0) * view.relief
+    heights = np.moveaxis(np.clip(spans[..., :2].astype(np.float64), -FAR, FAR), -1, 0) * view.relief
     sides = []
-    for count, whole, extent in zip(
-        spans.shape[1::-1], tiles or spans.shape[1::-1], view.extent, strict=True
-    ):
-        edges = np.minimum(np.arange(count + 1) * side, whole * CELLS) * (extent / (whole * CELLS))
+    for ends, extent in zip((spans[0, :, 2], spans[:, 0, 3]), view.extent, strict=True):
+        edges = np.concatenate([[0.0], ends.astype(np.float64)]) * extent
         sides.append(np.stack([edges[:-1], edges[1:]]))
     # A relief below 0 turns the terrain upside down.
     return Boxes(sides[0], sides[1], heights if view.relief >= 0 else heights[::-1])

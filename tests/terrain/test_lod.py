@@ -13,6 +13,7 @@ from playground.terrain import lod, tiles, visibility
 from playground.terrain.camera import look
 
 from ..cases import each
+from ..elevations import spans_of_tiles
 
 EXTENT, RELIEF, SIZE = (1000.0, 800.0), 300.0, (640, 360)
 
@@ -97,7 +98,7 @@ def far_view() -> visibility.View:
 
 
 def boxes(ny: int, nx: int, view: visibility.View) -> visibility.Boxes:
-    return visibility.boxes_of(np.tile(np.float32([0, 1]), (ny, nx, 1)), view)
+    return visibility.boxes_of(spans_of_tiles(np.tile([0, 1], (ny, nx, 1))), view)
 
 
 def corners_of(around: visibility.Boxes) -> tuple[np.ndarray, np.ndarray]:
@@ -170,7 +171,7 @@ def test_no_place_moved_upwards_moves_further_in_the_picture_than_the_view_says(
 def test_a_box_left_out_holds_nothing_that_is_seen(seed):
     rng = np.random.default_rng(seed)
     view = view_of(random_camera(rng))
-    spans = np.sort(rng.uniform(-0.2, 1.2, (9, 11, 2)), axis=-1).astype(np.float32)
+    spans = spans_of_tiles(np.sort(rng.uniform(-0.2, 1.2, (9, 11, 2)), axis=-1))
     around = visibility.boxes_of(spans, view)
     seen, depths = around.visible(view), around.depths(view)
     share = rng.uniform(0, 1, (400, 1, 1, 3))
@@ -186,7 +187,7 @@ def test_a_box_left_out_holds_nothing_that_is_seen(seed):
 
 def test_looking_at_one_corner_leaves_most_of_the_terrain_out():
     view = view_of(Camera(45.0, 50.0, 60.0, (20.0, 20.0, 100.0)))
-    assert visibility.boxes_of(np.tile(np.float32([0, 1]), (16, 16, 1)), view).visible(view).mean() < 0.2
+    assert visibility.boxes_of(spans_of_tiles(np.tile([0, 1], (16, 16, 1))), view).visible(view).mean() < 0.2
 
 
 # ── levels ───────────────────────────────────────────────────────────────────
@@ -222,7 +223,7 @@ def test_each_tile_is_as_coarse_as_its_error_and_its_neighbours_allow(seed, tole
 def test_holes_and_heights_without_bound_stay_fine_and_break_nothing():
     view = far_view()
     spans = np.float32([[[0, 1], [0, 1e30]], [[-1e30, 0], [np.nan, np.nan]]])
-    around = visibility.boxes_of(np.nan_to_num(spans), view)
+    around = visibility.boxes_of(spans_of_tiles(np.nan_to_num(spans)), view)
     errors = np.full((2, 2, 4), 1e30, np.float32)
     assert not lod.levels_of(errors, around, view, 16.0).any()
     assert lod.tiles_at(np.zeros((2, 2), int), around, view).runs
@@ -230,7 +231,7 @@ def test_holes_and_heights_without_bound_stay_fine_and_break_nothing():
 
 def test_flat_terrain_takes_two_triangles_a_tile_at_no_tolerance_at_all():
     view = far_view()
-    tables = {"spans": np.zeros((3, 4, 2), np.float32), "errors": np.zeros((3, 4, 4), np.float32)}
+    tables = {"spans": spans_of_tiles(np.zeros((3, 4, 2))), "errors": np.zeros((3, 4, 4), np.float32)}
     chosen = lod.geomipmap({"tolerance": 0.0}, tables, view)
     runs = dict(chosen.runs)
     assert runs["fans", 4, 0] == runs["fans", 4, 1] == 6

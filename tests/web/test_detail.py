@@ -12,6 +12,7 @@ from playground.sketch.model import Camera
 from playground.terrain import camera as cameras
 from playground.terrain import lod, tiles, visibility
 
+from ..elevations import spans_of_tiles
 from .node import Node, NodeError
 
 FAR = visibility.FAR
@@ -76,7 +77,11 @@ def random_case(rng: np.random.Generator, detail: int) -> Case:
     )
     tolerance = float(rng.choice([0.0, 0.5, 2.0, 16.0, 10 ** rng.uniform(-3, 4)]))
     size = (int(rng.integers(1, 3000)), int(rng.integers(1, 2000)))
-    spans, errors = spans.astype(np.float32), errors.astype(np.float32)
+    spans, errors = spans_of_tiles(spans), errors.astype(np.float32)
+    spans[:, -1, 2] = spans[-1, :, 3] = 1.0
+    cut = rng.uniform(0.1, 1.0, 2)  # of the last tiles, which may have fewer cells
+    spans[:, :-1, 2] *= nx / (nx - 1 + cut[0])
+    spans[:-1, :, 3] *= ny / (ny - 1 + cut[1])
     case = Case(detail, tolerance, spans, errors, camera, extent, relief, size)
     return case if rng.random() < 0.7 else coming_in(rng, case)
 

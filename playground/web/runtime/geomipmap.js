@@ -12,7 +12,7 @@ import { boxesOf, depths, pixels, visible, withWalls } from "./visibility.js";
 
 /** Chooses tiles in the view, each at the coarsest level within `tolerance` pixels.
  *
- *  Of `spans` a texel is a tile's lowest and highest height, of `errors` those of levels 1 to 4 in heights.
+ *  Of `spans` see `boxesOf`, of `errors` a texel is those of levels 1 to 4 in heights.
  *  @param {{tolerance: number}} values @param {{spans: Table, errors: Table}} tables @param {View} view
  *  @returns {Chosen} */
 export function geomipmap({ tolerance }, { spans, errors }, view) {

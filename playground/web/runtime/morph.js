@@ -28,7 +28,7 @@ export function morph({ tolerance }, tables, view) {
   for (const side of SIDES) found.set(`wall 0 ${side}`, []);
   let inside = new Uint8Array(1).fill(1);
   for (let level = squares.length - 1; level >= 0; level--) {
-    const boxes = boxesOf(squares[level], view, CELLS * 2 ** level, tables.spans.size);
+    const boxes = boxesOf(squares[level], view);
     const { nx, ny } = boxes;
     const [away] = distances(boxes, view.eye);
     const seen = visible(boxes, view), walled = visible(withWalls(boxes, view), view);
@@ -56,20 +56,20 @@ export function morph({ tolerance }, tables, view) {
   };
 }
 
-/** The lowest and highest heights of squares of 1, 2, 4 ... tiles a side, up to one square.
+/** The spans of squares of 1, 2, 4 ... tiles a side, up to one square: see `boxesOf`.
  *  @param {Table} spans @returns {Table[]} */
 function pyramid(spans) {
   const found = [spans];
   for (let last = spans; Math.max(...last.size) > 1; last = found[found.length - 1]) {
     const [wide, tall] = last.size;
     const [nx, ny] = last.size.map((count) => Math.ceil(count / 2));
-    const data = new Float32Array(2 * nx * ny);
+    const data = new Float32Array(4 * nx * ny);
     for (let square = 0; square < nx * ny; square++) {
       const i = 2 * (square % nx), j = 2 * Math.floor(square / nx);
       const four = [j, Math.min(j + 1, tall - 1)].flatMap((row) =>
-        [i, Math.min(i + 1, wide - 1)].map((column) => 2 * (row * wide + column)));
-      data[2 * square] = Math.min(...four.map((at) => last.data[at]));
-      data[2 * square + 1] = Math.max(...four.map((at) => last.data[at + 1]));
+        [i, Math.min(i + 1, wide - 1)].map((column) => 4 * (row * wide + column)));
+      data[4 * square] = Math.min(...four.map((at) => last.data[at]));
+      for (const k of [1, 2, 3]) data[4 * square + k] = Math.max(...four.map((at) => last.data[at + k]));
     }
     found.push({ size: [nx, ny], data });
   }
@@ -80,18 +80,18 @@ function pyramid(spans) {
  *
  *  The next level shows through from `START` of it on, and must be within `tolerance` pixels there. A level
  *  is also drawn so far that the next one lies wholly within its own unmorphed part wherever the two meet.
- *  @param {{spans: Table, errors: Table}} tables @param {Table[]} squares @param {View} view
+ *  @param {{errors: Table}} tables @param {Table[]} squares @param {View} view
  *  @param {number} tolerance @returns {number[]} */
-function levelDistances({ spans, errors }, squares, view, tolerance) {
+function levelDistances({ errors }, squares, view, tolerance) {
   const pixel = Math.abs(view.relief) * pixels(view) * stretch(view) / Math.max(tolerance, 1e-9);
-  const boxes = squares.map((each, k) => boxesOf(each, view, CELLS * 2 ** k, spans.size));
+  const boxes = squares.map((each) => boxesOf(each, view));
   /** @type {number[]} */
   const found = [];
   for (let level = 1; level < squares.length; level++) {
     const size = Math.max(level - LEVELS + 1, 0); // of the squares whose errors are known
     const { data } = squares[size];
-    const fine = Float64Array.from({ length: data.length / 2 }, (_, square) => {
-      if (level >= LEVELS) return (data[2 * square + 1] - data[2 * square]) * pixel;
+    const fine = Float64Array.from({ length: data.length / 4 }, (_, square) => {
+      if (level >= LEVELS) return (data[4 * square + 1] - data[4 * square]) * pixel;
       const error = errors.data[4 * square + level - 1];
       return (error < FAR / 2 ? error : 0) * pixel; // holes may change their shape
     });

@@ -1,7 +1,5 @@
 // visibility.js -- finds which boxes around tiles a view sees, and how deep they lie: terrain/visibility.py.
 
-import { CELLS } from "./tiles.js";
-
 export const FAR = 1e30;
 
 /** From where, and how large, a terrain is looked at: the matrix as `look` of camera.js gives it, extent and
@@ -48,20 +46,17 @@ export function stretch(view) {
   return Math.sqrt(1 + 1 / dot(across, across) + 1 / dot(upright, upright));
 }
 
-/** The boxes of squares whose lowest and highest heights are `spans`. `side` is theirs in cells; `tiles` says
- *  how many tiles, east and north, the terrain has, where that is not how many squares it has.
- *  @param {Table} spans @param {View} view @param {number} [side] @param {number[]} [tiles]
- *  @returns {Boxes} */
-export function boxesOf(spans, view, side = CELLS, tiles = spans.size) {
-  const [nx, ny] = spans.size;
-  const [east, north] = spans.size.map((count, axis) => {
-    const cells = tiles[axis] * CELLS;
-    const edges = Array.from({ length: count + 1 }, (_, k) =>
-      Math.min(k * side, cells) * (view.extent[axis] / cells));
-    return [edges.slice(0, -1), edges.slice(1)];
+/** The boxes of squares: `spans` are the lowest and highest heights, and where they end, in shares of the
+ *  terrain's sides, east and north; each begins where the one before ends.
+ *  @param {Table} spans @param {View} view @returns {Boxes} */
+export function boxesOf({ size: [nx, ny], data }, view) {
+  const [east, north] = [nx, ny].map((count, axis) => {
+    const edges = [0, ...Array.from({ length: count }, (_, k) => data[4 * (axis ? nx * k : k) + 2 + axis])];
+    const along = edges.map((share) => share * view.extent[axis]);
+    return [along.slice(0, -1), along.slice(1)];
   });
   const heights = [0, 1].map((which) => Float64Array.from({ length: nx * ny }, (_, tile) =>
-    Math.min(Math.max(spans.data[2 * tile + which], -FAR), FAR) * view.relief));
+    Math.min(Math.max(data[4 * tile + which], -FAR), FAR) * view.relief));
   // A relief below 0 turns the terrain upside down.
   const [low, high] = view.relief >= 0 ? heights : heights.reverse();
   return { nx, ny, east, north, up: [low, high] };
