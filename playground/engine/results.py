@@ -13,7 +13,13 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from playground.gpu.shapes import Shaped
-from playground.gpu.textures import bytes_of, make_framebuffer, make_texture, read_texture
+from playground.gpu.textures import (
+    bytes_of,
+    make_framebuffer,
+    make_texture,
+    read_texture,
+    release_framebuffer,
+)
 from playground.sketch.model import Output
 
 if TYPE_CHECKING:
@@ -42,7 +48,7 @@ class Surface:
 
     def release(self) -> None:
         """Release its framebuffer, depth and, unless they are a result's, colours."""
-        self.framebuffer.release()
+        release_framebuffer(self.framebuffer)
         for colour in () if self.is_target else self.colours:
             colour.release()
         self.depth.release()
@@ -112,7 +118,7 @@ class Result:
     def release_framebuffer(self) -> None:
         """Release what draws to its textures; it is made again where one is drawn to."""
         if self._framebuffer is not None:
-            self._framebuffer.release()
+            release_framebuffer(self._framebuffer)
             self._framebuffer = None
 
     def release_copies(self) -> None:

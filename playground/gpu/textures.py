@@ -93,6 +93,17 @@ def make_framebuffer(
     return framebuffer
 
 
+def release_framebuffer(framebuffer: moderngl.Framebuffer) -> None:
+    """Release a framebuffer; one that is bound is unbound first.
+
+    moderngl binds again what is bound after each read, and a released name is GL_INVALID_OPERATION.
+    """
+    ctx = framebuffer.ctx
+    if ctx.fbo is framebuffer:
+        ctx.detect_framebuffer(0).use()
+    framebuffer.release()
+
+
 def drain(ctx: moderngl.Context) -> None:
     """Discard pending OpenGL errors."""
     for _ in range(8):  # one flag for each kind of error; a lost context answers forever

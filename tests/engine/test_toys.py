@@ -163,6 +163,30 @@ def test_a_cube_map_pass_is_read_by_direction_by_later_passes_and_by_itself(any_
     assert [first_texel(any_engine, sketch, (frame + 0.5) / 60)[0] for frame in (0, 3)] == [1, 4]
 
 
+@pytest.mark.parametrize("sampler", ["mipmap", "linear"])
+@pytest.mark.parametrize("kind", ["cubemap", "volume", "Cube A"])
+def test_a_buffer_may_be_read_beside_a_cube_or_a_volume(any_engine, opened, kind, sampler):
+    wire = {
+        "id": 41 if kind == "Cube A" else "x",
+        "type": kind if kind != "Cube A" else "cubemap",
+        "channel": 1,
+    }
+    image = (
+        "void mainImage(out vec4 c, in vec2 p) { vec2 s = p / iResolution.xy;"
+        " c = textureLod(iChannel0, s, 0.0) + 0.0 * texture(iChannel1, vec3(s, 1.0)); }"
+    )
+    fills = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0.25, 1.0); }"
+    passes = [
+        one("Image", image, read(257, sampler={"filter": sampler, "wrap": "clamp"}), wire),
+        one("Buffer A", fills, output=257),
+        *([cube(CUBE)] if kind == "Cube A" else []),
+    ]
+    found = drawn(any_engine, opened({"a.json": export(*passes)}, "a.json"))
+    rows, columns = np.mgrid[SIZE[1] - 0.5 : 0 : -1, 0.5 : SIZE[0]]
+    expected = np.dstack([columns / SIZE[0], rows / SIZE[1], np.full(rows.shape, 0.25)])
+    np.testing.assert_allclose(found[..., :3] / 255, expected, atol=0.51 / 255 + 1e-6)
+
+
 def test_pixels_of_a_cube_map_pass_are_those_of_its_face(any_engine, opened):
     where = (
         "void mainCubemap(out vec4 c, in vec2 p, in vec3 o, in vec3 d) { c = vec4(p / 1024.0, 0.0, 1.0); }"

@@ -15,6 +15,7 @@ from playground.gpu.textures import (
     read_picture,
     read_raw,
     read_texture,
+    release_framebuffer,
     split_format,
     write_texture,
 )
@@ -124,4 +125,13 @@ def test_a_framebuffer_leaves_no_error_behind(ctx):
 def test_drain_forgets_an_error(ctx):
     ctx.enable_direct(0x1234)
     drain(ctx)
+    assert ctx.error == "GL_NO_ERROR"
+
+
+def test_a_bound_framebuffer_that_is_released_breaks_no_later_read(ctx):
+    first, second = (make_texture(ctx, (2, 2), "rgba8", bytes(range(16))) for _ in range(2))
+    framebuffer = make_framebuffer(ctx, [first])
+    framebuffer.use()
+    release_framebuffer(framebuffer)
+    np.testing.assert_array_equal(read_raw(second).ravel(), np.arange(16))
     assert ctx.error == "GL_NO_ERROR"
