@@ -22,7 +22,7 @@ from playground.sketch.reserved_names import GIVEN, MATCHES, SKIPS, TOWARDS, WIR
 from playground.sketch.source import SourceText, find_include, read_source, read_text
 from playground.sketch.uniforms import read_uniforms
 
-_INCLUDE = re.compile(r"^[ \t]*#[ \t]*include[ \t]*[\"<]([^\">\n]*)", re.MULTILINE)
+_INCLUDE = re.compile(r"^[ \t]*#[ \t]*(?:pragma[ \t]+)?include[ \t]*[\"<]([^\">\n]*)", re.MULTILINE)
 _PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(kernel|source|draw|compute)\b", re.MULTILINE)
 
 

@@ -38,7 +38,7 @@ from playground.sketch.macro_calls import with_calls_joined
 
 _log = logging.getLogger(__name__)
 
-_INCLUDE = re.compile(r'\s*#\s*include\b\s*(?:"([^"]*)"|<([^>]*)>)?(.*)', re.DOTALL)
+_INCLUDE = re.compile(r'\s*#\s*(?:pragma\s+)?include\b\s*(?:"([^"]*)"|<([^>]*)>)?[\s;]*(.*)', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|source|draw|compute)\b")
 _LINE = re.compile(r"\s*#\s*line\b")
 _LIBRARY = re.compile(r"([A-Za-z_][\w.-]*)/(.+)")
@@ -298,7 +298,7 @@ class _Reader:
         self, match: re.Match[str], line: Line, path: Path, chain: tuple[str, ...], stack: tuple[str, ...]
     ) -> None:
         name = match.group(1) or match.group(2)
-        if not name or match.group(3).strip():
+        if not name or match.group(3):
             raise line.error('#include needs one file name in quotes, as #include "noise/hash.glsl"')
         self.includes += 1
         if self.includes > _MAX_INCLUDES:

@@ -198,6 +198,22 @@ def test_a_missing_include_names_the_nearest(write):
 @pytest.mark.parametrize(
     "line",
     [
+        '#include "a.glsl";',
+        '#include "a.glsl" ; // why "so"; or not',
+        "#include <a.glsl>; /* why */",
+        '# pragma include "a.glsl"',
+        "#pragma include <a.glsl>;",
+    ],
+)
+def test_an_include_as_other_tools_write_it(write, line):
+    write("a.glsl", "float a;")
+    found = read(write("main.glsl", f"{line}\nfloat b;\n"))
+    assert found.code.split() == ["float", "a;", "float", "b;"]
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
         "#include",
         "#include noise",
         '#include ""',
