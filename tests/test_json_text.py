@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
+
 import pytest
 
-from playground.json_text import DEEPEST, read_json
+from playground.json_text import DEEPEST, MAX_DIGITS, read_json
 
 
 @pytest.mark.always
@@ -24,3 +26,12 @@ def test_what_is_nested_as_deep_as_allowed_is_read():
         (found,) = found
     assert found == []
     assert read_json(b'{"a": [1, {"b": null}]}') == {"a": [1, {"b": None}]}
+
+
+@pytest.mark.parametrize("as_bytes", [False, True])
+def test_a_number_of_too_many_digits_has_a_place(as_bytes: bool):
+    text = '[1,\n "é", -' + "9" * (MAX_DIGITS + 1) + "]"
+    with pytest.raises(json.JSONDecodeError, match=f"{MAX_DIGITS + 1} digits") as caught:
+        read_json(text.encode() if as_bytes else text)
+    assert (caught.value.lineno, caught.value.colno) == (2, 8)
+    assert read_json("9" * MAX_DIGITS) == 10**MAX_DIGITS - 1

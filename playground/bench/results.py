@@ -15,6 +15,7 @@ from playground.bench.rows import Goal
 from playground.bench.timing import Samples
 from playground.errors import DataError
 from playground.images.files import replacing
+from playground.json_text import read_json
 from playground.paths import shown
 
 FORMAT = 1
@@ -89,7 +90,7 @@ def write(results: Results, path: Path) -> None:
 def read(path: Path) -> Results:
     """Read what ``write`` wrote; raise ``DataError`` for any other file."""
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found = read_json(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise DataError("no such file; expected results of playground bench", file=shown(path)) from None
     except (ValueError, OSError) as error:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from playground.errors import ParameterError, nearest
 from playground.sketch.assign import TERRAIN_KEYS, check_value, resolve, value_of, values_of
 from playground.sketch.model import Parameter, Sketch, Value
-from playground.sketch.values import coerce, expected, is_whole, length_of, write
+from playground.sketch.values import coerce, expected, is_whole, length_of, read_whole, write
 
 USUAL_STEPS = 9
 MOST_PICTURES = 400
@@ -135,9 +135,9 @@ def _range(given: str, steps: int, parameter: Parameter | None, part: int | None
     ends, _, count = given.partition(",")
     low, _, high = ends.partition("..")
     if count.strip():
-        if not count.strip().isdecimal():
+        if (whole := read_whole(count)) is None:
             raise ParameterError(f"'{count.strip()}' steps: expected a whole number from 2")
-        steps = int(count)
+        steps = whole
     if not 2 <= steps <= MOST_PICTURES:
         raise ParameterError(f"{steps} steps: expected 2 to {MOST_PICTURES}")
     if parameter is not None and (

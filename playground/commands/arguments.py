@@ -12,6 +12,7 @@ import typer
 
 from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.sketch.model import DRIVERS, LARGEST_SIDE, Shot, Sketch
+from playground.sketch.values import read_whole
 
 if TYPE_CHECKING:
     from playground.engine.engine import Engine
@@ -98,9 +99,10 @@ def read_steps(texts: Sequence[str] | None) -> dict[str, int]:
     found: dict[str, int] = {}
     for text in texts or ():
         path, _, count = text.partition("=")
-        if not path.strip() or not count.strip().isdecimal():
+        steps = read_whole(count)
+        if not path.strip() or steps is None:
             raise ParameterError(f"--steps {text}: expected a pass and a whole number, as height=9")
-        found[path.strip()] = int(count)
+        found[path.strip()] = steps
     return found
 
 
@@ -109,7 +111,7 @@ def read_pixels(text: str | None, most: int = LARGEST_SIDE) -> tuple[int, int] |
     if text is None:
         return None
     width, _, height = text.lower().replace("×", "x").partition("x")
-    sides = [int(side) if side.strip().isdecimal() else 0 for side in (width, height)]
+    sides = [read_whole(side) or 0 for side in (width, height)]
     if not all(1 <= side <= most for side in sides):
         raise ParameterError(f"--size {text}: expected width and height, 1 to {most} pixels, as 1280x720")
     return sides[0], sides[1]

@@ -12,6 +12,7 @@ from playground.commands import options
 from playground.commands.arguments import FAILED, Renderer, help_text, read_option, within
 from playground.commands.options import flag, positional, value
 from playground.errors import ParameterError
+from playground.sketch.values import read_whole
 from playground.terminal import note, print_json, print_table, progress
 
 if TYPE_CHECKING:
@@ -115,7 +116,7 @@ def bench(
 
 
 def _side(text: str) -> int:
-    found = int(text) if text.isdecimal() else 0
+    found = read_whole(text) or 0
     if not 17 <= found <= LARGEST:
         raise ParameterError(f"--size {text}: expected texels a side, 17 to {LARGEST}, as 1025")
     return found

@@ -313,7 +313,7 @@ def _holds_passes(path: Path) -> bool:
 def _is_ours(path: Path) -> bool:
     try:
         table = tomllib.loads(read_text(path))
-    except (SketchError, tomllib.TOMLDecodeError):
+    except (SketchError, ValueError, RecursionError):
         return True  # so that it is reported
     return "pass" in table or "format" in table or "view" in table
 

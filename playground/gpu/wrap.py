@@ -39,7 +39,7 @@ CORNER = "k_corner"
 
 NOTHING_SKIPPED = f"bool {SKIPS}() {{ return false; }}"
 """What a kernel calls where none of it is skipped."""
-_NUMBER = re.compile(r"#\s*version\s+(\d+)\s*(\w*)")
+_NUMBER = re.compile(r"#\s*version\s+(\d{1,9})\d*\s*(\w*)")
 _PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
 _PROTOTYPE = re.compile(r"^(\w+)\s+(\w+)\s*\(([^()]*)\)\s*;", re.MULTILINE)
 

@@ -82,7 +82,7 @@ def _block_words(piece: Piece) -> int:
 def _table(piece: Piece) -> Mapping[str, Any]:
     try:
         return tomllib.loads(piece.inside)
-    except tomllib.TOMLDecodeError:  # reading the lesson says what is wrong, and where
+    except (ValueError, RecursionError):  # reading the lesson says what is wrong, and where
         return {}
 
 

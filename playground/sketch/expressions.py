@@ -23,7 +23,7 @@ from playground.sketch.parameter import LARGEST_SIDE
 
 Number = int | float | Fraction
 _LIMIT = 2**62
-_LONGEST = 500
+LONGEST = 500
 FRAME_RATE = 60  # frames of a sketch's state in a second
 CLOCKS = ("time", "frames")
 """Names that follow the time: seconds, and the frames that are to run: see ``frames_at``."""
@@ -184,7 +184,7 @@ def _either(text: str, variable: str, limit: int) -> tuple[int, ...]:
     found: set[int] = set()
     for part in text.split(" or "):
         expression, _, most = part.partition(" up to ")
-        if most and not most.strip().isdecimal():
+        if most and not (most.strip().isdecimal() and len(most) < LONGEST):
             raise ExpressionError(f"'{part}': expected a whole number after 'up to'")
         found.update(_values(expression, variable, min(limit, int(most)) if most else limit))
     return tuple(sorted(found))
@@ -211,8 +211,8 @@ def _values(text: str, variable: str, limit: int) -> tuple[int, ...]:
 @lru_cache(maxsize=1024)
 def parsed(text: str) -> ast.expr:
     """Parse an expression, which may be no expression of these; raise ``ExpressionError``."""
-    if len(text) > _LONGEST:
-        raise ExpressionError(f"an expression may not be longer than {_LONGEST} characters")
+    if len(text) > LONGEST:
+        raise ExpressionError(f"an expression may not be longer than {LONGEST} characters")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # "1 if 2else 3" is deprecated: no line on the console for it

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from playground.errors import Diagnostic, SketchError, nearest
+from playground.json_text import long_number
 from playground.paths import shown
 from playground.sketch.source import read_text
 from playground.sketch.toml_places import Place, TomlPlaces
@@ -63,7 +64,9 @@ class TomlFile:
         except RecursionError:
             raise SketchError("not TOML: nested too deeply", file=self.path) from None
         except ValueError as error:  # a number of thousands of digits, a date that is none
-            raise SketchError(f"not TOML: {error}", file=self.path) from None
+            message, _, at = long_number(text, error)
+            line = self._before + text.count("\n", 0, at) + 1 if at else 0
+            raise SketchError(f"not TOML: {message}", file=self.path, line=line) from None
 
     def _syntax(self, error: tomllib.TOMLDecodeError, text: str) -> SketchError:
         message = str(error)

@@ -18,6 +18,7 @@ from playground.sketch.parameter import Parameter, Value, Widget
 from playground.sketch.widgets import VECTORS, WIDGETS
 
 _LENGTH = {vector: int(vector[-1]) for vector in VECTORS}
+_MAX_DIGITS = 18  # those of 64 bits
 _TRUE = {
     "true": True,
     "on": True,
@@ -152,6 +153,12 @@ def shortest(value: Value) -> Value:
     if isinstance(value, tuple):
         return tuple(tidied(n) if isinstance(n, float) else n for n in value)
     return tidied(value) if isinstance(value, float) else value
+
+
+def read_whole(text: str) -> int | None:
+    """Return the number that a text of digits is; None for any other text, and for one of too many digits."""
+    text = text.strip()
+    return int(text) if text.isdecimal() and len(text) <= _MAX_DIGITS else None
 
 
 def spell(value: object) -> str:

@@ -234,7 +234,7 @@ def _counted(path: Path) -> frozenset[str]:
                     # Of a technique in the technique any pass may be the kernel's.
                     if used == path.stem or not (folder / f"{used}.glsl").is_file():
                         found.add(target.rpartition(".")[2])
-        except (OSError, ValueError, AttributeError, KeyError, TypeError, PlaygroundError):
+        except (OSError, ValueError, AttributeError, KeyError, TypeError, RecursionError, PlaygroundError):
             continue  # it is not there, or reading the technique itself says what is wrong with it
     return frozenset(found)
 

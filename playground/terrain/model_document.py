@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import base64
 import binascii
-import json
 import struct
 from collections.abc import Iterator, Mapping
 from typing import Any, TypeGuard
 
 import numpy as np
 from numpy.typing import NDArray
+
+from playground.json_text import read_json
 
 MOST_BYTES = 32 * 2**20
 MOST_TRIANGLES = 2**16
@@ -87,8 +88,8 @@ def read_document(data: bytes) -> Document:
     else:
         text = data
     try:
-        document = json.loads(text.decode("utf-8"))
-    except (ValueError, RecursionError):
+        document = read_json(text.decode("utf-8"))
+    except ValueError:
         raise WrongModel("is neither GLB nor JSON; glTF 2.0, .glb or .gltf, was expected") from None
     if not isinstance(document, dict) or not isinstance(document.get("asset"), dict):
         raise WrongModel("is JSON, but no glTF: it has no 'asset'")

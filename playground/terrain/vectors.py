@@ -6,7 +6,6 @@ Format"; its forerunner of 2008 for "crs"; OGC 06-103r4 (2011), clause 8, for th
 
 from __future__ import annotations
 
-import json
 import re
 import struct
 from collections.abc import Iterator
@@ -21,6 +20,7 @@ from numpy.typing import NDArray
 
 from playground.errors import DataError
 from playground.images.files import checked_file, reason
+from playground.json_text import read_json
 from playground.regular_file import irregularity, open_regular, read_regular
 from playground.sketch.sidecars import sidecar_places
 from playground.terrain.gis import advice
@@ -106,8 +106,8 @@ def _geojson(path: Path) -> Vectors:
             file=path,
         )
     try:
-        document = json.loads(read_regular(path))
-    except (ValueError, RecursionError) as error:
+        document = read_json(read_regular(path))
+    except ValueError as error:
         raise DataError(f"is not GeoJSON: {reason(error)}", file=path) from None
     if not isinstance(document, dict) or not isinstance(document.get("type"), str):
         raise DataError('is not GeoJSON: expected an object that has a "type"', file=path)

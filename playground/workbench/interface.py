@@ -15,6 +15,7 @@ from pathlib import Path
 from playground.errors import PlaygroundError
 from playground.folders import state_folder
 from playground.images.files import replacing
+from playground.json_text import read_json
 from playground.regular_file import read_regular
 from playground.workbench.notices import Notices
 
@@ -57,9 +58,9 @@ def remembered_size(folder: Path | None = None) -> InterfaceSize:
     try:
         if file.stat().st_size > _LARGEST:
             return InterfaceSize(file=file)
-        table = json.loads(read_regular(file).decode())
+        table = read_json(read_regular(file).decode())
         size = float(table["size"]) if table["format"] == FORMAT else 1.0
-    except (OSError, ValueError, TypeError, KeyError, OverflowError, RecursionError):
+    except (OSError, ValueError, TypeError, KeyError, OverflowError):
         return InterfaceSize(file=file)
     return InterfaceSize(size if size in SIZES else 1.0, file)
 

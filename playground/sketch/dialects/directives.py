@@ -5,12 +5,14 @@ A driver is given a uniform in the place of ``#iUniform`` and nothing in that of
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass, field, replace
 
 from playground.errors import nearest
 from playground.sketch.model import Sampling
 from playground.sketch.source import Line, SourceText
+from playground.sketch.values import spell
 
 KEYBOARD = "iKeyboard"
 MOST_CHANNELS = 10
@@ -133,7 +135,7 @@ def _uniform(line: Line, text: str) -> Line:
         raise line.error(f"#iUniform of the type '{kind}'{hint}", line.text.find(kind) + 1)
     glsl = _COLOURS.get(kind, kind)
     bounds = [_float(line, word) for word in (low, high)] if low else []
-    value = _initial(kind, glsl, initial, bounds)
+    value = _initial(line, kind, glsl, initial, bounds)
     calls = ["colour"] if kind in _COLOURS else []
     if len(bounds) == 2 and bounds[0] < bounds[1] and kind not in _COLOURS and glsl != "bool":
         calls.append(f"slider({bounds[0]:g}, {bounds[1]:g})")
@@ -143,14 +145,14 @@ def _uniform(line: Line, text: str) -> Line:
     return replace(line, code=f"uniform {glsl} {name}{value};", comment=note)
 
 
-def _initial(kind: str, glsl: str, initial: str | None, bounds: list[float]) -> str:
+def _initial(line: Line, kind: str, glsl: str, initial: str | None, bounds: list[float]) -> str:
     """Return " = value" in GLSL, within the bounds; "" where there is none."""
     if initial is None:
         return ""
     if glsl == "bool" or not (bounds or glsl != kind or "vec" in glsl):
         return f" = {initial}"
     numbers = initial.partition("(")[2] if "(" in initial else initial
-    given = [float(number) for number in _NUMBER.findall(numbers)]
+    given = [_float(line, number) for number in _NUMBER.findall(numbers)]
     if len(bounds) == 2 and bounds[0] < bounds[1]:
         given = [min(max(number, bounds[0]), bounds[1]) for number in given]
     whole = glsl in ("int", "uint") or glsl.startswith(("i", "u"))
@@ -161,7 +163,11 @@ def _initial(kind: str, glsl: str, initial: str | None, bounds: list[float]) -> 
 
 
 def _float(line: Line, text: str) -> float:
+    text = text.strip()
     try:
-        return float(text.strip().rstrip("fF"))
+        number = float(text.rstrip("fF"))
     except ValueError:
-        raise line.error(f"expected a number, not '{text.strip()}'", line.text.find(text) + 1) from None
+        number = math.nan
+    if not abs(number) < 1e30:
+        raise line.error(f"expected a number, not {spell(text)}", line.text.find(text) + 1)
+    return number

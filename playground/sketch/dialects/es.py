@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 
 from playground.sketch.source import Line, SourceText
 
-_VERSION = re.compile(r"\s*#\s*version\s+(\d+)\s*(\w*)")
+_VERSION = re.compile(r"\s*#\s*version\s+(\d{1,9})\d*\s*(\w*)")
 _EXTENSION = re.compile(r"\s*#\s*extension\b")
 _PRAGMA = re.compile(r"\s*#\s*pragma\b")
 _DIRECTIVE = re.compile(r"\s*#")

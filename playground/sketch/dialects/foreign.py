@@ -31,7 +31,7 @@ from playground.sketch.uniforms import read_uniforms
 
 _COMMENTED_FILE = re.compile(r"^\s*([^\s\"'<>|*?]+\.(?:png|jpe?g|webp|tiff?))\b", re.IGNORECASE)
 _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
-_COUNT = re.compile(r"\[\s*(\d+)\s*\]")
+_COUNT = re.compile(r"\[\s*(\d{1,9})\s*\]")
 _MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
 _MODEL = "MODEL_"
 _SHADOW_MAP = "#define LIGHT_SHADOWMAP "

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from playground.errors import Diagnostic, ShaderError, nearest
+from playground.json_text import long_number
+from playground.paths import shown
 from playground.sketch.source import Line, SourceText
 
 _BEGIN = re.compile(r"(?:\s|//[^\n]*\n)*/\*\s*(?=\{)")
@@ -91,7 +93,7 @@ def read_header(source: SourceText) -> Header:
     lenient = text[:start] + _LENIENT.sub(_strict, text[start:])
     try:
         table, _ = json.JSONDecoder(strict=False).raw_decode(lenient, start)
-    except (json.JSONDecodeError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise _wrong(error, lenient, lines) from None
     return Header(table, text, lines)
 
@@ -107,7 +109,7 @@ def number_of(value: object) -> float | None:
     """Return a number, also one that is written as a text; None for anything else."""
     try:
         found = float(value) if isinstance(value, int | float | str) else None
-    except ValueError:
+    except (ValueError, OverflowError):
         return None
     return found if found is not None and abs(found) < 1e30 else None
 
@@ -135,8 +137,12 @@ def _strict(found: re.Match[str]) -> str:
 
 
 def _wrong(error: ValueError | RecursionError, text: str, lines: tuple[Line, ...]) -> ShaderError:
-    if not isinstance(error, json.JSONDecodeError):
+    if isinstance(error, RecursionError):
         return lines[0].error("the description nests too deeply to be read")
+    if not isinstance(error, json.JSONDecodeError):
+        message, _, at = long_number(text, error)
+        line = lines[text.count("\n", 0, at)]
+        return ShaderError(f"the description holds {message}", file=shown(line.file), line=line.number)
     at = min(error.pos, len(text.rstrip()))
     line = lines[text.count("\n", 0, at)]
     found = text[at : at + 1]

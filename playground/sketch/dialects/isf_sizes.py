@@ -8,7 +8,8 @@ from collections.abc import Mapping
 
 from playground.errors import nearest
 from playground.sketch import expressions
-from playground.sketch.expressions import ExpressionError
+from playground.sketch.expressions import LONGEST, ExpressionError
+from playground.sketch.values import spell
 
 _NAME = re.compile(r"\$([A-Za-z_]\w*)")
 _SIZES = {"WIDTH": "size.x", "HEIGHT": "size.y"}
@@ -46,6 +47,8 @@ def translated(text: object, names: Mapping[str, str]) -> str:
         return _SIZES.get(word) or names[word]
 
     plain = _NAME.sub(name, written)
+    if len(plain) > LONGEST:
+        raise ExpressionError(f"{spell(written)} is longer than {LONGEST} characters")
     try:
         tree = ast.parse(plain, mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from playground.errors import SketchError
+from playground.json_text import read_json
 from playground.paths import shown
 from playground.sketch.allowed_files import leads_outside
 from playground.sketch.dialects.reading import Files
@@ -44,7 +45,7 @@ _PREVIEW = re.compile(r"/previz/(buffer|cubemap)(\d\d)\.png$")
 _PHOTO = re.compile(r"\.(?:jpe?g|webp)$", re.IGNORECASE)
 _LETTERS = "ABCDEFGH"
 _LETTERED = re.compile(r"\s*(?:buf(?:fer)?|cube(?:map)?)?[\s_]*([a-h])\s*$", re.IGNORECASE)
-_CHANNELS = 4
+_CHANNELS = ("0", "1", "2", "3")
 _TYPES = {
     "cubemap": ("samplerCube", "sky"),
     "volume": ("sampler3D", "volume"),
@@ -99,12 +100,12 @@ def shaders(files: Files) -> Sequence[Shader]:
 def _table(files: Files) -> Mapping[str, Any]:
     """Return the table that holds ``renderpass``."""
     try:
-        found = json.loads(files.text(), strict=False)
+        found = read_json(files.text(), strict=False)
     except json.JSONDecodeError as error:
         message = f"damaged JSON: {error.msg[:1].lower()}{error.msg[1:]}"
         raise SketchError(message, file=shown(files.path), line=error.lineno, column=error.colno) from None
-    except RecursionError:
-        raise _wrong(files, "damaged JSON: it nests too deeply") from None
+    except ValueError as error:
+        raise _wrong(files, f"damaged JSON: {error}") from None
     several = found if isinstance(found, list) else [found]
     tables = [one.get("Shader", one) for one in several if isinstance(one, dict)]
     shaders = [one for one in tables if isinstance(one, dict) and isinstance(one.get("renderpass"), list)]
@@ -159,7 +160,7 @@ def _inputs(
     found: dict[str, ToyInput] = {}
     for given in one.inputs:
         number = given.get("channel", 0)
-        if not str(number).isdigit() or int(number) >= _CHANNELS:
+        if str(number) not in _CHANNELS:
             raise _wrong(files, f"{one.label}: an input for channel {number}; there are 0 to 3")
         found[f"iChannel{int(number)}"] = _input(files, one, int(number), given, written, drawn)
     return list(found.items())

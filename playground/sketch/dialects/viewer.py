@@ -23,7 +23,7 @@ from playground.sketch.source import SourceText
 LEVELS = 12
 """The most that a pyramid goes down."""
 
-_PASS = re.compile(r"(BUFFER|DOUBLE_BUFFER|(?:CONVOLUTION_)?PYRAMID|FLOOD)_(\d+)|(CONVOLUTION_PYRAMID)")
+_PASS = re.compile(r"(BUFFER|DOUBLE_BUFFER|(?:CONVOLUTION_)?PYRAMID|FLOOD)_(\d{1,9})|(CONVOLUTION_PYRAMID)")
 _KINDS = {"BUFFER": "buffer", "DOUBLE_BUFFER": "double_buffer", "FLOOD": "flood"}  # all others: pyramid
 _ORDER = ("buffer", "double_buffer", "pyramid", "flood")
 _SAMPLERS = {
@@ -33,11 +33,12 @@ _SAMPLERS = {
     "flood": ("u_flood",),
 }
 _PYRAMIDS, _FLOODS = ("PYRAMID_ALGORITHM", "CONVOLUTION_PYRAMID_ALGORITHM"), ("FLOOD_ALGORITHM",)
-_SIZE = re.compile(r"\s*(?:(\d+)\s*x\s*(\d+)|(\d*\.\d+)(?:\s*x\s*(\d*\.\d+))?)(?![\w.])")
+_SIZE = re.compile(r"\s*(?:(\d{1,9})\d*\s*x\s*(\d{1,9})\d*|(\d*\.\d+)(?:\s*x\s*(\d*\.\d+))?)(?![\w.])")
 _BUFFER = Sampling("linear", "repeat")
 _LEVEL = Sampling("nearest", "clamp")
 _SEED = Sampling("nearest", "repeat")  # a round reads texels: between two of them there is no place
 _SCENE = "scene"
+_MAX_FACTOR = 1e6  # of a pass's size to the picture's
 
 Size = tuple[str, str] | None
 
@@ -183,7 +184,7 @@ class _Viewer:
             if declared.search(line.code) and (match := _SIZE.match(line.comment)):
                 if match[1]:
                     return f"max({int(match[1])}, 1)", f"max({int(match[2])}, 1)"
-                wide, tall = float(match[3]), float(match[4] or match[3])
+                wide, tall = (min(float(text), _MAX_FACTOR) for text in (match[3], match[4] or match[3]))
                 return f"max(floor(size.x * {wide!r}), 1)", f"max(floor(size.y * {tall!r}), 1)"
         return None
 
