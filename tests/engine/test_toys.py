@@ -504,6 +504,28 @@ def test_a_directive_that_cannot_be_read_is_one_sentence_at_its_line(opened, lin
     assert words in found.message
 
 
+@pytest.mark.parametrize(
+    ("line", "names"),
+    [
+        ("#iFirstPersonControls", ["#iFirstPersonControls", "iViewMatrix"]),
+        ('#iVertex "file://a.vert"', ["#iVertex", "vertex shader"]),
+        ("#iSomethingNew 3", ["#iSomethingNew", "not known"]),
+        ("#StrictCompatibility", []),
+    ],
+)
+def test_a_directive_that_does_nothing_here_is_named_once(any_engine, opened, line, names):
+    text = (
+        "void mainImage(out vec4 c, in vec2 p) { c = iViewMatrix * vec4(p / iResolution.xy, 0.25, 1.0); }\n"
+    )
+    sketch = opened({"a.frag": f"{line}\n{text}"}, "a.frag")
+    found = drawn(any_engine, sketch)[..., :3] / 255
+    rows, columns = np.mgrid[SIZE[1] - 0.5 : 0 : -1, 0.5 : SIZE[0]]
+    expected = np.dstack([columns / SIZE[0], rows / SIZE[1], np.full(rows.shape, 0.25)])
+    np.testing.assert_allclose(found, expected, atol=0.51 / 255 + 1e-6)
+    said = notes(sketch)
+    assert len(said) == bool(names) and all(name in said[0] for name in names)
+
+
 def test_an_image_of_a_channel_has_its_own_size_and_filters(any_engine, opened, folder):
     pixels = np.zeros((2, 4, 4), np.uint8)
     pixels[..., 3], pixels[:, 2:, 0], pixels[0, :, 1] = 255, 255, 255

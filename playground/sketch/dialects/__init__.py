@@ -30,13 +30,18 @@ _MOST = 64
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _ISF = re.compile(
-    r"(?:\s|//[^\n]*\n)*/\*\s*\{(?:(?!\*/).)*"
-    r'"(?:INPUTS|PASSES|ISFVSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS)"',
+    r"(?:\s|//[^\n]*\n)*/\*\s*\{(?:\s*\}|(?:(?!\*/).)*"
+    r'"(?:INPUTS|PASSES|ISFVSN|VSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS|DESCRIPTION|CREDIT)"\s*:)',
     re.DOTALL,
+)
+_DESCRIBED = re.compile(r"(?:\s|//[^\n]*\n)*/\*\s*\{")
+_ISF_NAME = re.compile(
+    r"\b(?:(?:isf|vv)_FragNormCoord|IMG_(?:NORM_|THIS_|THIS_NORM_)?PIXEL|IMG_SIZE|RENDERSIZE|FRAMEINDEX"
+    r"|PASSINDEX|TIME|TIMEDELTA|DATE)\b"
 )
 _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
-_DIRECTIVE = re.compile(r"^[ \t]*#(?:iChannel\d|iUniform|iKeyboard)\b", re.MULTILINE)
+_DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(?:i[A-Z]\w*|StrictCompatibility)\b", re.MULTILINE)
 _MAIN = re.compile(r"\bmain\s*\(")
 _MAIN_IMAGE = re.compile(r"\bmainImage\b")  # a macro may stand for it
 _SOUND = re.compile(r"\bmain(Sound|VR|Cubemap)\s*\(")
@@ -92,8 +97,13 @@ def _without_picture(files: Files) -> Sequence[Shader]:
     return shadertoy_folder.shaders(files) if shadertoy_folder.has_more(files) else shadertoy.refused(files)
 
 
+def _is_isf(text: str, code: str) -> bool:
+    """Return whether a text begins with ISF's description, or with another and reads a name of ISF's."""
+    return bool(_ISF.match(text) or (_DESCRIBED.match(text) and _ISF_NAME.search(code)))
+
+
 DIALECTS = (
-    Dialect("isf", lambda text, code: _ISF.match(text), _isf),
+    Dialect("isf", _is_isf, _isf),
     Dialect("export", lambda text, code: _EXPORT.match(text), _export),
     Dialect(OWN, lambda text, code: _OWN_PRAGMA.search(code)),
     Dialect("vscode", lambda text, code: _DIRECTIVE.search(code), _vscode),

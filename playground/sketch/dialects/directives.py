@@ -17,11 +17,10 @@ from playground.sketch.values import spell
 KEYBOARD = "iKeyboard"
 MOST_CHANNELS = 10
 
-_DIRECTIVE = re.compile(
-    r"\s*#\s*(iChannel\d?|iUniform|iKeyboard|i[A-Z]\w*|StrictCompatibility)\b(.*)", re.DOTALL
-)
+_STRICT = "StrictCompatibility"  # mainImage is what runs: so it is here wherever a text has one
+_DIRECTIVE = re.compile(rf"\s*#\s*(i[A-Z]\w*|{_STRICT})\b(.*)", re.DOTALL)
 _KEYBOARD = re.compile(rf"\s*#\s*{KEYBOARD}\b")
-_CHANNEL = re.compile(r'\s*#\s*iChannel(\d)\s*(?:::\s*(\w+)\s*)?"([^"]*)"')
+_CHANNEL = re.compile(r'\s*#\s*iChannel(\d)\s*(?:::\s*(\w+)\s*)?(["\'])(.*?)\3')
 _UNIFORM = re.compile(
     r"\s*(\w+)\s+([A-Za-z_]\w*)\s*(?:=\s*(.+?)\s*)?(?:\bin\s*\{\s*([^,{}]+),\s*([^,{}]+)\})?"
     r"\s*(?:\bstep\s+(\S+))?\s*;?\s*$"
@@ -33,6 +32,12 @@ _FILTERS = (
     "Nearest", "Linear", "NearestMipMapNearest", "NearestMipMapLinear", "LinearMipMapNearest",
     "LinearMipMapLinear",
 )  # fmt: skip
+_NOT_DONE = {
+    "iFirstPersonControls": ": no key moves a camera here, so iViewMatrix stays the identity that it begins as",
+    "iVertex": ": no vertex shader is run here, so the picture is drawn over the whole view",
+    "iSound": " is sound, which is not drawn",
+}
+"""What is not as in the extension, by directive: the rest of a sentence."""
 _CHOICES = {
     "MinFilter": _FILTERS,
     "MagFilter": ("Nearest", "Linear"),
@@ -91,8 +96,9 @@ def read_directives(source: SourceText) -> Read:
         elif match.group(1) == KEYBOARD:
             lines.append(replace(line, code=""))
         else:
-            if match.group(1) != "StrictCompatibility":
-                notes.append((line, f"#{match.group(1)} is not known here, and does nothing"))
+            name = match.group(1)
+            if name != _STRICT:
+                notes.append((line, f"#{name}{_NOT_DONE.get(name, ' is not known here, and does nothing')}"))
             lines.append(replace(line, code=""))
     return Read(SourceText(source.path, tuple(lines), source.files), channels, tuple(notes))
 
@@ -106,7 +112,7 @@ def _channel(line: Line, channels: dict[int, Channel]) -> None:
     match = _CHANNEL.match(line.text)
     if match is None:
         raise line.error('expected #iChannel0 "file://picture.png", or #iChannel0::WrapMode "Repeat"')
-    number, name, text = int(match.group(1)), match.group(2), match.group(3)
+    number, name, text = int(match.group(1)), match.group(2), match.group(4)
     channel = channels.setdefault(number, Channel(line))
     if not name:
         channel.path, channel.line = text, line
