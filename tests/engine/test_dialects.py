@@ -360,3 +360,73 @@ def test_bonzomatic_s_sound_may_be_multiplied_as_its_shaders_do(any_engine, fold
     )
     row = drawn(any_engine, folder.write("b.frag", text), 0.5)[0, :, 0]
     assert 50 < row.max() and (row < 255).mean() > 0.9
+
+
+# ── packing ──────────────────────────────────────────────────────────────────
+
+SIDE = 256
+INDEX = "uint i = uint(p.x) + 256u * uint(p.y);"
+BYTES = "c = vec4(uvec3(bits, bits >> 8, bits >> 16) & 255u, 255.0) / 255.0;"
+
+
+def bits_of(engine, folder, expression, shift=0, head=""):
+    """Return bits of a uint for each 16-bit number i, by a shader that computes it."""
+    text = f"{head}void mainImage(out vec4 c, in vec2 p) {{ {INDEX} uint bits = {expression} >> {shift}; {BYTES} }}"
+    found = drawn(engine, folder.write("p.frag", text), size=(SIDE, SIDE))[::-1, :, :3].astype(np.uint32)
+    return ((found[..., 2] << 16 | found[..., 1] << 8 | found[..., 0]) << shift).ravel()
+
+
+@pytest.mark.parametrize("head", ["", "#version 300 es\nprecision highp float;\n"])
+def test_half_floats_are_packed_to_the_bit(any_engine, folder, head):
+    numbers = np.arange(2**16, dtype=np.uint32)
+    halves = numbers.astype(np.uint16).view(np.float16)
+    low, high = (
+        bits_of(any_engine, folder, "floatBitsToUint(unpackHalf2x16(i).x)", shift, head) for shift in (0, 24)
+    )
+    found = (high | low).view(np.float32)
+    np.testing.assert_array_equal(np.isnan(found), np.isnan(halves))
+    there = ~np.isnan(halves)
+    np.testing.assert_array_equal((high | low)[there], halves.astype(np.float32).view(np.uint32)[there])
+    for rest in (0, 1, 0x0FFF, 0x1000, 0x1001, 0x3000, 0xFFFF):
+        with np.errstate(all="ignore"):
+            values = (numbers << 16 | rest).view(np.float32)
+            expected = values.astype(np.float16)
+        pair = f"packHalf2x16(vec2(1.0, uintBitsToFloat(i << 16 | {rest}u)))"
+        found = bits_of(any_engine, folder, pair, 8, head) | bits_of(any_engine, folder, pair, 0, head)
+        assert set(found & 0xFFFF) == {0x3C00}, "1.0 in the lower half"
+        found = (found >> 16).astype(np.uint16)
+        np.testing.assert_array_equal(np.isnan(found.view(np.float16)), np.isnan(values))
+        np.testing.assert_array_equal(found[~np.isnan(values)], expected.view(np.uint16)[~np.isnan(values)])
+
+
+@pytest.mark.parametrize(("kind", "most", "low"), [("Unorm", 65535, 0), ("Snorm", 32767, -1)])
+def test_normalised_integers_are_packed_to_the_bit(any_engine, folder, kind, most, low):
+    number = np.float32
+    values = (np.arange(2**16, dtype=number) - number(20000)) * number(2**-15)
+    codes = np.rint(np.clip(values, low, 1).astype(number) * number(most)).astype(np.int32)
+    pair = f"pack{kind}2x16(vec2(1.0, (float(i) - 20000.0) * exp2(-15.0)))"
+    found = bits_of(any_engine, folder, pair, 8) | bits_of(any_engine, folder, pair, 0)
+    np.testing.assert_array_equal(found & 0xFFFF, most)
+    np.testing.assert_array_equal(found >> 16, codes & 0xFFFF)
+    stored = np.arange(2**16).astype(np.uint16)
+    stored = stored if low == 0 else stored.view(np.int16)
+    expected = np.clip(stored.astype(number) / number(most), low, 1)
+    back = f"floatBitsToUint(unpack{kind}2x16(i << 16).y)"
+    found = bits_of(any_engine, folder, back, 24) | bits_of(any_engine, folder, back, 0)
+    np.testing.assert_allclose(found.view(number), expected, rtol=3e-7)  # of a quotient: 2.5 ULP
+
+
+def test_a_text_s_own_packing_is_its_own(any_engine, ctx, folder):
+    own = "uint packHalf2x16(vec2 v) { return 7u; }\nvec2 unpackHalf2x16(uint u) { return vec2(float(u)); }\n"
+    for head in ("", "#define packUnorm2x16(v) 7u\n"):
+        called = "packUnorm2x16" if head else "packHalf2x16"
+        text = TOY.format(f"vec4(float({called}(vec2(1.0))) / 255.0)")
+        picture = drawn(any_engine, folder.write("own.frag", (head or own) + text))
+        assert set(picture[..., 0].ravel()) == {7}
+    for version, packs in ((330, True), (420, False)):
+        text = f"#version {version}\nout vec4 o;\nuniform vec2 u_resolution;\nvoid main() {{ o = vec4(unpackHalf2x16(3u), u_resolution); }}\n"
+        sketch = load(folder.write("v.frag", text.replace("u_resolution", "u_tex0Resolution")))
+        (kernel,) = [k for _, k in kernels_of(sketch.graph.find("view").technique) if k.dialect]
+        assert ("packing.glsl" in kernel.helpers) == packs
+        stages = wrap(kernel, FRAGMENT, version).stages
+        ctx.program(vertex_shader=stages["vertex"].text, fragment_shader=stages["fragment"].text).release()

@@ -33,7 +33,7 @@ _FILTERS = (
     "LinearMipMapLinear",
 )  # fmt: skip
 _NOT_DONE = {
-    "iFirstPersonControls": ": no key moves a camera here, so iViewMatrix stays the identity that it begins as",
+    "iFirstPersonControls": ": no key moves a camera here, so iViewMatrix stays the identity",
     "iVertex": ": no vertex shader is run here, so the picture is drawn over the whole view",
     "iSound": " is sound, which is not drawn",
 }

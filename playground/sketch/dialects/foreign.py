@@ -14,7 +14,7 @@ from pathlib import Path
 from playground.errors import Diagnostic, ShaderError
 from playground.sketch.allowed_files import is_file, leads_outside
 from playground.sketch.dialects.declarations import Declared, is_declared, uniforms, vertex_outputs
-from playground.sketch.dialects.es import Rewritten
+from playground.sketch.dialects.es import Rewritten, version_of
 from playground.sketch.dialects.shader import (
     SAMPLING,
     STAND_INS,
@@ -34,6 +34,8 @@ _PICTURE = re.compile(r"\buniform\b.*\bu_tex\d+\s*;")
 _COUNT = re.compile(r"\[\s*(\d{1,9})\s*\]")
 _MOST_ELEMENTS = 16  # of an array of samplers: what a driver of OpenGL 3.3 may be limited to
 _MODEL = "MODEL_"
+_PACKS = 420  # the version of GLSL that has all of these
+_PACKING = frozenset(f"{way}{kind}2x16" for way in ("pack", "unpack") for kind in ("Half", "Snorm", "Unorm"))
 _SHADOW_MAP = "#define LIGHT_SHADOWMAP "
 _STANDS_IN = "a stand-in is drawn; a sketch may wire an image to it"
 _SOUNDS = "a made-up sound stands in; a sketch may wire foreign/sound to it"
@@ -87,13 +89,13 @@ class ForeignKernel:
             dialect=self.rules.name,
             prelude=(*self._prelude(shader.text, self.missing), *self._varyings()),
             epilogue=self.rules.epilogue,
-            helpers=self.rules.helpers,
+            helpers=(*_packing(self.source), *self.rules.helpers),
             vertex=vertex_outputs("\n".join([*shader.text.prelude, *self._varyings(), self.code]))
             if ours
             else (),
             vertex_source=self.vertex,
             vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
-            vertex_helpers=self.rules.vertex_helpers if shader.vertex else (),
+            vertex_helpers=(*_packing(self.vertex), *self.rules.vertex_helpers) if self.vertex else (),
             meanings=tuple(meanings),
             unfed=tuple(self._unfed(own)),
         )
@@ -270,6 +272,13 @@ def commented_files(source: SourceText) -> Iterator[tuple[Line, str]]:
 def places_of(file: str, line: Line, root: Path) -> tuple[Path, ...]:
     """Return where a file is looked for that a line names."""
     return tuple(dict.fromkeys((root / file, Path(line.file).parent / file)))
+
+
+def _packing(source: SourceText) -> tuple[str, ...]:
+    """Return what packs numbers for a text that does so in a version of GLSL without such functions."""
+    code = source.code
+    packs = [name for name in _PACKING & source.names if not is_declared(code, name, anywhere=False)]
+    return ("packing.glsl",) if packs and version_of(source) < _PACKS else ()
 
 
 def _declaration(kind: str, name: str) -> str:
