@@ -371,7 +371,8 @@ BYTES = "c = vec4(uvec3(bits, bits >> 8, bits >> 16) & 255u, 255.0) / 255.0;"
 
 def bits_of(engine, folder, expression, shift=0, head=""):
     """Return bits of a uint for each 16-bit number i, by a shader that computes it."""
-    text = f"{head}void mainImage(out vec4 c, in vec2 p) {{ {INDEX} uint bits = {expression} >> {shift}; {BYTES} }}"
+    body = f"{INDEX} uint bits = {expression} >> {shift}; {BYTES}"
+    text = f"{head}void mainImage(out vec4 c, in vec2 p) {{ {body} }}"
     found = drawn(engine, folder.write("p.frag", text), size=(SIDE, SIDE))[::-1, :, :3].astype(np.uint32)
     return ((found[..., 2] << 16 | found[..., 1] << 8 | found[..., 0]) << shift).ravel()
 
@@ -424,8 +425,9 @@ def test_a_text_s_own_packing_is_its_own(any_engine, ctx, folder):
         picture = drawn(any_engine, folder.write("own.frag", (head or own) + text))
         assert set(picture[..., 0].ravel()) == {7}
     for version, packs in ((330, True), (420, False)):
-        text = f"#version {version}\nout vec4 o;\nuniform vec2 u_resolution;\nvoid main() {{ o = vec4(unpackHalf2x16(3u), u_resolution); }}\n"
-        sketch = load(folder.write("v.frag", text.replace("u_resolution", "u_tex0Resolution")))
+        text = f"#version {version}\nuniform vec2 u_tex0Resolution;\nout vec4 o;\n"
+        text += "void main() { o = vec4(unpackHalf2x16(3u), u_tex0Resolution); }\n"
+        sketch = load(folder.write("v.frag", text))
         (kernel,) = [k for _, k in kernels_of(sketch.graph.find("view").technique) if k.dialect]
         assert ("packing.glsl" in kernel.helpers) == packs
         stages = wrap(kernel, FRAGMENT, version).stages

@@ -305,7 +305,7 @@ def test_a_sketch_may_use_an_export_or_a_folder_and_feed_its_channels(any_engine
     ("text", "words", "place"),
     [
         ('{"Shader": {"renderpass": [{"code": "void\\n"}}', "damaged JSON", (1, 46)),
-        ('{"renderpass": ' + "[" * 200_000, "damaged JSON: it nests too deeply", (0, 0)),
+        ('{"renderpass": ' + "[" * 200_000, "damaged JSON: it is nested deeper than 64 levels", (0, 0)),
         ('{"renderpass": 3}', "holds a list of passes called renderpass", (0, 0)),
         (export(), "there is no Image pass to draw; there is nothing", (0, 0)),
         (
@@ -383,6 +383,43 @@ def test_channels_of_a_folder_are_its_buffers_in_order_unless_a_line_says_otherw
         said = [note for note in notes(sketch) if "nothing says otherwise" in note]
         assert len(said) == (not head)
         assert not said or f"{channel} reads Buffer {'A' if value == 10 else 'C'}" in said[0]
+
+
+def test_a_channel_that_only_common_reads_is_a_buffer(any_engine, opened):
+    common = (
+        "#define FIRST iChannel0\nvec4 first(vec2 at) { if (at.x < 9.0) { return texture(FIRST, at); }"
+        " return vec4(0.0); }\nvec4 seen(vec2 at) { return first(at) + texture(iChannel2, at); }\n"
+    )
+    image = "void mainImage(out vec4 c, in vec2 p) { c = seen(p / iResolution.xy); }\n"
+    fills = "void mainImage(out vec4 c, in vec2 p) { c = vec4(p / iResolution.xy, 0.0, 1.0) * %s; }\n"
+    files = {"Common.glsl": common, "Image.glsl": image}
+    files |= {"Buffer A.glsl": fills % "vec4(1, 0, 0, 1)", "Buffer C.glsl": fills % "vec4(0, 1, 0, 1)"}
+    sketch = opened(files)
+    found = drawn(any_engine, sketch)[..., :3] / 255
+    rows, columns = np.mgrid[SIZE[1] - 0.5 : 0 : -1, 0.5 : SIZE[0]]
+    expected = np.dstack([columns / SIZE[0], rows / SIZE[1], np.zeros(rows.shape)])
+    np.testing.assert_allclose(found, expected, atol=0.51 / 255 + 1e-6)
+    (said,) = notes(sketch)
+    assert "iChannel0 reads Buffer A, iChannel2 reads Buffer C" in said
+    view = sketch.graph.find("view")
+    assert not view.repeat, "no buffer reads itself, so there is no state"
+
+
+def test_a_channel_that_is_handed_on_is_a_cube_map_or_a_volume(any_engine, opened):
+    text = (
+        "vec3 cube(samplerCube k, vec3 u) { return texture(k, u).rgb; }\n"
+        "vec3 volume(sampler3D k, vec3 u) { return texture(k, u).rgb; }\n"
+        "void mainImage(out vec4 c, in vec2 p) { vec2 s = p / iResolution.xy;"
+        " c = vec4(s, 0.25 + 0.0 * (cube(iChannel0, vec3(s, 1)).x + volume(iChannel1, vec3(s, 1)).x), 1); }\n"
+    )
+    for name in ("a.frag", "b/Image.glsl"):
+        sketch = opened({name: text}, name)
+        technique = sketch.graph.find("view").technique
+        assert {i.name: i.shape for i in technique.inputs} == {"iChannel0": "cube", "iChannel1": "volume"}
+        found = drawn(any_engine, sketch)[..., :3] / 255
+        rows, columns = np.mgrid[SIZE[1] - 0.5 : 0 : -1, 0.5 : SIZE[0]]
+        expected = np.dstack([columns / SIZE[0], rows / SIZE[1], np.full(rows.shape, 0.25)])
+        np.testing.assert_allclose(found, expected, atol=0.51 / 255 + 1e-6)
 
 
 def test_a_channel_that_is_read_by_direction_is_the_cube_map_or_a_sky(any_engine, opened, folder):

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 from playground.sketch.dialects import shadertoy
 from playground.sketch.dialects.declarations import uniforms, vertex_outputs
@@ -119,9 +120,10 @@ def shaders(files: Files) -> Sequence[Shader | Made]:
     """Return the passes of a file, none where it lacks nothing that a plain shader is given."""
     source = files.source()
     text = rewritten(source)
-    if found := shaders_of(text, RULES):
+    rules = replace(RULES, names=shadertoy.with_sampler_types(NAMES, source))
+    if found := shaders_of(text, rules):
         return found
     if not files.named and version_of(source) >= 330 and not _needs_dialect(source):
         return ()
     before = dict.fromkeys(_BEFORE, Channel(target=VIEW, sampling=Sampling("linear", "clamp")))
-    return (Shader(VIEW, text, RULES, target=VIEW, channels=before, keeps=True),)
+    return (Shader(VIEW, text, rules, target=VIEW, channels=before, keeps=True),)

@@ -1,13 +1,15 @@
-"""Tell from a text whether a channel that nothing declares is a picture or a cube map.
+"""Tell from a text whether a channel that nothing declares is a picture, a cube map or a volume.
 
 Shadertoy declares its channels by what a user puts there, which a file alone does not say. A lookup does: a
-cube map, and a volume, is read at three coordinates. Types are followed by name, not by a compiler.
+cube map is read at three coordinates, a volume by texels of three. So does a function that a channel is
+handed to. Types are followed by name, not by a compiler.
 """
 
 from __future__ import annotations
 
 import re
 from collections import Counter
+from collections.abc import Collection, Iterator
 
 _LOOKUP = re.compile(r"\b(texture(?:Lod|Grad|Cube\w*)?)\s*\(\s*(iChannel\d)\s*,")
 _TYPES = {
@@ -18,6 +20,16 @@ _TYPES = {
     **{f"{k}vec{n}": n for k in ("", "i", "u") for n in (2, 3, 4)},
 }
 _DECLARED = rf"\b({'|'.join(_TYPES)})\s+(?:[A-Za-z_]\w*\s*(?:=[^;,(){{}}]*)?,\s*)*"
+_CHANNEL = re.compile(r"iChannel\d")
+_ALIAS = re.compile(r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)[ \t]+(iChannel\d)[ \t]*$", re.MULTILINE)
+_TEXELS = re.compile(r"\b(?:texelFetch\s*\(\s*(?=iChannel\d\s*,\s*ivec3\b)|texture3D\w*\s*\(\s*)(iChannel\d)")
+_FUNCTION = re.compile(r"\b[A-Za-z_]\w*\s+([A-Za-z_]\w*)\s*\(([^(){};]*)\)\s*[{;]")
+_BODY = re.compile(r"\b(?!(?:if|for|while|switch)\b)([A-Za-z_]\w*)\s*\([^(){};]*\)\s*\{")
+_MACRO = re.compile(r"^[ \t]*#[ \t]*define[ \t]+([A-Za-z_]\w*)(.*)$", re.MULTILINE)
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_PARAMETER = re.compile(r"\s*(?:(?:const|in|out|inout|lowp|mediump|highp)\s+)*([A-Za-z_]\w*)")
+_SHAPED = {"samplerCube", "sampler3D"}
+_LONGEST_CALL = 1_000  # characters
 _MOST_LOOKUPS = 4  # of one channel that are looked at
 _NEAR = 4_000  # characters, in which most names are declared
 _BRACKETS = re.compile(r"\([^()]*\)")
@@ -31,29 +43,90 @@ _OF_ARGUMENTS = frozenset(
 )
 
 
-def cubes_of(code: str) -> frozenset[str]:
-    """Return the channels that a text reads at three coordinates and at no two."""
-    threes, others = Counter[str](), set[str]()
+def sampler_types(code: str) -> dict[str, str]:
+    """Return the channels of a text that are no pictures, each with its type in GLSL."""
+    for alias, channel in _ALIAS.findall(code):
+        code = re.sub(rf"\b{alias}\b(?!\s+{channel}\b)", channel, code)
+    threes, twos = _looked_up(code)
+    types: dict[str, set[str]] = {name: {"sampler2D"} for name in twos}
+    for name, kind in (*_handed(code), *((name, "sampler3D") for name in _TEXELS.findall(code))):
+        types.setdefault(name, set()).add(kind)
+    found = {name: kinds.pop() for name, kinds in types.items() if len(kinds) == 1 and kinds < _SHAPED}
+    return {name: "samplerCube" for name in threes - types.keys()} | found
+
+
+def names_reached(code: str, names: Collection[str]) -> set[str]:
+    """Return names, with those that the functions and macros of a text of these names name in turn."""
+    bodies: dict[str, set[str]] = {}
+    for name, body in (*_bodies(code), *_MACRO.findall(code)):
+        bodies.setdefault(name, set()).update(_WORD.findall(body))
+    found, added = set[str](), set(names)
+    while added:
+        found |= added
+        added = set().union(*(bodies.get(name, ()) for name in added)) - found
+    return found
+
+
+def _bodies(code: str) -> Iterator[tuple[str, str]]:
+    """Yield each function that a text defines, with what is between its braces."""
+    for match in _BODY.finditer(code):
+        depth, end = 1, match.end()
+        while depth and end < len(code):
+            depth += {"{": 1, "}": -1}.get(code[end], 0)
+            end += 1
+        yield match[1], code[match.end() : end]
+
+
+def _handed(code: str) -> Iterator[tuple[str, str]]:
+    """Yield the channels that functions are called with, each with the type that the function takes."""
+    functions: dict[str, list[list[str]]] = {}
+    for name, parameters in _FUNCTION.findall(code):
+        kinds = [found[1] if (found := _PARAMETER.match(one)) else "" for one in parameters.split(",")]
+        functions.setdefault(name, []).append(kinds)
+    for name, forms in functions.items():
+        if not any(kind.startswith("sampler") for kinds in forms for kind in kinds):
+            continue
+        for call in re.finditer(rf"\b{name}\s*\(", code):
+            given, before = _arguments(code, call.end()), code[: call.start()]
+            widths = [_width(one, before) for one in given]
+            fitting = [
+                kinds
+                for kinds in forms
+                if len(kinds) == len(given)
+                and all(not w or _TYPES.get(k, w) == w for k, w in zip(kinds, widths, strict=True))
+            ]
+            for at, one in enumerate(given):
+                if _CHANNEL.fullmatch(one):
+                    yield from ((one, kinds[at]) for kinds in fitting)
+
+
+def _looked_up(code: str) -> tuple[set[str], set[str]]:
+    """Return the channels that a text reads at three coordinates and nowhere else, and those read at two."""
+    threes, twos, unknown = Counter[str](), set[str](), set[str]()
     for match in _LOOKUP.finditer(code):
         name = match.group(2)
-        if name in others or threes[name] >= _MOST_LOOKUPS:
+        if name in twos or threes[name] >= _MOST_LOOKUPS:
             continue
-        width = 3 if "Cube" in match.group(1) else _width(_argument(code, match.end()), code[: match.start()])
+        given = _arguments(code, match.end())
+        width = 3 if "Cube" in match.group(1) else _width(given[0] if given else "", code[: match.start()])
         if width == 3:
             threes[name] += 1
         else:
-            others.add(name)
-    return frozenset(threes.keys() - others)
+            (twos if width else unknown).add(name)
+    return threes.keys() - twos - unknown, twos
 
 
-def _argument(code: str, start: int) -> str:
-    """Return an argument's text: up to its comma or the call's bracket."""
-    depth = 0
-    for place in range(start, min(len(code), start + 400)):
+def _arguments(code: str, start: int) -> list[str]:
+    """Return the texts of a call's arguments from one on, up to the call's bracket; none where it is far."""
+    depth, found = 0, list[str]()
+    for place in range(start, min(len(code), start + _LONGEST_CALL)):
         depth += {"(": 1, "[": 1, ")": -1, "]": -1}.get(code[place], 0)
         if depth < 0 or (depth == 0 and code[place] == ","):
-            return code[start:place]
-    return ""
+            found.append(code[start:place].strip())
+            start = place + 1
+        if depth < 0:
+            return found
+    return []
 
 
 def _width(text: str, before: str) -> int:

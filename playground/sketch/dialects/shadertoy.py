@@ -9,7 +9,7 @@ from dataclasses import replace
 from playground.sketch.dialects.es import rewritten
 from playground.sketch.dialects.passes import VIEW
 from playground.sketch.dialects.reading import Files
-from playground.sketch.dialects.sampler_types import cubes_of
+from playground.sketch.dialects.sampler_types import sampler_types
 from playground.sketch.dialects.shader import Names, Rules, Shader
 from playground.sketch.reserved_names import SIZES
 from playground.sketch.source import Line, SourceText
@@ -53,13 +53,16 @@ def shaders(files: Files) -> Sequence[Shader]:
     """Return the passes of a file."""
     source = files.source()
     note_not_drawn(files, source)
-    return (Shader(VIEW, rewritten(source), replace(RULES, names=with_cubes(NAMES, source))),)
+    return (Shader(VIEW, rewritten(source), replace(RULES, names=with_sampler_types(NAMES, source))),)
 
 
-def with_cubes(names: Names, source: SourceText) -> Names:
-    """Return names with the channels as cube maps that a text reads so."""
-    cubes = {name: ("samplerCube", f"sky {name[-1]}") for name in cubes_of(source.code)}
-    return {**names, **{name: kind for name, kind in cubes.items() if name in names}}
+_STAND_INS = {"samplerCube": "sky", "sampler3D": "volume"}
+
+
+def with_sampler_types(names: Names, source: SourceText) -> Names:
+    """Return names with the channels as the cube maps and volumes that a text reads."""
+    types = {name: kind for name, kind in sampler_types(source.code).items() if name in names}
+    return {**names, **{name: (kind, f"{_STAND_INS[kind]} {name[-1]}") for name, kind in types.items()}}
 
 
 def note_not_drawn(files: Files, source: SourceText) -> None:

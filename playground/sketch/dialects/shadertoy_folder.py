@@ -16,8 +16,8 @@ from playground.paths import shown
 from playground.sketch.allowed_files import is_inside
 from playground.sketch.dialects.directives import read_directives
 from playground.sketch.dialects.reading import Files
-from playground.sketch.dialects.sampler_types import cubes_of
-from playground.sketch.dialects.shader import Shader, stand_in
+from playground.sketch.dialects.sampler_types import names_reached, sampler_types
+from playground.sketch.dialects.shader import Channel, Shader, stand_in
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
     CUBE,
@@ -26,6 +26,7 @@ from playground.sketch.dialects.toy_passes import (
     pass_name,
     reading,
     shaders_of,
+    with_common,
 )
 from playground.sketch.dialects.vscode import Reader
 from playground.sketch.header import title_of
@@ -90,13 +91,14 @@ def shaders(files: Files) -> Sequence[Shader]:
     common = _file(files, folder, _COMMON)
     if any(str(common) in source.files for source in sources.values()):
         common = None  # a pass includes it by itself
+    shared = read_directives(files.source(common)).source if common else None
     kinds = {label: IMAGE if label == _IMAGE else CUBE if label in _CUBES else BUFFER for label in _LABELS}
     reader = Reader(
         files,
         labels={path: label for label, path in there.items()},
         kinds={path: kinds[label] for label, path in there.items()},
-        inputs={path: _inputs(files, path, source, there) for path, source in sources.items()},
-        common=read_directives(files.source(common)).source if common else None,
+        inputs={path: _inputs(files, path, source, shared, there) for path, source in sources.items()},
+        common=shared,
     )
     for label, path in there.items():
         reader.add(path, kinds[label])
@@ -104,27 +106,34 @@ def shaders(files: Files) -> Sequence[Shader]:
     return shaders_of(sorted(reader.passes(), key=lambda one: one.label))
 
 
-def _inputs(files: Files, path: Path, source: SourceText, there: dict[str, Path]) -> dict[str, ToyInput]:
-    """Return what the channels read that no directive names."""
+def _inputs(
+    files: Files, path: Path, source: SourceText, common: SourceText | None, there: dict[str, Path]
+) -> dict[str, ToyInput]:
+    """Return what the channels read that no directive names, those that only Common reads too."""
     named: dict[int, str] = {}
-    for line in source.lines:
+    whole, shared = with_common(common, source), common.code if common else ""
+    for line in (*source.lines, *(common.lines if common else ())):
         for number, text in _COMMENT.findall(line.comment):
             wanted = pass_name(re.sub("[ _]", "", text))
             own = next(label for label, file in there.items() if file == path)
             label = next((one for one in there if pass_name(one.replace(" ", "")) == wanted), "")
             named.setdefault(int(number), {"self": own, _KEYBOARD: _KEYBOARD}.get(wanted, label))
     taken = read_directives(source).channels
-    assumed = {}
-    cubes = cubes_of(source.code)
+    assumed, unused = {}, {}
+    types, read = sampler_types(whole.code), names_reached(shared, source.names)
     for number, buffer in enumerate(_BUFFERS):
-        label = _CUBES[0] if f"iChannel{number}" in cubes else buffer
-        is_read = re.search(rf"\biChannel{number}\b", source.code)
-        if number not in named and number not in taken and label in there and is_read:
+        kind = types.get(f"iChannel{number}", "sampler2D")
+        label = {"samplerCube": _CUBES[0], "sampler2D": buffer}.get(kind)
+        if number in named or number in taken:
+            continue
+        if f"iChannel{number}" not in read:  # what Common does with it, this pass does not call
+            unused[number] = ToyInput(Channel(), kind)
+        elif label in there:
             named[number] = assumed[number] = label
     if assumed:
         pairs = ", ".join(f"iChannel{number} reads {label}" for number, label in assumed.items())
         files.note(f"nothing says otherwise, so {pairs}; a comment as // iChannel0: Buffer B does", path=path)
-    found = {
+    found = unused | {
         number: ToyInput(reading(pass_name(label)), "samplerCube" if label in _CUBES else "sampler2D")
         for number, label in named.items()
         if label in there

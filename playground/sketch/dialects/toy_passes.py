@@ -10,7 +10,7 @@ from playground.errors import ShaderError
 from playground.sketch.dialects.directives import KEYBOARD
 from playground.sketch.dialects.es import rewritten
 from playground.sketch.dialects.shader import Channel, Rules, Shader
-from playground.sketch.dialects.shadertoy import MORE_NAMES, NAMES, with_cubes
+from playground.sketch.dialects.shadertoy import MORE_NAMES, NAMES, with_sampler_types
 from playground.sketch.model import Parameter, Sampling, Widget
 from playground.sketch.source import SourceText
 
@@ -86,7 +86,7 @@ def _shader(one: ToyPass, dialect: str) -> Shader:
         others = next((f for f in ("mainImage", "mainCubemap", "mainSound") if f in one.source.names), "")
         hint = f", but a {others}" if others else ""
         raise ShaderError(diagnostics=[place.diagnostic(f"{one.label} has no {function}{hint}")])
-    names = dict(with_cubes(MORE_NAMES if dialect == "vscode" else NAMES, one.source))
+    names = dict(with_sampler_types(MORE_NAMES if dialect == "vscode" else NAMES, one.source))
     parameters = []
     for sampler, feeds in one.inputs.items():
         if feeds.file:

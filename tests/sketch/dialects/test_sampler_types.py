@@ -1,10 +1,10 @@
-"""A channel that is read at three coordinates is a cube map."""
+"""A channel is what a text reads it as: a picture, a cube map at three coordinates, or a volume."""
 
 from __future__ import annotations
 
 import pytest
 
-from playground.sketch.dialects.sampler_types import cubes_of
+from playground.sketch.dialects.sampler_types import sampler_types
 
 DECLARED = """
 vec3 direction(vec2 p) { return vec3(p, 1.0); }
@@ -41,7 +41,7 @@ void mainImage(out vec4 c, in vec2 fragCoord) {
     ],
 )
 def test_three_coordinates_are_a_cube(lookup):
-    assert cubes_of(DECLARED.replace("LOOKUP", lookup)) == {"iChannel0"}
+    assert sampler_types(DECLARED.replace("LOOKUP", lookup)) == {"iChannel0": "samplerCube"}
 
 
 @pytest.mark.parametrize(
@@ -62,9 +62,40 @@ def test_three_coordinates_are_a_cube(lookup):
     ],
 )
 def test_two_or_unknown_ones_are_none(lookup):
-    assert cubes_of(DECLARED.replace("LOOKUP", lookup)) == frozenset()
+    assert sampler_types(DECLARED.replace("LOOKUP", lookup)) == {}
 
 
 def test_the_latest_declaration_counts():
     text = "vec4 a(vec2 p) { return texture(iChannel0, p); } vec4 b(vec3 p) { return texture(iChannel1, p); }"
-    assert cubes_of(text) == {"iChannel1"}
+    assert sampler_types(text) == {"iChannel1": "samplerCube"}
+
+
+TAKES = """
+#define SKY iChannel2
+vec3 cube(samplerCube k, vec3 u) { return texture(k, u).rgb; }
+float volume(in vec3 at, const in highp sampler3D v) { return texture(v, at).r; }
+vec4 either(sampler2D s, vec2 u);
+vec4 either(samplerCube s, vec3 u) { return texture(s, u); }
+vec4 flat_one(sampler2D s) { return texture(s, vec2(0.5)); }
+void mainImage(out vec4 c, in vec2 fragCoord) { vec3 rd; vec2 uv; c = vec4(LOOKUP); }
+"""
+
+
+@pytest.mark.parametrize(
+    ("lookup", "types"),
+    [
+        ("cube(iChannel0, rd)", {"iChannel0": "samplerCube"}),
+        ("volume(fract(rd * (1.0, 2.0)), iChannel1)", {"iChannel1": "sampler3D"}),
+        ("cube(SKY, rd) + cube( iChannel3 , rd)", {"iChannel2": "samplerCube", "iChannel3": "samplerCube"}),
+        ("either(iChannel0, rd)", {"iChannel0": "samplerCube"}),
+        ("either(iChannel0, uv)", {}),
+        ("flat_one(iChannel0) + texture(SKY, rd)", {"iChannel2": "samplerCube"}),
+        ("cube(iChannel0, rd) + texture(iChannel0, UNKNOWN)", {"iChannel0": "samplerCube"}),
+        ("cube(iChannel0, rd) + texture(iChannel0, uv)", {}),
+        ("volume(rd, iChannel0) + texture(iChannel0, rd)", {"iChannel0": "sampler3D"}),
+        ("texelFetch(iChannel0, ivec3(rd), 0)", {"iChannel0": "sampler3D"}),
+        ("texelFetch(iChannel0, ivec2(uv), 0)", {}),
+    ],
+)
+def test_a_function_that_takes_a_channel_says_its_type(lookup, types):
+    assert sampler_types(TAKES.replace("LOOKUP", lookup)) == types
