@@ -206,6 +206,32 @@ def test_post_processing_reads_the_picture(picture):
     np.testing.assert_allclose(found[2, 5, :3], [1 - 5.5 / 24, 1 - 2.5 / 16, 1.0], atol=1.5 / 255)
 
 
+@pytest.mark.parametrize("frames", [1, 2, 5])
+@pytest.mark.parametrize("define", ["DOUBLE_BUFFER_0", "BUFFER_0"])
+def test_a_buffer_reads_the_scene_of_the_frame_before(picture, define, frames):
+    mixed = "mix(texture2D(u_doubleBuffer0, st), texture2D(u_scene, st), 0.25)"
+    text = f"""uniform vec2 u_resolution;
+uniform sampler2D u_doubleBuffer0, u_buffer0, u_scene;
+void main() {{
+    vec2 st = gl_FragCoord.xy / u_resolution;
+    gl_FragColor = vec4(st, 0.6, 1.0);
+#if defined({define})
+    gl_FragColor = {mixed if define.startswith("D") else "texture2D(u_scene, st)"};
+#elif defined(POSTPROCESSING)
+    gl_FragColor = texture2D(u_{"doubleBuffer0" if define.startswith("D") else "buffer0"}, st);
+#endif
+}}
+"""
+    scene = np.round(255 * np.dstack([*np.meshgrid((np.arange(24) + 0.5) / 24, (np.arange(16) + 0.5) / 16)]))
+    scene = scene / 255
+    kept = np.zeros_like(scene)
+    for frame in range(frames):
+        before = scene if frame else np.zeros_like(scene)
+        kept = 0.75 * kept + 0.25 * before if define.startswith("D") else before
+    found = picture(text, time=(frames - 0.5) / 60)[..., :2]
+    np.testing.assert_allclose(found, kept, atol=1.01 / 255)
+
+
 def test_the_background_is_of_the_picture_alone(picture):
     text = """uniform sampler2D u_scene;
 void main() {

@@ -117,9 +117,9 @@ class _Viewer:
         background = ("BACKGROUND",) if self.changes("BACKGROUND") else ()
         if not post:
             return [*found, self._shader(VIEW, background, format="rgba8")]
-        scene = Channel(target=_SCENE, sampling=_BUFFER)
-        found.append(self._shader(_SCENE, background, target=_SCENE, format="rgba8"))
-        return [*found, self._shader(VIEW, ("POSTPROCESSING",), format="rgba8", channels={"u_scene": scene})]
+        own = {"u_scene": Channel()}
+        found.append(self._shader(_SCENE, background, target=_SCENE, format="rgba8", channels=own))
+        return [*found, self._shader(VIEW, ("POSTPROCESSING",), format="rgba8")]
 
     def _shader(
         self,
@@ -168,8 +168,10 @@ class _Viewer:
         return self.sources[codes]
 
     def _buffers(self, own: _Pass | None) -> dict[str, Channel]:
-        """Return what reads the passes; only double buffers and floods read themselves."""
+        """Return what reads the scene and the passes; only double buffers and floods read themselves."""
         found: dict[str, Channel] = {}
+        if self.changes("POSTPROCESSING"):  # before it is drawn, the scene is that of the last frame
+            found["u_scene"] = Channel(target=_SCENE, sampling=_BUFFER)
         for one in self.passes:
             sampling = _LEVEL if one.kind == "pyramid" else _BUFFER
             black = one is own and one.kind in ("buffer", "pyramid")
