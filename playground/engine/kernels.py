@@ -251,7 +251,10 @@ class Kernels:
         program.set(WINDOW, origin)
         program.set(PART, _shares(step.whole_size, origin, step.size))
         for name, meaning in kernel.usual:
-            if name in program.uniforms:
+            kind = getattr(
+                program.uniforms.get(name), "gl_type", 0
+            )  # another than the name's is the text's own
+            if kind in _NUMBERS or (kind in _MATRICES and meaning.startswith("identity")):
                 _set_fitting(program, name, usual.get(meaning) or _numbers(meaning, job, sizes))
         fed = {parameter.name for parameter in kernel.parameters if parameter.type == "sampler2D"}
         inputs = {declared.name: declared for declared in kernel.inputs}
@@ -490,3 +493,8 @@ def _set_fitting(program: Program, name: str, values: tuple[float, ...]) -> None
 
 _WHOLE = frozenset({0x1404, 0x1405, *range(0x8B53, 0x8B5A), *range(0x8DC6, 0x8DC9)})
 """GL_INT, GL_UNSIGNED_INT, GL_INT_VEC2 to 4, GL_BOOL, GL_BOOL_VEC2 to 4, GL_UNSIGNED_INT_VEC2 to 4."""
+
+_NUMBERS = _WHOLE | {0x1406, *range(0x8B50, 0x8B53)}
+"""Those, GL_FLOAT and GL_FLOAT_VEC2 to 4."""
+_MATRICES = (0x8B5B, 0x8B5C)
+"""GL_FLOAT_MAT3 and 4."""

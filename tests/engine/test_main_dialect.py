@@ -14,6 +14,7 @@ from playground.gpu.wrap import FRAGMENT, wrap
 from playground.reduce.inline import inline_sketch
 from playground.sketch.model import kernels_of
 from playground.sketch.text_overrides import with_texts
+from playground.sketch.warnings import warnings_of_kernel
 from tests.dialect_texts import with_mistake
 from tests.engine.test_dialects import DEPRECATED
 from tests.main_dialect_texts import MAIN_TEXTS, STATEFUL
@@ -263,3 +264,44 @@ void main() { imageStore(computeTex[0], ivec2(0), uvec4(1)); c = vec4(fGlobalTim
         "nothing feeds computeTex: it reads 0, and nothing keeps what is written",
         2,
     )
+
+
+# ── a given name of another type ─────────────────────────────────────────────
+
+OTHER_TYPES = {
+    "sampler2D": "texture({}, vec2(0.5)).x",
+    "samplerCube": "texture({}, vec3(0.5)).x",
+    "sampler2D[2]": "texture({}[0], vec2(0.5)).x",
+    "isampler2D": "float(texture({}, vec2(0.5)).x)",
+    "Own": "{}.a",
+    "mat4": "{}[0][0]",
+}
+FORMS = (
+    "{}\nvoid main() {{ gl_FragColor = vec4({}); }}\n",
+    "{}\nvoid mainImage(out vec4 c, in vec2 p) {{ c = vec4({}); }}\n",
+    '/*{{"ISFVSN": "2"}}*/\n{}\nvoid main() {{ gl_FragColor = vec4({}); }}\n',
+    "#version 330\n{}\nout vec4 o;\nvoid main() {{ o = vec4({}); }}\n",
+)
+
+
+@pytest.mark.parametrize("kind", OTHER_TYPES)
+def test_a_given_name_of_another_type_is_the_text_s_own(any_engine, folder, kind):
+    base, bracket, count = kind.partition("[")
+    for number, name in enumerate(("spectrum", "iTime", "TIME", "time", "resolution", "mouse", "iDate")):
+        form = FORMS[number % 4]
+        declared = f"struct Own {{ float a; }};\nuniform {base} {name}{bracket}{count};"
+        text = form.format(declared, OTHER_TYPES[kind].format(name))
+        sketch = load(folder.write("a.frag" if "ISF" not in form else "a.fs", text))
+        found = any_engine.render(sketch, size=(8, 4), time=2.0).array
+        assert (found[..., :3] == 0).all(), name
+        said = [str(d) for d in source_warnings(Planner().plan(sketch, frame_size=(8, 4)))]
+        said += [str(d) for _, k in kernels_of(sketch.graph) for d in warnings_of_kernel(k)]
+        if "version" not in form or "sampler" in kind:
+            assert sum(name in one for one in said) == 1, (name, said)
+
+
+def test_a_given_name_of_a_sampler_is_a_parameter_where_it_is_a_number(any_engine, folder):
+    text = "uniform vec2 u_tex0;\nuniform float iChannel1 = 0.5;\n"
+    text += "void main() { gl_FragColor = vec4(u_tex0, iChannel1, 1.0); }\n"
+    sketch = load(folder.write("a.frag", text)).with_values({"view.u_tex0": (1.0, 0.0)})
+    np.testing.assert_array_equal(any_engine.render(sketch, size=(8, 4)).array[0, 0], [255, 0, 128, 255])

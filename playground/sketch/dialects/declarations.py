@@ -36,6 +36,12 @@ _QUALIFIER = re.compile(
 _QUALIFIED = re.compile(rf"{_BEGINS}(?:\w+[ \t]+)?(?:uniform|in)[ \t]+(\w+)[ \t]+\w+[ \t]+\w", re.MULTILINE)
 _BRACKETS = re.compile(r"\([^()]*\)")
 _VECTOR = re.compile(r"vec([234])|float")
+_KINDS = {
+    "numbers": re.compile(r"float|int|uint|bool|[iub]?vec[234]"),
+    "matrix": re.compile(r"mat[34]"),
+    "sampler": re.compile(r"[iu]?sampler\w+"),
+}
+"""What a tool gives that declares a uniform of one of these types, another of them can be given, too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +67,15 @@ def uniforms(code: str) -> Mapping[str, Declared]:
             written = written.replace(name, f"{name}{of_type}", 1)
             found.setdefault(name, Declared(name, match.group(1), bool(array or of_type), line, written))
     return found
+
+
+def takes(kind: str, given: str) -> bool:
+    """Return whether a uniform of a type can be given what another type is given."""
+    kinds = [
+        next((n for n, sign in _KINDS.items() if sign.fullmatch(one.partition("[")[0])), one)
+        for one in (kind, given)
+    ]
+    return kinds[0] == kinds[1]
 
 
 @lru_cache(maxsize=512)

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from playground.errors import Diagnostic, ShaderError
 from playground.sketch.allowed_files import is_file, leads_outside
-from playground.sketch.dialects.declarations import Declared, is_declared, uniforms, vertex_outputs
+from playground.sketch.dialects.declarations import Declared, is_declared, takes, uniforms, vertex_outputs
 from playground.sketch.dialects.es import Rewritten, version_of
 from playground.sketch.dialects.shader import (
     SAMPLING,
@@ -52,11 +52,15 @@ class ForeignKernel:
         self.shader = shader
         self.source = shader.text.source
         self.code = self.source.code
-        self.rules = shader.rules
         self.root = root
         self.declared = uniforms(self.code)
-        self.missing = self._missing(self.source)
         self.vertex = shader.vertex.source if shader.vertex else None
+        own = {**(uniforms(self.vertex.code) if self.vertex else {}), **self.declared}
+        given = shader.rules.names.items()
+        kept = {n: one for n, one in given if n not in own or takes(own[n].type, one[0])}
+        self.types = {n: own[n].type for n in kept if n in own}
+        self.rules = replace(shader.rules, names=kept)
+        self.missing = self._missing(self.source)
         self.vertex_missing = self._missing(self.vertex) if self.vertex else []
         self.commented = {(line.file, line.number): file for line, file in commented_files(self.source)}
         self.pictures = dict(self._pictures())
@@ -70,7 +74,7 @@ class ForeignKernel:
         own = {p.name for p in parameters}
         given = {*self.declared, *self.missing, *self.vertex_missing}
         meanings = [
-            (n, meaning)
+            (n, f"identity{self.types.get(n, kind)[-1]}" if kind.startswith("mat") else meaning)
             for n, (kind, meaning) in self.rules.names.items()
             if n in given and n not in own and "sampler" not in kind
         ]
