@@ -44,7 +44,7 @@ from playground.commands import (
     variants,
 )
 from playground.commands.arguments import Renderer, help_text, moment_of, read_device
-from playground.commands.common_options import prepared
+from playground.commands.common_options import prepared, with_root
 from playground.commands.import_name import check_package
 from playground.errors import PlainFormWarning, PlaygroundError, PlaygroundWarning, nearest
 from playground.paths import quoted
@@ -80,7 +80,7 @@ app = typer.Typer(
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line and return its exit status."""
     open_streams()
-    with with_loudness(), ended_by_signals() as came:
+    with with_loudness(), with_root(), ended_by_signals() as came:
         status = _status(sys.argv[1:] if arguments is None else list(arguments))
     return 128 + came[-1] if came else status
 

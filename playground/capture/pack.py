@@ -55,8 +55,11 @@ def pack(sketch: Sketch, path: str | Path, further: Iterable[tuple[Path, str]] =
             )
         with replacing(path) as handle, zipfile.ZipFile(handle, "w") as archive:
             text = (json.dumps(manifest, indent=1, ensure_ascii=False) + "\n").encode()
-            for name in sorted({*files, MANIFEST}):
-                data = text if name == MANIFEST else read_regular(files[name])
+            made = {MANIFEST: text}
+            if main.count("/") > 1:  # what marks the folder that a shader inside it may read
+                made[f"{folder_of(sketch)}/sketch.toml"] = b""
+            for name in sorted({*files, *made}):
+                data = read_regular(files[name]) if name in files else made[name]
                 archive.writestr(_entry(name), data, zipfile.ZIP_DEFLATED, 9)
     except OSError as error:
         raise DataError(f"cannot be packed: {reason(error)}", file=error.filename or path) from None

@@ -1,13 +1,18 @@
-"""What every command takes: --verbose, --quiet and --help; and helps without the names of types."""
+"""What every command takes: --verbose, --quiet, --root and --help; and helps without the names of types."""
 
 from __future__ import annotations
 
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 from typer.main import get_command
 
 from playground.errors import ParameterError
+from playground.sketch.allowed_files import ROOT
 from playground.terminal import Loudness, choose_loudness, loudness
 
 
@@ -61,6 +66,26 @@ def _choose(wanted: bool, chosen: Loudness) -> None:
     choose_loudness(chosen)
 
 
+def _choose_root(folder: str) -> None:
+    if not folder:
+        return
+    path = Path(folder).expanduser()
+    if not path.is_dir():
+        raise ParameterError(f"--root {folder}: expected a folder that is there")
+    os.environ[ROOT] = str(path.resolve())
+
+
+@contextmanager
+def with_root() -> Iterator[None]:
+    """Forget in the end which root was chosen."""
+    before = os.environ.get(ROOT)
+    try:
+        yield
+    finally:
+        os.environ.pop(ROOT, None)
+        os.environ |= {} if before is None else {ROOT: before}
+
+
 def _print_help(ctx: typer.Context, wanted: bool) -> None:
     if wanted:
         print(ctx.get_help())
@@ -90,6 +115,17 @@ def _declared(
             is_eager=True,
         ),
     ] = False,
+    root: Annotated[
+        str,
+        typer.Option(
+            "--root",
+            help="Let sketches and shaders in this folder read all of it, not their own folder alone.",
+            metavar="FOLDER",
+            callback=_choose_root,
+            is_eager=True,
+            show_default=False,
+        ),
+    ] = "",
     help_: Annotated[
         bool,
         typer.Option(

@@ -28,7 +28,14 @@ from playground.errors import DataError, Diagnostic, PlaygroundError, SketchErro
 from playground.gpu.wrap import COMPUTE, FRAGMENT
 from playground.paths import GLSL, SKETCHES, shown
 from playground.regular_file import irregularity
-from playground.sketch.allowed_files import TEXTS, is_elevation, is_variant, root_of, unsaved_texts
+from playground.sketch.allowed_files import (
+    TEXTS,
+    is_elevation,
+    is_variant,
+    named_root,
+    root_of,
+    unsaved_texts,
+)
 from playground.sketch.assign import values_of
 from playground.sketch.dialects import EXPORT, is_export
 from playground.sketch.dialects.shadertoy_folder import is_image, is_of_folder
@@ -98,7 +105,7 @@ def find_files(paths: Iterable[str | Path]) -> list[tuple[Path, Path]]:
         named.append(shown(path))
         if path.is_dir():
             for file in _inside(path):
-                found.setdefault(file.resolve(), path.resolve())
+                found.setdefault(file.resolve(), named_root(file.resolve()) or path.resolve())
         elif path.is_file():
             if is_pack(path):
                 sketch = unpacked(path)

@@ -16,7 +16,7 @@ from playground.errors import DataError, nearest
 from playground.media.pyav import SOUND_FILES, VIDEO_FILES
 from playground.paths import GLSL, shown
 from playground.regular_file import irregularity
-from playground.sketch.allowed_files import ELEVATIONS, VECTORS, outside_sidecar
+from playground.sketch.allowed_files import ELEVATIONS, VECTORS, named_root, outside_sidecar
 from playground.sketch.sidecars import sidecar_places
 
 _IMAGES = (".jpg", ".jpeg", ".webp")
@@ -73,10 +73,9 @@ def find_file(text: str, folder: str, declared_in: str, parameter: str) -> Path:
         places = []
     for number, place in enumerate(places):
         candidate = (place / path).resolve()
-        if candidate.is_file() and any(
-            candidate.is_relative_to(root.resolve()) for root in (Path(folder), GLSL)
-        ):
-            outside = outside_sidecar(candidate, (Path(folder), GLSL))
+        roots = [root.resolve() for root in (named_root(candidate), Path(folder), GLSL) if root is not None]
+        if candidate.is_file() and any(map(candidate.is_relative_to, roots)):
+            outside = outside_sidecar(candidate, roots)
             if outside is not None:
                 message = f"{parameter}: {outside.name} next to it leads out of the sketch's folder"
                 raise DataError(message, file=shown(candidate))

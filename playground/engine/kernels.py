@@ -494,7 +494,7 @@ def _set_fitting(program: Program, name: str, values: tuple[float, ...]) -> None
 _WHOLE = frozenset({0x1404, 0x1405, *range(0x8B53, 0x8B5A), *range(0x8DC6, 0x8DC9)})
 """GL_INT, GL_UNSIGNED_INT, GL_INT_VEC2 to 4, GL_BOOL, GL_BOOL_VEC2 to 4, GL_UNSIGNED_INT_VEC2 to 4."""
 
-_NUMBERS = _WHOLE | {0x1406, *range(0x8B50, 0x8B53)}
-"""Those, GL_FLOAT and GL_FLOAT_VEC2 to 4."""
+_NUMBERS = _WHOLE | {0x1406, *range(0x8B50, 0x8B53), 0x140A, *range(0x8FFC, 0x8FFF)}
+"""Those, GL_FLOAT, GL_FLOAT_VEC2 to 4, GL_DOUBLE, GL_DOUBLE_VEC2 to 4."""
 _MATRICES = (0x8B5B, 0x8B5C)
 """GL_FLOAT_MAT3 and 4."""

@@ -16,7 +16,7 @@ from pathlib import Path, PurePosixPath, PureWindowsPath
 from types import MappingProxyType
 from typing import NamedTuple, TypeVar
 
-from playground.paths import GLSL
+from playground.paths import GLSL, shown
 from playground.sketch.sidecars import sidecars
 
 SHADERS = (".glsl", ".frag", ".comp", ".fs", ".fragment")
@@ -39,6 +39,9 @@ VECTORS = (".geojson", ".json", ".gpkg", ".shp", ".fgb", ".kml", ".gpx")
 
 FAST = (".comp", ".fast.toml")
 """Endings of fast variants, in the folder of the technique of their name; the fastest first."""
+
+ROOT = "PLAYGROUND_ROOT"
+"""The environment variable that names the folder which sketches in it may read: --root sets it."""
 
 _MOST_FOLDERS = 500
 _SPELLS_NAMES = os.name == "nt"  # following links there gives names as the disk spells them
@@ -256,21 +259,40 @@ def canonical_of(path: Path) -> Path | None:
     return next((candidate for candidate in candidates if name and is_file(candidate)), None)
 
 
+def named_root(path: Path) -> Path | None:
+    """Return the folder that the user named as the root, where a file lies in it; else None."""
+    named = real(Path(text).expanduser()) if (text := os.environ.get(ROOT)) else None
+    return named if named is not None and path.is_relative_to(named) else None
+
+
 def root_of(path: Path) -> Path:
     """Return the folder that a technique opened alone may read from, besides ``glsl/``.
 
-    ``glsl/`` for what lies in it; else the nearest folder around it that holds a
-    ``sketch.toml``; else its own.
+    ``glsl/`` for what lies in it; else the root that the user named; else the nearest folder around it
+    that holds a ``sketch.toml``; else its own.
     """
     if path.is_relative_to(GLSL):
         return GLSL
-    return next((folder for folder in path.parents if is_file(folder / "sketch.toml")), path.parent)
+    marked = (folder for folder in path.parents if is_file(folder / "sketch.toml"))
+    return named_root(path) or next(marked, path.parent)
 
 
 def is_inside(path: Path, roots: Iterable[Path]) -> bool:
     """Return whether a path, its links followed, lies in one of some folders."""
     found = real(path)
     return found is not None and any(found.is_relative_to(root) for root in map(real, roots) if root)
+
+
+def how_to_open(wanted: Path | None, folder: Path, *, marks: bool = True) -> str:
+    """Return the end of a sentence on a file that lies outside a sketch's folder: how a user may open it.
+
+    ``marks``: a ``sketch.toml`` around it marks the folder, as for a shader that is opened alone.
+    """
+    around = next((parent for parent in folder.parents if wanted and wanted.is_relative_to(parent)), None)
+    if around is None or around == around.parent:
+        return ""
+    also = f", and so does an empty sketch.toml in {shown(around)}" if marks else ""
+    return f"; --root {shown(around)} opens it{also}"
 
 
 def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
@@ -282,7 +304,7 @@ def leads_outside(text: str, folder: Path, declared_in: str = "") -> bool:
     """
     if is_absolute(text):
         return True
-    roots = (folder, GLSL)
+    roots = tuple(root for root in (named_root(folder), folder, GLSL) if root is not None)
     places = [folder, *([Path(declared_in).parent] if declared_in else []), GLSL]
     candidates = [place / text for place in places]
     there = [candidate for candidate in candidates if is_file(candidate)]

@@ -18,6 +18,7 @@ from playground.sketch.allowed_files import (
     is_file,
     is_variant,
     looking_once,
+    named_root,
     root_of,
 )
 from playground.sketch.assign import effective_values, shown_parameters
@@ -73,7 +74,7 @@ def load_with(techniques: Techniques, name: str | Path = "", text: str | None = 
             raise SketchError("--dialect is for a shader file", file=path)
         if is_elevation(path):
             return elevation_sketch(path, techniques)
-        file = TomlFile(path, path.parent, text)
+        file = TomlFile(path, named_root(path) or path.parent, text)
         if is_variant(path):
             raise lonely_variant(path)
         if _holds_technique(file):

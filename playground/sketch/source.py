@@ -25,6 +25,7 @@ from playground.paths import GLSL, shown
 from playground.regular_file import NotRegularError, irregularity, read_regular
 from playground.sketch.allowed_files import (
     exists,
+    how_to_open,
     is_file,
     is_inside,
     names_below,
@@ -337,7 +338,8 @@ class _Reader:
             candidate = self.looked_at[place] = _file_at(place)
             if candidate is not None:
                 if not is_inside(candidate, allowed) and not library_around(candidate, self.libraries):
-                    raise line.error(f"'{name}' lies outside the sketch's own folder and glsl/")
+                    more = how_to_open(candidate, allowed[0]) if allowed != (self.library,) else ""
+                    raise line.error(f"'{name}' lies outside the sketch's own folder and glsl/{more}")
                 return candidate
         named = _LIBRARY.fullmatch(name) if allowed != (self.library,) else None
         if named:
@@ -346,6 +348,11 @@ class _Reader:
                 return self.in_library(named[1], named[2], line)
         if what := next(filter(None, map(irregularity, places)), ""):
             raise line.error(f"'{name}': {what}")
+        own = self.own[0]
+        above = [parent / name for parent in own.parents] if climbs and includer.is_relative_to(own) else ()
+        if (candidate := next(filter(None, map(_file_at, above)), None)) is not None:
+            more = how_to_open(candidate, own)
+            raise line.error(f"'{name}' lies outside the sketch's own folder and glsl/{more}")
         near = nearest(name, names_below(allowed, (".glsl",)))
         elsewhere = near.endswith(f"/{named[2].rpartition('/')[2]}'?") if named else True
         if named and not elsewhere and not exists(self.library / named[1]):

@@ -107,3 +107,24 @@ def test_what_each_loudness_prints(capsys: pytest.CaptureFixture[str]):
 def test_both_are_one_mistake(words: list[str], capsys: pytest.CaptureFixture[str]):
     assert cli.main(words) == 2
     assert capsys.readouterr() == ("", "error: --verbose and --quiet exclude each other; choose one\n")
+
+
+def test_root_opens_a_folder_for_one_command_only(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+):
+    monkeypatch.chdir(tmp_path)
+    Path("all/a").mkdir(parents=True)
+    Path("all/m.glsl").write_text("float level() { return 0.25; }\n")
+    text = '#include "../m.glsl"\nvoid main() { gl_FragColor = vec4(level()); }\n'
+    Path("all/a/x.frag").write_text(text)
+    for words in (["--root", "all", "render"], ["render", "--root", "all"]):
+        assert cli.main([*words, "all/a/x.frag", "--size", "8x4", "-o", "x.png"]) == 0
+        assert cli.main(["render", "all/a/x.frag", "--size", "8x4", "-o", "x.png"]) == 2
+        assert "--root all opens it" in capsys.readouterr().err
+    assert cli.main(["check", "--root", "all", "all/a/x.frag"]) == 0
+    assert cli.main(["check", "--root", "all", "all/a"]) == 0
+    assert cli.main(["pack", "--root", "all", "all/a/x.frag", "-o", "x.zip"]) == 0
+    assert cli.main(["render", "x.zip", "--size", "8x4", "-o", "x.png"]) == 0
+    capsys.readouterr()
+    assert cli.main(["render", "--root", "none", "all/a/x.frag"]) == 2
+    assert capsys.readouterr().err == "error: --root none: expected a folder that is there\n"

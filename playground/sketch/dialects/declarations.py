@@ -37,7 +37,7 @@ _QUALIFIED = re.compile(rf"{_BEGINS}(?:\w+[ \t]+)?(?:uniform|in)[ \t]+(\w+)[ \t]
 _BRACKETS = re.compile(r"\([^()]*\)")
 _VECTOR = re.compile(r"vec([234])|float")
 _KINDS = {
-    "numbers": re.compile(r"float|int|uint|bool|[iub]?vec[234]"),
+    "numbers": re.compile(r"float|double|int|uint|bool|[iubd]?vec[234]"),
     "matrix": re.compile(r"mat[34]"),
     "sampler": re.compile(r"[iu]?sampler\w+"),
 }

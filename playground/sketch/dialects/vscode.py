@@ -9,7 +9,7 @@ from pathlib import Path
 
 from playground.errors import ShaderError, nearest
 from playground.paths import shown
-from playground.sketch.allowed_files import SHADERS, is_inside, names_below
+from playground.sketch.allowed_files import SHADERS, how_to_open, is_inside, names_below
 from playground.sketch.dialects import directives
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.shader import SAMPLING, SIZES, Channel, Shader, stand_in
@@ -181,7 +181,8 @@ class Reader:
             if "\0" not in text and self.files.is_there(place):
                 if is_inside(place, (root,)):
                     return place.resolve()
-                raise line.error(f"'{text}' lies outside the shader's own folder, {shown(root)}")
+                more = how_to_open(place.resolve(), root)
+                raise line.error(f"'{text}' lies outside the shader's own folder, {shown(root)}{more}")
         return None
 
 

@@ -6,11 +6,13 @@ import sys
 
 import pytest
 
-from playground.errors import PlaygroundError
+from playground.errors import PlaygroundError, ShaderError, SketchError
 from playground.sketch.load import load
 from tests.toy_texts import IMAGE, PLAIN
 
 ISF = '/*{"ISFVSN": "2", "INPUTS": []}*/\nvoid main() { gl_FragColor = vec4(1.0); }\n'
+LEVEL = "float level() { return 0.25; }\n"
+READS_ABOVE = '#include "{}"\nvoid main() {{ gl_FragColor = vec4(level()); }}\n'
 SECRET = "not_for_strangers\nvoid mainImage(out vec4 c, in vec2 p) { c = vec4(1.0); }\n"
 _opened: list[str] | None = None
 
@@ -79,3 +81,53 @@ def test_a_pass_that_leads_elsewhere_in_the_folder_is_read(folder):
         "buffer_a",
         "image",
     ]
+
+
+# ── the root that a user names ───────────────────────────────────────────────
+
+
+def write(path, text):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize("name", ["../lib/m.glsl", "lib/m.glsl"])
+def test_an_include_above_names_the_way_to_open_it(tmp_path, monkeypatch, name):
+    write(tmp_path / "all/lib/m.glsl", LEVEL)
+    path = write(tmp_path / "all/a/x.frag", READS_ABOVE.format(name))
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ShaderError, match=r"--root all opens it, .* empty sketch.toml in all") as caught:
+        load(path)
+    assert caught.value.diagnostics[0].line == 1
+    monkeypatch.setenv("PLAYGROUND_ROOT", "all")
+    assert "level" in load(path).graph.find("view").technique.source.names
+    write(tmp_path / "out.glsl", LEVEL)
+    with pytest.raises(ShaderError, match="lies outside") as caught:
+        load(write(tmp_path / "all/a/y.frag", READS_ABOVE.format("../../out.glsl")))
+    assert "--root" in str(caught.value)
+    monkeypatch.setenv("PLAYGROUND_ROOT", "elsewhere")
+    with pytest.raises(ShaderError, match="lies outside"):
+        load(path)
+    monkeypatch.delenv("PLAYGROUND_ROOT")
+    write(tmp_path / "all/sketch.toml", "")
+    assert load(path).folder == str(tmp_path / "all")
+
+
+def test_a_link_out_of_the_named_root_stays_closed(tmp_path, monkeypatch):
+    write(tmp_path / "secret.glsl", LEVEL)
+    path = write(tmp_path / "all/x.frag", READS_ABOVE.format("m.glsl"))
+    (tmp_path / "all/m.glsl").symlink_to(tmp_path / "secret.glsl")
+    monkeypatch.setenv("PLAYGROUND_ROOT", str(tmp_path / "all"))
+    with pytest.raises(ShaderError, match="lies outside"):
+        load(path)
+
+
+def test_a_sketch_uses_a_shader_above_in_the_named_root(tmp_path, monkeypatch):
+    write(tmp_path / "all/t.frag", "void mainImage(out vec4 c, in vec2 p) { c = vec4(0.5); }\n")
+    path = write(tmp_path / "all/a/s.toml", 'format = 1\nsize = 65\n[view]\nuse = "./../t"\n')
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SketchError, match="--root all opens it"):
+        load(path)
+    monkeypatch.setenv("PLAYGROUND_ROOT", "all")
+    assert load(path).graph.find("view").use == "./../t"
