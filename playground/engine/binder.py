@@ -25,6 +25,7 @@ from playground.gpu.textures import check_size, drain
 from playground.gpu.wrap import reads_unwired
 from playground.images.content_hash import content_hash
 from playground.images.files import read_image
+from playground.images.tiff_pictures import MAX_HALF
 from playground.paths import shown
 from playground.sketch.colour import srgb_to_linear
 from playground.sketch.fixed_texels import fixed_texels, read_by_texels_alone
@@ -313,11 +314,11 @@ class Binder:
             decoded = None if encoded else _SRGB8_ALPHA8
             texture = self.ctx.texture(size, 4, data, alignment=1, internal_format=decoded)
         else:
-            texels = pixels.astype(np.float64)  # 0..1
+            texels = pixels.astype(np.float64)
             if not encoded:
                 texels[..., :3] = srgb_to_linear(texels[..., :3])
             with np.errstate(under="ignore"):
-                half = texels.astype(np.float16)
+                half = np.clip(texels, -MAX_HALF, MAX_HALF).astype(np.float16)
             texture = self.ctx.texture(size, 4, half.tobytes(), alignment=1, dtype="f2")
         drain(self.ctx)
         return texture

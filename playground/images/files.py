@@ -34,6 +34,7 @@ from numpy.typing import NDArray
 from playground.errors import DataError, nearest
 from playground.images.array_pictures import array_samples, is_array
 from playground.images.bounds import refuse_bomb, refuse_too_many, webp_size
+from playground.images.tiff_pictures import is_deep_tiff, tiff_samples
 from playground.partial import partial_file
 from playground.paths import shown
 from playground.regular_file import NotRegularError, open_regular, require_regular
@@ -55,7 +56,8 @@ class Image:
     """A picture as the file holds it: sRGB-encoded, straight alpha."""
 
     pixels: NDArray[np.uint8] | NDArray[np.float32]  # (rows, cols, 4), top row first; uint8 0..255
-    # from 8-bit files, float32 0..1 from 16-bit ones; alpha is full where the file has none
+    # from 8-bit files, float32 from others: 0..1, but of a TIFF of floats as it holds them; alpha is
+    # full where the file has none
     name: str  # the file's name, for messages
     has_alpha: bool  # whether the file holds an alpha channel at all, be it full everywhere
 
@@ -70,7 +72,7 @@ class Image:
 
 
 def read_image(path: str | Path) -> Image:
-    """Read a PNG, JPEG or WebP picture, or NumPy's array of one (recognised by content, not by the name).
+    """Read a PNG, JPEG, WebP or TIFF, or NumPy's array of a picture (recognised by content, not by the name).
 
     An `.npy` is (rows, cols, 1, 3 or 4), top row first: uint8, uint16, or float32 0..1. Palettes,
     grey and CMYK become RGBA; a camera's orientation mark is obeyed; of an animation, the first
@@ -83,7 +85,10 @@ def read_image(path: str | Path) -> Image:
     with reading(path) as handle:
         depth, _ = _png_header(handle)
         pixels: NDArray[np.uint8] | NDArray[np.float32]
-        if depth == 16 or is_array(handle):
+        if is_deep_tiff(handle):
+            samples = tiff_samples(handle, path)
+            pixels, has_alpha = _four_channels(samples), samples.shape[-1] in (2, 4)
+        elif depth == 16 or is_array(handle):
             samples = array_samples(handle, path) if is_array(handle) else _png_samples(handle, path)
             most = np.float32(65535.0 if samples.dtype == np.uint16 else 1.0)
             pixels = _four_channels(samples)
@@ -207,11 +212,13 @@ def open_picture(handle: BinaryIO, path: Path) -> _Picture:
     if size is not None:
         _judge(path, size, 8)
     try:
-        picture: _Picture = PIL.Image.open(handle, formats=("PNG", "JPEG", "WEBP"))
+        picture: _Picture = PIL.Image.open(handle, formats=("PNG", "JPEG", "WEBP", "TIFF"))
     except PIL.Image.DecompressionBombError as error:
         raise DataError(f"too large a picture to open: {reason(error)}", file=path) from error
     except PIL.UnidentifiedImageError as error:
-        raise DataError("not a picture that can be read; expected PNG, JPEG or WebP", file=path) from error
+        raise DataError(
+            "not a picture that can be read; expected PNG, JPEG, WebP or TIFF", file=path
+        ) from error
     _judge(path, picture.size, depth)
     return picture
 

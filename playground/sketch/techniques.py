@@ -256,9 +256,7 @@ def _locate(use: str, folder: Path, root: Path) -> tuple[Path, Path]:
         base.parent / f"{base.name}{suffix}" for suffix in (*TECHNIQUES, *((EXPORT,) if own else ()))
     ]
     if not base.name.strip(".") or not all(is_inside(path, (limit,)) for path in candidates):
-        where = (
-            f"the sketch’s own folder{how_to_open(real(base), limit, marks=False)}" if own else "glsl/"
-        )
+        where = f"the sketch’s own folder{how_to_open(real(base), limit, marks=False)}" if own else "glsl/"
         raise SketchError(f"use = '{use}' lies outside {where}")
     present = [path for path in candidates if is_file(path) and (path.suffix != EXPORT or is_export(path))]
     if present and is_variant(present[0]):

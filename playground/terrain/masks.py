@@ -46,6 +46,7 @@ def weights_of(image: Image) -> NDArray[np.float32]:
     """Return an image's channels as four weights (ny, nx, 4), 0..1, row 0 south."""
     pixels = image.pixels[::-1]
     weights = np.array(pixels / np.float32(255) if pixels.dtype == np.uint8 else pixels, np.float32)
+    np.clip(weights, 0.0, 1.0, out=weights)
     if not image.has_alpha:
         weights[..., 3] = 0.0
     return weights

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from playground.images.content_hash import content_hash
 from playground.images.files import read_image
+from playground.images.tiff_pictures import MAX_HALF
 from playground.sketch.colour import srgb_to_linear
 from playground.web.blobs import Blobs
 
@@ -50,12 +51,12 @@ class Images:
 
 
 def _halves(pixels: NDArray[Any], encoded: bool) -> NDArray[np.float16]:
-    """Return numbers from 0 to 1 as half floats, row 0 south."""
+    """Return numbers as half floats, row 0 south."""
     texels = pixels[::-1].astype(np.float64)
     if not encoded:
         texels[..., :3] = srgb_to_linear(texels[..., :3])
     with np.errstate(under="ignore"):
-        return np.ascontiguousarray(texels.astype(np.float16))
+        return np.ascontiguousarray(np.clip(texels, -MAX_HALF, MAX_HALF).astype(np.float16))
 
 
 def _lossless(pixels: NDArray[Any]) -> bytes:

@@ -10,7 +10,7 @@ from playground.sketch.channels import Channel, channels, is_technique, sources
 from playground.sketch.model import Kernel, Parameter, Sketch, Technique
 from playground.sketch.techniques import read_technique
 
-PICTURES = (".png", ".jpg", ".jpeg", ".webp")
+PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff")
 """Endings of what is read as a picture."""
 
 MEDIA = {"video_file": VIDEO_FILES, "sound_file": SOUND_FILES}

@@ -7,6 +7,7 @@ import wave
 
 import numpy as np
 import pytest
+import tifffile
 
 from playground.capture.large import strips
 from playground.engine.engine import Engine
@@ -589,6 +590,21 @@ def test_an_image_of_a_channel_has_its_own_size_and_filters(any_engine, opened, 
         {"a.glsl": '#iChannel0 "file://x.png"\n' + size.replace("{{", "{").replace("}}", "}")}, "a.glsl"
     )
     np.testing.assert_allclose(first_texel(any_engine, sketch)[:3], [128, 64, 32], atol=1)
+
+
+@pytest.mark.parametrize("kind", ["uint8", "uint16", "float32"])
+def test_a_channel_reads_a_tiff_of_any_numbers(any_engine, opened, folder, kind):
+    most = 1 if kind == "float32" else np.iinfo(kind).max
+    texels = np.array([[[0.2, 0.4, 0.6], [3.0, -1.0, 0.25]]])
+    texels = texels if kind == "float32" else np.clip(texels, 0, 1)
+    stored = (np.rint(texels * most) if most > 1 else texels).astype(kind)
+    tifffile.imwrite(folder.path / "x.tiff", stored, photometric="rgb")
+    text = (
+        '#iChannel0 "file://x.tiff"\nvoid mainImage(out vec4 c, in vec2 p) {\n'
+        "    c = texelFetch(iChannel0, ivec2(p.x < 16.0 ? 0 : 1, 0), 0) * 0.25 + 0.25; }\n"
+    )
+    found = drawn(any_engine, opened({"a.frag": text}, "a.frag"))[0, [0, -1], :3] / 255
+    np.testing.assert_allclose(found, texels[0] * 0.25 + 0.25, atol=0.51 / 255 + 2e-3 / 4)
 
 
 def test_two_passes_may_read_two_files_by_one_channel(any_engine, opened, folder):
