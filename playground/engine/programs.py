@@ -120,7 +120,11 @@ class Programs:
             return self._used(known[1])
         plain = wrap(kernel, driver, self.ctx.version_code)
         wrapped = with_choices(plain, choices) if choices else plain
-        text = tuple(stage.text for stage in wrapped.stages.values())
+        if kernel.kind == "plain_fragment":
+            from playground.gpu.zero_values import with_zeros
+
+            wrapped = with_zeros(wrapped)
+        text = _texts(wrapped)
         self._texts[wanted] = (kernel, text)
         while len(self._texts) > 4 * _SPARE:
             self._texts.popitem(last=False)
@@ -132,7 +136,7 @@ class Programs:
         return self._used(text)
 
     def _compiled(self, plain: Wrapped, wrapped: Wrapped, choices: Choices) -> Any:
-        """Compile a text; where functions are replaced in it and that fails, without.
+        """Compile a text; where functions or values are written into it and that fails, without.
 
         So a driver's complaints name what the author wrote.
         """
@@ -140,9 +144,10 @@ class Programs:
         try:
             return compile_wrapped(self.ctx, wrapped)
         except ShaderError:
-            if own == choices:
+            as_written = with_choices(plain, own)
+            if _texts(as_written) == _texts(wrapped):
                 raise
-            return compile_wrapped(self.ctx, with_choices(plain, own))
+            return compile_wrapped(self.ctx, as_written)
 
     def own(self, fragment: str) -> Program:
         """Return the program of a fragment shader of the engine's own."""
@@ -177,3 +182,8 @@ class Programs:
         for old in list(self._by_text)[:-_SPARE]:
             if self._by_text[old].frame != self.frame and old != text:
                 self._by_text.pop(old).release()
+
+
+def _texts(wrapped: Wrapped) -> tuple[str, ...]:
+    """Return what a driver compiles."""
+    return tuple(stage.text for stage in wrapped.stages.values())

@@ -14,6 +14,7 @@ from playground.sketch.source import Line, SourceText
 SIGNATURE = r"\b(\w+)\s+{name}\s*\(([^)]*)\)\s*\{{"
 """A pattern of the head of a function's definition: its type, its arguments."""
 
+VERSION_NUMBER = re.compile(r"#\s*version\s+(\d{1,9})\d*\s*(\w*)")
 _VERSION = re.compile(r"\s*#\s*version\b")
 
 

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from playground.errors import ShaderError
 from playground.gpu.buffer_reads import reading
 from playground.gpu.own_shaders import TRIANGLE, own_part
-from playground.gpu.stage_recipe import SIGNATURE, Part, Recipe, version_line
+from playground.gpu.stage_recipe import SIGNATURE, VERSION_NUMBER, Part, Recipe, version_line
 from playground.sketch.model import DRIVERS, Kernel, Output
 from playground.sketch.reserved_names import (
     FETCHES,
@@ -39,7 +39,6 @@ CORNER = "k_corner"
 
 NOTHING_SKIPPED = f"bool {SKIPS}() {{ return false; }}"
 """What a kernel calls where none of it is skipped."""
-_NUMBER = re.compile(r"#\s*version\s+(\d{1,9})\d*\s*(\w*)")
 _PRAGMA = re.compile(r"\s*#\s*pragma\s+(?:kernel|draw|compute)\b")
 _PROTOTYPE = re.compile(r"^(\w+)\s+(\w+)\s*\(([^()]*)\)\s*;", re.MULTILINE)
 
@@ -144,7 +143,7 @@ def _quad(kernel: Kernel, version: str = "#version 330") -> Recipe:
 
     Versions differ in their words, and those of OpenGL ES link with their own kind only.
     """
-    number = _NUMBER.match(version)
+    number = VERSION_NUMBER.match(version)
     is_old = number is not None and int(number.group(1)) < 130
     text = own_part("triangle_from_buffer.vert", corner=CORNER) if is_old else TRIANGLE
     return Recipe(kernel.source, text=text.replace("#version 330", version))

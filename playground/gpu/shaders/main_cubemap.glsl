@@ -8,7 +8,9 @@ void main() {
     vec3 k_ray = vec3(k_way * k_place.x, -k_place.y, k_way);
     if (k_face < 2) k_ray = vec3(k_way, -k_place.y, -k_way * k_place.x);
     else if (k_face < 4) k_ray = vec3(k_place.x, k_way, k_way * k_place.y);
-    vec4 k_picture = vec4(0.0, 0.0, 0.0, 1.0);
-    mainCubemap(k_picture, k_pixel, vec3(0.0), normalize(k_ray));
+    k_ray = normalize(k_ray);
+    vec3 k_origin = vec3(0.0);
+    vec4 k_picture = vec4(0.0);
+    mainCubemap(k_picture, k_pixel, k_origin, k_ray);
     k_frag_color = k_picture;
 }

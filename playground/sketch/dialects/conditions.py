@@ -8,9 +8,12 @@ whose conditions do not close. Numbers are GLSL 4.60's, section 3.3; an undefine
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
+from playground.sketch.source import SourceText
+
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _DIRECTIVE = re.compile(r"\s*#\s*(ifdef|ifndef|if|elif|else|endif|define|undef)\b\s*(.*)", re.DOTALL)
 _DEFINE = re.compile(r"(\w+)(\()?(.*)", re.DOTALL)
 _TOKEN = re.compile(
@@ -32,6 +35,23 @@ _LEVELS: tuple[tuple[str, ...], ...] = (
 """Operators of two numbers, those that bind least first."""
 _DEEPEST = 32
 _MAX_SHIFT = 62
+
+
+WEBGL = {
+    "GL_ES": "1",
+    "__VERSION__": "100",
+    "GL_FRAGMENT_PRECISION_HIGH": "1",
+    "GL_OES_standard_derivatives": "1",
+    "GL_EXT_shader_texture_lod": "1",
+    "GL_EXT_frag_depth": "1",
+}
+"""What WebGL 1 defines, with its extensions that every browser has."""
+
+WEBGL_2 = {"GL_ES": "1", "__VERSION__": "300", "GL_FRAGMENT_PRECISION_HIGH": "1"}
+"""What WebGL 2 defines."""
+
+_OF_TOOLS = frozenset({"GL_ES", "SHADER_TOY", "GLSLVIEWER", "PASSINDEX", "HW_PERFORMANCE"})
+"""What one tool defines and another does not."""
 
 
 @dataclass
@@ -63,11 +83,17 @@ class Conditions:
         texts = [m[2] for m in self._directives.values() if m[1] in ("if", "ifdef", "ifndef", "elif")]
         self.names = frozenset(name for text in texts for name in re.findall(r"[A-Za-z_]\w*", text))
 
-    def live(self, defined: Mapping[str, str]) -> tuple[str, ...]:
-        """Return the lines with what is left out blank, where these macros are defined before them."""
+    def live(
+        self, defined: Mapping[str, str], *, unsure: Collection[str] = (), unknown: bool | None = None
+    ) -> tuple[str, ...]:
+        """Return the lines with what is left out blank, where these macros are defined before them.
+
+        The conditions of those that are ``unsure`` stay. ``unknown``: whether what depends on the driver is
+        defined; None: its conditions stay too.
+        """
         if self._items is None:
             return self.codes
-        return _Judge(self.codes, self._directives, defined).lines(self._items)
+        return _Judge(self.codes, self._directives, defined, unsure, unknown).lines(self._items)
 
     def _parsed(self) -> list[_Item] | None:
         """Return lines and groups in order; None where conditions do not close, or nest too deeply."""
@@ -99,16 +125,58 @@ class Conditions:
         return None if open_groups else found
 
 
+def macros_of(lines: Iterable[str]) -> dict[str, str]:
+    """Return the macros that some lines define, of those that take no arguments."""
+    words = [line.split(maxsplit=2) for line in lines if line.startswith("#define")]
+    return {name: " ".join(meaning) for _, name, *meaning in words}
+
+
+def live_source(
+    source: SourceText,
+    defined: Mapping[str, str],
+    *,
+    unsure: Collection[str] = (),
+    unknown: bool | None = False,
+) -> SourceText:
+    """Return a text without the branches that are off; see ``Conditions.live``."""
+    codes = Conditions([line.code for line in source.lines]).live(defined, unsure=unsure, unknown=unknown)
+    lines = tuple(
+        line if line.code == code else replace(line, code=code)
+        for line, code in zip(source.lines, codes, strict=True)
+    )
+    return source if lines == source.lines else replace(source, lines=lines)
+
+
+def code_of(text: str) -> str:
+    """Return a text without comments, its continued lines joined."""
+    return _COMMENT.sub(" ", text).replace("\\\n", " ")
+
+
+def live_code(text: str, defined: Mapping[str, str]) -> str:
+    """Return the code of a text whose tool is not known yet, without the branches that are off.
+
+    What one tool defines and another does not is unknown but for what is ``defined``.
+    """
+    unsure = _OF_TOOLS.difference(defined)
+    return "\n".join(Conditions(code_of(text).split("\n")).live(defined, unsure=unsure))
+
+
 class _Judge:
     """One judgement of a text."""
 
     def __init__(
-        self, codes: Sequence[str], directives: Mapping[int, re.Match[str]], defined: Mapping[str, str]
+        self,
+        codes: Sequence[str],
+        directives: Mapping[int, re.Match[str]],
+        defined: Mapping[str, str],
+        unsure: Collection[str] = (),
+        unknown: bool | None = None,
     ) -> None:
         self.codes = list(codes)
         self.directives = directives
+        self.unknown = unknown  # whether what depends on the driver is defined
         self.macros: dict[str, str | None] = dict(defined)  # None: a macro with arguments
-        self.unsure: set[str] = set()  # names that a branch which may be left out defines
+        self.unsure = set(unsure)  # among them names that a branch which may be left out defines
 
     def lines(self, items: Sequence[_Item]) -> tuple[str, ...]:
         self._walk(items, certain=True)
@@ -155,14 +223,14 @@ class _Judge:
 
     def _is_defined(self, name: str) -> bool | None:
         if name in self.unsure or (_OF_THE_DRIVER.fullmatch(name) and name not in self.macros):
-            return None
+            return self.unknown
         return name in self.macros
 
     def meaning(self, name: str) -> str | None:
         """Return the text that a name stands for in an expression; None where that cannot be known."""
         if not self._is_defined(name):
             return None if self._is_defined(name) is None else "0"
-        return self.macros[name]
+        return self.macros.get(name, "1")
 
     def is_defined(self, name: str) -> int | None:
         """Return 1 or 0, None where it cannot be known."""
@@ -334,3 +402,8 @@ def _worked_out(operator: str, left: int | None, right: int | None) -> int | Non
         "*": left * right,
     }
     return int(results[operator])
+
+
+def value_of(text: str) -> int | None:
+    """Return the number that an expression without names is; None for what is none."""
+    return _Expression(_Judge((), {}, {}), text).value()

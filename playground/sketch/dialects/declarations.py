@@ -1,6 +1,6 @@
 """Find what a shader's text declares for all of it: uniforms, and what its vertex shader gives.
 
-Text only, by statements: comments are blanked already, and preprocessor conditions are not judged.
+Text only, by statements: comments are blanked already, and so are branches that are off.
 """
 
 from __future__ import annotations
@@ -9,6 +9,9 @@ import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+
+from playground.sketch.expanded import readings
+from playground.sketch.variables import Declarations
 
 _PRECISION = r"(?:(?:lowp|mediump|highp)\s+)?"
 _MEMORY = r"(?:(?:coherent|volatile|restrict|readonly|writeonly)\s+)*"
@@ -58,7 +61,7 @@ class Declared:
 @lru_cache(maxsize=32)  # passes of one file share a text
 def uniforms(code: str) -> Mapping[str, Declared]:
     """Return the uniforms that a text declares, by name; of one in two branches, the first."""
-    code = _with_qualifiers(code)
+    code = _DIRECTIVE.sub("", _with_qualifiers(code))
     found: dict[str, Declared] = {}
     for match in _UNIFORM.finditer(code):
         of_type = match.group(2).strip()  # the array of "float[3] a"
@@ -78,14 +81,20 @@ def takes(kind: str, given: str) -> bool:
     return kinds[0] == kinds[1]
 
 
-@lru_cache(maxsize=512)
 def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     """Return whether a text declares a variable or a function, outside of functions or ``anywhere``."""
-    for match in re.finditer(rf"\b(?!return\b|else\b)[A-Za-z_]\w*\s+{name}\b\s*[=;,)\[(]", code):
-        before = _DIRECTIVE.sub("", code[: match.start()])
-        if anywhere or all(before.count(a) == before.count(b) for a, b in ("{}", "()")):
-            return True
-    return False
+    kinds = declared_names(code).get(name, frozenset())
+    return bool(kinds - {"local"}) or (anywhere and bool(kinds))
+
+
+@lru_cache(maxsize=32)
+def declared_names(code: str) -> Mapping[str, frozenset[str]]:
+    """Return the names that a text declares, its macros expanded, with kinds: global | local | called."""
+    found: dict[str, frozenset[str]] = {}
+    for tokens in readings(code):
+        for name, kind in Declarations(tokens).names():
+            found[name] = found.get(name, frozenset()) | {kind}
+    return found
 
 
 @lru_cache(maxsize=32)

@@ -10,6 +10,7 @@ import re
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 
+from playground.sketch.dialects.declarations import declared_names, is_declared
 from playground.sketch.source import Line, SourceText
 
 _VERSION = re.compile(r"\s*#\s*version\s+(\d{1,9})\d*\s*(\w*)")
@@ -31,7 +32,8 @@ _OF_VERTICES = {
 """What older vertex shaders gave under names of GLSL's own: the new name, and its declaration."""
 
 _OURS = re.compile(
-    r"k_(?:frag_color|frag_data|tex_coord|color|second|fog|window|part|picture|corner|share|place|i)"
+    r"k_(?:frag_color|frag_data|tex_coord|color|second|fog|window|part|picture|corner|share|place|i|z\d"
+    r"|pixel|origin|ray|face|way|side)"
 )
 """Names that come before or after a text, or are in the vertex shader that is made for it."""
 
@@ -57,11 +59,6 @@ _FUNCTIONS = ("texture", "textureSize", "textureProj", "textureLod", "textureGra
 """Functions that the rewriting calls: a variable of that name would hide them."""
 
 _SAMPLER_FIRST = r"\s*\(\s*(?:const\s+)?(?:in\s+)?(?:(?:lowp|mediump|highp)\s+)?sampler"
-
-_NOT_TYPES = (
-    "in|out|inout|const|uniform|varying|attribute|invariant|lowp|mediump|highp|precision|return|else|define"
-    "|flat|smooth|centroid|noperspective|sample|patch|undef|ifdef|ifndef|defined"
-)
 
 
 @dataclass(frozen=True)
@@ -178,10 +175,7 @@ def _lookups_of_its_own(source: SourceText) -> list[str]:
 
 
 def _declares(code: str, name: str, *, variable: bool = False) -> bool:
-    """Return whether a text declares a name: a type, or a type and other names, before it, or ``#define``."""
-    after = r"\s*[=;,)\[]" if variable else r"\s*[=;,)\[(]"
-    typed = rf"\b(?!(?:{_NOT_TYPES})\b)[A-Za-z_]\w*\s+{name}\b{after}"
-    listed = rf"\b(?:bool|int|float|[bi]?vec[234]|mat[234])\s[^;(){{}}]*,\s*{name}\b\s*[=;,\[]"
-    defined = rf"#\s*define\s+{name}\b"
-    patterns = (typed, listed) if variable else (typed, listed, defined)
-    return any(re.search(pattern, code) for pattern in patterns)
+    """Return whether a text declares a name, or defines it as a macro; ``variable``: no function either."""
+    if variable:
+        return bool(declared_names(code).get(name, frozenset()) - {"called"})
+    return is_declared(code, name, anywhere=True) or bool(re.search(rf"#\s*define\s+{name}\b", code))
