@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import re
 import tomllib
+from collections import defaultdict
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import GLSL
@@ -13,13 +15,18 @@ from playground.regular_file import read_regular
 from playground.sketch import expressions
 from playground.sketch.expressions import ExpressionError, names_in
 from playground.sketch.model import Graph, Kernel, Sketch, kernels_of
+from playground.sketch.reserved_names import GLSL_WORDS
 from playground.sketch.source import SourceText
 from playground.sketch.uniforms import unfed_samplers
 
+if TYPE_CHECKING:
+    from playground.sketch.expanded import Token
+    from playground.sketch.variables import Declarations, Variable
+
 
 def warnings_of_kernel(kernel: Kernel) -> tuple[Diagnostic, ...]:
-    """Return warnings of what has no effect: parameters that nothing reads, and ``unheeded``."""
-    return (*unread(kernel), *unheeded(kernel))
+    """Return warnings of what has no effect, or an undefined one: ``unread``, ``unheeded``, ``unwritten``."""
+    return (*unread(kernel), *unheeded(kernel), *unwritten(kernel))
 
 
 def unheeded(kernel: Kernel) -> tuple[Diagnostic, ...]:
@@ -250,3 +257,141 @@ def _of_graph(graph: Graph) -> Iterator[Diagnostic]:
     for spec in graph.passes:
         if isinstance(spec.technique, Graph):
             yield from _of_graph(spec.technique)
+
+
+# ── variables that are read before they are written ──────────────────────────
+
+
+def unwritten(kernel: Kernel) -> tuple[Diagnostic, ...]:
+    """Return a warning for each local variable that is read before anything is written to it.
+
+    OpenGL gives it no value. Where the order of the text is not that of the run, as in loops, and where a
+    part of it or a function may write, none is given. Other tools' shaders begin with zeros.
+    """
+    if kernel.kind == "plain_fragment":
+        return ()
+    from playground.sketch.expanded import readings
+    from playground.sketch.variables import Declarations
+
+    found: dict[Diagnostic, None] = {}
+    for tokens in readings(kernel.source.code):
+        reads = _Reads(Declarations(tokens))
+        for name, token in reads.before_writing():
+            line = kernel.source.lines[token.line]
+            message = f"'{name}' is read here before anything is written to it, so its value is undefined"
+            found[line.diagnostic(message, token.start + 1, "warning")] = None
+    return tuple(found)
+
+
+_STEPS = frozenset({"++", "--"})
+_ASSIGNS = frozenset({"+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "<<=", ">>="})
+_LOOPS = frozenset({"for", "while", "do"})
+_WRITES_OF_GLSL = {
+    "modf": (1,),
+    "frexp": (1,),
+    "uaddCarry": (2,),
+    "usubBorrow": (2,),
+    "umulExtended": (2, 3),
+    "imulExtended": (2, 3),
+}
+"""Functions of GLSL that write an argument: which."""
+
+
+class _Reads:
+    """How one reading of a text uses its local variables."""
+
+    def __init__(self, declared: Declarations) -> None:
+        self.declared = declared
+        self.texts = [token.text for token in declared.tokens]
+        self.places: dict[str, list[int]] = defaultdict(list)  # of each name; not of members
+        for index, text in enumerate(self.texts):
+            if self.texts[index - 1 : index] != ["."]:
+                self.places[text].append(index)
+        self.loops = [(at, self._end_of_loop(at)) for word in _LOOPS for at in self.places[word]]
+        self.writers: dict[str, set[int]] = {name: set(which) for name, which in _WRITES_OF_GLSL.items()}
+        for function in (*declared.functions, *declared.prototypes):
+            outs = {i for i, one in enumerate(function.parameters) if one.qualifiers & {"out", "inout"}}
+            self.writers.setdefault(function.name, set()).update(outs)
+        self.known = {*self.writers, *GLSL_WORDS, *declared.structs}
+
+    def before_writing(self) -> Iterator[tuple[str, Token]]:
+        """Yield each local variable whose first use is a read, and the token of that."""
+        declared = {one.at for one in self.declared.variables}
+        for one in self.declared.variables:
+            if one.has_value or one.is_global or one.qualifiers & {"const", "shared"} or one.type.members:
+                continue
+            uses = [at for at in self.places[one.name] if one.end < at < self._end_of_scope(one)]
+            if uses and not declared.intersection(uses) and self._is_read(uses[0]):
+                around = [end for at, end in self.loops if one.at < at < uses[0] < end]
+                if not any(self._is_written(at) for at in uses if at < max(around, default=0)):
+                    yield one.name, self.declared.tokens[uses[0]]
+
+    def _is_read(self, at: int) -> bool:
+        """Return whether a use is certainly a read."""
+        after, is_part = self._behind(at)
+        if after == "=":
+            return not is_part and self._reads_itself(at)
+        if self.texts[at + 1 : at + 3] == [".", "length"] or self._is_bracketed(at):
+            return False
+        return after in _ASSIGNS or after in _STEPS or not self._may_be_written_by_call(at)
+
+    def _is_written(self, at: int) -> bool:
+        after, is_part = self._behind(at)
+        return (after == "=" and not self._reads_itself(at)) or is_part or self._may_be_written_by_call(at)
+
+    def _behind(self, at: int) -> tuple[str, bool]:
+        """Return what follows a variable and the brackets and members of it, and whether there are any."""
+        index = at + 1
+        while self.texts[index : index + 1] in (["["], ["."]):
+            index = (self.declared.closing(index) or index) + 1 if self.texts[index] == "[" else index + 2
+        return next(iter(self.texts[index : index + 1]), ""), index > at + 1
+
+    def _is_bracketed(self, at: int) -> bool:
+        """Return whether a variable has brackets of its own, behind which it may be written to."""
+        return self.texts[at + 1 : at + 2] == [")"] and self.texts[at + 2 : at + 3] in (["="], ["."])
+
+    def _reads_itself(self, at: int) -> bool:
+        """Return whether a value that is assigned names the variable."""
+        end = self.declared.end_of_value(at + 2)
+        return any(at + 2 <= use < end for use in self.places[self.texts[at]])
+
+    def _may_be_written_by_call(self, at: int) -> bool:
+        """Return whether a variable is an argument, as a whole, that a function may write."""
+        depth, index = 0, 0
+        for before in range(at - 1, -1, -1):
+            text = self.texts[before]
+            if text in (")", "]"):
+                depth += 1
+            elif text in ("(", "[") and depth:
+                depth -= 1
+            elif text in ("(", ";", "{", "}", "["):
+                name = self.texts[before - 1] if text == "(" and before else ""
+                if not re.match(r"[A-Za-z_]", name):
+                    return False
+                return name not in self.known or index in self.writers.get(name, ())
+            elif text == "," and depth == 0:
+                index += 1
+        return False
+
+    def _end_of_scope(self, one: Variable) -> int:
+        """Return the index of the bracket that closes the block, or the function, that a variable is in."""
+        functions = [f for f in self.declared.functions if f.opens < one.at < f.closes]
+        end = functions[0].closes if functions else len(self.texts)
+        depth = 0
+        for index in range(one.close, end):
+            depth += (self.texts[index] == "{") - (self.texts[index] == "}")
+            if depth < 0:
+                return index
+        return end
+
+    def _end_of_loop(self, at: int) -> int:
+        """Return the index of the last token of a loop."""
+        index = at + 1
+        if self.texts[index : index + 1] == ["("]:
+            index = (self.declared.closing(index) or index) + 1
+        depth = 0
+        for end in range(index, len(self.texts)):
+            depth += (self.texts[end] in "({[") - (self.texts[end] in ")}]")
+            if depth <= 0 and self.texts[end] in (";", "}"):
+                return end
+        return len(self.texts)

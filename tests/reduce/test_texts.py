@@ -162,8 +162,6 @@ def test_what_glsl_leaves_undefined_is_known(text, names):
 
 
 def test_an_input_without_a_source_keeps_members_and_numbers() -> None:
-    text = (
-        "uniform sampler2D f;  //! input\nfloat g = wired_f ? texture(f, uv).x + 1.f + wave.f : 0.0;\n"
-    )
+    text = "uniform sampler2D f;  //! input\nfloat g = wired_f ? texture(f, uv).x + 1.f + wave.f : 0.0;\n"
     expected = text.replace("sampler2D f", "sampler2D no_f").replace("wired_f", "wired_no_f")
     assert unwired(text, "f") == expected.replace("texture(f", "texture(no_f")

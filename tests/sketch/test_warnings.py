@@ -1,7 +1,8 @@
-"""Parameters that nothing reads are found, and only those."""
+"""Parameters that nothing reads are found, variables read before they are written, and only those."""
 
 from __future__ import annotations
 
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ from playground.errors import Diagnostic, PlaygroundError
 from playground.paths import GLSL
 from playground.sketch.source import read_source
 from playground.sketch.techniques import read_kernel
-from playground.sketch.warnings import unheeded, unread, whole_divisions
+from playground.sketch.warnings import unheeded, unread, unwritten, whole_divisions
 
 
 def found_in(folder: Path, declared: str, body: str = "", pragma: str = "") -> list[str]:
@@ -156,3 +157,73 @@ def test_whole_quotients_that_are_meant_are_left_alone(tmp_path: Path, code: str
 def test_no_shipped_text_divides_whole_literals() -> None:
     texts = (read_source(path, [GLSL]) for path in GLSL.rglob("*.glsl"))
     assert [found for text in texts for found in whole_divisions(text)] == []
+
+
+# ── variables that are read before they are written ──────────────────────────
+
+_FUNCTIONS = "void set(out float a) { a = 1.0; }\nvoid grow(inout float a) { a += 1.0; }\n"
+
+
+def unwritten_in(folder: Path, body: str) -> list[str]:
+    """Return the names in the warnings, and the columns, of a kernel's body."""
+    text = f'#pragma kernel(output = "height:r32f")\n{_FUNCTIONS}#define SUM(n) float n; n += 1.0\n'
+    (folder / "k.glsl").write_text(f"{text}float kernel(ivec2 texel) {{\n{body}\n}}\n", encoding="utf-8")
+    kernel = read_kernel(folder / "k.glsl", folder)
+    assert kernel is not None
+    assert all(d.severity == "warning" and d.line == 6 for d in unwritten(kernel))
+    return [f"{d.message.split()[0]} {d.column}" for d in unwritten(kernel)]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "float a; return ^a;",
+        "float a; ^a += 1.0; return a;",
+        "float a; ^a++; return a;",
+        "float a, b = 1.0; return b - ^a;",
+        "vec3 a; return ^a.x;",
+        "float a[3]; return ^a[1];",
+        "float b = 1.0, a; ^a = a + b; return a;",
+        "float a; return max(^a, 0.0);",
+        "float a; for (int i = 0; i < 3; i++) { ^a += 1.0; a += 2.0; } return a;",
+        "for (int a; ^a < 3; a++) {} return 0.0;",
+        "float a; if (texel.x > 0) return ^a; a = 1.0; return a;",
+        "^SUM(a); return a;",
+    ],
+)
+def test_a_local_read_before_it_is_written_is_a_warning(tmp_path: Path, body: str) -> None:
+    assert unwritten_in(tmp_path, body.replace("^", "")) == [f"'a' {body.index('^') + 1}"]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "float a; a = 1.0; return a;",
+        "float a; set(a); return a;",
+        "float a; grow(a); return a;",
+        "float a; float b = modf(1.5, a); return a;",
+        "float a; if (texel.x > 0) a = 1.0; else a = 2.0; return a;",
+        "float a; for (int i = 0; i < 3; i++) { if (i > 0) return a; a = 1.0; } return 0.0;",
+        "float a; do { a = 1.0; } while (a < 0.0); return a;",
+        "float a[3]; for (int i = 0; i < a.length(); i++) a[i] = 1.0; return a[0];",
+        "vec3 a; a.xy = vec2(1.0); a.z = a.x; return a.z;",
+        "float a, b; a = b = 1.0; return a + b;",
+        "float a; (a) = 1.0; return a;",
+        "float a; { float a = 1.0; a += 1.0; } a = 2.0; return a;",
+        "vec2 b = vec2(1.0); float x; x = b.x; return x;",
+        "float a; if ((a = 2.0) > 1.0) return a; return 0.0;",
+    ],
+)
+def test_a_local_that_may_be_written_first_is_none(tmp_path: Path, body: str) -> None:
+    assert unwritten_in(tmp_path, body) == []
+
+
+@pytest.mark.slow
+def test_no_kernel_of_the_library_reads_before_it_writes() -> None:
+    seen = 0
+    for path in sorted([*GLSL.rglob("*.glsl"), *GLSL.rglob("*.comp")]):
+        with suppress(PlaygroundError):  # files of sketches, which include from their own folder
+            if (kernel := read_kernel(path, GLSL)) is not None:
+                seen += 1
+                assert unwritten(kernel) == (), path
+    assert seen > 250
