@@ -261,10 +261,11 @@ def test_what_nothing_feeds_is_named_once(folder):
 
 
 def test_a_dialect_may_be_named(any_engine, folder):
-    both = "void mainImage(out vec4 c, vec2 p) { c = vec4(1, 0, 0, 1); }\n#ifdef X\nvoid main() {}\n#endif\n"
-    path = folder.write("t.frag", both)
-    with pytest.raises(PlaygroundError):
-        any_engine.render(load(path), size=(4, 4))
+    both = "#ifdef HW_PERFORMANCE\nvoid mainImage(out vec4 c, vec2 p) { c = vec4(1, 0, 0, 1); }\n#else\n"
+    path = folder.write("t.frag", f"{both}void main() {{ gl_FragColor = vec4(0, 1, 0, 1); }}\n#endif\n")
+    np.testing.assert_array_equal(
+        any_engine.render(load(path, dialect="main"), size=(4, 4)).array[0, 0], [0, 255, 0, 255]
+    )
     np.testing.assert_array_equal(
         any_engine.render(load(path, dialect="shadertoy"), size=(4, 4)).array[0, 0], [255, 0, 0, 255]
     )

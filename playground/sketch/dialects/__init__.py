@@ -28,7 +28,6 @@ EXPORT = ".json"
 _REFUSED = "sound"
 _MOST = 64
 
-_COMMENT = re.compile(r"//[^\n]*|/\*.*?(?:\*/|\Z)", re.DOTALL)
 _ISF = re.compile(
     r"(?:\s|//[^\n]*\n)*/\*\s*\{(?:\s*\}|(?:(?!\*/).)*"
     r'"(?:INPUTS|PASSES|ISFVSN|VSN|CATEGORIES|IMPORTED|PERSISTENT_BUFFERS|DESCRIPTION|CREDIT)"\s*:)',
@@ -42,8 +41,8 @@ _ISF_NAME = re.compile(
 _EXPORT = re.compile(r'\s*[\[{](?=.*"renderpass")', re.DOTALL)
 _OWN_PRAGMA = re.compile(r"^[ \t]*#[ \t]*pragma[ \t]+(?:kernel|source|draw|compute)\b", re.MULTILINE)
 _DIRECTIVE = re.compile(r"^[ \t]*#[ \t]*(?:i[A-Z]\w*|StrictCompatibility)\b", re.MULTILINE)
-_MAIN = re.compile(r"\bmain\s*\(")
-_MAIN_IMAGE = re.compile(r"\bmainImage\b")  # a macro may stand for it
+_MAIN = re.compile(r"\bmain\s*(?:\(|$)", re.MULTILINE)  # a macro may stand for it
+_MAIN_IMAGE = re.compile(r"\bmainImage\b")  # likewise
 _SOUND = re.compile(r"\bmain(Sound|VR|Cubemap)\s*\(")
 
 
@@ -52,9 +51,10 @@ class Dialect:
     """A row of the table."""
 
     name: str  # as --dialect takes it
-    sign: Callable[[str, str], object]  # of the text, and of the text without comments
+    sign: Callable[[str, str], object]  # of the text, and of its code
     shaders: Callable[[Files], Sequence[Shader | Made]] | None = None  # None: our own
     # No shader: the file runs as it is, as a plain shader.
+    is_webgl: bool = False  # its branches are judged as WebGL 2 judges them
 
 
 def _isf(files: Files) -> Sequence[Shader]:
@@ -107,7 +107,12 @@ DIALECTS = (
     Dialect("export", lambda text, code: _EXPORT.match(text), _export),
     Dialect(OWN, lambda text, code: _OWN_PRAGMA.search(code)),
     Dialect("vscode", lambda text, code: _DIRECTIVE.search(code), _vscode),
-    Dialect("shadertoy", lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code), _shadertoy),
+    Dialect(
+        "shadertoy",
+        lambda text, code: _MAIN_IMAGE.search(code) and not _MAIN.search(code),
+        _shadertoy,
+        is_webgl=True,
+    ),
     Dialect("main", lambda text, code: _MAIN.search(code), _main),
     Dialect(_REFUSED, lambda text, code: _SOUND.search(code), _without_picture),
 )
@@ -129,9 +134,17 @@ def check_name(name: str) -> str:
 
 
 def dialect_of(text: str) -> Dialect | None:
-    """Return the dialect of a text, by the first sign that it shows; None where it has nothing to run."""
-    code = _COMMENT.sub(" ", text)
-    return next((dialect for dialect in DIALECTS if dialect.sign(text, code)), None)
+    """Return the dialect of a text, by the first sign that it shows; None where it has nothing to run.
+
+    Branches that are off count where nothing else shows a sign.
+    """
+    from playground.sketch.dialects.conditions import WEBGL_2, code_of, live_code
+
+    def live(dialect: Dialect) -> str:
+        return live_code(text, WEBGL_2 if dialect.is_webgl else {})
+
+    found = next((d for d in DIALECTS if d.sign(text, live(d))), None)
+    return found or next((d for d in DIALECTS if d.sign(text, code_of(text))), None)
 
 
 def is_export(path: Path) -> bool:

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from playground.errors import Diagnostic
-from playground.sketch.dialects.declarations import uniforms
+from playground.sketch.dialects.conditions import live_source
+from playground.sketch.dialects.declarations import is_declared, uniforms
 from playground.sketch.dialects.es import Rewritten, rewritten
 from playground.sketch.dialects.isf_header import is_true, read_header
 from playground.sketch.dialects.isf_inputs import IMAGE, Inputs, read_inputs
@@ -34,13 +35,13 @@ NAMES: Names = {
 VERTEX_FILES = (".vs", ".vert")
 """What a vertex shader of the author's own ends in, beside the file and of its name."""
 
+_MACROS = ("PASSINDEX",)  # other ones of each pass
 _COORDINATE = "in vec2 isf_FragNormCoord;"
 _TAKEN = re.compile(
     r"(?:vv|isf)_(?:FragNormCoord|vertShaderInit)|IMG_(?:NORM_|THIS_|THIS_NORM_)?PIXEL|IMG_SIZE|PASSINDEX"
 )
 _PROPERTY = re.compile(r"\b_(\w+)_(imgRect|imgSize|flip)\b")
 _PROPERTIES = {"imgRect": "vec4(0.0, 0.0, IMG_SIZE({0}))", "imgSize": "IMG_SIZE({0})", "flip": "false"}
-_MAIN = re.compile(r"\bmain\s*\(")
 _SENTENCE = re.compile(r"(.{3,}?[.!?])(?:\s|$)")
 _LONGEST_TITLE = 72
 _MOST_PASSES = 64
@@ -73,9 +74,9 @@ class _Reader:
 
     def __init__(self, files: Files) -> None:
         self.files = files
-        self.source = files.source()
+        self.source = live_source(files.source(), {}, unsure=_MACROS, unknown=None)
         self.header = read_header(self.source)
-        if not _MAIN.search(self.source.code):
+        if not is_declared(self.source.code, "main", anywhere=False):
             raise self.source.lines[-1].error(
                 "an ISF shader needs a main() of its own, after its description"
             )
@@ -239,8 +240,8 @@ class _Reader:
         there = [place for place in places if self.files.is_there(place)]
         if not there:
             return None
-        source = self.files.source(there[0])
-        if not _MAIN.search(source.code):
+        source = live_source(self.files.source(there[0]), {}, unsure=_MACROS, unknown=None)
+        if not is_declared(source.code, "main", anywhere=False):
             raise source.lines[-1].error("a vertex shader needs a main() of its own")
         return self._rewritten(source, is_vertex=True)
 

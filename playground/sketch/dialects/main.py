@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from playground.sketch.dialects import shadertoy
+from playground.sketch.dialects.conditions import WEBGL, live_source, macros_of
 from playground.sketch.dialects.declarations import uniforms, vertex_outputs
 from playground.sketch.dialects.es import rewritten, version_of
 from playground.sketch.dialects.passes import VIEW
@@ -118,12 +119,16 @@ RULES = Rules("main", NAMES, declared_anywhere=True, defines=_defines)
 
 def shaders(files: Files) -> Sequence[Shader | Made]:
     """Return the passes of a file, none where it lacks nothing that a plain shader is given."""
-    source = files.source()
-    text = rewritten(source)
-    rules = replace(RULES, names=shadertoy.with_sampler_types(NAMES, source))
-    if found := shaders_of(text, rules):
+    whole = files.source()
+    version = version_of(whole)
+    known = {} if version else WEBGL
+    rules = replace(RULES, names=shadertoy.with_sampler_types(NAMES, whole))
+    if found := shaders_of(rewritten(whole), rules, known):
         return found
-    if not files.named and version_of(source) >= 330 and not _needs_dialect(source):
+    macros = {**known, **macros_of(_defines(whole))}
+    source = live_source(whole, macros, unknown=None if version else False)
+    if not files.named and version >= 330 and not _needs_dialect(source):
         return ()
+    text = rewritten(source)
     before = dict.fromkeys(_BEFORE, Channel(target=VIEW, sampling=Sampling("linear", "clamp")))
     return (Shader(VIEW, text, rules, target=VIEW, channels=before, keeps=True),)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 
+from playground.sketch.dialects.conditions import WEBGL_2, live_source
 from playground.sketch.dialects.es import rewritten
 from playground.sketch.dialects.passes import VIEW
 from playground.sketch.dialects.reading import Files
@@ -43,7 +44,16 @@ MORE_NAMES: Names = {
 }
 """Those of the VS Code extension."""
 
-RULES = Rules("shadertoy", NAMES, epilogue="main_image.glsl")
+MACROS = {**WEBGL_2, "HW_PERFORMANCE": "1"}
+"""What Shadertoy defines."""
+
+
+def defines(source: SourceText) -> tuple[str, ...]:
+    """Return those of Shadertoy's own macros that a text names."""
+    return ("#define HW_PERFORMANCE 1",) if "HW_PERFORMANCE" in source.names else ()
+
+
+RULES = Rules("shadertoy", NAMES, epilogue="main_image.glsl", defines=defines)
 
 
 _NOT_DRAWN = {"mainSound": "sound", "mainVR": "for VR"}
@@ -51,7 +61,7 @@ _NOT_DRAWN = {"mainSound": "sound", "mainVR": "for VR"}
 
 def shaders(files: Files) -> Sequence[Shader]:
     """Return the passes of a file."""
-    source = files.source()
+    source = live_source(files.source(), MACROS)
     note_not_drawn(files, source)
     return (Shader(VIEW, rewritten(source), replace(RULES, names=with_sampler_types(NAMES, source))),)
 

@@ -15,9 +15,10 @@ from playground.errors import SketchError
 from playground.json_text import read_json
 from playground.paths import shown
 from playground.sketch.allowed_files import leads_outside
+from playground.sketch.dialects.conditions import live_source
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.shader import SAMPLING, Channel, Shader, stand_in
-from playground.sketch.dialects.shadertoy import note_not_drawn
+from playground.sketch.dialects.shadertoy import MACROS, note_not_drawn
 from playground.sketch.dialects.toy_passes import (
     BUFFER,
     CUBE,
@@ -89,7 +90,7 @@ def shaders(files: Files) -> Sequence[Shader]:
     made = []
     for one in sorted(drawn, key=lambda one: one.label):
         source = files.part(one.label, one.code)
-        note_not_drawn(files, source)
+        note_not_drawn(files, live_source(source, MACROS))
         inputs = dict(_inputs(files, one, written, drawn))
         made.append(ToyPass(one.label, one.kind, with_common(common, source), inputs))
     info = shader.get("info")

@@ -14,6 +14,7 @@ from pathlib import Path
 from playground.errors import SketchError
 from playground.paths import shown
 from playground.sketch.allowed_files import is_inside
+from playground.sketch.dialects.conditions import WEBGL_2, live_code
 from playground.sketch.dialects.directives import read_directives
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.sampler_types import names_reached, sampler_types
@@ -43,6 +44,7 @@ _COMMENT = re.compile(
     re.IGNORECASE,
 )
 _KEYBOARD = "keyboard"
+_MAIN_IMAGE = re.compile(r"\bmainImage\b")
 
 
 def image_of(folder: Path) -> Path | None:
@@ -50,7 +52,7 @@ def image_of(folder: Path) -> Path | None:
     found = next((place for place in _places(folder, _IMAGE) if place.is_file()), None)
     if found is None or not is_inside(found, (folder,)):
         return None
-    return found if "mainImage" in found.read_text("utf-8", "replace") else None
+    return found if _MAIN_IMAGE.search(live_code(found.read_text("utf-8", "replace"), WEBGL_2)) else None
 
 
 def is_of_folder(path: Path) -> bool:

@@ -7,10 +7,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from playground.errors import ShaderError
+from playground.sketch.dialects.conditions import WEBGL_2, live_source
+from playground.sketch.dialects.declarations import is_declared
 from playground.sketch.dialects.directives import KEYBOARD
 from playground.sketch.dialects.es import rewritten
 from playground.sketch.dialects.shader import Channel, Rules, Shader
-from playground.sketch.dialects.shadertoy import MORE_NAMES, NAMES, with_sampler_types
+from playground.sketch.dialects.shadertoy import MACROS, MORE_NAMES, NAMES, defines, with_sampler_types
 from playground.sketch.model import Parameter, Sampling, Widget
 from playground.sketch.source import SourceText
 
@@ -45,7 +47,7 @@ class ToyPass:
     kind: str  # image | buffer | cubemap
     source: SourceText  # what they have in common before it
     inputs: Mapping[str, ToyInput] = field(default_factory=dict)  # by sampler; others are noise
-    epilogue: bool = True  # it has no main of its own
+    may_have_main: bool = False  # one of its own, in place of the function of its kind
     called: str = ""  # its name, where that is not made of the label
 
     @property
@@ -75,12 +77,16 @@ def shaders_of(passes: Sequence[ToyPass], dialect: str = "shadertoy") -> tuple[S
     Buffers and cube maps come in the order given. Raises ``ShaderError`` for one without its function.
     """
     ordered = sorted(passes, key=lambda one: _ORDER.index(one.kind))
-    return tuple(_shader(one, dialect) for one in ordered)
+    macros = {"SHADER_TOY": "", **WEBGL_2} if dialect == "vscode" else MACROS
+    live = [replace(one, source=live_source(one.source, macros)) for one in ordered]
+    return tuple(_shader(one, dialect) for one in live)
 
 
 def _shader(one: ToyPass, dialect: str) -> Shader:
     function = _FUNCTIONS[one.kind]
-    if one.epilogue and function not in one.source.names:
+    is_there = function in one.source.names
+    has_main = one.may_have_main and not is_there and is_declared(one.source.code, "main", anywhere=False)
+    if not (is_there or has_main):
         own = [line for line in one.source.lines if line.text.strip()]
         place = own[-1] if own else one.source.lines[-1]
         others = next((f for f in ("mainImage", "mainCubemap", "mainSound") if f in one.source.names), "")
@@ -114,8 +120,9 @@ def _shader(one: ToyPass, dialect: str) -> Shader:
         Rules(
             dialect,
             names,
-            epilogue=_EPILOGUES[one.kind] if one.epilogue else "",
+            epilogue="" if has_main else _EPILOGUES[one.kind],
             helpers=("vscode_keyboard.glsl",) if has_keyboard else (),
+            defines=defines if dialect != "vscode" else lambda source: (),
         ),
         named=frozenset({KEYBOARD}) if has_keyboard else frozenset(),
         target=one.name,

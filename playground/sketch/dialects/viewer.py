@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from playground.sketch.dialects.conditions import Conditions
+from playground.sketch.dialects.conditions import Conditions, macros_of
 from playground.sketch.dialects.es import Rewritten
 from playground.sketch.dialects.passes import VIEW
 from playground.sketch.dialects.shader import Channel, Made, Names, Rules, Shader
@@ -60,22 +60,25 @@ class _Pass:
         return tuple(f"{begins}{self.number}" for begins in _SAMPLERS[self.kind])
 
 
-def shaders_of(text: Rewritten, rules: Rules) -> Sequence[Shader | Made]:
-    """Return the passes of a text, the picture last; of a text without any, none."""
-    return _Viewer(text, rules).shaders()
+def shaders_of(text: Rewritten, rules: Rules, known: Mapping[str, str]) -> Sequence[Shader | Made]:
+    """Return the passes of a text, the picture last; of a text without any, none.
+
+    ``known`` are macros that a driver would define besides those of the rules.
+    """
+    return _Viewer(text, rules, known).shaders()
 
 
 class _Viewer:
     """One text, and which of its lines each pass has."""
 
-    def __init__(self, text: Rewritten, rules: Rules) -> None:
+    def __init__(self, text: Rewritten, rules: Rules, known: Mapping[str, str]) -> None:
         self.text = text
+        self.known = known
         self.rules = rules
         self.conditions = Conditions([line.code for line in text.source.lines])
         before = [line for line in rules.defines(text.source) if not line.endswith("BACKGROUND")]
-        given = [line for line in before if line.startswith("#define")]
-        self.declared = tuple(line for line in before if line not in given)
-        self.given = {words[1]: " ".join(words[2:]) for words in map(str.split, given)}
+        self.declared = tuple(line for line in before if not line.startswith("#define"))
+        self.given = macros_of(before)
         self._live: dict[tuple[str, ...], tuple[str, ...]] = {}
         self.bare = self.live()
         self.sources: dict[tuple[str, ...], SourceText] = {}
@@ -83,7 +86,9 @@ class _Viewer:
     def live(self, *macros: str) -> tuple[str, ...]:
         """Return the lines that there are where some passes' macros are defined."""
         if macros not in self._live:
-            self._live[macros] = self.conditions.live({**self.given, **dict.fromkeys(macros, "")})
+            self._live[macros] = self.conditions.live(
+                {**self.known, **self.given, **dict.fromkeys(macros, "")}
+            )
         return self._live[macros]
 
     def changes(self, macro: str) -> bool:

@@ -11,6 +11,7 @@ from playground.errors import ShaderError, nearest
 from playground.paths import shown
 from playground.sketch.allowed_files import SHADERS, how_to_open, is_inside, names_below
 from playground.sketch.dialects import directives
+from playground.sketch.dialects.conditions import WEBGL_2, live_source
 from playground.sketch.dialects.reading import Files
 from playground.sketch.dialects.shader import SAMPLING, SIZES, Channel, Shader, stand_in
 from playground.sketch.dialects.shadertoy import note_not_drawn
@@ -34,7 +35,6 @@ _SCHEME = re.compile(r"(?:file|buf|glsl)://")
 _WEB = re.compile(r"https?://", re.IGNORECASE)
 _SOUND = (".mp3", ".wav", ".ogg", ".flac", ".m4a", ".aac", ".opus")
 _PICTURES = (".png", ".jpg", ".jpeg", ".webp", ".tif", ".tiff")
-_MAIN = re.compile(r"\bmain\s*\(")
 _FACES = (
     ("px", "nx", "py", "ny", "pz", "nz"),
     ("e", "w", "u", "d", "n", "s"),
@@ -86,16 +86,15 @@ class Reader:
         read = directives.read_directives(self.files.source(path))
         for line, message in read.notes:
             self.files.note_at(line, message)
-        note_not_drawn(self.files, read.source)
+        note_not_drawn(self.files, live_source(read.source, WEBGL_2, unsure={"SHADER_TOY"}))
         feeds = dict(self.inputs.get(path, {}))
         for number, channel in read.channels.items():
             feeds[f"iChannel{number}"] = self._feed(path, number, channel)
         source = with_common(self.common, read.source)
         if directives.has_keyboard(source):
             feeds[directives.KEYBOARD] = ToyInput(stand_in("keys", 0, ""))
-        has_main = bool(_MAIN.search(source.code)) and "mainImage" not in source.names
         label = self.labels.get(path, path.name)
-        self._done[path] = ToyPass(label, kind, source, feeds, not has_main, name)
+        self._done[path] = ToyPass(label, kind, source, feeds, True, name)
         return name
 
     def passes(self) -> tuple[ToyPass, ...]:
