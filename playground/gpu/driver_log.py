@@ -28,6 +28,7 @@ moderngl compiles stage by stage and raises at the first that fails, so a log co
 stage only; a driver that gives no log leaves an empty one, for which there are no entries.
 """
 
+import difflib
 import re
 from dataclasses import dataclass, field
 from typing import Literal
@@ -364,6 +365,9 @@ HINTS: tuple[tuple[re.Pattern[str], str], ...] = tuple(
     )
 )
 
+CALLED = re.compile(r"call to [`'\"]([^`'\"]+)['\"]")
+MAX_CANDIDATES = 3
+
 MISFIT = re.compile(
     r"no matching|could not implicitly convert|cannot be assigned to variable|cannot convert|wrong operand"
     r"|does not operate on|incompatible type|implicit (?:cast|narrowing)|invalid operands|overloaded function"
@@ -393,6 +397,16 @@ MISFITS = {
     "size": "The two sides differ in size: pick components with a swizzle such as .xyz, or build the vector.",
     "types": "The types on the two sides do not fit: convert one of them, as in float(...) or vec3(...).",
 }
+
+
+def folded(message: str) -> str:
+    """Return a message that lists what might have been called with the few that are most like the call."""
+    head, *rest = message.split("\n")
+    if not head.endswith("candidates are:") or len(rest) <= MAX_CANDIDATES:
+        return message
+    call = CALLED.search(head)
+    near = difflib.get_close_matches(call[1] if call else head, rest, MAX_CANDIDATES, 0.0)
+    return "\n".join([head, *near, f"    and {len(rest) - len(near)} more"])
 
 
 def hint(message: str) -> str:

@@ -4,10 +4,15 @@ from __future__ import annotations
 
 import difflib
 import re
+from collections import defaultdict
+from collections.abc import Collection, Iterable, Iterator
 from functools import cache
 
+from playground.gpu.driver_log import LogEntry
+from playground.gpu.own_shaders import own_part
 from playground.paths import GLSL, SKETCHES, shown
-from playground.sketch.reserved_names import GIVEN, GIVEN_INSTEAD, GLSL_WORDS
+from playground.sketch.model import Kernel
+from playground.sketch.reserved_names import GIVEN, GIVEN_INSTEAD, GLSL_WORDS, PLAIN_UNIFORMS
 from playground.sketch.source import Line, SourceText
 
 _Q = "[`'\"]"
@@ -24,6 +29,13 @@ DEFINITION = re.compile(rf"^{TYPE}\s+(\w+)\s*\(", re.MULTILINE)
 VARIABLE = re.compile(rf"\b{TYPE}\s+(\w+)\s*(?:\[[^\]]*\])?\s*(?=[=;,)])")
 DEFINE = re.compile(r"^\s*#\s*define\s+(\w+)(\()?", re.MULTILINE)
 RUNS = re.compile(r"^\s*#\s*(?:pragma\s+(?:kernel|source|draw|compute)\b|version\b)", re.MULTILINE)
+FOLLOWS = re.compile(
+    r"\berror\b|numeric|mismatch|no matching|cannot|can't|could not|wrong|incompatible|invalid|does not"
+    r"|must be|non-vector|swizzle|field|unable to find",
+    re.IGNORECASE,
+)
+"""What drivers say of an expression around a name that they do not know."""
+UNFIT = re.compile(r"no matching|unable to find compatible", re.IGNORECASE)
 UNREAD = re.compile(
     r"syntax error|parse error|NEW_IDENTIFIER|undeclared type|typename expected", re.IGNORECASE
 )
@@ -54,16 +66,126 @@ GUESSES = {
 """Kind of guess → its sentence."""
 
 
-def guess(message: str, source: SourceText, line: Line | None) -> str:
+def without_consequences(entries: Iterable[LogEntry]) -> Iterator[LogEntry]:
+    """Yield the entries of a log: of an unknown name the first, and nothing that follows from it.
+
+    What follows is an expression around the name, or around a call that fits no function.
+    """
+    seen: set[str] = set()
+    cause = (0, 0)  # line and column
+    for entry in entries:
+        head, place = _head(entry.message), (entry.line, entry.column)
+        follows = 0 < entry.line and place <= cause and FOLLOWS.search(head) is not None
+        name = "" if follows else _unknown(head)
+        if name or (UNFIT.search(head) and not follows):
+            cause = place
+        if entry.severity != "error" or not (follows or name in seen):
+            yield entry
+        if name:
+            seen.add(name)
+
+
+def names_given(kernel: Kernel) -> frozenset[str]:
+    """Return the names that a kernel, or the tool of another shader, is given without declaring them."""
+    if kernel.dialect:
+        helpers = "\n".join(own_part(part) for part in kernel.helpers)
+        found = [*FUNCTION.finditer(helpers), *DEFINE.finditer(helpers)]
+        return frozenset({*(name for name, _ in kernel.tool_names), *(match[1] for match in found)})
+    return frozenset(GIVEN) if _is_own(kernel) else frozenset()
+
+
+def whereabouts(message: str, source: SourceText, line: Line | None, kernel: Kernel) -> str:
+    """Return in one sentence where an unknown name is declared, or who is given it; "" where nobody is."""
+    name = _unknown(message)
+    if not name or line is None:
+        return ""
+    here = next((number for number, one in enumerate(source.lines) if one is line), 0)
+    places = _places(source)
+    for kind, number in sorted(places.get(name, ())):
+        place = f"{shown(source.lines[number].file)}:{source.lines[number].number}"
+        if kind == "called" or (kind == "global" and number <= here):
+            return ""  # ``guess`` knows functions
+        return (GUESSES["below"] if kind == "global" else WHEREABOUTS["block"]).format(name, place)
+    return _given_elsewhere(name, kernel)
+
+
+def _places(source: SourceText) -> dict[str, set[tuple[str, int]]]:
+    """Return the names that a text declares, each with the kinds and the lines, from 0, of where."""
+    from playground.sketch.expanded import readings
+    from playground.sketch.variables import Declarations
+
+    found: dict[str, set[tuple[str, int]]] = defaultdict(set)
+    for tokens in readings(source.code):
+        for name, kind, at in Declarations(tokens).names():
+            if kind != "member":
+                found[name].add((kind, tokens[at].line))
+    return found
+
+
+def _given_elsewhere(name: str, kernel: Kernel) -> str:
+    """Say so where other shaders are given a name, and what is called otherwise here."""
+    from playground.sketch.dialects import isf, main
+
+    kinds = {**isf.NAMES, **main.NAMES}
+    given = kernel.tool_names if kernel.dialect else tuple(_MEANINGS.items()) if _is_own(kernel) else ()
+    if kernel.kind == "plain_fragment" and not kernel.dialect and name in _PLAIN:
+        return WHEREABOUTS["undeclared"].format(name, kinds[name][0])
+    if name in dict(given) or (_is_own(kernel) and name in GIVEN_INSTEAD):
+        return ""
+    meaning = _MEANINGS.get(name) or _ALIKE.get(kinds.get(name, ("", ""))[1], "")
+    if not meaning and name not in GIVEN:
+        return ""
+    same = next((own for own, means in given if meaning and _ALIKE.get(means) == meaning), "")
+    if same:
+        return WHEREABOUTS["same"].format(name, same)
+    return WHEREABOUTS["kernels"].format(name) if name in GIVEN and not _is_own(kernel) else ""
+
+
+def _is_own(kernel: Kernel) -> bool:
+    """Return whether a kernel is one of ours, not a library file alone."""
+    return bool(kernel.outputs) and not kernel.kind.startswith("plain")
+
+
+def _head(message: str) -> str:
+    return message.split("\n", 1)[0][:600]
+
+
+def _unknown(message: str) -> str:
+    """Return the name that a message calls unknown; "" for any other."""
+    found = UNKNOWN.search(_head(message))
+    return next(group for group in found.groups() if group) if found else ""
+
+
+WHEREABOUTS = {
+    "block": "`{0}` is declared at {1}, in a block or a function of its own: it exists only there.",
+    "undeclared": "`{0}` is given where it is declared: add `uniform {1} {0};` above.",
+    "same": "`{0}` is not given here; `{1}` is the same.",
+    "kernels": "`{0}` is given to kernels, and this file is none: take it as an argument, or declare it.",
+}
+"""Where a name is known, or to whom → its sentence."""
+
+_MEANINGS = {"time": "time", "size": "resolution"}  # of names that a kernel is given
+_ALIKE = {
+    **{meaning: meaning for meaning in PLAIN_UNIFORMS},
+    **dict.fromkeys(("hover", "hover_share", "drag"), "mouse"),
+    "frame_of_time": "frame",
+    "date_from_1": "date",
+}
+"""Meanings of what tools give → those of ``PLAIN_UNIFORMS`` that are the same."""
+_PLAIN = frozenset(name for names in PLAIN_UNIFORMS.values() for name in names)
+
+
+def guess(
+    message: str, source: SourceText, line: Line | None, given: Collection[str] = frozenset(GIVEN)
+) -> str:
     """Return in one sentence what an unknown name was meant to be; "" where that is not sure.
 
     ``message`` is a driver's, of any maker; ``line`` is where it points, None where it points nowhere.
+    ``given`` are names that need no declaration.
     """
-    head = message.split("\n", 1)[0][:600]
-    found = UNKNOWN.search(head)
-    if found is None:
-        return _unread(source, line) if line is not None and UNREAD.search(head) else ""
-    name = next(group for group in found.groups() if group)
+    name = _unknown(message)
+    if not name:
+        return _unread(source, line) if line is not None and UNREAD.search(_head(message)) else ""
     called = bool(re.search(rf"\b{name}\s*\(", line.code if line is not None else source.code))
     functions, variables = _declared(source)
     if name in functions or name in variables:
@@ -81,8 +203,8 @@ def guess(message: str, source: SourceText, line: Line | None) -> str:
     if files:
         which = " or ".join(f'`#include "{file}"`' for file in files[:3])
         return GUESSES["library"].format(name, which)
-    known = {*functions, *(GLSL_WORDS if called else ()), *(() if called else (*variables, *GIVEN))}
-    near = _nearest(name, known)
+    known = {*functions, *given, *(GLSL_WORDS if called else variables)}
+    near = _nearest(name, known - {name})
     return GUESSES["near"].format(name, near) if near else ""
 
 

@@ -61,12 +61,13 @@ def compile_library(ctx: moderngl.Context, source: SourceText) -> None:
 def explain(text: str, wrapped: Wrapped) -> ShaderError:
     """Convert moderngl's error text to diagnostics in the kernel's own files."""
     from playground.gpu.driver_log import parse_log, split_moderngl
+    from playground.gpu.name_suggestions import without_consequences
 
     stage_name, log = split_moderngl(text)
     stage = wrapped.stages.get(stage_name) or wrapped.stages.get("fragment") or wrapped.stages["compute"]
     found: dict[tuple[str, int, str], Diagnostic] = {}
     foreign = None if stage.first else version_line(stage.source)
-    for entry in parse_log(log):
+    for entry in without_consequences(parse_log(log)):
         if foreign is not None:
             # Of a plain shader the vertex stage is ours, and the version is all that it takes from the file.
             found[("", 0, "")] = foreign.diagnostic(f"this driver refuses the version: {entry.message}")
@@ -84,8 +85,8 @@ def explain(text: str, wrapped: Wrapped) -> ShaderError:
 
 def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diagnostic:
     """Return one complaint of a driver in the kernel's own files, with its hint."""
-    from playground.gpu.driver_log import hint, source_column
-    from playground.gpu.name_suggestions import guess
+    from playground.gpu.driver_log import folded, hint, source_column
+    from playground.gpu.name_suggestions import guess, names_given, whereabouts
 
     for name, ours in sorted(FETCHES.items(), reverse=True):  # the longer first
         entry = replace(entry, message=entry.message.replace(ours, name))
@@ -94,8 +95,13 @@ def diagnostic_of(entry: LogEntry, stage: ShaderStage, wrapped: Wrapped) -> Diag
         found = line.text[place]
         message = FOREIGN.format(f"{ord(found):04X}", name_of(found, NAMELESS))
         return line.diagnostic(message, place + 1, entry.severity)
-    more = guess(entry.message, stage.source, line) or hint(entry.message)
-    message = f"{entry.message}; {more}" if more else entry.message
+    more = (
+        whereabouts(entry.message, stage.source, line, wrapped.kernel)
+        or guess(entry.message, stage.source, line, names_given(wrapped.kernel))
+        or hint(entry.message)
+    )
+    message = folded(entry.message)
+    message = f"{message}; {more}" if more else message
     if line is not None:
         column = (
             source_column(line.code, entry.column) if entry.column else _column_of(entry.message, line.code)

@@ -122,6 +122,7 @@ class Kernel:
     vertex_source: SourceText | None = None  # the author's own vertex shader, in place of ``vertex``
     vertex_prelude: tuple[str, ...] = ()  # of that
     vertex_helpers: tuple[str, ...] = ()  # likewise
+    tool_names: tuple[tuple[str, str], ...] = ()  # likewise: what its tool gives, with meanings
     meanings: tuple[tuple[str, str], ...] = ()  # uniform → what it is given: see ``usual``
     unfed: tuple[tuple[str, str], ...] = ()  # likewise: what it lacks where nothing is wired, what is instead
 

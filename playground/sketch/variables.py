@@ -103,15 +103,18 @@ class Declarations:
             return None
         return value_of(" ".join(words))
 
-    def names(self) -> Iterator[tuple[str, str]]:
-        """Yield each name that is declared with its kind: global | local | called (functions, structs)."""
-        yield from ((one.name, "global" if one.is_global else "local") for one in self.variables)
+    def names(self) -> Iterator[tuple[str, str, int]]:
+        """Yield each name that is declared, its kind, and the index of its token.
+
+        The kind is global, local, called (a function or a struct) or member.
+        """
+        yield from ((one.name, "global" if one.is_global else "local", one.at) for one in self.variables)
         for function in (*self.functions, *self.prototypes):
-            yield function.name, "called"
-            yield from ((one.name, "local") for one in function.parameters)
+            yield function.name, "called", function.opens - 1
+            yield from ((one.name, "local", one.at) for one in function.parameters)
         for struct in self.structs.values():
-            yield struct.name, "called"
-            yield from ((name, "local") for name, _ in struct.members)
+            yield struct.name, "called", -1
+            yield from ((name, "member", -1) for name, _ in struct.members)
 
     # ── reading ──────────────────────────────────────────────────────────────
 

@@ -95,6 +95,8 @@ def words() -> dict[str, object]:
         "bases": log.BASES,
         "misfits": log.MISFITS,
         "unknown": _pattern(names.UNKNOWN),
+        "follows": _pattern(names.FOLLOWS),
+        "unfit": _pattern(names.UNFIT),
         "unread": _pattern(names.UNREAD),
         "function": _pattern(names.FUNCTION),
         "variable": _pattern(names.VARIABLE),

@@ -11,10 +11,13 @@ from playground.errors import PlaygroundError
 from playground.gpu.driver_log import hint
 from playground.gpu.driver_warnings import warnings_of
 from playground.gpu.name_suggestions import guess, library
-from playground.gpu.program import compile_wrapped
+from playground.gpu.program import compile_library, compile_wrapped, explain
 from playground.gpu.wrap import FRAGMENT, wrap
 from playground.paths import GLSL
-from playground.sketch.model import Kernel
+from playground.sketch.load import load
+from playground.sketch.model import Kernel, kernels_of
+from playground.sketch.reserved_names import GIVEN
+from playground.sketch.source import read_source
 from playground.sketch.techniques import read_kernel
 
 HEAD = """// k.glsl -- a kernel
@@ -157,3 +160,141 @@ def test_what_a_driver_warns_of_is_reported_in_the_kernel_s_lines(
     assert warnings_of(ctx, wrap(read(tmp_path, BODY.format("return level;")), FRAGMENT)) == ()
     assert warnings_of(ctx, wrap(read(tmp_path, BODY.format("return leve;")), FRAGMENT)) == ()
     assert ctx.error == "GL_NO_ERROR"
+
+
+# ── one error a name, and nothing that follows from it ───────────────────────
+
+
+def errors(ctx: moderngl.Context, kernel: Kernel) -> list[tuple[int, int, str]]:
+    """Return line, column and message of each error of a text that does not compile."""
+    with pytest.raises(PlaygroundError) as caught:
+        compile_wrapped(ctx, wrap(kernel, FRAGMENT, 450))
+    return [(d.line, d.column, d.message) for d in caught.value.diagnostics]
+
+
+def foreign(folder: Path, text: str, name: str = "a.frag") -> Kernel:
+    """Return the kernel of another tool's shader."""
+    (folder / name).write_text(text, encoding="utf-8")
+    technique = load(folder / name).graph.find("view").technique
+    return next(kernel for _, kernel in kernels_of(technique))
+
+
+AROUND = """void mainImage(out vec4 c, in vec2 p) {{
+    vec2 uv = p / iResolution.xy;
+    c = texture(
+        {0}, uv) * 2.0 + vec4({0}, 1.0);
+    c += {0};
+    vec3 q = vec2(1.0);
+}}
+"""
+
+
+def test_a_name_is_one_error_and_other_mistakes_stay(ctx: moderngl.Context, tmp_path: Path) -> None:
+    if "llvmpipe" not in ctx.info["GL_RENDERER"]:
+        pytest.skip("each driver finds other mistakes")
+    found = errors(ctx, foreign(tmp_path, AROUND.format("iChanel0")))
+    assert [(line, column) for line, column, _ in found] == [(4, 9), (6, 5)]
+    assert "did you mean `iChannel0`?" in found[0][2]
+
+
+def test_the_forms_of_a_function_are_the_few_nearest(ctx: moderngl.Context, tmp_path: Path) -> None:
+    if "llvmpipe" not in ctx.info["GL_RENDERER"]:
+        pytest.skip("each driver lists them otherwise")
+    ((_, _, message),) = errors(ctx, foreign(tmp_path, TOY.format("texture(iChannel0, 1)")))
+    assert len(message.split("\n")) == 5 and "vec4 texture(sampler2D, vec2" in message
+    two = "float f(vec2 a) { return 1.0; }\nfloat f(vec3 a) { return 1.0; }\n"
+    ((_, _, message),) = errors(ctx, foreign(tmp_path, two + TOY.format("vec4(f(mat2(1.0)))")))
+    assert "float f(vec2)" in message and "float f(vec3)" in message and "more" not in message
+
+
+TOY = "void mainImage(out vec4 c, in vec2 p) {{ c = {}; }}\n"
+LOGS = {
+    "NVIDIA": '0({0}) : error C1503: undefined variable "iChanel0"\n'
+    '0({0}) : error C1115: unable to find compatible overloaded function "texture(error, vec2)"\n'
+    '0({1}) : error C1503: undefined variable "iChanel0"\n0({1}) : error C7011: odd\n',
+    "ANGLE": "ERROR: 0:{0}: 'iChanel0' : undeclared identifier\n"
+    "ERROR: 0:{0}: 'texture' : no matching overloaded function found\n"
+    "ERROR: 0:{0}: 'assign' : cannot convert from 'const float' to 'FragColor 4-component vector of float'\n"
+    "ERROR: 0:{1}: 'iChanel0' : undeclared identifier\nERROR: 0:{1}: 'x' : odd\n",
+    "Apple": "ERROR: 0:{0}: Use of undeclared identifier 'iChanel0'\n"
+    "ERROR: 0:{1}: Use of undeclared identifier 'iChanel0'\nERROR: 0:{1}: odd\n",
+}
+
+
+@pytest.mark.parametrize("name", LOGS)
+def test_other_drivers_errors_are_folded_too(tmp_path: Path, name: str) -> None:
+    text = "void mainImage(out vec4 c, in vec2 p) {\n    c = texture(iChanel0, p);\n    c += iChanel0;\n}\n"
+    wrapped = wrap(foreign(tmp_path, text), FRAGMENT, 450)
+    first = wrapped.stages["fragment"].first
+    log = LOGS[name].format(first + 1, first + 2)
+    found = explain(f"GLSL Compiler failed\n\nfragment_shader\n======\n{log}", wrapped).diagnostics
+    assert [(d.line, "iChannel0" in d.message) for d in found] == [(2, True), (3, False)]
+
+
+# ── names by dialect ─────────────────────────────────────────────────────────
+
+ISF = '/*{{"INPUTS": [{{"NAME": "inputImage", "TYPE": "image"}}, {{"NAME": "level", "TYPE": "float"}}]}}*/\n'
+ISF += "void main() {{ gl_FragColor = vec4({}); }}\n"
+VSCODE = f'#iChannel0 "self"\n{TOY}'
+SANDBOX = "void main() {{ gl_FragColor = vec4({}) * u_time; }}\n"
+PLAIN = "#version 330\nout vec4 c;\nvoid main() {{ c = vec4({}); }}\n"
+SUGGESTED = {
+    ("a.frag", TOY): {
+        "texture(iChanel0, p)": "did you mean `iChannel0`?",
+        "vec4(iResoluton, 1)": "did you mean `iResolution`?",
+        "vec4(itime)": "did you mean `iTime`?",
+        "vec4(time)": "`iTime` is the same",
+        "vec4(TIME)": "`iTime` is the same",
+        "u_mouse.xyxy": "`iMouse` is the same",
+        "vec4(size, 0, 1)": "`iResolution` is the same",
+        "vec4(spacing, 0, 1)": "`spacing` is given to kernels",
+        "vec4(RENDERSIZE, 0, 1)": "`iResolution` is the same",
+    },
+    ("v.frag", VSCODE): {"iMouseButon": "did you mean `iMouseButton`?"},
+    ("i.fs", ISF): {
+        "RENDERSIZ, 0, 1": "did you mean `RENDERSIZE`?",
+        "iTime": "`TIME` is the same",
+        "iFrame": "`FRAMEINDEX` is the same",
+        "levl": "did you mean `level`?",
+        "IMG_NORM_PIXEL(inputImge, vec2(0))": "did you mean `inputImage`?",
+        "IMG_NORM_PIXL(inputImage, vec2(0))": "did you mean `IMG_NORM_PIXEL`?",
+    },
+    ("s.frag", SANDBOX): {
+        "u_resoluton, 0, 1": "did you mean `u_resolution`?",
+        "TIME": "is the same",
+        "base_elevation": "`base_elevation` is given to kernels",
+    },
+    ("p.frag", PLAIN): {
+        "iTime": "add `uniform float iTime;` above",
+        "u_resolution, 0, 1": "add `uniform vec2 u_resolution;` above",
+        "relief": "`relief` is given to kernels",
+    },
+}
+
+
+@pytest.mark.parametrize("text", SUGGESTED, ids=lambda text: text[0])
+def test_a_suggestion_is_a_name_of_the_shader_s_tool(
+    ctx: moderngl.Context, tmp_path: Path, text: tuple[str, str]
+) -> None:
+    for wrong, part in SUGGESTED[text].items():
+        kernel = foreign(tmp_path, text[1].format(wrong), text[0])
+        assert part in errors(ctx, kernel)[0][2], wrong
+
+
+@pytest.mark.parametrize("name", GIVEN)
+def test_no_name_is_suggested_for_itself(ctx: moderngl.Context, tmp_path: Path, name: str) -> None:
+    library_file = tmp_path / "part.glsl"
+    library_file.write_text(f"float f() {{ return float({name}); }}\n", encoding="utf-8")
+    with pytest.raises(PlaygroundError) as caught:
+        compile_library(ctx, read_source(library_file, (tmp_path,)))
+    assert f"`{name}` is given to kernels" in caught.value.diagnostics[0].message
+    assert len(caught.value.diagnostics) == 1
+
+
+def test_a_name_of_another_place_is_said_to_be_there(ctx: moderngl.Context, tmp_path: Path) -> None:
+    other = "float f() { float inner = 1.0; return inner; }\n"
+    assert "`inner` is declared at" in complaint(ctx, tmp_path, other + BODY.format("return inner;"))
+    loop = BODY.format("for (int i = 0; i < 2; i++) {} return float(i);")
+    assert "k.glsl:5, in a block or a function" in complaint(ctx, tmp_path, loop)
+    late = BODY.format("return later;") + "float later = 1.0;\n"
+    assert "k.glsl:7: GLSL reads from above, so move it up" in complaint(ctx, tmp_path, late)

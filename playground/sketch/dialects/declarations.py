@@ -84,15 +84,15 @@ def takes(kind: str, given: str) -> bool:
 def is_declared(code: str, name: str, *, anywhere: bool) -> bool:
     """Return whether a text declares a variable or a function, outside of functions or ``anywhere``."""
     kinds = declared_names(code).get(name, frozenset())
-    return bool(kinds - {"local"}) or (anywhere and bool(kinds))
+    return bool(kinds & {"global", "called"}) or (anywhere and bool(kinds))
 
 
 @lru_cache(maxsize=32)
 def declared_names(code: str) -> Mapping[str, frozenset[str]]:
-    """Return the names that a text declares, its macros expanded, with kinds: global | local | called."""
+    """Return the names that a text declares, its macros expanded, with their kinds: see ``Declarations``."""
     found: dict[str, frozenset[str]] = {}
     for tokens in readings(code):
-        for name, kind in Declarations(tokens).names():
+        for name, kind, _ in Declarations(tokens).names():
             found[name] = found.get(name, frozenset()) | {kind}
     return found
 

@@ -100,6 +100,10 @@ class ForeignKernel:
             vertex_source=self.vertex,
             vertex_prelude=tuple(self._prelude(shader.vertex, self.vertex_missing)) if shader.vertex else (),
             vertex_helpers=(*_packing(self.vertex), *self.rules.vertex_helpers) if self.vertex else (),
+            tool_names=(
+                *((n, m) for n, (_, m) in self.rules.names.items()),
+                *((p.name, "") for p in shader.parameters),
+            ),
             meanings=tuple(meanings),
             unfed=tuple(self._unfed(own)),
         )

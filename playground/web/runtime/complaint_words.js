@@ -186,6 +186,11 @@ export const WORDS = {
     "oaded function found|[`'\"](\\w+)[`'\"] ?:? ?undeclared|(?:undefined variable|undecla" +
     "red (?:identifier|variable)):? [`'\"]?(\\w+)", "i",
   ],
+  follows: [
+    "\\berror\\b|numeric|mismatch|no matching|cannot|can't|could not|wrong|incompatible|i" +
+    "nvalid|does not|must be|non-vector|swizzle|field|unable to find", "i",
+  ],
+  unfit: ["no matching|unable to find compatible", "i"],
   unread: ["syntax error|parse error|NEW_IDENTIFIER|undeclared type|typename expected", "i"],
   function: [
     "\\b(?:void|bool|u?int|float|double|[biud]?vec[234]|d?mat[234](?:x[234])?|[iu]?sampl" +

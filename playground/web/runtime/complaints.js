@@ -1,7 +1,7 @@
 // complaints.js -- a driver's log as errors in the kernel's own files, in plain words.
 
 import { WORDS } from "./complaint_words.js";
-import { filled, guess } from "./name_suggestions.js";
+import { filled, guess, withoutConsequences } from "./name_suggestions.js";
 
 /** A line of a flat text: what the driver is given, and where it is from.
  *  @typedef {{code: string, file: string, line: number}} FlatLine */
@@ -141,7 +141,7 @@ function types(text) {
 export function complaints(log, given) {
   /** @type {Map<string, Complaint>} */
   const found = new Map();
-  for (const entry of parseLog(log)) {
+  for (const entry of withoutConsequences(parseLog(log))) {
     const one = located(entry, given);
     // An open bracket makes everything behind the last line wrong: once is enough.
     const past = entry.line >= given.first + given.lines.length && entry.severity === "error";

@@ -3,6 +3,7 @@
 import { WORDS } from "./complaint_words.js";
 
 /** @typedef {import("./complaints.js").FlatLine} FlatLine */
+/** @typedef {import("./complaints.js").LogEntry} LogEntry */
 /** Names that a text declares: functions with the first line of each, variables and macros.
  *  @typedef {{functions: Map<string, number>, variables: Set<string>}} Declared */
 
@@ -14,6 +15,7 @@ export const filled = (sentence, ...given) => sentence.replace(/\{(\d)\}/g, (_, 
 /** @param {string[]} pattern @param {string} [more] @returns {RegExp} */
 const compiled = ([source, flags], more = "") => new RegExp(source, flags + more);
 
+const FOLLOWS = compiled(WORDS.follows), UNFIT = compiled(WORDS.unfit);
 const UNKNOWN = compiled(WORDS.unknown), UNREAD = compiled(WORDS.unread), CAST = compiled(WORDS.cast);
 const DEFINE = compiled(WORDS.define), RUNS = compiled(WORDS.runs);
 const FUNCTION = compiled(WORDS.function, "g"), VARIABLE = compiled(WORDS.variable, "g");
@@ -22,6 +24,28 @@ const KNOWN = new Set(WORDS.known.split(" "));
 const ELSEWHERE = new Map(Object.entries(WORDS.elsewhere));
 const INSTEAD = new Map(Object.entries(WORDS.instead));
 
+/** @param {string} message @returns {string} its first line */
+const headOf = (message) => message.split("\n")[0].slice(0, 600);
+
+/** @param {string} head @returns {string} the name that a message calls unknown; "" for any other */
+const unknown = (head) => UNKNOWN.exec(head)?.slice(1).find(Boolean) || "";
+
+/** Leave out what follows from an unknown name, and all but the first entry of each.
+ *  @param {LogEntry[]} entries @returns {LogEntry[]} */
+export function withoutConsequences(entries) {
+  const seen = new Set();
+  let [line, column] = [0, 0];  // of the cause
+  return entries.filter((entry) => {
+    const head = headOf(entry.message);
+    const isBehind = entry.line > line || (entry.line === line && entry.column > column);
+    const follows = entry.line > 0 && !isBehind && FOLLOWS.test(head);
+    const name = follows ? "" : unknown(head), isRepeated = seen.has(name);
+    if (name || (UNFIT.test(head) && !follows)) [line, column] = [entry.line, entry.column];
+    if (name) seen.add(name);
+    return entry.severity !== "error" || !(follows || isRepeated);
+  });
+}
+
 /** Say in one sentence what an unknown name was meant to be; "" where that is not sure.
  *  @param {string} message   a driver's
  *  @param {FlatLine[]} lines the whole flat text
@@ -29,10 +53,9 @@ const INSTEAD = new Map(Object.entries(WORDS.instead));
  *  @param {Object<string, string>} library   function → the files to include for it, in quotes
  *  @returns {string} */
 export function guess(message, lines, line, library) {
-  const head = message.split("\n")[0].slice(0, 600), say = WORDS.guesses;
-  const found = UNKNOWN.exec(head);
-  if (!found) return line && UNREAD.test(head) ? unread(lines, line) : "";
-  const name = /** @type {string} */ (found.slice(1).find(Boolean));
+  const head = headOf(message), say = WORDS.guesses;
+  const name = unknown(head);
+  if (!name) return line && UNREAD.test(head) ? unread(lines, line) : "";
   const call = new RegExp(`\\b${name}\\s*\\(`);
   const called = line ? call.test(line.code) : lines.some(({ code }) => call.test(code));
   const { functions, variables } = declared(lines);
