@@ -46,7 +46,18 @@ LAYERS = (
     ("media",),
     ("images",),
     ("sketch",),
-    ("errors", "extras", "folders", "json_text", "markup", "partial", "paths", "regular_file", "_version"),
+    (
+        "errors",
+        "extras",
+        "folders",
+        "json_text",
+        "local_server",
+        "markup",
+        "partial",
+        "paths",
+        "regular_file",
+    ),
+    ("_version",),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 LONGEST = 500

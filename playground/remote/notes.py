@@ -14,13 +14,14 @@ from __future__ import annotations
 import json
 import threading
 from collections.abc import Callable, Mapping
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler
 from importlib.resources import files
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
 from playground.errors import DataError, PlaygroundError
 from playground.json_text import read_json
+from playground.local_server import LocalServer
 from playground.remote.access import new_token, refusal
 from playground.remote.calls import Busy, Calls
 
@@ -106,8 +107,7 @@ class Notes:
         self._thread.join(5)
 
 
-class _Server(ThreadingHTTPServer):
-    daemon_threads = True
+class _Server(LocalServer):
     request_queue_size = 16
 
     def __init__(self, address: tuple[str, int], notes: Notes) -> None:
@@ -144,7 +144,9 @@ class _Handler(BaseHTTPRequestHandler):
         why = refusal(host, origin, token, wanted=notes.token, port=notes.port)
         if why:
             self._send(403, "application/json", _error(why))
-        elif not self.server.room.acquire(blocking=False):
+            return
+        self.server.authenticate(self.connection)
+        if not self.server.room.acquire(blocking=False):
             self._send(503, "application/json", _error("too many requests at a time"))
         else:
             try:

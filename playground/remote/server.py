@@ -34,6 +34,7 @@ from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.images.files import encode_png
 from playground.json_text import read_json
+from playground.local_server import MAX_SILENCE, Unauthenticated
 from playground.remote.access import refusal
 from playground.remote.calls import Busy, Calls
 from playground.web.bundle import read_bundle
@@ -44,13 +45,14 @@ LARGEST_REQUEST = 2**16
 MOST_CLIENTS = 8
 """WebSockets at a time."""
 MOST_CONNECTIONS = 64
+"""Connections at a time that have shown the token; see ``local_server`` for others."""
 MOST_REQUESTS = 32
 """Requests by HTTP that are being answered at a time."""
 IN_FLIGHT = 100
 """Messages of one client that may wait for the window; more are not read until then."""
 PATIENCE = 20.0
-_PAUSE = 0.1  # [s] between two looks at a window that computes frames
 """[s] for the window to answer a request by HTTP."""
+_PAUSE = 0.1  # [s] between two looks at a window that computes frames
 
 _BUNDLES = {"remote.js": "text/javascript", "remote.css": "text/css"}
 _WANTED = 'expected a JSON object, as {"playing": false}'
@@ -70,6 +72,7 @@ class Server:
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._run, name="the remote's server", daemon=True)
         self._clients: set[_Client] = set()
+        self._unauthenticated = Unauthenticated(web.RequestHandler.force_close)
         self._busy = 0  # requests that are being answered
         self._ended: asyncio.Event | None = None
         self._runner: web.AppRunner | None = None
@@ -124,12 +127,21 @@ class Server:
             app, access_log=None, logger=_SILENT, handle_signals=False, shutdown_timeout=0.5
         )
         await self._runner.setup()
-        await web.SockSite(self._runner, self._socket, backlog=16).start()
+        listener = await self._loop.create_server(self._connected, sock=self._socket, backlog=16)
         self._started.set()
         await self._ended.wait()
+        listener.close()
         for client in list(self._clients):
             await client.socket.close(code=1001, message=b"the window is closed")
         await self._runner.cleanup()
+
+    def _connected(self) -> asyncio.Protocol:
+        """Return what serves a new connection, which is to show the token."""
+        assert self._runner is not None and self._runner.server is not None
+        made = self._runner.server()
+        self._unauthenticated.add(made)
+        self._loop.call_later(MAX_SILENCE, self._unauthenticated.expire)
+        return made
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
@@ -138,8 +150,10 @@ class Server:
         host, origin = request.headers.get("Host"), request.headers.get("Origin")
         if why := refusal(host, origin, token, wanted=self.token, port=self.port):
             return _error(403, why)
+        self._unauthenticated.discard(request.protocol)
         connections = self._runner.server.connections if self._runner and self._runner.server else []
-        if len(connections) > MOST_CONNECTIONS or self._busy >= MOST_REQUESTS:
+        count = sum(connection not in self._unauthenticated for connection in connections)
+        if count > MOST_CONNECTIONS or self._busy >= MOST_REQUESTS:
             return _error(503, "too many requests at a time")
         counts = not request.path.endswith("/events")
         self._busy += counts

@@ -21,19 +21,19 @@ from __future__ import annotations
 
 import hmac
 import json
-import os
 import secrets
 import sys
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from http.server import BaseHTTPRequestHandler
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
 from playground.errors import DataError, PlaygroundError
 from playground.json_text import read_json
+from playground.local_server import LocalServer
 from playground.shots.page.document import policy_of
 from playground.shots.review_session import Session
 
@@ -133,11 +133,7 @@ class Review:
         return _json(self.session.act(action, shots))
 
 
-class _Server(ThreadingHTTPServer):
-    daemon_threads = True
-    # On Windows this would let another program take the port that is listened on.
-    allow_reuse_address = os.name == "posix"
-
+class _Server(LocalServer):
     def handle_error(self, request: Any, client_address: Any) -> None:
         """Ignore a connection that broke: a browser's page was closed."""
         if not isinstance(sys.exc_info()[1], ConnectionError | TimeoutError):
@@ -148,6 +144,7 @@ class _Handler(BaseHTTPRequestHandler):
     """Sees that a request may be answered at all, and writes the answer."""
 
     served: Review
+    server: _Server
     server_version = "playground"
     sys_version = ""
     protocol_version = "HTTP/1.1"
@@ -178,6 +175,7 @@ class _Handler(BaseHTTPRequestHandler):
         token = self.path.split("/")[1] if self.path.startswith("/") else ""
         if not self._is_token(token):
             return _refusal(403, "the address lacks its token; use the one that was printed")
+        self.server.authenticate(self.connection)
         return None
 
     def _foreign(self) -> Answer | None:

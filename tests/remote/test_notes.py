@@ -11,8 +11,11 @@ from typing import Any
 
 import pytest
 
+from playground import local_server
 from playground.errors import ParameterError
 from playground.remote.notes import LARGEST_REQUEST, Notes
+
+from ..crowds import crowd, wait_until_open
 
 
 class Window:
@@ -59,6 +62,20 @@ def window() -> Iterator[Window]:
     made = Window()
     yield made
     made.close()
+
+
+def test_a_silent_crowd_is_bounded_and_closed(window: Window, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(local_server, "MAX_SILENCE", 1.0)
+    kept = http.client.HTTPConnection("127.0.0.1", window.notes.port, timeout=20)
+    kept.request("GET", f"/{window.notes.token}/state")
+    kept.getresponse().read()
+    with crowd(window.notes.port) as strangers:
+        assert window.ask("state")[0] == 200
+        assert 0 < wait_until_open(strangers, local_server.MAX_UNAUTHENTICATED) <= 16
+        assert wait_until_open(strangers, 0) == 0
+    kept.request("GET", f"/{window.notes.token}/state")  # the same connection: it has shown the token
+    assert kept.getresponse().status == 200
+    kept.close()
 
 
 def test_the_page_drives_the_window_and_hears_of_it(window: Window) -> None:

@@ -20,10 +20,12 @@ from PIL import Image
 from playground import cli
 from playground.errors import ContextError, DataError, ParameterError
 from playground.extras import install_command
+from playground.local_server import MAX_UNAUTHENTICATED
 from playground.remote.access import check_token, new_token, refusal
 from playground.remote.calls import MOST, Busy, Calls
 from playground.remote.remotes import RemoteOptions, Remotes
 
+from ..crowds import crowd, wait_until_open
 from .desk import KERNEL, SIZE, TOKEN, Desk
 
 
@@ -425,6 +427,30 @@ def test_more_clients_than_may_listen_are_refused(desk: Desk):
         return asyncio.run(go())
 
     assert desk.during(crowd) == 503
+
+
+def test_a_silent_crowd_does_not_lock_the_owner_out(desk: Desk, monkeypatch: pytest.MonkeyPatch):
+    for module in ("remote.server", "local_server"):
+        monkeypatch.setattr(f"playground.{module}.MAX_SILENCE", 0.5)
+    url = opened(desk)
+    assert desk.remotes.server is not None
+
+    def listens() -> None:
+        async def go() -> None:
+            async with aiohttp.ClientSession() as client, client.ws_connect(f"{url}events") as events:
+                await until(events, "state")
+                with crowd(desk.remotes.server.port) as strangers:
+                    async with client.get(f"{url}state") as answer:
+                        assert answer.status == 200
+                    assert await asyncio.to_thread(wait_until_open, strangers, MAX_UNAUTHENTICATED) > 0
+                    assert (await asyncio.to_thread(fetched, f"{url}state"))[0] == 200
+                    assert await asyncio.to_thread(wait_until_open, strangers, 0) == 0
+                await events.send_json({"id": 1, "set": {"height.level": 0.5}})
+                assert (await until(events, "values"))["values"] == {"height.level": 0.5}
+
+        asyncio.run(go())
+
+    desk.during(listens)
 
 
 def test_calls_are_bounded_run_in_order_and_refused_once_closed():

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from playground import local_server
 from playground.cli import main
 from playground.errors import DataError
 from playground.images.files import encode_png, read_png
@@ -22,6 +23,7 @@ from playground.shots.page.document import policy_of
 from playground.shots.results import Record, read_results, write_result
 from playground.shots.review import Review
 
+from ..crowds import crowd, wait_until_open
 from .pictures import picture
 
 RESULTS = Path("results")
@@ -73,6 +75,15 @@ def client(leave) -> Iterator[Client]:
         review.end()
         serving.join(GENEROUS)
         assert not serving.is_alive()
+
+
+def test_a_silent_crowd_is_bounded_and_closed(client, monkeypatch):
+    monkeypatch.setattr(local_server, "MAX_SILENCE", 1.0)
+    with crowd(client.review.port) as strangers:
+        assert client.ask("GET", "state")[0] == 200
+        assert 0 < wait_until_open(strangers, local_server.MAX_UNAUTHENTICATED) <= 16
+        assert wait_until_open(strangers, 0) == 0
+    assert client.ask("GET", "state")[0] == 200
 
 
 def records() -> dict[str, Record]:
