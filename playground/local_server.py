@@ -19,6 +19,8 @@ MAX_UNAUTHENTICATED = 16
 """Connections at a time without the token."""
 MAX_SILENCE = 5.0
 """[s] for a connection to show the token."""
+BACKLOG = 128
+"""Connections that may wait to be accepted; with few, a crowd delays the owner's by seconds."""
 
 Connection = TypeVar("Connection")
 
@@ -30,9 +32,6 @@ class Unauthenticated(Generic[Connection]):
         self._close = close
         self._since: dict[Connection, float] = {}
         self._lock = threading.Lock()
-
-    def __contains__(self, connection: Connection) -> bool:
-        return connection in self._since
 
     def add(self, connection: Connection) -> None:
         """Count a new connection, and close the oldest where there are too many."""
@@ -67,6 +66,7 @@ class LocalServer(ThreadingHTTPServer):
     """Python's HTTP server, a thread a connection; a handler calls ``authenticate`` once it saw the token."""
 
     daemon_threads = True
+    request_queue_size = BACKLOG
     # On Windows this would let another program take the port that is listened on.
     allow_reuse_address = os.name == "posix"
 

@@ -108,8 +108,6 @@ class Notes:
 
 
 class _Server(LocalServer):
-    request_queue_size = 16
-
     def __init__(self, address: tuple[str, int], notes: Notes) -> None:
         self.notes = notes
         self.room = threading.Semaphore(_MOST_WAITING)

@@ -34,7 +34,7 @@ from playground.engine.frame import Frame
 from playground.errors import DataError, ParameterError, PlaygroundError
 from playground.images.files import encode_png
 from playground.json_text import read_json
-from playground.local_server import MAX_SILENCE, Unauthenticated
+from playground.local_server import BACKLOG, MAX_SILENCE, Unauthenticated
 from playground.remote.access import refusal
 from playground.remote.calls import Busy, Calls
 from playground.web.bundle import read_bundle
@@ -72,7 +72,8 @@ class Server:
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._run, name="the remote's server", daemon=True)
         self._clients: set[_Client] = set()
-        self._unauthenticated = Unauthenticated(web.RequestHandler.force_close)
+        self._unauthenticated = Unauthenticated(self._force_close)
+        self._authenticated: set[web.RequestHandler] = set()
         self._busy = 0  # requests that are being answered
         self._ended: asyncio.Event | None = None
         self._runner: web.AppRunner | None = None
@@ -127,7 +128,7 @@ class Server:
             app, access_log=None, logger=_SILENT, handle_signals=False, shutdown_timeout=0.5
         )
         await self._runner.setup()
-        listener = await self._loop.create_server(self._connected, sock=self._socket, backlog=16)
+        listener = await self._loop.create_server(self._connected, sock=self._socket, backlog=BACKLOG)
         self._started.set()
         await self._ended.wait()
         listener.close()
@@ -135,13 +136,16 @@ class Server:
             await client.socket.close(code=1001, message=b"the window is closed")
         await self._runner.cleanup()
 
-    def _connected(self) -> asyncio.Protocol:
+    def _connected(self) -> web.RequestHandler:
         """Return what serves a new connection, which is to show the token."""
         assert self._runner is not None and self._runner.server is not None
         made = self._runner.server()
         self._unauthenticated.add(made)
         self._loop.call_later(MAX_SILENCE, self._unauthenticated.expire)
         return made
+
+    def _force_close(self, connection: web.RequestHandler) -> None:
+        self._loop.call_soon(connection.force_close)  # after its transport is set
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
@@ -152,8 +156,8 @@ class Server:
             return _error(403, why)
         self._unauthenticated.discard(request.protocol)
         connections = self._runner.server.connections if self._runner and self._runner.server else []
-        count = sum(connection not in self._unauthenticated for connection in connections)
-        if count > MOST_CONNECTIONS or self._busy >= MOST_REQUESTS:
+        self._authenticated = {request.protocol, *self._authenticated.intersection(connections)}
+        if len(self._authenticated) > MOST_CONNECTIONS or self._busy >= MOST_REQUESTS:
             return _error(503, "too many requests at a time")
         counts = not request.path.endswith("/events")
         self._busy += counts
@@ -329,7 +333,7 @@ def _listening(port: int) -> socket.socket:
         if sys.platform != "win32":  # there it would let two programs have one port
             made.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         made.bind(("127.0.0.1", port))
-        made.listen(16)
+        made.listen(BACKLOG)
     except OSError as error:
         made.close()
         raise DataError(

@@ -65,7 +65,7 @@ def window() -> Iterator[Window]:
 
 
 def test_a_silent_crowd_is_bounded_and_closed(window: Window, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(local_server, "MAX_SILENCE", 1.0)
+    monkeypatch.setattr(local_server, "MAX_SILENCE", 0.5)
     kept = http.client.HTTPConnection("127.0.0.1", window.notes.port, timeout=20)
     kept.request("GET", f"/{window.notes.token}/state")
     kept.getresponse().read()

@@ -78,7 +78,7 @@ def client(leave) -> Iterator[Client]:
 
 
 def test_a_silent_crowd_is_bounded_and_closed(client, monkeypatch):
-    monkeypatch.setattr(local_server, "MAX_SILENCE", 1.0)
+    monkeypatch.setattr(local_server, "MAX_SILENCE", 0.5)
     with crowd(client.review.port) as strangers:
         assert client.ask("GET", "state")[0] == 200
         assert 0 < wait_until_open(strangers, local_server.MAX_UNAUTHENTICATED) <= 16
