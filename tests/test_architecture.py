@@ -47,6 +47,7 @@ LAYERS = (
     ("images",),
     ("sketch",),
     (
+        "_version",
         "errors",
         "extras",
         "folders",
@@ -57,7 +58,6 @@ LAYERS = (
         "paths",
         "regular_file",
     ),
-    ("_version",),
 )
 LEVEL = {name: level for level, names in enumerate(LAYERS) for name in names}
 LONGEST = 500

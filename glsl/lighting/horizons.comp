@@ -8,17 +8,20 @@
 //            the terrain that a line has passed, its upper hull is all that matters; blocks and
 //            the near rows are made here
 //   tested   tests/glsl/test_horizons.py, against brute force in float64 and against the march
-//   agrees   on terrain, as tests/glsl/test_horizons.py holds it to, at the border as inside,
-//            whatever the texels' sides: never over the march by more than its rounding, 0.03
-//            degrees; to as much along axes and diagonals, and wherever the horizon is at most 16
-//            rows away; else under it by 0.05 degrees (rms), 1 in 500 by more than the sun's
-//            diameter, 3 degrees at worst, K to 0.01, on terrain from real to white noise, half of
-//            its slopes over 55 degrees, and with a needle of 900 m, one texel wide
+//   agrees   on any terrain, at the border as inside, whatever the texels' sides: never over the
+//            march by more than rounding, 0.03 degrees, and under it by at most atan(0.05), 2.86
+//            degrees, as derived in lighting/horizons/sweep.glsl, and rounding; so K is at most
+//            0.65 * 0.05 = 0.033 too large on level ground. To rounding along axes and
+//            diagonals, and wherever the horizon is at most 16 rows away. Usually much closer: by
+//            0.05 degrees (rms), and by more than the sun's diameter in 1 of 500, K to 0.01, on
+//            terrain from real to white noise, half of its slopes over 55 degrees
 //
 // Sight lines of one direction are parallel, a texel apart, and each texel of a row is on one of
 // them. A sweep follows the lines from the end of the terrain that they look to, back to the
 // other. Of what it has passed it keeps the upper hull: no other point can be on a horizon. So a
-// texel costs a few points of a hull, however wide the terrain.
+// texel costs a few points of a hull, however wide the terrain. Rows whose height differs much
+// between the lines of sight along a line, as at a needle or at a wall, are looked at one by one:
+// the rougher the terrain, the more a sweep costs.
 //
 // The order: first the heights are copied into an image of this pass's size, since a processor
 // reads images several times faster than textures (stage 0). Then sweeps (stage 1) alternate with
@@ -45,8 +48,10 @@
     groups = "columns if wanted else 1, rows if wanted else 1", local = "32, 1", \
     buffers = "sky:float:size.x * size.y; \
                hull:int:room * (size.x + size.y + 64) * words; \
+               uncertain:int:room * (size.x + size.y + 64) * words; \
+               uncertain_height:float:room * (size.x + size.y + 64) * words; \
                lines:uvec4:2 * room * (texels // 8)", \
-    overwrites = "sky, land, hull, lines", aligned = "4", \
+    overwrites = "sky, land, hull, uncertain, uncertain_height, lines", aligned = "4", \
     agrees = "ahead, behind: 0.05 degrees rms; sky: 0.002 rms; exact")
 
 uniform sampler2D height;  //! input

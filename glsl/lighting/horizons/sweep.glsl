@@ -15,16 +15,29 @@
 //   - the block's rows look at the sixteen rows ahead of each, and at what is left of the next two
 //     blocks: so near, a line that runs beside a texel would see other terrain;
 //   - then the hull is followed from its near end, for all rows at once, as long as the next point
-//     shows more to one of them on the line, and all rows look at each point on the way; points
-//     that rows of the block cover are dropped from it;
-//   - then the doubtful rows are looked at: a line leaves the terrain up to half a texel after
-//     some of the lines of sight along it, or before. What stands there would hide, on the hull,
-//     what those see that have left before. So it is not on the hull, and is looked at row by row,
-//     where it is high enough to be seen;
+//     shows more to one of them, and all rows look at each point on the way; points that rows of
+//     the block cover are dropped from it;
+//   - then the uncertain rows are looked at one by one, where they are high enough to be seen: no
+//     single height on the line is true for all lines of sight along it;
 //   - then the block's own hull goes on top: a word with a bit for each row, and the number of
 //     the block that was on top before it.
 // The hull lies sixteen rows further on than the block, so that no texel meets its near rows
-// there.
+// there. The list of uncertain rows is made of words like the hull's, and begins as far away.
+//
+// The error is bounded on any terrain. Lines of sight cross row k between heights L(k) and U(k),
+// the extremes up to half a texel to either side of the line. With a tolerance t, the line's own
+// height is c(k) = min(crossing, L(k) + t), so that
+//     c(k) <= h(k) + t    for each line of sight, which crosses the row at h(k);            (1)
+//     h(k) <= c(k) + t    on each row that is certain: U(k) <= c(k) + t.                    (2)
+// From height h a texel looks at point q of the hull of all c, where the slope m = (c(q) - h) / q
+// is greatest: by (1) it finds a slope of at least m - t/q. By (2) a certain row p has a slope of
+// at most m + t/p. Both are over 16 rows away: t = 8.5 e makes the difference at most e. An
+// uncertain row is passed over only where U(k) <= h + (found + e/4) k, so that it is over the slope
+// found by even less. With e = MAX_ERROR as a tangent the elevation is too low by at most
+// atan(MAX_ERROR) = 2.86 degrees; it is never too high, since all slopes found are the march's own.
+// Lines along axes and diagonals of the grid are the lines of sight: L = U, and nothing is lost.
+// A line leaves the terrain up to half a texel after some of the lines of sight along it, or
+// before: the rows between are uncertain, and are not on the hull.
 #ifndef LIGHTING_HORIZONS_SWEEP
 #define LIGHTING_HORIZONS_SWEEP
 #ifdef COMPUTE_STAGE
@@ -34,6 +47,8 @@ const int BLOCK = 8;            // rows of a block, and bits of a word of the hu
 const int NEAR = 16;            // rows that are looked at exactly
 const int ROWS = BLOCK + NEAR;
 const float NONE = -1e30;       // a height that hides nothing
+const float MAX_ERROR = 0.05;   // of a horizon's tangent, on any terrain
+const float MIN_GAIN = 0.25;    // of that error, for which an uncertain row is looked at
 
 // Each of several rows, or pairs of rows, written out as in lighting/horizons/lines.glsl.
 #define FROM_8(DO) DO(8) DO(9) DO(10) DO(11) DO(12) DO(13) DO(14) DO(15)
@@ -53,7 +68,7 @@ const float NONE = -1e30;       // a height that hides nothing
 // A block's rows and after them the nearest rows of the blocks before, on four lines. A texel
 // beside the terrain is as high as the terrain's edge.
 vec4 here[ROWS];       // heights of the texels
-vec4 along[ROWS];      // heights where the lines cross the row
+vec4 along[ROWS];      // c, the lines' heights on the row
 vec4 upper[ROWS];      // how much higher the next texel of the row is
 float lower[ROWS];     // how much higher the first of these texels is than the one before it
 float beside[ROWS];    // how far the lines run beside the middle of their texels
@@ -63,12 +78,41 @@ vec4 leaves[BLOCK];    // after how many rows the texels' own lines of sight lea
 ivec4 found[BLOCK];
 vec4 steepest[BLOCK];  // of the rows that will go on the hull, the slopes to those after them
 vec4 gentlest[BLOCK];  // and from those before them
-vec4 doubtful;         // the highest of what only some lines of sight along a line see
+ivec4 uncertain_rows;    // a bit for each uncertain row of the block
+vec4 highest_in_block;   // U of the highest of these
+vec4 highest_uncertain;  // and of the highest so far
+float error_a_row;       // MAX_ERROR as a height on the next row
+float half_width;        // how far lines of sight run from the line that they are along
 
 // The heights of a row at so many texels beside the middles of these, -1 to 1.
 vec4 beside_texels(int row, float part) {
     vec4 sideways = mix(vec4(lower[row], upper[row].xyz), upper[row], bvec4(part > 0.0));
     return here[row] + part * sideways;
+}
+
+// c, L and U of a row: the heights of lines beside texels, and the extremes around them.
+struct Crossing {
+    vec4 height;
+    vec4 lowest;
+    vec4 highest;
+};
+
+// A tolerance in which a line's height is as good as that of each line of sight along it.
+float tolerance() {
+    return 0.5 * float(NEAR + 1) * error_a_row;
+}
+
+// From the heights of the texels nearest to the lines, the rises to these from the texels before
+// and from these to the next, and how far beside them the lines run.
+Crossing crossing_at(vec4 texel, vec4 lower_rise, vec4 upper_rise, float part) {
+    vec4 left = texel + min(part - half_width, 0.0) * lower_rise;
+    vec4 right = texel + max(part + half_width, 0.0) * upper_rise;
+    Crossing crossing;
+    crossing.lowest = min(texel, min(left, right));
+    crossing.highest = max(texel, max(left, right));
+    crossing.height = min(texel + part * (part > 0.0 ? upper_rise : lower_rise),
+                          crossing.lowest + tolerance());
+    return crossing;
 }
 
 void enter_row(int row, Course course, int line, int first_row) {
@@ -92,10 +136,14 @@ void enter_row(int row, Course course, int line, int first_row) {
     vec4 to_edge = vec4(ivec4(at, at + 1, at + 2, at + 3));
     to_edge = course.drift < 0 ? to_edge : float(last) - to_edge;
     bvec4 sure = greaterThanEqual(to_edge, vec4(course.drift < 0 ? -beside[row] : beside[row]));
-    vec4 crossed = mix(vec4(NONE), beside_texels(row, beside[row]), on_land);
-    along[row] = mix(vec4(NONE), crossed, sure);
-    vec4 most = here[row] + max(upper[row], max(-vec4(lower[row], upper[row].xyz), 0.0));
-    doubtful = max(doubtful, mix(most, vec4(NONE), sure));
+    Crossing crossing = crossing_at(here[row], vec4(lower[row], upper[row].xyz), upper[row],
+                                    beside[row]);
+    along[row] = mix(vec4(NONE), mix(vec4(NONE), crossing.height, on_land), sure);
+    vec4 highest = crossing.highest;
+    highest = mix(highest, vec4(NONE), lessThanEqual(highest, along[row] + tolerance()));
+    highest = mix(vec4(NONE), highest, on_land);
+    highest_in_block = max(highest_in_block, highest);
+    uncertain_rows |= ivec4(greaterThan(highest, vec4(NONE))) << row;
     // To the side: the edge that the lines drift to is half a texel beyond the last middle. The
     // smallest part of a drift more, so that rounding leaves on the terrain what is on its edge.
     leaves[row] = min(vec4(float(course.rows - 1 - first_row - row)),
@@ -131,21 +179,9 @@ struct Point {
     float upper;    // how much higher the next texel of the row is
     float lower;    // how much higher this one is than the texel before it
     float beside;   // how far the line runs beside the middle of that texel
-    float crossed;  // the height where the line crosses the row
+    float crossed;  // c, the line's height on the row
     float away;     // on which row, counted from the block's first
 };
-
-// The rows on which a line has gone beyond the middles of the texels at the edge that it drifts
-// to, and not yet a texel: whoever looks along it may have left the terrain before. The first, and
-// the first after them.
-ivec2 doubtful_rows(Course course, int line) {
-    if (course.drift == 0) return ivec2(course.rows);
-    int inside = course.drift < 0 ? line : course.across - 1 - line;
-    float met = float(inside) * course.rows_a_texel + float(course.middle);
-    // Where rounding moves a row from one to the other, it is seen here too.
-    return ivec2(clamp(vec2(floor(met), ceil(met + course.rows_a_texel) + 1.0), 0.0,
-                       float(course.rows)));
-}
 
 Point point_on(Course course, int line, int row, int first_row) {
     int at = line + drifted(course, row);
@@ -155,8 +191,8 @@ Point point_on(Course course, int line, int row, int first_row) {
     point.upper = land_at(texel_of(course, row, clamp(at + 1, 0, last))) - point.texel;
     point.lower = point.texel - land_at(texel_of(course, row, clamp(at - 1, 0, last)));
     point.beside = beside_of(course, row);
-    point.crossed = point.texel
-            + point.beside * (point.beside > 0.0 ? point.upper : point.lower);
+    point.crossed = crossing_at(vec4(point.texel), vec4(point.lower), vec4(point.upper),
+                                point.beside).height.x;
     point.away = float(row - first_row);
     return point;
 }
@@ -177,7 +213,7 @@ Point point_on(Course course, int line, int row, int first_row) {
     vec4 slope = (along[row + d] - along[row]) * (1.0 / float(d)); \
     steepest[row - NEAR] = max(steepest[row - NEAR], slope); \
     gentlest[row + d - NEAR] = min(gentlest[row + d - NEAR], slope); }
-// All that look along a line see its hull; what is doubtful, those whose lines of sight are still
+// All that look along a line see its hull; an uncertain row, those whose lines of sight are still
 // on the terrain.
 #define SLOPE_TO_POINT(row, part) \
     float aside = point.beside - beside[row]; \
@@ -193,12 +229,16 @@ Point point_on(Course course, int line, int row, int first_row) {
 #define LOOK_FAR(row, SEE_1) { \
     vec4 part = reciprocals(point.away - vec4(row, row + 1, row + 2, row + 3)); \
     SEE_1(row, part.x) SEE_1(row + 1, part.y) SEE_1(row + 2, part.z) SEE_1(row + 3, part.w) }
-#define LOOKS_ON(row) over_near |= floatBitsToInt(base - along[row][which]); base += slope;
+// Also as long as it shows more from the line: on even slopes that is true for the texel too.
+#define LOOKS_ON(row) \
+    over_near |= floatBitsToInt(base - max(here[row][which], along[row][which])); \
+    base += slope;
 #define COVER(row) over |= floatBitsToInt(base - along[row][which]); base += slope;
-// What is lower than that, on that row or further on, a texel does not see.
+// What is lower than that, on that row or further on, a texel need not look at.
 #define SEES_OVER(nth) { \
     float away = float(row - first_row - nth); \
-    float least = here[nth][which] + intBitsToFloat(found[nth][which]) * away; \
+    float least = here[nth][which] \
+        + (intBitsToFloat(found[nth][which]) + MIN_GAIN * error_a_row) * away; \
     lowest = min(lowest, away <= leaves[nth][which] ? least : -NONE); }
 #define ON_HULL(row) if (max(steepest[row - NEAR][which], \
     (top_tall - along[row][which]) / (top_away - float(row))) < gentlest[row \
@@ -211,7 +251,8 @@ Point point_on(Course course, int line, int row, int first_row) {
 
 // One of the four lines looks at the hull, and puts the block's rows on it.
 void follow_hull(const int which, int block, Course course, int line, int hull_at, int apart,
-                 inout ivec4 top_word, inout ivec4 top_block, inout ivec4 second_word) {
+                 int uncertain_block, inout ivec4 top_word, inout ivec4 top_block,
+                 inout ivec4 second_word) {
     int word = top_word[which];
     int in_block = top_block[which];
     bool going = in_block >= 0;
@@ -241,7 +282,7 @@ void follow_hull(const int which, int block, Course course, int line, int hull_a
         bool more = rest_in >= 0;
         row = rest_in * BLOCK + NEAR + nearest_in(rest);
         Point next = point_on(course, line + which, row, first_row);
-        // A row over the line through both sees more at the next; a row that will be on
+        // A texel over the line through both sees more at the next; a row that will be on
         // the hull and is there covers this point.
         float slope = more ? (next.crossed - point.crossed) / (next.away - point.away) : 0.0;
         float base = point.crossed - slope * point.away;
@@ -261,16 +302,19 @@ void follow_hull(const int which, int block, Course course, int line, int hull_a
         going = (over | over_near) < 0 && more;
         point = next;
     }
-    // Doubtful rows.
-    ivec2 rows = doubtful_rows(course, line + which);
-    row = max(rows.x, first_row + ROWS);
-    while (true) {
+    while (uncertain_block >= 0) {
+        int rows = uncertain[hull_at + which + uncertain_block * apart];
+        row = uncertain_block * BLOCK + nearest_in(rows);
         float lowest = -NONE;
         UP_TO_8(SEES_OVER)
-        if (row >= rows.y || lowest >= doubtful[which]) break;
-        point = point_on(course, line + which, row, first_row);
-        LOOK_FAR(0, SEE_IF_ON_LAND) LOOK_FAR(4, SEE_IF_ON_LAND)
-        row++;
+        if (lowest >= highest_uncertain[which]) break;
+        bool visible = lowest < uncertain_height[hull_at + which + uncertain_block * apart];
+        for (int left = visible ? rows & 0xffff : 0; left != 0; left &= left - 1) {
+            row = uncertain_block * BLOCK + nearest_in(left);
+            point = point_on(course, line + which, row, first_row);
+            LOOK_FAR(0, SEE_IF_ON_LAND) LOOK_FAR(4, SEE_IF_ON_LAND)
+        }
+        uncertain_block = (rows >> 16) - 1;
     }
     int below = word;
     word = 0;
@@ -283,7 +327,13 @@ void follow_hull(const int which, int block, Course course, int line, int hull_a
 }
 
 #define FOLLOW(which) follow_hull(which, block, course, line, hull_at, apart, \
-    top_word, top_block, second_word);
+    far_uncertain[which], top_word, top_block, second_word);
+// The newest block of a line with uncertain rows is the head of the list.
+#define LINK(which) if (uncertain_rows[which] != 0) { \
+    uncertain[hull_at + which + block * apart] = \
+        uncertain_rows[which] | (uncertain_block[which] + 1) << 16; \
+    uncertain_height[hull_at + which + block * apart] = highest_in_block[which]; \
+    uncertain_block[which] = block; }
 
 void sweep(Batch batch) {
     int pair = batch.from + int(gl_WorkGroupID.y);
@@ -309,12 +359,21 @@ void sweep(Batch batch) {
         ivec4 top_word = ivec4(0);
         ivec4 top_block = ivec4(-1);
         ivec4 second_word = ivec4(0);
-        doubtful = vec4(NONE);
+        // The heads of the lists of uncertain rows, from the next block on, from the second, and
+        // from the third: that which the block looks at.
+        ivec4 uncertain_block = ivec4(-1);
+        ivec4 second_uncertain = ivec4(-1);
+        ivec4 far_uncertain = ivec4(-1);
+        highest_uncertain = vec4(NONE);
+        half_width = (course.drift & 0xffff) == 0 ? 0.0 : 0.5;
+        error_a_row = MAX_ERROR / max(metres_of_steep, 1e-30);
         UP_TO_24(BEYOND)
         for (int block = off ? -1 : int(ends.y) / BLOCK; block >= int(ends.x) / BLOCK; block--) {
             int first_row = block * BLOCK;
             FROM_16(TO_NEXT_BLOCK)
             FROM_8(TO_NEXT_BLOCK)
+            uncertain_rows = ivec4(0);
+            highest_in_block = vec4(NONE);
             UP_TO_8(ENTER)
             UP_TO_8(CLEAR)
             UP_TO_8(CLEAR_HULL)
@@ -322,6 +381,10 @@ void sweep(Batch batch) {
             FAR_PAIRS(LOOK_NEAR_1)
             HULL_PAIRS(COMPARE)
             UP_TO_4(FOLLOW)
+            highest_uncertain = max(highest_uncertain, highest_in_block);
+            far_uncertain = second_uncertain;
+            second_uncertain = uncertain_block;
+            UP_TO_4(LINK)
             int place = batch.apart * (2 * (pair - batch.from) + side)
                     + place_of(course, group, first_row);
             LEAVE(0) LEAVE(2) LEAVE(4) LEAVE(6)
